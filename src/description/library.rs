@@ -1,0 +1,71 @@
+//! What a description needs from around it: the objects that carry ids, files, and a place for warnings.
+
+use super::{Location, Object, Value, nearest};
+use crate::error::{Error, Result};
+use std::{
+    cell::RefCell,
+    collections::HashMap,
+    path::{Path, PathBuf},
+};
+
+/// All objects with an id, by id, and the warnings gathered while building.
+#[derive(Debug, Default)]
+pub struct Library {
+    objects: HashMap<String, Object>,
+    warnings: RefCell<Vec<String>>,
+}
+
+impl Library {
+    /// Indexes every object under `root` that has an id. Two objects with one id are an error.
+    pub fn new(root: &Object) -> Result<Self> {
+        let mut library = Self::default();
+        library.index(root)?;
+        Ok(library)
+    }
+
+    fn index(&mut self, object: &Object) -> Result<()> {
+        if let Some(id) = &object.id
+            && let Some(other) = self.objects.insert(id.clone(), object.clone())
+        {
+            return Err(Error::new(
+                &object.location,
+                format!("an id not used before (the first \"{id}\" is at {})", other.location),
+                format!("the id \"{id}\" again"),
+                "give one of the two another id",
+            ));
+        }
+        object.properties.iter().try_for_each(|property| match &property.value {
+            Value::Object(child) => self.index(child),
+            _ => Ok(()),
+        })
+    }
+
+    /// The object called `id`, referred to from `location`.
+    pub fn resolve(&self, id: &str, location: &Location) -> Result<&Object> {
+        self.objects.get(id).ok_or_else(|| {
+            let mut known: Vec<&str> = self.objects.keys().map(String::as_str).collect();
+            known.sort_unstable();
+            Error::new(
+                location,
+                "the id of an object in this scene",
+                format!("\"{id}\""),
+                format!("{}known ids: {}", nearest(id, &known), known.join(", ")),
+            )
+        })
+    }
+
+    /// A file named in a scene: relative paths start at the folder of the file that names them.
+    pub fn file(&self, name: &str, location: &Location) -> PathBuf {
+        location.file.parent().unwrap_or(Path::new("")).join(name)
+    }
+
+    /// Tells the user something that is not an error.
+    pub fn warn(&self, location: &Location, text: &str) {
+        self.warnings.borrow_mut().push(format!("{location}: {text}"));
+    }
+
+    /// All warnings so far, in order.
+    pub fn take_warnings(&self) -> Vec<String> {
+        self.warnings.take()
+    }
+}

@@ -1,0 +1,11 @@
+//! Vectors, frames, colours, warps and measures: what every other room stands on.
+
+pub mod frame;
+pub mod measure;
+pub mod offset;
+pub mod spectrum;
+pub mod warp;
+
+pub use frame::Frame;
+pub use glam::{DMat4, DVec3, Vec2, Vec3, vec2, vec3};
+pub use spectrum::{Spectrum, SpectrumExt};

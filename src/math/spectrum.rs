@@ -1,0 +1,37 @@
+//! Linear sRGB colour triples: radiance, reflectance, extinction per channel.
+
+use super::{Vec3, vec3};
+
+/// One value per linear-sRGB channel.
+pub type Spectrum = Vec3;
+
+/// What a colour can be asked beyond vector arithmetic.
+pub trait SpectrumExt {
+    /// Rec. 709 luminance.
+    fn luminance(self) -> f32;
+    /// No light in any channel.
+    fn is_black(self) -> bool;
+    /// Channels equal to the last bit.
+    fn is_grey(self) -> bool;
+    /// exp of each channel.
+    fn exp_each(self) -> Self;
+}
+
+impl SpectrumExt for Spectrum {
+    #[inline]
+    fn luminance(self) -> f32 {
+        self.dot(vec3(0.212_671, 0.715_160, 0.072_169))
+    }
+    #[inline]
+    fn is_black(self) -> bool {
+        self == Vec3::ZERO
+    }
+    #[inline]
+    fn is_grey(self) -> bool {
+        self.x == self.y && self.y == self.z
+    }
+    #[inline]
+    fn exp_each(self) -> Self {
+        vec3(self.x.exp(), self.y.exp(), self.z.exp())
+    }
+}

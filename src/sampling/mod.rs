@@ -1,0 +1,7 @@
+//! Random streams and tabulated distributions.
+
+pub mod discrete;
+pub mod stream;
+
+pub use discrete::Discrete;
+pub use stream::Stream;
