@@ -1,7 +1,7 @@
 //! The scene description: one tree, whichever spelling it was read from. Models build themselves from it.
 
 mod library;
-mod params;
+pub mod params;
 pub mod transform;
 
 pub use library::Library;

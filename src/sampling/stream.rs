@@ -2,7 +2,7 @@
 
 use crate::math::{Vec2, vec2};
 use rand::{Rng, SeedableRng};
-use rand_distr::{Distribution, Exp1};
+use rand_distr::{Distribution, Exp1, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// What a stream is for: two purposes at the same index never share numbers.
@@ -50,6 +50,13 @@ impl Stream {
     #[inline]
     pub fn exponential(&mut self) -> f32 {
         let x: f64 = Exp1.sample(&mut self.0);
+        x as f32
+    }
+
+    /// Standard normal.
+    #[inline]
+    pub fn normal(&mut self) -> f32 {
+        let x: f64 = StandardNormal.sample(&mut self.0);
         x as f32
     }
 

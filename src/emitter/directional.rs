@@ -1,0 +1,40 @@
+//! Parallel light from infinity.
+
+use super::sampling_weight;
+use crate::{
+    description::Params,
+    error::Result,
+    math::{DVec3, Spectrum, Vec3},
+};
+
+/// A directional light.
+#[derive(Clone, Debug)]
+pub struct Directional {
+    /// Unit direction in which the light travels.
+    pub direction: Vec3,
+    /// Irradiance on a surface facing the light [W/m^2].
+    pub irradiance: Spectrum,
+    /// Factor on the probability of being chosen.
+    pub sampling_weight: f32,
+}
+
+impl Directional {
+    /// Reads `irradiance` and `direction` or `to_world` (then it travels along local +z).
+    pub fn build(params: &Params<'_>) -> Result<Self> {
+        let direction = match params.optional_vector("direction")? {
+            Some(_) if params.has("to_world") => {
+                return Err(params.complain("direction", "direction or to_world, not both", "both"));
+            }
+            Some(d) if d.length_squared() == 0.0 => {
+                return Err(params.complain("direction", "a non-zero vector", "0, 0, 0"));
+            }
+            Some(direction) => direction,
+            None => params.transform("to_world")?.transform_vector3(DVec3::Z),
+        };
+        Ok(Self {
+            direction: direction.normalize().as_vec3(),
+            irradiance: params.color("irradiance", 1.0)?,
+            sampling_weight: sampling_weight(params)?,
+        })
+    }
+}

@@ -1,0 +1,97 @@
+//! A point that emits within a cone: constant inside the beam, falling linearly in the angle to its edge.
+
+use super::sampling_weight;
+use crate::{
+    description::Params,
+    error::Result,
+    math::{DVec3, Frame, Spectrum, Vec3, warp},
+    sampling::Stream,
+};
+use std::f32::consts::TAU;
+
+/// A spotlight.
+#[derive(Clone, Debug)]
+pub struct Spot {
+    /// Where it stands, in the file's coordinates.
+    pub position: DVec3,
+    /// Intensity on the axis [W/sr].
+    pub intensity: Spectrum,
+    /// Factor on the probability of being chosen.
+    pub sampling_weight: f32,
+    axis: Frame,
+    /// Half angle of the full cone [rad].
+    cutoff: f32,
+    /// Half angle within which the intensity is constant [rad].
+    beam: f32,
+}
+
+impl Spot {
+    /// Reads `intensity`, `cutoff_angle` and `beam_width` [degrees] and `to_world`; it shines along local +z.
+    pub fn build(params: &Params<'_>) -> Result<Self> {
+        let to_world = params.transform("to_world")?;
+        let axis = to_world.transform_vector3(DVec3::Z).normalize().as_vec3();
+        let cutoff = params.float_within("cutoff_angle", 20.0, 0.0, 180.0)?;
+        if cutoff == 0.0 {
+            return Err(params.complain("cutoff_angle", "an angle > 0", "0"));
+        }
+        let beam = params.float_within("beam_width", cutoff * 0.75, 0.0, cutoff)?;
+        Ok(Self {
+            position: to_world.transform_point3(DVec3::ZERO),
+            intensity: params.color("intensity", 1.0)?,
+            sampling_weight: sampling_weight(params)?,
+            axis: Frame::around(axis),
+            cutoff: cutoff.to_radians() as f32,
+            beam: beam.to_radians() as f32,
+        })
+    }
+
+    /// Intensity towards unit `direction` [W/sr].
+    #[inline]
+    pub fn intensity(&self, direction: Vec3) -> Spectrum {
+        self.intensity * self.falloff(angle(direction, self.axis.normal))
+    }
+
+    fn falloff(&self, angle: f32) -> f32 {
+        if angle <= self.beam {
+            1.0
+        } else if angle < self.cutoff {
+            (self.cutoff - angle) / (self.cutoff - self.beam)
+        } else {
+            0.0
+        }
+    }
+
+    /// 1 - cos of the half angle, without cancellation for narrow cones.
+    fn one_minus_cos(&self) -> f32 {
+        2.0 * (0.5 * self.cutoff).sin().powi(2)
+    }
+
+    /// A direction, uniform in the cone.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+        self.axis.to_world(warp::to_cone(stream.square(), self.one_minus_cos()))
+    }
+
+    /// Density of `sample` [1/sr].
+    #[inline]
+    pub fn density(&self, direction: Vec3) -> f32 {
+        if angle(direction, self.axis.normal) < self.cutoff {
+            warp::cone_density(self.one_minus_cos())
+        } else {
+            0.0
+        }
+    }
+
+    /// Emitted power [W]: 2 pi times the integral of falloff(a) sin(a), in closed form.
+    pub fn power(&self) -> Spectrum {
+        let (beam, cutoff) = (f64::from(self.beam), f64::from(self.cutoff));
+        let inner = 2.0 * (0.5 * beam).sin().powi(2);
+        let ramp = if cutoff - beam < 1e-6 { 0.0 } else { beam.cos() - (cutoff.sin() - beam.sin()) / (cutoff - beam) };
+        self.intensity * (TAU * (inner + ramp) as f32)
+    }
+}
+
+/// Angle between unit vectors, precise for small ones too (Kahan 2006).
+fn angle(a: Vec3, b: Vec3) -> f32 {
+    2.0 * (a - b).length().atan2((a + b).length())
+}

@@ -1,0 +1,139 @@
+//! A block: a fixed set of pixels scattered over the image, rendered together with a light cache of their own.
+
+use crate::{
+    film::Film,
+    math::{Spectrum, Vec2},
+    sampling::{Stream, stream::Purpose},
+    transport::{Estimator, Lanes, LightCache, Splats, profile::Profile},
+};
+
+/// Pixels (and light walks) of a block: a cache of this many walks still fits near the processor, and its
+/// noise is shared by few enough pixels.
+const PIXELS_PER_BLOCK: usize = 1024;
+
+/// How an image's pixels are divided among blocks.
+pub struct Blocks {
+    pixels: usize,
+    count: usize,
+    /// Coprime to `pixels`: the pixels of a block lie this far apart, so that what they have in common (their
+    /// light cache) shows nowhere as a pattern.
+    stride: usize,
+    walks_per_block: u64,
+    heroes: u64,
+}
+
+/// What a block adds to its pass.
+pub struct Outcome {
+    eye: Vec<(u32, Spectrum)>,
+    light: Vec<(u32, Spectrum)>,
+}
+
+impl Outcome {
+    /// Adds it, in a fixed order.
+    pub fn add_to(&self, pass: &mut [Spectrum]) {
+        for (pixel, value) in self.eye.iter().chain(&self.light) {
+            pass[*pixel as usize] += *value;
+        }
+    }
+}
+
+impl Blocks {
+    /// Divides `pixels` for estimators of profile `P`.
+    pub fn new<P: Profile>(pixels: usize) -> Self {
+        let count = pixels.div_ceil(PIXELS_PER_BLOCK).max(1);
+        let golden = (pixels as f64 * 0.618_033_988_75) as usize;
+        let stride = (golden.max(1)..).find(|s| gcd(*s, pixels) == 1).unwrap_or(1);
+        let heroes = P::Lanes::COUNT as u64;
+        let walks_per_block = (pixels.div_ceil(count) as u64).div_ceil(heroes) * heroes;
+        Self { pixels, count, stride, walks_per_block, heroes }
+    }
+
+    /// Number of blocks.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Light walks of one block, a multiple of the number of hero channels.
+    pub fn walks_per_block(&self) -> u64 {
+        self.walks_per_block
+    }
+
+    /// Light walks of one pass.
+    pub fn walks_per_pass(&self) -> u64 {
+        self.walks_per_block * self.count as u64
+    }
+
+    /// The pixels of `block`.
+    fn pixels(&self, block: usize) -> impl Iterator<Item = usize> + '_ {
+        let (low, high) = (block * self.pixels / self.count, (block + 1) * self.pixels / self.count);
+        (low..high).map(|i| (i as u128 * self.stride as u128 % self.pixels as u128) as usize)
+    }
+
+    /// Renders one sample of every pixel of `block`.
+    pub fn render<P: Profile>(
+        &self,
+        estimator: &Estimator<'_, P>,
+        film: &Film,
+        seed: u64,
+        pass: usize,
+        block: usize,
+    ) -> Outcome {
+        let mut cache = LightCache::new(P::Lanes::COUNT);
+        let mut light = Splatted { film, values: Vec::new() };
+        if estimator.needs_light_walks() {
+            for walk in 0..self.walks_per_block {
+                let index = block as u64 * self.walks_per_block + walk;
+                let mut stream = Stream::new(seed, index, pass as u64, Purpose::Light);
+                let hero = (walk % self.heroes) as usize;
+                estimator.trace_light(&mut cache, &mut light, hero, &mut stream);
+            }
+        }
+        let eye = self.pixels(block).map(|pixel| {
+            let mut stream = Stream::new(seed, pixel as u64, pass as u64, Purpose::Eye);
+            let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
+            let position = film.sample(pixel, &mut stream);
+            (pixel as u32, estimator.sample_pixel(&cache, position, hero, &mut stream))
+        });
+        Outcome { eye: eye.collect(), light: light.values }
+    }
+}
+
+/// What light walks brought to the film.
+struct Splatted<'a> {
+    film: &'a Film,
+    values: Vec<(u32, Spectrum)>,
+}
+
+impl Splats for Splatted<'_> {
+    #[inline]
+    fn covers(&self, film: Vec2) -> bool {
+        self.film.covers(film)
+    }
+
+    #[inline]
+    fn splat(&mut self, film: Vec2, value: Spectrum) {
+        let values = &mut self.values;
+        self.film.spread(film, value, |pixel, value| values.push((pixel as u32, value)));
+    }
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transport::profile::{Everything, Vacuum};
+
+    #[test]
+    fn blocks_hold_every_pixel_once() {
+        for pixels in [1, 2, 7, 1024, 1025, 48 * 48, 640 * 480] {
+            let blocks = Blocks::new::<Vacuum>(pixels);
+            let mut seen = vec![0; pixels];
+            (0..blocks.count()).flat_map(|b| blocks.pixels(b)).for_each(|p| seen[p] += 1);
+            assert!(seen.iter().all(|n| *n == 1), "{pixels}");
+            assert_eq!(Blocks::new::<Everything>(pixels).walks_per_block() % 3, 0);
+        }
+    }
+}

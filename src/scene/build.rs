@@ -1,0 +1,482 @@
+//! From description to scene: the tree is walked once, every object is built by its registry row, and what
+//! belongs together is tied up by index.
+
+use super::{
+    Boundary, Scene, Surface,
+    accel::Geometry,
+    boundary::{self, Found},
+    integrator::{self, Integrator},
+    lights::{Light, Lights},
+};
+use crate::{
+    bsdf::{self, Bsdf, BsdfModel},
+    description::{Library, Location, Object, Params, Property, Value, nearest, params::Child},
+    emitter::{self, Emitter},
+    error::{Error, Result},
+    film::{Film, filter, filter::Filter},
+    math::{DMat4, DVec3, Spectrum, Vec3, offset},
+    medium::{self, Homogeneous, MediumIndex},
+    sensor::Perspective,
+    shape::{self, Shape},
+};
+use std::collections::HashMap;
+
+/// A scene with what its file says about rendering it.
+pub struct Setup {
+    /// What transport needs.
+    pub scene: Scene,
+    /// Image size and filter.
+    pub film: Film,
+    /// Which integrator, how deep.
+    pub integrator: Integrator,
+    /// Samples per pixel asked for by the sampler.
+    pub samples_per_pixel: u64,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// Id (or plugin name) of each medium after vacuum, for listings.
+    pub medium_names: Vec<String>,
+}
+
+/// What the caller asks of the film instead of the file's word.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Overrides {
+    /// Width and height [pixels].
+    pub size: Option<(u32, u32)>,
+}
+
+/// Builds the scene that `root` describes.
+pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
+    let library = Library::new(root)?;
+    let sections = Sections::sort(root, &library)?;
+    let recentre = sections.viewpoint(&library)?;
+    let mut builder = Builder::new(&library, recentre);
+    for child in &sections.shapes {
+        builder.shape(child)?;
+    }
+    for child in &sections.emitters {
+        builder.emitter(child)?;
+    }
+    let view = builder.view(&sections.sensor, overrides)?;
+    let integrator = match sections.integrator {
+        Some(object) => integrator::build(object, &library)?,
+        None => Integrator::default(),
+    };
+    let medium_names = builder.medium_names.clone();
+    let scene = builder.finish(view.sensor, view.medium, &sections.sensor.location)?;
+    Ok(Setup {
+        scene,
+        film: view.film,
+        integrator,
+        samples_per_pixel: view.samples_per_pixel,
+        warnings: library.take_warnings(),
+        medium_names,
+    })
+}
+
+/// The scene's children by kind.
+struct Sections<'a> {
+    integrator: Option<&'a Object>,
+    sensor: &'a Object,
+    shapes: Vec<Child<'a>>,
+    emitters: Vec<Child<'a>>,
+}
+
+/// True if `object` only waits to be referred to.
+fn is_definition(object: &Object) -> bool {
+    bsdf::ROWS.iter().any(|row| row.name == object.plugin)
+        || medium::ROWS.iter().any(|row| row.name == object.plugin)
+        || crate::phase::is_phase(object)
+        || crate::texture::ROWS.iter().any(|row| row.name == object.plugin)
+}
+
+fn is_shape(object: &Object) -> bool {
+    shape::ROWS.iter().any(|row| row.name == object.plugin)
+}
+
+impl<'a> Sections<'a> {
+    fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
+        let params = Params::new(root, library);
+        let plugin = |child: &Child<'_>| child.object.plugin.clone();
+        let shapes = params.children(|child| is_shape(child.object))?;
+        let emitters = params.children(|child| emitter::is_emitter(child.object))?;
+        let sensors = params.children(|child| plugin(child) == "perspective")?;
+        let integrators = params.children(|child| integrator::is_integrator(child.object))?;
+        let definitions = params.children(|child| is_definition(child.object))?;
+        for child in &definitions {
+            check_definition(child.object, library)?;
+        }
+        if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
+            !(is_shape(child.object)
+                || emitter::is_emitter(child.object)
+                || plugin(child) == "perspective"
+                || integrator::is_integrator(child.object)
+                || is_definition(child.object))
+        }) {
+            return Err(unknown_plugin(unknown));
+        }
+        params.finish()?;
+        let sensor = match sensors.as_slice() {
+            [] => return Err(params.missing("sensor", "a sensor")),
+            [sensor] => sensor.object,
+            [_, second, ..] => return Err(only_one(second, "sensor")),
+        };
+        if let [_, second, ..] = integrators.as_slice() {
+            return Err(only_one(second, "integrator"));
+        }
+        let integrator = integrators.first().map(|child| child.object);
+        Ok(Self { integrator, sensor, shapes, emitters })
+    }
+
+    /// Where the camera stands, in the file's coordinates: it becomes the origin, so that f32 geometry is most
+    /// precise where it is seen from nearest, however far from the file's origin that is.
+    fn viewpoint(&self, library: &Library) -> Result<DVec3> {
+        let to_world: DMat4 = Params::new(self.sensor, library).transform("to_world")?;
+        Ok(to_world.transform_point3(DVec3::ZERO))
+    }
+}
+
+/// Definitions are built even if nothing refers to them, so that a mistake in one is told.
+fn check_definition(object: &Object, library: &Library) -> Result<()> {
+    if bsdf::ROWS.iter().any(|row| row.name == object.plugin) {
+        bsdf::build(object, library).map(drop)
+    } else if medium::ROWS.iter().any(|row| row.name == object.plugin) {
+        medium::build(object, library).map(drop)
+    } else if crate::phase::is_phase(object) {
+        crate::phase::build(object, library).map(drop)
+    } else {
+        crate::texture::build(object, library).map(drop)
+    }
+}
+
+fn unknown_plugin(child: &Child<'_>) -> Error {
+    let mut known: Vec<&str> = shape::ROWS.iter().map(|row| row.name).collect();
+    known.extend(emitter::ROWS.iter().map(|row| row.name));
+    known.extend(bsdf::ROWS.iter().map(|row| row.name));
+    known.extend(medium::ROWS.iter().map(|row| row.name));
+    known.extend(crate::phase::ROWS.iter().map(|row| row.name));
+    known.extend(crate::texture::ROWS.iter().map(|row| row.name));
+    known.extend(integrator::ROWS.iter().map(|row| row.name));
+    known.push("perspective");
+    let plugin = &child.object.plugin;
+    Error::new(
+        child.location,
+        "a plugin that a scene can hold",
+        format!("\"{plugin}\""),
+        format!("{}known: {}", nearest(plugin, &known), known.join(", ")),
+    )
+}
+
+fn only_one(second: &Child<'_>, what: &str) -> Error {
+    Error::new(second.location, format!("one {what}"), format!("a second {what}"), "remove one of them")
+}
+
+/// The camera with its film.
+struct View {
+    sensor: Perspective,
+    film: Film,
+    samples_per_pixel: u64,
+    medium: Option<MediumIndex>,
+}
+
+struct Builder<'a> {
+    library: &'a Library,
+    recentre: DVec3,
+    shapes: Vec<Shape>,
+    surfaces: Vec<Surface>,
+    bsdfs: Vec<Bsdf>,
+    bsdf_index: HashMap<*const Object, u32>,
+    media: Vec<Homogeneous>,
+    medium_names: Vec<String>,
+    medium_index: HashMap<*const Object, MediumIndex>,
+    /// Each with the medium its file names, and where it stands.
+    emitters: Vec<(Emitter, Option<u32>, Option<MediumIndex>, &'a Location)>,
+    /// BSDF of shapes that name none: diffuse 0.5, and black on emitters.
+    default_bsdf: [Option<u32>; 2],
+}
+
+impl<'a> Builder<'a> {
+    fn new(library: &'a Library, recentre: DVec3) -> Self {
+        Self {
+            library,
+            recentre,
+            shapes: Vec::new(),
+            surfaces: Vec::new(),
+            bsdfs: Vec::new(),
+            bsdf_index: HashMap::new(),
+            media: vec![Homogeneous::vacuum()],
+            medium_names: Vec::new(),
+            medium_index: HashMap::new(),
+            emitters: Vec::new(),
+            default_bsdf: [None; 2],
+        }
+    }
+
+    fn shape(&mut self, child: &Child<'a>) -> Result<()> {
+        let params = Params::new(child.object, self.library);
+        let shape = shape::build(&params, self.recentre)?;
+        let boundary = self.boundary(&params)?;
+        let index = self.shapes.len() as u32;
+        let emitter = self.shape_emitter(&params, index)?;
+        let bsdfs = params.children(|child| bsdf::ROWS.iter().any(|row| row.name == child.object.plugin))?;
+        let bsdf = match bsdfs.as_slice() {
+            [] => self.default_bsdf(emitter.is_some())?,
+            [one] => self.bsdf(one.object)?,
+            [_, second, ..] => return Err(only_one(second, "bsdf")),
+        };
+        params.finish()?;
+        self.shapes.push(shape);
+        self.surfaces.push(Surface { bsdf, emitter, boundary });
+        Ok(())
+    }
+
+    fn boundary(&mut self, params: &Params<'a>) -> Result<Option<Boundary>> {
+        let interior = params.child("interior")?.map(|child| self.medium(child.object)).transpose()?;
+        let exterior = params.child("exterior")?.map(|child| self.medium(child.object)).transpose()?;
+        if interior.is_none() && exterior.is_none() {
+            return Ok(None);
+        }
+        let side = |medium: Option<MediumIndex>| medium.unwrap_or(MediumIndex::VACUUM);
+        Ok(Some(Boundary { interior: side(interior), exterior: side(exterior) }))
+    }
+
+    fn shape_emitter(&mut self, params: &Params<'a>, shape: u32) -> Result<Option<u32>> {
+        let emitters = params.children(|child| emitter::is_emitter(child.object))?;
+        let child = match emitters.as_slice() {
+            [] => return Ok(None),
+            [one] => one,
+            [_, second, ..] => return Err(only_one(second, "emitter")),
+        };
+        let emitter = emitter::build(child.object, self.library)?;
+        if !matches!(emitter, Emitter::Area(_)) {
+            let found = format!("\"{}\"", child.object.plugin);
+            let remedy = "put it beside the shapes, in the scene itself";
+            return Err(Error::new(child.location, "an area emitter on a shape", found, remedy));
+        }
+        self.emitters.push((emitter, Some(shape), None, child.location));
+        Ok(Some(self.emitters.len() as u32 - 1))
+    }
+
+    fn emitter(&mut self, child: &Child<'a>) -> Result<()> {
+        let emitter = emitter::build(child.object, self.library)?;
+        match emitter {
+            Emitter::Area(_) => {
+                let remedy = "put it inside the shape that emits";
+                return Err(Error::new(child.location, "an area emitter on a shape", "one in the scene", remedy));
+            }
+            Emitter::Constant(_) if self.emitters.iter().any(|e| matches!(e.0, Emitter::Constant(_))) => {
+                return Err(only_one(child, "environment"));
+            }
+            _ => self.emitters.push((emitter, None, None, child.location)),
+        }
+        Ok(())
+    }
+
+    fn bsdf(&mut self, object: &'a Object) -> Result<u32> {
+        if let Some(index) = self.bsdf_index.get(&std::ptr::from_ref(object)) {
+            return Ok(*index);
+        }
+        let index = self.add_bsdf(bsdf::build(object, self.library)?);
+        self.bsdf_index.insert(std::ptr::from_ref(object), index);
+        Ok(index)
+    }
+
+    fn add_bsdf(&mut self, bsdf: Bsdf) -> u32 {
+        self.bsdfs.push(bsdf);
+        self.bsdfs.len() as u32 - 1
+    }
+
+    fn default_bsdf(&mut self, emits: bool) -> Result<u32> {
+        if let Some(index) = self.default_bsdf[usize::from(emits)] {
+            return Ok(index);
+        }
+        let location = Location {
+            file: std::sync::Arc::default(),
+            position: crate::description::Position::Path("(default bsdf)".into()),
+        };
+        let value = Value::Float(if emits { 0.0 } else { 0.5 });
+        let properties = vec![Property { name: "reflectance".into(), value, location: location.clone() }];
+        let object = Object { tag: None, plugin: "diffuse".into(), id: None, properties, location };
+        let index = self.add_bsdf(bsdf::build(&object, self.library)?);
+        self.default_bsdf[usize::from(emits)] = Some(index);
+        Ok(index)
+    }
+
+    fn medium(&mut self, object: &'a Object) -> Result<MediumIndex> {
+        if let Some(index) = self.medium_index.get(&std::ptr::from_ref(object)) {
+            return Ok(*index);
+        }
+        let index = MediumIndex(self.media.len() as u32);
+        self.media.push(medium::build(object, self.library)?);
+        self.medium_names.push(object.id.clone().unwrap_or_else(|| object.plugin.clone()));
+        self.medium_index.insert(std::ptr::from_ref(object), index);
+        Ok(index)
+    }
+
+    fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View> {
+        let params = Params::new(object, self.library);
+        let film = match params.children(|child| child.object.plugin == "hdrfilm")?.as_slice() {
+            [] => Film::new(768, 576, Filter::Gaussian { stddev: 0.5 }),
+            [one] => film(one.object, self.library, overrides)?,
+            [_, second, ..] => return Err(only_one(second, "film")),
+        };
+        let samples_per_pixel = match params.children(|child| is_sampler(child.object))?.as_slice() {
+            [] => 4,
+            [one] => sampler(one.object, self.library)?,
+            [_, second, ..] => return Err(only_one(second, "sampler")),
+        };
+        let is_medium = |child: &Child<'_>| medium::ROWS.iter().any(|row| row.name == child.object.plugin);
+        let medium = match params.children(is_medium)?.as_slice() {
+            [] => None,
+            [one] => Some(self.medium(one.object)?),
+            [_, second, ..] => return Err(only_one(second, "medium")),
+        };
+        let sensor = Perspective::build(&params, self.recentre, film.width, film.height)?;
+        params.finish()?;
+        Ok(View { sensor, film, samples_per_pixel, medium })
+    }
+
+    /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
+    fn finish(
+        self,
+        sensor: Perspective,
+        stated: Option<MediumIndex>,
+        sensor_location: &Location,
+    ) -> Result<Scene> {
+        let geometry = Geometry::build(self.shapes);
+        let finder = Finder { geometry: &geometry, surfaces: &self.surfaces, library: self.library };
+        let ambient = stated.unwrap_or(MediumIndex::VACUUM);
+        let sensor_medium = match stated {
+            Some(medium) => medium,
+            None => finder.around(sensor.position, ambient, sensor_location, "the camera"),
+        };
+        let recentre = self.recentre;
+        let lights = self.emitters.into_iter().map(|(emitter, shape, _, location)| {
+            let position = position_of(&emitter, recentre);
+            let medium = match (shape, position) {
+                (Some(shape), _) => finder.in_front_of(shape, sensor_medium, location),
+                (None, Some(position)) => finder.around(position, sensor_medium, location, "an emitter"),
+                (None, None) => finder.far_outside(sensor_medium),
+            };
+            Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium }
+        });
+        let lights: Vec<Light> = lights.collect();
+        let outside = self.media[finder.far_outside(sensor_medium).0 as usize].sigma_t;
+        let lane = |sigma_t: f32| if sigma_t > 0.0 { 0.0 } else { 1.0 };
+        let from_infinity = Spectrum::new(lane(outside.x), lane(outside.y), lane(outside.z));
+        let lights = Lights::new(lights, &geometry, from_infinity);
+        Ok(Scene {
+            lights,
+            geometry,
+            surfaces: self.surfaces,
+            bsdfs: self.bsdfs,
+            media: self.media,
+            sensor,
+            sensor_medium,
+        })
+    }
+}
+
+fn position_of(emitter: &Emitter, recentre: DVec3) -> Option<Vec3> {
+    match emitter {
+        Emitter::Point(point) => Some((point.position - recentre).as_vec3()),
+        Emitter::Spot(spot) => Some((spot.position - recentre).as_vec3()),
+        _ => None,
+    }
+}
+
+/// Finds the media of points, with a warning where the shapes contradict each other.
+struct Finder<'a> {
+    geometry: &'a Geometry,
+    surfaces: &'a [Surface],
+    library: &'a Library,
+}
+
+impl Finder<'_> {
+    fn around(&self, point: Vec3, ambient: MediumIndex, location: &Location, what: &str) -> MediumIndex {
+        match boundary::medium_at(self.geometry, self.surfaces, point) {
+            Found::Nothing => ambient,
+            Found::Medium(medium) => medium,
+            Found::Ambiguous(medium) => {
+                let text = format!(
+                    "rays from {what} meet boundaries of different media; the most frequent one is taken. \
+                     Close the shapes that bound media, or name the medium of the camera in its description"
+                );
+                self.library.warn(location, &text);
+                medium
+            }
+        }
+    }
+
+    /// The medium on the emitting side of a shape: the shape's own exterior, else that around points on it.
+    fn in_front_of(&self, shape: u32, ambient: MediumIndex, location: &Location) -> MediumIndex {
+        if let Some(boundary) = self.surfaces[shape as usize].boundary {
+            return boundary.exterior;
+        }
+        let mut stream = crate::sampling::Stream::new(0, u64::from(shape), 0, crate::sampling::stream::Purpose::Pilot);
+        let point = self.geometry.sample_area(shape, &mut stream);
+        let origin = offset::leave_surface(point.position, point.error, point.normal, point.shading.normal);
+        self.around(origin, ambient, location, "an emitting shape")
+    }
+
+    /// The medium far from everything: in front of the first boundary on the way in from outside.
+    fn far_outside(&self, ambient: MediumIndex) -> MediumIndex {
+        let (low, high) = self.geometry.bounds();
+        let (centre, size) = (0.5 * (low + high), (high - low).length().max(f32::MIN_POSITIVE));
+        let from = |towards: Vec3| boundary::ask(self.geometry, self.surfaces, centre - towards * (2.0 * size), towards);
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (axis + Vec3::splat(0.013)).normalize());
+        axes.iter().flat_map(|axis| [*axis, -*axis]).find_map(from).unwrap_or(ambient)
+    }
+}
+
+const SAMPLERS: [&str; 5] = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"];
+
+fn is_sampler(object: &Object) -> bool {
+    SAMPLERS.contains(&object.plugin.as_str())
+}
+
+fn sampler(object: &Object, library: &Library) -> Result<u64> {
+    let params = Params::new(object, library);
+    let count = params.integer("sample_count", 4)?;
+    params.accept_unused(&["seed", "jitter", "strength"], "the sequence of random numbers is Tyndall's own");
+    params.finish()?;
+    if count >= 1 {
+        return Ok(count as u64);
+    }
+    Err(params.complain("sample_count", "an integer >= 1", count.to_string()))
+}
+
+fn film(object: &Object, library: &Library, overrides: Overrides) -> Result<Film> {
+    let params = Params::new(object, library);
+    let (width, height) = (pixels(&params, "width", 768)?, pixels(&params, "height", 576)?);
+    let is_filter = |child: &Child<'_>| child.name == "rfilter" || child.object.tag.as_deref() == Some("rfilter")
+        || filter::ROWS.iter().any(|row| row.name == child.object.plugin);
+    let filter = match params.children(is_filter)?.as_slice() {
+        [] => Filter::Gaussian { stddev: 0.5 },
+        [one] => crate::description::build_by_row(one.object, library, "reconstruction filter", filter::ROWS)?,
+        [_, second, ..] => return Err(only_one(second, "rfilter")),
+    };
+    let formats = ["pixel_format", "component_format", "file_format"];
+    params.accept_unused(&formats, "images are written as EXR with 32-bit float R, G, B");
+    params.accept_unused(&["sample_border", "banner", "compensate"], "it changes nothing here");
+    params.finish()?;
+    let (width, height) = overrides.size.unwrap_or((width, height));
+    Ok(Film::new(width, height, filter))
+}
+
+fn pixels(params: &Params<'_>, name: &'static str, default: i64) -> Result<u32> {
+    let value = params.integer(name, default)?;
+    if (1..=65_536).contains(&value) {
+        return Ok(value as u32);
+    }
+    Err(params.complain(name, "an integer from 1 to 65536", value.to_string()))
+}
+
+/// What `scene` needs of its profile.
+pub fn needs(scene: &Scene) -> crate::transport::profile::Needs {
+    crate::transport::profile::Needs {
+        media: scene.media.iter().any(|medium| medium.sigma_t != Spectrum::ZERO),
+        chromatic: scene.media.iter().any(Homogeneous::is_chromatic),
+        nulls: scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null()),
+        infinite: scene.lights.has_infinite(),
+    }
+}

@@ -1,0 +1,83 @@
+//! A scene ready to render, and how it is made: read a description, build it, index it.
+
+pub mod accel;
+pub mod lights;
+
+use crate::{
+    bsdf::{Bsdf, BsdfModel},
+    math::{Spectrum, Vec3},
+    medium::{Homogeneous, MediumIndex},
+    sensor::Perspective,
+    shape::SurfacePoint,
+};
+use accel::Geometry;
+use lights::Lights;
+
+/// Which media lie on the two sides of a shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Boundary {
+    /// Behind the surface, where the normal points away from.
+    pub interior: MediumIndex,
+    /// In front of the surface.
+    pub exterior: MediumIndex,
+}
+
+/// What a shape is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// Index of its BSDF.
+    pub bsdf: u32,
+    /// Index of its emitter.
+    pub emitter: Option<u32>,
+    /// The media on its sides; none where it does not separate media.
+    pub boundary: Option<Boundary>,
+}
+
+/// Everything transport needs to know.
+pub struct Scene {
+    /// All shapes.
+    pub geometry: Geometry,
+    /// One entry a shape.
+    pub surfaces: Vec<Surface>,
+    /// All BSDFs.
+    pub bsdfs: Vec<Bsdf>,
+    /// All media; the first is vacuum.
+    pub media: Vec<Homogeneous>,
+    /// All emitters.
+    pub lights: Lights,
+    /// The camera.
+    pub sensor: Perspective,
+    /// The medium around the camera.
+    pub sensor_medium: MediumIndex,
+}
+
+impl Scene {
+    /// What the surface of `shape` is made of.
+    #[inline]
+    pub fn surface(&self, shape: u32) -> &Surface {
+        &self.surfaces[shape as usize]
+    }
+
+    /// The BSDF of `shape`.
+    #[inline]
+    pub fn bsdf(&self, shape: u32) -> &Bsdf {
+        &self.bsdfs[self.surfaces[shape as usize].bsdf as usize]
+    }
+
+    /// The medium that a ray in `medium` is in when it leaves `point` in `direction`.
+    #[inline]
+    pub fn medium_towards(&self, point: &SurfacePoint, direction: Vec3, medium: MediumIndex) -> MediumIndex {
+        match self.surface(point.shape).boundary {
+            Some(boundary) if point.normal.dot(direction) > 0.0 => boundary.exterior,
+            Some(boundary) => boundary.interior,
+            None => medium,
+        }
+    }
+
+    /// The part of light that passes `point` undeflected along `direction`.
+    #[inline]
+    pub fn null_transmission(&self, point: &SurfacePoint, direction: Vec3) -> Spectrum {
+        let cosine = point.shading.normal.dot(direction).abs();
+        self.bsdf(point.shape).null_transmission(point.uv, cosine)
+    }
+}

@@ -1,0 +1,100 @@
+//! Joins: the segment between the end of an eye walk and the end of a light walk, with contribution
+//! (LW96 eq. 10) and weight (eq. 14).
+
+use super::{
+    lanes::Lanes,
+    profile::Profile,
+    segment,
+    vertex::Vertex,
+    weight::{self, End},
+};
+use crate::{
+    bsdf::Transport,
+    math::{Spectrum, Vec3, measure, offset},
+    medium::MediumIndex,
+    scene::{Scene, lights::Link},
+    shape::Ray,
+};
+
+/// The end of a walk at `vertex`, looking in unit direction `towards`; none where nothing scatters that way.
+#[inline]
+pub fn vertex_end<L: Lanes>(
+    scene: &Scene,
+    vertex: &Vertex<L>,
+    towards: Vec3,
+    transport: Transport,
+) -> Option<End<L>> {
+    let scattering = vertex.scatter_towards(scene, towards, transport);
+    let value = vertex.throughput * scattering.value;
+    if value.max_element() <= 0.0 {
+        return None;
+    }
+    let (origin, medium) = vertex.depart(scene, towards);
+    Some(End {
+        origin,
+        medium,
+        value,
+        forward: scattering.forward,
+        cosine: vertex.cosine(towards),
+        inverse: vertex.inverse,
+        sigma_t: vertex.sigma_t(scene),
+        reach: vertex.reach,
+        tail: vertex.tail(scattering.backward),
+    })
+}
+
+/// The end at an emitter point picked by next-event estimation, for a join of strategy s = 1; `hits` is n of
+/// s = 0. In units of the density of s = 1, a light walk starts here `start / connect` times as densely.
+#[inline]
+pub fn link_end<L: Lanes>(link: &Link, medium: MediumIndex, towards: Vec3, hits: f32) -> End<L> {
+    End {
+        origin: link_origin(link, towards),
+        medium,
+        value: link.value / link.connect,
+        forward: link.forward * link.start / link.connect,
+        cosine: link.cosine,
+        inverse: 1.0 / link.connect,
+        sigma_t: L::splat(1.0),
+        reach: L::splat(1.0),
+        tail: L::splat(if link.hittable { hits } else { 0.0 }),
+    }
+}
+
+#[inline]
+fn link_origin(link: &Link, towards: Vec3) -> Vec3 {
+    match &link.point {
+        Some(point) => offset::leave_surface(point.position, point.error, point.normal, towards),
+        None => link.position,
+    }
+}
+
+/// Weighted contribution of joining `a` and `b` by a strategy of `count` expected samples; none where the way
+/// is blocked. The caller divides by the number of samples it took.
+#[inline]
+pub fn join<P: Profile>(
+    scene: &Scene,
+    a: &End<P::Lanes>,
+    b: &End<P::Lanes>,
+    distance_squared: f32,
+    count: f32,
+) -> Option<Spectrum> {
+    let (direction, distance, _) = measure::between(a.origin, b.origin)?;
+    let ray = Ray { origin: a.origin, direction, t_max: distance };
+    join_along::<P>(scene, ray, a, b, distance_squared, count)
+}
+
+/// The same along a given ray that starts at `a`: for ends at infinity, where `distance_squared` is 1.
+#[inline]
+pub fn join_along<P: Profile>(
+    scene: &Scene,
+    ray: Ray,
+    a: &End<P::Lanes>,
+    b: &End<P::Lanes>,
+    distance_squared: f32,
+    count: f32,
+) -> Option<Spectrum> {
+    let passage = segment::pass::<P>(scene, ray, a.medium)?;
+    let geometry = 1.0 / distance_squared;
+    let weight = weight::join(a, b, passage.density, geometry, count);
+    Some(a.value * b.value * passage.transmittance * (geometry * weight))
+}

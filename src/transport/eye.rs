@@ -1,0 +1,162 @@
+//! The eye walk's side: emitters met (s = 0), next-event estimation (s = 1), joins with light walks (s >= 2).
+
+use super::{
+    Estimator,
+    cache::LightCache,
+    connect,
+    lanes::Lanes,
+    profile::Profile,
+    vertex::{Site, Vertex},
+    walk::{Departure, Kind, Visitor, walk},
+    weight,
+};
+use crate::{
+    bsdf::Transport,
+    math::{Spectrum, Vec2, Vec3, measure},
+    sampling::Stream,
+    scene::lights::Link,
+    shape::Ray,
+};
+
+/// Gathers the radiance of one pixel sample.
+struct Eye<'a, P: Profile> {
+    estimator: &'a Estimator<'a, P>,
+    cache: &'a LightCache<P::Lanes>,
+    hero: usize,
+    /// The vertex before the current one: where next-event estimation would have been made from.
+    previous: Vec3,
+    radiance: Spectrum,
+}
+
+/// Radiance estimate of one eye walk through `film` [pixels], joined with the light walks of `cache`.
+pub fn sample<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    cache: &LightCache<P::Lanes>,
+    film: Vec2,
+    hero: usize,
+    stream: &mut Stream,
+) -> Spectrum {
+    let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
+    let departure = depart(estimator, film);
+    let mut eye = Eye { estimator, cache, hero, previous: departure.position, radiance: Spectrum::ZERO };
+    walk(estimator.scene, kind, departure, &mut eye, stream);
+    eye.radiance
+}
+
+/// Leaves the lens through a film position. Nothing can join before the lens: its sums are zero.
+fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2) -> Departure<P::Lanes> {
+    let sensor = &estimator.scene.sensor;
+    let (direction, cosine) = sensor.direction(film);
+    let origin = sensor.position + direction * (sensor.near / cosine);
+    Departure {
+        position: sensor.position,
+        ray: Ray { origin, direction, t_max: (sensor.far - sensor.near) / cosine },
+        medium: estimator.scene.sensor_medium,
+        from_infinity: false,
+        edges: 0,
+        dirac: false,
+        throughput: Spectrum::ONE,
+        forward: sensor.density(cosine),
+        carried: P::Lanes::splat(0.0),
+        reach: P::Lanes::splat(1.0),
+    }
+}
+
+impl<P: Profile> Visitor<P> for Eye<'_, P> {
+    #[inline]
+    fn joins(&self, edges: u32, _: Vec3) -> f32 {
+        if edges == 1 { self.estimator.counts.lens } else { self.estimator.counts.join }
+    }
+
+    #[inline]
+    fn arrive(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
+        if let Site::Surface(point) = &vertex.site
+            && let Some(light) = self.estimator.scene.surface(point.shape).emitter
+        {
+            let scene = self.estimator.scene;
+            if let Some(link) = scene.lights.met(&scene.geometry, light, point, self.previous) {
+                self.hit(vertex, &link);
+            }
+        }
+        if vertex.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
+            if self.estimator.counts.next_event > 0.0 {
+                self.next_event(vertex, stream);
+            }
+            self.join(vertex, stream);
+        }
+        self.previous = vertex.position;
+    }
+
+    fn escape(&mut self, vertex: &Vertex<P::Lanes>) {
+        if let Some(link) = self.estimator.scene.lights.met_at_infinity(-vertex.incoming) {
+            self.hit(vertex, &link);
+        }
+    }
+}
+
+impl<P: Profile> Eye<'_, P> {
+    /// s = 0: the walk has met an emitter.
+    #[inline]
+    fn hit(&mut self, vertex: &Vertex<P::Lanes>, link: &Link) {
+        let counts = &self.estimator.counts;
+        if counts.hit <= 0.0 || (vertex.edges == 1 && self.estimator.hide_emitters) {
+            return;
+        }
+        // Both ends of the segment before must be able to join; across it joins s = 1, which from the lens is
+        // a light walk's first vertex and from anywhere else next-event estimation.
+        let joins = match (vertex.after_dirac, vertex.edges) {
+            (true, _) => 0.0,
+            (false, 1) => counts.lens,
+            (false, _) => counts.next_event * link.connect / link.start,
+        };
+        let tail = vertex.reach_before.scaled(joins) + vertex.partial.scaled(link.forward);
+        let others = tail.scaled(link.start * vertex.inverse / counts.hit);
+        // `value` is radiance x cosine on shapes: the walk's density already contains that cosine.
+        let radiance = link.value / link.cosine;
+        self.radiance += vertex.throughput * radiance * (weight::hit(vertex.reach, others) / counts.hit);
+    }
+
+    /// s = 1: a freshly sampled emitter point.
+    #[inline]
+    fn next_event(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
+        let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
+        let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream) else { return };
+        let (direction, distance_squared) = if P::INFINITE && link.infinite {
+            (link.position, 1.0)
+        } else {
+            let Some((direction, _, d2)) = measure::between(vertex.position, link.position) else { return };
+            (direction, d2)
+        };
+        let Some(eye) = connect::vertex_end(scene, vertex, direction, Transport::Radiance) else { return };
+        let light = connect::link_end(&link, eye.medium, -direction, counts.hit);
+        let joined = if P::INFINITE && link.infinite {
+            let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
+            connect::join_along::<P>(scene, ray, &eye, &light, 1.0, 1.0)
+        } else {
+            connect::join::<P>(scene, &eye, &light, distance_squared, 1.0)
+        };
+        self.radiance += joined.unwrap_or(Spectrum::ZERO);
+    }
+
+    /// s >= 2: vertices drawn from the cache of light walks.
+    #[inline]
+    fn join(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
+        let estimator = self.estimator;
+        let Some((pool, scale)) = self.cache.pool(self.hero, estimator.joins_per_vertex) else { return };
+        for _ in 0..estimator.joins_per_vertex {
+            let other = &pool[stream.below(pool.len())];
+            if vertex.edges + other.edges + 1 <= estimator.max_edges {
+                self.radiance += self.join_with(vertex, other).unwrap_or(Spectrum::ZERO) * scale;
+            }
+        }
+    }
+
+    #[inline]
+    fn join_with(&self, vertex: &Vertex<P::Lanes>, other: &Vertex<P::Lanes>) -> Option<Spectrum> {
+        let scene = self.estimator.scene;
+        let (direction, _, distance_squared) = measure::between(vertex.position, other.position)?;
+        let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
+        let light = connect::vertex_end(scene, other, -direction, Transport::Importance)?;
+        connect::join::<P>(scene, &eye, &light, distance_squared, self.estimator.counts.join)
+    }
+}

@@ -1,0 +1,186 @@
+//! The light walk's side: vertices joined to the lens (t = 1) and kept for joins with eye walks.
+
+use super::{
+    Estimator,
+    cache::LightCache,
+    connect,
+    lanes::Lanes,
+    profile::Profile,
+    vertex::Vertex,
+    walk::{Departure, Kind, Visitor, walk},
+    weight::End,
+};
+use crate::{
+    bsdf::Transport,
+    math::{Spectrum, Vec2, Vec3, offset},
+    sampling::Stream,
+    scene::lights::Start,
+    sensor::Projection,
+    shape::Ray,
+};
+
+/// Takes what light walks bring to the film: position [pixels] and contribution to a pixel there.
+pub trait Splats {
+    /// True if a contribution at `film` can count.
+    fn covers(&self, film: Vec2) -> bool;
+    /// Adds it.
+    fn splat(&mut self, film: Vec2, value: Spectrum);
+}
+
+struct Light<'a, P: Profile, S> {
+    estimator: &'a Estimator<'a, P>,
+    cache: &'a mut LightCache<P::Lanes>,
+    splats: &'a mut S,
+    start: Start,
+    hero: usize,
+}
+
+/// One light walk: its vertices go to `cache`, its joins with the lens to `splats`.
+pub fn trace<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    cache: &mut LightCache<P::Lanes>,
+    splats: &mut impl Splats,
+    hero: usize,
+    stream: &mut Stream,
+) {
+    cache.add_walk(hero, estimator.keep);
+    let scene = estimator.scene;
+    let Some(start) = scene.lights.sample_start(&scene.geometry, stream) else { return };
+    let departure = depart(estimator, &start);
+    let kind = Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
+    let mut light = Light { estimator, cache, splats, start, hero };
+    light.join_start_to_lens();
+    walk(scene, kind, departure, &mut light, stream);
+}
+
+/// Leaves the emitter. Before it only an eye walk that meets it can join.
+fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Departure<P::Lanes> {
+    let hits = if start.hittable { estimator.counts.hit } else { 0.0 };
+    Departure {
+        position: start.position,
+        ray: Ray { origin: start.origin, direction: start.direction, t_max: f32::INFINITY },
+        medium: estimator.scene.lights.all[start.light as usize].medium,
+        from_infinity: start.infinite,
+        edges: 0,
+        dirac: false,
+        throughput: start.throughput,
+        forward: start.forward,
+        carried: P::Lanes::splat(hits * start.cosine / start.start),
+        reach: P::Lanes::splat(1.0),
+    }
+}
+
+impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
+    #[inline]
+    fn joins(&self, edges: u32, position: Vec3) -> f32 {
+        if edges > 1 {
+            return self.estimator.counts.join;
+        }
+        let scene = self.estimator.scene;
+        let ratio = scene.lights.connect_over_start(&scene.geometry, &self.start, position);
+        self.estimator.counts.next_event * ratio
+    }
+
+    #[inline]
+    fn arrive(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
+        if !vertex.is_connectible(self.estimator.scene) {
+            return;
+        }
+        if self.estimator.counts.lens > 0.0 {
+            self.join_to_lens(vertex);
+        }
+        let keep = self.estimator.keep;
+        if keep > 0.0 && (keep >= 1.0 || stream.uniform() < keep) {
+            self.cache.push(self.hero, *vertex);
+        }
+    }
+
+    fn escape(&mut self, _: &Vertex<P::Lanes>) {}
+}
+
+impl<P: Profile, S: Splats> Light<'_, P, S> {
+    /// t = 1: a vertex as the lens sees it.
+    #[inline]
+    fn join_to_lens(&mut self, vertex: &Vertex<P::Lanes>) {
+        let scene = self.estimator.scene;
+        let Some(seen) = scene.sensor.project(vertex.position) else { return };
+        if !self.splats.covers(seen.film) {
+            return;
+        }
+        let towards = -seen.direction;
+        let Some(end) = connect::vertex_end(scene, vertex, towards, Transport::Importance) else { return };
+        self.join_end(&end, &seen, seen.distance * seen.distance);
+    }
+
+    /// s = 1, t = 1: the emitter itself as the lens sees it, where an eye walk could have met it.
+    fn join_start_to_lens(&mut self) {
+        let (estimator, start) = (self.estimator, &self.start);
+        if estimator.counts.lens <= 0.0 || !start.hittable || estimator.hide_emitters {
+            return;
+        }
+        let scene = estimator.scene;
+        let seen = if start.infinite {
+            scene.sensor.project_direction(start.position)
+        } else {
+            scene.sensor.project(start.position)
+        };
+        let Some(seen) = seen.filter(|seen| self.splats.covers(seen.film)) else { return };
+        if let Some(end) = start_end::<P>(estimator, start, -seen.direction) {
+            let distance_squared = if start.infinite { 1.0 } else { seen.distance * seen.distance };
+            self.join_end(&end, &seen, distance_squared);
+        }
+    }
+
+    #[inline]
+    fn join_end(&mut self, end: &End<P::Lanes>, seen: &Projection, distance_squared: f32) {
+        let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
+        let sensor = &scene.sensor;
+        let density = sensor.density(seen.cosine);
+        let lens = End {
+            origin: sensor.position + seen.direction * (sensor.near / seen.cosine),
+            medium: scene.sensor_medium,
+            value: Spectrum::splat(density),
+            forward: density,
+            cosine: 1.0,
+            inverse: 1.0,
+            sigma_t: P::Lanes::splat(1.0),
+            reach: P::Lanes::splat(1.0),
+            tail: P::Lanes::splat(0.0),
+        };
+        let joined = if seen.distance.is_finite() {
+            connect::join::<P>(scene, end, &lens, distance_squared, counts.lens)
+        } else {
+            let t_max = (sensor.far - sensor.near) / seen.cosine;
+            let ray = Ray { origin: lens.origin, direction: seen.direction, t_max };
+            connect::join_along::<P>(scene, ray, &lens, end, distance_squared, counts.lens)
+        };
+        if let Some(value) = joined {
+            self.splats.splat(seen.film, value / counts.lens);
+        }
+    }
+}
+
+/// The emitter point of a light walk as the end of a join in unit direction `towards`; none where it does not
+/// emit that way.
+fn start_end<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    start: &Start,
+    towards: Vec3,
+) -> Option<End<P::Lanes>> {
+    let emission = estimator.scene.lights.emission(start, towards)?;
+    let origin = match &start.point {
+        Some(point) => offset::leave_surface(point.position, point.error, point.normal, towards),
+        None => start.origin,
+    };
+    Some(End {
+        origin,
+        medium: estimator.scene.lights.all[start.light as usize].medium,
+        value: emission.value / start.start,
+        forward: emission.forward,
+        cosine: emission.cosine,
+        inverse: 1.0 / start.start,
+        sigma_t: P::Lanes::splat(1.0),
+        reach: P::Lanes::splat(1.0),
+        tail: P::Lanes::splat(estimator.counts.hit),
+    })
+}

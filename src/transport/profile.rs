@@ -1,0 +1,150 @@
+//! Profiles: what a compiled estimator contains. Chosen once per render; what a scene does not have is not
+//! tested for, it is not there.
+
+use super::lanes::Lanes;
+use crate::math::Spectrum;
+
+/// Compile-time constants that remove code.
+pub trait Profile: Copy + Send + Sync + 'static {
+    /// Extinction per lane.
+    type Lanes: Lanes;
+    /// Some medium has extinction.
+    const MEDIA: bool;
+    /// Rays can pass surfaces undeflected, so segments cross boundaries.
+    const NULLS: bool;
+    /// Some emitter is at infinity.
+    const INFINITE: bool;
+    /// As printed and as typed.
+    const NAME: &'static str;
+}
+
+macro_rules! profile {
+    ($(#[$doc:meta])* $name:ident, $text:literal, lanes: $lanes:ty, media: $media:literal, nulls: $nulls:literal,
+     infinite: $infinite:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name;
+        impl Profile for $name {
+            type Lanes = $lanes;
+            const MEDIA: bool = $media;
+            const NULLS: bool = $nulls;
+            const INFINITE: bool = $infinite;
+            const NAME: &'static str = $text;
+        }
+    };
+}
+
+profile! {
+    /// Surfaces only.
+    Vacuum, "vacuum", lanes: f32, media: false, nulls: false, infinite: true
+}
+profile! {
+    /// Grey media behind surfaces that scatter, all light from within the scene: a closed room in fog.
+    Fog, "fog", lanes: f32, media: true, nulls: false, infinite: false
+}
+profile! {
+    /// Grey media with index-matched boundaries, under any emitter.
+    Bounded, "bounded", lanes: f32, media: true, nulls: true, infinite: true
+}
+profile! {
+    /// Media of any colour under emitters within the scene, no index-matched boundaries.
+    ChromaticFog, "chromatic-fog", lanes: Spectrum, media: true, nulls: false, infinite: false
+}
+profile! {
+    /// All there is.
+    Everything, "everything", lanes: Spectrum, media: true, nulls: true, infinite: true
+}
+
+/// What a scene needs of its profile.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Some medium has extinction.
+    pub media: bool,
+    /// Some extinction differs between channels.
+    pub chromatic: bool,
+    /// Some surface lets rays pass undeflected.
+    pub nulls: bool,
+    /// Some emitter is at infinity.
+    pub infinite: bool,
+}
+
+/// The profiles by name, for choice at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProfileName {
+    /// [`Vacuum`].
+    Vacuum,
+    /// [`Fog`].
+    Fog,
+    /// [`Bounded`].
+    Bounded,
+    /// [`ChromaticFog`].
+    ChromaticFog,
+    /// [`Everything`].
+    Everything,
+}
+
+impl ProfileName {
+    /// The leanest profile that has all a scene needs.
+    pub fn leanest(needs: Needs) -> Self {
+        match needs {
+            Needs { media: false, nulls: false, .. } => Self::Vacuum,
+            Needs { chromatic: false, nulls: false, infinite: false, .. } => Self::Fog,
+            Needs { chromatic: false, .. } => Self::Bounded,
+            Needs { nulls: false, infinite: false, .. } => Self::ChromaticFog,
+            Needs { .. } => Self::Everything,
+        }
+    }
+
+    /// As printed and as typed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vacuum => Vacuum::NAME,
+            Self::Fog => Fog::NAME,
+            Self::Bounded => Bounded::NAME,
+            Self::ChromaticFog => ChromaticFog::NAME,
+            Self::Everything => Everything::NAME,
+        }
+    }
+
+    /// What the profile leaves out, in words.
+    pub fn left_out(self) -> Vec<&'static str> {
+        fn of<P: Profile>() -> Vec<&'static str> {
+            let parts = [
+                (P::MEDIA, "media"),
+                (P::Lanes::COUNT > 1, "chromatic extinction"),
+                (P::NULLS, "index-matched boundaries"),
+                (P::INFINITE, "infinite emitters"),
+            ];
+            parts.iter().filter(|(present, _)| !present).map(|(_, what)| *what).collect()
+        }
+        match self {
+            Self::Vacuum => of::<Vacuum>(),
+            Self::Fog => of::<Fog>(),
+            Self::Bounded => of::<Bounded>(),
+            Self::ChromaticFog => of::<ChromaticFog>(),
+            Self::Everything => of::<Everything>(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_leanest_profile_has_all_that_is_needed() {
+        for bits in 0..16u32 {
+            let has = |bit: u32| bits >> bit & 1 == 1;
+            let needs = Needs { media: has(0), chromatic: has(1) && has(0), nulls: has(2), infinite: has(3) };
+            let left_out = ProfileName::leanest(needs).left_out();
+            for (needed, what) in [
+                (needs.media, "media"),
+                (needs.chromatic, "chromatic extinction"),
+                (needs.nulls, "index-matched boundaries"),
+                (needs.infinite, "infinite emitters"),
+            ] {
+                assert!(!(needed && left_out.contains(&what)), "{needs:?} lacks {what}");
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The random walk (LW96 sec. 3), one for eye and light: flights, collisions, reflections, absorption, and the
+//! running sums of the balance heuristic.
+
+use super::{
+    lanes::Lanes,
+    profile::Profile,
+    segment::{self, Flight, Landing},
+    vertex::{Site, Vertex, shading_correction},
+};
+use crate::{
+    bsdf::Transport,
+    math::{Spectrum, Vec3, measure},
+    medium::MediumIndex,
+    phase::PhaseModel,
+    sampling::Stream,
+    scene::Scene,
+    shape::{Ray, SurfacePoint},
+};
+
+/// A walk about to fly: everything known before the next vertex is.
+#[derive(Clone, Copy, Debug)]
+pub struct Departure<L> {
+    /// The vertex left behind.
+    pub position: Vec3,
+    /// The ray out of it.
+    pub ray: Ray,
+    /// The medium it starts in.
+    pub medium: MediumIndex,
+    /// True where the vertex is a direction of an emitter at infinity: the next vertex's density has no 1/d^2.
+    pub from_infinity: bool,
+    /// Segments so far.
+    pub edges: u32,
+    /// True if the direction was sampled by a Dirac lobe.
+    pub dirac: bool,
+    /// Contribution over density, this vertex's scattering included.
+    pub throughput: Spectrum,
+    /// Density of the direction, survival included [1/sr] (or of the start on the disk [1/m^2]).
+    pub forward: f32,
+    /// This vertex's D without what the next segment completes: tail x sigma_t x |cos| / p>^h.
+    pub carried: L,
+    /// reach of this vertex.
+    pub reach: L,
+}
+
+/// What happens at the vertices of a walk.
+pub trait Visitor<P: Profile> {
+    /// n of the strategy that joins across the segment to the vertex at `position`, `edges` segments from the
+    /// start.
+    fn joins(&self, edges: u32, position: Vec3) -> f32;
+
+    /// A vertex was reached; it may scatter on.
+    fn arrive(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream);
+
+    /// The walk left the scene: `vertex` stands for the direction it left in (its `incoming` reversed), its
+    /// density per solid angle.
+    fn escape(&mut self, vertex: &Vertex<P::Lanes>);
+}
+
+/// Which walk this is and how far it may go.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Eye or light.
+    pub transport: Transport,
+    /// The channel that samples distances.
+    pub hero: usize,
+    /// Most segments.
+    pub max_edges: u32,
+}
+
+/// Walks from `departure` until absorption, escape or the depth limit, showing every vertex to `visitor`.
+#[inline]
+pub fn walk<P: Profile>(
+    scene: &Scene,
+    kind: Kind,
+    mut departure: Departure<P::Lanes>,
+    visitor: &mut impl Visitor<P>,
+    stream: &mut Stream,
+) {
+    while departure.edges < kind.max_edges {
+        let flight = segment::fly::<P>(scene, departure.ray, departure.medium, kind.hero, stream);
+        let Some(vertex) = land::<P>(scene, &departure, &flight, kind.hero, visitor) else { return };
+        if matches!(flight.landing, Landing::Escape) {
+            if P::INFINITE {
+                visitor.escape(&vertex);
+            }
+            return;
+        }
+        visitor.arrive(&vertex, stream);
+        if vertex.edges == kind.max_edges {
+            return;
+        }
+        let Some(next) = scatter(scene, &vertex, kind.transport, stream) else { return };
+        departure = next;
+    }
+}
+
+/// The vertex at the end of a flight; none if it coincides with the one before.
+#[inline]
+fn land<P: Profile>(
+    scene: &Scene,
+    departure: &Departure<P::Lanes>,
+    flight: &Flight<P::Lanes>,
+    hero: usize,
+    visitor: &impl Visitor<P>,
+) -> Option<Vertex<P::Lanes>> {
+    let direction = departure.ray.direction;
+    let (position, site) = match flight.landing {
+        Landing::Surface(point) => (point.position, Site::Surface(point)),
+        Landing::Medium(position) => (position, Site::Medium),
+        Landing::Escape => (direction, Site::Medium),
+    };
+    let escaped = matches!(flight.landing, Landing::Escape);
+    let distance_squared = if (P::INFINITE && departure.from_infinity) || escaped {
+        1.0
+    } else {
+        position.distance_squared(departure.position)
+    };
+    let mut vertex = Vertex {
+        position,
+        site,
+        incoming: -direction,
+        medium: flight.medium,
+        edges: departure.edges + 1,
+        after_dirac: departure.dirac,
+        throughput: departure.throughput,
+        joins: 0.0,
+        inverse: 0.0,
+        reach_before: departure.reach,
+        reach: departure.reach,
+        partial: departure.carried,
+    };
+    let sigma_t = if escaped { P::Lanes::splat(1.0) } else { vertex.sigma_t(scene) };
+    let ratio = flight.depth.flight_ratio(sigma_t, hero);
+    let transmitted = flight.depth.exp_neg();
+    let geometry = measure::solid_angle_to_vertex(vertex.cosine(direction), distance_squared);
+    let density = departure.forward * transmitted.hero(hero) * sigma_t.hero(hero) * geometry;
+    if !(density > 0.0 && density < f32::INFINITY) {
+        return None;
+    }
+    vertex.inverse = 1.0 / density;
+    vertex.partial = (departure.carried * transmitted).scaled(1.0 / distance_squared);
+    vertex.reach = departure.reach * ratio;
+    vertex.throughput *= ratio.to_spectrum();
+    if P::NULLS {
+        vertex.throughput *= flight.tint;
+    }
+    vertex.joins = if departure.dirac { 0.0 } else { visitor.joins(vertex.edges, position) };
+    Some(vertex)
+}
+
+/// A direction after scattering, with its throughput.
+struct Turn {
+    direction: Vec3,
+    weight: Spectrum,
+    forward: f32,
+    backward: f32,
+    dirac: bool,
+}
+
+/// Scatters at `vertex`; none if the walk is absorbed there (LW96 eq. 8 and 9).
+#[inline]
+fn scatter<L: Lanes>(
+    scene: &Scene,
+    vertex: &Vertex<L>,
+    transport: Transport,
+    stream: &mut Stream,
+) -> Option<Departure<L>> {
+    let turn = match &vertex.site {
+        Site::Medium => collide(scene, vertex, stream)?,
+        Site::Surface(point) => reflect(scene, vertex, point, transport, stream)?,
+    };
+    let (origin, medium) = vertex.depart(scene, turn.direction);
+    let tail = if turn.dirac { vertex.partial.scaled(turn.backward) } else { vertex.tail(turn.backward) };
+    Some(Departure {
+        position: vertex.position,
+        ray: Ray { origin, direction: turn.direction, t_max: f32::INFINITY },
+        medium,
+        from_infinity: false,
+        edges: vertex.edges,
+        dirac: turn.dirac,
+        throughput: vertex.throughput * turn.weight,
+        forward: turn.forward,
+        carried: (tail * vertex.sigma_t(scene)).scaled(vertex.cosine(turn.direction) * vertex.inverse),
+        reach: vertex.reach,
+    })
+}
+
+#[inline]
+fn collide<L: Lanes>(scene: &Scene, vertex: &Vertex<L>, stream: &mut Stream) -> Option<Turn> {
+    let medium = &scene.media[vertex.medium.0 as usize];
+    let survival = medium.survival();
+    if stream.uniform() >= survival {
+        return None;
+    }
+    let direction = medium.phase.sample(-vertex.incoming, stream);
+    let density = medium.phase.density(-vertex.incoming.dot(direction)) * survival;
+    let weight = medium.albedo / survival;
+    Some(Turn { direction, weight, forward: density, backward: density, dirac: false })
+}
+
+#[inline]
+fn reflect<L: Lanes>(
+    scene: &Scene,
+    vertex: &Vertex<L>,
+    point: &SurfacePoint,
+    transport: Transport,
+    stream: &mut Stream,
+) -> Option<Turn> {
+    let bsdf = scene.bsdf(point.shape);
+    let wi = point.shading.to_local(vertex.incoming);
+    let survival = bsdf.survival(point.uv, wi);
+    if stream.uniform() >= survival {
+        return None;
+    }
+    let sample = bsdf.sample(point.uv, wi, transport, stream)?;
+    let direction = point.shading.to_world(sample.wo).normalize();
+    let correction = shading_correction(point, vertex.incoming, direction, wi, sample.wo, transport);
+    let weight = sample.weight * (correction / survival);
+    if weight.max_element() <= 0.0 {
+        return None;
+    }
+    let (forward, backward) = (sample.forward * survival, sample.backward * survival);
+    Some(Turn { direction, weight, forward, backward, dirac: sample.dirac })
+}
