@@ -7,3 +7,5 @@ pub mod math;
 pub mod sampling;
 
 pub mod description;
+
+pub mod scene;
