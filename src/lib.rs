@@ -7,3 +7,21 @@ pub mod math;
 pub mod sampling;
 
 pub mod description;
+
+pub mod phase;
+pub mod texture;
+
+pub mod bsdf;
+pub mod emitter;
+pub mod medium;
+pub mod sensor;
+pub mod shape;
+
+pub mod film;
+pub mod scene;
+
+pub mod transport;
+
+pub mod render;
+
+pub mod cli;

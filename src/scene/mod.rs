@@ -1,7 +1,19 @@
 //! A scene ready to render, and how it is made: read a description, build it, index it.
 
 pub mod accel;
+pub mod boundary;
+pub mod build;
+pub mod integrator;
+mod json;
 pub mod lights;
+mod parameters;
+mod read;
+mod references;
+mod steps;
+mod text;
+mod xml;
+
+pub use read::read;
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},

@@ -1,0 +1,179 @@
+//! JSON text as a tree that keeps the order of keys, with parameters substituted.
+
+use super::{super::parameters::Parameters, Node};
+use crate::{
+    description::{Location, Position},
+    error::{Error, Result},
+};
+use json_spanned_value::{Value as Spanned, spanned};
+use std::{path::PathBuf, sync::Arc};
+
+/// A JSON value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Json {
+    Null,
+    Boolean(bool),
+    Integer(i64),
+    Float(f64),
+    String(String),
+    Array(Vec<Json>),
+    /// Keys are unique and in file order.
+    Object(Vec<(String, Json)>),
+}
+
+/// Reads `text`, the content of `file`. A key given twice in one object is an error.
+pub(super) fn parse(file: &Arc<PathBuf>, text: &str) -> Result<Json> {
+    json_spanned_value::from_str::<spanned::Value>(text).map(tree).map_err(|error| {
+        let (line, column) = (error.line().max(1) as u32, error.column().max(1) as u32);
+        let place = Location { file: file.clone(), position: Position::Text { line, column } };
+        let message = error.to_string();
+        let end = message.rfind(" at line ").unwrap_or(message.len());
+        let (expected, remedy) = match message.starts_with("Duplicate") {
+            true => ("each key once in an object", "remove or rename one of the two"),
+            false => {
+                ("well-formed JSON, at most 127 levels deep", "correct the JSON at or before this place")
+            }
+        };
+        Error::new(place, expected, message[..end].to_lowercase(), remedy)
+    })
+}
+
+fn tree(value: spanned::Value) -> Json {
+    match value.into_inner() {
+        Spanned::Null => Json::Null,
+        Spanned::Bool(b) => Json::Boolean(b),
+        Spanned::Number(n) => n.as_i64().map_or(Json::Float(n.as_f64().unwrap_or(f64::NAN)), Json::Integer),
+        Spanned::String(s) => Json::String(s),
+        Spanned::Array(items) => Json::Array(items.into_iter().map(tree).collect()),
+        Spanned::Object(map) => {
+            let mut entries: Vec<_> = map.into_iter().collect();
+            entries.sort_by_key(|(key, _)| key.start());
+            Json::Object(entries.into_iter().map(|(key, value)| (key.into_inner(), tree(value))).collect())
+        }
+    }
+}
+
+/// The key of the parameters' defaults.
+const DEFAULTS: &str = "$defaults";
+
+/// Takes the defaults out of the scene and puts parameters in place of their names everywhere else.
+pub(super) fn substitute(scene: &mut Json, file: &Arc<PathBuf>, parameters: &mut Parameters) -> Result<()> {
+    let mut kinds = Vec::new();
+    if let Json::Object(entries) = scene
+        && let Some(at) = entries.iter().position(|(key, _)| key == DEFAULTS)
+    {
+        let (name, defaults) = entries.remove(at);
+        let root = Node::root(file.clone(), scene);
+        declare(&root.child(&name, &defaults), parameters, &mut kinds)?;
+    }
+    let root = Node::root(file.clone(), scene).location;
+    let mut substitution = Substitution { parameters, kinds, steps: Vec::new(), root };
+    substitution.apply(scene)
+}
+
+/// A parameter's name and its default, which says of what kind its values are.
+type Kinds = Vec<(String, Json)>;
+
+fn declare(defaults: &Node, parameters: &mut Parameters, kinds: &mut Kinds) -> Result<()> {
+    for entry in defaults.entries()? {
+        let text = match entry.node.json {
+            Json::Integer(i) => i.to_string(),
+            Json::Float(x) => format!("{x:?}"),
+            Json::Boolean(b) => b.to_string(),
+            Json::String(s) => filled(s, &entry.node.location, parameters)?,
+            other => {
+                let found = other.describe();
+                let remedy = "put the numbers of a list into parameters of their own";
+                let place = &entry.node.location;
+                return Err(Error::new(place, "a number, a boolean or a string", found, remedy));
+            }
+        };
+        parameters.declare(&entry.name, &text);
+        kinds.push((entry.name, entry.node.json.clone()));
+    }
+    Ok(())
+}
+
+fn filled(text: &str, location: &Location, parameters: &mut Parameters) -> Result<String> {
+    parameters.substitute(text).map_err(|undefined| {
+        let found = format!("${}", undefined.name);
+        let remedy = format!("{} (defaults stand in \"{DEFAULTS}\" of the scene)", undefined.remedy);
+        Error::new(location, "a defined parameter", found, remedy)
+    })
+}
+
+/// A walk that replaces `$name`s.
+struct Substitution<'p> {
+    parameters: &'p mut Parameters,
+    kinds: Kinds,
+    /// The way from the root, as written in the places of errors.
+    steps: Vec<String>,
+    root: Location,
+}
+
+impl Substitution<'_> {
+    fn apply(&mut self, json: &mut Json) -> Result<()> {
+        match json {
+            Json::Array(items) => {
+                items.iter_mut().enumerate().try_for_each(|(i, item)| self.enter(super::node::index(i), item))
+            }
+            Json::Object(entries) => {
+                entries.iter_mut().try_for_each(|(key, value)| self.enter(super::node::key(key), value))
+            }
+            Json::String(text) if text.contains('$') => {
+                *json = self.replaced(text)?;
+                Ok(())
+            }
+            Json::Null | Json::Boolean(_) | Json::Integer(_) | Json::Float(_) | Json::String(_) => Ok(()),
+        }
+    }
+
+    fn enter(&mut self, step: String, json: &mut Json) -> Result<()> {
+        self.steps.push(step);
+        self.apply(json)?;
+        self.steps.pop();
+        Ok(())
+    }
+
+    fn replaced(&mut self, text: &str) -> Result<Json> {
+        let place = super::node::below(&self.root, &self.steps.concat());
+        let result = filled(text, &place, self.parameters)?;
+        let Some(name) = text.strip_prefix('$').filter(|name| self.parameters.is_name(name)) else {
+            return Ok(Json::String(result));
+        };
+        let default = self.kinds.iter().find(|(known, _)| known == name).map(|(_, default)| default);
+        typed(&result, default).map_err(|expected| {
+            let remedy = format!("give -D {name}=... a value of the same kind as its default");
+            Error::new(place, expected, format!("-D {name}={result}"), remedy)
+        })
+    }
+}
+
+/// A parameter's text as a value of its default's kind; without a default, as what it looks like.
+fn typed(text: &str, default: Option<&Json>) -> std::result::Result<Json, String> {
+    let integer = text.parse().ok().map(Json::Integer);
+    let number = || integer.or(text.parse().ok().filter(|x: &f64| x.is_finite()).map(Json::Float));
+    let boolean = || text.parse().ok().map(Json::Boolean);
+    let string = || Json::String(text.to_owned());
+    match default {
+        None => Ok(number().or_else(boolean).unwrap_or_else(string)),
+        Some(Json::Integer(_) | Json::Float(_)) => number().ok_or("a number".into()),
+        Some(Json::Boolean(_)) => boolean().ok_or("true or false".into()),
+        Some(_) => Ok(string()),
+    }
+}
+
+impl Json {
+    /// What it is, for error messages.
+    pub fn describe(&self) -> String {
+        match self {
+            Self::Null => "null".into(),
+            Self::Boolean(b) => b.to_string(),
+            Self::Integer(i) => i.to_string(),
+            Self::Float(x) => x.to_string(),
+            Self::String(s) => format!("\"{s}\""),
+            Self::Array(items) => format!("a list of {}", items.len()),
+            Self::Object(_) => "an object".into(),
+        }
+    }
+}

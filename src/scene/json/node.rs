@@ -1,0 +1,164 @@
+//! A JSON value with its place, asked for what it should be.
+
+use super::{
+    super::text::{Parsed, triple},
+    Json,
+};
+use crate::{
+    description::{Location, Position, nearest},
+    error::{Error, Result},
+};
+use std::{path::PathBuf, sync::Arc};
+
+/// A value and where it stands.
+pub(super) struct Node<'j> {
+    pub location: Location,
+    pub json: &'j Json,
+}
+
+/// What stands behind a key.
+pub(super) struct Entry<'j> {
+    pub name: String,
+    pub node: Node<'j>,
+}
+
+/// The step to `name` in a JSON path.
+pub(super) fn key(name: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "_-$".contains(c);
+    if !name.is_empty() && name.chars().all(plain) { format!(".{name}") } else { format!("[{name:?}]") }
+}
+
+/// The step to an item in a JSON path.
+pub(super) fn index(i: usize) -> String {
+    format!("[{i}]")
+}
+
+/// The place reached from `location` by `steps`.
+pub(super) fn below(location: &Location, steps: &str) -> Location {
+    let path = match &location.position {
+        Position::Path(path) => format!("{path}{steps}"),
+        Position::Text { .. } => steps.to_owned(),
+    };
+    Location { file: location.file.clone(), position: Position::Path(path) }
+}
+
+impl<'j> Node<'j> {
+    /// The outermost value of a file.
+    pub fn root(file: Arc<PathBuf>, json: &'j Json) -> Self {
+        Self { location: Location { file, position: Position::Path("$".into()) }, json }
+    }
+
+    /// The value behind `name` in this one.
+    pub fn child<'k>(&self, name: &str, json: &'k Json) -> Node<'k> {
+        Node { location: below(&self.location, &key(name)), json }
+    }
+
+    /// The error for a value that is not as `expected`.
+    pub fn wrong(&self, expected: impl Into<String>) -> Error {
+        Error::new(&self.location, expected, self.json.describe(), "correct the value")
+    }
+
+    /// What a reader of text or numbers makes of it.
+    pub fn check<T>(&self, parsed: Parsed<T>) -> Result<T> {
+        parsed.map_err(|m| Error::new(&self.location, m.expected, m.found, "correct the value"))
+    }
+
+    /// Everything in an object. Keys with a dot are errors, as in Mitsuba.
+    pub fn entries(&self) -> Result<Vec<Entry<'j>>> {
+        let Json::Object(entries) = self.json else { return Err(self.wrong("an object in braces")) };
+        let entry = |(name, json): &'j (String, Json)| {
+            let node = self.child(name, json);
+            if name.is_empty() || name.contains(['.', '$']) {
+                let expected = "a name with neither \".\" nor \"$\" in it";
+                let remedy = "rename it; \"$defaults\" stands in the scene itself";
+                return Err(Error::new(node.location, expected, format!("\"{name}\""), remedy));
+            }
+            Ok(Entry { name: name.clone(), node })
+        };
+        entries.iter().map(entry).collect()
+    }
+
+    /// The value behind `name`.
+    pub fn get(&self, name: &str) -> Option<Node<'j>> {
+        let Json::Object(entries) = self.json else { return None };
+        entries.iter().find(|(key, _)| key == name).map(|(_, json)| self.child(name, json))
+    }
+
+    /// The value behind `name`, which must be there.
+    pub fn require(&self, name: &str) -> Result<Node<'j>> {
+        self.get(name).ok_or_else(|| {
+            let remedy = format!("add \"{name}\"");
+            Error::new(&self.location, format!("an object with \"{name}\""), self.keys(), remedy)
+        })
+    }
+
+    fn keys(&self) -> String {
+        match self.json {
+            Json::Object(entries) if !entries.is_empty() => {
+                let keys: Vec<_> = entries.iter().map(|(key, _)| key.as_str()).collect();
+                format!("one with {}", keys.join(", "))
+            }
+            other => other.describe(),
+        }
+    }
+
+    /// Keys other than `type` and these are errors.
+    pub fn allow(&self, names: &[&str]) -> Result<()> {
+        for entry in self.entries()? {
+            let name = entry.name.as_str();
+            if name != "type" && !names.contains(&name) {
+                let expected = format!("a key of \"{}\"", self.type_name()?);
+                let remedy = format!("{}known here: {}", nearest(name, names), names.join(", "));
+                return Err(Error::new(entry.node.location, expected, format!("\"{name}\""), remedy));
+            }
+        }
+        Ok(())
+    }
+
+    /// The `type` of an object.
+    pub fn type_name(&self) -> Result<&'j str> {
+        self.require("type")?.string()
+    }
+
+    /// Text, not empty.
+    pub fn string(&self) -> Result<&'j str> {
+        match self.json {
+            Json::String(text) if !text.is_empty() => Ok(text),
+            _ => Err(self.wrong("a string that is not empty")),
+        }
+    }
+
+    /// A number.
+    pub fn number(&self) -> Result<f64> {
+        match self.json {
+            Json::Integer(i) => Ok(*i as f64),
+            Json::Float(x) => Ok(*x),
+            _ => Err(self.wrong("a number")),
+        }
+    }
+
+    /// Everything in a list.
+    pub fn items(&self) -> Result<Vec<Node<'j>>> {
+        let Json::Array(items) = self.json else { return Err(self.wrong("a list in brackets")) };
+        let item = |(i, json)| Node { location: below(&self.location, &index(i)), json };
+        Ok(items.iter().enumerate().map(item).collect())
+    }
+
+    /// A list of numbers.
+    pub fn numbers(&self) -> Result<Vec<f64>> {
+        self.items()?.iter().map(Self::number).collect()
+    }
+
+    /// Three numbers.
+    pub fn vector(&self) -> Result<[f64; 3]> {
+        self.check(triple(&self.numbers()?))
+    }
+
+    /// One number or several.
+    pub fn one_or_more(&self) -> Result<Vec<f64>> {
+        match self.json {
+            Json::Array(_) => self.numbers(),
+            _ => Ok(vec![self.number().map_err(|_| self.wrong("a number or a list of numbers"))?]),
+        }
+    }
+}

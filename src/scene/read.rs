@@ -1,0 +1,53 @@
+//! A scene file, whichever its spelling, as a description whose references all lead somewhere.
+
+use super::{json, parameters::Parameters, references, references::Alias, xml};
+use crate::{
+    description::Object,
+    error::{Error, Result},
+};
+use std::path::Path;
+
+/// How deep objects may stand in one another, in the file or through references. Scenes need about ten; the
+/// limit keeps every later recursion over the tree within its stack.
+pub(super) const DEEPEST: usize = 100;
+
+/// What a spelling yields: the tree as written, and the second names of its objects.
+pub(super) struct Draft {
+    /// The scene.
+    pub root: Object,
+    /// Names that stand for other ids.
+    pub aliases: Vec<Alias>,
+}
+
+/// Reads the scene at `path`: Mitsuba XML (`.xml`) or JSON (`.json`). `definitions` are the user's
+/// `name=value` pairs, which override the scene's own defaults; one that the scene never uses is an error.
+///
+/// In what comes back, ids are unique, every reference leads to an object, and none leads back to itself.
+pub fn read(path: &Path, definitions: &[(String, String)]) -> Result<Object> {
+    let mut parameters = Parameters::new(definitions)?;
+    let draft = match spelling(path)? {
+        Spelling::Xml => xml::read(path, &mut parameters)?,
+        Spelling::Json => json::read(path, &mut parameters)?,
+    };
+    parameters.finish()?;
+    references::settle(draft)
+}
+
+enum Spelling {
+    Xml,
+    Json,
+}
+
+fn spelling(path: &Path) -> Result<Spelling> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("xml") => Ok(Spelling::Xml),
+        Some("json") => Ok(Spelling::Json),
+        other => Err(Error::new(
+            path.display(),
+            "a scene file that ends in .xml or .json",
+            other.map_or("a name without an ending".into(), |e| format!("one that ends in .{e}")),
+            "rename the file after what it holds: Mitsuba XML or JSON",
+        )),
+    }
+}

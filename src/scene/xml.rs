@@ -1,0 +1,237 @@
+//! The XML spelling: Mitsuba 3 scene files as they are, versions 2 and 3.
+//!
+//! All of Mitsuba's tags are read: objects, values, `transform`, `ref`, `include`, `default`, `alias`, `path`.
+//! What Mitsuba would refuse is refused here; beyond that, text between tags and a `path` that is no folder are
+//! errors too, an `alias` may stand before what it names, and colours may be written `#rrggbb`.
+
+mod element;
+mod files;
+mod transform;
+mod values;
+
+use super::{
+    parameters::Parameters,
+    read::{DEEPEST, Draft},
+    references::Alias,
+};
+use crate::{
+    description::{Object, Property, Value, nearest},
+    error::{Error, Result},
+};
+use element::Element;
+use files::{Folders, Source};
+use std::path::{Path, PathBuf};
+
+/// Tags of plugins.
+const OBJECTS: [&str; 13] = [
+    "scene",
+    "integrator",
+    "sensor",
+    "film",
+    "sampler",
+    "rfilter",
+    "shape",
+    "bsdf",
+    "texture",
+    "emitter",
+    "medium",
+    "phase",
+    "volume",
+];
+
+/// Tags that direct the reading.
+const DIRECTIONS: [&str; 6] = ["ref", "transform", "include", "default", "alias", "path"];
+
+/// As in Mitsuba.
+const DEEPEST_INCLUDE: usize = 15;
+
+/// Reads the scene at `path`.
+pub(super) fn read(path: &Path, parameters: &mut Parameters) -> Result<Draft> {
+    let mut reader = Reader { parameters, aliases: Vec::new(), open: Vec::new() };
+    let root = reader.file(path, Folders::default())?;
+    if root.tag.as_deref() != Some("scene") {
+        let found = format!("<{}>", root.tag.unwrap_or_default());
+        return Err(Error::new(
+            root.location,
+            "<scene> as the outermost element",
+            found,
+            "wrap it in <scene>",
+        ));
+    }
+    Ok(Draft { root, aliases: reader.aliases })
+}
+
+/// What all files of one scene share.
+struct Reader<'p> {
+    parameters: &'p mut Parameters,
+    aliases: Vec<Alias>,
+    /// The files being read, outermost first, under names that no two spellings of a path share.
+    open: Vec<PathBuf>,
+}
+
+/// What all elements of one file share.
+struct Page<'s> {
+    source: &'s Source,
+    folders: Folders,
+}
+
+impl Reader<'_> {
+    /// The outermost object of a file.
+    fn file(&mut self, path: &Path, mut folders: Folders) -> Result<Object> {
+        let source = Source::read(path)?;
+        let document = source.parse()?;
+        folders.enter(path);
+        let mut page = Page { source: &source, folders };
+        let root = self.element(&page, document.root_element())?;
+        self.version(&root)?;
+        let mut object = self.object(&mut page, &root, &["version"], 1)?;
+        page.folders.settle(&mut object, &source.file);
+        Ok(object)
+    }
+
+    fn element<'s>(&mut self, page: &Page<'s>, node: roxmltree::Node<'s, 's>) -> Result<Element<'s>> {
+        Element::new(page.source, node, self.parameters)
+    }
+
+    fn version(&mut self, root: &Element) -> Result<()> {
+        let version = root.require("version")?;
+        let mut numbers = version.value.split('.').map(|part| part.trim().parse::<u32>());
+        let remedy = match numbers.next() {
+            Some(Ok(2 | 3)) if numbers.all(|part| part.is_ok()) => return Ok(()),
+            Some(Ok(0 | 1)) => {
+                "convert the scene with Mitsuba 3: mitsuba.load_file, then mitsuba.xml.dict_to_xml"
+            }
+            _ => "write version=\"3.0.0\" if the scene is for Mitsuba 3",
+        };
+        let found = format!("\"{}\"", version.value);
+        Err(Error::new(&version.location, "a scene of version 2.x or 3.x", found, remedy))
+    }
+
+    /// A plugin with all its children. `more` are attributes beyond `type`, `id` and `name`.
+    fn object(&mut self, page: &mut Page, element: &Element, more: &[&str], depth: usize) -> Result<Object> {
+        if depth > DEEPEST {
+            let expected = format!("elements at most {DEEPEST} deep");
+            return Err(Error::new(&element.location, expected, "deeper nesting", "flatten the scene"));
+        }
+        element.allow(&[&["type", "id", "name"], more].concat())?;
+        let plugin = match element.tag {
+            "scene" => element.get("type").map_or("scene", |a| a.value.as_str()).to_owned(),
+            _ => element.require("type")?.nonempty()?.to_owned(),
+        };
+        let mut object = Object {
+            tag: Some(element.object_tag().to_owned()),
+            plugin,
+            id: element.optional_name("id")?,
+            properties: Vec::new(),
+            location: element.location.clone(),
+        };
+        for node in element.children()? {
+            let child = self.element(page, node)?;
+            self.child(page, &child, &mut object, depth)?;
+        }
+        Ok(object)
+    }
+
+    /// One child element of a plugin.
+    fn child(&mut self, page: &mut Page, child: &Element, parent: &mut Object, depth: usize) -> Result<()> {
+        let value = match child.tag {
+            "include" => return self.include(page, child, parent),
+            "default" => return self.default(child),
+            "alias" => return self.alias(child),
+            "path" if depth == 1 => return page.folders.add(child),
+            "path" => return Err(misplaced(child, "directly in the outermost element")),
+            "scene" => return Err(misplaced(child, "only as the outermost element of a file")),
+            "ref" => {
+                child.allow(&["id", "name"])?;
+                Value::Reference(child.require("id")?.nonempty()?.to_owned())
+            }
+            "transform" => {
+                child.allow(&["name"])?;
+                child.require("name")?.nonempty()?;
+                let steps = child.children()?.into_iter();
+                let steps = steps.map(|node| transform::step(&self.element(page, node)?));
+                Value::Transform(steps.collect::<Result<_>>()?)
+            }
+            tag if OBJECTS.contains(&tag) || child.is_spectrum_plugin() => {
+                Value::Object(self.object(page, child, &[], depth + 1)?)
+            }
+            tag => match values::find(tag) {
+                Some(row) => values::read(row, child, &page.folders)?,
+                None => return Err(unknown(child)),
+            },
+        };
+        let name = child.optional_name("name")?.unwrap_or_default();
+        add(parent, Property { name, value, location: child.location.clone() })
+    }
+
+    fn default(&mut self, element: &Element) -> Result<()> {
+        element.allow(&["name", "value"])?;
+        element.childless()?;
+        let name = element.require("name")?.nonempty()?;
+        self.parameters.declare(name, &element.require("value")?.value);
+        Ok(())
+    }
+
+    fn alias(&mut self, element: &Element) -> Result<()> {
+        element.allow(&["id", "as"])?;
+        element.childless()?;
+        let target = element.require("id")?.nonempty()?.to_owned();
+        let name = element.require("as")?.nonempty()?.to_owned();
+        self.aliases.push(Alias { name, target, location: element.location.clone() });
+        Ok(())
+    }
+
+    /// Another file in place of the element: all that its scene holds, or its one object.
+    fn include(&mut self, page: &Page, element: &Element, parent: &mut Object) -> Result<()> {
+        element.allow(&["filename", "name"])?;
+        element.childless()?;
+        let name = element.require("filename")?;
+        let path = page.folders.find(&name.value).ok_or_else(|| page.folders.missing(name))?;
+        self.open.push(page.source.identity.clone());
+        if self.open.contains(&files::identity(&path)) {
+            return Err(name.wrong("a file that is not being read already", "break the circle of includes"));
+        }
+        if self.open.len() >= DEEPEST_INCLUDE {
+            let expected = format!("includes at most {DEEPEST_INCLUDE} deep");
+            return Err(name.wrong(expected, "include fewer files from included files"));
+        }
+        let included = self.file(&path, page.folders.clone())?;
+        self.open.pop();
+        if included.tag.as_deref() == Some("scene") {
+            return included.properties.into_iter().try_for_each(|property| add(parent, property));
+        }
+        let (name, location) =
+            (element.optional_name("name")?.unwrap_or_default(), included.location.clone());
+        add(parent, Property { name, value: Value::Object(included), location })
+    }
+}
+
+/// Adds a property; a name given twice is an error.
+fn add(object: &mut Object, property: Property) -> Result<()> {
+    let same = |other: &&Property| !property.name.is_empty() && other.name == property.name;
+    if let Some(first) = object.properties.iter().find(same) {
+        return Err(Error::new(
+            &property.location,
+            format!("each parameter once (the first \"{}\" is at {})", property.name, first.location),
+            format!("\"{}\" again", property.name),
+            "remove one of the two",
+        ));
+    }
+    object.properties.push(property);
+    Ok(())
+}
+
+fn misplaced(element: &Element, right: &str) -> Error {
+    let tag = element.tag;
+    Error::new(&element.location, format!("<{tag}> {right}"), "it elsewhere", format!("move the <{tag}>"))
+}
+
+fn unknown(element: &Element) -> Error {
+    let tag = element.tag;
+    if super::steps::WORDS.contains(&tag) {
+        return misplaced(element, "inside <transform>");
+    }
+    let known: Vec<_> = [&OBJECTS[1..], &DIRECTIONS, &values::tags()].concat();
+    let remedy = format!("{}known: {}", nearest(tag, &known), known.join(", "));
+    Error::new(&element.location, "a tag of Mitsuba's scene format", format!("<{tag}>"), remedy)
+}

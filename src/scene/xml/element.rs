@@ -1,0 +1,151 @@
+//! An element with its parameters substituted, its place known, and its attributes asked for by name.
+
+use super::{super::text::Parsed, Parameters, files::Source};
+use crate::{
+    description::{Location, nearest},
+    error::{Error, Result},
+};
+use roxmltree::Node;
+
+/// One element of a scene file.
+pub(super) struct Element<'s> {
+    /// Its tag.
+    pub tag: &'s str,
+    /// Where it starts.
+    pub location: Location,
+    attributes: Vec<Attribute<'s>>,
+    node: Node<'s, 's>,
+    source: &'s Source,
+}
+
+/// One attribute of an element.
+pub(super) struct Attribute<'s> {
+    name: &'s str,
+    /// Its value, every `$name` replaced.
+    pub value: String,
+    /// Where it starts.
+    pub location: Location,
+}
+
+impl<'s> Element<'s> {
+    /// The element at `node`; an undefined `$name` in an attribute is an error.
+    pub fn new(source: &'s Source, node: Node<'s, 's>, parameters: &mut Parameters) -> Result<Self> {
+        let location = source.location(node.range().start);
+        let tag = node.tag_name().name();
+        if node.tag_name().namespace().is_some() || node.namespaces().len() > 0 {
+            let found = format!("<{tag}> in a namespace");
+            return Err(Error::new(location, "an element without namespaces", found, "remove the xmlns"));
+        }
+        let attributes = node.attributes().map(|a| {
+            let location = source.location(a.range().start);
+            let value = match parameters.substitute(a.value()) {
+                Ok(value) => value,
+                Err(undefined) => {
+                    let found = format!("${}", undefined.name);
+                    return Err(Error::new(location, "a defined parameter", found, undefined.remedy));
+                }
+            };
+            Ok(Attribute { name: a.name(), value, location })
+        });
+        Ok(Self { tag, location, attributes: attributes.collect::<Result<_>>()?, node, source })
+    }
+
+    /// The attribute called `name`.
+    pub fn get(&self, name: &str) -> Option<&Attribute<'s>> {
+        self.attributes.iter().find(|attribute| attribute.name == name)
+    }
+
+    /// The attribute called `name`, which must be there.
+    pub fn require(&self, name: &str) -> Result<&Attribute<'s>> {
+        self.get(name).ok_or_else(|| {
+            let expected = format!("the attribute \"{name}\" of <{}>", self.tag);
+            let remedy = format!("write <{} {name}=\"...\">", self.tag);
+            Error::new(&self.location, expected, self.attribute_names(), remedy)
+        })
+    }
+
+    fn attribute_names(&self) -> String {
+        let names: Vec<_> = self.attributes.iter().map(|attribute| attribute.name).collect();
+        if names.is_empty() { "no attributes".into() } else { format!("only {}", names.join(", ")) }
+    }
+
+    /// The attribute called `name`, where given; if so, not empty.
+    pub fn optional_name(&self, name: &str) -> Result<Option<String>> {
+        self.get(name).map(|attribute| attribute.nonempty().map(str::to_owned)).transpose()
+    }
+
+    /// Attributes other than these are errors.
+    pub fn allow(&self, names: &[&str]) -> Result<()> {
+        let Some(odd) = self.attributes.iter().find(|a| !names.contains(&a.name)) else { return Ok(()) };
+        let expected = format!("an attribute of <{}>", self.tag);
+        let remedy = format!("{}known here: {}", nearest(odd.name, names), names.join(", "));
+        Err(Error::new(&odd.location, expected, format!("\"{}\"", odd.name), remedy))
+    }
+
+    /// The elements in this one. Text between them means nothing, so it is an error.
+    pub fn children(&self) -> Result<Vec<Node<'s, 's>>> {
+        let text = |node: &Node| node.is_text() && node.text().is_some_and(|text| !text.trim().is_empty());
+        if let Some(stray) = self.node.children().find(text) {
+            let blank = |t: &str| t.len() - t.trim_start().len();
+            let start = stray.range().start + stray.text().map_or(0, blank);
+            let found = format!("the text \"{}\"", stray.text().unwrap_or_default().trim());
+            let place = self.source.location(start);
+            return Err(Error::new(
+                place,
+                "nothing but elements",
+                found,
+                "remove the text or comment it out",
+            ));
+        }
+        Ok(self.node.children().filter(Node::is_element).collect())
+    }
+
+    /// An element in this one is an error.
+    pub fn childless(&self) -> Result<()> {
+        let Some(child) = self.children()?.first().copied() else { return Ok(()) };
+        let expected = format!("nothing in <{}>", self.tag);
+        let found = format!("<{}>", child.tag_name().name());
+        Err(Error::new(self.source.location(child.range().start), expected, found, "move it out"))
+    }
+
+    /// A `spectrum` with a `type` is a plugin, not a value.
+    pub fn is_spectrum_plugin(&self) -> bool {
+        self.tag == "spectrum" && self.get("type").is_some()
+    }
+
+    /// The kind of plugin it holds: its tag, but spectra are textures.
+    pub fn object_tag(&self) -> &'s str {
+        if self.is_spectrum_plugin() { "texture" } else { self.tag }
+    }
+
+    /// A mistake in the element as a whole.
+    pub fn check<T>(&self, parsed: Parsed<T>) -> Result<T> {
+        let remedy = || format!("correct the <{}>", self.tag);
+        parsed.map_err(|m| Error::new(&self.location, m.expected, m.found, remedy()))
+    }
+}
+
+impl Attribute<'_> {
+    /// Its value, which must not be empty.
+    pub fn nonempty(&self) -> Result<&str> {
+        if self.value.is_empty() {
+            return Err(self.wrong("some text", format!("fill or remove \"{}\"", self.name)));
+        }
+        Ok(&self.value)
+    }
+
+    /// Its value as `parse` reads it.
+    pub fn parse<T>(&self, parse: impl FnOnce(&str) -> Parsed<T>) -> Result<T> {
+        let quoted = format!("\"{}\"", self.value);
+        parse(&self.value).map_err(|m| {
+            let found = if m.found == quoted { quoted } else { format!("{} in {quoted}", m.found) };
+            let remedy = format!("correct \"{}\"", self.name);
+            Error::new(&self.location, m.expected, found, remedy)
+        })
+    }
+
+    /// The error for a value that is not as `expected`.
+    pub fn wrong(&self, expected: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::new(&self.location, expected, format!("{}=\"{}\"", self.name, self.value), remedy)
+    }
+}

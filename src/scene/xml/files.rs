@@ -1,0 +1,132 @@
+//! Files: the text of one with places in it, and the folders in which names of others are looked up.
+
+use super::{super::text, Element, element::Attribute};
+use crate::{
+    description::{Location, Object, Position, Value},
+    error::{Error, Result},
+};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+/// The text of a scene file.
+pub(super) struct Source {
+    /// The file as its user named it.
+    pub file: Arc<PathBuf>,
+    /// The file under the name that all spellings of its path share.
+    pub identity: PathBuf,
+    text: String,
+    /// Where each line starts. Finding a place must not cost a pass over the file.
+    lines: Vec<usize>,
+}
+
+/// The path that all spellings of `path` share.
+pub(super) fn identity(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+impl Source {
+    /// Reads the file at `path`.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = text::of_file(path)?;
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        Ok(Self { file: Arc::new(path.to_owned()), identity: identity(path), text, lines })
+    }
+
+    /// The file as XML. Document types are refused, and with them entities that expand without end.
+    pub fn parse(&self) -> Result<roxmltree::Document<'_>> {
+        roxmltree::Document::parse(&self.text).map_err(|error| {
+            let roxmltree::TextPos { row, col } = error.pos();
+            let place = Location {
+                file: self.file.clone(),
+                position: Position::Text { line: row.max(1), column: col.max(1) },
+            };
+            let remedy = match error {
+                roxmltree::Error::DtdDetected => {
+                    "remove the <!DOCTYPE>; use <default> and $name for entities"
+                }
+                _ => "correct the XML at or before this place",
+            };
+            Error::new(place, "well-formed XML without a document type", error.to_string(), remedy)
+        })
+    }
+
+    /// The place of the byte at `offset`.
+    pub fn location(&self, offset: usize) -> Location {
+        let line = self.lines.partition_point(|start| *start <= offset);
+        let start = self.lines[line - 1];
+        let column = self.text.get(start..offset).map_or(0, |before| before.chars().count()) + 1;
+        let position = Position::Text { line: line as u32, column: column as u32 };
+        Location { file: self.file.clone(), position }
+    }
+}
+
+/// Folders in which relative names of files are looked up: those of `path` elements, the latest first, then the
+/// file's own folder, then those of the file that includes it.
+#[derive(Clone, Default)]
+pub(super) struct Folders {
+    folders: Vec<PathBuf>,
+    own: PathBuf,
+}
+
+impl Folders {
+    /// Starts a file: its own folder comes first.
+    pub fn enter(&mut self, file: &Path) {
+        self.own = file.parent().unwrap_or(Path::new("")).to_owned();
+        self.folders.insert(0, self.own.clone());
+    }
+
+    /// A `path` element.
+    pub fn add(&mut self, element: &Element) -> Result<()> {
+        element.allow(&["value"])?;
+        element.childless()?;
+        let attribute = element.require("value")?;
+        let name = attribute.nonempty()?;
+        let folder = self.folders.iter().map(|folder| folder.join(name)).find(|folder| folder.is_dir());
+        let folder = folder.ok_or_else(|| attribute.wrong("an existing folder", self.looked_in()))?;
+        self.folders.insert(0, folder);
+        Ok(())
+    }
+
+    /// The file called `name`.
+    pub fn find(&self, name: &str) -> Option<PathBuf> {
+        self.folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file())
+    }
+
+    /// The error for a file that is in none of the folders.
+    pub fn missing(&self, name: &Attribute) -> Error {
+        name.wrong("the name of an existing file", self.looked_in())
+    }
+
+    fn looked_in(&self) -> String {
+        let shown = |folder: &PathBuf| match folder.as_os_str().is_empty() {
+            true => ".".to_owned(),
+            false => folder.display().to_string(),
+        };
+        let folders: Vec<_> = self.folders.iter().map(shown).collect();
+        format!("correct the name; looked in: {}", folders.join(", "))
+    }
+
+    /// Makes names of files that `file` gives absolute where they lie in a folder other than its own, so that
+    /// later stages need not know of folders. Such names are strings called `filename` or `..._filename`.
+    pub fn settle(&self, object: &mut Object, file: &Arc<PathBuf>) {
+        if self.folders.len() < 2 {
+            return;
+        }
+        for property in &mut object.properties {
+            match &mut property.value {
+                Value::Object(child) => self.settle(child, file),
+                Value::String(name)
+                    if property.name.ends_with("filename") && Arc::ptr_eq(&property.location.file, file) =>
+                {
+                    let elsewhere = self.find(name).filter(|found| *found != self.own.join(&*name));
+                    if let Some(path) = elsewhere.and_then(|path| std::path::absolute(path).ok()) {
+                        *name = path.display().to_string();
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+}
