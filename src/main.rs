@@ -1,1 +1,5 @@
-fn main() {}
+//! The program `tyndall`: see `tyndall --help`.
+
+fn main() -> std::process::ExitCode {
+    tyndall::cli::run()
+}

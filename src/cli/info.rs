@@ -1,0 +1,99 @@
+//! `tyndall info`: what a scene holds, and how it would be rendered.
+
+use super::{arguments, load, say};
+use crate::{
+    bsdf::BsdfModel,
+    emitter::Emitter,
+    error::Result,
+    phase::PhaseModel,
+    scene::{
+        Scene,
+        build::{self, Setup},
+        integrator::{Integrator, Method},
+    },
+    transport::profile::ProfileName,
+};
+
+/// Runs the command.
+pub fn run(arguments: &arguments::Info) -> Result<()> {
+    let setup = load(&arguments.scene, None)?;
+    say(&describe(&setup));
+    Ok(())
+}
+
+fn describe(setup: &Setup) -> String {
+    let Setup { scene, film, integrator, samples_per_pixel, .. } = setup;
+    let profile = ProfileName::leanest(build::needs(scene));
+    let left_out = profile.left_out();
+    let mut lines = vec![
+        format!("image       {} x {}, {:?} filter", film.width, film.height, film.filter),
+        format!("integrator  {}, {samples_per_pixel} samples/pixel", describe_integrator(integrator)),
+        format!("shapes      {}", describe_shapes(scene)),
+    ];
+    lines.extend(scene.lights.all.iter().map(|light| {
+        format!("emitter     {} in {}", light.emitter.name(), medium_name(setup, light.medium.0))
+    }));
+    lines.push(format!("camera      in {}", medium_name(setup, scene.sensor_medium.0)));
+    lines.extend((1..scene.media.len()).map(|index| format!("medium      {}", describe_medium(setup, index))));
+    let without = if left_out.is_empty() { "nothing".to_owned() } else { left_out.join(", ") };
+    lines.push(format!("profile     {}, leaving out: {without}", profile.name()));
+    lines.extend(unreachable(scene, integrator).into_iter().map(|text| format!("unreachable {text}")));
+    lines.join("\n")
+}
+
+fn describe_integrator(integrator: &Integrator) -> String {
+    let method = match integrator.method {
+        Method::Bdpt => "bdpt",
+        Method::Pt => "pt",
+        Method::Lt => "lt",
+    };
+    match integrator.max_depth {
+        Some(depth) => format!("{method}, paths of at most {depth} segments"),
+        None => format!("{method}, paths of any length"),
+    }
+}
+
+fn describe_shapes(scene: &Scene) -> String {
+    let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
+    let boundaries = scene.surfaces.iter().filter(|surface| surface.boundary.is_some()).count();
+    format!("{} ({primitives} primitives), {boundaries} of them bound media", scene.surfaces.len())
+}
+
+fn medium_name(setup: &Setup, index: u32) -> &str {
+    match index.checked_sub(1) {
+        Some(index) => &setup.medium_names[index as usize],
+        None => "vacuum",
+    }
+}
+
+fn describe_medium(setup: &Setup, index: usize) -> String {
+    let medium = &setup.scene.media[index];
+    let [r, g, b] = medium.sigma_t.to_array();
+    let [ar, ag, ab] = medium.albedo.to_array();
+    format!(
+        "{}: homogeneous, sigma_t {r} {g} {b} /m, albedo {ar} {ag} {ab}, mean cosine {:.3}; closed-form tracker",
+        medium_name(setup, index as u32),
+        medium.phase.mean_cosine()
+    )
+}
+
+/// Kinds of paths that no strategy of the integrator can make: they are black, not noisy.
+fn unreachable(scene: &Scene, integrator: &Integrator) -> Vec<String> {
+    let bsdfs = scene.surfaces.iter().map(|surface| &scene.bsdfs[surface.bsdf as usize]);
+    let smooth = bsdfs.clone().any(|bsdf| bsdf.has_dirac() && bsdf.survival(crate::math::Vec2::ZERO, crate::math::Vec3::Z) > 0.0);
+    let point_like = |emitter: &Emitter| !emitter.is_hittable();
+    let mut kinds = Vec::new();
+    if smooth && scene.lights.all.iter().any(|light| point_like(&light.emitter)) {
+        kinds.push(match integrator.method {
+            Method::Pt => "light of point, spot and directional emitters over smooth mirrors or lenses",
+            _ => "light of point, spot and directional emitters that smooth mirrors or lenses alone lead to the eye",
+        });
+    }
+    if smooth && integrator.method == Method::Lt {
+        kinds.push("anything seen in or through smooth mirrors or lenses");
+    }
+    if smooth && integrator.method == Method::Bdpt && scene.lights.all.iter().any(|l| point_like(&l.emitter)) {
+        kinds.push("caustics of those emitters seen in smooth mirrors or lenses");
+    }
+    kinds.into_iter().map(str::to_owned).collect()
+}

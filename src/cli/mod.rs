@@ -1,0 +1,55 @@
+//! The command line: arguments in, exit code out.
+
+pub mod arguments;
+mod info;
+mod render;
+
+use crate::{
+    error::Result,
+    scene::{
+        self,
+        build::{Overrides, Setup},
+    },
+};
+use arguments::{Arguments, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Runs the program; bad input ends it with code 2 and a message that says what to mend.
+pub fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = match &arguments.command {
+        Command::Render(render) => render::run(render),
+        Command::Info(info) => info::run(info),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            complain(&format!("error: {error}"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Reads and builds a scene; warnings go to standard error.
+fn load(scene: &arguments::Scene, size: Option<arguments::Size>) -> Result<Setup> {
+    let root = scene::read(&scene.file, &scene.definitions)?;
+    let overrides = Overrides { size: size.map(|size| (size.width, size.height)) };
+    let setup = scene::build::build(&root, overrides)?;
+    for warning in &setup.warnings {
+        complain(&format!("warning: {warning}"));
+    }
+    Ok(setup)
+}
+
+/// To standard output. A reader that has gone away is no reason to fail.
+fn say(text: &str) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// To standard error.
+fn complain(text: &str) {
+    use std::io::Write as _;
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
