@@ -7,3 +7,8 @@ pub mod math;
 pub mod sampling;
 
 pub mod description;
+
+pub mod phase;
+
+#[cfg(test)]
+mod testing;
