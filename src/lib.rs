@@ -9,6 +9,7 @@ pub mod sampling;
 pub mod description;
 
 pub mod phase;
+pub mod texture;
 
 #[cfg(test)]
 mod testing;
