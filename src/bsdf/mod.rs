@@ -5,8 +5,25 @@
 //! angle [1/sr]: `forward` is that of `wo` given `wi`, `backward` that of `wi` given `wo`. For a Dirac lobe
 //! they are the discrete probabilities of choosing that lobe.
 
-use crate::math::{Spectrum, Vec2, Vec3};
+mod dielectric;
+mod diffuse;
+mod fresnel;
+mod index;
+mod null;
+#[cfg(test)]
+mod tests;
+mod thindielectric;
+
+pub use dielectric::Dielectric;
+pub use diffuse::Diffuse;
+pub use null::Null;
+pub use thindielectric::ThinDielectric;
+
+use crate::description::{Library, Object, Params, Row, build_by_row};
+use crate::error::Result;
+use crate::math::{Spectrum, Vec2, Vec3, vec3};
 use crate::sampling::Stream;
+use crate::texture::{self, Texture};
 
 /// What a walk carries: it decides whether refraction scales by the squared index ratio (radiance) or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,4 +98,110 @@ pub trait BsdfModel {
     fn has_null(&self) -> bool {
         false
     }
+
+    /// True if light can get to the other side, be it bent or straight through.
+    fn transmits(&self) -> bool {
+        self.has_null()
+    }
+}
+
+/// Makes the enum, its dispatch, the registry and the list of test examples from one row a model. A model
+/// has `fn build(&Params)`, giving itself or any other `Bsdf`, and, for the tests, `fn examples() -> Vec<_>`.
+macro_rules! bsdfs {
+    ($($name:literal => $model:ident,)*) => {
+        /// Any surface model.
+        #[derive(Clone, Debug)]
+        #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
+        pub enum Bsdf {
+            $($model($model),)*
+        }
+
+        $(impl From<$model> for Bsdf {
+            fn from(model: $model) -> Self {
+                Self::$model(model)
+            }
+        })*
+
+        impl BsdfModel for Bsdf {
+            #[inline]
+            fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
+                match self { $(Self::$model(model) => model.evaluate(uv, wi, wo, transport),)* }
+            }
+            #[inline]
+            fn sample(
+                &self,
+                uv: Vec2,
+                wi: Vec3,
+                transport: Transport,
+                stream: &mut Stream,
+            ) -> Option<BsdfSample> {
+                match self { $(Self::$model(model) => model.sample(uv, wi, transport, stream),)* }
+            }
+            #[inline]
+            fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+                match self { $(Self::$model(model) => model.survival(uv, wi),)* }
+            }
+            #[inline]
+            fn null_transmission(&self, uv: Vec2, cosine: f32) -> Spectrum {
+                match self { $(Self::$model(model) => model.null_transmission(uv, cosine),)* }
+            }
+            #[inline]
+            fn is_connectible(&self) -> bool {
+                match self { $(Self::$model(model) => model.is_connectible(),)* }
+            }
+            #[inline]
+            fn has_dirac(&self) -> bool {
+                match self { $(Self::$model(model) => model.has_dirac(),)* }
+            }
+            #[inline]
+            fn has_null(&self) -> bool {
+                match self { $(Self::$model(model) => model.has_null(),)* }
+            }
+            fn transmits(&self) -> bool {
+                match self { $(Self::$model(model) => model.transmits(),)* }
+            }
+        }
+
+        /// Every surface model there is, by plugin name.
+        pub const ROWS: &[Row<Bsdf>] = &[
+            $(Row { name: $name, build: |params: &Params<'_>| $model::build(params).map(Bsdf::from) },)*
+        ];
+
+        /// Instances of every model, for the tests that hold for all.
+        #[cfg(test)]
+        fn examples() -> Vec<Bsdf> {
+            let mut all: Vec<Bsdf> = Vec::new();
+            $(all.extend($model::examples().into_iter().map(Bsdf::from));)*
+            all
+        }
+    };
+}
+
+bsdfs! {
+    "diffuse" => Diffuse,
+    "null" => Null,
+    "dielectric" => Dielectric,
+    "thindielectric" => ThinDielectric,
+}
+
+/// Builds the surface model that `object` describes.
+pub fn build(object: &Object, library: &Library) -> Result<Bsdf> {
+    build_by_row(object, library, "bsdf", ROWS)
+}
+
+/// The parameter `name` as a texture of reflectances or transmittances: no channel exceeds 1.
+fn reflectance(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
+    let texture = texture::parameter(params, name, default)?;
+    let max = texture.max().max_element();
+    if max <= 1.0 {
+        return Ok(texture);
+    }
+    let found = format!("one that reaches {max}: it would make light out of nothing");
+    Err(params.complain(name, "a colour from 0 to 1", found))
+}
+
+/// The mirror image of `w` about the shading normal.
+#[inline]
+fn mirror(w: Vec3) -> Vec3 {
+    vec3(-w.x, -w.y, w.z)
 }

@@ -46,7 +46,13 @@ mod tests {
 
     #[test]
     fn frames_are_orthonormal_at_poles_and_between() {
-        for n in [Vec3::Z, -Vec3::Z, Vec3::X, vec3(1e-4, -1e-4, -1.0).normalize(), vec3(0.3, -0.5, 0.7).normalize()] {
+        for n in [
+            Vec3::Z,
+            -Vec3::Z,
+            Vec3::X,
+            vec3(1e-4, -1e-4, -1.0).normalize(),
+            vec3(0.3, -0.5, 0.7).normalize(),
+        ] {
             let f = Frame::around(n);
             for (a, b, dot) in [
                 (f.tangent, f.bitangent, 0.0),

@@ -42,6 +42,14 @@ pub fn spherical(cosine: f32, azimuth: f32) -> Vec3 {
     vec3(sine * c, sine * s, cosine)
 }
 
+/// Unit vector with the given 1 - cos (in [0, 2]) to z and azimuth [rad]: narrow angles keep their precision.
+#[inline]
+pub fn near_pole(one_minus_cos: f32, azimuth: f32) -> Vec3 {
+    let sine = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
+    let (s, c) = azimuth.sin_cos();
+    vec3(sine * c, sine * s, 1.0 - one_minus_cos)
+}
+
 /// Uniform on the unit sphere; density 1/(4 pi) [1/sr].
 #[inline]
 pub fn to_sphere(u: Vec2) -> Vec3 {
@@ -52,10 +60,7 @@ pub fn to_sphere(u: Vec2) -> Vec3 {
 /// The cone is given by 1 - cos so that narrow ones keep their precision.
 #[inline]
 pub fn to_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
-    let h = u.x * one_minus_cos;
-    let sine = (h * (2.0 - h)).max(0.0).sqrt();
-    let (s, c) = (TAU * u.y).sin_cos();
-    vec3(sine * c, sine * s, 1.0 - h)
+    near_pole(u.x * one_minus_cos, TAU * u.y)
 }
 
 /// Density of `to_cone` inside the cone [1/sr].

@@ -4,7 +4,25 @@
 //! forward), are normalised to 1 over the sphere, and are sampled exactly: the density of a sampled direction
 //! is the value of the function, both ways.
 
-use crate::math::Vec3;
+mod blend;
+mod hg;
+mod isotropic;
+mod rayleigh;
+mod schlick;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use blend::Blend;
+pub use hg::HenyeyGreenstein;
+pub use isotropic::Isotropic;
+pub use rayleigh::Rayleigh;
+pub use schlick::Schlick;
+pub use table::Table;
+
+use crate::description::{Library, Object, Params, Row, build_by_row};
+use crate::error::Result;
+use crate::math::{Frame, Vec3};
 use crate::sampling::Stream;
 
 /// What every phase function can do.
@@ -17,4 +35,74 @@ pub trait PhaseModel {
 
     /// The mean cosine, g, in [-1, 1].
     fn mean_cosine(&self) -> f32;
+}
+
+/// Makes the enum, its dispatch, the registry and the list of test examples from one row a model. A model
+/// has `fn build(&Params) -> Result<Self>` and, for the tests, `fn examples() -> Vec<Self>`.
+macro_rules! phases {
+    ($($name:literal => $model:ident,)*) => {
+        /// Any phase function.
+        #[derive(Clone, Debug)]
+        #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
+        pub enum Phase {
+            $($model($model),)*
+        }
+
+        impl PhaseModel for Phase {
+            #[inline]
+            fn density(&self, cosine: f32) -> f32 {
+                match self { $(Self::$model(model) => model.density(cosine),)* }
+            }
+            #[inline]
+            fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
+                match self { $(Self::$model(model) => model.sample(direction, stream),)* }
+            }
+            fn mean_cosine(&self) -> f32 {
+                match self { $(Self::$model(model) => model.mean_cosine(),)* }
+            }
+        }
+
+        /// Every phase function there is, by plugin name.
+        pub const ROWS: &[Row<Phase>] = &[
+            $(Row { name: $name, build: |params: &Params<'_>| $model::build(params).map(Phase::$model) },)*
+        ];
+
+        /// Instances of every model, for the tests that hold for all.
+        #[cfg(test)]
+        fn examples() -> Vec<Phase> {
+            let mut all = Vec::new();
+            $(all.extend($model::examples().into_iter().map(Phase::$model));)*
+            all
+        }
+    };
+}
+
+phases! {
+    "isotropic" => Isotropic,
+    "hg" => HenyeyGreenstein,
+    "rayleigh" => Rayleigh,
+    "schlick" => Schlick,
+    "tabphase" => Table,
+    "blendphase" => Blend,
+}
+
+/// Builds the phase function that `object` describes.
+pub fn build(object: &Object, library: &Library) -> Result<Phase> {
+    build_by_row(object, library, "phase function", ROWS)
+}
+
+/// The world direction that `local` is in a frame around `direction`. It is made unit again: in a walk of
+/// thousands of scatterings the rounding of lengths would add up.
+#[inline]
+fn deflect(direction: Vec3, local: Vec3) -> Vec3 {
+    Frame::around(direction).to_world(local).normalize()
+}
+
+/// The parameter `name` of a model that is a probability density only for values in (-1, 1).
+fn asymmetry(params: &Params<'_>, name: &'static str, default: f64) -> Result<f64> {
+    let value = params.float(name, default)?;
+    if value.abs() < 1.0 {
+        return Ok(value);
+    }
+    Err(params.complain(name, "a number between -1 and 1 (both excluded)", value.to_string()))
 }

@@ -1,0 +1,122 @@
+//! A smooth interface between two dielectrics: Mitsuba's `dielectric`.
+
+use super::fresnel::Interfaces;
+use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror, reflectance};
+use crate::description::Params;
+use crate::error::Result;
+use crate::math::{Spectrum, Vec2, Vec3};
+use crate::sampling::Stream;
+use crate::texture::Texture;
+
+/// Reflects and refracts as Fresnel says; both lobes are Dirac.
+#[derive(Clone, Debug)]
+pub struct Dielectric {
+    pub(super) interfaces: Interfaces,
+    pub(super) tints: Tints,
+}
+
+/// Factors on the reflected and the transmitted part: not physical, but Mitsuba has them.
+#[derive(Clone, Debug)]
+pub(super) struct Tints {
+    pub(super) reflectance: Texture,
+    pub(super) transmittance: Texture,
+}
+
+impl Tints {
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        Ok(Self {
+            reflectance: reflectance(params, "specular_reflectance", 1.0)?,
+            transmittance: reflectance(params, "specular_transmittance", 1.0)?,
+        })
+    }
+
+    #[inline]
+    pub(super) fn at(&self, uv: Vec2) -> (Spectrum, Spectrum) {
+        (self.reflectance.eval(uv), self.transmittance.eval(uv))
+    }
+
+    /// The largest channel of either tint: no direction scatters more.
+    #[inline]
+    pub(super) fn max(&self, uv: Vec2) -> f32 {
+        let (reflectance, transmittance) = self.at(uv);
+        reflectance.max(transmittance).max_element()
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> [Self; 2] {
+        let tints = |r, t| Self { reflectance: Texture::constant(r), transmittance: Texture::constant(t) };
+        [
+            tints(Spectrum::ONE, Spectrum::ONE),
+            tints(Spectrum::new(0.5, 0.3, 0.0), Spectrum::new(0.2, 1.0, 0.8)),
+        ]
+    }
+}
+
+/// Probabilities of reflection and transmission, in proportion to the light that goes each way; none where
+/// no light goes anywhere. `fresnel` is the reflected part.
+#[inline]
+pub(super) fn choose(fresnel: f32, reflectance: Spectrum, transmittance: Spectrum) -> Option<(f32, f32)> {
+    let reflected = fresnel * reflectance.max_element();
+    let transmitted = (1.0 - fresnel) * transmittance.max_element();
+    let total = reflected + transmitted;
+    (total > 0.0).then(|| (reflected / total, transmitted / total))
+}
+
+impl Dielectric {
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        Ok(Self { interfaces: index::interfaces(params)?, tints: Tints::build(params)? })
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        let pairs = [(1.5, 1.0), (1.0, 1.33), (1.0, 1.0), (1.0 + 1e-6, 1.0), (1.0, 1.0 + 1e-6), (2.4, 1.0)];
+        let with = |tints: &Tints| {
+            let tints = tints.clone();
+            pairs.map(|(i, o)| Self { interfaces: Interfaces::new(i, o), tints: tints.clone() })
+        };
+        Tints::examples().iter().flat_map(with).collect()
+    }
+}
+
+impl BsdfModel for Dielectric {
+    #[inline]
+    fn evaluate(&self, _: Vec2, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
+        BsdfValue::ZERO
+    }
+
+    #[inline]
+    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+        if wi.z == 0.0 {
+            return None;
+        }
+        let interface = self.interfaces.from_side(wi.z);
+        let fresnel = interface.reflectance(wi.z.abs());
+        let (reflectance, transmittance) = self.tints.at(uv);
+        let (reflect, transmit) = choose(fresnel, reflectance, transmittance)?;
+        // Fresnel's reflectance is the same on the way back, so the probabilities are too.
+        let lobe =
+            |wo, weight, chance| BsdfSample { wo, weight, forward: chance, backward: chance, dirac: true };
+        if stream.uniform() < reflect {
+            return Some(lobe(mirror(wi), reflectance * (fresnel / reflect), reflect));
+        }
+        let wo = interface.refract(wi)?;
+        let compression = match transport {
+            Transport::Radiance => 1.0 / (interface.ratio * interface.ratio),
+            Transport::Importance => 1.0,
+        };
+        Some(lobe(wo, transmittance * (compression * (1.0 - fresnel) / transmit), transmit))
+    }
+
+    #[inline]
+    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+        self.tints.max(uv)
+    }
+
+    fn is_connectible(&self) -> bool {
+        false
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+}

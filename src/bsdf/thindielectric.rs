@@ -1,0 +1,72 @@
+//! A pane of glass too thin to bend light: Mitsuba's `thindielectric`.
+
+use super::dielectric::Tints;
+use super::fresnel::Interfaces;
+use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror};
+use crate::description::Params;
+use crate::error::Result;
+use crate::math::{Spectrum, Vec2, Vec3};
+use crate::sampling::Stream;
+
+/// Reflects as a Dirac lobe, inter-reflections between its two faces included; the rest passes straight
+/// through and is no scattering.
+#[derive(Clone, Debug)]
+pub struct ThinDielectric {
+    interfaces: Interfaces,
+    tints: Tints,
+}
+
+impl ThinDielectric {
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        Ok(Self { interfaces: index::interfaces(params)?, tints: Tints::build(params)? })
+    }
+
+    /// R + T R T + T R^3 T + ... = 2 R / (1 + R) for a face that reflects R. The same from both sides, as
+    /// the same medium lies on both.
+    #[inline]
+    fn reflected(&self, cosine: f32) -> f32 {
+        let face = self.interfaces.outside.reflectance(cosine.abs());
+        2.0 * face / (1.0 + face)
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        let with = |tints: Tints| {
+            [1.5, 1.0, 1.0 + 1e-6, 0.8]
+                .map(|index| Self { interfaces: Interfaces::new(index, 1.0), tints: tints.clone() })
+        };
+        Tints::examples().into_iter().flat_map(with).collect()
+    }
+}
+
+impl BsdfModel for ThinDielectric {
+    #[inline]
+    fn evaluate(&self, _: Vec2, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
+        BsdfValue::ZERO
+    }
+
+    #[inline]
+    fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, _: &mut Stream) -> Option<BsdfSample> {
+        let weight = self.tints.reflectance.eval(uv) * self.reflected(wi.z);
+        (wi.z != 0.0).then(|| BsdfSample { wo: mirror(wi), weight, forward: 1.0, backward: 1.0, dirac: true })
+    }
+
+    /// Of what does not pass straight through, the tint of the reflection is what is not absorbed.
+    #[inline]
+    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+        self.tints.reflectance.eval(uv).max_element()
+    }
+
+    #[inline]
+    fn null_transmission(&self, uv: Vec2, cosine: f32) -> Spectrum {
+        self.tints.transmittance.eval(uv) * (1.0 - self.reflected(cosine))
+    }
+
+    fn is_connectible(&self) -> bool {
+        false
+    }
+
+    fn has_null(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,73 @@
+//! A weighted sum of two phase functions: Mitsuba's `blendphase`.
+
+use super::{Phase, PhaseModel, build};
+use crate::description::Params;
+use crate::error::{Error, Result};
+use crate::math::Vec3;
+use crate::sampling::Stream;
+use std::sync::Arc;
+
+/// (1 - weight) first + weight second.
+#[derive(Clone, Debug)]
+pub struct Blend {
+    weight: f32,
+    parts: Arc<[Phase; 2]>,
+}
+
+impl Blend {
+    /// `weight` in [0, 1] is the share of the second part.
+    pub fn new(weight: f32, first: Phase, second: Phase) -> Self {
+        Self { weight, parts: Arc::new([first, second]) }
+    }
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        if !params.has("weight") {
+            return Err(params.missing("weight", "a number from 0 to 1"));
+        }
+        let weight = params.float_within("weight", 0.5, 0.0, 1.0)? as f32;
+        match params.children(|child| child.name != "weight")?.as_slice() {
+            [first, second] => {
+                let part = |object| build(object, params.library);
+                Ok(Self::new(weight, part(first.object)?, part(second.object)?))
+            }
+            others => Err(Error::new(
+                params.location(),
+                "two nested phase functions",
+                format!("{}", others.len()),
+                "give exactly two; a blend of three is a blend with a nested blend",
+            )),
+        }
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        use super::{HenyeyGreenstein, Isotropic, Rayleigh};
+        let hg = |g| Phase::HenyeyGreenstein(HenyeyGreenstein::new(g));
+        let inner = Self::new(0.25, hg(0.9), hg(-0.5));
+        vec![
+            Self::new(0.0, hg(0.5), Phase::Isotropic(Isotropic)),
+            Self::new(1.0, hg(0.5), Phase::Isotropic(Isotropic)),
+            inner.clone(),
+            Self::new(0.7, Phase::Blend(inner), Phase::Rayleigh(Rayleigh)),
+        ]
+    }
+}
+
+impl PhaseModel for Blend {
+    #[inline]
+    fn density(&self, cosine: f32) -> f32 {
+        let [first, second] = &*self.parts;
+        first.density(cosine) * (1.0 - self.weight) + second.density(cosine) * self.weight
+    }
+
+    #[inline]
+    fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
+        let chosen = usize::from(stream.uniform() < self.weight);
+        self.parts[chosen].sample(direction, stream)
+    }
+
+    fn mean_cosine(&self) -> f32 {
+        let [first, second] = &*self.parts;
+        first.mean_cosine() * (1.0 - self.weight) + second.mean_cosine() * self.weight
+    }
+}

@@ -1,0 +1,38 @@
+//! Scattering alike into all directions (P03 eq. 1).
+
+use super::PhaseModel;
+use crate::description::Params;
+use crate::error::Result;
+use crate::math::{Vec3, warp};
+use crate::sampling::Stream;
+
+/// The constant phase function 1/(4 pi).
+#[derive(Clone, Copy, Debug)]
+pub struct Isotropic;
+
+impl Isotropic {
+    pub(super) fn build(_: &Params<'_>) -> Result<Self> {
+        Ok(Self)
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        vec![Self]
+    }
+}
+
+impl PhaseModel for Isotropic {
+    #[inline]
+    fn density(&self, _: f32) -> f32 {
+        warp::SPHERE_DENSITY
+    }
+
+    #[inline]
+    fn sample(&self, _: Vec3, stream: &mut Stream) -> Vec3 {
+        warp::to_sphere(stream.square())
+    }
+
+    fn mean_cosine(&self) -> f32 {
+        0.0
+    }
+}

@@ -1,0 +1,48 @@
+//! Two colours in squares: Mitsuba's `checkerboard`.
+
+use super::{Texture, TextureModel, ToUv, fraction, parameter};
+use crate::description::Params;
+use crate::error::Result;
+use crate::math::{Spectrum, Vec2};
+use std::sync::Arc;
+
+/// Squares of half a unit: the first colour where both halves of u and v agree, else the second.
+#[derive(Clone, Debug)]
+pub struct Checkerboard {
+    colors: Arc<[Texture; 2]>,
+    to_uv: ToUv,
+}
+
+impl Checkerboard {
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        let colors = [parameter(params, "color0", 0.4)?, parameter(params, "color1", 0.2)?];
+        Ok(Self { colors: Arc::new(colors), to_uv: ToUv::build(params)? })
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        use crate::math::{DMat4, DVec3};
+        let grey = |x| Texture::constant(Spectrum::splat(x));
+        let colors = Arc::new([grey(0.9), Texture::constant(Spectrum::new(0.1, 0.2, 0.3))]);
+        let plain = Self { colors, to_uv: ToUv::new(DMat4::IDENTITY) };
+        let scaled = ToUv::new(DMat4::from_scale(DVec3::new(3.0, 5.0, 1.0)));
+        vec![Self { to_uv: scaled, ..plain.clone() }, plain]
+    }
+}
+
+impl TextureModel for Checkerboard {
+    #[inline]
+    fn eval(&self, uv: Vec2) -> Spectrum {
+        let cell = fraction(self.to_uv.apply(uv));
+        let differ = (cell.x > 0.5) != (cell.y > 0.5);
+        self.colors[usize::from(differ)].eval(uv)
+    }
+
+    fn max(&self) -> Spectrum {
+        self.colors[0].max().max(self.colors[1].max())
+    }
+
+    fn mean(&self) -> Spectrum {
+        0.5 * (self.colors[0].mean() + self.colors[1].mean())
+    }
+}

@@ -1,0 +1,127 @@
+//! Colours that vary over a surface: one file a model; this page is the contract and the registry.
+
+mod bitmap;
+mod checkerboard;
+#[cfg(test)]
+mod tests;
+mod uniform;
+
+pub use bitmap::Bitmap;
+pub use checkerboard::Checkerboard;
+pub use uniform::Uniform;
+
+use crate::description::{Library, Object, Params, Row, Value, build_by_row};
+use crate::error::Result;
+use crate::math::{DMat4, Spectrum, Vec2, vec2};
+
+/// What every texture can do.
+pub trait TextureModel {
+    /// The colour at texture position `uv`.
+    fn eval(&self, uv: Vec2) -> Spectrum;
+    /// A bound that no channel of `eval` exceeds.
+    fn max(&self) -> Spectrum;
+    /// The average over the unit square.
+    fn mean(&self) -> Spectrum;
+}
+
+/// Makes the enum, its dispatch, the registry and the list of test examples from one row a model.
+macro_rules! textures {
+    ($($name:literal => $model:ident,)*) => {
+        /// Any texture. Cheap to clone: images are shared.
+        #[derive(Clone, Debug)]
+        #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
+        pub enum Texture {
+            $($model($model),)*
+        }
+
+        impl Texture {
+            /// The colour at texture position `uv`.
+            #[inline]
+            pub fn eval(&self, uv: Vec2) -> Spectrum {
+                match self { $(Self::$model(model) => model.eval(uv),)* }
+            }
+            /// A bound that no channel of `eval` exceeds.
+            pub fn max(&self) -> Spectrum {
+                match self { $(Self::$model(model) => model.max(),)* }
+            }
+            /// The average over the unit square before `to_uv` (of an image, over its pixels).
+            pub fn mean(&self) -> Spectrum {
+                match self { $(Self::$model(model) => model.mean(),)* }
+            }
+        }
+
+        /// Every texture there is, by plugin name.
+        pub const ROWS: &[Row<Texture>] = &[
+            $(Row { name: $name, build: |params: &Params<'_>| $model::build(params).map(Texture::$model) },)*
+        ];
+
+        /// Instances of every model, for the tests that hold for all.
+        #[cfg(test)]
+        fn examples() -> Vec<Texture> {
+            let mut all = Vec::new();
+            $(all.extend($model::examples().into_iter().map(Texture::$model));)*
+            all
+        }
+    };
+}
+
+textures! {
+    "uniform" => Uniform,
+    "checkerboard" => Checkerboard,
+    "bitmap" => Bitmap,
+}
+
+impl Texture {
+    /// One colour everywhere.
+    pub fn constant(color: Spectrum) -> Self {
+        Self::Uniform(Uniform(color))
+    }
+}
+
+/// Builds the texture that `object` describes.
+pub fn build(object: &Object, library: &Library) -> Result<Texture> {
+    build_by_row(object, library, "texture", ROWS)
+}
+
+/// The parameter `name` as a texture: a colour, or a nested or referenced texture; a grey `default` where
+/// not given. Bounds are the caller's to check, by [`Texture::max`].
+pub fn parameter(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
+    let property = params.object.properties.iter().find(|property| property.name == name);
+    if let Some(Value::Object(_) | Value::Reference(_)) = property.map(|property| &property.value)
+        && let Some(child) = params.child(name)?
+    {
+        return build(child.object, params.library);
+    }
+    params.color(name, default).map(Texture::constant)
+}
+
+/// The part of a `to_uv` transform that acts on texture positions: an affine map of the plane.
+#[derive(Clone, Copy, Debug)]
+struct ToUv {
+    columns: [Vec2; 3],
+}
+
+impl ToUv {
+    fn new(matrix: DMat4) -> Self {
+        let column = |i| matrix.col(i).truncate().truncate().as_vec2();
+        Self { columns: [column(0), column(1), column(3)] }
+    }
+
+    fn build(params: &Params<'_>) -> Result<Self> {
+        params.transform("to_uv").map(Self::new)
+    }
+
+    #[inline]
+    fn apply(&self, uv: Vec2) -> Vec2 {
+        let [u, v, origin] = self.columns;
+        u * uv.x + v * uv.y + origin
+    }
+}
+
+/// The position within its unit cell, in [0, 1).
+#[inline]
+fn fraction(uv: Vec2) -> Vec2 {
+    let inside = uv - uv.floor();
+    // A tiny negative number leaves exactly 1 by rounding.
+    vec2(if inside.x < 1.0 { inside.x } else { 0.0 }, if inside.y < 1.0 { inside.y } else { 0.0 })
+}
