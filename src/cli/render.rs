@@ -48,8 +48,8 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
     let needed = ProfileName::leanest(build::needs(&setup.scene));
     let profile = match arguments.profile {
-        Some(arguments::Profile::Everything) => ProfileName::Everything,
-        None => needed,
+        arguments::Profile::Everything => ProfileName::Everything,
+        arguments::Profile::Fitted => needed,
     };
     let max_depth = match arguments.max_depth {
         Some(arguments::MaxDepth::Edges(edges)) => Some(edges),

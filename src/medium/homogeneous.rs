@@ -21,7 +21,7 @@ pub struct Homogeneous {
 impl Homogeneous {
     /// Nothing: no extinction.
     pub fn vacuum() -> Self {
-        Self { sigma_t: Spectrum::ZERO, albedo: Spectrum::ZERO, phase: Phase::isotropic() }
+        Self { sigma_t: Spectrum::ZERO, albedo: Spectrum::ZERO, phase: Phase::Isotropic(phase::Isotropic) }
     }
 
     /// Reads `sigma_t` [1/m], `albedo`, `scale` and the phase function, with Mitsuba's defaults.
@@ -37,7 +37,7 @@ impl Homogeneous {
         }
         params.accept_unused(&["sample_emitters", "has_spectral_extinction"], "the scene itself decides");
         let phase = match params.children(|child| phase::is_phase(child.object))?.as_slice() {
-            [] => Phase::isotropic(),
+            [] => Phase::Isotropic(phase::Isotropic),
             [one] => phase::build(one.object, params.library)?,
             [_, second, ..] => return Err(second_phase(second)),
         };

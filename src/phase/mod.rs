@@ -106,3 +106,8 @@ fn asymmetry(params: &Params<'_>, name: &'static str, default: f64) -> Result<f6
     }
     Err(params.complain(name, "a number between -1 and 1 (both excluded)", value.to_string()))
 }
+
+/// True if `object` is a phase function.
+pub fn is_phase(object: &Object) -> bool {
+    ROWS.iter().any(|row| row.name == object.plugin)
+}

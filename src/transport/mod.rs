@@ -16,9 +16,6 @@ mod vertex;
 mod walk;
 mod weight;
 
-#[cfg(test)]
-mod twin;
-
 pub use cache::LightCache;
 pub use lanes::Lanes;
 pub use light::Splats;

@@ -2,7 +2,7 @@
 
 use super::lanes::Lanes;
 use crate::{
-    bsdf::Transport,
+    bsdf::{BsdfModel, Transport},
     math::{Spectrum, Vec3, offset},
     medium::MediumIndex,
     phase::PhaseModel,

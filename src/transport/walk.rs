@@ -8,7 +8,7 @@ use super::{
     vertex::{Site, Vertex, shading_correction},
 };
 use crate::{
-    bsdf::Transport,
+    bsdf::{BsdfModel, Transport},
     math::{Spectrum, Vec3, measure},
     medium::MediumIndex,
     phase::PhaseModel,
