@@ -7,3 +7,7 @@ pub mod math;
 pub mod sampling;
 
 pub mod description;
+
+pub mod shape;
+
+pub mod scene;

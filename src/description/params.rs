@@ -261,7 +261,12 @@ fn number(value: &Value) -> Option<f64> {
 
 fn wrong(property: &Property, expected: &str) -> Error {
     let Property { name, value, location } = property;
-    Error::new(location, format!("{expected} for \"{name}\""), value.describe(), format!("correct \"{name}\""))
+    Error::new(
+        location,
+        format!("{expected} for \"{name}\""),
+        value.describe(),
+        format!("correct \"{name}\""),
+    )
 }
 
 /// A property as a colour (see [`Params::optional_color`]).
@@ -278,5 +283,10 @@ pub fn color(property: &Property) -> Result<Spectrum> {
         return Ok(DVec3::from(rgb).as_vec3());
     }
     let (name, found) = (&property.name, format!("{rgb:?}"));
-    Err(Error::new(&property.location, format!("{expected} for \"{name}\""), found, format!("correct \"{name}\"")))
+    Err(Error::new(
+        &property.location,
+        format!("{expected} for \"{name}\""),
+        found,
+        format!("correct \"{name}\""),
+    ))
 }

@@ -27,6 +27,21 @@ impl Frame {
         }
     }
 
+    /// The frame around the unit vector `normal` whose tangent lies as near to `hint` as can be; any frame
+    /// where `hint` is null, not finite or along the normal.
+    #[inline]
+    pub fn along(normal: Vec3, hint: Vec3) -> Self {
+        let across = hint - normal * normal.dot(hint);
+        let squared = across.length_squared();
+        // Below this share of the hint's length what is left is rounding, not direction.
+        if squared > 1e-10 * hint.length_squared() && squared.is_finite() {
+            let tangent = across / squared.sqrt();
+            Self { tangent, bitangent: normal.cross(tangent), normal }
+        } else {
+            Self::around(normal)
+        }
+    }
+
     /// World direction to local.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
@@ -46,7 +61,13 @@ mod tests {
 
     #[test]
     fn frames_are_orthonormal_at_poles_and_between() {
-        for n in [Vec3::Z, -Vec3::Z, Vec3::X, vec3(1e-4, -1e-4, -1.0).normalize(), vec3(0.3, -0.5, 0.7).normalize()] {
+        for n in [
+            Vec3::Z,
+            -Vec3::Z,
+            Vec3::X,
+            vec3(1e-4, -1e-4, -1.0).normalize(),
+            vec3(0.3, -0.5, 0.7).normalize(),
+        ] {
             let f = Frame::around(n);
             for (a, b, dot) in [
                 (f.tangent, f.bitangent, 0.0),

@@ -78,7 +78,8 @@ mod tests {
         let draw = |seed, index, sample, purpose| Stream::new(seed, index, sample, purpose).uniform();
         let base = draw(1, 2, 3, Purpose::Eye);
         assert_eq!(base, draw(1, 2, 3, Purpose::Eye));
-        for other in [draw(2, 2, 3, Purpose::Eye), draw(1, 3, 2, Purpose::Eye), draw(1, 2, 3, Purpose::Light)] {
+        for other in [draw(2, 2, 3, Purpose::Eye), draw(1, 3, 2, Purpose::Eye), draw(1, 2, 3, Purpose::Light)]
+        {
             assert_ne!(base, other);
         }
     }

@@ -1,0 +1,3 @@
+//! The scene: geometry and, on it, materials, media and lights.
+
+pub mod accel;
