@@ -27,6 +27,21 @@ impl Frame {
         }
     }
 
+    /// The frame around the unit vector `normal` whose tangent lies as near to `hint` as can be; any frame
+    /// where `hint` is null, not finite or along the normal.
+    #[inline]
+    pub fn along(normal: Vec3, hint: Vec3) -> Self {
+        let across = hint - normal * normal.dot(hint);
+        let squared = across.length_squared();
+        // Below this share of the hint's length what is left is rounding, not direction.
+        if squared > 1e-10 * hint.length_squared() && squared.is_finite() {
+            let tangent = across / squared.sqrt();
+            Self { tangent, bitangent: normal.cross(tangent), normal }
+        } else {
+            Self::around(normal)
+        }
+    }
+
     /// World direction to local.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {

@@ -11,6 +11,28 @@ pub const fn gamma(n: u32) -> f32 {
     e / (1.0 - e)
 }
 
+/// How far past an edge a flat primitive still counts as hit, in its own barycentric units, per unit of
+/// (1 + distance / size): neighbours overlap by their rounding errors, so no ray slips through the seam.
+pub const SEAM: f32 = 4.0 * f32::EPSILON;
+
+/// Box tests widen the far distance by this: the bound on the relative error of (plane - origin) / direction.
+pub const BOX_WIDENING: f32 = 1.0 + 2.0 * gamma(3);
+
+/// Direction components below this are taken as this in box tests: their true reciprocal could overflow, and
+/// over any distance in a scene they move the ray by less than a rounding error.
+pub const LEAST_COMPONENT: f32 = 1e-18;
+
+/// Solid angles [sr] below this are sampled by area: the spherical map would lose its digits (f64: 1e-16
+/// over this), and over so small an angle both densities are nearly the same.
+pub const LEAST_SOLID_ANGLE: f64 = 1e-6;
+
+/// A reference nearer to a rectangle's plane than this, relative to its size, counts as lying in it.
+pub const IN_PLANE: f64 = 1e-6;
+
+/// A reference nearer to a sphere's surface than this, relative to its squared radius, counts as inside: the
+/// cone it sees the sphere in is a half space, and the distance to the nearest points mere rounding.
+pub const ON_SPHERE: f32 = 1e-4;
+
 /// Moves a computed surface point off its surface, to the side that `direction` leaves to, by the bound on
 /// its rounding error (`error`, per axis) along the geometric normal: a ray from there cannot meet the
 /// surface it starts on, at any scale and any distance from the origin.

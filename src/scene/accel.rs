@@ -1,0 +1,106 @@
+//! All shapes as one: which primitive a ray meets first, whether anything is in its way, and what the surface
+//! is like where it hits.
+
+mod pack;
+mod traversal;
+mod tree;
+
+use crate::{
+    math::Vec3,
+    sampling::Stream,
+    shape::{Hit, Primitive, Ray, Shape, SurfacePoint},
+};
+use tree::Tree;
+
+/// All shapes of a scene, ready for rays.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    shapes: Vec<Shape>,
+    /// The first primitive of each shape.
+    first: Vec<u32>,
+    /// The shape of each primitive.
+    owner: Vec<u32>,
+    tree: Tree,
+}
+
+impl Geometry {
+    /// Shapes keep their numbers: the index in `shapes`.
+    pub fn build(shapes: Vec<Shape>) -> Self {
+        let (mut first, mut owner) = (Vec::with_capacity(shapes.len()), Vec::new());
+        let mut primitives: Vec<Primitive> = Vec::new();
+        for (index, shape) in shapes.iter().enumerate() {
+            first.push(primitives.len() as u32);
+            owner.extend(std::iter::repeat_n(index as u32, shape.primitive_count()));
+            primitives.extend((0..shape.primitive_count()).map(|local| shape.primitive(local)));
+        }
+        let tree = Tree::build(&primitives);
+        Self { shapes, first, owner, tree }
+    }
+
+    /// All shapes, in order of addition.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// The nearest hit with t in (0, `t_max`).
+    #[inline]
+    pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+        self.tree.closest(ray)
+    }
+
+    /// True if anything is hit with t in (0, `t_max`).
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.tree.occluded(ray)
+    }
+
+    /// What the surface is like at `hit`, which `ray` gave.
+    #[inline]
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let shape = self.shape_of(hit);
+        let local = hit.primitive - self.first[shape as usize];
+        let point = self.shapes[shape as usize].surface(local as usize, ray, hit);
+        SurfacePoint { shape, ..point }
+    }
+
+    /// The shape that was hit.
+    #[inline]
+    pub fn shape_of(&self, hit: &Hit) -> u32 {
+        self.owner[hit.primitive as usize]
+    }
+
+    /// Least and greatest corner of the box around everything; two zeros for an empty scene.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        self.tree.bounds()
+    }
+
+    /// Area of a shape [m^2].
+    pub fn area(&self, shape: u32) -> f32 {
+        self.shapes[shape as usize].area()
+    }
+
+    /// A point on `shape`, uniform by area: density 1 / `area` [1/m^2].
+    pub fn sample_area(&self, shape: u32, stream: &mut Stream) -> SurfacePoint {
+        let point = self.shapes[shape as usize].sample_area(stream);
+        SurfacePoint { shape, ..point }
+    }
+
+    /// A point on `shape` for light to come from to `reference`, and its density per area [1/m^2].
+    pub fn sample_toward(
+        &self,
+        shape: u32,
+        reference: Vec3,
+        stream: &mut Stream,
+    ) -> Option<(SurfacePoint, f32)> {
+        let (point, density) = self.shapes[shape as usize].sample_toward(reference, stream)?;
+        Some((SurfacePoint { shape, ..point }, density))
+    }
+
+    /// The density with which `sample_toward` gives `point` [1/m^2].
+    pub fn density_toward(&self, shape: u32, reference: Vec3, point: &SurfacePoint) -> f32 {
+        self.shapes[shape as usize].density_toward(reference, point)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,198 @@
+//! Rays through the hierarchy: nearest hit in order of distance, any hit in any order.
+
+use super::{
+    pack::WideRay,
+    tree::{BALL, FLATS, INNER, KIND, Node, Tree},
+};
+use crate::{
+    math::offset::{BOX_WIDENING, LEAST_COMPONENT},
+    shape::{Hit, Ray},
+};
+use glam::Vec4;
+
+/// A ray's reciprocal direction over four lanes, finite in every component.
+struct Slabs {
+    origin: [Vec4; 3],
+    inverse: [Vec4; 3],
+    /// Per axis: which of a box's two planes the ray meets first.
+    first: [usize; 3],
+}
+
+impl Slabs {
+    #[inline(always)]
+    fn new(ray: &Ray, wide: &WideRay) -> Self {
+        let least = |d: f32| if d.abs() < LEAST_COMPONENT { LEAST_COMPONENT.copysign(d) } else { d };
+        let direction = ray.direction.to_array().map(least);
+        Self {
+            origin: wide.origin,
+            inverse: direction.map(|d| Vec4::splat(1.0 / d)),
+            first: direction.map(|d| usize::from(d < 0.0)),
+        }
+    }
+
+    /// Which boxes the ray meets before `t_max` (a bit each), and where it enters them.
+    #[inline(always)]
+    fn enter(&self, node: &Node, t_max: f32) -> (u32, Vec4) {
+        let (mut near, mut far) = (Vec4::ZERO, Vec4::splat(t_max));
+        for axis in 0..3 {
+            let first = self.first[axis] & 1;
+            let (a, b) = (node.planes[first][axis], node.planes[1 - first][axis]);
+            near = near.max((a - self.origin[axis]) * self.inverse[axis]);
+            far = far.min((b - self.origin[axis]) * self.inverse[axis] * BOX_WIDENING);
+        }
+        (near.cmple(far).bitmask(), near)
+    }
+}
+
+/// A subtree yet to be visited: where the ray enters its box, and what it is.
+type Entry = (f32, u32);
+
+/// Room for the siblings left behind on the way down an ordinary tree.
+const SHALLOW: usize = 64;
+
+impl Tree {
+    /// The nearest hit with t in (0, `t_max`).
+    #[inline]
+    pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+        match self.stack_need() {
+            0 => self.closest_of_list(ray),
+            1..=SHALLOW => self.closest_below(ray, &mut [(0.0, 0); SHALLOW]),
+            need => self.closest_below(ray, &mut vec![(0.0, 0); need]),
+        }
+    }
+
+    /// True if anything is hit with t in (0, `t_max`).
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        match self.stack_need() {
+            0 => self.occluded_by_list(ray),
+            1..=SHALLOW => self.occluded_below(ray, &mut [0; SHALLOW]),
+            need => self.occluded_below(ray, &mut vec![0; need]),
+        }
+    }
+
+    /// Each level on the way down leaves at most three siblings behind, and the last has all four of its
+    /// children waiting. 0 for a plain list.
+    #[inline]
+    fn stack_need(&self) -> usize {
+        if self.depth == 0 { 0 } else { 3 * self.depth + 1 }
+    }
+
+    #[inline]
+    fn closest_of_list(&self, ray: &Ray) -> Option<Hit> {
+        let wide = WideRay::new(ray);
+        let mut best = Best::new(ray);
+        for pack in &self.packs {
+            best.offer(pack.closest(&wide, best.t_max));
+        }
+        for ball in &self.balls {
+            best.offer(ball.closest(ray, best.t_max));
+        }
+        best.hit
+    }
+
+    #[inline]
+    fn occluded_by_list(&self, ray: &Ray) -> bool {
+        let wide = WideRay::new(ray);
+        self.packs.iter().any(|pack| pack.occluded(&wide, ray.t_max))
+            || self.balls.iter().any(|ball| ball.closest(ray, ray.t_max).is_some())
+    }
+
+    fn closest_below(&self, ray: &Ray, stack: &mut [Entry]) -> Option<Hit> {
+        let wide = WideRay::new(ray);
+        let slabs = Slabs::new(ray, &wide);
+        let mut best = Best::new(ray);
+        let (mut current, mut height) = (INNER, 0);
+        loop {
+            let index = (current & !KIND) as usize;
+            match current & KIND {
+                INNER => height = self.open(index, &slabs, best.t_max, stack, height),
+                FLATS => best.offer(self.packs[index].closest(&wide, best.t_max)),
+                _ => best.offer(self.balls[index].closest(ray, best.t_max)),
+            }
+            loop {
+                if height == 0 {
+                    return best.hit;
+                }
+                height -= 1;
+                let (near, next) = stack[height];
+                if near < best.t_max {
+                    current = next;
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Puts the children that the ray meets on the stack, the nearest on top; returns its new height.
+    #[inline(always)]
+    fn open(&self, index: usize, slabs: &Slabs, t_max: f32, stack: &mut [Entry], base: usize) -> usize {
+        let node = &self.nodes[index];
+        let (mut mask, near) = slabs.enter(node, t_max);
+        let near = near.to_array();
+        let mut height = base;
+        while mask != 0 {
+            let slot = mask.trailing_zeros() as usize & 3;
+            mask &= mask - 1;
+            let mut at = height;
+            while at > base && stack[at - 1].0 < near[slot] {
+                stack[at] = stack[at - 1];
+                at -= 1;
+            }
+            stack[at] = (near[slot], node.child[slot]);
+            height += 1;
+        }
+        height
+    }
+
+    fn occluded_below(&self, ray: &Ray, stack: &mut [u32]) -> bool {
+        let wide = WideRay::new(ray);
+        let slabs = Slabs::new(ray, &wide);
+        let mut height = 1;
+        stack[0] = INNER;
+        while height > 0 {
+            height -= 1;
+            let node = &self.nodes[(stack[height] & !KIND) as usize];
+            let (mut mask, _) = slabs.enter(node, ray.t_max);
+            while mask != 0 {
+                let child = node.child[mask.trailing_zeros() as usize & 3];
+                mask &= mask - 1;
+                let index = (child & !KIND) as usize;
+                let blocked = match child & KIND {
+                    FLATS => self.packs[index].occluded(&wide, ray.t_max),
+                    BALL => self.balls[index].closest(ray, ray.t_max).is_some(),
+                    _ => {
+                        stack[height] = child;
+                        height += 1;
+                        false
+                    }
+                };
+                if blocked {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}
+
+/// The nearest hit so far.
+struct Best {
+    hit: Option<Hit>,
+    t_max: f32,
+}
+
+impl Best {
+    #[inline(always)]
+    fn new(ray: &Ray) -> Self {
+        Self { hit: None, t_max: ray.t_max }
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Option<Hit>) {
+        if let Some(nearer) = hit {
+            self.t_max = nearer.t;
+            self.hit = hit;
+        }
+    }
+}

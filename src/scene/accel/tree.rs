@@ -1,0 +1,245 @@
+//! The hierarchy: obvhs builds it (PLOC and reinsertion), here it becomes four wide, for four boxes and four
+//! flat primitives are tested in the time of one.
+
+use super::pack::{Ball, FlatPack};
+use crate::{
+    math::{Vec3, offset::gamma},
+    shape::{Flat, Primitive},
+};
+use glam::{Vec3A, Vec4};
+use obvhs::{
+    BvhBuildParams,
+    aabb::Aabb,
+    bvh2::{Bvh2, builder::build_bvh2, node::Bvh2Node},
+};
+use std::time::Duration;
+
+/// Scenes of at most this many primitives are a plain list (measured: see the timing test).
+pub const LIST_LIMIT: usize = 16;
+
+/// What a child reference points to, in its top two bits; the index is below them.
+pub const INNER: u32 = 0;
+/// A `FlatPack`.
+pub const FLATS: u32 = 1 << 30;
+/// A `Ball`.
+pub const BALL: u32 = 2 << 30;
+/// The bits of the kind.
+pub const KIND: u32 = 3 << 30;
+
+/// Four boxes and what is in them. Empty slots have empty boxes.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Least x, y, z of the boxes, and greatest.
+    pub planes: [[Vec4; 3]; 2],
+    /// Kind and index of each child.
+    pub child: [u32; 4],
+}
+
+/// Primitives and the hierarchy over them; no nodes where a plain list is faster.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    pub(super) nodes: Vec<Node>,
+    pub(super) packs: Vec<FlatPack>,
+    pub(super) balls: Vec<Ball>,
+    /// Inner nodes on the longest way down.
+    pub(super) depth: usize,
+    bounds: Aabb,
+}
+
+impl Tree {
+    /// Primitives are numbered by their place in the slice.
+    pub fn build(primitives: &[Primitive]) -> Self {
+        let boxes: Vec<Aabb> = primitives.iter().map(bound).collect();
+        let bounds = boxes.iter().fold(None, |all: Option<Aabb>, b| Some(all.map_or(*b, |a| a.union(b))));
+        let mut tree = Self {
+            nodes: vec![],
+            packs: vec![],
+            balls: vec![],
+            depth: 0,
+            bounds: bounds.unwrap_or_default(),
+        };
+        if primitives.len() <= LIST_LIMIT {
+            tree.fill_list(primitives);
+        } else {
+            tree.fill_nodes(primitives, &boxes);
+        }
+        tree
+    }
+
+    /// Least and greatest corner.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        (self.bounds.min.into(), self.bounds.max.into())
+    }
+
+    fn fill_list(&mut self, primitives: &[Primitive]) {
+        let mut flats = Vec::new();
+        for (number, primitive) in (0..).zip(primitives) {
+            match *primitive {
+                Primitive::Flat(flat) => flats.push((number, flat)),
+                Primitive::Ball { center, radius } => {
+                    self.balls.push(Ball { center, radius, primitive: number });
+                }
+            }
+        }
+        self.packs = flats.chunks(4).map(FlatPack::new).collect();
+    }
+
+    fn fill_nodes(&mut self, primitives: &[Primitive], boxes: &[Aabb]) {
+        let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
+        let bvh = build_bvh2(boxes, params, &mut Duration::default());
+        let flats = FlatCounts::new(&bvh, primitives);
+        let mut widening = Widening { bvh: &bvh, primitives, flats, tree: self };
+        widening.run();
+    }
+}
+
+fn bound(primitive: &Primitive) -> Aabb {
+    match *primitive {
+        Primitive::Flat(flat) => bound_flat(&flat),
+        Primitive::Ball { center, radius } => {
+            let reach = Vec3A::splat(radius) + gamma(2) * (Vec3A::from(center).abs() + radius);
+            Aabb::new(Vec3A::from(center) - reach, Vec3A::from(center) + reach)
+        }
+    }
+}
+
+/// Around all corners, widened by what their sums may be rounded by.
+fn bound_flat(flat: &Flat) -> Aabb {
+    let [corner, u, v] = [flat.corner, flat.edge_u, flat.edge_v].map(Vec3A::from);
+    let last = if flat.triangle { corner } else { corner + u + v };
+    let around = Aabb::from_points(&[corner, corner + u, corner + v, last]);
+    let error = gamma(3) * (corner.abs() + u.abs() + v.abs());
+    Aabb::new(around.min - error, around.max + error)
+}
+
+/// For each node of the binary tree: how many primitives are below it if these are all flat.
+struct FlatCounts(Vec<Option<u32>>);
+
+impl FlatCounts {
+    fn new(bvh: &Bvh2, primitives: &[Primitive]) -> Self {
+        let mut counts = vec![None; bvh.nodes.len()];
+        // Children first, without recursion: a hostile mesh can make the tree deep.
+        let mut stack = vec![(0, false)];
+        while let Some((index, children_done)) = stack.pop() {
+            let node = &bvh.nodes[index];
+            let (left, right) = (node.first_index as usize, node.first_index as usize + 1);
+            if node.is_leaf() {
+                let all_flat = leaf(bvh, node).all(|p| matches!(primitives[p as usize], Primitive::Flat(_)));
+                counts[index] = all_flat.then_some(node.prim_count);
+            } else if children_done {
+                counts[index] = counts[left].zip(counts[right]).map(|(l, r)| l + r);
+            } else {
+                stack.extend([(index, true), (left, false), (right, false)]);
+            }
+        }
+        Self(counts)
+    }
+
+    /// Fits one pack.
+    fn is_pack(&self, node: usize) -> bool {
+        self.0[node].is_some_and(|count| count <= 4)
+    }
+}
+
+fn leaf<'a>(bvh: &'a Bvh2, node: &Bvh2Node) -> impl Iterator<Item = u32> + 'a {
+    let first = node.first_index as usize;
+    bvh.primitive_indices[first..first + node.prim_count as usize].iter().copied()
+}
+
+/// The binary tree on its way to become a wide one.
+struct Widening<'a> {
+    bvh: &'a Bvh2,
+    primitives: &'a [Primitive],
+    flats: FlatCounts,
+    tree: &'a mut Tree,
+}
+
+impl Widening<'_> {
+    fn run(&mut self) {
+        // Binary node, wide node that stands for it, depth.
+        let mut open = vec![(0, 0, 1)];
+        self.tree.nodes.push(EMPTY);
+        while let Some((binary, wide, depth)) = open.pop() {
+            self.tree.depth = self.tree.depth.max(depth);
+            for (slot, child) in self.descendants(binary).into_iter().enumerate() {
+                let reference = self.reference(child);
+                if reference & KIND == INNER {
+                    open.push((child, reference as usize, depth + 1));
+                }
+                self.tree.nodes[wide].set(slot, self.bvh.nodes[child].aabb(), reference);
+            }
+        }
+    }
+
+    /// A leaf of its own: one pack or one sphere.
+    fn is_leaf(&self, node: usize) -> bool {
+        self.bvh.nodes[node].is_leaf() || self.flats.is_pack(node)
+    }
+
+    /// Up to four nodes that together hold all of `root`: the largest is opened as long as there is room.
+    fn descendants(&self, root: usize) -> Vec<usize> {
+        let mut found = vec![root];
+        while found.len() < 4 {
+            let area = |node: usize| self.bvh.nodes[node].aabb().half_area();
+            let inner = (0..found.len()).filter(|i| !self.is_leaf(found[*i]));
+            let Some(largest) = inner.max_by(|a, b| area(found[*a]).total_cmp(&area(found[*b]))) else {
+                break;
+            };
+            let first = self.bvh.nodes[found[largest]].first_index as usize;
+            found[largest] = first;
+            found.push(first + 1);
+        }
+        found
+    }
+
+    /// Makes room for what stands for `node`.
+    fn reference(&mut self, node: usize) -> u32 {
+        if !self.is_leaf(node) {
+            self.tree.nodes.push(EMPTY);
+            return INNER | (self.tree.nodes.len() - 1) as u32;
+        }
+        let numbers = self.below(node);
+        if let [number] = numbers[..]
+            && let Primitive::Ball { center, radius } = self.primitives[number as usize]
+        {
+            self.tree.balls.push(Ball { center, radius, primitive: number });
+            return BALL | (self.tree.balls.len() - 1) as u32;
+        }
+        let flats: Vec<_> = numbers
+            .into_iter()
+            .filter_map(|number| match self.primitives[number as usize] {
+                Primitive::Flat(flat) => Some((number, flat)),
+                Primitive::Ball { .. } => None,
+            })
+            .collect();
+        self.tree.packs.push(FlatPack::new(&flats));
+        FLATS | (self.tree.packs.len() - 1) as u32
+    }
+
+    /// The primitives below `node`.
+    fn below(&self, node: usize) -> Vec<u32> {
+        let (mut numbers, mut stack) = (Vec::new(), vec![node]);
+        while let Some(index) = stack.pop() {
+            let node = &self.bvh.nodes[index];
+            if node.is_leaf() {
+                numbers.extend(leaf(self.bvh, node));
+            } else {
+                stack.extend([node.first_index as usize, node.first_index as usize + 1]);
+            }
+        }
+        numbers
+    }
+}
+
+/// No ray meets a box from infinity to -infinity.
+const EMPTY: Node = Node { planes: [[Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]], child: [0; 4] };
+
+impl Node {
+    fn set(&mut self, slot: usize, bounds: &Aabb, reference: u32) {
+        for axis in 0..3 {
+            self.planes[0][axis][slot] = bounds.min[axis];
+            self.planes[1][axis][slot] = bounds.max[axis];
+        }
+        self.child[slot] = reference;
+    }
+}

@@ -1,0 +1,198 @@
+//! Shapes: one file a model; this page is the contract and the registry.
+//!
+//! A shape is a list of primitives (parallelograms, triangles, spheres). Positions are f32, relative to the
+//! scene's recentring point; everything before that is f64. The f32 geometry is then exact by definition:
+//! error bounds speak of rounding after it.
+
+mod area;
+mod cube;
+mod parallelogram;
+mod placement;
+mod rectangle;
+mod sphere;
+mod spherical_rectangle;
+
+use crate::{
+    description::{Params, nearest},
+    error::{Error, Result},
+    math::{DVec3, Frame, Vec2, Vec3},
+    sampling::Stream,
+};
+
+pub use parallelogram::{Parallelogram, Parallelograms};
+pub use sphere::Sphere;
+
+/// A ray; t in (0, `t_max`).
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Unit vector.
+    pub direction: Vec3,
+    /// Where it ends [m], itself excluded.
+    pub t_max: f32,
+}
+
+/// Where a ray met a primitive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance [m].
+    pub t: f32,
+    /// Which primitive of the geometry.
+    pub primitive: u32,
+    /// First surface coordinate (see [`Shape::surface`]).
+    pub u: f32,
+    /// Second surface coordinate.
+    pub v: f32,
+}
+
+/// A point on a surface and what the surface is like there.
+///
+/// `normal` and `shading.normal` follow Mitsuba to the letter: they can point to opposite sides (a mirrored
+/// rectangle or cube, a mesh whose vertex normals disagree with its winding). In Mitsuba `normal` decides
+/// which medium a ray enters, `shading.normal` which side reflects and emits.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// Where it is.
+    pub position: Vec3,
+    /// Bound on the rounding error of `position`, per axis (see [`crate::math::offset::leave_surface`]).
+    pub error: Vec3,
+    /// Geometric normal, unit.
+    pub normal: Vec3,
+    /// Around the interpolated shading normal; the tangent points along growing u.
+    pub shading: Frame,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Which shape of the geometry, in order of addition.
+    pub shape: u32,
+}
+
+/// A primitive as the ray tracer needs it.
+#[derive(Clone, Copy, Debug)]
+pub enum Primitive {
+    /// Part of a plane.
+    Flat(Flat),
+    /// A whole sphere.
+    Ball {
+        /// Its centre.
+        center: Vec3,
+        /// Its radius [m].
+        radius: f32,
+    },
+}
+
+/// The points corner + u `edge_u` + v `edge_v`: u, v in [0, 1], and u + v <= 1 for a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Flat {
+    /// u = v = 0.
+    pub corner: Vec3,
+    /// To u = 1.
+    pub edge_u: Vec3,
+    /// To v = 1.
+    pub edge_v: Vec3,
+    /// Unit normal, the very one (or its opposite) that surface points report: both must agree bit for bit on
+    /// which side a direction leaves to.
+    pub normal: Vec3,
+    /// Triangle or parallelogram.
+    pub triangle: bool,
+}
+
+/// Any shape.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// Rectangle, cube.
+    Parallelograms(Parallelograms),
+    /// Sphere.
+    Sphere(Sphere),
+}
+
+/// Builds a shape from its parameters; the point `recentre` becomes the origin.
+pub type BuildShape = fn(&Params<'_>, DVec3) -> Result<Shape>;
+
+/// One row of the registry: Mitsuba's plugin name and its builder.
+pub struct ShapeRow {
+    /// The plugin's name.
+    pub name: &'static str,
+    /// Reads the geometry parameters and no others (materials, media and lights are the scene's).
+    pub build: BuildShape,
+}
+
+/// All shapes.
+pub const ROWS: &[ShapeRow] = &[
+    ShapeRow { name: "rectangle", build: rectangle::build },
+    ShapeRow { name: "cube", build: cube::build },
+    ShapeRow { name: "sphere", build: sphere::build },
+];
+
+/// Builds the shape that `params` describes. Does not call `finish`: children remain for the scene to read.
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+    let plugin = &params.object.plugin;
+    if let Some(row) = ROWS.iter().find(|row| row.name == plugin) {
+        return (row.build)(params, recentre);
+    }
+    let names: Vec<_> = ROWS.iter().map(|row| row.name).collect();
+    let remedy = format!("{}known: {}", nearest(plugin, &names), names.join(", "));
+    Err(Error::new(params.location(), "the type of a shape", format!("\"{plugin}\""), remedy))
+}
+
+impl Shape {
+    /// How many primitives it is made of.
+    pub fn primitive_count(&self) -> usize {
+        match self {
+            Self::Parallelograms(p) => p.faces().len(),
+            Self::Sphere(_) => 1,
+        }
+    }
+
+    /// Its primitive number `index`.
+    pub fn primitive(&self, index: usize) -> Primitive {
+        match self {
+            Self::Parallelograms(p) => Primitive::Flat(p.faces()[index].flat()),
+            Self::Sphere(s) => Primitive::Ball { center: s.center(), radius: s.radius() },
+        }
+    }
+
+    /// The surface where `ray` met primitive `index`. For flat primitives `hit.u` and `hit.v` are those of
+    /// [`Flat`]; a sphere uses `hit.t`.
+    #[inline]
+    pub fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        match self {
+            Self::Parallelograms(p) => p.faces()[index].point(hit.u, hit.v),
+            Self::Sphere(s) => s.point_near(ray.origin + ray.direction * hit.t),
+        }
+    }
+
+    /// Area [m^2].
+    pub fn area(&self) -> f32 {
+        match self {
+            Self::Parallelograms(p) => p.area(),
+            Self::Sphere(s) => s.area(),
+        }
+    }
+
+    /// Uniform by area, density 1/area [1/m^2].
+    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+        match self {
+            Self::Parallelograms(p) => p.sample_area(stream),
+            Self::Sphere(s) => s.sample_area(stream),
+        }
+    }
+
+    /// A point for light to come from to `reference`, and its density [1/m^2].
+    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> Option<(SurfacePoint, f32)> {
+        let point = match self {
+            Self::Parallelograms(p) => p.sample_toward(reference, stream),
+            Self::Sphere(s) => s.sample_toward(reference, stream),
+        };
+        let density = self.density_toward(reference, &point);
+        (density > 0.0 && density.is_finite()).then_some((point, density))
+    }
+
+    /// Density of `sample_toward` at `point` [1/m^2].
+    pub fn density_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
+        match self {
+            Self::Parallelograms(p) => p.density_toward(reference, point),
+            Self::Sphere(s) => s.density_toward(reference, point),
+        }
+    }
+}

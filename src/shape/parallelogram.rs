@@ -1,0 +1,174 @@
+//! Parallelograms: rectangles under any affine transform, and the faces of cubes.
+
+use super::{
+    Flat, SurfacePoint, area::AreaTable, placement::Placement, spherical_rectangle::SphericalRectangle,
+};
+use crate::{
+    description::Params,
+    error::{Error, Result},
+    math::{DVec3, Frame, Vec3, measure, offset::gamma, vec2},
+    sampling::Stream,
+};
+
+/// corner + u `edge_u` + v `edge_v` for u, v in [0, 1]; (u, v) are the texture coordinates too.
+#[derive(Clone, Copy, Debug)]
+pub struct Parallelogram {
+    corner: Vec3,
+    edge_u: Vec3,
+    edge_v: Vec3,
+    normal: Vec3,
+    shading: Frame,
+    area: f64,
+}
+
+impl Parallelogram {
+    /// The image of `face`, its normal given in object space too. Mitsuba takes the geometric normal from the
+    /// winding and the shading normal from the transformed object normal: under a mirroring they are opposite.
+    fn place(placement: &Placement, grid: &Grid, face: &ObjectFace) -> Self {
+        let [corner, edge_u, edge_v, normal] = face.map(DVec3::from);
+        let turn = if placement.flip_normals { -1.0 } else { 1.0 };
+        let winding = normal.dot(edge_u.cross(edge_v)).signum();
+        let corner = grid.snap(placement.point(corner));
+        let (edge_u, edge_v) = (grid.snap(placement.vector(edge_u)), grid.snap(placement.vector(edge_v)));
+        // From the rounded edges, so that the plane is that of the points.
+        let cross = edge_u.as_dvec3().cross(edge_v.as_dvec3());
+        let normal = (cross.normalize() * winding * turn).as_vec3();
+        let shading_normal = if placement.is_mirrored() { -normal } else { normal };
+        let shading = Frame::along(shading_normal, edge_u);
+        Self { corner, edge_u, edge_v, normal, shading, area: cross.length() }
+    }
+
+    /// As the ray tracer needs it.
+    pub fn flat(&self) -> Flat {
+        let Self { corner, edge_u, edge_v, normal, .. } = *self;
+        Flat { corner, edge_u, edge_v, normal, triangle: false }
+    }
+
+    /// The point (`u`, `v`).
+    #[inline]
+    pub fn point(&self, u: f32, v: f32) -> SurfacePoint {
+        let (along_u, along_v) = (self.edge_u * u, self.edge_v * v);
+        SurfacePoint {
+            position: self.corner + (along_u + along_v),
+            error: flat_error(self.corner, along_u, along_v),
+            normal: self.normal,
+            shading: self.shading,
+            uv: vec2(u, v),
+            shape: 0,
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.area > 0.0
+            && self.area.is_finite()
+            && [self.corner, self.edge_u, self.edge_v, self.normal].iter().all(|v| v.is_finite())
+    }
+}
+
+/// Bound on how far corner + (`along_u` + `along_v`) and the ray tracer's idea of the plane there can be
+/// apart, per axis: one rounding of the sum against `corner`; of the rest, two roundings here, one in each
+/// edge, one in the plane's normal, and five in the ray tracer's normal . (origin - corner).
+#[inline]
+pub fn flat_error(corner: Vec3, along_u: Vec3, along_v: Vec3) -> Vec3 {
+    gamma(2) * corner.abs() + gamma(12) * (along_u.abs() + along_v.abs())
+}
+
+/// Steps per axis in which all corners and edges of a shape are whole numbers: every corner is then exact
+/// however it is summed, and the faces of a box meet without gaps. 0: no steps.
+struct Grid(DVec3);
+
+impl Grid {
+    fn new(placement: &Placement, faces: &[ObjectFace]) -> Self {
+        let corners = faces.iter().flat_map(|face| {
+            let [corner, u, v, _] = face.map(DVec3::from);
+            [corner, corner + u, corner + v, corner + u + v]
+        });
+        let reach = corners.fold(DVec3::ZERO, |reach, corner| reach.max(placement.point(corner).abs()));
+        // The last place of the largest f32 coordinate.
+        let step = reach.map(|r| f64::from(f32::EPSILON) * r.log2().floor().exp2());
+        let edges = faces.iter().flat_map(|face| [face[1], face[2]]);
+        let shortest = edges.map(|e| placement.vector(e.into()).length()).fold(f64::INFINITY, f64::min);
+        // Shapes this much smaller than their distance from the origin would be bent out of shape.
+        let fits = step.max_element() * 1000.0 < shortest;
+        Self(if fits { step } else { DVec3::ZERO })
+    }
+
+    fn snap(&self, v: DVec3) -> Vec3 {
+        DVec3::select(self.0.cmpgt(DVec3::ZERO), (v / self.0).round() * self.0, v).as_vec3()
+    }
+}
+
+/// One or more parallelograms as one shape.
+#[derive(Clone, Debug)]
+pub struct Parallelograms {
+    faces: Vec<Parallelogram>,
+    areas: AreaTable,
+    /// Where it is a single right-angled one: sampling by solid angle.
+    spherical: Option<SphericalRectangle>,
+}
+
+/// A face in object space: corner, edges along growing u and v, normal.
+pub type ObjectFace = [[f64; 3]; 4];
+
+impl Parallelograms {
+    /// Places `faces` by the parameters `to_world` and `flip_normals`.
+    pub fn build(params: &Params<'_>, recentre: DVec3, faces: &[ObjectFace]) -> Result<Self> {
+        let placement = Placement::read(params, recentre)?;
+        let grid = Grid::new(&placement, faces);
+        let faces: Vec<_> = faces.iter().map(|face| Parallelogram::place(&placement, &grid, face)).collect();
+        if faces.iter().all(Parallelogram::is_finite) {
+            return Ok(Self::new(faces));
+        }
+        Err(Error::new(
+            params.location(),
+            format!("a {} with finite corners and an area", params.object.plugin),
+            "one that f32 coordinates cannot hold (too large, too small or too flat)",
+            "correct \"to_world\"",
+        ))
+    }
+
+    fn new(faces: Vec<Parallelogram>) -> Self {
+        let areas = AreaTable::new(faces.iter().map(|face| face.area));
+        let spherical = match faces.as_slice() {
+            [face] => SphericalRectangle::new(face.corner, face.edge_u, face.edge_v),
+            _ => None,
+        };
+        Self { faces, areas, spherical }
+    }
+
+    /// The single parallelograms.
+    pub fn faces(&self) -> &[Parallelogram] {
+        &self.faces
+    }
+
+    /// Area [m^2].
+    pub fn area(&self) -> f32 {
+        self.areas.total() as f32
+    }
+
+    /// Uniform by area.
+    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+        let index = if self.faces.len() == 1 { 0 } else { self.areas.sample(stream) };
+        let at = stream.square();
+        self.faces[index].point(at.x, at.y)
+    }
+
+    /// Uniform in solid angle from `reference` where that is precise, else by area.
+    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> SurfacePoint {
+        match self.spherical.as_ref().and_then(|s| s.seen_from(reference)) {
+            Some(seen) => {
+                let at = seen.sample(stream.square());
+                self.faces[0].point(at.x, at.y)
+            }
+            None => self.sample_area(stream),
+        }
+    }
+
+    /// Density of `sample_toward` [1/m^2].
+    pub fn density_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
+        let seen = self.spherical.as_ref().and_then(|s| s.seen_from(reference));
+        let Some(seen) = seen else { return 1.0 / self.area() };
+        let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
+        measure::solid_angle_to_vertex(direction.dot(point.normal), squared) * seen.density()
+    }
+}

@@ -1,0 +1,39 @@
+//! Where a shape stands: its transform, recentred, in f64.
+
+use crate::{
+    description::Params,
+    error::Result,
+    math::{DMat4, DVec3},
+};
+
+/// `to_world` with the recentring point taken off, in f64.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement {
+    /// Object to recentred world space.
+    pub matrix: DMat4,
+    /// The user asked for turned normals.
+    pub flip_normals: bool,
+}
+
+impl Placement {
+    /// Reads `to_world` and `flip_normals`.
+    pub fn read(params: &Params<'_>, recentre: DVec3) -> Result<Self> {
+        let matrix = DMat4::from_translation(-recentre) * params.transform("to_world")?;
+        Ok(Self { matrix, flip_normals: params.boolean("flip_normals", false)? })
+    }
+
+    /// The transform turns right hands into left hands.
+    pub fn is_mirrored(&self) -> bool {
+        self.matrix.determinant() < 0.0
+    }
+
+    /// Points, as such.
+    pub fn point(&self, p: DVec3) -> DVec3 {
+        self.matrix.project_point3(p)
+    }
+
+    /// Differences of points.
+    pub fn vector(&self, v: DVec3) -> DVec3 {
+        self.matrix.transform_vector3(v)
+    }
+}
