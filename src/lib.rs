@@ -8,4 +8,7 @@ pub mod sampling;
 
 pub mod description;
 
+pub mod film;
 pub mod scene;
+
+pub mod cli;
