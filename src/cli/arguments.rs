@@ -1,0 +1,293 @@
+//! What can be asked on the command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
+
+/// A bidirectional path tracer for fog, smoke and fire.
+#[derive(Clone, Debug, Parser, PartialEq)]
+#[command(version, about, propagate_version = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Clone, Debug, PartialEq, Subcommand)]
+pub enum Command {
+    /// Render a scene to an image
+    Render(Render),
+    /// Say what a scene holds, without rendering it
+    Info(Info),
+}
+
+/// Render a scene to an image.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Render {
+    /// Which scene.
+    #[command(flatten)]
+    pub scene: Scene,
+
+    /// Image to write: linear OpenEXR (.exr) or tone-mapped PNG (.png)
+    ///
+    /// Default: the scene's name with .exr, in the current folder.
+    #[arg(short, long, value_name = "FILE", value_parser = image_file)]
+    pub output: Option<PathBuf>,
+
+    /// Samples per pixel [default: the scene's sample_count]
+    ///
+    /// With a time limit and no --spp: as many as the time allows.
+    #[arg(long, value_name = "N", value_parser = positive_u32, allow_negative_numbers = true)]
+    pub spp: Option<u32>,
+
+    /// Stop after this time, a number with s, m or h (90, 90s, 5m, 1.5h; seconds if none) [default: no limit]
+    ///
+    /// What is complete by then is written. With --spp as well, whichever is reached first counts.
+    #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
+    pub time_limit: Option<Duration>,
+
+    /// Seed of all random numbers; the same seed gives the same image
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    pub seed: u64,
+
+    /// Threads to render with [default: one per processor]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Light transport algorithm [default: the scene's integrator]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub integrator: Option<Integrator>,
+
+    /// Ways of making paths that may be used, separated by commas [default: all that the integrator has]
+    #[arg(long, value_enum, value_name = "LIST", value_delimiter = ',', num_args = 1)]
+    pub strategies: Vec<Strategy>,
+
+    /// Most edges of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 is without limit
+    /// [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
+    pub max_depth: Option<MaxDepth>,
+
+    /// Size of the image in pixels [default: the scene's film]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
+    pub size: Option<Size>,
+
+    /// Which code renders; the image is the same within noise, only the time differs
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]
+    pub profile: Profile,
+}
+
+/// Say what a scene holds.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Info {
+    /// Which scene.
+    #[command(flatten)]
+    pub scene: Scene,
+}
+
+/// A scene file and what to set in it.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json)
+    #[arg(value_name = "SCENE")]
+    pub file: PathBuf,
+
+    /// Set a $name parameter of the scene, in place of its default; may be repeated
+    #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
+    pub definitions: Vec<(String, String)>,
+}
+
+/// Light transport algorithms.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Integrator {
+    /// Bidirectional path tracing
+    Bdpt,
+    /// Path tracing from the eye
+    Pt,
+    /// Light tracing (particle tracing) from the lamps
+    Lt,
+}
+
+/// Ways of making a path from a light subpath and an eye subpath.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Strategy {
+    /// The eye path hits a light
+    Hit,
+    /// The eye path connects to a point chosen on a light
+    NextEvent,
+    /// A vertex of the eye path connects to one of the light path
+    Join,
+    /// The light path connects to the lens
+    Lens,
+}
+
+/// How far the rendering code is specialised.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Profile {
+    /// Code without what the scene does not hold (media, colour, ...)
+    Fitted,
+    /// The general code, for comparison
+    Everything,
+}
+
+/// A bound on the length of paths.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum MaxDepth {
+    /// At most so many edges.
+    Edges(u32),
+    /// No bound (-1, as in Mitsuba).
+    Unbounded,
+}
+
+/// Width and height of an image in pixels, both positive.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Size {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// No film needs more pixels on a side; a size beyond is a slip of the finger.
+const LARGEST_SIDE: u32 = 65_536;
+
+fn positive_u32(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(0) => Err("it must be at least 1".into()),
+        Ok(number) => Ok(number),
+        Err(_) => Err("expected a whole number from 1 to 4294967295, such as 64".into()),
+    }
+}
+
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let threads = positive_u32(text)?;
+    NonZeroUsize::new(threads as usize)
+        .filter(|threads| threads.get() <= 4096)
+        .ok_or_else(|| "expected at most 4096 threads".into())
+}
+
+fn max_depth(text: &str) -> Result<MaxDepth, String> {
+    match text.parse::<i64>().map(u32::try_from) {
+        Ok(Ok(edges)) => Ok(MaxDepth::Edges(edges)),
+        _ if text == "-1" => Ok(MaxDepth::Unbounded),
+        _ => Err("expected a number of edges from 0 to 4294967295, or -1 for no limit".into()),
+    }
+}
+
+fn size(text: &str) -> Result<Size, String> {
+    let expected = || format!("expected WIDTHxHEIGHT in pixels from 1 to {LARGEST_SIDE}, such as 640x480");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
+    let side =
+        |text: &str| text.parse().ok().filter(|side| (1..=LARGEST_SIDE).contains(side)).ok_or_else(expected);
+    Ok(Size { width: side(width)?, height: side(height)? })
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let expected = || "expected a time above 0, such as 90, 90s, 5m or 1.5h".to_owned();
+    let (number, seconds) = match text.char_indices().next_back() {
+        Some((at, 's')) => (&text[..at], 1.0),
+        Some((at, 'm')) => (&text[..at], 60.0),
+        Some((at, 'h')) => (&text[..at], 3600.0),
+        _ => (text, 1.0),
+    };
+    let number: f64 = number.parse().map_err(|_| expected())?;
+    let duration = Duration::try_from_secs_f64(number * seconds).map_err(|_| expected())?;
+    if duration.is_zero() { Err(expected()) } else { Ok(duration) }
+}
+
+fn definition(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("expected name=value, such as -D res=512")?;
+    if name.is_empty() || !name.chars().all(|c| c.is_alphanumeric() || c == '_') {
+        return Err("the name before \"=\" must be of letters, digits and \"_\"".into());
+    }
+    Ok((name.to_owned(), value.to_owned()))
+}
+
+fn image_file(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("exr" | "png") => Ok(path),
+        _ => Err("expected a file name that ends in .exr or .png".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn parse(words: &str) -> Result<Command, String> {
+        let words = std::iter::once("tyndall").chain(words.split_whitespace());
+        Arguments::try_parse_from(words).map(|arguments| arguments.command).map_err(|e| e.to_string())
+    }
+
+    fn render(words: &str) -> Render {
+        match parse(&format!("render fog.json {words}")) {
+            Ok(Command::Render(render)) => render,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_definition_is_sound() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn everything_can_be_given_at_once() {
+        let r = render(
+            "-o a.exr --spp 8 --time-limit 5m --seed 3 --threads 2 --integrator lt -D res=48 -D t=a=b \
+             --size 64x32 --profile everything --strategies hit,next-event --max-depth -1",
+        );
+        assert_eq!(r.output, Some("a.exr".into()));
+        assert_eq!((r.spp, r.seed, r.time_limit), (Some(8), 3, Some(Duration::from_secs(300))));
+        assert_eq!((r.threads.map(NonZeroUsize::get), r.integrator), (Some(2), Some(Integrator::Lt)));
+        let definitions = [("res".to_owned(), "48".to_owned()), ("t".to_owned(), "a=b".to_owned())];
+        assert_eq!(r.scene.definitions, definitions);
+        assert_eq!(r.size, Some(Size { width: 64, height: 32 }));
+        assert_eq!((r.profile, r.max_depth), (Profile::Everything, Some(MaxDepth::Unbounded)));
+        assert_eq!(r.strategies, [Strategy::Hit, Strategy::NextEvent]);
+    }
+
+    #[test]
+    fn the_default_is_what_the_scene_says() {
+        let r = render("");
+        assert_eq!((r.spp, r.output, r.max_depth, r.seed), (None, None, None, 0));
+        assert!(r.strategies.is_empty() && r.scene.definitions.is_empty());
+    }
+
+    #[test]
+    fn times_have_units() {
+        for (text, seconds) in [("90", 90.0), ("90s", 90.0), ("0.5", 0.5), ("5m", 300.0), ("1.5h", 5400.0)] {
+            assert_eq!(duration(text), Ok(Duration::from_secs_f64(seconds)), "{text}");
+        }
+        for text in ["0", "-1", "s", "", "5 m", "nan", "inf", "1e300", "5d", "5\u{b5}"] {
+            assert!(duration(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_a_hint() {
+        for (words, hint) in [
+            ("render a.xml --size 0x5", "from 1 to"),
+            ("render a.xml --size 5", "640x480"),
+            ("render a.xml --size -5x5", "from 1 to"),
+            ("render a.xml --spp 0", "at least 1"),
+            ("render a.xml --spp -3", "whole number"),
+            ("render a.xml --threads 0", "at least 1"),
+            ("render a.xml --threads 99999", "at most 4096"),
+            ("render a.xml --time-limit -5", "above 0"),
+            ("render a.xml --max-depth -2", "-1 for no limit"),
+            ("render a.xml -D res", "name=value"),
+            ("render a.xml -D =3", "before \"=\""),
+            ("render a.xml -o a.jpg", ".exr or .png"),
+            ("render a.xml --integrator bdp", "bdpt"),
+            ("render a.xml --strategies hit,jion", "join"),
+            ("render", "SCENE"),
+            ("rendr a.xml", "render"),
+        ] {
+            let message = parse(words).unwrap_err();
+            assert!(message.contains(hint), "{words}: {message}");
+        }
+    }
+}

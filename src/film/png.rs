@@ -1,0 +1,131 @@
+//! PNG images: what was estimated, made fit for a screen.
+//!
+//! The tone curve, at exposure 1: luminance L becomes L (1 + L / w^2) / (1 + L) (Reinhard et al. 2002, eq. 4),
+//! where the white point w is the larger of 1 and the luminance that 99.5 % of the pixels do not exceed. An image
+//! without highlights (w = 1) is thus shown as it is, and w itself becomes white. Hue is kept: a colour is scaled
+//! by what its luminance is scaled by, and where a channel would then exceed 1, mixed with grey of the same
+//! luminance until none does. Then comes the sRGB transfer function and rounding to 8 bits. NaN and negative
+//! channels are shown black, infinite ones white.
+
+use super::output;
+use crate::{
+    error::Result,
+    math::{Spectrum, SpectrumExt},
+};
+use image::{ExtendedColorType, ImageEncoder, ImageError, codecs::png::PngEncoder};
+use std::{io, path::Path};
+
+/// The share of pixels that are not brighter than the white point.
+const BELOW_WHITE: f64 = 0.995;
+
+/// Writes `pixels` (row-major, top row first; linear sRGB) to `path`, tone-mapped.
+pub fn write(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> Result<()> {
+    output::check_size(path, width, height, pixels)?;
+    let bytes = tone_mapped(pixels);
+    output::write(path, |file| {
+        let size = |n: usize| u32::try_from(n).map_err(io::Error::other);
+        let encoder = PngEncoder::new(file);
+        let written = encoder.write_image(&bytes, size(width)?, size(height)?, ExtendedColorType::Rgb8);
+        written.map_err(|error| match error {
+            ImageError::IoError(error) => error,
+            other => io::Error::other(other),
+        })
+    })
+}
+
+fn tone_mapped(pixels: &[Spectrum]) -> Vec<u8> {
+    let white = white_point(pixels);
+    pixels.iter().flat_map(|pixel| displayed(shown(*pixel), white).to_array().map(encoded)).collect()
+}
+
+/// A pixel as if nothing had gone wrong with it. The bound keeps products of two finite.
+fn shown(pixel: Spectrum) -> Spectrum {
+    Spectrum::from_array(pixel.to_array().map(|c| if c > 0.0 { c.min(1e18) } else { 0.0 }))
+}
+
+fn white_point(pixels: &[Spectrum]) -> f32 {
+    let mut luminances: Vec<f32> = pixels.iter().map(|pixel| shown(*pixel).luminance()).collect();
+    let rank = (luminances.len() as f64 * BELOW_WHITE).ceil() as usize;
+    let Some(rank) = rank.checked_sub(1).filter(|rank| *rank < luminances.len()) else { return 1.0 };
+    let (_, white, _) = luminances.select_nth_unstable_by(rank, f32::total_cmp);
+    white.max(1.0)
+}
+
+fn displayed(pixel: Spectrum, white: f32) -> Spectrum {
+    let luminance = pixel.luminance();
+    if luminance <= 0.0 {
+        return Spectrum::ZERO;
+    }
+    let (l, w) = (f64::from(luminance), f64::from(white));
+    let mapped = (l * (1.0 + l / (w * w)) / (1.0 + l)) as f32;
+    if mapped >= 1.0 {
+        return Spectrum::ONE;
+    }
+    let scaled = pixel * (mapped / luminance);
+    let most = scaled.max_element();
+    if most <= 1.0 {
+        return scaled;
+    }
+    let grey = Spectrum::splat(mapped);
+    grey + (scaled - grey) * ((1.0 - mapped) / (most - mapped))
+}
+
+/// The sRGB transfer function (IEC 61966-2-1), from linear to an encoded byte.
+fn encoded(linear: f32) -> u8 {
+    let c = linear.clamp(0.0, 1.0);
+    let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    (255.0 * encoded).round() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::vec3;
+
+    #[test]
+    fn images_without_highlights_are_shown_as_they_are() {
+        let pixels = [vec3(0.0, 0.5, 1.0), vec3(0.2, 0.2, 0.2)];
+        assert_eq!(tone_mapped(&pixels), [0, 188, 255, 124, 124, 124]);
+    }
+
+    #[test]
+    fn broken_pixels_neither_panic_nor_spoil_the_others() {
+        let mut pixels = vec![Spectrum::splat(0.5); 997];
+        pixels.extend([
+            Spectrum::splat(f32::NAN),
+            Spectrum::splat(f32::INFINITY),
+            Spectrum::splat(f32::NEG_INFINITY),
+        ]);
+        let bytes = tone_mapped(&pixels);
+        assert_eq!(bytes[..3], [188; 3]);
+        assert_eq!(bytes[997 * 3..], [0, 0, 0, 255, 255, 255, 0, 0, 0]);
+        assert_eq!(tone_mapped(&[vec3(f32::MAX, 0.0, 0.0), vec3(f32::MIN_POSITIVE, 0.0, 0.0)]).len(), 6);
+    }
+
+    #[test]
+    fn the_curve_rises_to_white_at_the_white_point() {
+        let at = |l: f32| displayed(Spectrum::splat(l), 8.0).x;
+        assert!((at(8.0) - 1.0).abs() < 1e-6 && at(1e12) == 1.0);
+        let levels: Vec<_> = (0..100).map(|i| at(0.08 * i as f32)).collect();
+        assert!(levels.windows(2).all(|pair| pair[0] < pair[1]));
+    }
+
+    #[test]
+    fn bright_colours_keep_hue_and_luminance() {
+        let pixel = vec3(0.0, 0.0, 6.0);
+        let shown = displayed(pixel, 4.0);
+        let l = pixel.luminance();
+        let mapped = l * (1.0 + l / 16.0) / (1.0 + l);
+        assert!((shown.luminance() - mapped).abs() < 1e-5);
+        assert!(shown.z <= 1.0 + 1e-6 && shown.x == shown.y && shown.x < shown.z);
+    }
+
+    #[test]
+    fn the_file_holds_the_bytes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("image.png");
+        write(&path, 2, 1, &[vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)]).unwrap();
+        let image = image::open(&path).unwrap().to_rgb8();
+        assert_eq!((image.dimensions(), image.into_raw()), ((2, 1), vec![255, 0, 0, 0, 255, 0]));
+    }
+}
