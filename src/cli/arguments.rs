@@ -34,6 +34,10 @@ pub struct Render {
     #[arg(short, long, value_name = "FILE", value_parser = image_file)]
     pub output: Option<PathBuf>,
 
+    /// Also write figures of the render (time, samples, noise) to this JSON file
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+
     /// Samples per pixel [default: the scene's sample_count]
     ///
     /// With a time limit and no --spp: as many as the time allows.

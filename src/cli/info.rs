@@ -34,7 +34,8 @@ fn describe(setup: &Setup) -> String {
         format!("emitter     {} in {}", light.emitter.name(), medium_name(setup, light.medium.0))
     }));
     lines.push(format!("camera      in {}", medium_name(setup, scene.sensor_medium.0)));
-    lines.extend((1..scene.media.len()).map(|index| format!("medium      {}", describe_medium(setup, index))));
+    lines
+        .extend((1..scene.media.len()).map(|index| format!("medium      {}", describe_medium(setup, index))));
     let without = if left_out.is_empty() { "nothing".to_owned() } else { left_out.join(", ") };
     lines.push(format!("profile     {}, leaving out: {without}", profile.name()));
     lines.extend(unreachable(scene, integrator).into_iter().map(|text| format!("unreachable {text}")));
@@ -80,7 +81,9 @@ fn describe_medium(setup: &Setup, index: usize) -> String {
 /// Kinds of paths that no strategy of the integrator can make: they are black, not noisy.
 fn unreachable(scene: &Scene, integrator: &Integrator) -> Vec<String> {
     let bsdfs = scene.surfaces.iter().map(|surface| &scene.bsdfs[surface.bsdf as usize]);
-    let smooth = bsdfs.clone().any(|bsdf| bsdf.has_dirac() && bsdf.survival(crate::math::Vec2::ZERO, crate::math::Vec3::Z) > 0.0);
+    let smooth = bsdfs
+        .clone()
+        .any(|bsdf| bsdf.has_dirac() && bsdf.survival(crate::math::Vec2::ZERO, crate::math::Vec3::Z) > 0.0);
     let point_like = |emitter: &Emitter| !emitter.is_hittable();
     let mut kinds = Vec::new();
     if smooth && scene.lights.all.iter().any(|light| point_like(&light.emitter)) {
@@ -92,7 +95,8 @@ fn unreachable(scene: &Scene, integrator: &Integrator) -> Vec<String> {
     if smooth && integrator.method == Method::Lt {
         kinds.push("anything seen in or through smooth mirrors or lenses");
     }
-    if smooth && integrator.method == Method::Bdpt && scene.lights.all.iter().any(|l| point_like(&l.emitter)) {
+    if smooth && integrator.method == Method::Bdpt && scene.lights.all.iter().any(|l| point_like(&l.emitter))
+    {
         kinds.push("caustics of those emitters seen in smooth mirrors or lenses");
     }
     kinds.into_iter().map(str::to_owned).collect()

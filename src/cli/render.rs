@@ -9,10 +9,7 @@ use crate::{
         build::{self, Setup},
         integrator::Method,
     },
-    transport::{
-        Options, Strategies,
-        profile::ProfileName,
-    },
+    transport::{Options, Strategies, profile::ProfileName},
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
@@ -118,7 +115,12 @@ fn output_path(arguments: &arguments::Render) -> PathBuf {
 fn on_threads<T: Send>(arguments: &arguments::Render, work: impl FnOnce() -> T + Send) -> Result<T> {
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
-        Error::new("--threads", "a number of threads this machine can start", error.to_string(), "ask for fewer")
+        Error::new(
+            "--threads",
+            "a number of threads this machine can start",
+            error.to_string(),
+            "ask for fewer",
+        )
     })?;
     Ok(pool.install(work))
 }
@@ -147,7 +149,8 @@ impl Bar {
     }
 
     fn tell(&self, progress: &Progress) {
-        let noise = progress.noise.map_or("noise not known yet".to_owned(), |n| format!("noise {}", percent(n)));
+        let noise =
+            progress.noise.map_or("noise not known yet".to_owned(), |n| format!("noise {}", percent(n)));
         self.bar.set_message(format!("{} samples/pixel  {noise}", progress.passes));
         self.bar.set_position(if self.by_time { milliseconds(progress.elapsed) } else { progress.samples });
     }
@@ -159,7 +162,13 @@ fn milliseconds(time: Duration) -> u64 {
 
 /// A relative error, in percent with two digits.
 fn percent(relative: f64) -> String {
-    let digits = if relative >= 0.1 { 0 } else if relative >= 0.01 { 1 } else { 2 };
+    let digits = if relative >= 0.1 {
+        0
+    } else if relative >= 0.01 {
+        1
+    } else {
+        2
+    };
     format!("{:.digits$} %", 100.0 * relative)
 }
 

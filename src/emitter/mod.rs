@@ -15,7 +15,7 @@ pub use point::Point;
 pub use spot::Spot;
 
 use crate::{
-    description::{Object, Library, Params, Row, build_by_row},
+    description::{Library, Object, Params, Row, build_by_row},
     error::Result,
     math::{DVec3, Spectrum, SpectrumExt},
 };

@@ -86,7 +86,11 @@ impl Spot {
     pub fn power(&self) -> Spectrum {
         let (beam, cutoff) = (f64::from(self.beam), f64::from(self.cutoff));
         let inner = 2.0 * (0.5 * beam).sin().powi(2);
-        let ramp = if cutoff - beam < 1e-6 { 0.0 } else { beam.cos() - (cutoff.sin() - beam.sin()) / (cutoff - beam) };
+        let ramp = if cutoff - beam < 1e-6 {
+            0.0
+        } else {
+            beam.cos() - (cutoff.sin() - beam.sin()) / (cutoff - beam)
+        };
         self.intensity * (TAU * (inner + ramp) as f32)
     }
 }

@@ -23,8 +23,14 @@ pub enum Filter {
 /// Filter names and how each reads its parameters.
 pub const ROWS: &[crate::description::Row<Filter>] = &[
     crate::description::Row { name: "box", build: |_| Ok(Filter::Box) },
-    crate::description::Row { name: "tent", build: |p| Ok(Filter::Tent { radius: positive(p, "radius", 1.0)? }) },
-    crate::description::Row { name: "gaussian", build: |p| Ok(Filter::Gaussian { stddev: positive(p, "stddev", 0.5)? }) },
+    crate::description::Row {
+        name: "tent",
+        build: |p| Ok(Filter::Tent { radius: positive(p, "radius", 1.0)? }),
+    },
+    crate::description::Row {
+        name: "gaussian",
+        build: |p| Ok(Filter::Gaussian { stddev: positive(p, "stddev", 0.5)? }),
+    },
 ];
 
 fn positive(params: &Params<'_>, name: &'static str, default: f64) -> Result<f32> {
@@ -84,7 +90,9 @@ impl Filter {
             Self::Gaussian { stddev } => {
                 let s = f64::from(*stddev);
                 let below = |x: f64| {
-                    let gauss = s * (0.5 * std::f64::consts::PI).sqrt() * libm::erf(x / (s * std::f64::consts::SQRT_2));
+                    let gauss = s
+                        * (0.5 * std::f64::consts::PI).sqrt()
+                        * libm::erf(x / (s * std::f64::consts::SQRT_2));
                     gauss - (-8f64).exp() * x
                 };
                 below(high) - below(low)
@@ -139,8 +147,12 @@ mod tests {
     use super::*;
     use crate::sampling::stream::Purpose;
 
-    const FILTERS: [Filter; 4] =
-        [Filter::Box, Filter::Tent { radius: 1.0 }, Filter::Tent { radius: 1.7 }, Filter::Gaussian { stddev: 0.5 }];
+    const FILTERS: [Filter; 4] = [
+        Filter::Box,
+        Filter::Tent { radius: 1.0 },
+        Filter::Tent { radius: 1.7 },
+        Filter::Gaussian { stddev: 0.5 },
+    ];
 
     /// Every pixel's weights integrate to one over the film, borders included.
     #[test]

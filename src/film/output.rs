@@ -11,7 +11,7 @@ use std::{
 use tempfile::NamedTempFile;
 
 /// Writes a file to `path` by `fill`. A reader of `path` sees the old file or the new one, never a part.
-pub(super) fn write(
+pub fn write(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut NamedTempFile>) -> io::Result<()>,
 ) -> Result<()> {

@@ -92,7 +92,9 @@ fn render_as<P: Profile>(
         let outcomes: Vec<Outcome> = tasks
             .clone()
             .into_par_iter()
-            .map(|task| blocks.render(&estimator, film, settings.seed, task / blocks.count(), task % blocks.count()))
+            .map(|task| {
+                blocks.render(&estimator, film, settings.seed, task / blocks.count(), task % blocks.count())
+            })
             .collect();
         for (task, outcome) in tasks.clone().zip(&outcomes) {
             outcome.add_to(&mut pass);

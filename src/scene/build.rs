@@ -261,7 +261,12 @@ impl<'a> Builder<'a> {
         match emitter {
             Emitter::Area(_) => {
                 let remedy = "put it inside the shape that emits";
-                return Err(Error::new(child.location, "an area emitter on a shape", "one in the scene", remedy));
+                return Err(Error::new(
+                    child.location,
+                    "an area emitter on a shape",
+                    "one in the scene",
+                    remedy,
+                ));
             }
             Emitter::Constant(_) if self.emitters.iter().any(|e| matches!(e.0, Emitter::Constant(_))) => {
                 return Err(only_one(child, "environment"));
@@ -412,7 +417,8 @@ impl Finder<'_> {
         if let Some(boundary) = self.surfaces[shape as usize].boundary {
             return boundary.exterior;
         }
-        let mut stream = crate::sampling::Stream::new(0, u64::from(shape), 0, crate::sampling::stream::Purpose::Pilot);
+        let mut stream =
+            crate::sampling::Stream::new(0, u64::from(shape), 0, crate::sampling::stream::Purpose::Pilot);
         let point = self.geometry.sample_area(shape, &mut stream);
         let origin = offset::leave_surface(point.position, point.error, point.normal, point.shading.normal);
         self.around(origin, ambient, location, "an emitting shape")
@@ -422,7 +428,9 @@ impl Finder<'_> {
     fn far_outside(&self, ambient: MediumIndex) -> MediumIndex {
         let (low, high) = self.geometry.bounds();
         let (centre, size) = (0.5 * (low + high), (high - low).length().max(f32::MIN_POSITIVE));
-        let from = |towards: Vec3| boundary::ask(self.geometry, self.surfaces, centre - towards * (2.0 * size), towards);
+        let from = |towards: Vec3| {
+            boundary::ask(self.geometry, self.surfaces, centre - towards * (2.0 * size), towards)
+        };
         let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (axis + Vec3::splat(0.013)).normalize());
         axes.iter().flat_map(|axis| [*axis, -*axis]).find_map(from).unwrap_or(ambient)
     }
@@ -448,11 +456,16 @@ fn sampler(object: &Object, library: &Library) -> Result<u64> {
 fn film(object: &Object, library: &Library, overrides: Overrides) -> Result<Film> {
     let params = Params::new(object, library);
     let (width, height) = (pixels(&params, "width", 768)?, pixels(&params, "height", 576)?);
-    let is_filter = |child: &Child<'_>| child.name == "rfilter" || child.object.tag.as_deref() == Some("rfilter")
-        || filter::ROWS.iter().any(|row| row.name == child.object.plugin);
+    let is_filter = |child: &Child<'_>| {
+        child.name == "rfilter"
+            || child.object.tag.as_deref() == Some("rfilter")
+            || filter::ROWS.iter().any(|row| row.name == child.object.plugin)
+    };
     let filter = match params.children(is_filter)?.as_slice() {
         [] => Filter::Gaussian { stddev: 0.5 },
-        [one] => crate::description::build_by_row(one.object, library, "reconstruction filter", filter::ROWS)?,
+        [one] => {
+            crate::description::build_by_row(one.object, library, "reconstruction filter", filter::ROWS)?
+        }
         [_, second, ..] => return Err(only_one(second, "rfilter")),
     };
     let formats = ["pixel_format", "component_format", "file_format"];

@@ -127,8 +127,7 @@ impl Lights {
         };
         let weight = |light: &Light| {
             let area = light.shape.map_or(0.0, |shape| geometry.area(shape));
-            let arriving =
-                if light.emitter.is_infinite() { from_infinity.max_element() } else { 1.0 };
+            let arriving = if light.emitter.is_infinite() { from_infinity.max_element() } else { 1.0 };
             let power = light.emitter.power(area, radius);
             f64::from(power) * f64::from(light.emitter.sampling_weight() * arriving)
         };
@@ -177,21 +176,35 @@ impl Lights {
                 let cosine = front.dot(direction);
                 let (start, forward) = (chosen / geometry.area(shape), area.density(cosine));
                 let throughput = area.radiance(cosine) * (cosine / (start * forward));
-                let origin = crate::math::offset::leave_surface(point.position, point.error, point.normal, direction);
-                Start { point: Some(point), cosine, throughput, ..self.start_at(index, point.position, origin, direction, start, forward) }
+                let origin =
+                    crate::math::offset::leave_surface(point.position, point.error, point.normal, direction);
+                Start {
+                    point: Some(point),
+                    cosine,
+                    throughput,
+                    ..self.start_at(index, point.position, origin, direction, start, forward)
+                }
             }
             Emitter::Point(point) => {
                 let (direction, forward) = (warp::to_sphere(stream.square()), warp::SPHERE_DENSITY);
                 let throughput = point.intensity / (chosen * forward);
-                Start { throughput, ..self.start_at(index, light.position, light.position, direction, chosen, forward) }
+                Start {
+                    throughput,
+                    ..self.start_at(index, light.position, light.position, direction, chosen, forward)
+                }
             }
             Emitter::Spot(spot) => {
                 let direction = spot.sample(stream);
                 let forward = spot.density(direction);
                 let throughput = spot.intensity(direction) / (chosen * forward);
-                Start { throughput, ..self.start_at(index, light.position, light.position, direction, chosen, forward) }
+                Start {
+                    throughput,
+                    ..self.start_at(index, light.position, light.position, direction, chosen, forward)
+                }
             }
-            Emitter::Directional(sun) => self.start_at_infinity(index, -sun.direction, chosen, sun.irradiance, stream),
+            Emitter::Directional(sun) => {
+                self.start_at_infinity(index, -sun.direction, chosen, sun.irradiance, stream)
+            }
             Emitter::Constant(sky) => {
                 let towards = warp::to_sphere(stream.square());
                 self.start_at_infinity(index, towards, chosen * warp::SPHERE_DENSITY, sky.radiance, stream)
@@ -237,7 +250,11 @@ impl Lights {
         let origin = self.centre + frame.to_world(disk.extend(self.radius));
         let forward = self.disk_density();
         let throughput = radiance * self.from_infinity / (start * forward);
-        Start { infinite: true, throughput, ..self.start_at(index, towards, origin, -towards, start, forward) }
+        Start {
+            infinite: true,
+            throughput,
+            ..self.start_at(index, towards, origin, -towards, start, forward)
+        }
     }
 
     /// Samples an emitter point for next-event estimation from `reference`; none where nothing can arrive.
@@ -329,9 +346,16 @@ impl Lights {
 
     /// The link that an eye walk at `reference` made by meeting `point` of an emitting shape; none where it
     /// does not emit towards the reference.
-    pub fn met(&self, geometry: &Geometry, light: u32, point: &SurfacePoint, reference: Vec3) -> Option<Link> {
+    pub fn met(
+        &self,
+        geometry: &Geometry,
+        light: u32,
+        point: &SurfacePoint,
+        reference: Vec3,
+    ) -> Option<Link> {
         let index = light as usize;
-        let connect = self.connections.probability(index) * geometry.density_toward(point.shape, reference, point);
+        let connect =
+            self.connections.probability(index) * geometry.density_toward(point.shape, reference, point);
         // Next-event estimation may be unable to find this point from there (a density of 0): the walk can.
         let mut link = self.area_link(geometry, index, *point, connect.max(f32::MIN_POSITIVE), reference)?;
         link.connect = connect;
@@ -355,9 +379,11 @@ impl Lights {
                 let (value, forward) = (area.radiance(cosine) * cosine, area.density(cosine));
                 (value.max_element() > 0.0).then_some(Emission { value, forward, cosine })
             }
-            (Emitter::Constant(sky), _) => {
-                Some(Emission { value: sky.radiance * self.from_infinity, forward: self.disk_density(), cosine: 1.0 })
-            }
+            (Emitter::Constant(sky), _) => Some(Emission {
+                value: sky.radiance * self.from_infinity,
+                forward: self.disk_density(),
+                cosine: 1.0,
+            }),
             _ => None,
         }
     }

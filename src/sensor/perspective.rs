@@ -43,7 +43,8 @@ impl Perspective {
         let far = params.float_within("far_clip", 1e4, near, f64::MAX)?;
         let (width, height) = (f64::from(width), f64::from(height));
         let half_width = half_width(params, width / height)?;
-        let offset = [params.float("principal_point_offset_x", 0.0)?, params.float("principal_point_offset_y", 0.0)?];
+        let offset =
+            [params.float("principal_point_offset_x", 0.0)?, params.float("principal_point_offset_y", 0.0)?];
         params.accept_unused(&["shutter_open", "shutter_close"], "nothing moves");
         let axis = |v: DVec3| to_world.transform_vector3(v).normalize();
         let (x, y, z) = (axis(DVec3::X), axis(DVec3::Y), axis(DVec3::Z));
@@ -114,6 +115,7 @@ fn half_width(params: &Params<'_>, aspect: f64) -> Result<f64> {
     }
     let (smaller, larger) = if aspect > 1.0 { (aspect, 1.0) } else { (1.0, aspect) };
     // The tangent along the given axis, times this, is the tangent along x.
-    let axes = [("x", 1.0), ("y", aspect), ("diagonal", 1.0 / diagonal), ("smaller", smaller), ("larger", larger)];
+    let axes =
+        [("x", 1.0), ("y", aspect), ("diagonal", 1.0 / diagonal), ("smaller", smaller), ("larger", larger)];
     Ok((0.5 * degrees.to_radians()).tan() * params.choice("fov_axis", 1.0, &axes)?)
 }

@@ -5,7 +5,9 @@ use crate::math::{Spectrum, vec3};
 use std::ops::{Add, Mul};
 
 /// One value per channel whose extinction can differ.
-pub trait Lanes: Copy + Send + Sync + Add<Output = Self> + Mul<Output = Self> + std::fmt::Debug + 'static {
+pub trait Lanes:
+    Copy + Send + Sync + Add<Output = Self> + Mul<Output = Self> + std::fmt::Debug + 'static
+{
     /// How many there are; each is hero equally often.
     const COUNT: usize;
     /// The same value in every lane.

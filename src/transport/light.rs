@@ -47,7 +47,8 @@ pub fn trace<P: Profile>(
     let scene = estimator.scene;
     let Some(start) = scene.lights.sample_start(&scene.geometry, stream) else { return };
     let departure = depart(estimator, &start);
-    let kind = Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
+    let kind =
+        Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
     let mut light = Light { estimator, cache, splats, start, hero };
     light.join_start_to_lens();
     walk(scene, kind, departure, &mut light, stream);
