@@ -75,7 +75,7 @@ def translate_object(o: dict, folder: Path, size: tuple[int, int] | None) -> dic
         kept = {key: o[key] for key in ("max_depth", "hide_emitters") if key in o}
         return {"type": "volpath", "rr_depth": o.get("rr_depth", NO_ROULETTE), **kept}
     if "filename" in o:
-        out["filename"] = str(folder / o["filename"])
+        out["filename"] = str(folder / o["filename"])  # an absolute name stays itself
     if size and o["type"] == "hdrfilm":
         out["width"], out["height"] = size
     return out

@@ -16,6 +16,8 @@ class Scene:
     name: str
     parameters: dict[str, str] = field(default_factory=dict)
     """XML's $parameters."""
+    base: Path | None = None
+    """Where file names in a dictionary start."""
 
     @property
     def is_xml(self) -> bool:
@@ -24,7 +26,7 @@ class Scene:
     @property
     def folder(self) -> Path:
         """Where the file names in the scene start."""
-        return self.source.resolve().parent if isinstance(self.source, Path) else Path.cwd()
+        return self.source.resolve().parent if isinstance(self.source, Path) else self.base or Path.cwd()
 
     def dictionary(self) -> dict:
         """The scene as a tree; only of scenes in JSON."""
@@ -50,6 +52,13 @@ def open_scene(path: str | Path, parameters: dict[str, str] | None = None) -> Sc
     if path.suffix not in (".json", ".xml"):
         raise Failure(f"{path}: neither .json nor .xml", "name a scene")
     return Scene(path, path.stem, parameters or {})
+
+
+def derived(scene: Scene, change) -> Scene:
+    """The scene with `change` applied to each of its objects; of scenes in JSON."""
+    if scene.is_xml:
+        raise Failure(f"{scene.name}: an XML scene cannot be changed", "name a JSON scene")
+    return Scene(changed(scene.dictionary(), change), scene.name, scene.parameters, scene.folder)
 
 
 def changed(tree, change):
