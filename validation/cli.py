@@ -1,0 +1,115 @@
+"""The commands of `python3 -m validation`."""
+
+import argparse
+from pathlib import Path
+
+from validation import compare, matrix, references, selftest
+from validation.compare import Effort
+from validation.failure import Failure
+from validation.places import OUTPUT
+from validation.scene import open_scene
+
+QUICK = Effort(batches=16, spp=48)
+FULL = Effort(batches=32, spp=256)
+
+
+def main(arguments: list[str]) -> int:
+    """Runs one command; 0 if what it checks holds."""
+    options = parser().parse_args(arguments)
+    return 0 if options.command(options) else 1
+
+
+def parser() -> argparse.ArgumentParser:
+    """All commands and their options."""
+    top = argparse.ArgumentParser(prog="python3 -m validation", description="Checks Tyndall against what is known.")
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+    add_compare(commands)
+    add_matrix(commands)
+    add_selftest(commands)
+    return top
+
+
+def add(commands, name: str, run, text: str) -> argparse.ArgumentParser:
+    """A command without options."""
+    command = commands.add_parser(name, help=text, description=text)
+    command.set_defaults(command=run)
+    return command
+
+
+def add_effort(command: argparse.ArgumentParser, default: Effort) -> None:
+    """How much to render."""
+    command.add_argument("--batches", type=int, default=default.batches, help="independent images (default %(default)s)")
+    command.add_argument("--spp", type=int, default=default.spp, help="samples a pixel in each (default %(default)s)")
+    command.add_argument("--seed", type=int, default=default.seed, help="first seed (default %(default)s)")
+
+
+def effort_of(options) -> Effort:
+    """What was asked for."""
+    if options.batches < 2:
+        raise Failure("--batches is below 2: no variance can be known", "give at least 8")
+    return Effort(options.batches, options.spp, options.seed)
+
+
+def add_parameters(command: argparse.ArgumentParser) -> None:
+    """XML's $parameters."""
+    command.add_argument("-D", metavar="NAME=VALUE", action="append", default=[], help="a parameter of an XML scene")
+
+
+def parameters_of(options) -> dict[str, str]:
+    """What -D gave."""
+    wrong = next((pair for pair in options.D if "=" not in pair), None)
+    if wrong:
+        raise Failure(f"-D {wrong}: no value", "write -D name=value")
+    return dict(pair.split("=", 1) for pair in options.D)
+
+
+def size(text: str) -> tuple[int, int]:
+    """WxH."""
+    width, height = text.split("x")
+    return int(width), int(height)
+
+
+def add_compare(commands) -> None:
+    command = add(commands, "compare", run_compare, "One scene through Mitsuba and Tyndall, pixel by pixel.")
+    command.add_argument("scene")
+    command.add_argument(
+        "--integrators", default="pt,lt,bdpt", help="any of pt, lt, bdpt, mitsuba (itself with other seeds)"
+    )
+    command.add_argument("--size", type=size, help="WxH instead of the scene's own")
+    command.add_argument("--output", type=Path, default=OUTPUT, help="folder for the pictures")
+    add_parameters(command)
+    add_effort(command, Effort())
+
+
+def run_compare(options) -> bool:
+    scene = open_scene(options.scene, parameters_of(options))
+    reference = references.cached(scene, options.size)
+    print(compare.HEADER, flush=True)
+    verdicts = []
+    for method in options.integrators.split(","):
+        candidate = compare.candidate_renderer(scene, method, options.size)
+        verdicts.append(compare.compare(scene, method, effort_of(options), reference, candidate, options.output))
+        print(verdicts[-1].row(), flush=True)
+    print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}")
+    return all(v.passed for v in verdicts)
+
+
+def add_matrix(commands) -> None:
+    command = add(commands, "matrix", run_matrix, "Every cross-check scene through all integrators that can render it.")
+    effort = command.add_mutually_exclusive_group()
+    effort.add_argument("--quick", dest="effort", action="store_const", const=QUICK, default=QUICK, help="minutes (default)")
+    effort.add_argument("--full", dest="effort", action="store_const", const=FULL, help="an hour")
+    command.add_argument("--only", default="", help="only scenes whose file name contains this")
+
+
+def run_matrix(options) -> bool:
+    return all(v.passed for v in matrix.run(options.effort, options.only))
+
+
+def add_selftest(commands) -> None:
+    command = add(commands, "selftest", run_selftest, "The test of the test: Mitsuba against itself, and against 5 % off.")
+    add_effort(command, Effort())
+
+
+def run_selftest(options) -> bool:
+    return selftest.run(effort_of(options))

@@ -1,0 +1,184 @@
+"""The pixel-by-pixel test of one scene: independent batches from both renderers, Welch's test for each value."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from validation import mitsuba, picture, tyndall
+from validation.scene import Scene, derived
+from validation.statistics import Estimate, estimate, sidak_limit, standard_score
+
+ACCEPTED = 0.9975
+"""Share of pixel values that must pass, as in Mitsuba's own render tests."""
+TILES = 6
+"""The image is also compared as so many tiles a side, all of which must pass: what is wrong in one place only."""
+IMAGE_ERRORS = 3
+"""How many standard errors the image means may be apart."""
+RETRY = 4
+"""A disagreement is tried again with so many times the samples and new seeds: a bias stays, bad luck does not."""
+
+Renderer = Callable[[int, int], np.ndarray]
+"""spp, seed -> image."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is rendered: independent batches, samples a pixel in each, the first seed."""
+
+    batches: int = 16
+    spp: int = 64
+    seed: int = 1
+
+    def harder(self) -> "Effort":
+        """The effort of the second trial."""
+        return Effort(self.batches, RETRY * self.spp, self.seed + 1000)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a comparison found."""
+
+    scene: str
+    integrator: str
+    accepted: float
+    """Share of pixel values within the limit for all of them."""
+    tile_score: float
+    """The worst tile's z, over the limit for all tiles: above 1 is refused."""
+    image_score: float
+    """Difference of the image means in standard errors, the worst channel, with its sign."""
+    difference: float
+    """The same, relative to the mean."""
+    resolution: float
+    """The relative difference that would have been refused."""
+    worst: tuple[int, int]
+    """The pixel (x, y) that disagrees most."""
+    seconds: float
+    trials: int = 1
+    map: np.ndarray | None = None
+
+    @property
+    def passed(self) -> bool:
+        return self.accepted >= ACCEPTED and self.tile_score <= 1 and abs(self.image_score) <= IMAGE_ERRORS
+
+    def row(self) -> str:
+        where = "" if self.passed else f"  worst pixel {self.worst}"
+        again = "" if self.trials == 1 else f"  ({self.trials} trials)"
+        return (
+            f"{self.scene:24} {self.integrator:8} {100 * self.accepted:8.2f} % {self.tile_score:6.2f} {self.image_score:+8.2f}"
+            f" {100 * self.difference:+8.2f} % {100 * self.resolution:7.2f} % {self.seconds:7.1f} s"
+            f"  {'agree' if self.passed else 'DISAGREE'}{where}{again}"
+        )
+
+
+HEADER = (
+    f"{'scene':24} {'method':8} {'accepted':>10} {'tiles':>6} {'mean, se':>8} {'mean, rel':>10} {'resolves':>9} {'time':>9}  verdict"
+)
+
+
+def render_batches(renderer: Renderer, effort: Effort) -> np.ndarray:
+    """Independent images of one scene."""
+    return np.stack([renderer(effort.spp, effort.seed + i) for i in range(effort.batches)])
+
+
+def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size=None) -> Renderer:
+    """Mitsuba on this scene, loaded once."""
+    loaded = mitsuba.load(scene, variant, size)
+    return lambda spp, seed: mitsuba.image(loaded, spp, seed)
+
+
+def tyndall_renderer(scene: Scene, integrator: str, size=None) -> Renderer:
+    """Tyndall on this scene."""
+    return lambda spp, seed: tyndall.render(scene, integrator=integrator, spp=spp, seed=seed, size=size)
+
+
+def candidate_renderer(scene: Scene, method: str, size=None) -> Renderer:
+    """One of Tyndall's integrators, or `mitsuba`: Mitsuba itself with other seeds, to test the test."""
+    if method != "mitsuba":
+        return tyndall_renderer(scene, method, size)
+    other = mitsuba_renderer(scene, size=size)
+    return lambda spp, seed: other(spp, seed + 500)
+
+
+def judge(scene: str, method: str, ours: np.ndarray, theirs: np.ndarray, seconds: float) -> Verdict:
+    """The test itself, on batches of both sides."""
+    z = scores(ours, theirs)
+    tiles = scores(tiled(ours), tiled(theirs))
+    whole_a, whole_b = estimate(ours.mean(axis=(1, 2))), estimate(theirs.mean(axis=(1, 2)))
+    score = standard_score(whole_a, whole_b)
+    channel = int(np.abs(score).argmax())
+    y, x = np.unravel_index(np.abs(z).max(axis=2).argmax(), z.shape[:2])
+    return Verdict(
+        scene=scene,
+        integrator=method,
+        accepted=float((np.abs(z) <= sidak_limit(z.size)).mean()),
+        tile_score=float(np.abs(tiles).max() / sidak_limit(tiles.size)),
+        image_score=float(score[channel]),
+        difference=relative_difference(whole_a, whole_b, channel),
+        resolution=IMAGE_ERRORS * float(np.hypot(whole_a.error, whole_b.error).max() / whole_b.mean.max()),
+        worst=(int(x), int(y)),
+        seconds=seconds,
+        map=z,
+    )
+
+
+def scores(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
+    """The normal score of each value's difference."""
+    return standard_score(estimate(ours), estimate(theirs))
+
+
+def tiled(batches: np.ndarray) -> np.ndarray:
+    """The batches as images of TILES x TILES means (what is left over at the right and below is dropped)."""
+    count, height, width, channels = batches.shape
+    tall, wide = max(1, height // TILES), max(1, width // TILES)
+    rows, columns = height // tall, width // wide
+    cut = batches[:, : rows * tall, : columns * wide]
+    return cut.reshape(count, rows, tall, columns, wide, channels).mean(axis=(2, 4))
+
+
+def relative_difference(a: Estimate, b: Estimate, channel: int) -> float:
+    """By what part of b the mean of a is greater."""
+    return float(a.mean[channel] / b.mean[channel] - 1) if b.mean[channel] else float(a.mean[channel])
+
+
+def compare(
+    scene: Scene,
+    method: str,
+    effort: Effort,
+    reference: Callable[[Effort], np.ndarray],
+    candidate: Renderer,
+    output: Path | None = None,
+) -> Verdict:
+    """Tests a candidate against reference batches; a disagreement gets a second, harder trial, which decides."""
+    trials = 0
+    while True:
+        trials += 1
+        theirs = reference(effort)
+        start = time.perf_counter()
+        ours = render_batches(candidate, effort)
+        verdict = judge(scene.name, method, ours, theirs, time.perf_counter() - start)
+        if verdict.passed or trials == 2:
+            break
+        effort = effort.harder()
+    if output:
+        save_picture(output / f"{scene.name}-{method}.png", theirs, ours, verdict.map)
+    return Verdict(**{**vars(verdict), "trials": trials})
+
+
+def save_picture(path: Path, theirs: np.ndarray, ours: np.ndarray, z: np.ndarray) -> None:
+    """Mitsuba, Tyndall, and where they differ."""
+    reference, found = theirs.mean(axis=0), ours.mean(axis=0)
+    white = picture.white_of(reference)
+    row = picture.side_by_side(picture.displayed(reference, white), picture.displayed(found, white), picture.diverging(z))
+    mitsuba.write_png(path, row)
+
+
+def perturbed(scene: Scene, amount: float) -> Scene:
+    """The scene with every extinction greater by the part `amount`; the test must notice."""
+
+    def denser(o: dict) -> dict:
+        return {**o, "scale": (1 + amount) * o.get("scale", 1)} if o["type"] == "homogeneous" else o
+
+    return derived(scene, denser)

@@ -1,0 +1,56 @@
+"""A private Python environment under target/, made once per set of requirements. Standard library only."""
+
+import fcntl
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+from validation.failure import Failure
+from validation.places import ENVIRONMENT, REQUIREMENTS, ROOT
+
+PYTHON = ENVIRONMENT / "bin" / "python"
+STAMP = ENVIRONMENT / "stamp"
+
+
+def enter() -> None:
+    """Returns inside the environment; outside of it, makes it if need be and becomes a process in it."""
+    if Path(sys.prefix).resolve() == ENVIRONMENT.resolve():
+        return
+    if sys.version_info < (3, 11):
+        raise Failure(f"Python 3.11 or newer is needed, this is {sys.version.split()[0]}", "install a newer Python 3")
+    make_once()
+    variables = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONNOUSERSITE": "1"}
+    os.execve(PYTHON, [str(PYTHON), "-m", "validation", *sys.argv[1:]], variables)
+
+
+def make_once() -> None:
+    """Makes the environment unless it is there already. Processes that start together wait for the first."""
+    ENVIRONMENT.parent.mkdir(parents=True, exist_ok=True)
+    with open(ENVIRONMENT.with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not STAMP.exists() or STAMP.read_text() != wanted_stamp():
+            make()
+            STAMP.write_text(wanted_stamp())
+
+
+def wanted_stamp() -> str:
+    """Changes whenever the requirements or the interpreter do."""
+    return hashlib.sha256(REQUIREMENTS.read_bytes() + sys.version.encode()).hexdigest()
+
+
+def make() -> None:
+    """Creates the environment and installs the requirements."""
+    print(f"validation: installing Mitsuba and friends into {ENVIRONMENT} (once)", file=sys.stderr)
+    shutil.rmtree(ENVIRONMENT, ignore_errors=True)
+    try:
+        venv.create(ENVIRONMENT, with_pip=True)
+    except (subprocess.CalledProcessError, OSError) as error:
+        raise Failure(f"no virtual environment could be made: {error}", "install Python's venv module (Debian: python3-venv)")
+    install = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS]
+    # pip's messages go to stderr: stdout belongs to the command's table
+    if subprocess.run(install, stdout=sys.stderr).returncode != 0:
+        raise Failure("pip could not install the requirements", f"see its message above; then run again ({REQUIREMENTS})")

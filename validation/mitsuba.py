@@ -1,0 +1,126 @@
+"""Mitsuba 3 as a renderer of our scenes: images in linear RGB, (height, width, 3)."""
+
+import os
+from functools import cache
+from glob import glob
+from pathlib import Path
+
+import mitsuba as mi
+import numpy as np
+
+from validation.failure import Failure
+from validation.scene import Scene, changed
+
+TRANSFORM_STEPS = ("scale", "rotate", "translate", "lookat", "matrix")
+OUR_INTEGRATORS = ("bdpt", "pt", "lt")
+NO_ROULETTE = 1000
+LLVM_PLACES = (
+    "/usr/lib/*/libLLVM.so.19*",
+    "/usr/lib/*/libLLVM-19.so*",
+    "/usr/lib/llvm-19/lib/libLLVM*.so*",
+    "/usr/lib64/libLLVM.so.19*",
+    "/usr/lib64/llvm19/lib/libLLVM*.so*",
+    "/opt/homebrew/opt/llvm@19/lib/libLLVM.dylib",
+)
+
+
+@cache
+def libllvm() -> str | None:
+    """Where LLVM 19 is; None where it is not."""
+    named = os.environ.get("DRJIT_LIBLLVM_PATH")
+    return named or next((path for place in LLVM_PLACES for path in sorted(glob(place))), None)
+
+
+def use(variant: str) -> None:
+    """Chooses `scalar_rgb` or `llvm_ad_rgb` (which needs LLVM 19)."""
+    if variant.startswith("llvm"):
+        if libllvm() is None:
+            raise Failure("LLVM 19 was not found", "install it (Debian: libllvm19) or set DRJIT_LIBLLVM_PATH to its library")
+        os.environ["DRJIT_LIBLLVM_PATH"] = libllvm()
+    mi.set_variant(variant)
+
+
+def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None = None):
+    """The scene as a Mitsuba object, its variant made the current one."""
+    use(variant)
+    if scene.is_xml:
+        loaded = mi.load_file(str(scene.source), **scene.parameters)
+        return loaded if size is None else with_size(loaded, size)
+    tree = changed(scene.dictionary(), lambda o: translate_object(o, scene.folder, size))
+    return mi.load_dict(tree)
+
+
+def render(scene: Scene, spp: int, seed: int = 0, variant: str = "scalar_rgb", size=None) -> np.ndarray:
+    """One image. To render several, `load` once and call `image`."""
+    return image(load(scene, variant, size), spp, seed)
+
+
+def image(loaded, spp: int, seed: int) -> np.ndarray:
+    """One image of a loaded scene."""
+    return np.array(mi.render(loaded, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
+
+
+def with_size(loaded, size: tuple[int, int]):
+    """Changes the film of a loaded scene."""
+    parameters = mi.traverse(loaded.sensors()[0])
+    parameters["film.size"] = list(size)
+    parameters.update()
+    return loaded
+
+
+def translate_object(o: dict, folder: Path, size: tuple[int, int] | None) -> dict:
+    """What `mitsuba.load_dict` needs otherwise than our JSON spells it."""
+    out = {key: transform(value) if is_transform(value) else value for key, value in o.items()}
+    if o["type"] in OUR_INTEGRATORS:
+        kept = {key: o[key] for key in ("max_depth", "hide_emitters") if key in o}
+        return {"type": "volpath", "rr_depth": o.get("rr_depth", NO_ROULETTE), **kept}
+    if "filename" in o:
+        out["filename"] = str(folder / o["filename"])  # an absolute name stays itself
+    if size and o["type"] == "hdrfilm":
+        out["width"], out["height"] = size
+    return out
+
+
+def is_transform(value) -> bool:
+    """A transform is a list of steps."""
+    return isinstance(value, list) and all(isinstance(s, dict) and s.get("type") in TRANSFORM_STEPS for s in value)
+
+
+def transform(steps: list[dict]):
+    """The product of all steps, the first applied first."""
+    product = mi.ScalarTransform4f()
+    for s in steps:
+        product = step(s) @ product
+    return product
+
+
+def step(s: dict):
+    """One step of a transform."""
+    identity = mi.ScalarTransform4f()
+    match s["type"]:
+        case "scale":
+            return identity.scale(s["value"])
+        case "rotate":
+            return identity.rotate(s["axis"], s["angle"])
+        case "translate":
+            return identity.translate(s["value"])
+        case "lookat":
+            return identity.look_at(s["origin"], s["target"], s["up"])
+        case "matrix":
+            return mi.ScalarTransform4f(np.reshape(s["value"], (4, 4)))
+
+
+def read_exr(path: Path) -> np.ndarray:
+    """An image file as linear RGB."""
+    if mi.variant() is None:
+        use("scalar_rgb")
+    bitmap = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
+    return np.array(bitmap, dtype=np.float64)
+
+
+def write_png(path: Path, pixels: np.ndarray) -> None:
+    """Writes 8-bit pixels, (height, width, 3)."""
+    if mi.variant() is None:
+        use("scalar_rgb")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    mi.Bitmap(np.ascontiguousarray(pixels)).write(str(path))

@@ -1,0 +1,13 @@
+"""Where things lie in the repository."""
+
+import os
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SCENES = ROOT / "scenes"
+CROSSCHECK = SCENES / "crosscheck"
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
+ENVIRONMENT = TARGET / "validation-env"
+CACHE = TARGET / "validation-cache"
+OUTPUT = TARGET / "validation"
+REQUIREMENTS = ROOT / "validation" / "requirements.txt"

@@ -1,0 +1,71 @@
+"""Scenes as both renderers read them: a file (JSON or Mitsuba XML) or a dictionary."""
+
+import hashlib
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from validation.failure import Failure
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A scene and how it is to be looked at."""
+
+    source: Path | dict
+    name: str
+    parameters: dict[str, str] = field(default_factory=dict)
+    """XML's $parameters."""
+    base: Path | None = None
+    """Where file names in a dictionary start."""
+
+    @property
+    def is_xml(self) -> bool:
+        return isinstance(self.source, Path) and self.source.suffix == ".xml"
+
+    @property
+    def folder(self) -> Path:
+        """Where the file names in the scene start."""
+        return self.source.resolve().parent if isinstance(self.source, Path) else self.base or Path.cwd()
+
+    def dictionary(self) -> dict:
+        """The scene as a tree; only of scenes in JSON."""
+        return self.source if isinstance(self.source, dict) else json.loads(self.source.read_text())
+
+    def key(self) -> str:
+        """Changes whenever the scene, or a file beside it, does."""
+        digest = hashlib.sha256(repr(sorted(self.parameters.items())).encode())
+        if isinstance(self.source, dict):
+            digest.update(json.dumps(self.source).encode())
+        else:
+            digest.update(self.source.read_bytes())
+            for asset in sorted((self.folder / "assets").glob("*")):
+                digest.update(asset.read_bytes())
+        return digest.hexdigest()[:20]
+
+
+def open_scene(path: str | Path, parameters: dict[str, str] | None = None) -> Scene:
+    """A scene from a file that must exist."""
+    path = Path(path)
+    if not path.is_file():
+        raise Failure(f"{path}: no such scene", "name a .json or .xml file, relative to the current folder")
+    if path.suffix not in (".json", ".xml"):
+        raise Failure(f"{path}: neither .json nor .xml", "name a scene")
+    return Scene(path, path.stem, parameters or {})
+
+
+def derived(scene: Scene, change) -> Scene:
+    """The scene with `change` applied to each of its objects; of scenes in JSON."""
+    if scene.is_xml:
+        raise Failure(f"{scene.name}: an XML scene cannot be changed", "name a JSON scene")
+    return Scene(changed(scene.dictionary(), change), scene.name, scene.parameters, scene.folder)
+
+
+def changed(tree, change):
+    """A copy of a JSON tree in which `change` has been applied to every object (a dictionary with a type)."""
+    if isinstance(tree, dict):
+        copy = {key: changed(value, change) for key, value in tree.items()}
+        return change(copy) if "type" in copy else copy
+    if isinstance(tree, list):
+        return [changed(value, change) for value in tree]
+    return tree

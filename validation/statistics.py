@@ -1,0 +1,71 @@
+"""Means, their uncertainty, and the tests that decide. Arrays of any shape, the batches along the first axis."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+SIGNIFICANCE = 0.01
+"""Probability that one whole test refuses what is right."""
+ROUNDING = 1e-5
+"""Relative difference that single precision may make where nothing is random."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A mean of independent batches: value, variance of that value, degrees of freedom."""
+
+    mean: np.ndarray
+    variance: np.ndarray
+    freedom: float
+
+    @property
+    def error(self) -> np.ndarray:
+        """The standard error."""
+        return np.sqrt(self.variance)
+
+
+def estimate(batches: np.ndarray) -> Estimate:
+    """The mean over the first axis."""
+    count = len(batches)
+    return Estimate(batches.mean(axis=0), batches.var(axis=0, ddof=1) / count, count - 1)
+
+
+def exact(value) -> Estimate:
+    """A value known without error."""
+    value = np.asarray(value, dtype=float)
+    return Estimate(value, np.zeros_like(value), np.inf)
+
+
+def standard_score(a: Estimate, b: Estimate) -> np.ndarray:
+    """The normal score z with the tail probability of Welch's t: few batches make t, not z, normal."""
+    rounding = (ROUNDING * np.maximum(np.abs(a.mean), np.abs(b.mean))) ** 2
+    variance = a.variance + b.variance + rounding
+    difference = a.mean - b.mean
+    with np.errstate(invalid="ignore", divide="ignore"):
+        freedom = variance**2 / (a.variance**2 / a.freedom + b.variance**2 / b.freedom)
+        t = np.where(difference == 0, 0, difference / np.sqrt(variance))
+    log_tail = stats.t.logsf(np.abs(t), np.where(np.isfinite(freedom), freedom, 1e9))
+    return np.sign(t) * score_of_log_tail(log_tail)
+
+
+def score_of_log_tail(log_tail: np.ndarray) -> np.ndarray:
+    """The normal score whose upper tail has this (logarithmic) probability."""
+    from scipy.special import ndtri_exp
+
+    return -ndtri_exp(log_tail)
+
+
+def sidak_limit(tests: int, significance: float = SIGNIFICANCE) -> float:
+    """The |z| that the greatest of so many independent tests exceeds with probability `significance`."""
+    each = -np.expm1(np.log1p(-significance) / tests)
+    return float(stats.norm.isf(each / 2))
+
+
+def bootstrap_median(values: np.ndarray, confidence: float = 0.95, draws: int = 10_000) -> tuple[float, float, float]:
+    """The median and its confidence interval."""
+    values = np.asarray(values)
+    picks = np.random.default_rng(1).integers(len(values), size=(draws, len(values)))
+    medians = np.median(values[picks], axis=1)
+    low, high = np.quantile(medians, [(1 - confidence) / 2, (1 + confidence) / 2])
+    return float(np.median(values)), float(low), float(high)
