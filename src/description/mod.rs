@@ -126,19 +126,24 @@ pub fn build_by_row<T>(
     kind: &str,
     rows: &[Row<T>],
 ) -> crate::error::Result<T> {
-    let Some(row) = rows.iter().find(|row| row.name == object.plugin) else {
-        let names: Vec<_> = rows.iter().map(|row| row.name).collect();
-        return Err(crate::error::Error::new(
-            &object.location,
-            format!("the type of a {kind}"),
-            format!("\"{}\"", object.plugin),
-            format!("{}known: {}", nearest(&object.plugin, &names), names.join(", ")),
-        ));
-    };
+    let row = find_row(object, kind, rows)?;
     let params = Params::new(object, library);
     let built = (row.build)(&params)?;
     params.finish()?;
     Ok(built)
+}
+
+/// The row that bears the plugin name of `object`.
+pub fn find_row<'a, T>(object: &Object, kind: &str, rows: &'a [Row<T>]) -> crate::error::Result<&'a Row<T>> {
+    rows.iter().find(|row| row.name == object.plugin).ok_or_else(|| {
+        let names: Vec<_> = rows.iter().map(|row| row.name).collect();
+        crate::error::Error::new(
+            &object.location,
+            format!("the type of a {kind}"),
+            format!("\"{}\"", object.plugin),
+            format!("{}known: {}", nearest(&object.plugin, &names), names.join(", ")),
+        )
+    })
 }
 
 /// "did you mean ...? " for the known name closest to `found`; empty where none is close.

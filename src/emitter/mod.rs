@@ -15,9 +15,10 @@ pub use point::Point;
 pub use spot::Spot;
 
 use crate::{
-    description::{Library, Object, Params, Row, build_by_row},
+    description::{Library, Object, Params, Row, find_row},
     error::Result,
     math::{DVec3, Spectrum, SpectrumExt},
+    medium,
 };
 use std::f32::consts::PI;
 
@@ -45,9 +46,15 @@ pub const ROWS: &[Row<Emitter>] = &[
     Row { name: "constant", build: |p| Constant::build(p).map(Emitter::Constant) },
 ];
 
-/// Builds the emitter that `object` describes. The result still stands in the file's coordinates.
+/// Builds the emitter that `object` describes; positions still stand in the file's coordinates. A medium among
+/// its children (the one it stands in) is the scene's to read.
 pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
-    build_by_row(object, library, "emitter", ROWS)
+    let params = Params::new(object, library);
+    let row = find_row(object, "emitter", ROWS)?;
+    let emitter = (row.build)(&params)?;
+    params.children(|child| medium::is_medium(child.object))?;
+    params.finish()?;
+    Ok(emitter)
 }
 
 /// True if `object` is an emitter.

@@ -24,3 +24,8 @@ pub const ROWS: &[Row<Homogeneous>] = &[Row { name: "homogeneous", build: Homoge
 pub fn build(object: &Object, library: &Library) -> Result<Homogeneous> {
     build_by_row(object, library, "medium", ROWS)
 }
+
+/// True if `object` is a medium.
+pub fn is_medium(object: &Object) -> bool {
+    ROWS.iter().any(|row| row.name == object.plugin)
+}

@@ -84,7 +84,7 @@ struct Sections<'a> {
 /// True if `object` only waits to be referred to.
 fn is_definition(object: &Object) -> bool {
     bsdf::ROWS.iter().any(|row| row.name == object.plugin)
-        || medium::ROWS.iter().any(|row| row.name == object.plugin)
+        || medium::is_medium(object)
         || crate::phase::is_phase(object)
         || crate::texture::ROWS.iter().any(|row| row.name == object.plugin)
 }
@@ -139,7 +139,7 @@ impl<'a> Sections<'a> {
 fn check_definition(object: &Object, library: &Library) -> Result<()> {
     if bsdf::ROWS.iter().any(|row| row.name == object.plugin) {
         bsdf::build(object, library).map(drop)
-    } else if medium::ROWS.iter().any(|row| row.name == object.plugin) {
+    } else if medium::is_medium(object) {
         medium::build(object, library).map(drop)
     } else if crate::phase::is_phase(object) {
         crate::phase::build(object, library).map(drop)
@@ -178,6 +178,15 @@ struct View {
     medium: Option<MediumIndex>,
 }
 
+/// An emitter as the file places it.
+struct Placed<'a> {
+    emitter: Emitter,
+    shape: Option<u32>,
+    /// The medium that the file says it stands in.
+    stated: Option<MediumIndex>,
+    location: &'a Location,
+}
+
 struct Builder<'a> {
     library: &'a Library,
     recentre: DVec3,
@@ -188,8 +197,7 @@ struct Builder<'a> {
     media: Vec<Homogeneous>,
     medium_names: Vec<String>,
     medium_index: HashMap<*const Object, MediumIndex>,
-    /// Each with the medium its file names, and where it stands.
-    emitters: Vec<(Emitter, Option<u32>, Option<MediumIndex>, &'a Location)>,
+    emitters: Vec<Placed<'a>>,
     /// BSDF of shapes that name none: diffuse 0.5, and black on emitters.
     default_bsdf: [Option<u32>; 2],
 }
@@ -252,7 +260,8 @@ impl<'a> Builder<'a> {
             let remedy = "put it beside the shapes, in the scene itself";
             return Err(Error::new(child.location, "an area emitter on a shape", found, remedy));
         }
-        self.emitters.push((emitter, Some(shape), None, child.location));
+        let stated = self.stated_medium(&Params::new(child.object, self.library))?;
+        self.emitters.push(Placed { emitter, shape: Some(shape), stated, location: child.location });
         Ok(Some(self.emitters.len() as u32 - 1))
     }
 
@@ -268,11 +277,15 @@ impl<'a> Builder<'a> {
                     remedy,
                 ));
             }
-            Emitter::Constant(_) if self.emitters.iter().any(|e| matches!(e.0, Emitter::Constant(_))) => {
+            Emitter::Constant(_)
+                if self.emitters.iter().any(|e| matches!(e.emitter, Emitter::Constant(_))) =>
+            {
                 return Err(only_one(child, "environment"));
             }
-            _ => self.emitters.push((emitter, None, None, child.location)),
+            _ => {}
         }
+        let stated = self.stated_medium(&Params::new(child.object, self.library))?;
+        self.emitters.push(Placed { emitter, shape: None, stated, location: child.location });
         Ok(())
     }
 
@@ -317,6 +330,15 @@ impl<'a> Builder<'a> {
         Ok(index)
     }
 
+    /// The medium that a camera or emitter says it stands in.
+    fn stated_medium(&mut self, params: &Params<'a>) -> Result<Option<MediumIndex>> {
+        match params.children(|child| medium::is_medium(child.object))?.as_slice() {
+            [] => Ok(None),
+            [one] => self.medium(one.object).map(Some),
+            [_, second, ..] => Err(only_one(second, "medium")),
+        }
+    }
+
     fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View> {
         let params = Params::new(object, self.library);
         let film = match params.children(|child| child.object.plugin == "hdrfilm")?.as_slice() {
@@ -329,12 +351,7 @@ impl<'a> Builder<'a> {
             [one] => sampler(one.object, self.library)?,
             [_, second, ..] => return Err(only_one(second, "sampler")),
         };
-        let is_medium = |child: &Child<'_>| medium::ROWS.iter().any(|row| row.name == child.object.plugin);
-        let medium = match params.children(is_medium)?.as_slice() {
-            [] => None,
-            [one] => Some(self.medium(one.object)?),
-            [_, second, ..] => return Err(only_one(second, "medium")),
-        };
+        let medium = self.stated_medium(&params)?;
         let sensor = Perspective::build(&params, self.recentre, film.width, film.height)?;
         params.finish()?;
         Ok(View { sensor, film, samples_per_pixel, medium })
@@ -355,12 +372,15 @@ impl<'a> Builder<'a> {
             None => finder.around(sensor.position, ambient, sensor_location, "the camera"),
         };
         let recentre = self.recentre;
-        let lights = self.emitters.into_iter().map(|(emitter, shape, _, location)| {
+        let lights = self.emitters.into_iter().map(|Placed { emitter, shape, stated, location }| {
             let position = position_of(&emitter, recentre);
-            let medium = match (shape, position) {
-                (Some(shape), _) => finder.in_front_of(shape, sensor_medium, location),
-                (None, Some(position)) => finder.around(position, sensor_medium, location, "an emitter"),
-                (None, None) => finder.far_outside(sensor_medium),
+            let medium = match (stated, shape, position) {
+                (Some(medium), ..) => medium,
+                (None, Some(shape), _) => finder.in_front_of(shape, sensor_medium, location),
+                (None, None, Some(position)) => {
+                    finder.around(position, sensor_medium, location, "an emitter")
+                }
+                (None, None, None) => finder.far_outside(sensor_medium),
             };
             Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium }
         });
