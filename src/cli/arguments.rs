@@ -200,8 +200,8 @@ fn duration(text: &str) -> Result<Duration, String> {
 
 fn definition(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected name=value, such as -D res=512")?;
-    if name.is_empty() || !name.chars().all(|c| c.is_alphanumeric() || c == '_') {
-        return Err("the name before \"=\" must be of letters, digits and \"_\"".into());
+    if name.is_empty() || name.contains(char::is_whitespace) {
+        return Err("expected a name without spaces before \"=\"".into());
     }
     Ok((name.to_owned(), value.to_owned()))
 }

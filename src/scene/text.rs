@@ -18,6 +18,14 @@ pub(super) struct Mistake {
 /// Text, read.
 pub(super) type Parsed<T> = std::result::Result<T, Mistake>;
 
+/// Text as found, in quotes; of long text the beginning.
+pub(super) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(80) {
+        Some((end, _)) => format!("\"{}...\"", &text[..end]),
+        None => format!("\"{text}\""),
+    }
+}
+
 fn mistake<T>(expected: impl Into<String>, found: impl Into<String>) -> Parsed<T> {
     Err(Mistake { expected: expected.into(), found: found.into() })
 }
@@ -37,15 +45,13 @@ pub(super) fn of_file(path: &Path) -> Result<String> {
 pub(super) fn float(text: &str) -> Parsed<f64> {
     match text.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
-        _ => mistake("a finite number", format!("\"{text}\"")),
+        _ => mistake("a finite number", quoted(text)),
     }
 }
 
 /// A whole number; space around it is allowed.
 pub(super) fn integer(text: &str) -> Parsed<i64> {
-    text.trim()
-        .parse()
-        .or_else(|_| mistake("a whole number between -2^63 and 2^63 - 1", format!("\"{text}\"")))
+    text.trim().parse().or_else(|_| mistake("a whole number between -2^63 and 2^63 - 1", quoted(text)))
 }
 
 /// `true` or `false`, in any case.
@@ -53,7 +59,7 @@ pub(super) fn boolean(text: &str) -> Parsed<bool> {
     match text.to_ascii_lowercase().as_str() {
         "true" => Ok(true),
         "false" => Ok(false),
-        _ => mistake("\"true\" or \"false\"", format!("\"{text}\"")),
+        _ => mistake("\"true\" or \"false\"", quoted(text)),
     }
 }
 
@@ -111,7 +117,7 @@ fn hex(digits: &str) -> Parsed<[f64; 3]> {
     let number = u32::from_str_radix(digits, 16).ok();
     match number.filter(|_| digits.len() == 6 && digits.is_ascii() && !digits.starts_with('+')) {
         Some(rgb) => Ok([rgb >> 16, rgb >> 8, rgb].map(|c| decoded(f64::from(c & 0xff) / 255.0))),
-        None => mistake("six hexadecimal digits after #", format!("\"#{digits}\"")),
+        None => mistake("six hexadecimal digits after #", quoted(&format!("#{digits}"))),
     }
 }
 
@@ -136,7 +142,7 @@ pub(super) fn spectrum(text: &str) -> Parsed<Spectrum> {
     }
     let pair = |word: &str| match word.split_once(':') {
         Some((wavelength, value)) => Ok((float(wavelength)?, float(value)?)),
-        None => mistake("one number, or wavelength:value pairs", format!("\"{word}\"")),
+        None => mistake("one number, or wavelength:value pairs", quoted(word)),
     };
     samples(words(text).map(pair).collect::<Parsed<_>>()?)
 }
@@ -167,7 +173,7 @@ pub(super) fn spectrum_file(path: &Path) -> Result<Spectrum> {
                 let position = Position::Text { line, column: 1 };
                 let expected = "a wavelength above the last one, and a value";
                 let place = Location { file, position };
-                return Err(Error::new(place, expected, format!("\"{text}\""), "correct the line"));
+                return Err(Error::new(place, expected, quoted(text), "correct the line"));
             }
         };
         pairs.push(pair);

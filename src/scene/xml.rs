@@ -208,14 +208,14 @@ impl Reader<'_> {
 
 /// Adds a property; a name given twice is an error.
 fn add(object: &mut Object, property: Property) -> Result<()> {
-    let same = |other: &&Property| !property.name.is_empty() && other.name == property.name;
-    if let Some(first) = object.properties.iter().find(same) {
-        return Err(Error::new(
-            &property.location,
-            format!("each parameter once (the first \"{}\" is at {})", property.name, first.location),
-            format!("\"{}\" again", property.name),
-            "remove one of the two",
-        ));
+    let Property { name, location, .. } = &property;
+    let first = match name.is_empty() {
+        true => None,
+        false => object.properties.iter().find(|other| other.name == *name),
+    };
+    if let Some(first) = first {
+        let expected = format!("each parameter once (the first \"{name}\" is at {})", first.location);
+        return Err(Error::new(location, expected, format!("\"{name}\" again"), "remove one of the two"));
     }
     object.properties.push(property);
     Ok(())

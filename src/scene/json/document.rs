@@ -1,6 +1,9 @@
 //! JSON text as a tree that keeps the order of keys, with parameters substituted.
 
-use super::{super::parameters::Parameters, Node};
+use super::{
+    super::{parameters::Parameters, text::quoted},
+    Node,
+};
 use crate::{
     description::{Location, Position},
     error::{Error, Result},
@@ -171,7 +174,7 @@ impl Json {
             Self::Boolean(b) => b.to_string(),
             Self::Integer(i) => i.to_string(),
             Self::Float(x) => x.to_string(),
-            Self::String(s) => format!("\"{s}\""),
+            Self::String(s) => quoted(s),
             Self::Array(items) => format!("a list of {}", items.len()),
             Self::Object(_) => "an object".into(),
         }

@@ -1,6 +1,10 @@
 //! An element with its parameters substituted, its place known, and its attributes asked for by name.
 
-use super::{super::text::Parsed, Parameters, files::Source};
+use super::{
+    super::text::{Parsed, quoted},
+    Parameters,
+    files::Source,
+};
 use crate::{
     description::{Location, nearest},
     error::{Error, Result},
@@ -88,7 +92,7 @@ impl<'s> Element<'s> {
         if let Some(stray) = self.node.children().find(text) {
             let blank = |t: &str| t.len() - t.trim_start().len();
             let start = stray.range().start + stray.text().map_or(0, blank);
-            let found = format!("the text \"{}\"", stray.text().unwrap_or_default().trim());
+            let found = format!("the text {}", quoted(stray.text().unwrap_or_default().trim()));
             let place = self.source.location(start);
             return Err(Error::new(
                 place,
@@ -136,7 +140,7 @@ impl Attribute<'_> {
 
     /// Its value as `parse` reads it.
     pub fn parse<T>(&self, parse: impl FnOnce(&str) -> Parsed<T>) -> Result<T> {
-        let quoted = format!("\"{}\"", self.value);
+        let quoted = quoted(&self.value);
         parse(&self.value).map_err(|m| {
             let found = if m.found == quoted { quoted } else { format!("{} in {quoted}", m.found) };
             let remedy = format!("correct \"{}\"", self.name);
@@ -146,6 +150,6 @@ impl Attribute<'_> {
 
     /// The error for a value that is not as `expected`.
     pub fn wrong(&self, expected: impl Into<String>, remedy: impl Into<String>) -> Error {
-        Error::new(&self.location, expected, format!("{}=\"{}\"", self.name, self.value), remedy)
+        Error::new(&self.location, expected, format!("{}={}", self.name, quoted(&self.value)), remedy)
     }
 }

@@ -17,8 +17,10 @@ pub(super) struct Source {
     /// The file under the name that all spellings of its path share.
     pub identity: PathBuf,
     text: String,
-    /// Where each line starts. Finding a place must not cost a pass over the file.
+    /// Where each line starts. Finding a place must cost no pass over the file, nor over a long line.
     lines: Vec<usize>,
+    /// The bytes that begin no character: they do not count in columns.
+    inner: Vec<usize>,
 }
 
 /// The path that all spellings of `path` share.
@@ -31,7 +33,8 @@ impl Source {
     pub fn read(path: &Path) -> Result<Self> {
         let text = text::of_file(path)?;
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        Ok(Self { file: Arc::new(path.to_owned()), identity: identity(path), text, lines })
+        let inner = (0..text.len()).filter(|at| !text.is_char_boundary(*at)).collect();
+        Ok(Self { file: Arc::new(path.to_owned()), identity: identity(path), text, lines, inner })
     }
 
     /// The file as XML. Document types are refused, and with them entities that expand without end.
@@ -56,7 +59,8 @@ impl Source {
     pub fn location(&self, offset: usize) -> Location {
         let line = self.lines.partition_point(|start| *start <= offset);
         let start = self.lines[line - 1];
-        let column = self.text.get(start..offset).map_or(0, |before| before.chars().count()) + 1;
+        let inner = |end: usize| self.inner.partition_point(|at| *at < end);
+        let column = offset - start - (inner(offset) - inner(start)) + 1;
         let position = Position::Text { line: line as u32, column: column as u32 };
         Location { file: self.file.clone(), position }
     }
@@ -121,8 +125,9 @@ impl Folders {
                     if property.name.ends_with("filename") && Arc::ptr_eq(&property.location.file, file) =>
                 {
                     let elsewhere = self.find(name).filter(|found| *found != self.own.join(&*name));
-                    if let Some(path) = elsewhere.and_then(|path| std::path::absolute(path).ok()) {
-                        *name = path.display().to_string();
+                    let path = elsewhere.and_then(|path| std::path::absolute(path).ok());
+                    if let Some(path) = path.as_deref().and_then(Path::to_str) {
+                        path.clone_into(name);
                     }
                 }
                 _ => {}
