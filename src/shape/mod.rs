@@ -6,9 +6,13 @@
 
 mod area;
 mod cube;
+mod mesh;
+mod obj;
 mod parallelogram;
 mod placement;
+mod ply;
 mod rectangle;
+mod smooth;
 mod sphere;
 mod spherical_rectangle;
 
@@ -19,6 +23,7 @@ use crate::{
     sampling::Stream,
 };
 
+pub use mesh::Mesh;
 pub use parallelogram::{Parallelogram, Parallelograms};
 pub use sphere::Sphere;
 
@@ -104,6 +109,8 @@ pub enum Shape {
     Parallelograms(Parallelograms),
     /// Sphere.
     Sphere(Sphere),
+    /// Obj, ply.
+    Mesh(Mesh),
 }
 
 /// Builds a shape from its parameters; the point `recentre` becomes the origin.
@@ -122,6 +129,8 @@ pub const ROWS: &[ShapeRow] = &[
     ShapeRow { name: "rectangle", build: rectangle::build },
     ShapeRow { name: "cube", build: cube::build },
     ShapeRow { name: "sphere", build: sphere::build },
+    ShapeRow { name: "obj", build: obj::build },
+    ShapeRow { name: "ply", build: ply::build },
 ];
 
 /// Builds the shape that `params` describes. Does not call `finish`: children remain for the scene to read.
@@ -141,6 +150,7 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => p.faces().len(),
             Self::Sphere(_) => 1,
+            Self::Mesh(m) => m.triangle_count(),
         }
     }
 
@@ -149,6 +159,7 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => Primitive::Flat(p.faces()[index].flat()),
             Self::Sphere(s) => Primitive::Ball { center: s.center(), radius: s.radius() },
+            Self::Mesh(m) => Primitive::Flat(m.flat(index)),
         }
     }
 
@@ -159,6 +170,7 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => p.faces()[index].point(hit.u, hit.v),
             Self::Sphere(s) => s.point_near(ray.origin + ray.direction * hit.t),
+            Self::Mesh(m) => m.point(index, hit.u, hit.v),
         }
     }
 
@@ -167,6 +179,7 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => p.area(),
             Self::Sphere(s) => s.area(),
+            Self::Mesh(m) => m.area(),
         }
     }
 
@@ -175,6 +188,7 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => p.sample_area(stream),
             Self::Sphere(s) => s.sample_area(stream),
+            Self::Mesh(m) => m.sample_area(stream),
         }
     }
 
@@ -183,6 +197,7 @@ impl Shape {
         let point = match self {
             Self::Parallelograms(p) => p.sample_toward(reference, stream),
             Self::Sphere(s) => s.sample_toward(reference, stream),
+            Self::Mesh(m) => m.sample_area(stream),
         };
         let density = self.density_toward(reference, &point);
         (density > 0.0 && density.is_finite()).then_some((point, density))
@@ -193,6 +208,7 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => p.density_toward(reference, point),
             Self::Sphere(s) => s.density_toward(reference, point),
+            Self::Mesh(m) => 1.0 / m.area(),
         }
     }
 }

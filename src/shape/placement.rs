@@ -36,4 +36,9 @@ impl Placement {
     pub fn vector(&self, v: DVec3) -> DVec3 {
         self.matrix.transform_vector3(v)
     }
+
+    /// Normals: what stays perpendicular to transformed vectors.
+    pub fn normal(&self, n: DVec3) -> DVec3 {
+        self.matrix.inverse().transpose().transform_vector3(n).normalize_or_zero()
+    }
 }

@@ -9,6 +9,8 @@ use std::sync::Arc;
 
 mod facts;
 mod leaving;
+mod meshes;
+mod timing;
 mod toward;
 mod tracing;
 

@@ -49,21 +49,30 @@ pub struct Tree {
 impl Tree {
     /// Primitives are numbered by their place in the slice.
     pub fn build(primitives: &[Primitive]) -> Self {
-        let boxes: Vec<Aabb> = primitives.iter().map(bound).collect();
-        let bounds = boxes.iter().fold(None, |all: Option<Aabb>, b| Some(all.map_or(*b, |a| a.union(b))));
-        let mut tree = Self {
-            nodes: vec![],
-            packs: vec![],
-            balls: vec![],
-            depth: 0,
-            bounds: bounds.unwrap_or_default(),
-        };
         if primitives.len() <= LIST_LIMIT {
-            tree.fill_list(primitives);
+            Self::build_list(primitives)
         } else {
-            tree.fill_nodes(primitives, &boxes);
+            Self::build_nodes(primitives)
         }
+    }
+
+    pub(super) fn build_list(primitives: &[Primitive]) -> Self {
+        let boxes: Vec<Aabb> = primitives.iter().map(bound).collect();
+        let mut tree = Self::empty(&boxes);
+        tree.fill_list(primitives);
         tree
+    }
+
+    pub(super) fn build_nodes(primitives: &[Primitive]) -> Self {
+        let boxes: Vec<Aabb> = primitives.iter().map(bound).collect();
+        let mut tree = Self::empty(&boxes);
+        tree.fill_nodes(primitives, &boxes);
+        tree
+    }
+
+    fn empty(boxes: &[Aabb]) -> Self {
+        let bounds = boxes.iter().copied().reduce(|all, one| all.union(&one)).unwrap_or_default();
+        Self { nodes: vec![], packs: vec![], balls: vec![], depth: 0, bounds }
     }
 
     /// Least and greatest corner.
@@ -93,7 +102,7 @@ impl Tree {
     }
 }
 
-fn bound(primitive: &Primitive) -> Aabb {
+pub(super) fn bound(primitive: &Primitive) -> Aabb {
     match *primitive {
         Primitive::Flat(flat) => bound_flat(&flat),
         Primitive::Ball { center, radius } => {

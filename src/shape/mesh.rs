@@ -1,0 +1,152 @@
+//! Triangle meshes: what files hold, placed in the world, checked and ready for rays.
+
+use super::{Flat, SurfacePoint, area::AreaTable, parallelogram::flat_error, placement::Placement, smooth};
+use crate::{
+    description::Params,
+    error::{Error, Result},
+    math::{DVec3, Frame, Vec2, Vec3, warp},
+    sampling::Stream,
+};
+use std::path::Path;
+
+/// What a mesh file says, in object space.
+#[derive(Clone, Debug, Default)]
+pub struct MeshData {
+    /// Vertices.
+    pub positions: Vec<DVec3>,
+    /// One for each vertex (null where unknown), or none at all.
+    pub normals: Vec<DVec3>,
+    /// One for each vertex, or none at all.
+    pub uvs: Vec<Vec2>,
+    /// Vertex numbers, all in range.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Triangles in recentred world space.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+    triangles: Vec<[u32; 3]>,
+    areas: AreaTable,
+    /// -1 where the user asked for turned normals.
+    facing: f32,
+}
+
+impl Mesh {
+    /// Reads the parameters every mesh has, and places `data`, read from `file`, by them. As in Mitsuba,
+    /// vertex normals are computed where the file has none, unless `face_normals` is set.
+    pub fn build(params: &Params<'_>, recentre: DVec3, file: &Path, mut data: MeshData) -> Result<Self> {
+        let placement = Placement::read(params, recentre)?;
+        let face_normals = params.boolean("face_normals", false)?;
+        let positions: Vec<Vec3> = data.positions.iter().map(|p| placement.point(*p).as_vec3()).collect();
+        if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
+            let found = format!("vertex {} at {}", index + 1, data.positions[index]);
+            let remedy = "correct the file, or \"to_world\" if that makes it too large";
+            return Err(Error::new(file.display(), "finite coordinates", found, remedy));
+        }
+        drop_degenerate(params, file, &positions, &mut data.triangles)?;
+        let normals = match data.normals.as_slice() {
+            _ if face_normals => vec![],
+            [] => smooth::vertex_normals(&positions, &data.triangles),
+            given => given.iter().map(|n| placement.normal(*n).as_vec3()).collect(),
+        };
+        let areas = AreaTable::new(data.triangles.iter().map(|t| double_area(&positions, t) * 0.5));
+        let facing = if placement.flip_normals { -1.0 } else { 1.0 };
+        Ok(Self { positions, normals, uvs: data.uvs, triangles: data.triangles, areas, facing })
+    }
+
+    /// How many triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Triangle `index` as the ray tracer needs it.
+    #[inline]
+    pub fn flat(&self, index: usize) -> Flat {
+        let [a, b, c] = self.triangles[index].map(|i| self.positions[i as usize]);
+        let (edge_u, edge_v) = (b - a, c - a);
+        let normal = edge_u.as_dvec3().cross(edge_v.as_dvec3()).normalize().as_vec3();
+        Flat { corner: a, edge_u, edge_v, normal, triangle: true }
+    }
+
+    /// The point of triangle `index` at barycentric `u` (second corner), `v` (third corner).
+    #[inline]
+    pub fn point(&self, index: usize, u: f32, v: f32) -> SurfacePoint {
+        let Flat { corner, edge_u, edge_v, normal, .. } = self.flat(index);
+        let (along_u, along_v) = (edge_u * u, edge_v * v);
+        let (uv, tangent) = self.texture(index, u, v, edge_u, edge_v);
+        SurfacePoint {
+            position: corner + (along_u + along_v),
+            error: flat_error(corner, along_u, along_v),
+            normal: normal * self.facing,
+            shading: Frame::along(self.shading_normal(index, u, v, normal) * self.facing, tangent),
+            uv,
+            shape: 0,
+        }
+    }
+
+    /// Interpolated; the geometric one where that comes to nothing.
+    #[inline]
+    fn shading_normal(&self, index: usize, u: f32, v: f32, geometric: Vec3) -> Vec3 {
+        if self.normals.is_empty() {
+            return geometric;
+        }
+        let [a, b, c] = self.triangles[index].map(|i| self.normals[i as usize]);
+        (a * (1.0 - u - v) + b * u + c * v).normalize_or(geometric)
+    }
+
+    /// Texture coordinates, and the direction in which u grows. Without coordinates: (u, v) themselves.
+    #[inline]
+    fn texture(&self, index: usize, u: f32, v: f32, edge_u: Vec3, edge_v: Vec3) -> (Vec2, Vec3) {
+        if self.uvs.is_empty() {
+            return (Vec2::new(u, v), edge_u);
+        }
+        let [a, b, c] = self.triangles[index].map(|i| self.uvs[i as usize]);
+        let (along_u, along_v) = (b - a, c - a);
+        let tangent = (edge_u * along_v.y - edge_v * along_u.y) * along_u.perp_dot(along_v).signum();
+        (a + along_u * u + along_v * v, tangent)
+    }
+
+    /// Area [m^2].
+    pub fn area(&self) -> f32 {
+        self.areas.total() as f32
+    }
+
+    /// Uniform by area.
+    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+        let index = self.areas.sample(stream);
+        let at = warp::to_triangle(stream.square());
+        self.point(index, at.x, at.y)
+    }
+}
+
+fn double_area(positions: &[Vec3], triangle: &[u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|i| positions[i as usize]);
+    (b - a).as_dvec3().cross((c - a).as_dvec3()).length()
+}
+
+/// Takes out triangles without an area, with a warning; an error where none is left.
+fn drop_degenerate(
+    params: &Params<'_>,
+    file: &Path,
+    positions: &[Vec3],
+    triangles: &mut Vec<[u32; 3]>,
+) -> Result<()> {
+    let before = triangles.len();
+    // Normal as f32, so that 1 / area stays finite.
+    triangles.retain(|t| (double_area(positions, t) as f32).is_normal());
+    let dropped = before - triangles.len();
+    if triangles.is_empty() {
+        let found = if before == 0 { "none".into() } else { format!("{before} without area") };
+        let remedy = "give a mesh with at least one proper triangle";
+        return Err(Error::new(file.display(), "triangles", found, remedy));
+    }
+    if dropped > 0 {
+        let text =
+            format!("{}: {dropped} of {before} triangles have no area and are left out", file.display());
+        params.library.warn(params.location(), &text);
+    }
+    Ok(())
+}

@@ -1,0 +1,187 @@
+//! `ply`: Stanford meshes, ascii and binary.
+
+use super::{Mesh, Shape, mesh::MeshData};
+use crate::{
+    description::Params,
+    error::{Error, Result},
+    math::{DVec3, Vec2},
+};
+use ply_rs_bw::{
+    parser::{ParseError, Parser, Reader},
+    ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult},
+};
+use std::{fs::File, io::BufReader, path::Path};
+
+/// Reads `filename`, `flip_tex_coords` and what every mesh has.
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+    let file = params.file("filename")?;
+    let flip = params.boolean("flip_tex_coords", false)?;
+    let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
+    let data = Ply::open(&file, source)?.read(flip)?;
+    Mesh::build(params, recentre, &file, data).map(Shape::Mesh)
+}
+
+/// A vertex: positions, normals, texture coordinates, in the order of `NAMES`.
+#[derive(Clone, Copy)]
+struct Vertex([f64; 8]);
+
+/// All names under which each number of a vertex is known.
+const NAMES: [&[&str]; 8] =
+    [&["x"], &["y"], &["z"], &["nx"], &["ny"], &["nz"], &["u", "s", "texture_u"], &["v", "t", "texture_v"]];
+
+/// A face's corners; none where the list held something else than vertex numbers.
+struct Face(Option<Vec<u32>>);
+
+/// An element of no interest, read over.
+struct Other;
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self([0.0; 8])
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let Some(slot) = NAMES.iter().position(|names| names.contains(&name)) else {
+            return PropertyAccessResult::Ignored;
+        };
+        let Some(value) = scalar(&value) else { return PropertyAccessResult::UnsupportedType };
+        self.0[slot] = value;
+        PropertyAccessResult::Set
+    }
+}
+
+impl PropertyAccess for Face {
+    fn new() -> Self {
+        Self(None)
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if !matches!(name, "vertex_indices" | "vertex_index") {
+            return PropertyAccessResult::Ignored;
+        }
+        self.0 = value.to_u32_list();
+        PropertyAccessResult::Set
+    }
+}
+
+impl PropertyAccess for Other {
+    fn new() -> Self {
+        Self
+    }
+}
+
+fn scalar(value: &Property) -> Option<f64> {
+    Some(match *value {
+        Property::Char(x) => x.into(),
+        Property::UChar(x) => x.into(),
+        Property::Short(x) => x.into(),
+        Property::UShort(x) => x.into(),
+        Property::Int(x) => x.into(),
+        Property::UInt(x) => x.into(),
+        Property::Float(x) => x.into(),
+        Property::Double(x) => x,
+        _ => return None,
+    })
+}
+
+/// An open file whose header has been read.
+struct Ply<'a> {
+    file: &'a Path,
+    reader: Reader<BufReader<File>>,
+    header: Header,
+}
+
+impl<'a> Ply<'a> {
+    fn open(file: &'a Path, source: File) -> Result<Self> {
+        let mut reader = Reader::new(BufReader::new(source));
+        let header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| broken(file, &e))?;
+        Ok(Self { file, reader, header })
+    }
+
+    fn wrong(&self, expected: impl Into<String>, found: impl Into<String>) -> Error {
+        Error::new(self.file.display(), expected, found, "correct the file, or export the mesh again")
+    }
+
+    fn read(mut self, flip: bool) -> Result<MeshData> {
+        let elements: Vec<ElementDef> = self.header.elements.values().cloned().collect();
+        let (mut vertices, mut faces): (Vec<Vertex>, Vec<Face>) = (vec![], vec![]);
+        for element in &elements {
+            self.check(element)?;
+            match element.name.as_str() {
+                "vertex" => vertices = self.payload(element)?,
+                "face" => faces = self.payload(element)?,
+                _ => drop(self.payload::<Other>(element)?),
+            }
+        }
+        let has = |names: &[usize]| {
+            let vertex = elements.iter().find(|e| e.name == "vertex");
+            let given = |slot: &usize| {
+                vertex.is_some_and(|v| NAMES[*slot].iter().any(|n| v.properties.contains_key(*n)))
+            };
+            names.iter().all(given)
+        };
+        let normals = if has(&[3, 4, 5]) { vertices.iter().map(|v| v.triple(3)).collect() } else { vec![] };
+        let uvs = if has(&[6, 7]) { vertices.iter().map(|v| v.uv(flip)).collect() } else { vec![] };
+        let triangles = self.triangles(&faces, vertices.len())?;
+        let data =
+            MeshData { positions: vertices.iter().map(|v| v.triple(0)).collect(), normals, uvs, triangles };
+        match vertices.iter().position(|v| !v.0.iter().all(|x| x.is_finite())) {
+            Some(index) => {
+                Err(self.wrong("finite numbers", format!("{:?} in vertex {index}", vertices[index].0)))
+            }
+            None => Ok(data),
+        }
+    }
+
+    /// Elements of nothing would be read for ever from no bytes at all.
+    fn check(&self, element: &ElementDef) -> Result<()> {
+        let ElementDef { name, count, properties } = element;
+        if properties.is_empty() && *count > 0 {
+            return Err(
+                self.wrong(format!("properties of \"{name}\""), format!("{count} of them without any"))
+            );
+        }
+        let needed: &[&str] = if name == "vertex" { &["x", "y", "z"] } else { &[] };
+        if let Some(missing) = needed.iter().find(|p| !properties.contains_key(**p)) {
+            return Err(self.wrong(format!("a property \"{missing}\" of vertices"), "none"));
+        }
+        Ok(())
+    }
+
+    fn payload<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<Vec<E>> {
+        let read = Parser::<E>::new().read_payload_for_element(&mut self.reader, element, &self.header);
+        read.map_err(|e| broken(self.file, &e))
+    }
+
+    /// Polygons become fans around their first corners.
+    fn triangles(&self, faces: &[Face], vertices: usize) -> Result<Vec<[u32; 3]>> {
+        let mut triangles = Vec::with_capacity(faces.len());
+        for (number, face) in faces.iter().enumerate() {
+            let corners = face.0.as_deref().filter(|c| c.len() >= 3);
+            let Some(corners) = corners.filter(|c| c.iter().all(|i| (*i as usize) < vertices)) else {
+                let expected = format!("three or more vertex numbers below {vertices} in every face");
+                return Err(self.wrong(expected, format!("{:?} in face {number}", face.0)));
+            };
+            triangles.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
+        }
+        Ok(triangles)
+    }
+}
+
+impl Vertex {
+    fn triple(&self, first: usize) -> DVec3 {
+        DVec3::new(self.0[first], self.0[first + 1], self.0[first + 2])
+    }
+
+    fn uv(&self, flip: bool) -> Vec2 {
+        Vec2::new(self.0[6] as f32, if flip { 1.0 - self.0[7] } else { self.0[7] } as f32)
+    }
+}
+
+fn broken(file: &Path, error: &ParseError) -> Error {
+    let line = error.line().map(|l| format!(":{l}")).unwrap_or_default();
+    let found: String =
+        error.to_string().split_whitespace().collect::<Vec<_>>().join(" ").chars().take(300).collect();
+    let place = format!("{}{line}", file.display());
+    Error::new(place, "a well-formed PLY file", found, "correct the file, or export the mesh again")
+}
