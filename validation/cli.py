@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from validation import compare, matrix, references, selftest
+from validation import compare, matrix, references, selftest, truths
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT
@@ -25,6 +25,7 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     add_compare(commands)
     add_matrix(commands)
+    add_closed_forms(commands)
     add_selftest(commands)
     return top
 
@@ -113,3 +114,15 @@ def add_selftest(commands) -> None:
 
 def run_selftest(options) -> bool:
     return selftest.run(effort_of(options))
+
+
+def add_closed_forms(commands) -> None:
+    command = add(commands, "closed-forms", run_closed_forms, "Furnaces, slabs and single scattering against theory.")
+    command.add_argument("--integrators", default="", help="instead of all that apply: any of pt, lt, bdpt, mitsuba")
+    command.add_argument("--only", default="", help="only cases whose name contains this")
+    add_effort(command, Effort(batches=16, spp=256))
+
+
+def run_closed_forms(options) -> bool:
+    methods = tuple(filter(None, options.integrators.split(",")))
+    return all(v.passed for v in truths.run(effort_of(options), methods, options.only))
