@@ -135,6 +135,17 @@ impl Plain {
     }
 }
 
+fn report_sampling(geometry: &Geometry, rays: &[Ray]) {
+    let mut draws = stream(1);
+    let (toward, _) = time(rays, |ray| geometry.sample_toward(6, ray.origin, &mut draws).is_some());
+    let (area, _) = time(rays, |ray| geometry.sample_area(6, &mut draws).position.x > ray.origin.x);
+    let point = geometry.sample_area(6, &mut draws);
+    let (density, _) = time(rays, |ray| geometry.density_toward(6, ray.origin, &point) > 0.0);
+    eprintln!(
+        "a rectangle: sample_toward {toward:.1} ns, density_toward {density:.1} ns, sample_area {area:.1} ns"
+    );
+}
+
 #[test]
 #[ignore = "measures, checks nothing"]
 fn nanoseconds_per_ray() {
@@ -147,8 +158,9 @@ fn nanoseconds_per_ray() {
         &Geometry { tree: Tree::build_nodes(&primitives(&box_of_seven)), ..box_of_seven.clone() },
     );
     report_obvhs("box of 7", &rays, &box_of_seven);
+    report_sampling(&box_of_seven, &rays);
     let mut stream = stream(12);
-    for count in [8, 12, 16, 24, 32, 48] {
+    for count in [8, 16, 32, 48, 64, 96] {
         let many = Geometry::build(
             (0..count)
                 .map(|_| {
