@@ -3,7 +3,7 @@
 use super::{
     Flat, SurfacePoint,
     area::AreaTable,
-    placement::Placement,
+    placement::{Placement, is_in_range},
     spherical_rectangle::{Seen, SphericalRectangle},
 };
 use crate::{
@@ -61,10 +61,10 @@ impl Parallelogram {
         }
     }
 
-    fn is_finite(&self) -> bool {
-        self.area > 0.0
-            && self.area.is_finite()
-            && [self.corner, self.edge_u, self.edge_v, self.normal].iter().all(|v| v.is_finite())
+    /// f32 can hold it.
+    fn fits(&self) -> bool {
+        (self.area as f32).is_normal()
+            && [self.corner, self.edge_u, self.edge_v, self.normal].into_iter().all(is_in_range)
     }
 }
 
@@ -119,7 +119,7 @@ impl Parallelograms {
         let placement = Placement::read(params, recentre)?;
         let grid = Grid::new(&placement, faces);
         let faces: Vec<_> = faces.iter().map(|face| Parallelogram::place(&placement, &grid, face)).collect();
-        if faces.iter().all(Parallelogram::is_finite) {
+        if faces.iter().all(Parallelogram::fits) {
             return Ok(Self::new(faces));
         }
         Err(Error::new(

@@ -1,6 +1,9 @@
 //! `sphere`: centre and radius, under a transform that keeps it a sphere.
 
-use super::{Shape, SurfacePoint, placement::Placement};
+use super::{
+    Shape, SurfacePoint,
+    placement::{Placement, is_in_range},
+};
 use crate::{
     description::Params,
     error::{Error, Result},
@@ -64,7 +67,9 @@ impl Sphere {
             axes: axes.map(|a| a.as_vec3()),
             facing: if inwards { -1.0 } else { 1.0 },
         };
-        let fits = sphere.center.is_finite() && sphere.area().is_normal();
+        let fits = is_in_range(sphere.center)
+            && is_in_range(Vec3::splat(sphere.radius))
+            && sphere.area().is_normal();
         (fits && !uneven && !sheared).then_some(sphere)
     }
 
