@@ -1,18 +1,18 @@
 //! What holds for every surface model, over every model's examples.
 
 use super::*;
+use crate::description::Value;
 use crate::math::{DVec3, warp};
 use crate::sampling::stream::Purpose;
-use crate::testing::{chi_square, significance};
+use crate::testing::{chi_square, object, significance};
 use std::f64::consts::TAU;
 
 const UV: Vec2 = Vec2::new(0.3, 0.6);
 const BOTH: [Transport; 2] = [Transport::Radiance, Transport::Importance];
 
-/// Cells of the sphere: rows even in cosine, columns even in azimuth; and the steps a side within a cell.
+/// Cells of the sphere: rows even in cosine to the y axis, columns even in azimuth around it.
 const ROWS_OF_CELLS: usize = 24;
 const COLUMNS: usize = 48;
-const STEPS: usize = 32;
 
 /// Directions from straight above to near-grazing, on both sides.
 fn incoming() -> Vec<Vec3> {
@@ -29,23 +29,37 @@ fn connectible() -> Vec<Bsdf> {
     examples().into_iter().filter(BsdfModel::is_connectible).collect()
 }
 
-/// The probability that `sample` gives a direction in each cell, by quadrature of the forward density.
-fn expected_shares(bsdf: &Bsdf, wi: Vec3) -> Vec<f64> {
-    let area = 2.0 * TAU / (ROWS_OF_CELLS * COLUMNS * STEPS * STEPS) as f64;
-    let density = |row: usize, column: usize, i: usize| {
-        let along = (row as f32 + ((i / STEPS) as f32 + 0.5) / STEPS as f32) / ROWS_OF_CELLS as f32;
-        let around = (column as f32 + ((i % STEPS) as f32 + 0.5) / STEPS as f32) / COLUMNS as f32;
-        let wo = warp::spherical(2.0 * along - 1.0, TAU as f32 * around);
+/// The probability that `sample` gives a direction in `cell`, by quadrature of the forward density over
+/// `steps` by `steps` points.
+fn expected_share(bsdf: &Bsdf, wi: Vec3, cell: usize, steps: usize) -> f64 {
+    let (row, column) = (cell / COLUMNS, cell % COLUMNS);
+    let density = |i: usize| {
+        let along = (row as f32 + ((i / steps) as f32 + 0.5) / steps as f32) / ROWS_OF_CELLS as f32;
+        let around = (column as f32 + ((i % steps) as f32 + 0.5) / steps as f32) / COLUMNS as f32;
+        // The poles of the grid, where its cells are long and thin, lie in the horizon, away from all lobes.
+        let turned = warp::spherical(2.0 * along - 1.0, TAU as f32 * around);
+        let wo = vec3(turned.y, turned.z, turned.x);
         f64::from(bsdf.evaluate(UV, wi, wo, Transport::Radiance).forward)
     };
-    let cell = |row, column| (0..STEPS * STEPS).map(|i| density(row, column, i)).sum::<f64>() * area;
-    (0..ROWS_OF_CELLS * COLUMNS).map(|i| cell(i / COLUMNS, i % COLUMNS)).collect()
+    let area = 2.0 * TAU / (ROWS_OF_CELLS * COLUMNS * steps * steps) as f64;
+    (0..steps * steps).map(density).sum::<f64>() * area
+}
+
+/// Counts expected of `samples` samples in each cell; where many are, the quadrature is finer than their
+/// noise.
+fn expected_counts(bsdf: &Bsdf, wi: Vec3, samples: f64) -> Vec<f64> {
+    let count = |cell| match samples * expected_share(bsdf, wi, cell, 16) {
+        few if few < 50.0 => few,
+        some if some < 1_000.0 => samples * expected_share(bsdf, wi, cell, 64),
+        _ => samples * expected_share(bsdf, wi, cell, 160),
+    };
+    (0..ROWS_OF_CELLS * COLUMNS).map(count).collect()
 }
 
 fn cell_of(w: Vec3) -> usize {
-    let around = (f64::from(w.y).atan2(f64::from(w.x)) / TAU).rem_euclid(1.0);
+    let around = (f64::from(w.x).atan2(f64::from(w.z)) / TAU).rem_euclid(1.0);
     let index = |x: f64, n: usize| ((x * n as f64) as usize).min(n - 1);
-    index(0.5 + 0.5 * f64::from(w.z), ROWS_OF_CELLS) * COLUMNS + index(around, COLUMNS)
+    index(0.5 + 0.5 * f64::from(w.y), ROWS_OF_CELLS) * COLUMNS + index(around, COLUMNS)
 }
 
 #[test]
@@ -57,15 +71,16 @@ fn every_model_samples_its_density() {
     for bsdf in &models {
         for (number, wi) in incoming.iter().enumerate() {
             let mut stream = stream(number as u64);
-            let mut expected: Vec<_> =
-                expected_shares(bsdf, *wi).iter().map(|p| p * f64::from(samples)).collect();
-            // Samples that end here are the last cell.
-            expected.push((f64::from(samples) - expected.iter().sum::<f64>()).max(0.0));
+            let expected = expected_counts(bsdf, *wi, f64::from(samples));
             let mut observed = vec![0; expected.len()];
             for _ in 0..samples {
-                let sample = bsdf.sample(UV, *wi, Transport::Radiance, &mut stream);
-                observed[sample.map_or(expected.len() - 1, |s| cell_of(s.wo))] += 1;
+                if let Some(sample) = bsdf.sample(UV, *wi, Transport::Radiance, &mut stream) {
+                    observed[cell_of(sample.wo)] += 1;
+                }
             }
+            let (found, total) = (observed.iter().sum::<u64>() as f64, expected.iter().sum::<f64>());
+            let slack = 5.0 * (f64::from(samples) - total).max(1.0).sqrt() + 2e-3 * f64::from(samples);
+            assert!((found - total).abs() < slack, "{bsdf:?} from {wi}: {found} samples for {total}");
             let p = chi_square(&observed, &expected);
             assert!(p > level, "{bsdf:?} from {wi}: p-value {p}");
         }
@@ -224,5 +239,169 @@ fn survival_is_a_probability_and_blind_to_the_direction() {
                 assert_eq!(bsdf.survival(UV, wi), above, "{bsdf:?}");
             }
         }
+    }
+}
+
+fn built(plugin: &str, properties: &[(&str, Value)]) -> Result<Bsdf> {
+    build(&object(plugin, properties), &Library::default())
+}
+
+fn number(x: f64) -> Value {
+    Value::Float(x)
+}
+
+fn text(s: &str) -> Value {
+    Value::String(s.into())
+}
+
+/// Cosine and azimuth of wi and wo for the tables below.
+const DIRECTIONS: [[(f32, f32); 2]; 6] = [
+    [(0.7, 0.4), (0.6, -2.5)],
+    [(0.3, 1.0), (0.5, -1.8)],
+    [(0.8, 0.4), (-0.75, -2.6)],
+    [(-0.6, 2.0), (0.5, -1.3)],
+    [(0.05, 0.0), (0.1, 3.0)],
+    [(-0.9, 1.0), (-0.8, -2.0)],
+];
+
+/// `table` holds Mitsuba 3.9.1's `eval` (scalar_rgb) divided by |cos wo|, at `DIRECTIONS`.
+fn check_against_mitsuba(bsdf: &Bsdf, transport: Transport, table: [[f32; 3]; 6]) {
+    for ([wi, wo], expected) in DIRECTIONS.into_iter().zip(table) {
+        let (wi, wo) = (warp::spherical(wi.0, wi.1), warp::spherical(wo.0, wo.1));
+        let found = bsdf.evaluate(Vec2::ZERO, wi, wo, transport).value;
+        for i in 0..3 {
+            let agree = (found[i] - expected[i]).abs() <= 3e-4 * expected[i] + 1e-9;
+            assert!(agree, "{bsdf:?} {wi} {wo}: {found} for {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn rough_dielectrics_are_those_of_mitsuba() {
+    let grey = |table: [f32; 6]| table.map(|x| [x; 3]);
+    let beckmann = built(
+        "roughdielectric",
+        &[("alpha", number(0.3)), ("int_ior", number(1.5)), ("ext_ior", number(1.0))],
+    )
+    .unwrap();
+    let radiance = [0.094_104_5, 0.151_395, 3.385_9e-6, 0.017_324_1, 0.005_941_42, 0.066_477_8];
+    let importance = [0.094_104_5, 0.151_395, 7.618_27e-6, 0.007_699_6, 0.005_941_42, 0.066_477_8];
+    check_against_mitsuba(&beckmann, Transport::Radiance, grey(radiance));
+    check_against_mitsuba(&beckmann, Transport::Importance, grey(importance));
+    let ggx = built(
+        "roughdielectric",
+        &[
+            ("distribution", text("ggx")),
+            ("alpha_u", number(0.2)),
+            ("alpha_v", number(0.5)),
+            ("int_ior", text("water")),
+        ],
+    )
+    .unwrap();
+    let radiance = [0.049_296_9, 0.015_412_2, 0.348_387, 0.963_568, 3.176_23, 0.026_644_4];
+    let importance = [0.049_296_9, 0.015_412_2, 0.618_702, 0.542_579, 3.176_23, 0.026_644_4];
+    check_against_mitsuba(&ggx, Transport::Radiance, grey(radiance));
+    check_against_mitsuba(&ggx, Transport::Importance, grey(importance));
+}
+
+#[test]
+fn rough_conductors_are_those_of_mitsuba() {
+    let black = [0.0; 3];
+    let check = |properties: &[(&str, Value)], table| {
+        let bsdf = built("roughconductor", properties).unwrap();
+        check_against_mitsuba(&bsdf, Transport::Radiance, table);
+    };
+    let copper = [
+        [1.605_15, 1.048_22, 0.873_985],
+        [1.227_85, 0.823_358, 0.708_477],
+        black,
+        black,
+        [0.010_16, 0.008_648_24, 0.008_262_72],
+        black,
+    ];
+    check(&[("alpha", number(0.3)), ("material", text("Cu"))], copper);
+    let gold = [
+        [1.484_35, 1.232_35, 0.525_227],
+        [0.177_606, 0.149_553, 0.072_694_9],
+        black,
+        black,
+        [5.828_4, 5.496_51, 4.269_91],
+        black,
+    ];
+    let anisotropic = |u, v| [("alpha_u", number(u)), ("alpha_v", number(v))];
+    let ggx = [("distribution", text("ggx")), ("material", text("Au"))];
+    check(&[anisotropic(0.2, 0.5), ggx].concat(), gold);
+    let tinted = [[0.214_14; 3], [1.109_97; 3], black, black, black, black];
+    let metal = [("eta", number(1.2)), ("k", number(2.0)), ("specular_reflectance", number(0.5))];
+    check(&[&anisotropic(0.5, 0.15)[..], &metal[..]].concat(), tinted);
+}
+
+/// Mitsuba 3.9.1's reflectances at these cosines, for an index of 1.5 and for gold.
+#[test]
+fn smooth_interfaces_are_those_of_mitsuba() {
+    let index = [("int_ior", number(1.5)), ("ext_ior", number(1.0))];
+    let chance = |plugin, wi, transport, lobe: fn(&BsdfSample) -> bool| {
+        let bsdf = built(plugin, &index).unwrap();
+        let mut stream = stream(0);
+        (0..1_000).filter_map(|_| bsdf.sample(UV, wi, transport, &mut stream)).find(lobe).unwrap()
+    };
+    let up = warp::spherical(0.8, 0.4);
+    let reflected = chance("dielectric", up, Transport::Radiance, |s| s.wo.z > 0.0);
+    assert!(close(reflected.forward, 0.043_894_73, 1e-5) && close(reflected.weight.x, 1.0, 1e-5));
+    let refracted = chance("dielectric", up, Transport::Radiance, |s| s.wo.z < 0.0);
+    assert!(refracted.wo.distance(vec3(-0.368_424, -0.155_767, -0.916_515)) < 1e-5);
+    assert!(close(refracted.weight.x, 1.0 / 2.25, 1e-5));
+    let from_below = chance("dielectric", -up, Transport::Radiance, |s| s.wo.z > 0.0);
+    assert!(close(from_below.forward, 0.885_858_9, 1e-5) && close(from_below.weight.x, 2.25, 1e-5));
+    let importance = chance("dielectric", -up, Transport::Importance, |s| s.wo.z > 0.0);
+    assert!(close(importance.weight.x, 1.0, 1e-5));
+    let pane = built("thindielectric", &index).unwrap();
+    for (cosine, reflectance) in [(0.8, 0.084_098), (-0.3, 0.344_036_85), (0.1, 0.727_405_55)] {
+        let sample =
+            pane.sample(UV, warp::spherical(cosine, 0.4), Transport::Radiance, &mut stream(0)).unwrap();
+        assert!(close(sample.weight.x, reflectance, 1e-5));
+        assert!(close(pane.null_transmission(UV, cosine).x, 1.0 - reflectance, 1e-5));
+    }
+    let gold = built("conductor", &[("material", text("Au"))]).unwrap();
+    for (cosine, colour) in
+        [(0.8, [0.966_069, 0.801_277, 0.329_045]), (0.1, [0.973_435, 0.919_499, 0.718_891])]
+    {
+        let sample =
+            gold.sample(UV, warp::spherical(cosine, 0.4), Transport::Radiance, &mut stream(0)).unwrap();
+        assert!(close_colors(sample.weight, Spectrum::from(colour), 1e-5));
+    }
+}
+
+#[test]
+fn parameters_out_of_range_are_errors() {
+    let nested = |plugin: &str| ("", Value::Object(object(plugin, &[])));
+    let cases: Vec<(&str, Vec<(&str, Value)>)> = vec![
+        ("diffuse", vec![("reflectance", number(1.5))]),
+        ("diffuse", vec![("reflectanse", number(0.5))]),
+        ("dielectric", vec![("int_ior", number(0.0))]),
+        ("dielectric", vec![("int_ior", text("watter"))]),
+        ("dielectric", vec![("specular_reflectance", number(-0.5))]),
+        ("conductor", vec![("material", text("gold"))]),
+        ("conductor", vec![("material", text("Au")), ("eta", number(1.0))]),
+        ("roughconductor", vec![("alpha_u", number(0.1))]),
+        ("roughconductor", vec![("alpha", number(0.1)), ("alpha_u", number(0.1)), ("alpha_v", number(0.1))]),
+        ("roughconductor", vec![("alpha", number(-0.1))]),
+        ("roughdielectric", vec![("distribution", text("phong"))]),
+        ("twosided", vec![]),
+        ("twosided", vec![nested("dielectric")]),
+        ("twosided", vec![nested("diffuse"), nested("null")]),
+        ("twosided", vec![nested("diffuse"), nested("diffuse"), nested("diffuse")]),
+    ];
+    for (plugin, properties) in cases {
+        assert!(built(plugin, &properties).is_err(), "{plugin} {properties:?}");
+    }
+}
+
+#[test]
+fn a_rough_interface_of_equal_indices_is_a_smooth_one() {
+    for index in [1.0, 1.0 + 1e-6, 1.0 - 1e-6] {
+        let indices = [("int_ior", number(index)), ("ext_ior", number(1.0))];
+        let bsdf = built("roughdielectric", &indices).unwrap();
+        assert!(matches!(bsdf, Bsdf::Dielectric(_)), "{bsdf:?}");
     }
 }
