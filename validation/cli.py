@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
-from validation import compare, matrix, references, selftest
+from validation import compare, contenders, matrix, pane, race, references, selftest, truths
 from validation.compare import Effort
 from validation.failure import Failure
-from validation.places import OUTPUT
+from validation.places import OUTPUT, SCENES
 from validation.scene import open_scene
 
 QUICK = Effort(batches=16, spp=48)
@@ -25,6 +25,9 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(required=True, metavar="COMMAND")
     add_compare(commands)
     add_matrix(commands)
+    add_closed_forms(commands)
+    add_race(commands)
+    add_pane(commands)
     add_selftest(commands)
     return top
 
@@ -113,3 +116,53 @@ def add_selftest(commands) -> None:
 
 def run_selftest(options) -> bool:
     return selftest.run(effort_of(options))
+
+
+def add_closed_forms(commands) -> None:
+    command = add(commands, "closed-forms", run_closed_forms, "Furnaces, slabs and single scattering against theory.")
+    command.add_argument("--integrators", default="", help="instead of all that apply: any of pt, lt, bdpt, mitsuba")
+    command.add_argument("--only", default="", help="only cases whose name contains this")
+    add_effort(command, Effort(batches=16, spp=256))
+
+
+def run_closed_forms(options) -> bool:
+    methods = tuple(filter(None, options.integrators.split(",")))
+    return all(v.passed for v in truths.run(effort_of(options), methods, options.only))
+
+
+def add_timing(command: argparse.ArgumentParser, rounds: int, seconds: float) -> None:
+    """How long to render."""
+    command.add_argument("--rounds", type=int, default=rounds, help="independent renders each (default %(default)s)")
+    command.add_argument("--seconds", type=float, default=seconds, help="time of each (default %(default)s)")
+    command.add_argument("--threads", type=int, default=2, help="of all contenders alike (default %(default)s)")
+
+
+def add_race(commands) -> None:
+    command = add(commands, "race", run_race, "Error against run time, side by side with Mitsuba.")
+    lampboxes = [SCENES / "lampbox_down.xml", SCENES / "lampbox_up.xml"]
+    command.add_argument("scenes", nargs="*", type=Path, default=lampboxes, help="default: both lamp boxes at -D res=256")
+    command.add_argument("--contenders", default="bdpt,pt,scalar_rgb,llvm_ad_rgb", help="the last is the one to beat")
+    command.add_argument("--reference", type=Path, help=".npz with mean and se; default: the contenders' own renders")
+    command.add_argument("--output", type=Path, default=OUTPUT / "race", help="folder for numbers and pictures")
+    add_parameters(command)
+    add_timing(command, rounds=8, seconds=5)
+
+
+def run_race(options) -> bool:
+    reference = race.read_reference(options.reference) if options.reference else None
+    for path in options.scenes:
+        size = {"res": "256"} if path.name.startswith("lampbox") else {}
+        scene = open_scene(path, size | parameters_of(options))
+        rivals = contenders.contenders(scene, tuple(options.contenders.split(",")), options.threads)
+        race.report(scene.name, race.take_turns(rivals, options.rounds, options.seconds), reference, options.output)
+    return True
+
+
+def add_pane(commands) -> None:
+    command = add(commands, "pane", run_pane, "Light through frosted glass only (LW96 fig. 6): bdpt against pt.")
+    command.add_argument("scene", nargs="?", type=Path, default=SCENES / "church.json")
+    add_timing(command, rounds=8, seconds=10)
+
+
+def run_pane(options) -> bool:
+    return pane.run(open_scene(options.scene), options.rounds, options.seconds, options.threads)

@@ -13,7 +13,9 @@ from validation.scene import Scene, changed
 
 TRANSFORM_STEPS = ("scale", "rotate", "translate", "lookat", "matrix")
 OUR_INTEGRATORS = ("bdpt", "pt", "lt")
-NO_ROULETTE = 1000
+ROULETTE = {True: 24, False: 1000}
+"""From which depth Mitsuba ends paths at random, for unlimited and for limited depth. Its default, 5, makes much
+noise; without any, paths of unlimited depth in a closed room would go on until their weight underflows."""
 LLVM_PLACES = (
     "/usr/lib/*/libLLVM.so.19*",
     "/usr/lib/*/libLLVM-19.so*",
@@ -72,8 +74,8 @@ def translate_object(o: dict, folder: Path, size: tuple[int, int] | None) -> dic
     """What `mitsuba.load_dict` needs otherwise than our JSON spells it."""
     out = {key: transform(value) if is_transform(value) else value for key, value in o.items()}
     if o["type"] in OUR_INTEGRATORS:
-        kept = {key: o[key] for key in ("max_depth", "hide_emitters") if key in o}
-        return {"type": "volpath", "rr_depth": o.get("rr_depth", NO_ROULETTE), **kept}
+        kept = {key: o[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in o}
+        return {"type": "volpath", "rr_depth": ROULETTE[o.get("max_depth", -1) < 0], **kept}
     if "filename" in o:
         out["filename"] = str(folder / o["filename"])  # an absolute name stays itself
     if size and o["type"] == "hdrfilm":

@@ -13,9 +13,12 @@ const LEAST_ALPHA: f32 = 1e-4;
 /// Greatest roughness taken: beyond it the surface is no surface any more.
 const GREATEST_ALPHA: f32 = 10.0;
 
+/// How the slopes of the facets are distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
+    /// Normally.
     Beckmann,
+    /// With the long tails of Trowbridge & Reitz.
     Ggx,
 }
 
@@ -35,6 +38,7 @@ pub struct Microfacets {
 }
 
 impl Roughness {
+    /// `distribution`, and `alpha` (0.1 where not given) or both `alpha_u` and `alpha_v`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
         let kinds = [("beckmann", Kind::Beckmann), ("ggx", Kind::Ggx)];
         let kind = params.choice("distribution", Kind::Beckmann, &kinds)?;
@@ -63,6 +67,7 @@ impl Roughness {
         self.alpha[0].max().max(self.alpha[1].max()).max_element().max(LEAST_ALPHA)
     }
 
+    /// The distribution at texture position `uv`.
     #[inline]
     pub fn at(&self, uv: Vec2) -> Microfacets {
         let alpha = |i: usize| self.alpha[i].eval(uv).luminance();
@@ -88,6 +93,7 @@ fn alpha(params: &Params<'_>, name: &'static str) -> Result<Texture> {
 }
 
 impl Microfacets {
+    /// Roughnesses along the tangent and the bitangent; those below Mitsuba's least are raised to it.
     #[inline]
     pub fn new(kind: Kind, alpha_u: f32, alpha_v: f32) -> Self {
         Self { kind, alpha_u: alpha_u.max(LEAST_ALPHA), alpha_v: alpha_v.max(LEAST_ALPHA) }

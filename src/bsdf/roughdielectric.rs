@@ -44,6 +44,7 @@ impl RoughDielectric {
         Ok(Self { smooth, roughness }.into())
     }
 
+    /// Value and densities where `facet` joins the two directions; none where its lobes are all black.
     #[inline]
     fn evaluate_with(
         &self,
@@ -57,28 +58,20 @@ impl RoughDielectric {
         let fresnel = facet.fresnel(cos_i, cos_o.abs());
         let (reflectance, transmittance) = self.smooth.tints.at(uv);
         let (reflect, transmit) = choose(fresnel, reflectance, transmittance)?;
+        // Seen from the other side the same facet has its normal turned, and D is even.
         let above = vec3(wo.x, wo.y, wo.z.abs());
         let masking = microfacets.masking_over_cosine(wi) * microfacets.masking_over_cosine(above);
-        let scattered = microfacets.density(m) * masking;
-        let (from, to) = (
-            microfacets.visible_density_over_cosine(wi, m),
-            // Seen from the other side the same facet has its normal turned, and D is even.
-            microfacets.visible_density_over_cosine(above, m),
-        );
-        if wo.z > 0.0 {
-            return Some(BsdfValue {
-                value: reflectance * (0.25 * fresnel * scattered),
-                forward: 0.25 * reflect * from,
-                backward: 0.25 * reflect * to,
-            });
-        }
-        let widening = interface.ratio * interface.ratio;
-        let jacobian = cos_i * -cos_o / half_square;
+        let (tint, part, chance, spread, widening) = if wo.z > 0.0 {
+            (reflectance, fresnel, reflect, 0.25, 1.0)
+        } else {
+            let spread = cos_i * -cos_o / half_square;
+            (transmittance, 1.0 - fresnel, transmit, spread, interface.ratio * interface.ratio)
+        };
         let scale = if transport == Transport::Radiance { 1.0 } else { widening };
         Some(BsdfValue {
-            value: transmittance * (scale * (1.0 - fresnel) * scattered * jacobian),
-            forward: transmit * from * jacobian * widening,
-            backward: transmit * to * jacobian,
+            value: tint * (scale * part * spread * masking * microfacets.density(m)),
+            forward: chance * spread * widening * microfacets.visible_density_over_cosine(wi, m),
+            backward: chance * spread * microfacets.visible_density_over_cosine(above, m),
         })
     }
 

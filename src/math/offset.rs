@@ -11,6 +11,10 @@ pub const fn gamma(n: u32) -> f32 {
     e / (1.0 - e)
 }
 
+/// Geometry must stay within this [m] of the recentring point: squares of lengths and areas then fit into f32
+/// with room for the sums and products that hierarchies and samplers make of them.
+pub const LARGEST_COORDINATE: f32 = 1e15;
+
 /// How far past an edge a flat primitive still counts as hit, in its own barycentric units, per unit of
 /// (1 + distance / size): neighbours overlap by their rounding errors, so no ray slips through the seam.
 pub const SEAM: f32 = 4.0 * f32::EPSILON;

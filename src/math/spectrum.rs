@@ -9,10 +9,8 @@ pub type Spectrum = Vec3;
 pub trait SpectrumExt {
     /// Rec. 709 luminance.
     fn luminance(self) -> f32;
-    /// No light in any channel.
-    fn is_black(self) -> bool;
     /// Channels equal to the last bit.
-    fn is_grey(self) -> bool;
+    fn is_grey(&self) -> bool;
     /// exp of each channel.
     fn exp_each(self) -> Self;
 }
@@ -23,11 +21,7 @@ impl SpectrumExt for Spectrum {
         self.dot(vec3(0.212_671, 0.715_160, 0.072_169))
     }
     #[inline]
-    fn is_black(self) -> bool {
-        self == Vec3::ZERO
-    }
-    #[inline]
-    fn is_grey(self) -> bool {
+    fn is_grey(&self) -> bool {
         self.x == self.y && self.y == self.z
     }
     #[inline]

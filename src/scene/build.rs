@@ -56,7 +56,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     for child in &sections.emitters {
         builder.emitter(child)?;
     }
-    let view = builder.view(&sections.sensor, overrides)?;
+    let view = builder.view(sections.sensor, overrides)?;
     let integrator = match sections.integrator {
         Some(object) => integrator::build(object, &library)?,
         None => Integrator::default(),

@@ -1,10 +1,16 @@
 //! Triangle meshes: what files hold, placed in the world, checked and ready for rays.
 
-use super::{Flat, SurfacePoint, area::AreaTable, parallelogram::flat_error, placement::Placement, smooth};
+use super::{
+    Flat, SurfacePoint,
+    area::AreaTable,
+    parallelogram::flat_error,
+    placement::{Placement, is_in_range},
+    smooth,
+};
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::{DVec3, Frame, Vec2, Vec3, warp},
+    math::{DVec3, Frame, Vec2, Vec3, offset::LARGEST_COORDINATE, warp},
     sampling::Stream,
 };
 use std::path::Path;
@@ -41,10 +47,15 @@ impl Mesh {
         let placement = Placement::read(params, recentre)?;
         let face_normals = params.boolean("face_normals", false)?;
         let positions: Vec<Vec3> = data.positions.iter().map(|p| placement.point(*p).as_vec3()).collect();
-        if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
+        if let Some(index) = positions.iter().position(|p| !is_in_range(*p)) {
             let found = format!("vertex {} at {}", index + 1, data.positions[index]);
             let remedy = "correct the file, or \"to_world\" if that makes it too large";
-            return Err(Error::new(file.display(), "finite coordinates", found, remedy));
+            return Err(Error::new(
+                file.display(),
+                format!("coordinates below {LARGEST_COORDINATE:e}"),
+                found,
+                remedy,
+            ));
         }
         drop_degenerate(params, file, &positions, &mut data.triangles)?;
         let normals = match data.normals.as_slice() {

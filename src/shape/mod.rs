@@ -192,14 +192,14 @@ impl Shape {
         }
     }
 
-    /// A point for light to come from to `reference`, and its density [1/m^2].
+    /// A point for light to come from to `reference`, and its density [1/m^2]; none where that has no use
+    /// (the point is seen edge-on).
     pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> Option<(SurfacePoint, f32)> {
-        let point = match self {
+        let (point, density) = match self {
             Self::Parallelograms(p) => p.sample_toward(reference, stream),
             Self::Sphere(s) => s.sample_toward(reference, stream),
-            Self::Mesh(m) => m.sample_area(stream),
+            Self::Mesh(m) => (m.sample_area(stream), 1.0 / m.area()),
         };
-        let density = self.density_toward(reference, &point);
         (density > 0.0 && density.is_finite()).then_some((point, density))
     }
 

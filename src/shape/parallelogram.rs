@@ -1,7 +1,10 @@
 //! Parallelograms: rectangles under any affine transform, and the faces of cubes.
 
 use super::{
-    Flat, SurfacePoint, area::AreaTable, placement::Placement, spherical_rectangle::SphericalRectangle,
+    Flat, SurfacePoint,
+    area::AreaTable,
+    placement::{Placement, is_in_range},
+    spherical_rectangle::{Seen, SphericalRectangle},
 };
 use crate::{
     description::Params,
@@ -58,10 +61,10 @@ impl Parallelogram {
         }
     }
 
-    fn is_finite(&self) -> bool {
-        self.area > 0.0
-            && self.area.is_finite()
-            && [self.corner, self.edge_u, self.edge_v, self.normal].iter().all(|v| v.is_finite())
+    /// f32 can hold it.
+    fn fits(&self) -> bool {
+        (self.area as f32).is_normal()
+            && [self.corner, self.edge_u, self.edge_v, self.normal].into_iter().all(is_in_range)
     }
 }
 
@@ -116,7 +119,7 @@ impl Parallelograms {
         let placement = Placement::read(params, recentre)?;
         let grid = Grid::new(&placement, faces);
         let faces: Vec<_> = faces.iter().map(|face| Parallelogram::place(&placement, &grid, face)).collect();
-        if faces.iter().all(Parallelogram::is_finite) {
+        if faces.iter().all(Parallelogram::fits) {
             return Ok(Self::new(faces));
         }
         Err(Error::new(
@@ -153,22 +156,31 @@ impl Parallelograms {
         self.faces[index].point(at.x, at.y)
     }
 
-    /// Uniform in solid angle from `reference` where that is precise, else by area.
-    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> SurfacePoint {
-        match self.spherical.as_ref().and_then(|s| s.seen_from(reference)) {
-            Some(seen) => {
-                let at = seen.sample(stream.square());
-                self.faces[0].point(at.x, at.y)
-            }
-            None => self.sample_area(stream),
-        }
+    /// Uniform in solid angle from `reference` where that is precise, else by area; with its density [1/m^2].
+    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
+        let Some(seen) = self.seen_from(reference) else {
+            return (self.sample_area(stream), 1.0 / self.area());
+        };
+        let at = seen.sample(stream.square());
+        let point = self.faces[0].point(at.x, at.y);
+        (point, solid_angle_density(&seen, reference, &point))
     }
 
     /// Density of `sample_toward` [1/m^2].
     pub fn density_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
-        let seen = self.spherical.as_ref().and_then(|s| s.seen_from(reference));
-        let Some(seen) = seen else { return 1.0 / self.area() };
-        let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
-        measure::solid_angle_to_vertex(direction.dot(point.normal), squared) * seen.density()
+        match self.seen_from(reference) {
+            Some(seen) => solid_angle_density(&seen, reference, point),
+            None => 1.0 / self.area(),
+        }
     }
+
+    fn seen_from(&self, reference: Vec3) -> Option<Seen> {
+        self.spherical.as_ref().and_then(|s| s.seen_from(reference))
+    }
+}
+
+/// Uniform in solid angle, as a density per area [1/m^2].
+fn solid_angle_density(seen: &Seen, reference: Vec3, point: &SurfacePoint) -> f32 {
+    let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
+    measure::solid_angle_to_vertex(direction.dot(point.normal), squared) * seen.density()
 }

@@ -3,7 +3,7 @@
 use crate::{
     description::Params,
     error::Result,
-    math::{DMat4, DVec3},
+    math::{DMat4, DVec3, Vec3, offset::LARGEST_COORDINATE},
 };
 
 /// `to_world` with the recentring point taken off, in f64.
@@ -41,4 +41,9 @@ impl Placement {
     pub fn normal(&self, n: DVec3) -> DVec3 {
         self.matrix.inverse().transpose().transform_vector3(n).normalize_or_zero()
     }
+}
+
+/// Finite, and not so far away that squares of distances overflow.
+pub fn is_in_range(p: Vec3) -> bool {
+    p.abs().max_element() < LARGEST_COORDINATE && p.is_finite()
 }

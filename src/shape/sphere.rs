@@ -1,6 +1,9 @@
 //! `sphere`: centre and radius, under a transform that keeps it a sphere.
 
-use super::{Shape, SurfacePoint, placement::Placement};
+use super::{
+    Shape, SurfacePoint,
+    placement::{Placement, is_in_range},
+};
 use crate::{
     description::Params,
     error::{Error, Result},
@@ -64,7 +67,9 @@ impl Sphere {
             axes: axes.map(|a| a.as_vec3()),
             facing: if inwards { -1.0 } else { 1.0 },
         };
-        let fits = sphere.center.is_finite() && sphere.area().is_normal();
+        let fits = is_in_range(sphere.center)
+            && is_in_range(Vec3::splat(sphere.radius))
+            && sphere.area().is_normal();
         (fits && !uneven && !sheared).then_some(sphere)
     }
 
@@ -125,9 +130,11 @@ impl Sphere {
         (sine_squared < 1.0 - ON_SPHERE).then(|| sine_squared / (1.0 + (1.0 - sine_squared).sqrt()))
     }
 
-    /// Uniform in the visible cone from outside, by area from inside.
-    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> SurfacePoint {
-        let Some(one_minus_cos) = self.cone(reference) else { return self.sample_area(stream) };
+    /// Uniform in the visible cone from outside, by area from inside; with its density [1/m^2].
+    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
+        let Some(one_minus_cos) = self.cone(reference) else {
+            return (self.sample_area(stream), 1.0 / self.area());
+        };
         let u = stream.square();
         let to_reference = reference - self.center;
         let distance = to_reference.length();
@@ -138,12 +145,20 @@ impl Sphere {
         let ratio = (sine_squared / (sine_max * sine_max)).min(1.0);
         let cos_alpha = sine_squared / sine_max + cosine * (1.0 - ratio).sqrt();
         let out = warp::spherical(cos_alpha.clamp(-1.0, 1.0), TAU * u.y);
-        self.point(Frame::around(to_reference / distance).to_world(out))
+        let point = self.point(Frame::around(to_reference / distance).to_world(out));
+        (point, self.cone_density(one_minus_cos, reference, &point))
     }
 
     /// Density of `sample_toward` [1/m^2].
     pub fn density_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
-        let Some(one_minus_cos) = self.cone(reference) else { return 1.0 / self.area() };
+        match self.cone(reference) {
+            Some(one_minus_cos) => self.cone_density(one_minus_cos, reference, point),
+            None => 1.0 / self.area(),
+        }
+    }
+
+    /// Uniform in the cone, as a density per area [1/m^2]; 0 on the far side.
+    fn cone_density(&self, one_minus_cos: f32, reference: Vec3, point: &SurfacePoint) -> f32 {
         let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
         let cosine = direction.dot(point.normal) * self.facing;
         if cosine <= 0.0 {

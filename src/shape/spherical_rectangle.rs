@@ -97,17 +97,21 @@ impl Seen {
         vec2(fraction(x, self.x0, self.x1), fraction(y, self.y0, self.y1))
     }
 
+    /// The paper's x_u and y_v, with f_u = n / d and c_u resolved so that two roots and two quotients remain.
     fn sample_plane(&self, u: f64, v: f64) -> (f64, f64) {
         let (s, c) = (u * self.solid_angle).sin_cos();
-        let [cos_au, sin_au] = multiply([c, s], self.k);
-        let fu = (cos_au * self.b0 - self.b1) / sin_au;
-        let cu = (fu.signum() / (fu * fu + self.b0 * self.b0).sqrt()).clamp(-1.0, 1.0);
-        let xu = (-(cu * self.z0) / (1.0 - cu * cu).sqrt()).clamp(self.x0, self.x1);
-        let squared = xu * xu + self.z0 * self.z0;
-        let (h0, h1) =
-            (self.y0 / (squared + self.y0 * self.y0).sqrt(), self.y1 / (squared + self.y1 * self.y1).sqrt());
+        let [cos_au, d] = multiply([c, s], self.k);
+        let n = cos_au * self.b0 - self.b1;
+        let z_squared = self.z0 * self.z0;
+        // (1 - b0^2) without the subtraction.
+        let rest = z_squared / (z_squared + self.y0 * self.y0);
+        let root = (n * n - rest * d * d).max(0.0).sqrt();
+        let xu = (-self.z0 * d * n.signum() / root).clamp(self.x0, self.x1);
+        let squared = xu * xu + z_squared;
+        let height = |y: f64| y / (squared + y * y).sqrt();
+        let (h0, h1) = (height(self.y0), height(self.y1));
         let hv = h0 + v * (h1 - h0);
-        let yv = hv * squared.sqrt() / (1.0 - hv * hv).max(0.0).sqrt();
+        let yv = hv * (squared / (1.0 - hv * hv).max(0.0)).sqrt();
         (xu, yv.clamp(self.y0, self.y1))
     }
 }

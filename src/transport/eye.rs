@@ -145,7 +145,7 @@ impl<P: Profile> Eye<'_, P> {
         let Some((pool, scale)) = self.cache.pool(self.hero, estimator.joins_per_vertex) else { return };
         for _ in 0..estimator.joins_per_vertex {
             let other = &pool[stream.below(pool.len())];
-            if vertex.edges + other.edges + 1 <= estimator.max_edges {
+            if vertex.edges + other.edges < estimator.max_edges {
                 self.radiance += self.join_with(vertex, other).unwrap_or(Spectrum::ZERO) * scale;
             }
         }

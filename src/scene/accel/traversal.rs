@@ -33,13 +33,14 @@ impl Slabs {
     /// Which boxes the ray meets before `t_max` (a bit each), and where it enters them.
     #[inline(always)]
     fn enter(&self, node: &Node, t_max: f32) -> (u32, Vec4) {
-        let (mut near, mut far) = (Vec4::ZERO, Vec4::splat(t_max));
+        let (mut near, mut far) = (Vec4::ZERO, Vec4::INFINITY);
         for axis in 0..3 {
             let first = self.first[axis] & 1;
             let (a, b) = (node.planes[first][axis], node.planes[1 - first][axis]);
             near = near.max((a - self.origin[axis]) * self.inverse[axis]);
-            far = far.min((b - self.origin[axis]) * self.inverse[axis] * BOX_WIDENING);
+            far = far.min((b - self.origin[axis]) * self.inverse[axis]);
         }
+        let far = (far * BOX_WIDENING).min(Vec4::splat(t_max));
         (near.cmple(far).bitmask(), near)
     }
 }

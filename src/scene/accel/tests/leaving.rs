@@ -96,3 +96,70 @@ fn unmoved_rays_do_hit_their_own_primitive() {
     };
     assert!((0..10_000).filter(|_| own_hit(&mut stream)).count() > 1000);
 }
+
+#[test]
+fn a_box_of_separate_rectangles_holds_its_rays() {
+    let (x, y) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+    for (size, at) in
+        [(1.0, DVec3::Y), (1e-3, DVec3::Y), (0.37, DVec3::new(11.3, -7.1, 3.9)), (1e3, DVec3::ZERO)]
+    {
+        let side = |axis, angle| {
+            let steps = vec![
+                shift(0.0, 0.0, -1.0),
+                turn(axis, angle),
+                scale(size, size, size),
+                TransformStep::Translate(at.into()),
+            ];
+            placed("rectangle", steps)
+        };
+        let sides =
+            [side(x, 0.0), side(x, 90.0), side(x, 180.0), side(x, 270.0), side(y, 90.0), side(y, -90.0)];
+        let geometry = Geometry::build(sides.into());
+        let mut stream = stream(8);
+        let mut leaks = 0;
+        for i in 0..250_000 {
+            let point = geometry.sample_area(i % 6, &mut stream);
+            let direction = warp::to_sphere(stream.square());
+            let direction = direction * direction.dot(point.normal).signum();
+            let origin = leave_surface(point.position, point.error, point.normal, direction);
+            leaks += usize::from(!geometry.occluded(&Ray { origin, direction, t_max: f32::INFINITY }));
+        }
+        eprintln!("box of size {size} at {at}: {leaks} leaks of 250000");
+        assert!(leaks <= 25, "{size} {at}: {leaks}");
+    }
+}
+
+/// f64 recomputation: the point where the ray meets the exact f32 primitive.
+#[test]
+fn positions_are_within_their_error_bound() {
+    for round in 0..600 {
+        let mut stream = stream(round);
+        let size = 10f64.powf(f64::from(stream.uniform()) * 6.0 - 3.0);
+        let shape = any_shape(&mut stream, size, (size * 1e3).min(1e4));
+        let geometry = Geometry::build(vec![shape]);
+        let mut largest = 0f64;
+        for _ in 0..300 {
+            let aim = geometry.sample_area(0, &mut stream);
+            let origin = aim.position + (warp::to_sphere(stream.square()) * 3.0 * size as f32);
+            let ray = ray(origin, aim.position - origin);
+            let Some(hit) = geometry.closest(&ray) else { continue };
+            let point = geometry.surface(&ray, &hit);
+            let distance = distance_from_primitive(&geometry, &hit, point.position.as_dvec3());
+            let bound = f64::from(point.normal.abs().dot(point.error));
+            largest = largest.max(distance / bound);
+            let moved = (point.position - (ray.origin + ray.direction * hit.t)).length();
+            assert!(moved < 1e-4 * size as f32 + 1e-6 * origin.length(), "{moved} {point:?} {ray:?}");
+        }
+        assert!(largest < 1.0, "round {round}: {largest} of the bound");
+    }
+}
+
+fn distance_from_primitive(geometry: &Geometry, hit: &Hit, p: DVec3) -> f64 {
+    match geometry.shapes()[0].primitive(hit.primitive as usize) {
+        Primitive::Flat(flat) => {
+            let normal = flat.edge_u.as_dvec3().cross(flat.edge_v.as_dvec3()).normalize();
+            (p - flat.corner.as_dvec3()).dot(normal).abs()
+        }
+        Primitive::Ball { center, radius } => (p.distance(center.as_dvec3()) - f64::from(radius)).abs(),
+    }
+}

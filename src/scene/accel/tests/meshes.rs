@@ -257,3 +257,22 @@ fn closed_meshes_hold_their_rays() {
         assert!(own == 0 && leaks <= 3, "{size}: {own} {leaks}");
     }
 }
+
+#[test]
+fn meshes_are_sampled_uniformly_by_area() {
+    // Triangles of very different sizes: each gets its share, and the whole is flat in x and y.
+    let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.9 0.05 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+    let geometry = load("a.obj", text, &[]).unwrap();
+    assert!((geometry.area(0) - 1.0).abs() < 1e-6);
+    let mut stream = stream(6);
+    let mut cells = [0u32; 64];
+    let n = 640_000;
+    for _ in 0..n {
+        let p = geometry.sample_area(0, &mut stream).position * 8.0;
+        cells[(p.x as usize).min(7) + 8 * (p.y as usize).min(7)] += 1;
+    }
+    let expected = f64::from(n) / 64.0;
+    let chi2: f64 = cells.iter().map(|c| (f64::from(*c) - expected).powi(2) / expected).sum();
+    // 63 degrees of freedom: mean 63, deviation 11.2.
+    assert!((25.0..125.0).contains(&chi2), "{chi2}");
+}

@@ -70,3 +70,32 @@ fn spheres_seen_from_afar_keep_their_silhouette() {
         assert!((hit.t - truth).abs() < 1e-6 * distance, "{} {truth}", hit.t);
     }
 }
+
+#[test]
+fn coincident_and_very_unequal_primitives_are_found() {
+    let mut stream = stream(21);
+    let mut shapes: Vec<_> = (0..300).map(|_| placed("rectangle", vec![])).collect();
+    shapes.extend((0..300).map(|i| {
+        let size = 10f64.powi(i % 10 - 3);
+        placed(
+            ["rectangle", "cube", "sphere"][i as usize % 3],
+            vec![scale(size, size, size), shift(0.0, 0.0, -2e7)],
+        )
+    }));
+    let alone: Vec<_> = shapes.iter().map(|s| Geometry::build(vec![s.clone()])).collect();
+    let all = Geometry::build(shapes);
+    for _ in 0..2000 {
+        let ray = ray(within(&mut stream, 1.5).as_vec3(), warp::to_sphere(stream.square()));
+        assert_eq!(all.closest(&ray).map(|h| h.t), brute_force(&alone, &ray).map(|w| w.1.t));
+        assert_eq!(all.occluded(&ray), all.closest(&ray).is_some());
+    }
+}
+
+#[test]
+fn what_f32_cannot_hold_is_refused() {
+    for plugin in ["rectangle", "cube", "sphere"] {
+        for step in [scale(1e20, 1e20, 1e20), scale(1e-25, 1e-25, 1e-25), shift(1e20, 0.0, 0.0)] {
+            assert!(shape_of(plugin, &[("to_world", Value::Transform(vec![step]))], DVec3::ZERO).is_err());
+        }
+    }
+}

@@ -1,0 +1,65 @@
+"""One scene with its truth, and the parts that these scenes share."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.scene import Scene
+
+SIZE = 8
+"""Pixels a side: the truth is smooth, so few pixels with many samples tell most."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, the truth (anything that broadcasts to height x width x 3), its methods, its relative effort."""
+
+    scene: Scene
+    truth: np.ndarray | float
+    methods: tuple[str, ...] = ("pt", "bdpt")
+    effort: float = 1
+
+    def image(self) -> np.ndarray:
+        """The truth as an image."""
+        return np.broadcast_to(np.asarray(self.truth, dtype=float), (SIZE, SIZE, 3))
+
+
+def scene(name: str, max_depth: int = -1, **objects) -> Scene:
+    """A scene from its parts."""
+    # Where Mitsuba stands in as the renderer, a late roulette keeps the noise low.
+    integrator = {"type": "volpath", "max_depth": max_depth, "rr_depth": 200}
+    return Scene({"type": "scene", "integrator": integrator, **objects}, name)
+
+
+def camera(origin, target, fov: float, up=(0, 1, 0), **more) -> dict:
+    """A small square image, box filter."""
+    return {
+        "type": "perspective",
+        "fov": fov,
+        "to_world": [{"type": "lookat", "origin": list(origin), "target": list(target), "up": list(up)}],
+        "film": {
+            "type": "hdrfilm",
+            "width": SIZE,
+            "height": SIZE,
+            "pixel_format": "rgb",
+            "rfilter": {"type": "box"},
+        },
+        "sampler": {"type": "independent"},
+        **more,
+    }
+
+
+def medium(sigma_t, albedo, phase: dict) -> dict:
+    """A homogeneous medium; its extinction as a colour within Mitsuba's range, times a scale."""
+    colour = np.broadcast_to(np.asarray(sigma_t, dtype=float), 3)
+    scale = float(colour.max())
+    return {
+        "type": "homogeneous",
+        "sigma_t": {"type": "rgb", "value": [float(c) / scale for c in colour]},
+        "scale": scale,
+        "albedo": float(albedo),
+        "phase": phase,
+    }
+
+
+SKY = {"type": "constant", "radiance": {"type": "rgb", "value": [1, 1, 1]}}

@@ -1,0 +1,48 @@
+"""Furnaces: whatever absorbs nothing, under radiance 1 from everywhere, shows radiance 1 everywhere."""
+
+from validation.closed_forms.case import SKY, Case, camera, medium, scene
+
+ISOTROPIC = {"type": "isotropic"}
+FORWARD = {"type": "hg", "g": 0.8}
+NULL = {"type": "null"}
+GLASS = {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
+WHITE = {"type": "twosided", "material": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [1, 1, 1]}}}
+
+
+def cases() -> list[Case]:
+    """Media from thin to thick, and surfaces."""
+    media = [
+        Case(ball_of_medium(thickness, ISOTROPIC, NULL), 1, effort=min(1, 10 / thickness))
+        for thickness in (0.01, 0.1, 1, 10, 100)
+    ]
+    return [
+        *media,
+        Case(ball_of_medium(10, FORWARD, NULL, "forward"), 1),
+        Case(ball_of_medium(2, ISOTROPIC, GLASS, "in glass"), 1),
+        Case(ball("white sphere", WHITE), 1),
+        Case(ball("glass sphere", GLASS), 1),
+        Case(ball("mirror sphere", {"type": "conductor", "material": "none"}), 1),
+        Case(white_pit(), 1),
+    ]
+
+
+def view() -> dict:
+    """The ball and a little of the sky around it."""
+    return camera((0, 0, 5), (0, 0, 0), 25)
+
+
+def ball(name: str, bsdf: dict, **more):
+    """A unit sphere under the sky."""
+    return scene(f"furnace {name}", sensor=view(), sky=SKY, ball={"type": "sphere", "bsdf": bsdf, **more})
+
+
+def ball_of_medium(thickness: float, phase: dict, bsdf: dict, name: str = ""):
+    """A ball of medium that absorbs nothing, of this optical diameter."""
+    return ball(f"b {thickness:g} {name}".strip(), bsdf, interior=medium(thickness / 2, 1, phase))
+
+
+def white_pit():
+    """Deep interreflection: the inside of an open tube, closed at its far end."""
+    tube = {"type": "cylinder", "p0": [0, 0, -1], "p1": [0, 0, 1], "radius": 0.8, "bsdf": WHITE}
+    floor = {"type": "disk", "to_world": [{"type": "scale", "value": 0.8}, {"type": "translate", "value": [0, 0, -1]}]}
+    return scene("furnace white pit", sensor=view(), sky=SKY, tube=tube, floor={**floor, "bsdf": WHITE})

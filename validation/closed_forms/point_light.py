@@ -1,0 +1,82 @@
+"""Single scattering from a point light in an infinite homogeneous medium: one integral along each camera ray."""
+
+import numpy as np
+from scipy.integrate import quad
+
+from validation.closed_forms.case import SIZE, Case, camera, medium, scene
+
+SIGMA_T = (0.2, 0.5, 1.0)
+ALBEDO = 0.8
+INTENSITY = 10.0
+FOV = 40.0
+LIGHT = np.array([0.0, 1.6, -3.0])
+"""Outside of the view, so that the image has no peak; the camera stands at the origin and looks along -z."""
+SUBPIXELS = np.polynomial.legendre.leggauss(3)
+
+PHASES = {
+    "isotropic": ({"type": "isotropic"}, lambda c: 1 / (4 * np.pi)),
+    "hg 0.7": ({"type": "hg", "g": 0.7}, lambda c: henyey_greenstein(c, 0.7)),
+    "rayleigh": ({"type": "rayleigh"}, lambda c: 3 / (16 * np.pi) * (1 + c * c)),
+}
+
+
+def cases() -> list[Case]:
+    """One scene for each phase function."""
+    return [Case(lit(name, plugin), image(phase), ("pt", "lt", "bdpt")) for name, (plugin, phase) in PHASES.items()]
+
+
+def lit(name: str, phase: dict):
+    """Fog everywhere, a point light, and behind the camera a speck that gives the scene a size."""
+    fog = {"type": "ref", "id": "fog"}
+    black = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0, 0, 0]}}
+    return scene(
+        f"point light {name}",
+        max_depth=2,
+        fog=medium(SIGMA_T, ALBEDO, phase),
+        sensor=camera((0, 0, 0), (0, 0, -1), FOV, medium=fog),
+        light={
+            "type": "point",
+            "position": LIGHT.tolist(),
+            "intensity": {"type": "rgb", "value": [INTENSITY] * 3},
+            "medium": fog,
+        },
+        speck={"type": "sphere", "center": [0, 0, 4], "radius": 0.01, "bsdf": black},
+    )
+
+
+def henyey_greenstein(cosine: float, g: float) -> float:
+    """Per steradian; cosine 1 is forward."""
+    return (1 - g * g) / (4 * np.pi * (1 + g * g - 2 * g * cosine) ** 1.5)
+
+
+def image(phase) -> np.ndarray:
+    """Every pixel: the mean over its area, by Gauss-Legendre quadrature."""
+    nodes, weights = SUBPIXELS
+    pixels = np.zeros((SIZE, SIZE, 3))
+    for y, x in np.ndindex(SIZE, SIZE):
+        for (u, wu), (v, wv) in ((a, b) for a in zip(nodes, weights) for b in zip(nodes, weights)):
+            direction = ray(x + 0.5 + u / 2, y + 0.5 + v / 2)
+            pixels[y, x] += wu * wv / 4 * np.array([radiance(direction, s, phase) for s in SIGMA_T])
+    return pixels
+
+
+def ray(x: float, y: float) -> np.ndarray:
+    """The direction through a point of the film, in pixels from its upper left corner."""
+    slope = np.tan(np.radians(FOV) / 2)
+    direction = np.array([slope * (2 * x / SIZE - 1), slope * (1 - 2 * y / SIZE), -1.0])
+    return direction / np.linalg.norm(direction)
+
+
+def radiance(direction: np.ndarray, sigma_t: float, phase) -> float:
+    """Light scattered once into the camera ray."""
+
+    def source(t: float) -> float:
+        to_point = t * direction - LIGHT
+        distance = np.linalg.norm(to_point)
+        cosine = float(-to_point @ direction) / distance
+        return np.exp(-sigma_t * (t + distance)) * phase(cosine) / distance**2
+
+    nearest = float(LIGHT @ direction)
+    parts = (0, nearest - 1, nearest, nearest + 1, nearest + 5, nearest + 60 / sigma_t)
+    total = sum(quad(source, low, high, epsrel=1e-8)[0] for low, high in zip(parts, parts[1:]))
+    return INTENSITY * ALBEDO * sigma_t * total
