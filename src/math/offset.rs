@@ -53,6 +53,21 @@ pub fn leave_surface(position: Vec3, error: Vec3, normal: Vec3, direction: Vec3)
     )
 }
 
+/// `normal` turned to the side that `direction` leaves to.
+#[inline]
+pub fn side_of(normal: Vec3, direction: Vec3) -> Vec3 {
+    normal * 1f32.copysign(direction.dot(normal))
+}
+
+/// Moves the end of a segment from `origin` off the surface it lies on, along `lift`: the unit normal on the
+/// segment's side, or zero in the open. What the ray tracer computes of the segment (its direction, the
+/// distance to the surface) is rounded in proportion to the coordinates of both ends, whereas
+/// [`leave_surface`] knows one end alone: without this the surface would shadow its own points.
+#[inline]
+pub fn clear_of_end(origin: Vec3, end: Vec3, lift: Vec3) -> Vec3 {
+    end + lift * (gamma(32) * (origin.abs() + end.abs()).max_element())
+}
+
 #[inline]
 fn step_outwards(x: f32, offset: f32) -> f32 {
     if offset > 0.0 {

@@ -32,6 +32,7 @@ pub fn vertex_end<L: Lanes>(
     let (origin, medium) = vertex.depart(scene, towards);
     Some(End {
         origin,
+        lift: vertex.lift(towards),
         medium,
         value,
         forward: scattering.forward,
@@ -49,6 +50,7 @@ pub fn vertex_end<L: Lanes>(
 pub fn link_end<L: Lanes>(link: &Link, medium: MediumIndex, towards: Vec3, hits: f32) -> End<L> {
     End {
         origin: link_origin(link, towards),
+        lift: link.point.map_or(Vec3::ZERO, |point| offset::side_of(point.normal, towards)),
         medium,
         value: link.value / link.connect,
         forward: link.forward * link.start / link.connect,
@@ -78,7 +80,8 @@ pub fn join<P: Profile>(
     distance_squared: f32,
     count: f32,
 ) -> Option<Spectrum> {
-    let (direction, distance, _) = measure::between(a.origin, b.origin)?;
+    let end = offset::clear_of_end(a.origin, b.origin, b.lift);
+    let (direction, distance, _) = measure::between(a.origin, end)?;
     let ray = Ray { origin: a.origin, direction, t_max: distance };
     join_along::<P>(scene, ray, a, b, distance_squared, count)
 }

@@ -139,6 +139,7 @@ impl<P: Profile, S: Splats> Light<'_, P, S> {
         let density = sensor.density(seen.cosine);
         let lens = End {
             origin: sensor.position + seen.direction * (sensor.near / seen.cosine),
+            lift: Vec3::ZERO,
             medium: scene.sensor_medium,
             value: Spectrum::splat(density),
             forward: density,
@@ -175,6 +176,8 @@ fn start_end<P: Profile>(
     };
     Some(End {
         origin,
+        // Never the far end of a join: the lens is.
+        lift: Vec3::ZERO,
         medium: estimator.scene.lights.all[start.light as usize].medium,
         value: emission.value / start.start,
         forward: emission.forward,

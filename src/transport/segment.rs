@@ -3,7 +3,7 @@
 
 use super::{lanes::Lanes, profile::Profile};
 use crate::{
-    math::{Spectrum, Vec3, offset},
+    math::{Spectrum, Vec3, measure, offset},
     medium::MediumIndex,
     sampling::Stream,
     scene::Scene,
@@ -160,6 +160,7 @@ fn pass_through<P: Profile>(
     mut ray: Ray,
     mut medium: MediumIndex,
 ) -> Option<Passage<P::Lanes>> {
+    let end = ray.origin + ray.direction * ray.t_max;
     let mut depth = P::Lanes::splat(0.0);
     let (mut passing, mut tint) = (1.0, Spectrum::ONE);
     loop {
@@ -179,5 +180,11 @@ fn pass_through<P: Profile>(
         depth = depth + sigma_t.scaled(hit.t);
         medium = scene.medium_towards(&point, ray.direction, medium);
         ray = past(&ray, &point);
+        // Crossings are rounded: aimed anew, the segment ends where it should, not in the surface beyond.
+        if ray.t_max < f32::INFINITY
+            && let Some((direction, t_max, _)) = measure::between(ray.origin, end)
+        {
+            ray = Ray { direction, t_max, ..ray };
+        }
     }
 }

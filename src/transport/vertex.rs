@@ -100,6 +100,15 @@ impl<L: Lanes> Vertex<L> {
         }
     }
 
+    /// See [`super::weight::End::lift`].
+    #[inline]
+    pub fn lift(&self, direction: Vec3) -> Vec3 {
+        match &self.site {
+            Site::Medium => Vec3::ZERO,
+            Site::Surface(point) => offset::side_of(point.normal, direction),
+        }
+    }
+
     /// The sum over the strategies that join before this vertex, once the direction density back to the
     /// vertex before is known: reach_{i-1} n_i + D_{i-1}.
     #[inline]

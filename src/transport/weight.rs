@@ -9,6 +9,8 @@ use crate::medium::MediumIndex;
 pub struct End<L> {
     /// Where the joining ray starts.
     pub origin: Vec3,
+    /// Unit normal on the side of `origin`; zero where it lies on no surface.
+    pub lift: Vec3,
     /// The medium it starts in.
     pub medium: MediumIndex,
     /// Throughput times scattering towards the other end.

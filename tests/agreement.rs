@@ -1,0 +1,249 @@
+//! `pt`, `lt`, `bdpt` and every other set of strategies that can make all paths of a scene show the same image:
+//! the weights of the strategies that run sum to one, whichever they are.
+
+mod common;
+
+use common::{
+    Stage,
+    claims::{Claims, Sample},
+    name_of,
+    pieces::*,
+    strategies,
+};
+use serde_json::{Value, json};
+use tyndall::transport::Strategies;
+
+/// What decides which strategies can make all paths of a scene.
+#[derive(Clone, Copy, Default)]
+struct Kind {
+    /// There are point, spot or directional emitters, which no eye walk can meet.
+    points: bool,
+    /// An emitter is in view, which next-event estimation cannot show.
+    emitter_in_view: bool,
+    /// Smooth surfaces stand between eye and emitters.
+    smooth: bool,
+}
+
+/// Every set of strategies that covers all paths of such a scene.
+fn covering(kind: Kind) -> Vec<Strategies> {
+    let bit = |set: u32, i: u32| set >> i & 1 == 1;
+    let sets = (1..16).map(|set| Strategies {
+        hit: bit(set, 0),
+        next_event: bit(set, 1),
+        join: bit(set, 2),
+        lens: bit(set, 3),
+    });
+    sets.filter(|s| covers(*s, kind)).collect()
+}
+
+fn covers(s: Strategies, kind: Kind) -> bool {
+    if kind.smooth {
+        // Over smooth surfaces alone only a walk that meets the emitter gets from one to the other.
+        return s.hit;
+    }
+    let emitters_seen = s.hit || s.lens || !kind.emitter_in_view;
+    let light_of_points = s.next_event || s.lens || !kind.points;
+    let any_light = s.hit || s.next_event || s.lens;
+    emitters_seen && light_of_points && any_light
+}
+
+const SEEDS: u64 = 12;
+
+/// All covering sets against bidirectional path tracing, each with seeds of its own.
+fn all_agree(name: &str, scene: &Value, kind: Kind, samples_per_pixel: u64) {
+    let stage = Stage::new(scene);
+    let mut measured = covering(kind).into_iter().enumerate().map(|(i, set)| {
+        let first = 1000 * i as u64;
+        (set, Sample::of(&stage.renders(set, samples_per_pixel, first..first + SEEDS), stage.width()))
+    });
+    let sets: Vec<(Strategies, Sample)> = measured.by_ref().collect();
+    let (_, all) = sets.iter().find(|(set, _)| *set == Strategies::BDPT).expect("covers everything");
+    let mut claims = Claims::new();
+    for (set, sample) in sets.iter().filter(|(set, _)| *set != Strategies::BDPT) {
+        claims.equal(&format!("{name}: {} against all strategies", name_of(*set)), sample, all);
+    }
+    claims.settle();
+}
+
+/// Fog in a room whose camera looks past a lamp.
+fn foggy_room(fog: Value) -> Vec<(&'static str, Value)> {
+    vec![
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("fog", fog),
+        ("room", room(0.6, Some(named("fog")))),
+        ("lamp", lamp_ball([0.2, 0.3, -0.3], 0.3, rgb(2.0, 3.0, 1.0))),
+    ]
+}
+
+const LAMP_IN_VIEW: Kind = Kind { points: false, emitter_in_view: true, smooth: false };
+
+#[test]
+fn covering_sets_are_as_worked_out_by_hand() {
+    let names = |kind| covering(kind).into_iter().map(name_of).collect::<Vec<_>>();
+    let smooth = Kind { smooth: true, ..LAMP_IN_VIEW };
+    assert_eq!(names(smooth).len(), 8);
+    assert!(names(smooth).iter().all(|name| name.starts_with("hit")));
+    // Whatever contains hit or lens.
+    assert_eq!(names(LAMP_IN_VIEW).len(), 12);
+    assert_eq!(covering(Kind { points: true, ..Kind::default() }).len(), 12);
+    // Whatever contains lens, and hit with next-event estimation.
+    let mixed = names(Kind { points: true, ..LAMP_IN_VIEW });
+    assert_eq!(mixed.len(), 10);
+    assert!(mixed.contains(&"hit+next-event+join".to_owned()) && !mixed.contains(&"hit+join".to_owned()));
+    // Any but the joins alone: they lack the shortest paths.
+    assert_eq!(covering(Kind::default()).len(), 14);
+    assert_eq!(covering(Kind::default()).iter().filter(|s| **s == strategies("join")).count(), 0);
+}
+
+#[test]
+fn in_a_closed_box_of_fog() {
+    let fog = medium(1.0, 0.8, 0.3);
+    all_agree("box of fog", &scene(&foggy_room(fog)), LAMP_IN_VIEW, 64);
+}
+
+#[test]
+fn with_a_hidden_lamp() {
+    let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
+    parts.push(("integrator", json!({"type": "bdpt", "hide_emitters": true})));
+    all_agree("hidden lamp", &scene(&parts), Kind::default(), 64);
+}
+
+#[test]
+fn with_single_scattering_only() {
+    let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
+    parts.push(("integrator", depth(2)));
+    all_agree("two segments", &scene(&parts), LAMP_IN_VIEW, 96);
+}
+
+#[test]
+fn with_paths_of_three_segments() {
+    let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
+    parts.push(("integrator", depth(3)));
+    all_agree("three segments", &scene(&parts), LAMP_IN_VIEW, 96);
+}
+
+#[test]
+fn in_fog_of_three_extinctions() {
+    let fog = medium(rgb(0.2, 1.0, 3.0), rgb(0.9, 0.7, 0.8), -0.2);
+    all_agree("chromatic fog", &scene(&foggy_room(fog)), LAMP_IN_VIEW, 96);
+}
+
+#[test]
+fn around_a_chromatic_cloud_in_a_room() {
+    let parts = [
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("room", room(0.6, None)),
+        ("lamp", lamp_panel([0.0, 0.95, 0.0], 0.5, 3.0)),
+        ("cloud", null_ball([0.0, -0.1, -0.3], 0.6, medium(rgb(4.0, 1.0, 0.2), rgb(0.9, 0.9, 0.5), 0.5))),
+    ];
+    all_agree("chromatic cloud", &scene(&parts), LAMP_IN_VIEW, 96);
+}
+
+#[test]
+fn under_sky_and_sun() {
+    let parts = [
+        ("sensor", camera([0.0, 1.0, 3.5], [0.0, 0.3, 0.0], 8)),
+        ("floor", floor(-0.5, 2.0, 0.5)),
+        ("cloud", null_box([-0.8, -0.3, -0.8], [0.8, 1.0, 0.8], Some(medium(1.5, 0.9, 0.6)))),
+        ("sky", sky(0.6)),
+        ("sun", sun([0.3, -1.0, -0.2], rgb(2.0, 1.5, 1.0))),
+    ];
+    all_agree("sky and sun", &scene(&parts), Kind { points: true, ..LAMP_IN_VIEW }, 128);
+}
+
+#[test]
+fn under_a_sky_in_vacuum() {
+    let parts = [
+        ("sensor", camera([0.0, 1.0, 3.5], [0.0, 0.0, 0.0], 8)),
+        ("floor", floor(-0.5, 2.0, 0.5)),
+        ("stone", json!({"type": "cube", "to_world": place([0.4; 3], [0.0; 3])})),
+        ("sky", sky(rgb(0.5, 0.7, 1.0))),
+    ];
+    all_agree("sky in vacuum", &scene(&parts), LAMP_IN_VIEW, 128);
+}
+
+#[test]
+fn around_a_lamp_in_a_ball_of_fog() {
+    let parts = [
+        ("sensor", camera([0.0, 0.5, 3.5], [0.0, 0.0, 0.0], 8)),
+        ("floor", floor(-1.0, 2.0, 0.5)),
+        ("ball", null_ball([0.0; 3], 0.9, named("fog"))),
+        ("fog", medium(1.5, 0.9, 0.4)),
+        ("lamp", lamp_ball([0.1, 0.1, 0.1], 0.4, 2.0)),
+    ];
+    all_agree("lamp in a ball of fog", &scene(&parts), LAMP_IN_VIEW, 128);
+}
+
+#[test]
+fn through_a_slab_that_only_absorbs() {
+    let parts = [
+        ("sensor", camera([1.8, 0.3, 3.0], [0.0, -0.4, 0.0], 8)),
+        ("floor", floor(-1.0, 2.0, 0.7)),
+        ("slab", null_box([-2.0, -0.2, -2.0], [2.0, 0.2, 2.0], Some(medium(rgb(2.0, 1.0, 0.5), 0.0, 0.0)))),
+        ("lamp", lamp_panel([0.0, 0.9, 0.0], 0.9, 3.0)),
+    ];
+    all_agree("absorbing slab", &scene(&parts), LAMP_IN_VIEW, 192);
+}
+
+#[test]
+fn around_a_glass_ball_of_fog() {
+    let glass = json!({
+        "type": "sphere", "center": [0, -0.2, -0.2], "radius": 0.6,
+        "bsdf": {"type": "dielectric", "int_ior": 1.5}, "interior": medium(2.0, 0.95, 0.3),
+    });
+    let parts = [
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("room", room(0.5, None)),
+        ("lamp", lamp_panel([0.0, 0.9, 0.0], 0.7, 2.0)),
+        ("glass", glass),
+    ];
+    all_agree("glass ball of fog", &scene(&parts), Kind { smooth: true, ..LAMP_IN_VIEW }, 128);
+}
+
+#[test]
+fn behind_a_thin_pane_in_fog() {
+    let pane = json!({
+        "type": "rectangle", "to_world": place([0.8, 0.8, 1.0], [0.0, 0.0, 0.2]),
+        "bsdf": {"type": "thindielectric"},
+    });
+    let mut parts = foggy_room(medium(0.7, 0.8, 0.3));
+    parts.push(("pane", pane));
+    all_agree("thin pane", &scene(&parts), Kind { smooth: true, ..LAMP_IN_VIEW }, 128);
+}
+
+#[test]
+fn with_rough_metal_in_fog() {
+    let ball = json!({
+        "type": "sphere", "center": [-0.3, -0.4, -0.3], "radius": 0.5,
+        "bsdf": {"type": "roughconductor", "material": "Au", "alpha": 0.3},
+    });
+    let mut parts = foggy_room(medium(0.5, 0.8, 0.0));
+    parts.push(("ball", ball));
+    all_agree("rough metal", &scene(&parts), LAMP_IN_VIEW, 128);
+}
+
+#[test]
+fn under_emitters_of_every_kind() {
+    let parts = [
+        ("sensor", camera([0.0, 0.6, 3.2], [0.0, 0.2, 0.0], 8)),
+        ("floor", floor(-0.6, 2.0, 0.5)),
+        ("cloud", null_box([-0.8, -0.4, -0.8], [0.8, 0.8, 0.8], Some(medium(1.2, 0.9, 0.3)))),
+        ("sky", sky(0.1)),
+        ("sun", sun([0.3, -1.0, -0.2], 0.6)),
+        ("point", point([1.2, 0.8, 0.5], rgb(1.0, 0.5, 0.5))),
+        ("spot", spot([-1.2, 1.4, 0.8], [0.0, 0.0, 0.0], rgb(2.0, 4.0, 2.0))),
+        ("lamp", lamp_panel([0.0, 1.2, 0.0], 0.4, rgb(1.0, 1.0, 2.0))),
+    ];
+    all_agree("every kind", &scene(&parts), Kind { points: true, ..LAMP_IN_VIEW }, 128);
+}
+
+#[test]
+fn with_points_alone_in_fog() {
+    let parts = [
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("room", room(0.5, Some(medium(0.8, 0.9, 0.5)))),
+        ("point", point([0.4, 0.5, -0.2], 0.5)),
+        ("spot", spot([-0.6, 0.6, 0.2], [0.2, -0.5, -0.6], 2.0)),
+    ];
+    all_agree("points in fog", &scene(&parts), Kind { points: true, ..Kind::default() }, 128);
+}

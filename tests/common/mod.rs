@@ -1,0 +1,99 @@
+//! Shared by the integration tests: scenes as JSON, renders of them, and claims that are judged together.
+#![allow(dead_code, reason = "every test program uses its own part of this")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
+
+pub mod claims;
+pub mod pieces;
+
+use serde_json::Value;
+use tempfile::TempDir;
+use tyndall::{
+    math::Spectrum,
+    render::{self, Settings, budget::Budget},
+    scene::{
+        self,
+        build::{self, Overrides, Setup},
+    },
+    transport::{Options, Strategies, profile::ProfileName},
+};
+
+/// A scene that is loaded and ready to be rendered again and again.
+pub struct Stage {
+    /// What the library made of it.
+    pub setup: Setup,
+    /// The code that renders it.
+    pub profile: ProfileName,
+}
+
+impl Stage {
+    /// Loads a scene given as JSON.
+    pub fn new(scene: &Value) -> Self {
+        Self::with_files(scene, &[])
+    }
+
+    /// Loads a scene given as JSON, with the files it names beside it.
+    pub fn with_files(scene: &Value, files: &[(&str, &str)]) -> Self {
+        let folder = TempDir::new().unwrap();
+        for (name, text) in files {
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
+        let path = folder.path().join("scene.json");
+        std::fs::write(&path, scene.to_string()).unwrap();
+        let root = scene::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let setup = build::build(&root, Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+        let profile = ProfileName::leanest(build::needs(&setup.scene));
+        Self { setup, profile }
+    }
+
+    /// The same with the code that has everything.
+    pub fn with_everything(self) -> Self {
+        Self { profile: ProfileName::Everything, ..self }
+    }
+
+    /// Renders an image; depth and visibility of emitters are the scene's.
+    pub fn render(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Vec<Spectrum> {
+        let Setup { scene, film, integrator, .. } = &self.setup;
+        let (max_depth, hide_emitters) = (integrator.max_depth, integrator.hide_emitters);
+        let options = Options { strategies, max_depth, hide_emitters, seed };
+        let budget = Budget { samples_per_pixel: Some(samples_per_pixel), time: None };
+        let settings = Settings { options, budget, seed, profile: self.profile };
+        render::render(scene, film, &settings, &mut |_| {}).pixels
+    }
+
+    /// Renders one image per seed.
+    pub fn renders(
+        &self,
+        strategies: Strategies,
+        samples_per_pixel: u64,
+        seeds: std::ops::Range<u64>,
+    ) -> Vec<Vec<Spectrum>> {
+        seeds.map(|seed| self.render(strategies, samples_per_pixel, seed)).collect()
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> usize {
+        self.setup.film.width as usize
+    }
+}
+
+/// Renders one image of a scene given as JSON.
+pub fn render(scene: &Value, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Vec<Spectrum> {
+    Stage::new(scene).render(strategies, samples_per_pixel, seed)
+}
+
+/// The strategies named in `names`, such as "hit+lens".
+pub fn strategies(names: &str) -> Strategies {
+    let has = |name| names.split('+').any(|n| n == name);
+    let chosen =
+        Strategies { hit: has("hit"), next_event: has("next-event"), join: has("join"), lens: has("lens") };
+    assert_eq!(name_of(chosen).split('+').count(), names.split('+').count(), "misspelt: {names}");
+    chosen
+}
+
+/// The reverse of [`strategies`].
+pub fn name_of(strategies: Strategies) -> String {
+    let Strategies { hit, next_event, join, lens } = strategies;
+    let all = [(hit, "hit"), (next_event, "next-event"), (join, "join"), (lens, "lens")];
+    let names: Vec<&str> = all.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
+    names.join("+")
+}
