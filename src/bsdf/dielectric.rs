@@ -89,7 +89,7 @@ impl BsdfModel for Dielectric {
         if wi.z == 0.0 {
             return None;
         }
-        let interface = self.interfaces.from_side(wi.z);
+        let interface = self.interfaces.seen_from(wi.z);
         let fresnel = interface.reflectance(wi.z.abs());
         let (reflectance, transmittance) = self.tints.at(uv);
         let (reflect, transmit) = choose(fresnel, reflectance, transmittance)?;

@@ -32,7 +32,7 @@ impl Interfaces {
 
     /// As seen from a direction at signed `cosine` to the normal.
     #[inline]
-    pub fn from_side(&self, cosine: f32) -> Interface {
+    pub fn seen_from(&self, cosine: f32) -> Interface {
         if cosine > 0.0 { self.outside } else { self.inside }
     }
 }
@@ -75,6 +75,13 @@ impl Interface {
         let cosine = self.refracted_cosine(w.z)?;
         let bent = vec3(-w.x / self.ratio, -w.y / self.ratio, -cosine.copysign(w.z));
         Some(bent.normalize())
+    }
+
+    /// The same as seen from the far side.
+    #[inline]
+    pub fn reversed(&self) -> Self {
+        let Self { ratio, excess } = *self;
+        Self { ratio: 1.0 / ratio, excess: -excess / (ratio * ratio) }
     }
 
     /// True if the far side has the larger index: there is no total reflection, and Fresnel's reflectance

@@ -5,19 +5,29 @@
 //! angle [1/sr]: `forward` is that of `wo` given `wi`, `backward` that of `wi` given `wo`. For a Dirac lobe
 //! they are the discrete probabilities of choosing that lobe.
 
+mod conductor;
 mod dielectric;
 mod diffuse;
 mod fresnel;
 mod index;
+mod metals;
+mod microfacet;
 mod null;
+mod roughconductor;
+mod roughdielectric;
 #[cfg(test)]
 mod tests;
 mod thindielectric;
+mod twosided;
 
+pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use null::Null;
+pub use roughconductor::RoughConductor;
+pub use roughdielectric::RoughDielectric;
 pub use thindielectric::ThinDielectric;
+pub use twosided::TwoSided;
 
 use crate::description::{Library, Object, Params, Row, build_by_row};
 use crate::error::Result;
@@ -48,6 +58,14 @@ pub struct BsdfValue {
 impl BsdfValue {
     /// No scattering between the two directions.
     pub const ZERO: Self = Self { value: Spectrum::ZERO, forward: 0.0, backward: 0.0 };
+
+    /// The sample of `wo` that has this value and these densities; none where it cannot have been drawn.
+    #[inline]
+    fn sampled(self, wo: Vec3) -> Option<BsdfSample> {
+        let Self { value, forward, backward } = self;
+        let weight = value * (wo.z.abs() / forward);
+        (forward > 0.0).then_some(BsdfSample { wo, weight, forward, backward, dirac: false })
+    }
 }
 
 /// A sampled direction.
@@ -182,6 +200,10 @@ bsdfs! {
     "null" => Null,
     "dielectric" => Dielectric,
     "thindielectric" => ThinDielectric,
+    "roughdielectric" => RoughDielectric,
+    "conductor" => Conductor,
+    "roughconductor" => RoughConductor,
+    "twosided" => TwoSided,
 }
 
 /// Builds the surface model that `object` describes.

@@ -1,4 +1,4 @@
-//! A weighted sum of two phase functions: Mitsuba's `blendphase`.
+//! A weighted sum of two phase functions: Mitsuba's `blendphase` (P03 eq. 3, of any two).
 
 use super::{Phase, PhaseModel, build};
 use crate::description::Params;

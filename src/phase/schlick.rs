@@ -39,7 +39,7 @@ impl Schlick {
 
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
-        [0.0, 1e-9, 5e-5, 0.5, -0.8, 0.99, -0.999].map(Self::new).to_vec()
+        [0.0, 1e-9, 5e-5, 0.025, 0.5, -0.8, 0.99, -0.999].map(Self::new).to_vec()
     }
 }
 

@@ -1,18 +1,17 @@
 //! What holds for every surface model, over every model's examples.
 
+mod mitsuba;
+mod parameters;
+mod sampling;
+
 use super::*;
+use crate::description::Value;
 use crate::math::{DVec3, warp};
 use crate::sampling::stream::Purpose;
-use crate::testing::{chi_square, significance};
-use std::f64::consts::TAU;
+use crate::testing::object;
 
 const UV: Vec2 = Vec2::new(0.3, 0.6);
 const BOTH: [Transport; 2] = [Transport::Radiance, Transport::Importance];
-
-/// Cells of the sphere: rows even in cosine, columns even in azimuth; and the steps a side within a cell.
-const ROWS_OF_CELLS: usize = 24;
-const COLUMNS: usize = 48;
-const STEPS: usize = 32;
 
 /// Directions from straight above to near-grazing, on both sides.
 fn incoming() -> Vec<Vec3> {
@@ -27,49 +26,6 @@ fn stream(index: u64) -> Stream {
 
 fn connectible() -> Vec<Bsdf> {
     examples().into_iter().filter(BsdfModel::is_connectible).collect()
-}
-
-/// The probability that `sample` gives a direction in each cell, by quadrature of the forward density.
-fn expected_shares(bsdf: &Bsdf, wi: Vec3) -> Vec<f64> {
-    let area = 2.0 * TAU / (ROWS_OF_CELLS * COLUMNS * STEPS * STEPS) as f64;
-    let density = |row: usize, column: usize, i: usize| {
-        let along = (row as f32 + ((i / STEPS) as f32 + 0.5) / STEPS as f32) / ROWS_OF_CELLS as f32;
-        let around = (column as f32 + ((i % STEPS) as f32 + 0.5) / STEPS as f32) / COLUMNS as f32;
-        let wo = warp::spherical(2.0 * along - 1.0, TAU as f32 * around);
-        f64::from(bsdf.evaluate(UV, wi, wo, Transport::Radiance).forward)
-    };
-    let cell = |row, column| (0..STEPS * STEPS).map(|i| density(row, column, i)).sum::<f64>() * area;
-    (0..ROWS_OF_CELLS * COLUMNS).map(|i| cell(i / COLUMNS, i % COLUMNS)).collect()
-}
-
-fn cell_of(w: Vec3) -> usize {
-    let around = (f64::from(w.y).atan2(f64::from(w.x)) / TAU).rem_euclid(1.0);
-    let index = |x: f64, n: usize| ((x * n as f64) as usize).min(n - 1);
-    index(0.5 + 0.5 * f64::from(w.z), ROWS_OF_CELLS) * COLUMNS + index(around, COLUMNS)
-}
-
-#[test]
-fn every_model_samples_its_density() {
-    let models = connectible();
-    let incoming = incoming();
-    let level = significance(models.len() * incoming.len());
-    let samples = 50_000;
-    for bsdf in &models {
-        for (number, wi) in incoming.iter().enumerate() {
-            let mut stream = stream(number as u64);
-            let mut expected: Vec<_> =
-                expected_shares(bsdf, *wi).iter().map(|p| p * f64::from(samples)).collect();
-            // Samples that end here are the last cell.
-            expected.push((f64::from(samples) - expected.iter().sum::<f64>()).max(0.0));
-            let mut observed = vec![0; expected.len()];
-            for _ in 0..samples {
-                let sample = bsdf.sample(UV, *wi, Transport::Radiance, &mut stream);
-                observed[sample.map_or(expected.len() - 1, |s| cell_of(s.wo))] += 1;
-            }
-            let p = chi_square(&observed, &expected);
-            assert!(p > level, "{bsdf:?} from {wi}: p-value {p}");
-        }
-    }
 }
 
 /// Agreement to `tolerance` relative, or of two numbers that are both next to nothing.
@@ -193,9 +149,28 @@ fn extremes() -> Vec<Vec3> {
     all
 }
 
+/// The smoothest rough surfaces, and the weakest rough interface, that there are.
+fn sharp() -> Vec<Bsdf> {
+    let mut all = Vec::new();
+    for kind in ["beckmann", "ggx"] {
+        let rough = |plugin, more: (&str, Value)| {
+            built(plugin, &[("distribution", text(kind)), ("alpha", number(0.0)), more]).unwrap()
+        };
+        all.push(rough("roughconductor", ("material", text("Ag"))));
+        all.push(rough("roughdielectric", ("int_ior", number(1.5))));
+        let alpha = ("alpha", number(1.0));
+        let indices = [("int_ior", number(1.000_02)), ("ext_ior", number(1.0))];
+        all.push(
+            built("roughdielectric", &[&[("distribution", text(kind)), alpha][..], &indices].concat())
+                .unwrap(),
+        );
+    }
+    all
+}
+
 #[test]
 fn extreme_directions_give_finite_numbers() {
-    for bsdf in examples() {
+    for bsdf in examples().into_iter().chain(sharp()) {
         for wi in extremes() {
             for transport in BOTH {
                 let mut stream = stream(5);
@@ -225,4 +200,16 @@ fn survival_is_a_probability_and_blind_to_the_direction() {
             }
         }
     }
+}
+
+fn built(plugin: &str, properties: &[(&str, Value)]) -> Result<Bsdf> {
+    build(&object(plugin, properties), &Library::default())
+}
+
+fn number(x: f64) -> Value {
+    Value::Float(x)
+}
+
+fn text(s: &str) -> Value {
+    Value::String(s.into())
 }

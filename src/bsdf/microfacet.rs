@@ -1,0 +1,214 @@
+//! Distributions of microfacet normals, their shadowing and the sampling of the visible ones (Walter et al.
+//! 2007; Heitz 2018). All in a shading frame turned so that the direction in question has z > 0.
+
+use crate::description::Params;
+use crate::error::{Error, Result};
+use crate::math::{SpectrumExt, Vec2, Vec3, vec3};
+use crate::texture::{self, Texture};
+use std::f32::consts::{PI, TAU};
+
+/// Mitsuba's least roughness: below it the peak leaves what an f32 direction can resolve.
+const LEAST_ALPHA: f32 = 1e-4;
+
+/// Greatest roughness taken: beyond it the surface is no surface any more.
+const GREATEST_ALPHA: f32 = 10.0;
+
+/// How the slopes of the facets are distributed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Normally.
+    Beckmann,
+    /// With the long tails of Trowbridge & Reitz.
+    Ggx,
+}
+
+/// Roughness as given in a scene: per direction of the shading frame, over the surface.
+#[derive(Clone, Debug)]
+pub struct Roughness {
+    kind: Kind,
+    alpha: [Texture; 2],
+}
+
+/// A distribution at one point of a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Microfacets {
+    kind: Kind,
+    alpha_u: f32,
+    alpha_v: f32,
+}
+
+impl Roughness {
+    /// `distribution`, and `alpha` (0.1 where not given) or both `alpha_u` and `alpha_v`.
+    pub fn build(params: &Params<'_>) -> Result<Self> {
+        let kinds = [("beckmann", Kind::Beckmann), ("ggx", Kind::Ggx)];
+        let kind = params.choice("distribution", Kind::Beckmann, &kinds)?;
+        if !params.boolean("sample_visible", true)? {
+            let place = params.property("sample_visible").map_or(params.location(), |p| &p.location);
+            params.library.warn(place, "visible normals are sampled all the same: it changes noise only");
+        }
+        let anisotropic = [params.has("alpha_u"), params.has("alpha_v")];
+        let alpha = match (params.has("alpha"), anisotropic) {
+            (_, [false, false]) => {
+                let alpha = alpha(params, "alpha")?;
+                [alpha.clone(), alpha]
+            }
+            (false, [true, true]) => [alpha(params, "alpha_u")?, alpha(params, "alpha_v")?],
+            _ => {
+                let expected = "either \"alpha\" or both \"alpha_u\" and \"alpha_v\"";
+                let found = "another choice of them";
+                return Err(Error::new(params.location(), expected, found, "give one or the other"));
+            }
+        };
+        Ok(Self { kind, alpha })
+    }
+
+    /// The largest roughness anywhere.
+    pub fn max(&self) -> f32 {
+        self.alpha[0].max().max(self.alpha[1].max()).max_element().max(LEAST_ALPHA)
+    }
+
+    /// The distribution at texture position `uv`.
+    #[inline]
+    pub fn at(&self, uv: Vec2) -> Microfacets {
+        let alpha = |i: usize| self.alpha[i].eval(uv).luminance();
+        Microfacets::new(self.kind, alpha(0), alpha(1))
+    }
+
+    #[cfg(test)]
+    pub fn examples() -> Vec<Self> {
+        let alphas = [(0.5, 0.5), (0.12, 0.12), (0.2, 0.6), (1.0, 1.0)];
+        let texture = |x| Texture::constant(crate::math::Spectrum::splat(x));
+        let with = |kind| alphas.map(|(u, v)| Self { kind, alpha: [texture(u), texture(v)] });
+        [Kind::Beckmann, Kind::Ggx].into_iter().flat_map(with).collect()
+    }
+}
+
+fn alpha(params: &Params<'_>, name: &'static str) -> Result<Texture> {
+    let texture = texture::parameter(params, name, 0.1)?;
+    let max = texture.max().max_element();
+    if max <= GREATEST_ALPHA {
+        return Ok(texture);
+    }
+    Err(params.complain(name, format!("a roughness from 0 to {GREATEST_ALPHA}"), max.to_string()))
+}
+
+impl Microfacets {
+    /// Roughnesses along the tangent and the bitangent; those below Mitsuba's least are raised to it.
+    #[inline]
+    pub fn new(kind: Kind, alpha_u: f32, alpha_v: f32) -> Self {
+        Self { kind, alpha_u: alpha_u.max(LEAST_ALPHA), alpha_v: alpha_v.max(LEAST_ALPHA) }
+    }
+
+    /// D(m) [1/sr] of the unit normal `m`; 0 unless m.z > 0.
+    #[inline]
+    pub fn density(&self, m: Vec3) -> f32 {
+        self.density_as(self.kind, m)
+    }
+
+    #[inline]
+    fn density_as(&self, kind: Kind, m: Vec3) -> f32 {
+        if m.z <= 0.0 {
+            return 0.0;
+        }
+        let (x, y, square) = (m.x / self.alpha_u, m.y / self.alpha_v, m.z * m.z);
+        let slope = x * x + y * y;
+        let scale = PI * self.alpha_u * self.alpha_v;
+        match kind {
+            Kind::Ggx => 1.0 / (scale * (slope + square) * (slope + square)),
+            // Beyond 80 the exponential is below 1e-34, and further on it would be 0/0.
+            Kind::Beckmann if slope > 80.0 * square => 0.0,
+            Kind::Beckmann => (-slope / square).exp() / (scale * square * square),
+        }
+    }
+
+    /// Smith's masking G1 divided by the cosine v.z, which has a limit at grazing; v.z > 0 and `m` in front.
+    #[inline]
+    pub fn masking_over_cosine(&self, v: Vec3) -> f32 {
+        match self.kind {
+            Kind::Ggx => 2.0 / (v.z + self.stretched_length(v)),
+            Kind::Beckmann => self.beckmann_masking_over_cosine(v),
+        }
+    }
+
+    /// Walter et al. 2007, sec. 5.2: a rational fit, which Mitsuba uses too.
+    #[inline]
+    fn beckmann_masking_over_cosine(&self, v: Vec3) -> f32 {
+        let width = (self.alpha_u * v.x).hypot(self.alpha_v * v.y);
+        if v.z >= 1.6 * width {
+            return 1.0 / v.z;
+        }
+        let a = v.z / width;
+        (3.535 + 2.181 * a) / ((1.0 + (2.276 + 2.577 * a) * a) * width)
+    }
+
+    /// Length of `v` in the frame in which the GGX distribution is a unit hemisphere.
+    #[inline]
+    fn stretched_length(&self, v: Vec3) -> f32 {
+        vec3(self.alpha_u * v.x, self.alpha_v * v.y, v.z).length()
+    }
+
+    /// Density [1/sr] of `sample_visible` at the normal `m` seen from `v`, divided by their cosine v.m
+    /// (Heitz 2018, eq. 3).
+    #[inline]
+    pub fn visible_density_over_cosine(&self, v: Vec3, m: Vec3) -> f32 {
+        2.0 * self.density_as(Kind::Ggx, m) / (v.z + self.stretched_length(v))
+    }
+
+    /// A normal that `v` (z > 0) sees, distributed as the visible normals of GGX (Heitz 2018, sec. 4).
+    ///
+    /// Beckmann's normals are drawn from GGX's of the same roughness: their ratio has no pole anywhere (at
+    /// most 4/e), the sampling is exact for its own density, and no error function has to be inverted.
+    #[inline]
+    pub fn sample_visible(&self, v: Vec3, u: Vec2) -> Vec3 {
+        let stretched = vec3(self.alpha_u * v.x, self.alpha_v * v.y, v.z).normalize();
+        let across = vec3(-stretched.y, stretched.x, 0.0).try_normalize().unwrap_or(Vec3::X);
+        let upwards = stretched.cross(across);
+        let (sine, cosine) = (TAU * u.y).sin_cos();
+        let radius = u.x.sqrt();
+        let (a, b) = (radius * cosine, radius * sine);
+        let share = 0.5 * (1.0 + stretched.z);
+        let b = (1.0 - share) * (1.0 - a * a).max(0.0).sqrt() + share * b;
+        let c = (1.0 - a * a - b * b).max(0.0).sqrt();
+        let normal = across * a + upwards * b + stretched * c;
+        vec3(self.alpha_u * normal.x, self.alpha_v * normal.y, normal.z.max(0.0)).normalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::warp;
+
+    /// Integral over the hemisphere, by the midpoint rule in cosine and azimuth.
+    fn integral(f: impl Fn(Vec3) -> f32) -> f64 {
+        let n = 512;
+        let at = |i: usize, n: usize| (i as f32 + 0.5) / n as f32;
+        let directions = (0..n * n).map(|i| warp::spherical(at(i / n, n), TAU * at(i % n, n)));
+        directions.map(|m| f64::from(f(m))).sum::<f64>() * std::f64::consts::TAU / (n * n) as f64
+    }
+
+    #[test]
+    fn the_projected_area_of_all_normals_is_one() {
+        for kind in [Kind::Beckmann, Kind::Ggx] {
+            for (u, v) in [(0.3, 0.3), (0.2, 0.7), (1.0, 1.0)] {
+                let microfacets = Microfacets::new(kind, u, v);
+                let area = integral(|m| microfacets.density(m) * m.z);
+                assert!((area - 1.0).abs() < 2e-3, "{microfacets:?}: {area}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_density_of_visible_normals_is_normalised() {
+        for (u, v) in [(0.3, 0.3), (0.2, 0.7), (1.0, 1.0)] {
+            let microfacets = Microfacets::new(Kind::Ggx, u, v);
+            for cosine in [1.0, 0.5, 0.1] {
+                let from = warp::spherical(cosine, 0.7);
+                let density =
+                    |m: Vec3| microfacets.visible_density_over_cosine(from, m) * from.dot(m).max(0.0);
+                let total = integral(density);
+                assert!((total - 1.0).abs() < 2e-3, "{microfacets:?} from {from}: {total}");
+            }
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! A rough metal: Mitsuba's `roughconductor`.
+
+use super::conductor::Metal;
+use super::microfacet::{Microfacets, Roughness};
+use super::{BsdfModel, BsdfSample, BsdfValue, Transport};
+use crate::description::Params;
+use crate::error::Result;
+use crate::math::{Vec2, Vec3};
+use crate::sampling::Stream;
+
+/// Microfacets that each reflect as a smooth metal does (Walter et al. 2007, eq. 20); the lower side is black.
+#[derive(Clone, Debug)]
+pub struct RoughConductor {
+    metal: Metal,
+    roughness: Roughness,
+}
+
+impl RoughConductor {
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        Ok(Self { metal: Metal::build(params)?, roughness: Roughness::build(params)? })
+    }
+
+    #[inline]
+    fn evaluate_with(&self, microfacets: &Microfacets, uv: Vec2, wi: Vec3, wo: Vec3) -> BsdfValue {
+        let Some(m) = (wi + wo).try_normalize() else { return BsdfValue::ZERO };
+        if wi.z <= 0.0 || wo.z <= 0.0 {
+            return BsdfValue::ZERO;
+        }
+        let masking = microfacets.masking_over_cosine(wi) * microfacets.masking_over_cosine(wo);
+        BsdfValue {
+            value: self.metal.reflectance(uv, wi.dot(m)) * (0.25 * microfacets.density(m) * masking),
+            forward: 0.25 * microfacets.visible_density_over_cosine(wi, m),
+            backward: 0.25 * microfacets.visible_density_over_cosine(wo, m),
+        }
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        let rough = Roughness::examples();
+        let metals = Metal::examples();
+        let pair = |(i, roughness): (usize, Roughness)| Self { metal: metals[i % 3].clone(), roughness };
+        rough.into_iter().enumerate().map(pair).collect()
+    }
+}
+
+impl BsdfModel for RoughConductor {
+    #[inline]
+    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
+        self.evaluate_with(&self.roughness.at(uv), uv, wi, wo)
+    }
+
+    #[inline]
+    fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+        if wi.z <= 0.0 {
+            return None;
+        }
+        let microfacets = self.roughness.at(uv);
+        let m = microfacets.sample_visible(wi, stream.square());
+        let wo = (m * (2.0 * wi.dot(m)) - wi).normalize();
+        let found = self.evaluate_with(&microfacets, uv, wi, wo);
+        found.sampled(wo)
+    }
+
+    #[inline]
+    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+        self.metal.survival(uv, wi)
+    }
+
+    fn is_connectible(&self) -> bool {
+        true
+    }
+}

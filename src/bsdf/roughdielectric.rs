@@ -1,0 +1,165 @@
+//! A rough interface between two dielectrics: Mitsuba's `roughdielectric`.
+
+use super::dielectric::{Dielectric, Tints, choose};
+use super::fresnel::{Interface, Interfaces};
+use super::microfacet::{Microfacets, Roughness};
+use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, index};
+use crate::description::Params;
+use crate::error::Result;
+use crate::math::{Vec2, Vec3, vec3};
+use crate::sampling::Stream;
+
+/// Microfacets that each reflect and refract as a smooth interface does (Walter et al. 2007, eq. 20-21).
+#[derive(Clone, Debug)]
+pub struct RoughDielectric {
+    smooth: Dielectric,
+    roughness: Roughness,
+}
+
+/// Below this spread [rad] of the refracted lobe, f32 directions cannot tell which microfacet refracted.
+const LEAST_SPREAD: f32 = 1e-5;
+
+/// A pair of directions as the microfacets see it, in the frame turned so that wi.z > 0.
+struct Facet {
+    wi: Vec3,
+    wo: Vec3,
+    /// The normal of the facets that join the two, z > 0.
+    m: Vec3,
+    interface: Interface,
+    /// Squared length of the half vector before it was made unit.
+    half_square: f32,
+}
+
+impl RoughDielectric {
+    /// A rough interface, or the smooth one that it cannot be told from: indices all but equal bend light by
+    /// less than directions resolve.
+    pub(super) fn build(params: &Params<'_>) -> Result<Bsdf> {
+        let smooth = Dielectric { interfaces: index::interfaces(params)?, tints: Tints::build(params)? };
+        let roughness = Roughness::build(params)?;
+        if (smooth.interfaces.outside.ratio - 1.0).abs() * roughness.max() < LEAST_SPREAD {
+            let text = "the indices are so close that this is the smooth \"dielectric\"";
+            params.library.warn(params.location(), text);
+            return Ok(smooth.into());
+        }
+        Ok(Self { smooth, roughness }.into())
+    }
+
+    /// Value and densities where `facet` joins the two directions; none where its lobes are all black.
+    #[inline]
+    fn evaluate_with(
+        &self,
+        microfacets: &Microfacets,
+        uv: Vec2,
+        facet: &Facet,
+        transport: Transport,
+    ) -> Option<BsdfValue> {
+        let Facet { wi, wo, m, interface, half_square } = *facet;
+        let (cos_i, cos_o) = (wi.dot(m), wo.dot(m));
+        let fresnel = facet.fresnel(cos_i, cos_o.abs());
+        let (reflectance, transmittance) = self.smooth.tints.at(uv);
+        let (reflect, transmit) = choose(fresnel, reflectance, transmittance)?;
+        // Seen from the other side the same facet has its normal turned, and D is even.
+        let above = vec3(wo.x, wo.y, wo.z.abs());
+        let masking = microfacets.masking_over_cosine(wi) * microfacets.masking_over_cosine(above);
+        let (tint, part, chance, spread, widening) = if wo.z > 0.0 {
+            (reflectance, fresnel, reflect, 0.25, 1.0)
+        } else {
+            let spread = cos_i * -cos_o / half_square;
+            (transmittance, 1.0 - fresnel, transmit, spread, interface.ratio * interface.ratio)
+        };
+        let scale = if transport == Transport::Radiance { 1.0 } else { widening };
+        Some(BsdfValue {
+            value: tint * (scale * part * spread * masking * microfacets.density(m)),
+            forward: chance * spread * widening * microfacets.visible_density_over_cosine(wi, m),
+            backward: chance * spread * microfacets.visible_density_over_cosine(above, m),
+        })
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        let pairs = [(1.5, 1.0), (1.0, 1.33), (1.05, 1.0)];
+        let tints = Tints::examples();
+        let pair = |(i, roughness): (usize, Roughness)| {
+            let (inside, outside) = pairs[i % 3];
+            let smooth =
+                Dielectric { interfaces: Interfaces::new(inside, outside), tints: tints[i % 2].clone() };
+            Self { smooth, roughness }
+        };
+        Roughness::examples().into_iter().enumerate().map(pair).collect()
+    }
+}
+
+impl Facet {
+    /// None where no facet joins the two directions: they would meet it from behind, or on the wrong sides.
+    #[inline]
+    fn joining(interfaces: &Interfaces, wi: Vec3, wo: Vec3) -> Option<Self> {
+        let turn = vec3(1.0, 1.0, 1f32.copysign(wi.z));
+        let interface = interfaces.seen_from(wi.z);
+        let (wi, wo) = (wi * turn, wo * turn);
+        let half = wi + wo * if wo.z > 0.0 { 1.0 } else { interface.ratio };
+        let half_square = half.length_squared();
+        let m = half / half_square.sqrt().copysign(half.z);
+        let joined = wi.z > 0.0 && wo.z != 0.0 && wi.dot(m) > 0.0 && wo.dot(m) * wo.z > 0.0;
+        (joined && m.z > 0.0).then_some(Self { wi, wo, m, interface, half_square })
+    }
+
+    /// The reflected part. Of a refraction's two cosines that on the rarer side is used, which gives it the
+    /// same digits both ways.
+    #[inline]
+    fn fresnel(&self, cos_i: f32, cos_o: f32) -> f32 {
+        if self.wo.z > 0.0 || self.interface.is_into_denser() {
+            self.interface.reflectance(cos_i)
+        } else {
+            self.interface.reversed().reflectance(cos_o)
+        }
+    }
+}
+
+impl BsdfModel for RoughDielectric {
+    #[inline]
+    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
+        Facet::joining(&self.smooth.interfaces, wi, wo)
+            .and_then(|facet| self.evaluate_with(&self.roughness.at(uv), uv, &facet, transport))
+            .unwrap_or(BsdfValue::ZERO)
+    }
+
+    #[inline]
+    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+        if wi.z == 0.0 {
+            return None;
+        }
+        let microfacets = self.roughness.at(uv);
+        let turn = vec3(1.0, 1.0, 1f32.copysign(wi.z));
+        let above = wi * turn;
+        let interface = self.smooth.interfaces.seen_from(wi.z);
+        let m = microfacets.sample_visible(above, stream.square());
+        let cosine = above.dot(m).max(0.0);
+        let (reflectance, transmittance) = self.smooth.tints.at(uv);
+        let (reflect, _) = choose(interface.reflectance(cosine), reflectance, transmittance)?;
+        let reflected = stream.uniform() < reflect;
+        let wo = if reflected {
+            m * (2.0 * cosine) - above
+        } else {
+            m * (cosine / interface.ratio - interface.refracted_cosine(cosine)?) - above / interface.ratio
+        };
+        // A facet may throw light to the side where it does not belong: that light is lost.
+        if (wo.z > 0.0) != reflected {
+            return None;
+        }
+        let wo = wo.normalize() * turn;
+        self.evaluate(uv, wi, wo, transport).sampled(wo)
+    }
+
+    #[inline]
+    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+        self.smooth.tints.max(uv)
+    }
+
+    fn is_connectible(&self) -> bool {
+        true
+    }
+
+    fn transmits(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,67 @@
+//! Samples against densities, by chi-square tests over the sphere.
+
+use super::*;
+use crate::testing::{chi_square, significance};
+use std::f64::consts::TAU;
+
+/// Cells of the sphere: rows even in cosine to the y axis, columns even in azimuth around it.
+const ROWS_OF_CELLS: usize = 24;
+const COLUMNS: usize = 48;
+
+/// The probability that `sample` gives a direction in `cell`, by quadrature of the forward density over
+/// `steps` by `steps` points.
+fn expected_share(bsdf: &Bsdf, wi: Vec3, cell: usize, steps: usize) -> f64 {
+    let (row, column) = (cell / COLUMNS, cell % COLUMNS);
+    let density = |i: usize| {
+        let along = (row as f32 + ((i / steps) as f32 + 0.5) / steps as f32) / ROWS_OF_CELLS as f32;
+        let around = (column as f32 + ((i % steps) as f32 + 0.5) / steps as f32) / COLUMNS as f32;
+        // The poles of the grid, where its cells are long and thin, lie in the horizon, away from all lobes.
+        let turned = warp::spherical(2.0 * along - 1.0, TAU as f32 * around);
+        let wo = vec3(turned.y, turned.z, turned.x);
+        f64::from(bsdf.evaluate(UV, wi, wo, Transport::Radiance).forward)
+    };
+    let area = 2.0 * TAU / (ROWS_OF_CELLS * COLUMNS * steps * steps) as f64;
+    (0..steps * steps).map(density).sum::<f64>() * area
+}
+
+/// Counts expected of `samples` samples in each cell; where many are, the quadrature is finer than their
+/// noise.
+fn expected_counts(bsdf: &Bsdf, wi: Vec3, samples: f64) -> Vec<f64> {
+    let count = |cell| match samples * expected_share(bsdf, wi, cell, 12) {
+        few if few < 50.0 => few,
+        some if some < 1_000.0 => samples * expected_share(bsdf, wi, cell, 48),
+        _ => samples * expected_share(bsdf, wi, cell, 128),
+    };
+    (0..ROWS_OF_CELLS * COLUMNS).map(count).collect()
+}
+
+fn cell_of(w: Vec3) -> usize {
+    let around = (f64::from(w.x).atan2(f64::from(w.z)) / TAU).rem_euclid(1.0);
+    let index = |x: f64, n: usize| ((x * n as f64) as usize).min(n - 1);
+    index(0.5 + 0.5 * f64::from(w.y), ROWS_OF_CELLS) * COLUMNS + index(around, COLUMNS)
+}
+
+#[test]
+fn every_model_samples_its_density() {
+    let models = connectible();
+    let incoming = incoming();
+    let level = significance(models.len() * incoming.len());
+    let samples = 50_000;
+    for bsdf in &models {
+        for (number, wi) in incoming.iter().enumerate() {
+            let mut stream = stream(number as u64);
+            let expected = expected_counts(bsdf, *wi, f64::from(samples));
+            let mut observed = vec![0; expected.len()];
+            for _ in 0..samples {
+                if let Some(sample) = bsdf.sample(UV, *wi, Transport::Radiance, &mut stream) {
+                    observed[cell_of(sample.wo)] += 1;
+                }
+            }
+            let (found, total) = (observed.iter().sum::<u64>() as f64, expected.iter().sum::<f64>());
+            let slack = 5.0 * (f64::from(samples) - total).max(1.0).sqrt() + 2e-3 * f64::from(samples);
+            assert!((found - total).abs() < slack, "{bsdf:?} from {wi}: {found} samples for {total}");
+            let p = chi_square(&observed, &expected);
+            assert!(p > level, "{bsdf:?} from {wi}: p-value {p}");
+        }
+    }
+}
