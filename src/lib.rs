@@ -25,3 +25,6 @@ pub mod transport;
 pub mod render;
 
 pub mod cli;
+
+#[cfg(test)]
+mod testing;
