@@ -71,12 +71,16 @@ fn without_comments(text: &str) -> String {
 
 /// Every module named after `crate::`, alone or in braces, with its line.
 fn used_modules(code: &str) -> impl Iterator<Item = (usize, String)> + '_ {
-    code.match_indices("crate::").filter(|(at, _)| !code[..*at].ends_with('$')).flat_map(move |(at, found)| {
-        let rest = &code[at + found.len()..];
-        let names = if rest.starts_with('{') { names_in_braces(rest) } else { vec![(0, name_at(rest))] };
-        let start = at + found.len();
-        names.into_iter().map(move |(offset, name)| (code[..start + offset].matches('\n').count() + 1, name))
-    })
+    code.match_indices("crate::").filter(|(at, _)| !code[..*at].ends_with('$')).flat_map(
+        move |(at, found)| {
+            let rest = &code[at + found.len()..];
+            let names = if rest.starts_with('{') { names_in_braces(rest) } else { vec![(0, name_at(rest))] };
+            let start = at + found.len();
+            names
+                .into_iter()
+                .map(move |(offset, name)| (code[..start + offset].matches('\n').count() + 1, name))
+        },
+    )
 }
 
 fn name_at(text: &str) -> String {

@@ -35,7 +35,7 @@ CASES = (
     Case("fog_rayleigh_single.json", EYE, effort=4),
     Case("fog_schlick_table.json", EYE, effort=4),
     Case("fog_table_coarse.json", EYE, effort=2),
-    Case("frosted_cube_of_fog.json"),
+    Case("frosted_cube_of_fog.json", effort=6),
     Case("glass_ball_of_fog.json", EYE),
     Case("lamp_in_fog_ball.json", effort=4),
     Case("lit_albedo_one.json", effort=2),
