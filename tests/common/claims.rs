@@ -119,6 +119,13 @@ impl Claims {
         }
     }
 
+    /// Every figure of `a` is `expected` (t-test).
+    pub fn equal_to(&mut self, what: &str, a: &Sample, expected: f64) {
+        for (name, figure) in NAMES.iter().zip(&a.figures) {
+            self.mean(&format!("{what} ({name})"), figure, expected);
+        }
+    }
+
     /// The mean of `values` is `expected` (t-test).
     pub fn mean(&mut self, what: &str, values: &[f64], expected: f64) {
         let found = Moments::of(values);
