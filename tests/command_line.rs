@@ -1,0 +1,253 @@
+//! The program as a user runs it: what it writes, what it says, and what it leaves behind when it fails.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
+
+mod common;
+
+use common::pieces::*;
+use serde_json::{Value, json};
+use std::{
+    fs,
+    path::PathBuf,
+    process::{Command, Output},
+    time::{Duration, Instant},
+};
+use tempfile::TempDir;
+
+/// A folder in which the program runs.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    /// With `scene.json` in it.
+    fn new(scene: &Value) -> Self {
+        let desk = Self { folder: TempDir::new().unwrap() };
+        fs::write(desk.path("scene.json"), scene.to_string()).unwrap();
+        desk
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Runs the program with `words` as its arguments.
+    fn run(&self, words: &str) -> Run {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+        let output = program.current_dir(self.folder.path()).args(words.split_whitespace()).output().unwrap();
+        Run { words: words.to_owned(), output }
+    }
+
+    /// Names of all files, hidden ones too.
+    fn files(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap()
+    }
+}
+
+/// What came of it.
+struct Run {
+    words: String,
+    output: Output,
+}
+
+impl Run {
+    fn out(&self) -> String {
+        String::from_utf8(self.output.stdout.clone()).unwrap()
+    }
+
+    fn err(&self) -> String {
+        String::from_utf8(self.output.stderr.clone()).unwrap()
+    }
+
+    fn succeeds(self) -> Self {
+        assert!(self.output.status.success(), "{}: {}", self.words, self.err());
+        self
+    }
+
+    /// It ends with code 2, having said all of `hints`.
+    fn is_refused(&self, hints: &[&str]) {
+        let err = self.err();
+        assert_eq!(self.output.status.code(), Some(2), "{}: {err}", self.words);
+        for hint in hints {
+            assert!(err.contains(hint), "{}: no \"{hint}\" in: {err}", self.words);
+        }
+        assert!(!err.contains("panicked"), "{}: {err}", self.words);
+    }
+}
+
+fn foggy_room() -> Value {
+    scene(&[
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("fog", medium(1.0, 0.8, 0.3)),
+        ("room", room(0.6, Some(named("fog")))),
+        ("lamp", lamp_ball([0.2, 0.3, -0.3], 0.3, 2.0)),
+    ])
+}
+
+/// Width and height that an OpenEXR or PNG file states of itself.
+fn size_of(png: &[u8]) -> (u32, u32) {
+    let number = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+    (number(16), number(20))
+}
+
+#[test]
+fn a_render_leaves_an_image_and_its_preview() {
+    let desk = Desk::new(&foggy_room());
+    let run = desk.run("render scene.json").succeeds();
+    assert_eq!(desk.files(), ["scene.exr", "scene.json", "scene.png"]);
+    assert!(run.out().contains("4 samples/pixel") && run.out().contains("scene.exr"), "{}", run.out());
+    assert_eq!(size_of(&desk.bytes("scene.png")), (8, 8));
+}
+
+#[test]
+fn the_size_can_be_chosen() {
+    let desk = Desk::new(&foggy_room());
+    desk.run("render scene.json -o small.exr --size 13x5 --spp 1").succeeds();
+    assert_eq!(size_of(&desk.bytes("small.png")), (13, 5));
+}
+
+#[test]
+fn the_seed_decides_the_image() {
+    let desk = Desk::new(&foggy_room());
+    for (name, seed) in [("a", 1), ("again", 1), ("b", 2)] {
+        desk.run(&format!("render scene.json -o {name}.exr --seed {seed}")).succeeds();
+    }
+    assert_eq!(desk.bytes("a.exr"), desk.bytes("again.exr"));
+    assert_ne!(desk.bytes("a.exr"), desk.bytes("b.exr"));
+}
+
+#[test]
+fn parameters_are_set_from_the_command_line() {
+    let text = "<scene version=\"3.0.0\"><default name=\"width\" value=\"8\"/>
+        <sensor type=\"perspective\"><float name=\"fov\" value=\"40\"/>
+        <film type=\"hdrfilm\"><integer name=\"width\" value=\"$width\"/>
+        <integer name=\"height\" value=\"4\"/></film></sensor>
+        <emitter type=\"constant\"/></scene>";
+    let desk = Desk::new(&foggy_room());
+    fs::write(desk.path("sky.xml"), text).unwrap();
+    desk.run("render sky.xml -o default.exr").succeeds();
+    desk.run("render sky.xml -o wide.exr -D width=20").succeeds();
+    assert_eq!(size_of(&desk.bytes("default.png")), (8, 4));
+    assert_eq!(size_of(&desk.bytes("wide.png")), (20, 4));
+    desk.run("render sky.xml -o bad.exr -D widht=20").is_refused(&["widht", "width", "expected", "remedy"]);
+    assert!(!desk.path("bad.exr").exists());
+}
+
+#[test]
+fn strategies_can_be_chosen_but_not_missed() {
+    let desk = Desk::new(&foggy_room());
+    for (name, list) in [("hit", "hit"), ("some", "hit,lens"), ("all", "hit,next-event,join,lens")] {
+        desk.run(&format!("render scene.json -o {name}.exr --strategies {list}")).succeeds();
+    }
+    assert_ne!(desk.bytes("hit.exr"), desk.bytes("some.exr"));
+    desk.run("render scene.json -o default.exr").succeeds();
+    assert_eq!(desk.bytes("all.exr"), desk.bytes("default.exr"));
+    let refused = desk.run("render scene.json -o no.exr --integrator pt --strategies join");
+    refused.is_refused(&["--strategies", "expected", "found", "remedy"]);
+    desk.run("render scene.json -o no.exr --strategies jion").is_refused(&["jion", "join"]);
+    assert!(!desk.path("no.exr").exists());
+}
+
+#[test]
+fn a_time_limit_is_kept() {
+    let desk = Desk::new(&foggy_room());
+    let started = Instant::now();
+    let report = "render scene.json --time-limit 1s --report figures.json";
+    desk.run(report).succeeds();
+    let (limit, elapsed) = (Duration::from_secs(1), started.elapsed());
+    assert!(elapsed >= limit.mul_f64(0.9) && elapsed < 4 * limit, "{elapsed:?}");
+    let figures: Value = serde_json::from_slice(&desk.bytes("figures.json")).unwrap();
+    assert!(figures["samples_per_pixel"].as_u64().unwrap() > 4, "{figures}");
+    let seconds = figures["render_seconds"].as_f64().unwrap();
+    assert!((0.9..1.5).contains(&seconds), "{figures}");
+    // Samples end it first where they are fewer.
+    desk.run("render scene.json --time-limit 1h --spp 2").succeeds();
+}
+
+#[test]
+fn info_tells_how_a_scene_would_be_rendered() {
+    let desk = Desk::new(&foggy_room());
+    let told = desk.run("info scene.json").succeeds().out();
+    for what in [
+        "8 x 8",
+        "bdpt",
+        "profile     fog, leaving out",
+        "fog: homogeneous",
+        "closed-form tracker",
+        "camera      in fog",
+        "area in fog",
+    ] {
+        assert!(told.contains(what), "no \"{what}\" in:\n{told}");
+    }
+    assert_eq!(desk.files(), ["scene.json"]);
+}
+
+/// Every mistake is refused with code 2 and a message that says what to mend, and leaves no file behind.
+#[test]
+fn mistakes_are_refused_and_leave_nothing_behind() {
+    let room = foggy_room();
+    let lamp = |plugin: &str| with(room.clone(), &[("lamp", json!({"type": plugin}))]);
+    let wrong_lamp =
+        with(room.clone(), &[("lamp", with(lamp_ball([0.0; 3], 0.3, 1.0), &[("raduis", json!(2))]))]);
+    let wrong_fog = with(room.clone(), &[("fog", medium("thick", 0.5, 0.0))]);
+    let dangling = with(room.clone(), &[("room", self::room(0.5, Some(named("smog"))))]);
+    let cases = [
+        (lamp("shpere"), &["scene.json", "shpere", "sphere"][..]),
+        (wrong_lamp, &["raduis", "radius"]),
+        (wrong_fog, &["fog", "sigma_t", "thick"]),
+        (dangling, &["smog", "fog"]),
+        (with(room.clone(), &[("fog", medium(-1.0, 0.5, 0.0))]), &["sigma_t", "-1"]),
+        (with(room.clone(), &[("fog", medium(1.0, 1.5, 0.0))]), &["albedo", "1.5"]),
+        (scene(&[("room", self::room(0.5, None))]), &["sensor"]),
+    ];
+    for (scene, hints) in cases {
+        let desk = Desk::new(&scene);
+        let run = desk.run("render scene.json");
+        run.is_refused(hints);
+        run.is_refused(&["scene.json", "expected", "found", "remedy"]);
+        assert_eq!(desk.files(), ["scene.json"]);
+        desk.run("info scene.json").is_refused(hints);
+    }
+}
+
+#[test]
+fn files_that_are_no_scenes_are_refused() {
+    let desk = Desk::new(&foggy_room());
+    fs::write(desk.path("half.json"), "{\"type\": \"scene\", ").unwrap();
+    fs::write(desk.path("half.xml"), "<scene version=\"3.0.0\"><sensor").unwrap();
+    fs::write(desk.path("scene.blend"), "").unwrap();
+    let before = desk.files();
+    for name in ["missing.json", "half.json", "half.xml", "scene.blend"] {
+        desk.run(&format!("render {name}")).is_refused(&[name, "expected", "found", "remedy"]);
+    }
+    assert_eq!(desk.files(), before);
+}
+
+#[test]
+fn an_image_that_cannot_be_written_is_told() {
+    let desk = Desk::new(&foggy_room());
+    let run = desk.run("render scene.json --spp 1 -o missing/image.exr");
+    run.is_refused(&["missing", "expected", "found", "create the folder"]);
+    assert_eq!(desk.files(), ["scene.json"]);
+    desk.run("render scene.json -o image.jpg").is_refused(&["image.jpg", ".exr"]);
+    desk.run("render scene.json --spp 0").is_refused(&["--spp", "at least 1"]);
+    desk.run("render scene.json --size 0x8").is_refused(&["--size", "640x480"]);
+    assert_eq!(desk.files(), ["scene.json"]);
+}
+
+#[test]
+fn warnings_are_told_and_do_not_stop_the_render() {
+    let seeded = with(
+        camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8),
+        &[("sampler", json!({"type": "independent", "sample_count": 1, "seed": 3}))],
+    );
+    let desk = Desk::new(&with(foggy_room(), &[("sensor", seeded)]));
+    let run = desk.run("render scene.json").succeeds();
+    assert!(run.err().contains("warning") && run.err().contains("seed"), "{}", run.err());
+}
