@@ -70,8 +70,17 @@ fn link_origin(link: &Link, towards: Vec3) -> Vec3 {
     }
 }
 
-/// Weighted contribution of joining `a` and `b` by a strategy of `count` expected samples; none where the way
-/// is blocked. The caller divides by the number of samples it took.
+/// What a strategy brings for one path.
+#[derive(Clone, Copy, Debug)]
+pub struct Joined {
+    /// The weighted contribution, of which the caller takes as many samples as it has.
+    pub value: Spectrum,
+    /// The weight in it, times the number of lanes: for those who check it.
+    pub weight: f32,
+}
+
+/// Joins `a` and `b` by a strategy of `count` expected samples; none where the way is blocked. The caller
+/// divides by the number of samples it took.
 #[inline]
 pub fn join<P: Profile>(
     scene: &Scene,
@@ -79,7 +88,7 @@ pub fn join<P: Profile>(
     b: &End<P::Lanes>,
     distance_squared: f32,
     count: f32,
-) -> Option<Spectrum> {
+) -> Option<Joined> {
     let end = offset::clear_of_end(a.origin, b.origin, b.lift);
     let (direction, distance, _) = measure::between(a.origin, end)?;
     let ray = Ray { origin: a.origin, direction, t_max: distance };
@@ -95,9 +104,10 @@ pub fn join_along<P: Profile>(
     b: &End<P::Lanes>,
     distance_squared: f32,
     count: f32,
-) -> Option<Spectrum> {
+) -> Option<Joined> {
     let passage = segment::pass::<P>(scene, ray, a.medium)?;
     let geometry = 1.0 / distance_squared;
     let weight = weight::join(a, b, passage.density, geometry, count);
-    Some(a.value * b.value * passage.transmittance * (geometry * weight))
+    let value = a.value * b.value * passage.transmittance * (geometry * weight);
+    Some(Joined { value, weight })
 }

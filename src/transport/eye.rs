@@ -3,7 +3,7 @@
 use super::{
     Estimator,
     cache::LightCache,
-    connect,
+    connect::{self, Joined},
     lanes::Lanes,
     profile::Profile,
     vertex::{Site, Vertex},
@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Gathers the radiance of one pixel sample.
-struct Eye<'a, P: Profile> {
+pub struct Eye<'a, P: Profile> {
     estimator: &'a Estimator<'a, P>,
     cache: &'a LightCache<P::Lanes>,
     hero: usize,
@@ -38,13 +38,13 @@ pub fn sample<P: Profile>(
 ) -> Spectrum {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
     let departure = depart(estimator, film);
-    let mut eye = Eye { estimator, cache, hero, previous: departure.position, radiance: Spectrum::ZERO };
+    let mut eye = Eye::new(estimator, cache, hero);
     walk(estimator.scene, kind, departure, &mut eye, stream);
     eye.radiance
 }
 
 /// Leaves the lens through a film position. Nothing can join before the lens: its sums are zero.
-fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2) -> Departure<P::Lanes> {
+pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2) -> Departure<P::Lanes> {
     let sensor = &estimator.scene.sensor;
     let (direction, cosine) = sensor.direction(film);
     let origin = sensor.position + direction * (sensor.near / cosine);
@@ -75,7 +75,7 @@ impl<P: Profile> Visitor<P> for Eye<'_, P> {
         {
             let scene = self.estimator.scene;
             if let Some(link) = scene.lights.met(&scene.geometry, light, point, self.previous) {
-                self.hit(vertex, &link);
+                self.radiance += self.hit(vertex, &link).map_or(Spectrum::ZERO, |hit| hit.value);
             }
         }
         if vertex.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
@@ -89,18 +89,24 @@ impl<P: Profile> Visitor<P> for Eye<'_, P> {
 
     fn escape(&mut self, vertex: &Vertex<P::Lanes>) {
         if let Some(link) = self.estimator.scene.lights.met_at_infinity(-vertex.incoming) {
-            self.hit(vertex, &link);
+            self.radiance += self.hit(vertex, &link).map_or(Spectrum::ZERO, |hit| hit.value);
         }
     }
 }
 
-impl<P: Profile> Eye<'_, P> {
+impl<'a, P: Profile> Eye<'a, P> {
+    /// Nothing gathered yet, nothing beyond the lens.
+    pub fn new(estimator: &'a Estimator<'a, P>, cache: &'a LightCache<P::Lanes>, hero: usize) -> Self {
+        let previous = estimator.scene.sensor.position;
+        Self { estimator, cache, hero, previous, radiance: Spectrum::ZERO }
+    }
+
     /// s = 0: the walk has met an emitter.
     #[inline]
-    fn hit(&mut self, vertex: &Vertex<P::Lanes>, link: &Link) {
+    pub fn hit(&self, vertex: &Vertex<P::Lanes>, link: &Link) -> Option<Joined> {
         let counts = &self.estimator.counts;
         if counts.hit <= 0.0 || (vertex.edges == 1 && self.estimator.hide_emitters) {
-            return;
+            return None;
         }
         // Both ends of the segment before must be able to join; across it joins s = 1, which from the lens is
         // a light walk's first vertex and from anywhere else next-event estimation.
@@ -113,29 +119,36 @@ impl<P: Profile> Eye<'_, P> {
         let others = tail.scaled(link.start * vertex.inverse / counts.hit);
         // `value` is radiance x cosine on shapes: the walk's density already contains that cosine.
         let radiance = link.value / link.cosine;
-        self.radiance += vertex.throughput * radiance * (weight::hit(vertex.reach, others) / counts.hit);
+        let weight = weight::hit(vertex.reach, others);
+        Some(Joined { value: vertex.throughput * radiance * (weight / counts.hit), weight })
     }
 
     /// s = 1: a freshly sampled emitter point.
     #[inline]
     fn next_event(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
-        let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
+        let scene = self.estimator.scene;
         let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream) else { return };
+        self.radiance += self.link(vertex, &link).map_or(Spectrum::ZERO, |joined| joined.value);
+    }
+
+    /// The join with an emitter point picked by next-event estimation.
+    #[inline]
+    pub fn link(&self, vertex: &Vertex<P::Lanes>, link: &Link) -> Option<Joined> {
+        let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let (direction, distance_squared) = if P::INFINITE && link.infinite {
             (link.position, 1.0)
         } else {
-            let Some((direction, _, d2)) = measure::between(vertex.position, link.position) else { return };
+            let (direction, _, d2) = measure::between(vertex.position, link.position)?;
             (direction, d2)
         };
-        let Some(eye) = connect::vertex_end(scene, vertex, direction, Transport::Radiance) else { return };
-        let light = connect::link_end(&link, eye.medium, -direction, counts.hit);
-        let joined = if P::INFINITE && link.infinite {
+        let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
+        let light = connect::link_end(link, eye.medium, -direction, counts.hit);
+        if P::INFINITE && link.infinite {
             let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
             connect::join_along::<P>(scene, ray, &eye, &light, 1.0, 1.0)
         } else {
             connect::join::<P>(scene, &eye, &light, distance_squared, 1.0)
-        };
-        self.radiance += joined.unwrap_or(Spectrum::ZERO);
+        }
     }
 
     /// s >= 2: vertices drawn from the cache of light walks.
@@ -146,13 +159,15 @@ impl<P: Profile> Eye<'_, P> {
         for _ in 0..estimator.joins_per_vertex {
             let other = &pool[stream.below(pool.len())];
             if vertex.edges + other.edges < estimator.max_edges {
-                self.radiance += self.join_with(vertex, other).unwrap_or(Spectrum::ZERO) * scale;
+                let joined = self.join_with(vertex, other);
+                self.radiance += joined.map_or(Spectrum::ZERO, |joined| joined.value) * scale;
             }
         }
     }
 
+    /// The join with a vertex of a light walk.
     #[inline]
-    fn join_with(&self, vertex: &Vertex<P::Lanes>, other: &Vertex<P::Lanes>) -> Option<Spectrum> {
+    pub fn join_with(&self, vertex: &Vertex<P::Lanes>, other: &Vertex<P::Lanes>) -> Option<Joined> {
         let scene = self.estimator.scene;
         let (direction, _, distance_squared) = measure::between(vertex.position, other.position)?;
         let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;

@@ -3,7 +3,7 @@
 use super::{
     Estimator,
     cache::LightCache,
-    connect,
+    connect::{self, Joined},
     lanes::Lanes,
     profile::Profile,
     vertex::Vertex,
@@ -27,7 +27,8 @@ pub trait Splats {
     fn splat(&mut self, film: Vec2, value: Spectrum);
 }
 
-struct Light<'a, P: Profile, S> {
+/// One light walk on its way.
+pub struct Light<'a, P: Profile, S> {
     estimator: &'a Estimator<'a, P>,
     cache: &'a mut LightCache<P::Lanes>,
     splats: &'a mut S,
@@ -49,13 +50,13 @@ pub fn trace<P: Profile>(
     let departure = depart(estimator, &start);
     let kind =
         Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
-    let mut light = Light { estimator, cache, splats, start, hero };
-    light.join_start_to_lens();
+    let mut light = Light::new(estimator, cache, splats, start, hero);
+    light.splat(light.join_start_to_lens());
     walk(scene, kind, departure, &mut light, stream);
 }
 
 /// Leaves the emitter. Before it only an eye walk that meets it can join.
-fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Departure<P::Lanes> {
+pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Departure<P::Lanes> {
     let hits = if start.hittable { estimator.counts.hit } else { 0.0 };
     Departure {
         position: start.position,
@@ -88,7 +89,7 @@ impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
             return;
         }
         if self.estimator.counts.lens > 0.0 {
-            self.join_to_lens(vertex);
+            self.splat(self.join_to_lens(vertex));
         }
         let keep = self.estimator.keep;
         if keep > 0.0 && (keep >= 1.0 || stream.uniform() < keep) {
@@ -99,25 +100,43 @@ impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
     fn escape(&mut self, _: &Vertex<P::Lanes>) {}
 }
 
-impl<P: Profile, S: Splats> Light<'_, P, S> {
-    /// t = 1: a vertex as the lens sees it.
+impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
+    /// The walk that begins with `start`.
+    pub fn new(
+        estimator: &'a Estimator<'a, P>,
+        cache: &'a mut LightCache<P::Lanes>,
+        splats: &'a mut S,
+        start: Start,
+        hero: usize,
+    ) -> Self {
+        Self { estimator, cache, splats, start, hero }
+    }
+
     #[inline]
-    fn join_to_lens(&mut self, vertex: &Vertex<P::Lanes>) {
-        let scene = self.estimator.scene;
-        let Some(seen) = scene.sensor.project(vertex.position) else { return };
-        if !self.splats.covers(seen.film) {
-            return;
+    fn splat(&mut self, joined: Option<(Vec2, Joined)>) {
+        if let Some((film, joined)) = joined {
+            self.splats.splat(film, joined.value / self.estimator.counts.lens);
         }
-        let towards = -seen.direction;
-        let Some(end) = connect::vertex_end(scene, vertex, towards, Transport::Importance) else { return };
-        self.join_end(&end, &seen, seen.distance * seen.distance);
+    }
+
+    /// t = 1: a vertex as the lens sees it, and where on the film [pixels].
+    #[inline]
+    pub fn join_to_lens(&self, vertex: &Vertex<P::Lanes>) -> Option<(Vec2, Joined)> {
+        let scene = self.estimator.scene;
+        let seen = scene.sensor.project(vertex.position)?;
+        if !self.splats.covers(seen.film) {
+            return None;
+        }
+        let end = connect::vertex_end(scene, vertex, -seen.direction, Transport::Importance)?;
+        let joined = self.join_end(&end, &seen, seen.distance * seen.distance)?;
+        Some((seen.film, joined))
     }
 
     /// s = 1, t = 1: the emitter itself as the lens sees it, where an eye walk could have met it.
-    fn join_start_to_lens(&mut self) {
+    pub fn join_start_to_lens(&self) -> Option<(Vec2, Joined)> {
         let (estimator, start) = (self.estimator, &self.start);
         if estimator.counts.lens <= 0.0 || !start.hittable || estimator.hide_emitters {
-            return;
+            return None;
         }
         let scene = estimator.scene;
         let seen = if start.infinite {
@@ -125,15 +144,15 @@ impl<P: Profile, S: Splats> Light<'_, P, S> {
         } else {
             scene.sensor.project(start.position)
         };
-        let Some(seen) = seen.filter(|seen| self.splats.covers(seen.film)) else { return };
-        if let Some(end) = start_end::<P>(estimator, start, -seen.direction) {
-            let distance_squared = if start.infinite { 1.0 } else { seen.distance * seen.distance };
-            self.join_end(&end, &seen, distance_squared);
-        }
+        let seen = seen.filter(|seen| self.splats.covers(seen.film))?;
+        let end = start_end::<P>(estimator, start, -seen.direction)?;
+        let distance_squared = if start.infinite { 1.0 } else { seen.distance * seen.distance };
+        let joined = self.join_end(&end, &seen, distance_squared)?;
+        Some((seen.film, joined))
     }
 
     #[inline]
-    fn join_end(&mut self, end: &End<P::Lanes>, seen: &Projection, distance_squared: f32) {
+    fn join_end(&self, end: &End<P::Lanes>, seen: &Projection, distance_squared: f32) -> Option<Joined> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let sensor = &scene.sensor;
         let density = sensor.density(seen.cosine);
@@ -149,15 +168,12 @@ impl<P: Profile, S: Splats> Light<'_, P, S> {
             reach: P::Lanes::splat(1.0),
             tail: P::Lanes::splat(0.0),
         };
-        let joined = if seen.distance.is_finite() {
+        if seen.distance.is_finite() {
             connect::join::<P>(scene, end, &lens, distance_squared, counts.lens)
         } else {
             let t_max = (sensor.far - sensor.near) / seen.cosine;
             let ray = Ray { origin: lens.origin, direction: seen.direction, t_max };
             connect::join_along::<P>(scene, ray, &lens, end, distance_squared, counts.lens)
-        };
-        if let Some(value) = joined {
-            self.splats.splat(seen.film, value / counts.lens);
         }
     }
 }

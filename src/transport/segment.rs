@@ -180,11 +180,12 @@ fn pass_through<P: Profile>(
         depth = depth + sigma_t.scaled(hit.t);
         medium = scene.medium_towards(&point, ray.direction, medium);
         ray = past(&ray, &point);
-        // Crossings are rounded: aimed anew, the segment ends where it should, not in the surface beyond.
-        if ray.t_max < f32::INFINITY
-            && let Some((direction, t_max, _)) = measure::between(ray.origin, end)
-        {
-            ray = Ray { direction, t_max, ..ray };
+        if ray.t_max < f32::INFINITY {
+            // Crossings are rounded: aimed anew, the segment ends where it should, not in the surface beyond.
+            let (aim, t_max, _) = measure::between(ray.origin, end).unwrap_or((ray.direction, 0.0, 0.0));
+            // An end so near to the boundary that the step across passed it has been reached.
+            let overshot = aim.dot(ray.direction) <= 0.0;
+            ray = if overshot { Ray { t_max: 0.0, ..ray } } else { Ray { direction: aim, t_max, ..ray } };
         }
     }
 }

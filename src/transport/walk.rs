@@ -96,7 +96,7 @@ pub fn walk<P: Profile>(
 
 /// The vertex at the end of a flight; none if it coincides with the one before.
 #[inline]
-fn land<P: Profile>(
+pub fn land<P: Profile>(
     scene: &Scene,
     departure: &Departure<P::Lanes>,
     flight: &Flight<P::Lanes>,
@@ -148,13 +148,18 @@ fn land<P: Profile>(
     Some(vertex)
 }
 
-/// A direction after scattering, with its throughput.
-struct Turn {
-    direction: Vec3,
-    weight: Spectrum,
-    forward: f32,
-    backward: f32,
-    dirac: bool,
+/// A direction after scattering.
+pub struct Turn {
+    /// Where the walk goes on to, unit.
+    pub direction: Vec3,
+    /// Factor on the throughput.
+    pub weight: Spectrum,
+    /// Density of `direction`, survival included [1/sr], or the probability of the Dirac lobe.
+    pub forward: f32,
+    /// The same for the way back.
+    pub backward: f32,
+    /// True if a Dirac lobe was sampled.
+    pub dirac: bool,
 }
 
 /// Scatters at `vertex`; none if the walk is absorbed there (LW96 eq. 8 and 9).
@@ -169,9 +174,15 @@ fn scatter<L: Lanes>(
         Site::Medium => collide(scene, vertex, stream)?,
         Site::Surface(point) => reflect(scene, vertex, point, transport, stream)?,
     };
+    Some(set_out(scene, vertex, &turn))
+}
+
+/// Leaves `vertex` in the direction of `turn`.
+#[inline]
+pub fn set_out<L: Lanes>(scene: &Scene, vertex: &Vertex<L>, turn: &Turn) -> Departure<L> {
     let (origin, medium) = vertex.depart(scene, turn.direction);
     let tail = if turn.dirac { vertex.partial.scaled(turn.backward) } else { vertex.tail(turn.backward) };
-    Some(Departure {
+    Departure {
         position: vertex.position,
         ray: Ray { origin, direction: turn.direction, t_max: f32::INFINITY },
         medium,
@@ -182,7 +193,7 @@ fn scatter<L: Lanes>(
         forward: turn.forward,
         carried: (tail * vertex.sigma_t(scene)).scaled(vertex.cosine(turn.direction) * vertex.inverse),
         reach: vertex.reach,
-    })
+    }
 }
 
 #[inline]
