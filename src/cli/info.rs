@@ -8,10 +8,10 @@ use crate::{
     phase::PhaseModel,
     scene::{
         Scene,
-        build::{self, Setup},
+        build::Setup,
         integrator::{Integrator, Method},
     },
-    transport::profile::ProfileName,
+    transport::profile::{Needs, ProfileName},
 };
 
 /// Runs the command.
@@ -23,7 +23,7 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
 
 fn describe(setup: &Setup) -> String {
     let Setup { scene, film, integrator, samples_per_pixel, .. } = setup;
-    let profile = ProfileName::leanest(build::needs(scene));
+    let profile = ProfileName::leanest(Needs::of(scene));
     let left_out = profile.left_out();
     let mut lines = vec![
         format!("image       {} x {}, {:?} filter", film.width, film.height, film.filter),

@@ -5,11 +5,11 @@ use crate::{
     error::{Error, Result},
     film,
     render::{self, Image, Progress, Settings, budget::Budget},
-    scene::{
-        build::{self, Setup},
-        integrator::Method,
+    scene::{build::Setup, integrator::Method},
+    transport::{
+        Options, Strategies,
+        profile::{Needs, ProfileName},
     },
-    transport::{Options, Strategies, profile::ProfileName},
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
@@ -43,7 +43,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
 }
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
-    let needed = ProfileName::leanest(build::needs(&setup.scene));
+    let needed = ProfileName::leanest(Needs::of(&setup.scene));
     let profile = match arguments.profile {
         arguments::Profile::Everything => ProfileName::Everything,
         arguments::Profile::Fitted => needed,

@@ -9,7 +9,7 @@ use super::{
     lights::{Light, Lights},
 };
 use crate::{
-    bsdf::{self, Bsdf, BsdfModel},
+    bsdf::{self, Bsdf},
     description::{Library, Location, Object, Params, Property, Value, nearest, params::Child},
     emitter::{self, Emitter},
     error::{Error, Result},
@@ -502,14 +502,4 @@ fn pixels(params: &Params<'_>, name: &'static str, default: i64) -> Result<u32> 
         return Ok(value as u32);
     }
     Err(params.complain(name, "an integer from 1 to 65536", value.to_string()))
-}
-
-/// What `scene` needs of its profile.
-pub fn needs(scene: &Scene) -> crate::transport::profile::Needs {
-    crate::transport::profile::Needs {
-        media: scene.media.iter().any(|medium| medium.sigma_t != Spectrum::ZERO),
-        chromatic: scene.media.iter().any(Homogeneous::is_chromatic),
-        nulls: scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null()),
-        infinite: scene.lights.has_infinite(),
-    }
 }

@@ -2,7 +2,7 @@
 //! tested for, it is not there.
 
 use super::lanes::Lanes;
-use crate::math::Spectrum;
+use crate::{bsdf::BsdfModel, math::Spectrum, medium::Homogeneous, scene::Scene};
 
 /// Compile-time constants that remove code.
 pub trait Profile: Copy + Send + Sync + 'static {
@@ -66,6 +66,18 @@ pub struct Needs {
     pub nulls: bool,
     /// Some emitter is at infinity.
     pub infinite: bool,
+}
+
+impl Needs {
+    /// What `scene` needs.
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            media: scene.media.iter().any(|medium| medium.sigma_t != Spectrum::ZERO),
+            chromatic: scene.media.iter().any(Homogeneous::is_chromatic),
+            nulls: scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null()),
+            infinite: scene.lights.has_infinite(),
+        }
+    }
 }
 
 /// The profiles by name, for choice at run time.

@@ -14,7 +14,10 @@ use tyndall::{
         self,
         build::{self, Overrides, Setup},
     },
-    transport::{Options, Strategies, profile::ProfileName},
+    transport::{
+        Options, Strategies,
+        profile::{Needs, ProfileName},
+    },
 };
 
 /// A scene that is loaded and ready to be rendered again and again.
@@ -41,7 +44,7 @@ impl Stage {
         std::fs::write(&path, scene.to_string()).unwrap();
         let root = scene::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
         let setup = build::build(&root, Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
-        let profile = ProfileName::leanest(build::needs(&setup.scene));
+        let profile = ProfileName::leanest(Needs::of(&setup.scene));
         Self { setup, profile }
     }
 
