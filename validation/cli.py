@@ -88,13 +88,10 @@ def run_compare(options) -> bool:
     scene = open_scene(options.scene, parameters_of(options))
     reference = references.cached(scene, options.size)
     print(compare.HEADER, flush=True)
-    verdicts = []
-    for method in options.integrators.split(","):
-        candidate = compare.candidate_renderer(scene, method, options.size)
-        verdicts.append(compare.compare(scene, method, effort_of(options), reference, candidate, options.output))
-        print(verdicts[-1].row(), flush=True)
+    methods, effort, size = options.integrators.split(","), effort_of(options), options.size
+    passed = [compare.tested(scene, method, effort, reference, options.output, size) for method in methods]
     print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}")
-    return all(v.passed for v in verdicts)
+    return all(passed)
 
 
 def add_matrix(commands) -> None:
@@ -106,7 +103,7 @@ def add_matrix(commands) -> None:
 
 
 def run_matrix(options) -> bool:
-    return all(v.passed for v in matrix.run(options.effort, options.only))
+    return matrix.run(options.effort, options.only)
 
 
 def add_selftest(commands) -> None:
@@ -127,7 +124,7 @@ def add_closed_forms(commands) -> None:
 
 def run_closed_forms(options) -> bool:
     methods = tuple(filter(None, options.integrators.split(",")))
-    return all(v.passed for v in truths.run(effort_of(options), methods, options.only))
+    return truths.run(effort_of(options), methods, options.only)
 
 
 def add_timing(command: argparse.ArgumentParser, rounds: int, seconds: float) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from validation import mitsuba, picture, tyndall
+from validation.failure import Failure
 from validation.scene import Scene, derived
 from validation.statistics import Estimate, estimate, sidak_limit, standard_score
 
@@ -165,6 +166,20 @@ def compare(
     if output:
         save_picture(output / f"{scene.name}-{method}.png", theirs, ours, verdict.map)
     return Verdict(**{**vars(verdict), "trials": trials})
+
+
+def tested(
+    scene: Scene, method: str, effort: Effort, reference: Callable[[Effort], np.ndarray], output: Path, size=None
+) -> bool:
+    """Compares, prints the row, and tells whether both agree. What cannot be rendered is a disagreement too."""
+    try:
+        candidate = candidate_renderer(scene, method, size)
+        verdict = compare(scene, method, effort, reference, candidate, output)
+    except Failure as failure:
+        print(f"{scene.name:24} {method:8} CANNOT: {failure}", flush=True)
+        return False
+    print(verdict.row(), flush=True)
+    return verdict.passed
 
 
 def save_picture(path: Path, theirs: np.ndarray, ours: np.ndarray, z: np.ndarray) -> None:

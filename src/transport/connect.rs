@@ -75,7 +75,8 @@ fn link_origin(link: &Link, towards: Vec3) -> Vec3 {
 pub struct Joined {
     /// The weighted contribution, of which the caller takes as many samples as it has.
     pub value: Spectrum,
-    /// The weight in it, times the number of lanes: for those who check it.
+    /// The weight in it, times the number of lanes.
+    #[cfg_attr(not(test), expect(dead_code, reason = "only the slow twin, a test, looks at it"))]
     pub weight: f32,
 }
 

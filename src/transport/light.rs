@@ -135,7 +135,8 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
     /// s = 1, t = 1: the emitter itself as the lens sees it, where an eye walk could have met it.
     pub fn join_start_to_lens(&self) -> Option<(Vec2, Joined)> {
         let (estimator, start) = (self.estimator, &self.start);
-        if estimator.counts.lens <= 0.0 || !start.hittable || estimator.hide_emitters {
+        let seen_directly = estimator.max_edges > 0 && !estimator.hide_emitters;
+        if estimator.counts.lens <= 0.0 || !start.hittable || !seen_directly {
             return None;
         }
         let scene = estimator.scene;
