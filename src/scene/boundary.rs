@@ -56,8 +56,58 @@ pub fn ask(geometry: &Geometry, surfaces: &[Surface], origin: Vec3, direction: V
     None
 }
 
+/// For every shape, whether its boundary may share faces with that of another: their boxes meet, and neither
+/// lies within the other.
+pub fn touching(geometry: &Geometry, surfaces: &[Surface]) -> Vec<bool> {
+    let bounding: Vec<usize> = (0..surfaces.len()).filter(|i| surfaces[*i].boundary.is_some()).collect();
+    let boxes: Vec<(Vec3, Vec3)> = bounding.iter().map(|i| geometry.shapes()[*i].bounds()).collect();
+    let mut touching = vec![false; surfaces.len()];
+    for (i, a) in boxes.iter().enumerate() {
+        for (j, b) in boxes.iter().enumerate().skip(i + 1) {
+            if meet(*a, *b) {
+                (touching[bounding[i]], touching[bounding[j]]) = (true, true);
+            }
+        }
+    }
+    touching
+}
+
+/// True if the surfaces of two boxes, given by least and greatest corner, have points in common up to rounding.
+fn meet(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
+    let reach = a.0.abs().max(a.1.abs()).max(b.0.abs()).max(b.1.abs());
+    let slack = offset::gamma(32) * reach.max_element();
+    let apart = a.0.cmpgt(b.1 + slack).any() || b.0.cmpgt(a.1 + slack).any();
+    let within =
+        |a: (Vec3, Vec3), b: (Vec3, Vec3)| a.0.cmpgt(b.0 + slack).all() && a.1.cmplt(b.1 - slack).all();
+    !(apart || within(a, b) || within(b, a))
+}
+
 /// Direction `index` of a golden-angle spiral.
 fn direction(index: u32) -> Vec3 {
     let turn = (index as f32 * 0.618_034).fract();
     warp::to_sphere(vec2((index as f32 + 0.5) / DIRECTIONS as f32, turn))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_meet_where_their_surfaces_do() {
+        let cube = |low: f32, high: f32| (Vec3::splat(low), Vec3::splat(high));
+        let right_of = |x: f32| (Vec3::new(x, -1.0, -1.0), Vec3::new(x + 1.0, 1.0, 1.0));
+        let unit = cube(-1.0, 1.0);
+        for (name, other, expected) in [
+            ("itself", unit, true),
+            ("a neighbour", right_of(1.0), true),
+            ("a neighbour up to rounding", right_of(1.0f32.next_up()), true),
+            ("one across a gap", right_of(1.001), false),
+            ("one that overlaps", right_of(0.5), true),
+            ("one inside", cube(-0.9, 0.9), false),
+            ("one inside against a face", (Vec3::splat(-0.9), Vec3::new(1.0, 0.9, 0.9)), true),
+            ("one around", cube(-2.0, 2.0), false),
+        ] {
+            assert_eq!((meet(unit, other), meet(other, unit)), (expected, expected), "{name}");
+        }
+    }
 }

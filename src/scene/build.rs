@@ -233,7 +233,7 @@ impl<'a> Builder<'a> {
         };
         params.finish()?;
         self.shapes.push(shape);
-        self.surfaces.push(Surface { bsdf, emitter, boundary });
+        self.surfaces.push(Surface { bsdf, emitter, boundary, touching: false });
         Ok(())
     }
 
@@ -359,12 +359,14 @@ impl<'a> Builder<'a> {
 
     /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
     fn finish(
-        self,
+        mut self,
         sensor: Perspective,
         stated: Option<MediumIndex>,
         sensor_location: &Location,
     ) -> Result<Scene> {
         let geometry = Geometry::build(self.shapes);
+        let touching = boundary::touching(&geometry, &self.surfaces);
+        self.surfaces.iter_mut().zip(touching).for_each(|(surface, touching)| surface.touching = touching);
         let finder = Finder { geometry: &geometry, surfaces: &self.surfaces, library: self.library };
         let ambient = stated.unwrap_or(MediumIndex::VACUUM);
         let sensor_medium = match stated {

@@ -20,7 +20,7 @@ use crate::{
     math::{Spectrum, Vec3},
     medium::{Homogeneous, MediumIndex},
     sensor::Perspective,
-    shape::SurfacePoint,
+    shape::{Ray, SurfacePoint},
 };
 use accel::Geometry;
 use lights::Lights;
@@ -43,6 +43,8 @@ pub struct Surface {
     pub emitter: Option<u32>,
     /// The media on its sides; none where it does not separate media.
     pub boundary: Option<Boundary>,
+    /// The boundary may share faces with another shape's (see [`boundary::touching`]).
+    pub touching: bool,
 }
 
 /// Everything transport needs to know.
@@ -84,6 +86,18 @@ impl Scene {
             Some(boundary) => boundary.interior,
             None => medium,
         }
+    }
+
+    /// The medium that `ray` is in, which has left `point` from within `medium`. Where two boundaries share a
+    /// face, a ray meets only one of the two, and which one is chance; what it is in now, the next one tells.
+    #[inline]
+    pub fn medium_beyond(&self, point: &SurfacePoint, ray: &Ray, medium: MediumIndex) -> MediumIndex {
+        if self.surface(point.shape).touching
+            && let Some(found) = boundary::ask(&self.geometry, &self.surfaces, ray.origin, ray.direction)
+        {
+            return found;
+        }
+        self.medium_towards(point, ray.direction, medium)
     }
 
     /// The part of light that passes `point` undeflected along `direction`.

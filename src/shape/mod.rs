@@ -102,6 +102,21 @@ pub struct Flat {
     pub triangle: bool,
 }
 
+impl Primitive {
+    /// Least and greatest corner of the box around it.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        match self {
+            Self::Ball { center, radius } => (center - radius, center + radius),
+            Self::Flat(flat) => {
+                let Flat { corner, edge_u, edge_v, triangle, .. } = *flat;
+                let (u, v) = (corner + edge_u, corner + edge_v);
+                let fourth = if triangle { corner } else { u + edge_v };
+                (corner.min(u).min(v).min(fourth), corner.max(u).max(v).max(fourth))
+            }
+        }
+    }
+}
+
 /// Any shape.
 #[derive(Clone, Debug)]
 pub enum Shape {
@@ -161,6 +176,14 @@ impl Shape {
             Self::Sphere(s) => Primitive::Ball { center: s.center(), radius: s.radius() },
             Self::Mesh(m) => Primitive::Flat(m.flat(index)),
         }
+    }
+
+    /// Least and greatest corner of the box around it.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let boxes = (0..self.primitive_count()).map(|index| self.primitive(index).bounds());
+        boxes
+            .reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)))
+            .unwrap_or((Vec3::INFINITY, Vec3::NEG_INFINITY))
     }
 
     /// The surface where `ray` met primitive `index`. For flat primitives `hit.u` and `hit.v` are those of

@@ -124,8 +124,8 @@ fn fly_through<P: Profile>(
         tint *= through / passing;
         depth = depth + P::Lanes::splat(-passing.ln());
         remaining = (remaining - leg.depth.hero(hero)).max(0.0);
-        medium = scene.medium_towards(&point, ray.direction, medium);
         ray = past(&ray, &point);
+        medium = scene.medium_beyond(&point, &ray, medium);
     }
 }
 
@@ -178,8 +178,8 @@ fn pass_through<P: Profile>(
         passing *= through.max_element();
         tint *= through;
         depth = depth + sigma_t.scaled(hit.t);
-        medium = scene.medium_towards(&point, ray.direction, medium);
         ray = past(&ray, &point);
+        medium = scene.medium_beyond(&point, &ray, medium);
         if ray.t_max < f32::INFINITY {
             // Crossings are rounded: aimed anew, the segment ends where it should, not in the surface beyond.
             let (aim, t_max, _) = measure::between(ray.origin, end).unwrap_or((ray.direction, 0.0, 0.0));
