@@ -42,7 +42,16 @@ def ball_of_medium(thickness: float, phase: dict, bsdf: dict, name: str = ""):
 
 
 def white_pit():
-    """Deep interreflection: the inside of an open tube, closed at its far end."""
-    tube = {"type": "cylinder", "p0": [0, 0, -1], "p1": [0, 0, 1], "radius": 0.8, "bsdf": WHITE}
-    floor = {"type": "disk", "to_world": [{"type": "scale", "value": 0.8}, {"type": "translate", "value": [0, 0, -1]}]}
-    return scene("furnace white pit", sensor=view(), sky=SKY, tube=tube, floor={**floor, "bsdf": WHITE})
+    """Deep interreflection: the inside of a box that is open towards the camera."""
+    towards = [{"type": "translate", "value": [0, 0, -1]}]
+    turned = {"back": ([0, 1, 0], 0), "left": ([0, 1, 0], 90), "right": ([0, 1, 0], -90)}
+    turned |= {"below": ([1, 0, 0], -90), "above": ([1, 0, 0], 90)}
+    sides = {
+        name: {
+            "type": "rectangle",
+            "to_world": [*towards, {"type": "rotate", "axis": axis, "angle": angle}],
+            "bsdf": WHITE,
+        }
+        for name, (axis, angle) in turned.items()
+    }
+    return scene("furnace white pit", sensor=view(), sky=SKY, **sides)

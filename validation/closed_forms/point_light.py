@@ -9,6 +9,8 @@ SIGMA_T = (0.2, 0.5, 1.0)
 ALBEDO = 0.8
 INTENSITY = 10.0
 FOV = 40.0
+NEAR = 0.01
+"""Camera rays start on the near clipping plane: the fog before it does not count."""
 LIGHT = np.array([0.0, 1.6, -3.0])
 """Outside of the view, so that the image has no peak; the camera stands at the origin and looks along -z."""
 SUBPIXELS = np.polynomial.legendre.leggauss(3)
@@ -22,7 +24,7 @@ PHASES = {
 
 def cases() -> list[Case]:
     """One scene for each phase function."""
-    return [Case(lit(name, plugin), image(phase), ("pt", "lt", "bdpt")) for name, (plugin, phase) in PHASES.items()]
+    return [Case(lit(name, plugin), image(phase)) for name, (plugin, phase) in PHASES.items()]
 
 
 def lit(name: str, phase: dict):
@@ -33,7 +35,7 @@ def lit(name: str, phase: dict):
         f"point light {name}",
         max_depth=2,
         fog=medium(SIGMA_T, ALBEDO, phase),
-        sensor=camera((0, 0, 0), (0, 0, -1), FOV, medium=fog),
+        sensor=camera((0, 0, 0), (0, 0, -1), FOV, medium=fog, near_clip=NEAR),
         light={
             "type": "point",
             "position": LIGHT.tolist(),
@@ -70,13 +72,15 @@ def ray(x: float, y: float) -> np.ndarray:
 def radiance(direction: np.ndarray, sigma_t: float, phase) -> float:
     """Light scattered once into the camera ray."""
 
+    start = NEAR / -direction[2]
+
     def source(t: float) -> float:
         to_point = t * direction - LIGHT
         distance = np.linalg.norm(to_point)
         cosine = float(-to_point @ direction) / distance
-        return np.exp(-sigma_t * (t + distance)) * phase(cosine) / distance**2
+        return np.exp(-sigma_t * (t - start + distance)) * phase(cosine) / distance**2
 
     nearest = float(LIGHT @ direction)
-    parts = (0, nearest - 1, nearest, nearest + 1, nearest + 5, nearest + 60 / sigma_t)
+    parts = (start, nearest - 1, nearest, nearest + 1, nearest + 5, nearest + 60 / sigma_t)
     total = sum(quad(source, low, high, epsrel=1e-8)[0] for low, high in zip(parts, parts[1:]))
     return INTENSITY * ALBEDO * sigma_t * total
