@@ -93,20 +93,23 @@ pub fn join<P: Profile>(
     let end = offset::clear_of_end(a.origin, b.origin, b.lift);
     let (direction, distance, _) = measure::between(a.origin, end)?;
     let ray = Ray { origin: a.origin, direction, t_max: distance };
-    join_along::<P>(scene, ray, a, b, distance_squared, count)
+    let cut = (b.origin - end).dot(direction);
+    join_along::<P>(scene, ray, cut, a, b, distance_squared, count)
 }
 
-/// The same along a given ray that starts at `a`: for ends at infinity, where `distance_squared` is 1.
+/// The same along a given ray that starts at `a` and stops `cut` short of `b`: for ends at infinity, where
+/// `distance_squared` is 1.
 #[inline]
 pub fn join_along<P: Profile>(
     scene: &Scene,
     ray: Ray,
+    cut: f32,
     a: &End<P::Lanes>,
     b: &End<P::Lanes>,
     distance_squared: f32,
     count: f32,
 ) -> Option<Joined> {
-    let passage = segment::pass::<P>(scene, ray, a.medium)?;
+    let passage = segment::pass::<P>(scene, ray, cut, a.medium)?;
     let geometry = 1.0 / distance_squared;
     let weight = weight::join(a, b, passage.density, geometry, count);
     let value = a.value * b.value * passage.transmittance * (geometry * weight);

@@ -145,7 +145,7 @@ impl<'a, P: Profile> Eye<'a, P> {
         let light = connect::link_end(link, eye.medium, -direction, counts.hit);
         if P::INFINITE && link.infinite {
             let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
-            connect::join_along::<P>(scene, ray, &eye, &light, 1.0, 1.0)
+            connect::join_along::<P>(scene, ray, 0.0, &eye, &light, 1.0, 1.0)
         } else {
             connect::join::<P>(scene, &eye, &light, distance_squared, 1.0)
         }

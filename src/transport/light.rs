@@ -174,7 +174,7 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
         } else {
             let t_max = (sensor.far - sensor.near) / seen.cosine;
             let ray = Ray { origin: lens.origin, direction: seen.direction, t_max };
-            connect::join_along::<P>(scene, ray, &lens, end, distance_squared, counts.lens)
+            connect::join_along::<P>(scene, ray, 0.0, &lens, end, distance_squared, counts.lens)
         }
     }
 }

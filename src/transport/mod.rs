@@ -12,6 +12,8 @@ mod lanes;
 mod light;
 pub mod profile;
 mod segment;
+#[cfg(test)]
+mod twin;
 mod vertex;
 mod walk;
 mod weight;
@@ -117,8 +119,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
         estimator
     }
 
-    /// Measures how many vertices a light walk leaves: n of a join is draws over vertices per walk. The weights
-    /// need a constant that does not depend on the very walks they weight, hence a measurement beforehand.
+    /// Measures how many vertices a light walk leaves: n of a join is draws over vertices per walk, however many
+    /// of them are kept. The weights need a constant that does not depend on the very walks they weight, hence a
+    /// measurement beforehand.
     fn plan_joins(&mut self, seed: u64, walks_per_block: u64) {
         self.keep = 1.0;
         let mut cache = LightCache::new(P::Lanes::COUNT);
@@ -130,7 +133,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
         let per_walk = (cache.len() as f32 / PILOT_WALKS as f32).max(1.0 / PILOT_WALKS as f32);
         self.keep = (CACHE_VERTICES / (per_walk * walks_per_block as f32)).min(1.0);
         self.joins_per_vertex = JOINS_PER_VERTEX;
-        self.counts.join = JOINS_PER_VERTEX as f32 / (per_walk * self.keep);
+        self.counts.join = JOINS_PER_VERTEX as f32 / per_walk;
     }
 
     /// True if light walks have something to do.

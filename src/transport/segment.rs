@@ -138,11 +138,12 @@ fn past(ray: &Ray, point: &SurfacePoint) -> Ray {
 }
 
 /// What remains of radiance along `ray` (its `t_max` is the segment's length, infinite for an emitter at
-/// infinity), starting in `medium`; none where a surface blocks it.
+/// infinity), starting in `medium`; none where a surface blocks it. The ray stops `cut` short of the segment's
+/// end to be clear of the surface there: the medium reaches on to the end.
 #[inline]
-pub fn pass<P: Profile>(scene: &Scene, ray: Ray, medium: MediumIndex) -> Option<Passage<P::Lanes>> {
+pub fn pass<P: Profile>(scene: &Scene, ray: Ray, cut: f32, medium: MediumIndex) -> Option<Passage<P::Lanes>> {
     if P::NULLS {
-        return pass_through::<P>(scene, ray, medium);
+        return pass_through::<P>(scene, ray, cut, medium);
     }
     if scene.geometry.occluded(&ray) {
         return None;
@@ -151,13 +152,14 @@ pub fn pass<P: Profile>(scene: &Scene, ray: Ray, medium: MediumIndex) -> Option<
         return Some(Passage { density: P::Lanes::splat(1.0), transmittance: Spectrum::ONE });
     }
     let sigma_t = P::Lanes::from_spectrum(scene.media[medium.0 as usize].sigma_t);
-    let density = depth_of(sigma_t, ray.t_max).exp_neg();
+    let density = depth_of(sigma_t, ray.t_max + cut).exp_neg();
     Some(Passage { density, transmittance: density.to_spectrum() })
 }
 
 fn pass_through<P: Profile>(
     scene: &Scene,
     mut ray: Ray,
+    cut: f32,
     mut medium: MediumIndex,
 ) -> Option<Passage<P::Lanes>> {
     let end = ray.origin + ray.direction * ray.t_max;
@@ -166,7 +168,7 @@ fn pass_through<P: Profile>(
     loop {
         let sigma_t = P::Lanes::from_spectrum(scene.media[medium.0 as usize].sigma_t);
         let Some(hit) = scene.geometry.closest(&ray) else {
-            let transmitted = (depth + depth_of(sigma_t, ray.t_max)).exp_neg();
+            let transmitted = (depth + depth_of(sigma_t, ray.t_max + cut)).exp_neg();
             let transmittance = transmitted.to_spectrum() * tint;
             return Some(Passage { density: transmitted.scaled(passing), transmittance });
         };

@@ -134,10 +134,11 @@ pub fn land<P: Profile>(
     let transmitted = flight.depth.exp_neg();
     let geometry = measure::solid_angle_to_vertex(vertex.cosine(direction), distance_squared);
     let density = departure.forward * transmitted.hero(hero) * sigma_t.hero(hero) * geometry;
-    if !(density > 0.0 && density < f32::INFINITY) {
+    vertex.inverse = 1.0 / density;
+    // A density of 0, infinite, or so small that its inverse overflows: no walk in a real scene comes here.
+    if !(vertex.inverse > 0.0 && vertex.inverse < f32::INFINITY) {
         return None;
     }
-    vertex.inverse = 1.0 / density;
     vertex.partial = (departure.carried * transmitted).scaled(1.0 / distance_squared);
     vertex.reach = departure.reach * ratio;
     vertex.throughput *= ratio.to_spectrum();

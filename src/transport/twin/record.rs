@@ -1,0 +1,286 @@
+//! Real walks, and what the fast code says about every path that their joins make.
+
+use super::path::{Node, Path, Place};
+use crate::{
+    bsdf::Transport,
+    math::{Spectrum, Vec2, Vec3, vec2},
+    sampling::Stream,
+    scene::{
+        Scene,
+        lights::{Link, Start},
+    },
+    transport::{
+        Estimator, LightCache, Splats,
+        connect::Joined,
+        eye::{self, Eye},
+        lanes::Lanes,
+        light::{self, Light},
+        profile::Profile,
+        vertex::{Site, Vertex},
+        walk::{Kind, Visitor, walk},
+    },
+};
+
+/// A path, and the weight that the fast code gave it.
+pub struct Case {
+    /// None where the twin cannot tell what lies along it.
+    pub path: Option<Path>,
+    pub strategy: usize,
+    pub hero: usize,
+    pub weight: f32,
+}
+
+/// A film that reaches a little further than the image.
+pub struct WideFilm;
+
+impl Splats for WideFilm {
+    fn covers(&self, film: Vec2) -> bool {
+        (film - vec2(8.0, 6.0)).abs().max_element() < 12.0
+    }
+    fn splat(&mut self, _: Vec2, _: Spectrum) {}
+}
+
+/// Remembers where a walk went.
+pub struct Trail<V, L> {
+    visitor: V,
+    pub vertices: Vec<Vertex<L>>,
+    pub escaped: Option<Vertex<L>>,
+}
+
+impl<V, L> Trail<V, L> {
+    fn new(visitor: V) -> Self {
+        Self { visitor, vertices: Vec::new(), escaped: None }
+    }
+}
+
+impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::Lanes> {
+    fn joins(&self, edges: u32, position: Vec3) -> f32 {
+        self.visitor.joins(edges, position)
+    }
+    fn arrive(&mut self, vertex: &Vertex<P::Lanes>, _: &mut Stream) {
+        self.vertices.push(*vertex);
+    }
+    fn escape(&mut self, vertex: &Vertex<P::Lanes>) {
+        self.escaped = Some(*vertex);
+    }
+}
+
+/// An eye walk through `film`.
+pub fn eye_walk<'a, P: Profile>(
+    estimator: &'a Estimator<'a, P>,
+    cache: &'a LightCache<P::Lanes>,
+    film: Vec2,
+    hero: usize,
+    stream: &mut Stream,
+) -> Trail<Eye<'a, P>, P::Lanes> {
+    let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
+    let mut trail = Trail::new(Eye::new(estimator, cache, hero));
+    walk::<P>(estimator.scene, kind, eye::depart(estimator, film), &mut trail, stream);
+    trail
+}
+
+/// The light walk of `visitor`.
+fn light_walk<'a, P: Profile>(
+    visitor: Light<'a, P, WideFilm>,
+    estimator: &Estimator<'_, P>,
+    start: &Start,
+    hero: usize,
+    stream: &mut Stream,
+) -> Trail<Light<'a, P, WideFilm>, P::Lanes> {
+    let max_edges = estimator.max_edges.saturating_sub(1);
+    let kind = Kind { transport: Transport::Importance, hero, max_edges };
+    let mut trail = Trail::new(visitor);
+    walk::<P>(estimator.scene, kind, light::depart(estimator, start), &mut trail, stream);
+    trail
+}
+
+/// Every path that one eye walk through `film` and one light walk make, with its fast weight.
+pub fn cases<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    film: Vec2,
+    hero: usize,
+    stream: &mut Stream,
+) -> Vec<Case> {
+    let cache = LightCache::new(P::Lanes::COUNT);
+    let eye = eye_walk(estimator, &cache, film, hero, stream);
+    let mut cases = Cases { scene: estimator.scene, hero, all: Vec::new() };
+    of_eye(estimator, &eye, &mut cases, stream);
+    let Some(start) = estimator.scene.lights.sample_start(&estimator.scene.geometry, stream) else {
+        return cases.all;
+    };
+    let (mut kept, mut film) = (LightCache::new(P::Lanes::COUNT), WideFilm);
+    let visitor = Light::new(estimator, &mut kept, &mut film, start, hero);
+    let trail = light_walk(visitor, estimator, &start, hero, stream);
+    of_light(estimator, &start, &trail, &mut cases);
+    of_both(estimator, &eye, &start, &trail.vertices, &mut cases, stream);
+    cases.all
+}
+
+/// Paths of at least `length` vertices: one by next-event estimation, one by a join, one by the lens.
+pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, stream: &mut Stream) -> Vec<Case> {
+    let scene = estimator.scene;
+    let (cache, mut kept) = (LightCache::new(P::Lanes::COUNT), LightCache::new(P::Lanes::COUNT));
+    let eye = eye_walk(estimator, &cache, vec2(8.0, 6.0), 0, stream);
+    let start = scene.lights.sample_start(&scene.geometry, stream).unwrap();
+    let mut film = WideFilm;
+    let light =
+        light_walk(Light::new(estimator, &mut kept, &mut film, start, 0), estimator, &start, 0, stream);
+    let mut cases = Cases { scene, hero: 0, all: Vec::new() };
+    let last = &eye.vertices[length - 1];
+    let link =
+        (0..100).find_map(|_| scene.lights.sample_link(&scene.geometry, last.position, stream)).unwrap();
+    let of_eye = |count| chain(&eye.vertices[..count], false);
+    let of_light = |count| chain(&light.vertices[..count], false);
+    cases.add(emitter_of(scene, &link), Vec::new(), of_eye(length), eye.visitor.link(last, &link));
+    let half = length / 2;
+    let joined = eye.visitor.join_with(&eye.vertices[half - 1], &light.vertices[half - 1]);
+    cases.add(start_of(&start), of_light(half), of_eye(half), joined);
+    let seen = light.visitor.join_to_lens(&light.vertices[length - 1]);
+    cases.add(start_of(&start), of_light(length), Vec::new(), seen.map(|(_, joined)| joined));
+    cases.all
+}
+
+struct Cases<'a> {
+    scene: &'a Scene,
+    hero: usize,
+    all: Vec<Case>,
+}
+
+impl Cases<'_> {
+    /// A path from an emitter by `light`, in walking order, to the lens by `eye`, in walking order.
+    fn add(&mut self, emitter: (u32, Place), light: Vec<Node>, eye: Vec<Node>, joined: Option<Joined>) {
+        let Some(Joined { weight, .. }) = joined else { return };
+        let (index, place) = emitter;
+        let strategy = light.len() + 1;
+        let mut nodes = vec![Node::emitter(self.scene, index, place)];
+        nodes.extend(light);
+        nodes.extend(eye.into_iter().rev());
+        nodes.push(Node::lens(self.scene));
+        let path = Path::through(self.scene, index, nodes);
+        self.all.push(Case { path, strategy, hero: self.hero, weight });
+    }
+
+    /// The same where the eye walk made all of it.
+    fn add_hit(&mut self, emitter: (u32, Place), eye: Vec<Node>, joined: Option<Joined>) {
+        let before = self.all.len();
+        self.add(emitter, Vec::new(), eye, joined);
+        self.all[before..].iter_mut().for_each(|case| case.strategy = 0);
+    }
+}
+
+/// The vertices of a walk; `dirac` tells of the last one how it scatters.
+fn chain<L: Lanes>(vertices: &[Vertex<L>], dirac: bool) -> Vec<Node> {
+    let node = |(index, vertex): (usize, &Vertex<L>)| Node {
+        place: match vertex.site {
+            Site::Surface(point) => Place::Surface(point),
+            Site::Medium => Place::Volume(vertex.position),
+        },
+        medium: vertex.medium,
+        dirac: vertices.get(index + 1).map_or(dirac, |next| next.after_dirac),
+    };
+    vertices.iter().enumerate().map(node).collect()
+}
+
+fn of_eye<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    cases: &mut Cases<'_>,
+    stream: &mut Stream,
+) {
+    let scene = estimator.scene;
+    let mut previous = scene.sensor.position;
+    for (index, vertex) in eye.vertices.iter().enumerate() {
+        if let Site::Surface(point) = vertex.site
+            && let Some(light) = scene.surface(point.shape).emitter
+            && let Some(link) = scene.lights.met(&scene.geometry, light, &point, previous)
+        {
+            let before = chain(&eye.vertices[..index], vertex.after_dirac);
+            cases.add_hit((light, Place::Surface(point)), before, eye.visitor.hit(vertex, &link));
+        }
+        if can_join(estimator, vertex)
+            && estimator.counts.next_event > 0.0
+            && let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream)
+        {
+            let joined = eye.visitor.link(vertex, &link);
+            cases.add(emitter_of(scene, &link), Vec::new(), chain(&eye.vertices[..=index], false), joined);
+        }
+        previous = vertex.position;
+    }
+    if let Some(vertex) = &eye.escaped
+        && let Some(link) = scene.lights.met_at_infinity(-vertex.incoming)
+    {
+        let before = chain(&eye.vertices, vertex.after_dirac);
+        cases.add_hit(emitter_of(scene, &link), before, eye.visitor.hit(vertex, &link));
+    }
+}
+
+fn can_join<P: Profile>(estimator: &Estimator<'_, P>, vertex: &Vertex<P::Lanes>) -> bool {
+    vertex.edges < estimator.max_edges && vertex.is_connectible(estimator.scene)
+}
+
+fn of_light<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    start: &Start,
+    light: &Trail<Light<'_, P, WideFilm>, P::Lanes>,
+    cases: &mut Cases<'_>,
+) {
+    if estimator.counts.lens <= 0.0 {
+        return;
+    }
+    let joined = light.visitor.join_start_to_lens().map(|(_, joined)| joined);
+    cases.add(start_of(start), Vec::new(), Vec::new(), joined);
+    for (index, vertex) in light.vertices.iter().enumerate() {
+        if vertex.is_connectible(estimator.scene) {
+            let joined = light.visitor.join_to_lens(vertex).map(|(_, joined)| joined);
+            cases.add(start_of(start), chain(&light.vertices[..=index], false), Vec::new(), joined);
+        }
+    }
+}
+
+fn of_both<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    start: &Start,
+    light: &[Vertex<P::Lanes>],
+    cases: &mut Cases<'_>,
+    stream: &mut Stream,
+) {
+    if estimator.counts.join <= 0.0 || light.is_empty() {
+        return;
+    }
+    for (index, vertex) in eye.vertices.iter().enumerate() {
+        let other = stream.below(light.len());
+        let (ours, theirs) = (can_join(estimator, vertex), light[other].is_connectible(estimator.scene));
+        if ours && theirs && vertex.edges + light[other].edges < estimator.max_edges {
+            let joined = eye.visitor.join_with(vertex, &light[other]);
+            let (eye, light) = (chain(&eye.vertices[..=index], false), chain(&light[..=other], false));
+            cases.add(start_of(start), light, eye, joined);
+        }
+    }
+}
+
+fn start_of(start: &Start) -> (u32, Place) {
+    let place = match start.point {
+        Some(point) => Place::Surface(point),
+        None if start.infinite => Place::Sky(start.position),
+        None => Place::Point(start.position),
+    };
+    (start.light, place)
+}
+
+/// The emitter of a link and its vertex.
+fn emitter_of(scene: &Scene, link: &Link) -> (u32, Place) {
+    use crate::emitter::Emitter;
+    if let Some(point) = link.point {
+        return (scene.surface(point.shape).emitter.unwrap(), Place::Surface(point));
+    }
+    let is_it = |light: &crate::scene::lights::Light| match &light.emitter {
+        Emitter::Point(_) | Emitter::Spot(_) => !link.infinite && light.position == link.position,
+        Emitter::Directional(sun) => link.infinite && !link.hittable && -sun.direction == link.position,
+        Emitter::Constant(_) => link.infinite && link.hittable,
+        Emitter::Area(_) => false,
+    };
+    let light = scene.lights.all.iter().position(is_it).unwrap();
+    let place = if link.infinite { Place::Sky(link.position) } else { Place::Point(link.position) };
+    (light as u32, place)
+}

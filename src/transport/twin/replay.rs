@@ -1,0 +1,177 @@
+//! The fast code led along a given path: walk states at all its vertices from both ends, and the weights of all
+//! strategies from them.
+
+use super::{
+    density::{Twin, reflect},
+    path::{Node, Path, Place},
+    record::WideFilm,
+};
+use crate::{
+    bsdf::Transport,
+    math::{Spectrum, vec3},
+    scene::lights::Start,
+    transport::{
+        Estimator, LightCache,
+        eye::{self, Eye},
+        lanes::Lanes,
+        light::{self, Light},
+        profile::Profile,
+        segment::{Flight, Landing},
+        vertex::Vertex,
+        walk::{Departure, Turn, Visitor, land, set_out},
+    },
+};
+
+/// Which way and by which channel a walk is led.
+struct Lead<'a> {
+    twin: &'a Twin<'a>,
+    transport: Transport,
+    hero: usize,
+    /// In walking order, the start included.
+    nodes: Vec<Node>,
+    depths: Vec<[f64; 3]>,
+}
+
+/// The fast weights (over the number of lanes) of all strategies of `path` by channel `hero`: none where the way
+/// is blocked, 0 where a strategy cannot make the path.
+pub fn weights<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    twin: &Twin<'_>,
+    path: &Path,
+    hero: usize,
+) -> Vec<Option<f64>> {
+    let cache = LightCache::new(P::Lanes::COUNT);
+    let (mut kept, mut film) = (LightCache::new(P::Lanes::COUNT), WideFilm);
+    let start = start(twin, path);
+    let light = Light::new(estimator, &mut kept, &mut film, start, hero);
+    let eye = Eye::new(estimator, &cache, hero);
+    let by_light = by_light(estimator, twin, path, &start, hero, &light);
+    let by_eye = by_eye(estimator, twin, path, hero, &eye);
+    let last = path.nodes.len() - 1;
+    let lens_side = |i: usize| by_eye.get(last - 1 - i);
+    let emitter_side = |i: usize| by_light.get(i - 1);
+    let one = |s: usize| {
+        if twin.count(path, s) == 0.0 {
+            return Some(0.0);
+        }
+        let joined = match s {
+            0 => lens_side(0).map(|vertex| eye.hit(vertex, &twin.link(path)?)),
+            1 if last == 1 => Some(light.join_start_to_lens().map(|(_, joined)| joined)),
+            _ if s == last => emitter_side(s - 1).map(|v| light.join_to_lens(v).map(|(_, joined)| joined)),
+            1 => twin
+                .link(path)
+                .filter(|link| link.connect > 0.0)
+                .and_then(|link| lens_side(1).map(|vertex| eye.link(vertex, &link))),
+            _ => lens_side(s).zip(emitter_side(s - 1)).map(|(ours, theirs)| eye.join_with(ours, theirs)),
+        };
+        // The hero cannot walk here (no extinction of its own, say): a density of 0.
+        let Some(joined) = joined else { return Some(0.0) };
+        joined.map(|joined| f64::from(joined.weight) / P::Lanes::COUNT as f64)
+    };
+    (0..=last).map(one).collect()
+}
+
+fn by_light<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    twin: &Twin<'_>,
+    path: &Path,
+    start: &Start,
+    hero: usize,
+    visitor: &impl Visitor<P>,
+) -> Vec<Vertex<P::Lanes>> {
+    let last = path.nodes.len() - 1;
+    let lead = Lead {
+        twin,
+        transport: Transport::Importance,
+        hero,
+        nodes: path.nodes[..last].to_vec(),
+        depths: path.depths.clone(),
+    };
+    lead.along::<P>(light::depart(estimator, start), visitor)
+}
+
+fn by_eye<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    twin: &Twin<'_>,
+    path: &Path,
+    hero: usize,
+    visitor: &impl Visitor<P>,
+) -> Vec<Vertex<P::Lanes>> {
+    let hittable = estimator.scene.lights.all[path.light as usize].emitter.is_hittable();
+    let lead = Lead {
+        twin,
+        transport: Transport::Radiance,
+        hero,
+        nodes: path.nodes[usize::from(!hittable)..].iter().rev().copied().collect(),
+        depths: path.depths.iter().rev().copied().collect(),
+    };
+    let seen = &path.nodes[path.nodes.len() - 2];
+    let projection = match seen.place {
+        Place::Sky(direction) => estimator.scene.sensor.project_direction(direction),
+        _ => estimator.scene.sensor.project(seen.position()),
+    };
+    let Some(projection) = projection else { return Vec::new() };
+    lead.along::<P>(eye::depart(estimator, projection.film), visitor)
+}
+
+/// The start of a light walk at the first vertex of `path`.
+fn start(twin: &Twin<'_>, path: &Path) -> Start {
+    let (node, direction) = (&path.nodes[0], path.nodes[0].towards(&path.nodes[1]));
+    Start {
+        position: node.position(),
+        point: if let Place::Surface(point) = node.place { Some(point) } else { None },
+        origin: node.position(),
+        direction: direction.as_vec3(),
+        cosine: node.cosine(direction) as f32,
+        forward: twin.emission(path.light, node, direction) as f32,
+        throughput: Spectrum::ONE,
+        ..twin.starts[path.light as usize].unwrap()
+    }
+}
+
+impl Lead<'_> {
+    fn along<P: Profile>(
+        &self,
+        mut departure: Departure<P::Lanes>,
+        visitor: &impl Visitor<P>,
+    ) -> Vec<Vertex<P::Lanes>> {
+        let scene = self.twin.scene;
+        let mut made = Vec::new();
+        if let [first, second, ..] = self.nodes.as_slice() {
+            departure.ray.direction = first.towards(second).as_vec3();
+        }
+        for i in 1..self.nodes.len() {
+            let flight = self.flight(i);
+            let Some(vertex) = land::<P>(scene, &departure, &flight, self.hero, visitor) else { break };
+            made.push(vertex);
+            if i + 1 < self.nodes.len() {
+                departure = set_out(scene, &vertex, &self.turn(i, &vertex));
+            }
+        }
+        made
+    }
+
+    fn flight<L: Lanes>(&self, i: usize) -> Flight<L> {
+        let (node, depth) = (&self.nodes[i], self.depths[i - 1].map(|depth| depth as f32));
+        let landing = match node.place {
+            Place::Surface(point) => Landing::Surface(point),
+            Place::Sky(_) => Landing::Escape,
+            _ => Landing::Medium(node.position()),
+        };
+        let depth = L::from_spectrum(vec3(depth[0], depth[1], depth[2]));
+        Flight { landing, medium: node.medium, depth, tint: Spectrum::ONE }
+    }
+
+    fn turn<L: Lanes>(&self, i: usize, vertex: &Vertex<L>) -> Turn {
+        let (scene, here) = (self.twin.scene, &self.nodes[i]);
+        let (back, on) = (here.towards(&self.nodes[i - 1]), here.towards(&self.nodes[i + 1]));
+        let (direction, weight, dirac) = (on.as_vec3(), Spectrum::ONE, here.dirac);
+        if let (true, Place::Surface(point)) = (dirac, &here.place) {
+            let forward = reflect(scene, point, back, on, true, self.transport) as f32;
+            let backward = reflect(scene, point, on, back, true, self.transport) as f32;
+            return Turn { direction, weight, forward, backward, dirac };
+        }
+        let scattering = vertex.scatter_towards(scene, direction, self.transport);
+        Turn { direction, weight, forward: scattering.forward, backward: scattering.backward, dirac }
+    }
+}

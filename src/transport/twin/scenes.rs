@@ -1,0 +1,130 @@
+//! Scenes for the twin, as the JSON that users write.
+
+use crate::scene::{
+    self,
+    build::{Overrides, Setup},
+};
+
+/// Builds the scene of these parts: `"name": {...}` after each other.
+pub fn build(parts: &[&str]) -> Setup {
+    let text = format!("{{\"type\": \"scene\", {}}}", parts.join(", "));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("scene.json");
+    std::fs::write(&file, text).unwrap();
+    std::fs::write(folder.path().join("octahedron.obj"), OCTAHEDRON).unwrap();
+    let description = scene::read(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
+    scene::build::build(&description, Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+pub const FOG: &str = r#""fog": {"type": "homogeneous", "sigma_t": 0.6, "albedo": 0.9,
+    "phase": {"type": "hg", "g": 0.5}}"#;
+
+pub const CHROMATIC_FOG: &str = r#""fog": {"type": "homogeneous",
+    "sigma_t": {"type": "rgb", "value": [0.2, 1.0, 5.0]}, "albedo": {"type": "rgb", "value": [0.9, 0.8, 0.6]}}"#;
+
+pub const EXTREME_FOG: &str = r#""fog": {"type": "homogeneous",
+    "sigma_t": {"type": "rgb", "value": [0.001, 1.0, 1000.0]}, "albedo": 0.95}"#;
+
+/// Fog that takes nothing from blue.
+pub const YELLOW_FOG: &str = r#""fog": {"type": "homogeneous",
+    "sigma_t": {"type": "rgb", "value": [0.5, 1.0, 0.0]}, "albedo": 0.9}"#;
+
+pub const CLEAR: &str = r#""fog": {"type": "homogeneous", "sigma_t": 0.0}"#;
+
+/// A camera in the fog, in the room.
+pub const INSIDE: &str = r#""camera": {"type": "perspective", "fov": 80,
+    "to_world": [{"type": "lookat", "origin": [0.1, 0, -0.9], "target": [0, 0.05, 0], "up": [0, 1, 0]}],
+    "film": {"type": "hdrfilm", "width": 16, "height": 12}, "fog": {"type": "ref", "id": "fog"}}"#;
+
+/// A camera in the open, six metres off.
+pub const OUTSIDE: &str = r#""camera": {"type": "perspective", "fov": 40,
+    "to_world": [{"type": "lookat", "origin": [0.5, 1, -6], "target": [0, 0, 0], "up": [0, 1, 0]}],
+    "film": {"type": "hdrfilm", "width": 16, "height": 12}}"#;
+
+pub const ROOM: &str = r#""room": {"type": "cube", "flip_normals": true,
+    "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.7, 0.6, 0.5]}}}"#;
+
+pub const LAMP: &str = r#""lamp": {"type": "rectangle",
+    "to_world": [{"type": "scale", "value": 0.4}, {"type": "rotate", "axis": [1, 0, 0], "angle": 90},
+                 {"type": "translate", "value": [0, 0.95, 0.2]}],
+    "bsdf": {"type": "diffuse", "reflectance": 0.3},
+    "emitter": {"type": "area", "radiance": 5}}"#;
+
+pub const BALL: &str = r#""ball": {"type": "sphere", "center": [0.3, -0.6, 0.3], "radius": 0.35,
+    "bsdf": {"type": "diffuse", "reflectance": 0.4}}"#;
+
+pub const BULB: &str = r#""bulb": {"type": "sphere", "center": [-0.5, 0.4, 0.4], "radius": 0.15,
+    "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [9, 7, 3]}}}"#;
+
+/// Glass around thinner fog.
+pub const GLASS_BALL: &str = r#""haze": {"type": "homogeneous", "sigma_t": 1.5, "albedo": 0.95},
+    "ball": {"type": "sphere", "center": [0.3, -0.4, 0.2], "radius": 0.4,
+    "bsdf": {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0},
+    "interior": {"type": "ref", "id": "haze"}, "exterior": {"type": "ref", "id": "fog"}}"#;
+
+pub const MIRROR: &str = r#""mirror": {"type": "rectangle",
+    "to_world": [{"type": "scale", "value": 0.6}, {"type": "rotate", "axis": [0, 1, 0], "angle": 60},
+                 {"type": "translate", "value": [-0.8, -0.2, 0.3]}],
+    "bsdf": {"type": "twosided", "bsdf": {"type": "conductor", "material": "none"}}}"#;
+
+pub const FROSTED_BALL: &str = r#""ball": {"type": "sphere", "center": [0.3, -0.4, 0.2], "radius": 0.4,
+    "bsdf": {"type": "roughdielectric", "alpha": 0.3, "int_ior": 1.5, "ext_ior": 1.0}}"#;
+
+pub const PANE: &str = r#""pane": {"type": "rectangle", "to_world": [{"type": "scale", "value": 0.9},
+    {"type": "rotate", "axis": [0, 1, 0], "angle": 10}, {"type": "translate", "value": [0, 0, 0.1]}],
+    "bsdf": {"type": "thindielectric", "int_ior": 1.5,
+             "specular_transmittance": {"type": "rgb", "value": [0.9, 0.5, 0.2]}, "specular_reflectance": 0.9}}"#;
+
+/// A cube of smoke in the open.
+pub const SMOKE: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "homogeneous", "sigma_t": 1.2, "albedo": 0.95, "phase": {"type": "hg", "g": -0.3}}}"#;
+
+pub const CHROMATIC_SMOKE: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "homogeneous", "sigma_t": {"type": "rgb", "value": [0.1, 1, 10]}, "albedo": 0.9}}"#;
+
+/// Denser smoke within the smoke.
+pub const KERNEL: &str = r#""kernel": {"type": "sphere", "radius": 0.5, "bsdf": {"type": "null"},
+    "interior": {"type": "homogeneous", "sigma_t": 4, "albedo": 0.8},
+    "exterior": {"type": "homogeneous", "sigma_t": 1.2, "albedo": 0.95, "phase": {"type": "hg", "g": -0.3}}}"#;
+
+pub const GROUND: &str = r#""ground": {"type": "rectangle",
+    "to_world": [{"type": "scale", "value": 4}, {"type": "rotate", "axis": [1, 0, 0], "angle": -90},
+                 {"type": "translate", "value": [0, -1.2, 0]}],
+    "bsdf": {"type": "diffuse", "reflectance": 0.5}}"#;
+
+pub const SKY: &str = r#""sky": {"type": "constant", "radiance": 0.7}"#;
+
+pub const SUN: &str = r#""sun": {"type": "directional", "direction": [0.4, -1, 0.5], "irradiance": 3}"#;
+
+pub const POINT: &str = r#""point": {"type": "point", "position": [-0.3, 0.8, -0.2], "intensity": 2}"#;
+
+pub const SPOT: &str = r#""spot": {"type": "spot", "cutoff_angle": 35, "intensity": 6,
+    "to_world": [{"type": "lookat", "origin": [0.6, 0.9, -0.4], "target": [0, -0.5, 0], "up": [0, 0, 1]}]}"#;
+
+/// White walls far apart, in fog that absorbs nothing.
+pub const FURNACE: &str = r#""fog": {"type": "homogeneous", "sigma_t": 20, "albedo": 1},
+    "room": {"type": "cube", "flip_normals": true, "bsdf": {"type": "diffuse", "reflectance": 1}}"#;
+
+/// A tunnel with the camera at one end and a lamp at the other, 100 mean free paths off.
+pub const TUNNEL: &str = r#""fog": {"type": "homogeneous", "sigma_t": 1, "albedo": 0.9},
+    "camera": {"type": "perspective", "fov": 60,
+    "to_world": [{"type": "lookat", "origin": [0, 0, -51], "target": [0, 0, 0], "up": [0, 1, 0]}],
+    "film": {"type": "hdrfilm", "width": 16, "height": 12}, "fog": {"type": "ref", "id": "fog"}},
+    "tunnel": {"type": "cube", "flip_normals": true, "to_world": [{"type": "scale", "value": [5, 5, 53]}],
+    "bsdf": {"type": "diffuse", "reflectance": 0.5}},
+    "lamp": {"type": "rectangle", "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 180},
+    {"type": "translate", "value": [0, 0, 51]}], "emitter": {"type": "area", "radiance": 1}}"#;
+
+/// Eight triangles that reflect as if they were a sphere.
+pub const SMOOTH: &str = r#""smooth": {"type": "obj", "filename": "octahedron.obj",
+    "to_world": [{"type": "scale", "value": 0.5}, {"type": "translate", "value": [0.2, -0.3, 0.1]}],
+    "bsdf": {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": 0.8}}}"#;
+
+const OCTAHEDRON: &str = "
+v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1
+vn 1 0 0\nvn -1 0 0\nvn 0 1 0\nvn 0 -1 0\nvn 0 0 1\nvn 0 0 -1
+f 1//1 3//3 5//5\nf 3//3 2//2 5//5\nf 2//2 4//4 5//5\nf 4//4 1//1 5//5
+f 3//3 1//1 6//6\nf 2//2 3//3 6//6\nf 4//4 2//2 6//6\nf 1//1 4//4 6//6
+";
