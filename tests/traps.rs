@@ -230,7 +230,7 @@ fn many_lights_are_the_sum_of_each() {
             ("cloud", null_box([-0.8, -0.4, -0.8], [0.7, 0.8, 0.4], Some(medium(1.2, 0.9, 0.3)))),
         ];
         // The lamps' bodies stay when they do not shine.
-        for (name, lamp) in lights.to_vec() {
+        for (name, lamp) in lights.iter().cloned() {
             parts.push((name, lamp));
         }
         Stage::new(&scene(&parts))
