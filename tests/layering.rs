@@ -127,7 +127,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 /// True for files that only tests compile.
 fn is_test(file: &Path) -> bool {
     file.components()
-        .any(|part| ["tests", "tests.rs", "testing.rs"].iter().any(|name| part.as_os_str() == *name))
+        .any(|part| ["tests", "tests.rs", "testing.rs", "twin"].iter().any(|name| part.as_os_str() == *name))
 }
 
 #[test]
