@@ -1,11 +1,13 @@
 //! An image as a texture: Mitsuba's `bitmap`.
 
-use super::{TextureModel, ToUv};
+use super::{
+    TextureModel, ToUv,
+    image::{self, Image},
+};
 use crate::description::Params;
-use crate::error::{Error, Result};
-use crate::math::{DVec3, Spectrum, Vec2, vec2, vec3};
-use image::{DynamicImage, ImageReader};
-use std::{path::Path, sync::Arc};
+use crate::error::Result;
+use crate::math::{DVec3, Spectrum, Vec2, vec2};
+use std::sync::Arc;
 
 /// How colours between pixel centres come about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,18 +27,10 @@ enum Wrap {
 /// An image over the unit square. As in Mitsuba, v runs down the rows: v = 0 is the top edge.
 #[derive(Clone, Debug)]
 pub struct Bitmap {
-    image: Arc<Pixels>,
+    image: Arc<Image>,
     filter: Filter,
     wrap: Wrap,
     to_uv: ToUv,
-}
-
-#[derive(Debug)]
-struct Pixels {
-    width: usize,
-    height: usize,
-    /// Linear sRGB, row by row from the top.
-    colors: Vec<Spectrum>,
 }
 
 impl Bitmap {
@@ -49,22 +43,22 @@ impl Bitmap {
             filter: params.choice("filter_type", Filter::Bilinear, &filters)?,
             wrap: params.choice("wrap_mode", Wrap::Repeat, &wraps)?,
             to_uv: ToUv::build(params)?,
-            image: Arc::new(Pixels::read(&path, raw)?),
+            image: Arc::new(image::read(&path, raw)?),
         })
     }
 
     #[inline]
     fn pixel(&self, x: i64, y: i64) -> Spectrum {
-        let Pixels { width, height, colors } = &*self.image;
-        colors[wrap(self.wrap, y, *height) * width + wrap(self.wrap, x, *width)]
+        let Image { width, height, pixels } = &*self.image;
+        pixels[wrap(self.wrap, y, *height) * width + wrap(self.wrap, x, *width)]
     }
 
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
         use crate::math::{DMat4, DVec3};
         let grey = |x: &f32| Spectrum::splat(*x);
-        let colors = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6].iter().map(grey).collect();
-        let image = Arc::new(Pixels { width: 3, height: 2, colors });
+        let pixels = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6].iter().map(grey).collect();
+        let image = Arc::new(Image { width: 3, height: 2, pixels });
         let turned = DMat4::from_axis_angle(DVec3::Z, 0.5) * DMat4::from_scale(DVec3::splat(2.0));
         let mut all = Vec::new();
         for filter in [Filter::Bilinear, Filter::Nearest] {
@@ -96,12 +90,12 @@ impl TextureModel for Bitmap {
     }
 
     fn max(&self) -> Spectrum {
-        self.image.colors.iter().fold(Spectrum::ZERO, |max, color| max.max(*color))
+        self.image.pixels.iter().fold(Spectrum::ZERO, |max, color| max.max(*color))
     }
 
     fn mean(&self) -> Spectrum {
-        let sum: DVec3 = self.image.colors.iter().map(|color| color.as_dvec3()).sum();
-        (sum / self.image.colors.len() as f64).as_vec3()
+        let sum: DVec3 = self.image.pixels.iter().map(|color| color.as_dvec3()).sum();
+        (sum / self.image.pixels.len() as f64).as_vec3()
     }
 }
 
@@ -118,36 +112,4 @@ fn wrap(mode: Wrap, index: i64, size: usize) -> usize {
         }
     };
     wrapped as usize
-}
-
-impl Pixels {
-    /// Reads an image; integer formats hold sRGB and are made linear unless `raw`.
-    fn read(path: &Path, raw: bool) -> Result<Self> {
-        let image = decode(path)?;
-        let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-        let buffer = image.to_rgb32f();
-        let (width, height) = (buffer.width() as usize, buffer.height() as usize);
-        let decode = |x: f32| if raw || is_float { x } else { srgb_to_linear(x) };
-        let colors: Vec<_> =
-            buffer.pixels().map(|pixel| vec3(decode(pixel[0]), decode(pixel[1]), decode(pixel[2]))).collect();
-        if colors.iter().all(|color| color.is_finite() && color.min_element() >= 0.0) && !colors.is_empty() {
-            return Ok(Self { width, height, colors });
-        }
-        let remedy = "mend the image: a texture is made of finite colours >= 0";
-        Err(Error::new(path.display(), "finite values >= 0", "pixels that are not, or no pixels", remedy))
-    }
-}
-
-fn decode(path: &Path) -> Result<DynamicImage> {
-    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
-    let reader = reader.map_err(|error| Error::io(path, "read", &error))?;
-    reader.decode().map_err(|error| {
-        let remedy = "give a png, jpeg, hdr or exr file";
-        Error::new(path.display(), "an image", format!("something that does not decode: {error}"), remedy)
-    })
-}
-
-/// The transfer function of IEC 61966-2-1, from encoded to linear, both in [0, 1].
-fn srgb_to_linear(x: f32) -> f32 {
-    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
 }

@@ -2,12 +2,14 @@
 
 mod bitmap;
 mod checkerboard;
+pub mod image;
 #[cfg(test)]
 mod tests;
 mod uniform;
 
 pub use bitmap::Bitmap;
 pub use checkerboard::Checkerboard;
+pub use image::Image;
 pub use uniform::Uniform;
 
 use crate::description::{Library, Object, Params, Row, Value, build_by_row};

@@ -4,7 +4,7 @@ use super::*;
 use crate::description::{Location, TransformStep};
 use crate::math::vec3;
 use crate::testing::{nowhere, object};
-use image::{Rgb, Rgb32FImage, RgbImage};
+use ::image::{Rgb, Rgb32FImage, RgbImage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -1,0 +1,103 @@
+//! Image files as grids of linear colours, for textures and environments alike.
+
+mod exr;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Error, Result};
+use crate::math::{Spectrum, vec3};
+use ::image::{
+    DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits, codecs::hdr::HdrDecoder,
+};
+use std::{fs::File, io::BufReader, path::Path};
+
+/// An image in linear sRGB, without its opacity.
+#[derive(Clone, Debug)]
+pub struct Image {
+    /// Columns, at least 1.
+    pub width: usize,
+    /// Rows, at least 1.
+    pub height: usize,
+    /// Finite and >= 0, row by row from the top.
+    pub pixels: Vec<Spectrum>,
+}
+
+/// The longest side of an image [pixels].
+const LONGEST_SIDE: u32 = 1 << 16;
+
+/// An image has at most this many pixels (16384 x 8192): a few bytes of header must not ask for all memory.
+const MOST_PIXELS: usize = 1 << 27;
+
+/// What a decoder may allocate [bytes]: the most pixels, in four channels of 32 bits.
+const MOST_BYTES: u64 = 16 * MOST_PIXELS as u64;
+
+/// Reads an image file of any known format. Integer formats hold sRGB and are made linear unless `raw`; float
+/// formats hold linear colours. Grey becomes three equal channels; opacity is dropped, as in Mitsuba.
+pub fn read(path: &Path, raw: bool) -> Result<Image> {
+    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
+    let reader = reader.map_err(|error| Error::io(path, "read", &error))?;
+    let image = match reader.format() {
+        Some(ImageFormat::OpenExr) => exr::read(path)?,
+        _ => linear(decode(path, reader)?, raw),
+    };
+    checked(path, image)
+}
+
+type FileReader = ImageReader<BufReader<File>>;
+
+fn decode(path: &Path, mut reader: FileReader) -> Result<DynamicImage> {
+    let mut limits = Limits::no_limits();
+    limits.max_image_width = Some(LONGEST_SIDE);
+    limits.max_image_height = Some(LONGEST_SIDE);
+    limits.max_alloc = Some(MOST_BYTES);
+    let image = if reader.format() == Some(ImageFormat::Hdr) {
+        decode_hdr(reader, limits)
+    } else {
+        reader.limits(limits);
+        reader.decode()
+    };
+    image.map_err(|error| undecodable(path, error))
+}
+
+/// Half of all Radiance files, Mitsuba's among them, begin with `#?RGBE`, which only a lenient decoder takes.
+fn decode_hdr(reader: FileReader, mut limits: Limits) -> ImageResult<DynamicImage> {
+    let decoder = HdrDecoder::new_nonstrict(reader.into_inner())?;
+    limits.reserve(decoder.total_bytes())?;
+    let (width, height) = decoder.dimensions();
+    limits.check_dimensions(width, height)?;
+    DynamicImage::from_decoder(decoder)
+}
+
+fn undecodable(path: &Path, error: impl std::fmt::Display) -> Error {
+    let expected = format!("an image of at most {MOST_PIXELS} pixels, {LONGEST_SIDE} a side");
+    let remedy = "give a png, jpeg, hdr, exr, bmp, tga or ppm file, or a smaller image";
+    Error::new(path.display(), expected, format!("something that does not decode: {error}"), remedy)
+}
+
+fn linear(image: DynamicImage, raw: bool) -> Image {
+    let is_linear = raw || matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
+    let buffer = image.into_rgb32f();
+    let decode = |x: f32| if is_linear { x } else { srgb_to_linear(x) };
+    let pixels = buffer.pixels().map(|p| vec3(decode(p[0]), decode(p[1]), decode(p[2]))).collect();
+    Image { width: buffer.width() as usize, height: buffer.height() as usize, pixels }
+}
+
+/// `image` if it has colours, and all of them are colours.
+fn checked(path: &Path, image: Image) -> Result<Image> {
+    let bad = image.pixels.iter().position(|c| !(c.is_finite() && c.min_element() >= 0.0));
+    let found = match bad {
+        None if !image.pixels.is_empty() => return Ok(image),
+        None => "no pixels".into(),
+        Some(at) => {
+            let (x, y) = (at % image.width, at / image.width);
+            format!("{} in column {x}, row {y}", image.pixels[at])
+        }
+    };
+    let remedy = "mend the image: light and reflectance are finite and >= 0 in every pixel";
+    Err(Error::new(path.display(), "pixels with finite colours >= 0", found, remedy))
+}
+
+/// The transfer function of IEC 61966-2-1, from encoded to linear, both in [0, 1].
+pub fn srgb_to_linear(x: f32) -> f32 {
+    if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+}

@@ -1,0 +1,166 @@
+//! Files written by Mitsuba 3.9.1 are read as Mitsuba reads them (its own values, with `format` `variant`).
+
+use super::*;
+use std::path::PathBuf;
+
+fn sample(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src/texture/image/samples").join(name)
+}
+
+/// The pixels of a 2 x 2 image, channel by channel.
+type Values = [[f32; 3]; 4];
+
+const fn grey(values: [f32; 4]) -> Values {
+    let [a, b, c, d] = values;
+    [[a; 3], [b; 3], [c; 3], [d; 3]]
+}
+
+const LINEAR8: Values = [
+    [0.003_035_27, 0.215_860_43, 0.577_580_75],
+    [1.0, 0.0, 0.000_910_581],
+    [0.001_517_635, 0.001_821_162, 0.002_124_689],
+    [0.577_580_75, 0.644_479_93, 0.715_693_53],
+];
+const RAW8: Values = [
+    [0.039_215_69, 0.501_960_8, 0.784_313_8],
+    [1.0, 0.0, 0.011_764_707],
+    [0.019_607_843, 0.023_529_414, 0.027_450_982],
+    [0.784_313_8, 0.823_529_5, 0.862_745_17],
+];
+const FLOATS: Values = [[0.1, 1.28, 2.0], [2.55, 0.0, 0.03], [0.05, 0.06, 0.07], [2.0, 2.1, 2.2]];
+const HALVES: Values = [
+    [0.099_975_586, 1.280_273_4, 2.0],
+    [2.550_781_3, 0.0, 0.029_998_78],
+    [0.049_987_793, 0.059_997_56, 0.070_007_324],
+    [2.0, 2.099_609_4, 2.199_218_8],
+];
+
+/// File, `raw`, pixels.
+const FACTS: &[(&str, bool, Values)] = &[
+    ("rgb8.png", false, LINEAR8),
+    ("rgb8.png", true, RAW8),
+    ("rgba8.png", false, LINEAR8),
+    ("rgba8.png", true, RAW8),
+    ("palette.png", false, LINEAR8),
+    ("palette.png", true, RAW8),
+    ("flat.jpg", false, [[0.003_035_27, 0.215_860_43, 0.577_580_75]; 4]),
+    ("flat.jpg", true, [[0.039_215_69, 0.501_960_8, 0.784_313_8]; 4]),
+    ("grey8.png", false, grey([0.003_035_27, 1.0, 0.001_517_635, 0.577_580_75])),
+    ("grey16.png", false, grey([0.002_960_864_5, 0.939_388_04, 0.001_484_565_8, 0.543_095_17])),
+    ("grey16.png", true, grey([0.038_254_37, 0.972_869_46, 0.019_180_59, 0.763_057_9])),
+    (
+        "rgb16.png",
+        false,
+        [
+            [0.002_960_864_5, 0.203_456_91, 0.543_095_17],
+            [0.939_388_04, 8.267_272e-6, 0.000_894_046_4],
+            [0.001_484_565_8, 0.001_779_825_4, 0.002_075_085_2],
+            [0.543_095_17, 0.605_872_63, 0.672_691_05],
+        ],
+    ),
+    ("rgba_float.exr", false, FLOATS),
+    ("rgba_float.exr", true, FLOATS),
+    ("rgb_half.exr", false, HALVES),
+    ("y_half.exr", false, grey([HALVES[0][0], HALVES[1][0], HALVES[2][0], HALVES[3][0]])),
+    ("ya_float.exr", false, grey([0.1, 2.55, 0.05, 2.0])),
+    ("y_uint.exr", false, grey([10.0, 255.0, 5.0, 200.0])),
+    ("rgb_uint.exr", true, [[10.0, 128.0, 200.0], [255.0, 0.0, 3.0], [5.0, 6.0, 7.0], [200.0, 210.0, 220.0]]),
+    (
+        "xyz_float.exr",
+        false,
+        [
+            [0.378_056_05, 0.562_759_9, 0.237_431_02],
+            [0.200_660_53, 0.210_495_89, 0.232_608_33],
+            [1.204_793_9, 0.948_291, 0.908_916_06],
+            [0.623_169_1, 0.227_713_32, 0.063_995_004],
+        ],
+    ),
+    (
+        "rgb.hdr",
+        false,
+        [
+            [0.093_75, 1.265_625, 2.0],
+            [2.546_875, 0.0, 0.015_625],
+            [0.049_804_688, 0.059_570_313, 0.069_824_22],
+            [2.0, 2.093_75, 2.187_5],
+        ],
+    ),
+];
+
+#[test]
+fn images_are_read_as_mitsuba_reads_them() {
+    for (name, raw, values) in FACTS {
+        let image = read(&sample(name), *raw).unwrap();
+        let size = if *name == "flat.jpg" { 8 } else { 2 };
+        assert_eq!((image.width, image.height), (size, size), "{name}");
+        for (pixel, value) in image.pixels.iter().zip(values) {
+            let value = Spectrum::from(*value);
+            assert!(pixel.distance(value) <= 1e-6 * value.length(), "{name}, raw {raw}: {pixel} for {value}");
+        }
+    }
+}
+
+fn refused(path: &Path) -> Error {
+    let error = read(path, false).unwrap_err();
+    assert_eq!(error.place, path.display().to_string(), "{error}");
+    error
+}
+
+#[test]
+fn channels_without_a_meaning_are_refused() {
+    assert!(refused(&sample("many_float.exr")).found.contains("channels"));
+}
+
+/// `name` with the bytes at the place of `mark` (plus `offset`) replaced.
+fn forged(folder: &Path, name: &str, mark: &[u8], offset: usize, bytes: &[u8]) -> PathBuf {
+    let mut data = std::fs::read(sample(name)).unwrap();
+    let at = data.windows(mark.len()).position(|window| window == mark).unwrap() + mark.len() + offset;
+    data[at..at + bytes.len()].copy_from_slice(bytes);
+    let path = folder.join(name);
+    std::fs::write(&path, data).unwrap();
+    path
+}
+
+#[test]
+fn headers_that_promise_too_much_are_refused_before_memory_is_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let huge = [0x00, 0x7f, 0xff, 0xff].repeat(2);
+    let png = forged(folder.path(), "rgb8.png", b"IHDR", 0, &huge);
+    assert!(refused(&png).expected.contains("at most"));
+    // Right: the last column and row of the data window, far out.
+    let window = [i32::MAX / 2, i32::MAX / 2].map(i32::to_le_bytes).concat();
+    let exr = forged(folder.path(), "rgb_half.exr", b"dataWindow\0box2i\0", 12, &window);
+    assert!(refused(&exr).expected.contains("at most"));
+    let side = [60_000, 60_000].map(i32::to_le_bytes).concat();
+    let exr = forged(folder.path(), "rgb_half.exr", b"dataWindow\0box2i\0", 12, &side);
+    assert!(refused(&exr).expected.contains("at most"));
+    let hdr = folder.path().join("huge.hdr");
+    std::fs::write(&hdr, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n").unwrap();
+    assert!(refused(&hdr).expected.contains("at most"));
+    let jpeg = forged(folder.path(), "flat.jpg", &[0xff, 0xc0], 3, &[0xff; 4]);
+    refused(&jpeg);
+}
+
+#[test]
+fn cut_files_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["rgb8.png", "rgb_half.exr", "rgb.hdr", "palette.png", "y_uint.exr"] {
+        let data = std::fs::read(sample(name)).unwrap();
+        let path = folder.path().join(name);
+        for length in [0, 5, data.len() / 2, data.len() - 10] {
+            std::fs::write(&path, &data[..length]).unwrap();
+            refused(&path);
+        }
+    }
+}
+
+#[test]
+fn pixels_that_are_no_colours_are_refused_with_their_place() {
+    let folder = tempfile::tempdir().unwrap();
+    for bad in [-0.5, f32::NAN, f32::INFINITY] {
+        let path = folder.path().join("bad.exr");
+        let pixel = |x, y| ::image::Rgb([if (x, y) == (2, 1) { bad } else { 0.5 }, 0.5, 0.5]);
+        ::image::Rgb32FImage::from_fn(3, 2, pixel).save(&path).unwrap();
+        assert!(refused(&path).found.contains("column 2, row 1"));
+    }
+}
