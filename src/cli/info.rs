@@ -31,7 +31,7 @@ fn describe(setup: &Setup) -> String {
         format!("shapes      {}", describe_shapes(scene)),
     ];
     lines.extend(scene.lights.all.iter().map(|light| {
-        format!("emitter     {} in {}", light.emitter.name(), medium_name(setup, light.medium.0))
+        format!("emitter     {} in {}", light.emitter.name, medium_name(setup, light.medium.0))
     }));
     lines.push(format!("camera      in {}", medium_name(setup, scene.sensor_medium.0)));
     lines

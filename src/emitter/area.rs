@@ -1,43 +1,61 @@
-//! Diffuse emission from the side of a shape that its normal points to.
+//! Emission from the side of a shape that its normal points to.
 
-use super::sampling_weight;
+use super::Profile;
 use crate::{
     description::Params,
     error::Result,
-    math::{Spectrum, Vec3, warp},
+    math::{Spectrum, Vec2, Vec3, warp},
     sampling::Stream,
+    texture::{self, Texture},
 };
+use std::f32::consts::PI;
 
-/// Emits `radiance` in every direction above the surface.
+/// Emits `radiance`, which may vary over the surface and, by a profile, with the angle to the normal.
 #[derive(Clone, Debug)]
 pub struct Area {
-    /// Radiance [W/(m^2 sr)].
-    pub radiance: Spectrum,
-    /// Factor on the probability of being chosen.
-    pub sampling_weight: f32,
+    /// Radiance along the normal [W/(m^2 sr)].
+    radiance: Texture,
+    /// Beyond Mitsuba: radiance relative to that, by angle.
+    profile: Option<Profile>,
 }
 
 impl Area {
-    /// Reads `radiance`.
+    /// Reads `radiance` and `profile`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { radiance: params.color("radiance", 1.0)?, sampling_weight: sampling_weight(params)? })
+        let profile = Profile::build(params)?;
+        Ok(Self { radiance: texture::parameter(params, "radiance", 1.0)?, profile })
     }
 
-    /// Radiance leaving at `cosine` to the normal: none behind.
+    /// Radiance leaving from texture position `uv` at `cosine` to the normal: none behind.
     #[inline]
-    pub fn radiance(&self, cosine: f32) -> Spectrum {
-        if cosine > 0.0 { self.radiance } else { Spectrum::ZERO }
+    pub fn radiance(&self, uv: Vec2, cosine: f32) -> Spectrum {
+        match &self.profile {
+            _ if cosine <= 0.0 => Spectrum::ZERO,
+            None => self.radiance.eval(uv),
+            Some(profile) => self.radiance.eval(uv) * profile.value(cosine),
+        }
     }
 
     /// A direction in the frame of the normal, cosine-weighted.
     #[inline]
     pub fn sample(&self, stream: &mut Stream) -> Vec3 {
-        warp::to_cosine_hemisphere(stream.square())
+        match &self.profile {
+            None => warp::to_cosine_hemisphere(stream.square()),
+            Some(profile) => profile.sample_from_surface(stream),
+        }
     }
 
     /// Density of `sample` [1/sr].
     #[inline]
     pub fn density(&self, cosine: f32) -> f32 {
-        warp::cosine_hemisphere_density(cosine)
+        match &self.profile {
+            None => warp::cosine_hemisphere_density(cosine),
+            Some(profile) => profile.density_from_surface(cosine),
+        }
+    }
+
+    /// Emitted power per area [W/m^2].
+    pub fn exitance(&self) -> Spectrum {
+        self.radiance.mean() * self.profile.as_ref().map_or(PI, Profile::projected_integral)
     }
 }

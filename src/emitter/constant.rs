@@ -1,20 +1,34 @@
 //! The same radiance from everywhere at infinity.
 
-use super::sampling_weight;
-use crate::{description::Params, error::Result, math::Spectrum};
+use crate::{
+    description::Params,
+    error::Result,
+    math::{Spectrum, Vec3, warp},
+    sampling::Stream,
+};
 
 /// A constant environment.
 #[derive(Clone, Debug)]
 pub struct Constant {
     /// Radiance [W/(m^2 sr)].
     pub radiance: Spectrum,
-    /// Factor on the probability of being chosen.
-    pub sampling_weight: f32,
 }
 
 impl Constant {
     /// Reads `radiance`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { radiance: params.color("radiance", 1.0)?, sampling_weight: sampling_weight(params)? })
+        Ok(Self { radiance: params.color("radiance", 1.0)? })
+    }
+
+    /// A direction, uniform.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+        warp::to_sphere(stream.square())
+    }
+
+    /// Density of `sample` [1/sr].
+    #[inline]
+    pub fn density(&self) -> f32 {
+        warp::SPHERE_DENSITY
     }
 }

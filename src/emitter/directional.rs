@@ -1,6 +1,5 @@
 //! Parallel light from infinity.
 
-use super::sampling_weight;
 use crate::{
     description::Params,
     error::Result,
@@ -14,8 +13,6 @@ pub struct Directional {
     pub direction: Vec3,
     /// Irradiance on a surface facing the light [W/m^2].
     pub irradiance: Spectrum,
-    /// Factor on the probability of being chosen.
-    pub sampling_weight: f32,
 }
 
 impl Directional {
@@ -31,10 +28,6 @@ impl Directional {
             Some(direction) => direction,
             None => params.transform("to_world")?.transform_vector3(DVec3::Z),
         };
-        Ok(Self {
-            direction: direction.normalize().as_vec3(),
-            irradiance: params.color("irradiance", 1.0)?,
-            sampling_weight: sampling_weight(params)?,
-        })
+        Ok(Self { direction: direction.normalize().as_vec3(), irradiance: params.color("irradiance", 1.0)? })
     }
 }

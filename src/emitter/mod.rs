@@ -1,49 +1,93 @@
 //! Emitters: how much light leaves in which direction, and how directions are sampled. Where emission starts
 //! on a shape, and which emitter is chosen, the scene decides.
 
+mod area;
 mod constant;
 mod directional;
+mod directionalarea;
+mod envmap;
 mod point;
+mod profile;
+mod projector;
 mod spot;
-
-mod area;
+#[cfg(test)]
+mod tests;
 
 pub use area::Area;
 pub use constant::Constant;
 pub use directional::Directional;
+pub use directionalarea::DirectionalArea;
+pub use envmap::EnvMap;
 pub use point::Point;
+pub use profile::Profile;
+pub use projector::Projector;
 pub use spot::Spot;
 
 use crate::{
     description::{Library, Object, Params, Row, find_row},
     error::Result,
-    math::{DVec3, Spectrum, SpectrumExt},
+    math::{DVec3, Spectrum, SpectrumExt, Vec3},
     medium,
+    sampling::Stream,
 };
 use std::f32::consts::PI;
 
-/// Any emitter.
+/// An emitter.
 #[derive(Clone, Debug)]
-pub enum Emitter {
+pub struct Emitter {
+    /// The plugin name.
+    pub name: &'static str,
+    /// How it emits.
+    pub kind: Kind,
+    /// The user's factor on the probability of choosing this emitter.
+    pub sampling_weight: f32,
+}
+
+/// The ways to emit.
+#[derive(Clone, Debug)]
+pub enum Kind {
     /// A shape whose surface emits.
     Area(Area),
-    /// A point that emits alike in all directions.
-    Point(Point),
-    /// A point that emits within a cone.
-    Spot(Spot),
+    /// A shape that emits along its normal only.
+    DirectionalArea(DirectionalArea),
+    /// A point.
+    Point(PointKind),
     /// Parallel light from infinity.
     Directional(Directional),
-    /// The same radiance from everywhere at infinity.
+    /// Light from all around at infinity.
+    Environment(Environment),
+}
+
+/// Emitters that stand at a point.
+#[derive(Clone, Debug)]
+pub enum PointKind {
+    /// All around.
+    Point(Point),
+    /// Within a cone.
+    Spot(Spot),
+    /// An image.
+    Projector(Projector),
+}
+
+/// Emitters that surround the scene.
+#[derive(Clone, Debug)]
+pub enum Environment {
+    /// The same radiance from everywhere.
     Constant(Constant),
+    /// An image of the surroundings.
+    EnvMap(EnvMap),
 }
 
 /// Every kind of emitter.
-pub const ROWS: &[Row<Emitter>] = &[
-    Row { name: "area", build: |p| Area::build(p).map(Emitter::Area) },
-    Row { name: "point", build: |p| Point::build(p).map(Emitter::Point) },
-    Row { name: "spot", build: |p| Spot::build(p).map(Emitter::Spot) },
-    Row { name: "directional", build: |p| Directional::build(p).map(Emitter::Directional) },
-    Row { name: "constant", build: |p| Constant::build(p).map(Emitter::Constant) },
+pub const ROWS: &[Row<Kind>] = &[
+    Row { name: "area", build: |p| Area::build(p).map(Kind::Area) },
+    Row { name: "directionalarea", build: |p| DirectionalArea::build(p).map(Kind::DirectionalArea) },
+    Row { name: "point", build: |p| Point::build(p).map(PointKind::Point).map(Kind::Point) },
+    Row { name: "spot", build: |p| Spot::build(p).map(PointKind::Spot).map(Kind::Point) },
+    Row { name: "projector", build: |p| Projector::build(p).map(PointKind::Projector).map(Kind::Point) },
+    Row { name: "directional", build: |p| Directional::build(p).map(Kind::Directional) },
+    Row { name: "constant", build: |p| Constant::build(p).map(Environment::Constant).map(Kind::Environment) },
+    Row { name: "envmap", build: |p| EnvMap::build(p).map(Environment::EnvMap).map(Kind::Environment) },
 ];
 
 /// Builds the emitter that `object` describes; positions still stand in the file's coordinates. A medium among
@@ -51,10 +95,11 @@ pub const ROWS: &[Row<Emitter>] = &[
 pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
     let params = Params::new(object, library);
     let row = find_row(object, "emitter", ROWS)?;
-    let emitter = (row.build)(&params)?;
+    let kind = (row.build)(&params)?;
+    let sampling_weight = sampling_weight(&params)?;
     params.children(|child| medium::is_medium(child.object))?;
     params.finish()?;
-    Ok(emitter)
+    Ok(Emitter { name: row.name, kind, sampling_weight })
 }
 
 /// True if `object` is an emitter.
@@ -63,48 +108,130 @@ pub fn is_emitter(object: &Object) -> bool {
 }
 
 impl Emitter {
+    /// True for emitters that stand on a shape.
+    pub fn needs_shape(&self) -> bool {
+        matches!(self.kind, Kind::Area(_) | Kind::DirectionalArea(_))
+    }
+
     /// True for emitters at infinity: their "position" is a direction and is measured in steradians.
     pub fn is_infinite(&self) -> bool {
-        matches!(self, Self::Directional(_) | Self::Constant(_))
+        matches!(self.kind, Kind::Directional(_) | Kind::Environment(_))
     }
 
     /// True if a walk can meet it by chance: it is neither a point nor a single direction.
     pub fn is_hittable(&self) -> bool {
-        matches!(self, Self::Area(_) | Self::Constant(_))
+        matches!(self.kind, Kind::Area(_) | Kind::Environment(_))
     }
 
-    /// The plugin name.
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Area(_) => "area",
-            Self::Point(_) => "point",
-            Self::Spot(_) => "spot",
-            Self::Directional(_) => "directional",
-            Self::Constant(_) => "constant",
-        }
+    /// True if next-event estimation can find it: it emits towards more than a single direction at each point.
+    pub fn is_connectible(&self) -> bool {
+        !matches!(self.kind, Kind::DirectionalArea(_))
     }
 
-    /// Emitted power [W], luminance-weighted; `area` [m^2] of the emitting shape, `radius` [m] of the scene.
+    /// True for what surrounds the scene.
+    pub fn is_environment(&self) -> bool {
+        matches!(self.kind, Kind::Environment(_))
+    }
+
+    /// Emitted power [W], luminance-weighted; `area` [m^2] of the emitting shape, `radius` [m] of the scene. Of
+    /// textured shapes an estimate: the mean of the texture counts.
     pub fn power(&self, area: f32, radius: f32) -> f32 {
         let disk = PI * radius * radius;
-        let power: Spectrum = match self {
-            Self::Area(e) => e.radiance * (PI * area),
-            Self::Point(e) => e.intensity * (4.0 * PI),
-            Self::Spot(e) => e.power(),
-            Self::Directional(e) => e.irradiance * disk,
-            Self::Constant(e) => e.radiance * (4.0 * PI * disk),
+        let power: Spectrum = match &self.kind {
+            Kind::Area(e) => e.exitance() * area,
+            Kind::DirectionalArea(e) => e.exitance() * area,
+            Kind::Point(e) => e.power(),
+            Kind::Directional(e) => e.irradiance * disk,
+            Kind::Environment(e) => e.fluence() * disk,
         };
         power.luminance()
     }
 
-    /// The user's factor on the probability of choosing this emitter.
-    pub fn sampling_weight(&self) -> f32 {
+    /// Where it stands, in the file's coordinates: emitters at a point only.
+    pub fn position(&self) -> Option<DVec3> {
+        match &self.kind {
+            Kind::Point(PointKind::Point(e)) => Some(e.position),
+            Kind::Point(PointKind::Spot(e)) => Some(e.position),
+            Kind::Point(PointKind::Projector(e)) => Some(e.position),
+            _ => None,
+        }
+    }
+}
+
+impl PointKind {
+    /// Intensity towards unit `direction` [W/sr].
+    #[inline]
+    pub fn intensity(&self, direction: Vec3) -> Spectrum {
         match self {
-            Self::Area(e) => e.sampling_weight,
-            Self::Point(e) => e.sampling_weight,
-            Self::Spot(e) => e.sampling_weight,
-            Self::Directional(e) => e.sampling_weight,
-            Self::Constant(e) => e.sampling_weight,
+            Self::Point(e) => e.intensity(direction),
+            Self::Spot(e) => e.intensity(direction),
+            Self::Projector(e) => e.intensity(direction),
+        }
+    }
+
+    /// A direction for light to leave in; 0 where it has none to offer.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+        match self {
+            Self::Point(e) => e.sample(stream),
+            Self::Spot(e) => e.sample(stream),
+            Self::Projector(e) => e.sample(stream),
+        }
+    }
+
+    /// Density of `sample` [1/sr].
+    #[inline]
+    pub fn density(&self, direction: Vec3) -> f32 {
+        match self {
+            Self::Point(e) => e.density(direction),
+            Self::Spot(e) => e.density(direction),
+            Self::Projector(e) => e.density(direction),
+        }
+    }
+
+    /// Emitted power [W].
+    pub fn power(&self) -> Spectrum {
+        match self {
+            Self::Point(e) => e.power(),
+            Self::Spot(e) => e.power(),
+            Self::Projector(e) => e.power(),
+        }
+    }
+}
+
+impl Environment {
+    /// Radiance from the unit direction `towards` [W/(m^2 sr)].
+    #[inline]
+    pub fn radiance(&self, towards: Vec3) -> Spectrum {
+        match self {
+            Self::Constant(e) => e.radiance,
+            Self::EnvMap(e) => e.radiance(towards),
+        }
+    }
+
+    /// A unit direction for light to come from.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+        match self {
+            Self::Constant(e) => e.sample(stream),
+            Self::EnvMap(e) => e.sample(stream),
+        }
+    }
+
+    /// Density of `sample` [1/sr].
+    #[inline]
+    pub fn density(&self, towards: Vec3) -> f32 {
+        match self {
+            Self::Constant(e) => e.density(),
+            Self::EnvMap(e) => e.density(towards),
+        }
+    }
+
+    /// The integral of radiance over all directions [W/m^2].
+    pub fn fluence(&self) -> Spectrum {
+        match self {
+            Self::Constant(e) => e.radiance * (4.0 * PI),
+            Self::EnvMap(e) => e.fluence(),
         }
     }
 }
@@ -116,15 +243,4 @@ fn sampling_weight(params: &Params<'_>) -> Result<f32> {
         return Ok(weight);
     }
     Err(params.complain("sampling_weight", "a number > 0", weight.to_string()))
-}
-
-/// The place and axis of an emitter that stands at a point, from `to_world` or `position`.
-fn point_position(params: &Params<'_>) -> Result<DVec3> {
-    match params.optional_vector("position")? {
-        Some(_) if params.has("to_world") => {
-            Err(params.complain("position", "position or to_world, not both", "both"))
-        }
-        Some(position) => Ok(position),
-        None => Ok(params.transform("to_world")?.transform_point3(DVec3::ZERO)),
-    }
 }

@@ -1,30 +1,70 @@
-//! A point that emits alike in all directions.
+//! A point that emits all around.
 
-use super::{point_position, sampling_weight};
+use super::Profile;
 use crate::{
     description::Params,
     error::Result,
-    math::{DVec3, Spectrum},
+    math::{DVec3, Frame, Spectrum, Vec3, warp},
+    sampling::Stream,
 };
+use std::f32::consts::PI;
 
-/// An isotropic point light.
+/// A point light: alike in all directions, or by a profile around an axis.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Where it stands, in the file's coordinates.
     pub position: DVec3,
-    /// Intensity [W/sr].
-    pub intensity: Spectrum,
-    /// Factor on the probability of being chosen.
-    pub sampling_weight: f32,
+    /// Intensity on the axis [W/sr].
+    intensity: Spectrum,
+    /// Beyond Mitsuba: intensity relative to that by angle, and the axis, local +z.
+    profile: Option<(Profile, Frame)>,
 }
 
 impl Point {
-    /// Reads `intensity` and `position` or `to_world`.
+    /// Reads `intensity`, `profile`, and `position` or `to_world`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self {
-            position: point_position(params)?,
-            intensity: params.color("intensity", 1.0)?,
-            sampling_weight: sampling_weight(params)?,
-        })
+        let to_world = params.transform("to_world")?;
+        let position = match params.optional_vector("position")? {
+            Some(_) if params.has("to_world") => {
+                return Err(params.complain("position", "position or to_world, not both", "both"));
+            }
+            Some(position) => position,
+            None => to_world.transform_point3(DVec3::ZERO),
+        };
+        let axis = Frame::around(to_world.transform_vector3(DVec3::Z).normalize().as_vec3());
+        let profile = Profile::build(params)?.map(|profile| (profile, axis));
+        Ok(Self { position, intensity: params.color("intensity", 1.0)?, profile })
+    }
+
+    /// Intensity towards unit `direction` [W/sr].
+    #[inline]
+    pub fn intensity(&self, direction: Vec3) -> Spectrum {
+        match &self.profile {
+            None => self.intensity,
+            Some((profile, axis)) => self.intensity * profile.value(axis.normal.dot(direction)),
+        }
+    }
+
+    /// A direction: uniform, or by the profile.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+        match &self.profile {
+            None => warp::to_sphere(stream.square()),
+            Some((profile, axis)) => axis.to_world(profile.sample_around(stream)).normalize(),
+        }
+    }
+
+    /// Density of `sample` [1/sr].
+    #[inline]
+    pub fn density(&self, direction: Vec3) -> f32 {
+        match &self.profile {
+            None => warp::SPHERE_DENSITY,
+            Some((profile, axis)) => profile.density_around(axis.normal.dot(direction)),
+        }
+    }
+
+    /// Emitted power [W].
+    pub fn power(&self) -> Spectrum {
+        self.intensity * self.profile.as_ref().map_or(4.0 * PI, |(profile, _)| profile.integral())
     }
 }

@@ -1,11 +1,11 @@
 //! A point that emits within a cone: constant inside the beam, falling linearly in the angle to its edge.
 
-use super::sampling_weight;
 use crate::{
     description::Params,
     error::Result,
-    math::{DVec3, Frame, Spectrum, Vec3, warp},
+    math::{DMat3, DMat4, DVec3, Frame, Mat3, Spectrum, Vec3, vec2, warp},
     sampling::Stream,
+    texture::{self, Texture},
 };
 use std::f32::consts::TAU;
 
@@ -15,18 +15,28 @@ pub struct Spot {
     /// Where it stands, in the file's coordinates.
     pub position: DVec3,
     /// Intensity on the axis [W/sr].
-    pub intensity: Spectrum,
-    /// Factor on the probability of being chosen.
-    pub sampling_weight: f32,
+    intensity: Spectrum,
     axis: Frame,
     /// Half angle of the full cone [rad].
     cutoff: f32,
     /// Half angle within which the intensity is constant [rad].
     beam: f32,
+    /// A factor that varies over the cone.
+    slide: Option<Slide>,
+}
+
+/// A texture before the light: its unit square just holds the cone.
+#[derive(Clone, Debug)]
+struct Slide {
+    texture: Texture,
+    to_local: Mat3,
+    /// Tangent of the cutoff angle.
+    reach: f32,
 }
 
 impl Spot {
-    /// Reads `intensity`, `cutoff_angle` and `beam_width` [degrees] and `to_world`; it shines along local +z.
+    /// Reads `intensity`, `cutoff_angle` and `beam_width` [degrees], `texture` and `to_world`; it shines along
+    /// local +z.
     pub fn build(params: &Params<'_>) -> Result<Self> {
         let to_world = params.transform("to_world")?;
         let axis = to_world.transform_vector3(DVec3::Z).normalize().as_vec3();
@@ -38,17 +48,21 @@ impl Spot {
         Ok(Self {
             position: to_world.transform_point3(DVec3::ZERO),
             intensity: params.color("intensity", 1.0)?,
-            sampling_weight: sampling_weight(params)?,
             axis: Frame::around(axis),
             cutoff: cutoff.to_radians() as f32,
             beam: beam.to_radians() as f32,
+            slide: Slide::build(params, to_world, cutoff)?,
         })
     }
 
     /// Intensity towards unit `direction` [W/sr].
     #[inline]
     pub fn intensity(&self, direction: Vec3) -> Spectrum {
-        self.intensity * self.falloff(angle(direction, self.axis.normal))
+        let falloff = self.falloff(angle(direction, self.axis.normal));
+        match &self.slide {
+            Some(slide) if falloff > 0.0 => self.intensity * slide.eval(direction) * falloff,
+            _ => self.intensity * falloff,
+        }
     }
 
     fn falloff(&self, angle: f32) -> f32 {
@@ -82,7 +96,8 @@ impl Spot {
         }
     }
 
-    /// Emitted power [W]: 2 pi times the integral of falloff(a) sin(a), in closed form.
+    /// Emitted power [W]: 2 pi times the integral of falloff(a) sin(a), in closed form; of a texture its mean
+    /// counts.
     pub fn power(&self) -> Spectrum {
         let (beam, cutoff) = (f64::from(self.beam), f64::from(self.cutoff));
         let inner = 2.0 * (0.5 * beam).sin().powi(2);
@@ -91,7 +106,30 @@ impl Spot {
         } else {
             beam.cos() - (cutoff.sin() - beam.sin()) / (cutoff - beam)
         };
-        self.intensity * (TAU * (inner + ramp) as f32)
+        let mean = self.slide.as_ref().map_or(Spectrum::ONE, |slide| slide.texture.mean());
+        self.intensity * mean * (TAU * (inner + ramp) as f32)
+    }
+}
+
+impl Slide {
+    fn build(params: &Params<'_>, to_world: DMat4, cutoff: f64) -> Result<Option<Self>> {
+        if !params.has("texture") {
+            return Ok(None);
+        }
+        let texture = texture::parameter(params, "texture", 1.0)?;
+        if cutoff >= 90.0 {
+            let expected = "an angle below 90 where a texture fills the cone";
+            return Err(params.complain("cutoff_angle", expected, cutoff.to_string()));
+        }
+        let to_local = DMat3::from_mat4(to_world).inverse().as_mat3();
+        Ok(Some(Self { texture, to_local, reach: cutoff.to_radians().tan() as f32 }))
+    }
+
+    #[inline]
+    fn eval(&self, direction: Vec3) -> Spectrum {
+        let local = self.to_local * direction;
+        let scale = 0.5 / (local.z * self.reach);
+        self.texture.eval(vec2(0.5 + local.x * scale, 0.5 + local.y * scale))
     }
 }
 

@@ -8,5 +8,5 @@ pub mod spectrum;
 pub mod warp;
 
 pub use frame::Frame;
-pub use glam::{DMat4, DVec3, Vec2, Vec3, vec2, vec3};
+pub use glam::{DMat3, DMat4, DVec3, Mat3, Vec2, Vec3, vec2, vec3};
 pub use spectrum::{Spectrum, SpectrumExt};

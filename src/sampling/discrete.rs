@@ -38,15 +38,28 @@ impl Discrete {
     /// Probability of `index`.
     #[inline]
     pub fn probability(&self, index: usize) -> f32 {
+        self.probability_precisely(index) as f32
+    }
+
+    /// The same for distributions of many parts, where f32 is too coarse.
+    #[inline]
+    pub fn probability_precisely(&self, index: usize) -> f64 {
         let before = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
-        (self.cumulative[index] - before) as f32
+        self.cumulative[index] - before
     }
 
     /// The index whose section of [0, 1) holds `u`, and its probability. Indices of weight 0 never come.
     #[inline]
     pub fn sample(&self, u: f32) -> (usize, f32) {
-        let index = self.cumulative.partition_point(|c| *c <= f64::from(u)).min(self.cumulative.len() - 1);
-        (index, self.probability(index))
+        let (index, probability) = self.sample_precisely(f64::from(u));
+        (index, probability as f32)
+    }
+
+    /// The same for distributions of many parts, where f32 is too coarse.
+    #[inline]
+    pub fn sample_precisely(&self, u: f64) -> (usize, f64) {
+        let index = self.cumulative.partition_point(|c| *c <= u).min(self.cumulative.len() - 1);
+        (index, self.probability_precisely(index))
     }
 }
 

@@ -37,6 +37,12 @@ impl Stream {
         (self.0.next_u64() >> 40) as f32 * (1.0 / (1u64 << 24) as f32)
     }
 
+    /// Uniform in [0, 1), 53 bits.
+    #[inline]
+    pub fn uniform_precisely(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+    }
+
     /// Uniform in the unit square, from one draw.
     #[inline]
     pub fn square(&mut self) -> Vec2 {

@@ -14,9 +14,9 @@ use crate::{
     emitter::{self, Emitter},
     error::{Error, Result},
     film::{Film, filter, filter::Filter},
-    math::{DMat4, DVec3, Spectrum, Vec3, offset},
+    math::{DVec3, Spectrum, Vec3, offset},
     medium::{self, Homogeneous, MediumIndex},
-    sensor::Perspective,
+    sensor::{self, Sensor, Window},
     shape::{self, Shape},
 };
 use std::collections::HashMap;
@@ -96,10 +96,9 @@ fn is_shape(object: &Object) -> bool {
 impl<'a> Sections<'a> {
     fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
         let params = Params::new(root, library);
-        let plugin = |child: &Child<'_>| child.object.plugin.clone();
         let shapes = params.children(|child| is_shape(child.object))?;
         let emitters = params.children(|child| emitter::is_emitter(child.object))?;
-        let sensors = params.children(|child| plugin(child) == "perspective")?;
+        let sensors = params.children(|child| sensor::is_sensor(child.object))?;
         let integrators = params.children(|child| integrator::is_integrator(child.object))?;
         let definitions = params.children(|child| is_definition(child.object))?;
         for child in &definitions {
@@ -108,7 +107,7 @@ impl<'a> Sections<'a> {
         if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
             !(is_shape(child.object)
                 || emitter::is_emitter(child.object)
-                || plugin(child) == "perspective"
+                || sensor::is_sensor(child.object)
                 || integrator::is_integrator(child.object)
                 || is_definition(child.object))
         }) {
@@ -130,8 +129,7 @@ impl<'a> Sections<'a> {
     /// Where the camera stands, in the file's coordinates: it becomes the origin, so that f32 geometry is most
     /// precise where it is seen from nearest, however far from the file's origin that is.
     fn viewpoint(&self, library: &Library) -> Result<DVec3> {
-        let to_world: DMat4 = Params::new(self.sensor, library).transform("to_world")?;
-        Ok(to_world.transform_point3(DVec3::ZERO))
+        sensor::viewpoint(self.sensor, library)
     }
 }
 
@@ -156,7 +154,7 @@ fn unknown_plugin(child: &Child<'_>) -> Error {
     known.extend(crate::phase::ROWS.iter().map(|row| row.name));
     known.extend(crate::texture::ROWS.iter().map(|row| row.name));
     known.extend(integrator::ROWS.iter().map(|row| row.name));
-    known.push("perspective");
+    known.extend(sensor::names());
     let plugin = &child.object.plugin;
     Error::new(
         child.location,
@@ -172,7 +170,7 @@ fn only_one(second: &Child<'_>, what: &str) -> Error {
 
 /// The camera with its film.
 struct View {
-    sensor: Perspective,
+    sensor: Sensor,
     film: Film,
     samples_per_pixel: u64,
     medium: Option<MediumIndex>,
@@ -255,7 +253,7 @@ impl<'a> Builder<'a> {
             [_, second, ..] => return Err(only_one(second, "emitter")),
         };
         let emitter = emitter::build(child.object, self.library)?;
-        if !matches!(emitter, Emitter::Area(_)) {
+        if !emitter.needs_shape() {
             let found = format!("\"{}\"", child.object.plugin);
             let remedy = "put it beside the shapes, in the scene itself";
             return Err(Error::new(child.location, "an area emitter on a shape", found, remedy));
@@ -267,22 +265,13 @@ impl<'a> Builder<'a> {
 
     fn emitter(&mut self, child: &Child<'a>) -> Result<()> {
         let emitter = emitter::build(child.object, self.library)?;
-        match emitter {
-            Emitter::Area(_) => {
-                let remedy = "put it inside the shape that emits";
-                return Err(Error::new(
-                    child.location,
-                    "an area emitter on a shape",
-                    "one in the scene",
-                    remedy,
-                ));
-            }
-            Emitter::Constant(_)
-                if self.emitters.iter().any(|e| matches!(e.emitter, Emitter::Constant(_))) =>
-            {
-                return Err(only_one(child, "environment"));
-            }
-            _ => {}
+        if emitter.needs_shape() {
+            let expected = format!("the {} emitter on a shape", emitter.name);
+            let remedy = "put it inside the shape that emits";
+            return Err(Error::new(child.location, expected, "one in the scene", remedy));
+        }
+        if emitter.is_environment() && self.emitters.iter().any(|other| other.emitter.is_environment()) {
+            return Err(only_one(child, "environment"));
         }
         let stated = self.stated_medium(&Params::new(child.object, self.library))?;
         self.emitters.push(Placed { emitter, shape: None, stated, location: child.location });
@@ -352,7 +341,8 @@ impl<'a> Builder<'a> {
             [_, second, ..] => return Err(only_one(second, "sampler")),
         };
         let medium = self.stated_medium(&params)?;
-        let sensor = Perspective::build(&params, self.recentre, film.width, film.height)?;
+        let window = Window { film: [film.width, film.height], offset: [0, 0] };
+        let sensor = sensor::build(&params, self.recentre, window)?;
         params.finish()?;
         Ok(View { sensor, film, samples_per_pixel, medium })
     }
@@ -360,7 +350,7 @@ impl<'a> Builder<'a> {
     /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
     fn finish(
         mut self,
-        sensor: Perspective,
+        sensor: Sensor,
         stated: Option<MediumIndex>,
         sensor_location: &Location,
     ) -> Result<Scene> {
@@ -371,11 +361,11 @@ impl<'a> Builder<'a> {
         let ambient = stated.unwrap_or(MediumIndex::VACUUM);
         let sensor_medium = match stated {
             Some(medium) => medium,
-            None => finder.around(sensor.position, ambient, sensor_location, "the camera"),
+            None => finder.around(sensor.position(), ambient, sensor_location, "the camera"),
         };
         let recentre = self.recentre;
         let lights = self.emitters.into_iter().map(|Placed { emitter, shape, stated, location }| {
-            let position = position_of(&emitter, recentre);
+            let position = emitter.position().map(|position| (position - recentre).as_vec3());
             let medium = match (stated, shape, position) {
                 (Some(medium), ..) => medium,
                 (None, Some(shape), _) => finder.in_front_of(shape, sensor_medium, location),
@@ -400,14 +390,6 @@ impl<'a> Builder<'a> {
             sensor,
             sensor_medium,
         })
-    }
-}
-
-fn position_of(emitter: &Emitter, recentre: DVec3) -> Option<Vec3> {
-    match emitter {
-        Emitter::Point(point) => Some((point.position - recentre).as_vec3()),
-        Emitter::Spot(spot) => Some((spot.position - recentre).as_vec3()),
-        _ => None,
     }
 }
 

@@ -19,7 +19,7 @@ use crate::{
     bsdf::{Bsdf, BsdfModel},
     math::{Spectrum, Vec3},
     medium::{Homogeneous, MediumIndex},
-    sensor::Perspective,
+    sensor::Sensor,
     shape::{Ray, SurfacePoint},
 };
 use accel::Geometry;
@@ -60,7 +60,7 @@ pub struct Scene {
     /// All emitters.
     pub lights: Lights,
     /// The camera.
-    pub sensor: Perspective,
+    pub sensor: Sensor,
     /// The medium around the camera.
     pub sensor_medium: MediumIndex,
 }

@@ -1,5 +1,218 @@
-//! Sensors: where eye walks start and what light walks are joined to.
+//! Sensors: where eye walks start and what light walks are joined to. Camera space: +z forwards, +y up, +x to
+//! the image's left, as in Mitsuba. Film positions are in pixels, (0, 0) the top left corner of the image.
+//!
+//! An eye walk starts by a film position and a point of the aperture, both sampled with densities that do not
+//! depend on the path; a join with the sensor samples the aperture likewise and finds the film position. What
+//! remains of either is one density: of directions per film area of a pixel, or, for parallel rays, of
+//! positions.
 
+mod lens;
+mod orthographic;
 mod perspective;
+#[cfg(test)]
+mod tests;
+mod thinlens;
 
-pub use perspective::{Perspective, Projection};
+pub(crate) use lens::half_width;
+pub use orthographic::Orthographic;
+pub use perspective::Perspective;
+pub use thinlens::ThinLens;
+
+use crate::{
+    description::{Library, Object, Params, nearest},
+    error::{Error, Result},
+    math::{DVec3, Vec2, Vec3},
+    sampling::Stream,
+    shape::Ray,
+};
+
+/// Any sensor.
+#[derive(Clone, Debug)]
+pub enum Sensor {
+    /// A pinhole.
+    Perspective(Perspective),
+    /// A lens of some radius, with depth of field.
+    ThinLens(ThinLens),
+    /// Parallel rays.
+    Orthographic(Orthographic),
+}
+
+/// The image that a sensor makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Width and height of the whole film [pixels].
+    pub film: [u32; 2],
+    /// The top left corner of the part of it that is the image [pixels].
+    pub offset: [u32; 2],
+}
+
+/// The first ray of an eye walk.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorRay {
+    /// The point of the sensor.
+    pub position: Vec3,
+    /// From the near to the far clip distance.
+    pub ray: Ray,
+    /// Density of the direction per film area of a pixel [pixels/sr]; of parallel rays that of their positions
+    /// [pixels/m^2].
+    pub density: f32,
+}
+
+/// A point as a sensor sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Projection {
+    /// Where on the film [pixels]; may lie outside the image.
+    pub film: Vec2,
+    /// The ray that sees it, from the near clip distance on; it ends at the far one, not at the point.
+    pub ray: Ray,
+    /// 1 over this turns a density per solid angle at the sensor into one per area across the ray at the point
+    /// [m^2]; 1 for points at infinity and for parallel rays.
+    pub distance_squared: f32,
+    /// As in [`SensorRay::density`].
+    pub density: f32,
+}
+
+/// Reads the parameters of one kind of sensor (except film, sampler and medium); the point `recentre` of the
+/// file's coordinates becomes the origin.
+type BuildSensor = fn(&Params<'_>, DVec3, Window) -> Result<Sensor>;
+
+/// All sensors: Mitsuba's plugin name and the builder.
+const ROWS: &[(&str, BuildSensor)] = &[
+    ("perspective", |p, recentre, window| Perspective::build(p, recentre, window).map(Sensor::Perspective)),
+    ("thinlens", |p, recentre, window| ThinLens::build(p, recentre, window).map(Sensor::ThinLens)),
+    ("orthographic", |p, recentre, window| {
+        Orthographic::build(p, recentre, window).map(Sensor::Orthographic)
+    }),
+];
+
+/// The plugin names of all sensors.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    ROWS.iter().map(|(name, _)| *name)
+}
+
+/// True if `object` is a sensor.
+pub fn is_sensor(object: &Object) -> bool {
+    names().any(|name| name == object.plugin)
+}
+
+/// Builds the sensor that `params` describes. Does not call `finish`: film, sampler and medium remain for the
+/// scene to read.
+pub fn build(params: &Params<'_>, recentre: DVec3, window: Window) -> Result<Sensor> {
+    let plugin = &params.object.plugin;
+    if let Some((_, build)) = ROWS.iter().find(|(name, _)| name == plugin) {
+        let sensor = build(params, recentre, window)?;
+        params.accept_unused(&["shutter_open", "shutter_close"], "nothing moves");
+        return Ok(sensor);
+    }
+    let names: Vec<_> = names().collect();
+    let remedy = format!("{}known: {}", nearest(plugin, &names), names.join(", "));
+    Err(Error::new(params.location(), "the type of a sensor", format!("\"{plugin}\""), remedy))
+}
+
+/// Where the sensor stands in the file's coordinates.
+pub fn viewpoint(object: &Object, library: &Library) -> Result<DVec3> {
+    Ok(Params::new(object, library).transform("to_world")?.transform_point3(DVec3::ZERO))
+}
+
+impl Sensor {
+    /// A point of the aperture for one walk or join, uniform by area, in the lens's own axes [m].
+    #[inline]
+    pub fn sample_aperture(&self, stream: &mut Stream) -> Vec2 {
+        match self {
+            Self::ThinLens(lens) => lens.sample_aperture(stream),
+            Self::Perspective(_) | Self::Orthographic(_) => Vec2::ZERO,
+        }
+    }
+
+    /// The ray through a film position and a point of the aperture.
+    #[inline]
+    pub fn ray(&self, film: Vec2, aperture: Vec2) -> SensorRay {
+        match self {
+            Self::Perspective(sensor) => sensor.ray(film),
+            Self::ThinLens(sensor) => sensor.ray(film, aperture),
+            Self::Orthographic(sensor) => sensor.ray(film),
+        }
+    }
+
+    /// How `point` is seen through a point of the aperture; none where it lies outside the clip distances.
+    #[inline]
+    pub fn project(&self, point: Vec3, aperture: Vec2) -> Option<Projection> {
+        match self {
+            Self::Perspective(sensor) => sensor.project(point),
+            Self::ThinLens(sensor) => sensor.project(point, aperture),
+            Self::Orthographic(sensor) => sensor.project(point),
+        }
+    }
+
+    /// How the point at infinity in unit `direction` is seen; none where it is not, or in one single direction.
+    #[inline]
+    pub fn project_direction(&self, direction: Vec3, aperture: Vec2) -> Option<Projection> {
+        match self {
+            Self::Perspective(sensor) => sensor.project_direction(direction),
+            Self::ThinLens(sensor) => sensor.project_direction(direction, aperture),
+            Self::Orthographic(_) => None,
+        }
+    }
+
+    /// True where all rays are parallel: the sensor stands for a point at infinity.
+    #[inline]
+    pub fn is_parallel(&self) -> bool {
+        matches!(self, Self::Orthographic(_))
+    }
+
+    /// The centre of the aperture.
+    pub fn position(&self) -> Vec3 {
+        match self {
+            Self::Perspective(sensor) => sensor.position(),
+            Self::ThinLens(sensor) => sensor.position(),
+            Self::Orthographic(sensor) => sensor.position(),
+        }
+    }
+
+    /// The plugin name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Perspective(_) => "perspective",
+            Self::ThinLens(_) => "thinlens",
+            Self::Orthographic(_) => "orthographic",
+        }
+    }
+}
+
+/// Distances along the axis between which things are seen [m]: 0 < near < far.
+#[derive(Clone, Copy, Debug)]
+struct Clip {
+    near: f32,
+    far: f32,
+}
+
+impl Clip {
+    fn build(params: &Params<'_>) -> Result<Self> {
+        let near = params.float("near_clip", 1e-2)?;
+        if near <= 0.0 {
+            return Err(params.complain("near_clip", "a distance > 0", near.to_string()));
+        }
+        let far = params.float("far_clip", 1e4)?;
+        if far <= near {
+            return Err(params.complain(
+                "far_clip",
+                format!("a distance above near_clip, {near}"),
+                far.to_string(),
+            ));
+        }
+        Ok(Self { near: near as f32, far: far as f32 })
+    }
+
+    /// The part between the clip distances of the ray from `position` in unit `direction`, `cosine` > 0 to the
+    /// axis.
+    #[inline]
+    fn ray(&self, position: Vec3, direction: Vec3, cosine: f32) -> Ray {
+        let origin = position + direction * (self.near / cosine);
+        Ray { origin, direction, t_max: (self.far - self.near) / cosine }
+    }
+
+    #[inline]
+    fn holds(&self, depth: f32) -> bool {
+        depth > self.near && depth < self.far
+    }
+}

@@ -93,6 +93,10 @@ impl TextureModel for Bitmap {
         self.image.pixels.iter().fold(Spectrum::ZERO, |max, color| max.max(*color))
     }
 
+    fn resolution(&self) -> [usize; 2] {
+        [self.image.width, self.image.height]
+    }
+
     fn mean(&self) -> Spectrum {
         let sum: DVec3 = self.image.pixels.iter().map(|color| color.as_dvec3()).sum();
         (sum / self.image.pixels.len() as f64).as_vec3()

@@ -24,6 +24,10 @@ pub trait TextureModel {
     fn max(&self) -> Spectrum;
     /// The average over the unit square.
     fn mean(&self) -> Spectrum;
+    /// Columns and rows of what it is made of; one of each where it is no grid.
+    fn resolution(&self) -> [usize; 2] {
+        [1, 1]
+    }
 }
 
 /// Makes the enum, its dispatch, the registry and the list of test examples from one row a model.
@@ -49,6 +53,10 @@ macro_rules! textures {
             /// The average over the unit square before `to_uv` (of an image, over its pixels).
             pub fn mean(&self) -> Spectrum {
                 match self { $(Self::$model(model) => model.mean(),)* }
+            }
+            /// Columns and rows of what it is made of; one of each where it is no grid.
+            pub fn resolution(&self) -> [usize; 2] {
+                match self { $(Self::$model(model) => model.resolution(),)* }
             }
         }
 

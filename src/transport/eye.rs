@@ -15,6 +15,7 @@ use crate::{
     math::{Spectrum, Vec2, Vec3, measure},
     sampling::Stream,
     scene::lights::Link,
+    sensor::SensorRay,
     shape::Ray,
 };
 
@@ -37,26 +38,27 @@ pub fn sample<P: Profile>(
     stream: &mut Stream,
 ) -> Spectrum {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
-    let departure = depart(estimator, film);
-    let mut eye = Eye::new(estimator, cache, hero);
+    let aperture = estimator.scene.sensor.sample_aperture(stream);
+    let departure = depart(estimator, film, aperture);
+    let mut eye = Eye::new(estimator, cache, hero, departure.position);
     walk(estimator.scene, kind, departure, &mut eye, stream);
     eye.radiance
 }
 
-/// Leaves the lens through a film position. Nothing can join before the lens: its sums are zero.
-pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2) -> Departure<P::Lanes> {
+/// Leaves the sensor through a film position and a point of its aperture. Nothing can join before the sensor:
+/// its sums are zero.
+pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Vec2) -> Departure<P::Lanes> {
     let sensor = &estimator.scene.sensor;
-    let (direction, cosine) = sensor.direction(film);
-    let origin = sensor.position + direction * (sensor.near / cosine);
+    let SensorRay { position, ray, density } = sensor.ray(film, aperture);
     Departure {
-        position: sensor.position,
-        ray: Ray { origin, direction, t_max: (sensor.far - sensor.near) / cosine },
+        position,
+        ray,
         medium: estimator.scene.sensor_medium,
-        from_infinity: false,
+        from_infinity: sensor.is_parallel(),
         edges: 0,
         dirac: false,
         throughput: Spectrum::ONE,
-        forward: sensor.density(cosine),
+        forward: density,
         carried: P::Lanes::splat(0.0),
         reach: P::Lanes::splat(1.0),
     }
@@ -95,10 +97,14 @@ impl<P: Profile> Visitor<P> for Eye<'_, P> {
 }
 
 impl<'a, P: Profile> Eye<'a, P> {
-    /// Nothing gathered yet, nothing beyond the lens.
-    pub fn new(estimator: &'a Estimator<'a, P>, cache: &'a LightCache<P::Lanes>, hero: usize) -> Self {
-        let previous = estimator.scene.sensor.position;
-        Self { estimator, cache, hero, previous, radiance: Spectrum::ZERO }
+    /// Nothing gathered yet; the walk begins at the point `start` of the sensor.
+    pub fn new(
+        estimator: &'a Estimator<'a, P>,
+        cache: &'a LightCache<P::Lanes>,
+        hero: usize,
+        start: Vec3,
+    ) -> Self {
+        Self { estimator, cache, hero, previous: start, radiance: Spectrum::ZERO }
     }
 
     /// s = 0: the walk has met an emitter.
@@ -108,10 +114,13 @@ impl<'a, P: Profile> Eye<'a, P> {
         if counts.hit <= 0.0 || (vertex.edges == 1 && self.estimator.hide_emitters) {
             return None;
         }
-        // Both ends of the segment before must be able to join; across it joins s = 1, which from the lens is
-        // a light walk's first vertex and from anywhere else next-event estimation.
+        // Both ends of the segment before must be able to join; across it joins s = 1, which from the sensor is
+        // a light walk's first vertex and from anywhere else next-event estimation. Parallel rays meet what is
+        // at infinity in one direction, which no light walk starts in.
+        let unseen = P::INFINITE && link.infinite && self.estimator.scene.sensor.is_parallel();
         let joins = match (vertex.after_dirac, vertex.edges) {
             (true, _) => 0.0,
+            (false, 1) if unseen => 0.0,
             (false, 1) => counts.lens,
             (false, _) => counts.next_event * link.connect / link.start,
         };

@@ -51,7 +51,8 @@ pub fn trace<P: Profile>(
     let kind =
         Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
     let mut light = Light::new(estimator, cache, splats, start, hero);
-    light.splat(light.join_start_to_lens());
+    let aperture = scene.sensor.sample_aperture(stream);
+    light.splat(light.join_start_to_lens(aperture));
     walk(scene, kind, departure, &mut light, stream);
 }
 
@@ -64,7 +65,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Depart
         medium: estimator.scene.lights.all[start.light as usize].medium,
         from_infinity: start.infinite,
         edges: 0,
-        dirac: false,
+        dirac: start.dirac,
         throughput: start.throughput,
         forward: start.forward,
         carried: P::Lanes::splat(hits * start.cosine / start.start),
@@ -89,7 +90,8 @@ impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
             return;
         }
         if self.estimator.counts.lens > 0.0 {
-            self.splat(self.join_to_lens(vertex));
+            let aperture = self.estimator.scene.sensor.sample_aperture(stream);
+            self.splat(self.join_to_lens(vertex, aperture));
         }
         let keep = self.estimator.keep;
         if keep > 0.0 && (keep >= 1.0 || stream.uniform() < keep) {
@@ -119,21 +121,21 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
         }
     }
 
-    /// t = 1: a vertex as the lens sees it, and where on the film [pixels].
+    /// t = 1: a vertex as the sensor sees it through a point of its aperture, and where on the film [pixels].
     #[inline]
-    pub fn join_to_lens(&self, vertex: &Vertex<P::Lanes>) -> Option<(Vec2, Joined)> {
+    pub fn join_to_lens(&self, vertex: &Vertex<P::Lanes>, aperture: Vec2) -> Option<(Vec2, Joined)> {
         let scene = self.estimator.scene;
-        let seen = scene.sensor.project(vertex.position)?;
+        let seen = scene.sensor.project(vertex.position, aperture)?;
         if !self.splats.covers(seen.film) {
             return None;
         }
-        let end = connect::vertex_end(scene, vertex, -seen.direction, Transport::Importance)?;
-        let joined = self.join_end(&end, &seen, seen.distance * seen.distance)?;
+        let end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
+        let joined = self.join_end(&end, &seen, false)?;
         Some((seen.film, joined))
     }
 
-    /// s = 1, t = 1: the emitter itself as the lens sees it, where an eye walk could have met it.
-    pub fn join_start_to_lens(&self) -> Option<(Vec2, Joined)> {
+    /// s = 1, t = 1: the emitter itself as the sensor sees it, where an eye walk could have met it.
+    pub fn join_start_to_lens(&self, aperture: Vec2) -> Option<(Vec2, Joined)> {
         let (estimator, start) = (self.estimator, &self.start);
         let seen_directly = estimator.max_edges > 0 && !estimator.hide_emitters;
         if estimator.counts.lens <= 0.0 || !start.hittable || !seen_directly {
@@ -141,24 +143,22 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
         }
         let scene = estimator.scene;
         let seen = if start.infinite {
-            scene.sensor.project_direction(start.position)
+            scene.sensor.project_direction(start.position, aperture)
         } else {
-            scene.sensor.project(start.position)
+            scene.sensor.project(start.position, aperture)
         };
         let seen = seen.filter(|seen| self.splats.covers(seen.film))?;
-        let end = start_end::<P>(estimator, start, -seen.direction)?;
-        let distance_squared = if start.infinite { 1.0 } else { seen.distance * seen.distance };
-        let joined = self.join_end(&end, &seen, distance_squared)?;
+        let end = start_end::<P>(estimator, start, -seen.ray.direction)?;
+        let joined = self.join_end(&end, &seen, start.infinite)?;
         Some((seen.film, joined))
     }
 
     #[inline]
-    fn join_end(&self, end: &End<P::Lanes>, seen: &Projection, distance_squared: f32) -> Option<Joined> {
+    fn join_end(&self, end: &End<P::Lanes>, seen: &Projection, infinite: bool) -> Option<Joined> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
-        let sensor = &scene.sensor;
-        let density = sensor.density(seen.cosine);
+        let Projection { ray, density, distance_squared, .. } = *seen;
         let lens = End {
-            origin: sensor.position + seen.direction * (sensor.near / seen.cosine),
+            origin: ray.origin,
             lift: Vec3::ZERO,
             medium: scene.sensor_medium,
             value: Spectrum::splat(density),
@@ -169,12 +169,10 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
             reach: P::Lanes::splat(1.0),
             tail: P::Lanes::splat(0.0),
         };
-        if seen.distance.is_finite() {
-            connect::join::<P>(scene, end, &lens, distance_squared, counts.lens)
-        } else {
-            let t_max = (sensor.far - sensor.near) / seen.cosine;
-            let ray = Ray { origin: lens.origin, direction: seen.direction, t_max };
+        if P::INFINITE && infinite {
             connect::join_along::<P>(scene, ray, 0.0, &lens, end, distance_squared, counts.lens)
+        } else {
+            connect::join::<P>(scene, end, &lens, distance_squared, counts.lens)
         }
     }
 }

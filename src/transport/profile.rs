@@ -12,7 +12,7 @@ pub trait Profile: Copy + Send + Sync + 'static {
     const MEDIA: bool;
     /// Rays can pass surfaces undeflected, so segments cross boundaries.
     const NULLS: bool;
-    /// Some emitter is at infinity.
+    /// Some emitter is at infinity, or the sensor is: its rays are parallel.
     const INFINITE: bool;
     /// As printed and as typed.
     const NAME: &'static str;
@@ -64,7 +64,7 @@ pub struct Needs {
     pub chromatic: bool,
     /// Some surface lets rays pass undeflected.
     pub nulls: bool,
-    /// Some emitter is at infinity.
+    /// Some emitter is at infinity, or the sensor is.
     pub infinite: bool,
 }
 
@@ -75,7 +75,7 @@ impl Needs {
             media: scene.media.iter().any(|medium| medium.sigma_t != Spectrum::ZERO),
             chromatic: scene.media.iter().any(Homogeneous::is_chromatic),
             nulls: scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null()),
-            infinite: scene.lights.has_infinite(),
+            infinite: scene.lights.has_infinite() || scene.sensor.is_parallel(),
         }
     }
 }

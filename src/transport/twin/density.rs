@@ -1,10 +1,10 @@
 //! The densities of all strategies of a path, each written out vertex by vertex (LW96 eq. 11-13), and the balance
 //! heuristic over them (eq. 14). Logarithms in f64: no path is too long or too dense for them.
 
-use super::path::{Node, Path, Place};
+use super::path::{APERTURE, Node, Path, Place};
 use crate::{
     bsdf::{BsdfModel, Transport},
-    emitter::Emitter,
+    emitter::{Emitter, Kind},
     math::DVec3,
     phase::PhaseModel,
     sampling::{Stream, stream::Purpose},
@@ -15,14 +15,13 @@ use crate::{
     shape::SurfacePoint,
     transport::Counts,
 };
-use std::f64::consts::PI;
 
 /// What the twin knows of an estimator.
 pub struct Twin<'a> {
     pub scene: &'a Scene,
     pub counts: Counts,
     pub channels: usize,
-    /// A sampled start on every emitter: those of one emitter have equal densities.
+    /// A sampled start on every emitter: those of one emitter have equal densities, but for environments.
     pub starts: Vec<Option<Start>>,
 }
 
@@ -94,7 +93,12 @@ impl<'a> Twin<'a> {
         }
     }
 
-    fn start(&self, path: &Path) -> f64 {
+    /// Density of the emitter's vertex as the start of a light walk.
+    pub fn start(&self, path: &Path) -> f64 {
+        if let (Kind::Environment(_), Place::Sky(direction)) = (&self.emitter(path).kind, path.nodes[0].place)
+        {
+            return self.scene.lights.met_at_infinity(direction).map_or(0.0, |link| f64::from(link.start));
+        }
         self.starts[path.light as usize].as_ref().map_or(0.0, |start| f64::from(start.start))
     }
 
@@ -135,19 +139,19 @@ impl<'a> Twin<'a> {
     fn lens(&self, seen: &Node) -> f64 {
         let sensor = &self.scene.sensor;
         let seen = match seen.place {
-            Place::Sky(direction) => sensor.project_direction(direction),
-            _ => sensor.project(seen.position()),
+            Place::Sky(direction) => sensor.project_direction(direction, APERTURE),
+            _ => sensor.project(seen.position(), APERTURE),
         };
-        seen.map_or(0.0, |seen| f64::from(sensor.density(seen.cosine)))
+        seen.map_or(0.0, |seen| f64::from(seen.density))
     }
 
     /// Density of directions that leave an emitter [1/sr]; for one at infinity, of starts on its disk [1/m^2].
     pub fn emission(&self, light: u32, node: &Node, direction: DVec3) -> f64 {
-        match &self.scene.lights.all[light as usize].emitter {
-            Emitter::Area(_) => node.cosine(direction) / PI,
-            Emitter::Point(_) => 0.25 / PI,
-            Emitter::Spot(spot) => f64::from(spot.density(direction.as_vec3())),
-            Emitter::Directional(_) | Emitter::Constant(_) => {
+        match &self.scene.lights.all[light as usize].emitter.kind {
+            Kind::Area(area) => f64::from(area.density(node.cosine(direction) as f32)),
+            Kind::DirectionalArea(_) => 1.0,
+            Kind::Point(point) => f64::from(point.density(direction.as_vec3())),
+            Kind::Directional(_) | Kind::Environment(_) => {
                 self.starts[light as usize].as_ref().map_or(0.0, |start| f64::from(start.forward))
             }
         }
@@ -172,9 +176,9 @@ impl<'a> Twin<'a> {
     pub fn link(&self, path: &Path) -> Option<Link> {
         let (lights, geometry) = (&self.scene.lights, &self.scene.geometry);
         let reference = path.nodes[1].position();
-        match (self.emitter(path), path.nodes[0].place) {
-            (Emitter::Area(_), Place::Surface(point)) => lights.met(geometry, path.light, &point, reference),
-            (Emitter::Constant(_), Place::Sky(direction)) => lights.met_at_infinity(direction),
+        match (&self.emitter(path).kind, path.nodes[0].place) {
+            (Kind::Area(_), Place::Surface(point)) => lights.met(geometry, path.light, &point, reference),
+            (Kind::Environment(_), Place::Sky(direction)) => lights.met_at_infinity(direction),
             (_, place) => {
                 // Single points and directions come up as often as their emitter is chosen.
                 let mut stream = Stream::new(11, 0, 0, Purpose::Study);

@@ -102,6 +102,22 @@ fn lights_of_all_kinds() {
 }
 
 #[test]
+fn a_lens_of_some_size() {
+    examine_all::<Fog>("thin lens", &build(&[FOG, LENS, ROOM, LAMP, BALL, POINT]), 400);
+}
+
+#[test]
+fn profiles_and_single_directions() {
+    let setup = build(&[FOG, INSIDE, ROOM, BALL, LUMINAIRE, BEAM, PROFILED_POINT]);
+    examine_all::<Fog>("profiles, beam", &setup, 600);
+}
+
+#[test]
+fn an_image_of_the_sky() {
+    examine_all::<Bounded>("sky image", &build(&[OUTSIDE, SMOKE, GROUND, SKY_IMAGE]), 1000);
+}
+
+#[test]
 fn normals_that_are_not_the_surface_s() {
     examine_all::<Fog>("smooth mesh", &build(&[FOG, INSIDE, ROOM, BULB, SMOOTH]), 400);
 }

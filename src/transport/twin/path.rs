@@ -1,7 +1,7 @@
 //! An explicit path: its vertices from emitter to lens, and the optical depths between them.
 
 use crate::{
-    math::{DVec3, Vec3, offset},
+    math::{DVec3, Vec2, Vec3, offset, vec2},
     medium::MediumIndex,
     scene::Scene,
     shape::{Ray, SurfacePoint},
@@ -18,9 +18,12 @@ pub enum Place {
     Volume(Vec3),
     /// An emitter at infinity in this unit direction.
     Sky(Vec3),
-    /// The pinhole.
+    /// The pinhole, or the point [`APERTURE`] of a lens.
     Lens(Vec3),
 }
+
+/// The one point of the aperture that the twin looks through: which one it is cancels in every weight.
+pub const APERTURE: Vec2 = vec2(0.01, -0.02);
 
 /// A vertex of a path.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +39,8 @@ pub struct Node {
 impl Node {
     /// The end of every path.
     pub fn lens(scene: &Scene) -> Self {
-        Self { place: Place::Lens(scene.sensor.position), medium: scene.sensor_medium, dirac: false }
+        let position = scene.sensor.ray(Vec2::ZERO, APERTURE).position;
+        Self { place: Place::Lens(position), medium: scene.sensor_medium, dirac: false }
     }
 
     /// A vertex of an emitter.
@@ -101,8 +105,8 @@ impl Node {
                 (origin, scene.medium_towards(&point, direction, self.medium))
             }
             Place::Lens(position) => {
-                let cosine = scene.sensor.project_direction(direction).map_or(1.0, |seen| seen.cosine);
-                (position + direction * (scene.sensor.near / cosine), self.medium)
+                let seen = scene.sensor.project_direction(direction, APERTURE);
+                (seen.map_or(position, |seen| seen.ray.origin), self.medium)
             }
             _ => (self.position(), self.medium),
         }

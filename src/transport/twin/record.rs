@@ -1,6 +1,6 @@
 //! Real walks, and what the fast code says about every path that their joins make.
 
-use super::path::{Node, Path, Place};
+use super::path::{APERTURE, Node, Path, Place};
 use crate::{
     bsdf::Transport,
     math::{Spectrum, Vec2, Vec3, vec2},
@@ -74,8 +74,9 @@ pub fn eye_walk<'a, P: Profile>(
     stream: &mut Stream,
 ) -> Trail<Eye<'a, P>, P::Lanes> {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
-    let mut trail = Trail::new(Eye::new(estimator, cache, hero));
-    walk::<P>(estimator.scene, kind, eye::depart(estimator, film), &mut trail, stream);
+    let departure = eye::depart(estimator, film, APERTURE);
+    let mut trail = Trail::new(Eye::new(estimator, cache, hero, departure.position));
+    walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
     trail
 }
 
@@ -131,11 +132,11 @@ pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, strea
         (0..100).find_map(|_| scene.lights.sample_link(&scene.geometry, last.position, stream)).unwrap();
     let of_eye = |count| chain(&eye.vertices[..count], false);
     let of_light = |count| chain(&light.vertices[..count], false);
-    cases.add(emitter_of(scene, &link), Vec::new(), of_eye(length), eye.visitor.link(last, &link));
+    cases.add(emitter_of(&link), Vec::new(), of_eye(length), eye.visitor.link(last, &link));
     let half = length / 2;
     let joined = eye.visitor.join_with(&eye.vertices[half - 1], &light.vertices[half - 1]);
     cases.add(start_of(&start), of_light(half), of_eye(half), joined);
-    let seen = light.visitor.join_to_lens(&light.vertices[length - 1]);
+    let seen = light.visitor.join_to_lens(&light.vertices[length - 1], APERTURE);
     cases.add(start_of(&start), of_light(length), Vec::new(), seen.map(|(_, joined)| joined));
     cases.all
 }
@@ -188,7 +189,7 @@ fn of_eye<P: Profile>(
     stream: &mut Stream,
 ) {
     let scene = estimator.scene;
-    let mut previous = scene.sensor.position;
+    let mut previous = Node::lens(scene).position();
     for (index, vertex) in eye.vertices.iter().enumerate() {
         if let Site::Surface(point) = vertex.site
             && let Some(light) = scene.surface(point.shape).emitter
@@ -202,7 +203,7 @@ fn of_eye<P: Profile>(
             && let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream)
         {
             let joined = eye.visitor.link(vertex, &link);
-            cases.add(emitter_of(scene, &link), Vec::new(), chain(&eye.vertices[..=index], false), joined);
+            cases.add(emitter_of(&link), Vec::new(), chain(&eye.vertices[..=index], false), joined);
         }
         previous = vertex.position;
     }
@@ -210,7 +211,7 @@ fn of_eye<P: Profile>(
         && let Some(link) = scene.lights.met_at_infinity(-vertex.incoming)
     {
         let before = chain(&eye.vertices, vertex.after_dirac);
-        cases.add_hit(emitter_of(scene, &link), before, eye.visitor.hit(vertex, &link));
+        cases.add_hit(emitter_of(&link), before, eye.visitor.hit(vertex, &link));
     }
 }
 
@@ -227,11 +228,11 @@ fn of_light<P: Profile>(
     if estimator.counts.lens <= 0.0 {
         return;
     }
-    let joined = light.visitor.join_start_to_lens().map(|(_, joined)| joined);
+    let joined = light.visitor.join_start_to_lens(APERTURE).map(|(_, joined)| joined);
     cases.add(start_of(start), Vec::new(), Vec::new(), joined);
     for (index, vertex) in light.vertices.iter().enumerate() {
         if vertex.is_connectible(estimator.scene) {
-            let joined = light.visitor.join_to_lens(vertex).map(|(_, joined)| joined);
+            let joined = light.visitor.join_to_lens(vertex, APERTURE).map(|(_, joined)| joined);
             cases.add(start_of(start), chain(&light.vertices[..=index], false), Vec::new(), joined);
         }
     }
@@ -269,18 +270,11 @@ fn start_of(start: &Start) -> (u32, Place) {
 }
 
 /// The emitter of a link and its vertex.
-fn emitter_of(scene: &Scene, link: &Link) -> (u32, Place) {
-    use crate::emitter::Emitter;
-    if let Some(point) = link.point {
-        return (scene.surface(point.shape).emitter.unwrap(), Place::Surface(point));
-    }
-    let is_it = |light: &crate::scene::lights::Light| match &light.emitter {
-        Emitter::Point(_) | Emitter::Spot(_) => !link.infinite && light.position == link.position,
-        Emitter::Directional(sun) => link.infinite && !link.hittable && -sun.direction == link.position,
-        Emitter::Constant(_) => link.infinite && link.hittable,
-        Emitter::Area(_) => false,
+fn emitter_of(link: &Link) -> (u32, Place) {
+    let place = match link.point {
+        Some(point) => Place::Surface(point),
+        None if link.infinite => Place::Sky(link.position),
+        None => Place::Point(link.position),
     };
-    let light = scene.lights.all.iter().position(is_it).unwrap();
-    let place = if link.infinite { Place::Sky(link.position) } else { Place::Point(link.position) };
-    (light as u32, place)
+    (link.light, place)
 }

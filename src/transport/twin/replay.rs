@@ -3,7 +3,7 @@
 
 use super::{
     density::{Twin, reflect},
-    path::{Node, Path, Place},
+    path::{APERTURE, Node, Path, Place},
     record::WideFilm,
 };
 use crate::{
@@ -44,7 +44,7 @@ pub fn weights<P: Profile>(
     let (mut kept, mut film) = (LightCache::new(P::Lanes::COUNT), WideFilm);
     let start = start(twin, path);
     let light = Light::new(estimator, &mut kept, &mut film, start, hero);
-    let eye = Eye::new(estimator, &cache, hero);
+    let eye = Eye::new(estimator, &cache, hero, Node::lens(estimator.scene).position());
     let by_light = by_light(estimator, twin, path, &start, hero, &light);
     let by_eye = by_eye(estimator, twin, path, hero, &eye);
     let last = path.nodes.len() - 1;
@@ -56,8 +56,10 @@ pub fn weights<P: Profile>(
         }
         let joined = match s {
             0 => lens_side(0).map(|vertex| eye.hit(vertex, &twin.link(path)?)),
-            1 if last == 1 => Some(light.join_start_to_lens().map(|(_, joined)| joined)),
-            _ if s == last => emitter_side(s - 1).map(|v| light.join_to_lens(v).map(|(_, joined)| joined)),
+            1 if last == 1 => Some(light.join_start_to_lens(APERTURE).map(|(_, joined)| joined)),
+            _ if s == last => {
+                emitter_side(s - 1).map(|v| light.join_to_lens(v, APERTURE).map(|(_, joined)| joined))
+            }
             1 => twin
                 .link(path)
                 .filter(|link| link.connect > 0.0)
@@ -107,11 +109,11 @@ fn by_eye<P: Profile>(
     };
     let seen = &path.nodes[path.nodes.len() - 2];
     let projection = match seen.place {
-        Place::Sky(direction) => estimator.scene.sensor.project_direction(direction),
-        _ => estimator.scene.sensor.project(seen.position()),
+        Place::Sky(direction) => estimator.scene.sensor.project_direction(direction, APERTURE),
+        _ => estimator.scene.sensor.project(seen.position(), APERTURE),
     };
     let Some(projection) = projection else { return Vec::new() };
-    lead.along::<P>(eye::depart(estimator, projection.film), visitor)
+    lead.along::<P>(eye::depart(estimator, projection.film, APERTURE), visitor)
 }
 
 /// The start of a light walk at the first vertex of `path`.
@@ -123,6 +125,7 @@ fn start(twin: &Twin<'_>, path: &Path) -> Start {
         origin: node.position(),
         direction: direction.as_vec3(),
         cosine: node.cosine(direction) as f32,
+        start: twin.start(path) as f32,
         forward: twin.emission(path.light, node, direction) as f32,
         throughput: Spectrum::ONE,
         ..twin.starts[path.light as usize].unwrap()

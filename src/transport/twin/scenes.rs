@@ -12,6 +12,8 @@ pub fn build(parts: &[&str]) -> Setup {
     let file = folder.path().join("scene.json");
     std::fs::write(&file, text).unwrap();
     std::fs::write(folder.path().join("octahedron.obj"), OCTAHEDRON).unwrap();
+    let sky = |x: u32, y: u32| image::Rgb([x as f32 + 0.1, 3.0 - y as f32, if x == 2 { 40.0 } else { 0.5 }]);
+    image::Rgb32FImage::from_fn(6, 4, sky).save(folder.path().join("sky.exr")).unwrap();
     let description = scene::read(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
     scene::build::build(&description, Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -40,6 +42,11 @@ pub const INSIDE: &str = r#""camera": {"type": "perspective", "fov": 80,
 pub const OUTSIDE: &str = r#""camera": {"type": "perspective", "fov": 40,
     "to_world": [{"type": "lookat", "origin": [0.5, 1, -6], "target": [0, 0, 0], "up": [0, 1, 0]}],
     "film": {"type": "hdrfilm", "width": 16, "height": 12}}"#;
+
+/// A camera in the fog with a lens as wide as the twin needs it.
+pub const LENS: &str = r#""camera": {"type": "thinlens", "fov": 80, "aperture_radius": 0.05, "focus_distance": 0.9,
+    "to_world": [{"type": "lookat", "origin": [0.1, 0, -0.9], "target": [0, 0.05, 0], "up": [0, 1, 0]}],
+    "film": {"type": "hdrfilm", "width": 16, "height": 12}, "fog": {"type": "ref", "id": "fog"}}"#;
 
 pub const ROOM: &str = r#""room": {"type": "cube", "flip_normals": true,
     "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.7, 0.6, 0.5]}}}"#;
@@ -95,6 +102,23 @@ pub const GROUND: &str = r#""ground": {"type": "rectangle",
     "bsdf": {"type": "diffuse", "reflectance": 0.5}}"#;
 
 pub const SKY: &str = r#""sky": {"type": "constant", "radiance": 0.7}"#;
+
+pub const SKY_IMAGE: &str = r#""sky": {"type": "envmap", "filename": "sky.exr",
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 40}]}"#;
+
+pub const LUMINAIRE: &str = r#""lamp": {"type": "rectangle",
+    "to_world": [{"type": "scale", "value": 0.4}, {"type": "rotate", "axis": [1, 0, 0], "angle": 90},
+                 {"type": "translate", "value": [0, 0.95, 0.2]}],
+    "emitter": {"type": "area", "radiance": {"type": "checkerboard", "color0": 5, "color1": 1},
+                "profile": "0:1 40:0.8 60:0"}}"#;
+
+pub const BEAM: &str = r#""beam": {"type": "rectangle",
+    "to_world": [{"type": "scale", "value": 0.2}, {"type": "rotate", "axis": [0, 1, 0], "angle": 90},
+                 {"type": "translate", "value": [-0.9, 0.1, 0]}],
+    "emitter": {"type": "directionalarea", "radiance": 8}}"#;
+
+pub const PROFILED_POINT: &str = r#""point": {"type": "point", "intensity": 2, "profile": "0:1 90:0.1 120:0",
+    "to_world": [{"type": "rotate", "axis": [1, 0, 0], "angle": 50}, {"type": "translate", "value": [-0.3, 0.8, 0]}]}"#;
 
 pub const SUN: &str = r#""sun": {"type": "directional", "direction": [0.4, -1, 0.5], "irradiance": 3}"#;
 

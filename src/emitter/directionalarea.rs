@@ -1,0 +1,33 @@
+//! Emission along the normals of a shape only: Mitsuba's `directionalarea`.
+
+use crate::{
+    description::Params,
+    error::Result,
+    math::{Spectrum, Vec2},
+    texture::{self, Texture},
+};
+
+/// Every point sends light in the one direction of its normal. No eye walk can meet that and no point can be
+/// joined to it: only light walks bring its light.
+#[derive(Clone, Debug)]
+pub struct DirectionalArea {
+    exitance: Texture,
+}
+
+impl DirectionalArea {
+    /// Reads `radiance`: so Mitsuba calls it, though by its unit it is an exitance.
+    pub fn build(params: &Params<'_>) -> Result<Self> {
+        Ok(Self { exitance: texture::parameter(params, "radiance", 1.0)? })
+    }
+
+    /// Power per area at texture position `uv` [W/m^2].
+    #[inline]
+    pub fn exitance_at(&self, uv: Vec2) -> Spectrum {
+        self.exitance.eval(uv)
+    }
+
+    /// Its mean [W/m^2].
+    pub fn exitance(&self) -> Spectrum {
+        self.exitance.mean()
+    }
+}

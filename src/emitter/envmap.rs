@@ -1,0 +1,157 @@
+//! An image of the surroundings, infinitely far away: Mitsuba's `envmap`.
+
+use crate::{
+    description::Params,
+    error::{Error, Result},
+    math::{DMat3, DMat4, Mat3, Spectrum, SpectrumExt, Vec3, vec3},
+    sampling::{Cell, Grid, Stream},
+    texture::image::{self, Image},
+};
+use std::{
+    f32::consts::{FRAC_1_PI, TAU},
+    f64::consts::PI,
+    sync::Arc,
+};
+
+/// An environment map in latitude and longitude, local +y up, the middle of the image towards local +z. As in
+/// Mitsuba, columns are pixels side by side, rows are interpolated from pole to pole: the first and the last
+/// row are the poles.
+///
+/// Directions are chosen by cells, the squares between four neighbouring pixels, in proportion to their mean
+/// luminance times their solid angle, uniform by solid angle within each: the poles are no special places.
+#[derive(Clone, Debug)]
+pub struct EnvMap {
+    map: Arc<Map>,
+    /// Orthogonal; may mirror.
+    to_local: Mat3,
+    scale: f32,
+    /// Integral of radiance over all directions [W/m^2].
+    fluence: Spectrum,
+}
+
+#[derive(Debug)]
+struct Map {
+    image: Image,
+    cells: Grid,
+    /// Cosine to +y at each row, from 1 down to -1.
+    cosines: Vec<f64>,
+}
+
+/// Where a direction points on the map: the cell, and how far into it.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    column: usize,
+    row: usize,
+    x: f32,
+    y: f32,
+}
+
+impl EnvMap {
+    /// Reads `filename`, `scale` and `to_world`.
+    pub fn build(params: &Params<'_>) -> Result<Self> {
+        let path = params.file("filename")?;
+        let scale = params.float_within("scale", 1.0, 0.0, f64::from(f32::MAX))? as f32;
+        params.accept_unused(&["mis_compensation"], "the balance heuristic is told of all strategies anyway");
+        let image = image::read(&path, false)?;
+        if image.width < 2 || image.height < 3 {
+            let found = format!("{} x {}", image.width, image.height);
+            let remedy = "give a larger image (a constant environment needs none)";
+            return Err(Error::new(path.display(), "an image of at least 2 x 3 pixels", found, remedy));
+        }
+        let to_local = rotation(params)?.transpose().as_mat3();
+        let (map, fluence) = Map::new(image);
+        Ok(Self { map: Arc::new(map), to_local, scale, fluence: fluence * scale })
+    }
+
+    /// Radiance from unit direction `towards` [W/(m^2 sr)].
+    #[inline]
+    pub fn radiance(&self, towards: Vec3) -> Spectrum {
+        let Spot { column, row, x, y } = self.map.spot(self.to_local * towards);
+        let mix = |row| self.map.pixel(column, row).lerp(self.map.pixel(column + 1, row), x);
+        mix(row).lerp(mix(row + 1), y) * self.scale
+    }
+
+    /// A unit direction for light to come from.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+        let Cell { column, row, .. } = self.map.cells.sample(stream);
+        let u = stream.square();
+        let (top, bottom) = (self.map.cosines[row], self.map.cosines[row + 1]);
+        let cosine = (top + f64::from(u.y) * (bottom - top)) as f32;
+        let azimuth = (column as f32 + 0.5 + u.x) / self.map.image.width as f32 * TAU;
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let (s, c) = azimuth.sin_cos();
+        (self.to_local.transpose() * vec3(sine * s, cosine, -sine * c)).normalize()
+    }
+
+    /// Density of `sample` [1/sr].
+    #[inline]
+    pub fn density(&self, towards: Vec3) -> f32 {
+        let Spot { column, row, .. } = self.map.spot(self.to_local * towards);
+        self.map.cells.probability(column, row) / self.map.solid_angle(row) as f32
+    }
+
+    /// Integral of radiance over all directions [W/m^2].
+    pub fn fluence(&self) -> Spectrum {
+        self.fluence
+    }
+}
+
+/// `to_world`, which must keep angles: the sphere of directions must remain one.
+fn rotation(params: &Params<'_>) -> Result<DMat3> {
+    const TOLERANCE: f64 = 1e-3;
+    let to_world: DMat4 = params.transform("to_world")?;
+    let linear = DMat3::from_mat4(to_world);
+    let square = linear.transpose() * linear;
+    if square.abs_diff_eq(DMat3::IDENTITY, TOLERANCE) {
+        return Ok(linear);
+    }
+    Err(params.complain("to_world", "a transform made of rotations and mirrors", "one that scales or shears"))
+}
+
+impl Map {
+    /// The map and the integral of its radiance.
+    fn new(image: Image) -> (Self, Spectrum) {
+        let cosines =
+            (0..image.height).map(|row| (PI * row as f64 / (image.height - 1) as f64).cos()).collect();
+        let mut map = Self { image, cells: Grid::new(1, &[0.0]), cosines };
+        let (width, rows) = (map.image.width, map.image.height - 1);
+        let mut weights = Vec::with_capacity(width * rows);
+        let mut fluence = crate::math::DVec3::ZERO;
+        for row in 0..rows {
+            for column in 0..width {
+                let corners = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
+                let mean = 0.25 * corners.map(|(x, y)| map.pixel(x, y)).iter().sum::<Spectrum>();
+                weights.push(f64::from(mean.luminance()) * map.solid_angle(row));
+                fluence += mean.as_dvec3() * map.solid_angle(row);
+            }
+        }
+        map.cells = Grid::new(width, &weights);
+        (map, fluence.as_vec3())
+    }
+
+    #[inline]
+    fn pixel(&self, column: usize, row: usize) -> Spectrum {
+        let column = if column == self.image.width { 0 } else { column };
+        self.image.pixels[row * self.image.width + column]
+    }
+
+    /// Solid angle of a cell between `row` and the next [sr].
+    #[inline]
+    fn solid_angle(&self, row: usize) -> f64 {
+        2.0 * PI / self.image.width as f64 * (self.cosines[row] - self.cosines[row + 1])
+    }
+
+    #[inline]
+    fn spot(&self, local: Vec3) -> Spot {
+        let (width, rows) = (self.image.width as f32, (self.image.height - 1) as f32);
+        let turn = local.x.atan2(-local.z) * (0.5 * FRAC_1_PI);
+        let x = (turn - turn.floor()) * width - 0.5;
+        let x = if x < 0.0 { x + width } else { x };
+        // Precise near the poles too, where the cosine is not.
+        let y = local.x.hypot(local.z).atan2(local.y) * FRAC_1_PI * rows;
+        let column = (x as usize).min(self.image.width - 1);
+        let row = (y as usize).min(self.image.height - 2);
+        Spot { column, row, x: (x - column as f32).min(1.0), y: (y - row as f32).clamp(0.0, 1.0) }
+    }
+}

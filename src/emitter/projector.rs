@@ -1,0 +1,138 @@
+//! An image thrown from a point: Mitsuba's `projector`.
+
+use crate::{
+    description::Params,
+    error::Result,
+    math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec2, Vec3, vec2, vec3},
+    sampling::{Cell, Grid, Stream},
+    sensor,
+    texture::{self, Texture},
+};
+use std::{f32::consts::PI, sync::Arc};
+
+/// A pinhole camera run backwards: what stands at distance 1 across its axis is lit by the image, at
+/// irradiance pi times that of the texture (so Mitsuba scales it).
+#[derive(Clone, Debug)]
+pub struct Projector {
+    /// Where it stands, in the file's coordinates.
+    pub position: DVec3,
+    irradiance: Texture,
+    scale: f32,
+    to_local: Mat3,
+    /// Half the width and height of the image at distance 1.
+    half: Vec2,
+    /// Texture cells by how bright they are.
+    cells: Arc<Cells>,
+}
+
+#[derive(Debug)]
+struct Cells {
+    grid: Grid,
+    columns: usize,
+    rows: usize,
+}
+
+/// Part of the directions that are uniform over the image: no bright spot that the grid may miss is lost.
+const UNIFORM: f32 = 0.1;
+/// The most cells along one side.
+const FINEST: usize = 1024;
+
+impl Projector {
+    /// Reads `irradiance`, `scale`, `to_world` and the field of view as a perspective sensor has it.
+    pub fn build(params: &Params<'_>) -> Result<Self> {
+        if !params.has("irradiance") {
+            return Err(params.missing("irradiance", "a texture"));
+        }
+        let irradiance = texture::parameter(params, "irradiance", 1.0)?;
+        let to_world = params.transform("to_world")?;
+        let [width, height] = irradiance.resolution().map(|n| n as f64);
+        let half = sensor::half_width(params, width / height)?;
+        Ok(Self {
+            position: to_world.transform_point3(DVec3::ZERO),
+            scale: params.float_within("scale", 1.0, 0.0, f64::from(f32::MAX))? as f32,
+            to_local: DMat3::from_mat4(to_world).inverse().as_mat3(),
+            half: vec2(half as f32, (half * height / width) as f32),
+            cells: Arc::new(Cells::new(&irradiance)),
+            irradiance,
+        })
+    }
+
+    /// The texture position that unit `direction` goes through, and its cosine to the axis; none outside.
+    #[inline]
+    fn through(&self, direction: Vec3) -> Option<(Vec2, f32)> {
+        let local = (self.to_local * direction).normalize();
+        if local.z <= 0.0 {
+            return None;
+        }
+        let uv = Vec2::splat(0.5) - local.truncate() / (local.z * 2.0 * self.half);
+        (uv.min_element() >= 0.0 && uv.max_element() <= 1.0).then_some((uv, local.z))
+    }
+
+    /// Intensity towards unit `direction` [W/sr].
+    #[inline]
+    pub fn intensity(&self, direction: Vec3) -> Spectrum {
+        match self.through(direction) {
+            Some((uv, cosine)) => self.irradiance.eval(uv) * (PI * self.scale / cosine.powi(3)),
+            None => Spectrum::ZERO,
+        }
+    }
+
+    /// A direction through the image, by its brightness.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+        let uv = self.cells.sample(stream);
+        let plane = (Vec2::splat(0.5) - uv) * (2.0 * self.half);
+        let local = vec3(plane.x, plane.y, 1.0);
+        (self.to_local.inverse() * local).normalize()
+    }
+
+    /// Density of `sample` [1/sr].
+    #[inline]
+    pub fn density(&self, direction: Vec3) -> f32 {
+        let Some((uv, cosine)) = self.through(direction) else { return 0.0 };
+        let area = 4.0 * self.half.x * self.half.y;
+        self.cells.density(uv) / (area * cosine.powi(3))
+    }
+
+    /// Emitted power [W]: the mean of the texture counts. At distance 1 it falls on an area of `area`.
+    pub fn power(&self) -> Spectrum {
+        let area = 4.0 * self.half.x * self.half.y;
+        self.irradiance.mean() * (PI * self.scale * area)
+    }
+}
+
+impl Cells {
+    fn new(texture: &Texture) -> Self {
+        let [columns, rows] = texture.resolution().map(|n| n.clamp(32, FINEST));
+        let place = |i: usize, n: usize| i as f32 / n as f32;
+        let value = |x: usize, y: usize| {
+            f64::from(
+                texture.eval(vec2(place(2 * x + 1, 2 * columns), place(2 * y + 1, 2 * rows))).luminance(),
+            )
+        };
+        let weights: Vec<f64> =
+            (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).map(|(x, y)| value(x, y)).collect();
+        Self { grid: Grid::new(columns, &weights), columns, rows }
+    }
+
+    #[inline]
+    fn sample(&self, stream: &mut Stream) -> Vec2 {
+        let u = stream.square();
+        if self.grid.is_empty() || stream.uniform() < UNIFORM {
+            return u;
+        }
+        let Cell { column, row, .. } = self.grid.sample(stream);
+        vec2((column as f32 + u.x) / self.columns as f32, (row as f32 + u.y) / self.rows as f32)
+    }
+
+    /// Density over the unit square.
+    #[inline]
+    fn density(&self, uv: Vec2) -> f32 {
+        if self.grid.is_empty() {
+            return 1.0;
+        }
+        let index = |u: f32, n: usize| ((u * n as f32) as usize).min(n - 1);
+        let chosen = self.grid.probability(index(uv.x, self.columns), index(uv.y, self.rows));
+        UNIFORM + (1.0 - UNIFORM) * chosen * (self.columns * self.rows) as f32
+    }
+}

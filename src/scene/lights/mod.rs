@@ -1,0 +1,118 @@
+//! All emitters of a scene: which one is chosen, where its light starts, how a point is joined to it.
+//!
+//! Two densities stand for the same emitter point: `start` by which light walks begin there, and `connect` by
+//! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
+//! emitter and are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle
+//! [1/sr] for emitters at infinity, whose "point" is a direction.
+
+mod link;
+mod start;
+
+pub use link::Link;
+pub use start::{Emission, Start};
+
+use super::accel::Geometry;
+use crate::{
+    emitter::Emitter,
+    math::{Spectrum, Vec3},
+    medium::MediumIndex,
+    sampling::Discrete,
+    shape::SurfacePoint,
+};
+use std::f32::consts::PI;
+
+/// An emitter placed in its scene.
+#[derive(Clone, Debug)]
+pub struct Light {
+    /// How it emits.
+    pub emitter: Emitter,
+    /// Where it stands: a point, or nothing for shapes and emitters at infinity.
+    pub position: Vec3,
+    /// The shape that emits.
+    pub shape: Option<u32>,
+    /// The medium its light starts in.
+    pub medium: MediumIndex,
+}
+
+/// All emitters.
+#[derive(Clone, Debug, Default)]
+pub struct Lights {
+    /// In file order.
+    pub all: Vec<Light>,
+    /// By power: where light walks start.
+    starts: Discrete,
+    /// Half by power, half uniform: which emitter a point is joined to. A distant strong emitter cannot keep
+    /// a near weak one from being found.
+    connections: Discrete,
+    /// Index of what surrounds the scene.
+    pub environment: Option<u32>,
+    /// Centre of a sphere around the scene.
+    centre: Vec3,
+    /// Its radius [m].
+    radius: f32,
+    /// What remains of light from infinity where it enters the scene: 1, or 0 in fog without end.
+    from_infinity: Spectrum,
+}
+
+/// The normal of the side that emits: geometric, turned to the side that the shading normal names.
+#[inline]
+fn front(point: &SurfacePoint) -> Vec3 {
+    if point.normal.dot(point.shading.normal) < 0.0 { -point.normal } else { point.normal }
+}
+
+impl Lights {
+    /// Arranges `all` emitters of a scene within a sphere around `geometry`, in a surrounding medium with
+    /// transmittance `from_infinity` (0 or 1) along an infinite way.
+    pub fn new(all: Vec<Light>, geometry: &Geometry, from_infinity: Spectrum) -> Self {
+        let (centre, radius) = sphere_around(geometry);
+        let weight = |light: &Light| {
+            let area = light.shape.map_or(0.0, |shape| geometry.area(shape));
+            let arriving = if light.emitter.is_infinite() { from_infinity.max_element() } else { 1.0 };
+            let power = light.emitter.power(area, radius);
+            f64::from(power) * f64::from(light.emitter.sampling_weight * arriving)
+        };
+        let powers: Vec<f64> = all.iter().map(weight).collect();
+        let joinable =
+            |(light, power): (&Light, &f64)| if light.emitter.is_connectible() { *power } else { 0.0 };
+        let connectible: Vec<f64> = all.iter().zip(&powers).map(joinable).collect();
+        let total: f64 = connectible.iter().sum();
+        let count = connectible.iter().filter(|p| **p > 0.0).count() as f64;
+        let mixed = |p: &f64| if *p > 0.0 { p / total + 1.0 / count } else { 0.0 };
+        let environment = all.iter().position(|light| light.emitter.is_environment());
+        Self {
+            starts: Discrete::new(powers.iter().copied()),
+            connections: Discrete::new(connectible.iter().map(mixed)),
+            environment: environment.map(|index| index as u32),
+            all,
+            centre,
+            radius,
+            from_infinity,
+        }
+    }
+
+    /// True where nothing emits.
+    pub fn is_empty(&self) -> bool {
+        self.starts.is_empty()
+    }
+
+    /// True if some emitter is at infinity.
+    pub fn has_infinite(&self) -> bool {
+        self.all.iter().any(|light| light.emitter.is_infinite())
+    }
+
+    /// Density of starts on the disk that faces an emitter at infinity [1/m^2].
+    #[inline]
+    fn disk_density(&self) -> f32 {
+        1.0 / (PI * self.radius * self.radius)
+    }
+}
+
+/// Centre and radius of a sphere that holds everything.
+fn sphere_around(geometry: &Geometry) -> (Vec3, f32) {
+    let (low, high) = geometry.bounds();
+    if !(low.is_finite() && high.is_finite()) {
+        return (Vec3::ZERO, 1.0);
+    }
+    let radius = 0.5 * (high - low).length() * (1.0 + 1e-3);
+    (0.5 * (low + high), radius.max(f32::MIN_POSITIVE))
+}

@@ -1,0 +1,119 @@
+//! What pinhole and thin lens share: place, orientation, field of view, clip distances.
+
+use super::{Clip, Window};
+use crate::{
+    description::Params,
+    error::Result,
+    math::{DMat4, DVec3, Frame, Vec2, Vec3, vec2, vec3},
+};
+
+/// A place to look from, and a film plane at distance 1 in front of it.
+#[derive(Clone, Debug)]
+pub(super) struct Lens {
+    pub position: Vec3,
+    /// Left-handed where the transform mirrors.
+    pub frame: Frame,
+    pub clip: Clip,
+    /// Pixels per unit of the film plane.
+    scale: f32,
+    /// Film position straight ahead.
+    centre: Vec2,
+}
+
+impl Lens {
+    /// Reads Mitsuba's parameters of projective cameras.
+    pub fn build(params: &Params<'_>, recentre: DVec3, window: Window) -> Result<Self> {
+        let to_world = DMat4::from_translation(-recentre) * params.transform("to_world")?;
+        let frame = rigid(to_world).ok_or_else(|| {
+            let found = "one that scales or shears";
+            params.complain("to_world", "a transform made of rotations, translations and mirrors", found)
+        })?;
+        let [width, height] = window.film.map(f64::from);
+        let half_width = half_width(params, width / height)?;
+        let offset =
+            [params.float("principal_point_offset_x", 0.0)?, params.float("principal_point_offset_y", 0.0)?];
+        let centre = vec2(((0.5 - offset[0]) * width) as f32, ((0.5 - offset[1]) * height) as f32);
+        let corner = vec2(window.offset[0] as f32, window.offset[1] as f32);
+        Ok(Self {
+            position: to_world.transform_point3(DVec3::ZERO).as_vec3(),
+            frame,
+            clip: Clip::build(params)?,
+            scale: (0.5 * width / half_width) as f32,
+            centre: centre - corner,
+        })
+    }
+
+    /// The point of the film plane (camera space, z = 1 left out) that a film position stands for.
+    #[inline]
+    pub fn plane(&self, film: Vec2) -> Vec2 {
+        (self.centre - film) / self.scale
+    }
+
+    /// The film position that a point of the film plane stands for.
+    #[inline]
+    pub fn film(&self, plane: Vec2) -> Vec2 {
+        self.centre - plane * self.scale
+    }
+
+    /// Density per solid angle of directions whose film positions have density 1 per pixel area
+    /// [pixels/sr]: scale^2 / cos^3. It holds through any point of a lens: what a lens in focus at distance F
+    /// spreads over F^2 times the area lies F^2 times further away.
+    #[inline]
+    pub fn density(&self, cosine: f32) -> f32 {
+        self.scale * self.scale / (cosine * cosine * cosine)
+    }
+
+    /// `point` in camera space.
+    #[inline]
+    pub fn to_local(&self, point: Vec3) -> Vec3 {
+        self.frame.to_local(point - self.position)
+    }
+
+    /// A point of the aperture in the world.
+    #[inline]
+    pub fn at(&self, aperture: Vec2) -> Vec3 {
+        self.position + self.frame.tangent * aperture.x + self.frame.bitangent * aperture.y
+    }
+
+    /// Camera direction through a point of the film plane.
+    #[inline]
+    pub fn through(plane: Vec2) -> Vec3 {
+        vec3(plane.x, plane.y, 1.0).normalize()
+    }
+}
+
+/// The axes of a transform that keeps lengths and angles; none of any other.
+fn rigid(to_world: DMat4) -> Option<Frame> {
+    // Matrices typed with four digits are meant to be rotations too.
+    const TOLERANCE: f64 = 1e-3;
+    let axes @ [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
+    let scaled = axes.iter().any(|axis| (axis.length() - 1.0).abs() > TOLERANCE);
+    let sheared = [x.dot(y), y.dot(z), z.dot(x)].iter().any(|dot| dot.abs() > TOLERANCE);
+    let [tangent, bitangent, normal] = axes.map(|axis| axis.normalize().as_vec3());
+    (!scaled && !sheared).then_some(Frame { tangent, bitangent, normal })
+}
+
+/// Tangent of half the horizontal field of view, whichever way it is given; `aspect` is width / height.
+pub(crate) fn half_width(params: &Params<'_>, aspect: f64) -> Result<f64> {
+    let diagonal = (1.0 + 1.0 / (aspect * aspect)).sqrt();
+    if params.has("focal_length") || !params.has("fov") {
+        if params.has("fov") {
+            return Err(params.complain("fov", "fov or focal_length, not both", "both"));
+        }
+        let text = params.string("focal_length", "50mm")?;
+        let length = text.strip_suffix("mm").unwrap_or(text).trim().parse::<f64>();
+        return match length {
+            Ok(mm) if mm > 0.0 && mm.is_finite() => Ok(36f64.hypot(24.0) / (2.0 * mm) / diagonal),
+            _ => Err(params.complain("focal_length", "a length such as \"50mm\"", format!("\"{text}\""))),
+        };
+    }
+    let degrees = params.float("fov", 0.0)?;
+    if !(degrees > 0.0 && degrees < 180.0) {
+        return Err(params.complain("fov", "an angle between 0 and 180 degrees", degrees.to_string()));
+    }
+    let (smaller, larger) = if aspect > 1.0 { (aspect, 1.0) } else { (1.0, aspect) };
+    // The tangent along the given axis, times this, is the tangent along x.
+    let axes =
+        [("x", 1.0), ("y", aspect), ("diagonal", 1.0 / diagonal), ("smaller", smaller), ("larger", larger)];
+    Ok((0.5 * degrees.to_radians()).tan() * params.choice("fov_axis", 1.0, &axes)?)
+}
