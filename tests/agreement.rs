@@ -247,3 +247,80 @@ fn with_points_alone_in_fog() {
     ];
     all_agree("points in fog", &scene(&parts), Kind { points: true, ..Kind::default() }, 128);
 }
+
+/// The same view by another sensor.
+fn through(sensor: &str, more: &[(&str, Value)], view: Value) -> Value {
+    with(with(view, &[("type", json!(sensor))]), more)
+}
+
+#[test]
+fn through_a_lens() {
+    let view = camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8);
+    let lens = through("thinlens", &[("aperture_radius", json!(0.1)), ("focus_distance", json!(1.2))], view);
+    let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
+    parts[0].1 = lens;
+    all_agree("thin lens", &scene(&parts), LAMP_IN_VIEW, 96);
+}
+
+#[test]
+fn by_parallel_rays() {
+    let view = json!([{"type": "scale", "value": [0.7, 0.7, 1]},
+        {"type": "lookat", "origin": [0.1, 0.4, 3.5], "target": [0, 0, 0], "up": [0, 1, 0]}]);
+    let sensor =
+        with(camera([0.0, 0.5, 3.5], [0.0; 3], 8), &[("type", json!("orthographic")), ("to_world", view)]);
+    let Value::Object(mut sensor) = sensor else { unreachable!() };
+    sensor.remove("fov");
+    let smoke = medium(1.5, 0.9, 0.4);
+    let mut parts = vec![
+        ("sensor", Value::Object(sensor)),
+        ("smoke", null_box([-0.5; 3], [0.5; 3], Some(smoke))),
+        ("floor", floor(-0.6, 2.0, 0.5)),
+        ("lamp", lamp_ball([0.5, 0.7, 0.2], 0.15, rgb(9.0, 7.0, 5.0))),
+    ];
+    all_agree("orthographic", &scene(&parts), LAMP_IN_VIEW, 128);
+    // What is seen of the sky lies in one direction, as if in a mirror.
+    parts.push(("sky", sky(0.3)));
+    all_agree("orthographic, sky", &scene(&parts), Kind { smooth: true, ..LAMP_IN_VIEW }, 128);
+}
+
+#[test]
+fn under_lights_of_special_kinds() {
+    let panel = with(
+        lamp_panel([0.0, 0.9, -0.2], 0.3, 1.0),
+        &[(
+            "emitter",
+            json!({"type": "area", "profile": "0:1 40:0.6 70:0",
+               "radiance": {"type": "checkerboard", "color0": 8, "color1": 2}}),
+        )],
+    );
+    let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
+    parts[3] = ("lamp", panel);
+    parts.push(("bulb", json!({"type": "point", "intensity": 0.5, "profile": "0:1 90:0.2 150:0",
+        "to_world": [{"type": "rotate", "axis": [1, 0, 0], "angle": 60}, {"type": "translate", "value": [-0.5, 0.2, 0]}]})));
+    parts.push(("slides", json!({"type": "projector", "fov": 50, "scale": 0.3,
+        "irradiance": {"type": "checkerboard", "color0": 3, "color1": {"type": "rgb", "value": [1, 0, 0]}},
+        "to_world": [{"type": "lookat", "origin": [0.6, 0.3, 0.5], "target": [0, -0.5, -0.5], "up": [0, 1, 0]}]})));
+    all_agree("profiles, projector", &scene(&parts), Kind { points: true, ..LAMP_IN_VIEW }, 128);
+}
+
+/// Light that leaves along a normal only: what no eye walk can find, light walks bring, by either strategy.
+#[test]
+fn under_a_beam() {
+    let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
+    parts[3] = (
+        "lamp",
+        with(
+            lamp_panel([0.0, 0.9, -0.2], 0.2, 1.0),
+            &[("emitter", json!({"type": "directionalarea", "radiance": 5}))],
+        ),
+    );
+    let stage = Stage::new(&scene(&parts));
+    let render = |names: &str, first: u64| {
+        Sample::of(&stage.renders(strategies(names), 128, first..first + SEEDS), stage.width())
+    };
+    let all = render("hit+next-event+join+lens", 0);
+    let mut claims = Claims::new();
+    claims.equal("beam: lens alone", &render("lens", 1000), &all);
+    claims.equal("beam: hit, next event, lens", &render("hit+next-event+lens", 2000), &all);
+    claims.settle();
+}
