@@ -14,6 +14,7 @@ mod parallelogram;
 mod placement;
 mod ply;
 mod rectangle;
+mod serialized;
 mod smooth;
 mod sphere;
 mod spherical_rectangle;
@@ -162,12 +163,14 @@ pub const ROWS: &[ShapeRow] = &[
     ShapeRow { name: "cylinder", build: cylinder::build },
     ShapeRow { name: "obj", build: obj::build },
     ShapeRow { name: "ply", build: ply::build },
+    ShapeRow { name: "serialized", build: serialized::build },
 ];
 
 /// Builds the shape that `params` describes. Does not call `finish`: children remain for the scene to read.
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
     let plugin = &params.object.plugin;
     if let Some(row) = ROWS.iter().find(|row| row.name == plugin) {
+        params.accept_unused(&["silhouette_sampling_weight"], "it matters to derivatives only");
         return (row.build)(params, recentre);
     }
     let names: Vec<_> = ROWS.iter().map(|row| row.name).collect();
