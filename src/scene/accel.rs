@@ -1,6 +1,7 @@
 //! All shapes as one: which primitive a ray meets first, whether anything is in its way, and what the surface
 //! is like where it hits.
 
+mod curved;
 mod pack;
 mod traversal;
 mod tree;

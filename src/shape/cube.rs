@@ -15,5 +15,6 @@ const FACES: [ObjectFace; 6] = [
 
 /// Reads `to_world` and `flip_normals`.
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+    params.accept_unused(&["face_normals"], "its faces are flat");
     Parallelograms::build(params, recentre, &FACES).map(Shape::Parallelograms)
 }

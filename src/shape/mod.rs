@@ -1,17 +1,20 @@
 //! Shapes: one file a model; this page is the contract and the registry.
 //!
-//! A shape is a list of primitives (parallelograms, triangles, spheres). Positions are f32, relative to the
+//! A shape is a list of primitives (parallelograms, triangles, spheres, disks, tubes). Positions are f32, relative to the
 //! scene's recentring point; everything before that is f64. The f32 geometry is then exact by definition:
 //! error bounds speak of rounding after it.
 
 mod area;
 mod cube;
+mod cylinder;
+mod disk;
 mod mesh;
 mod obj;
 mod parallelogram;
 mod placement;
 mod ply;
 mod rectangle;
+mod serialized;
 mod smooth;
 mod sphere;
 mod spherical_rectangle;
@@ -23,6 +26,8 @@ use crate::{
     sampling::Stream,
 };
 
+pub use cylinder::{Cylinder, Tube};
+pub use disk::Disk;
 pub use mesh::Mesh;
 pub use parallelogram::{Parallelogram, Parallelograms};
 pub use sphere::Sphere;
@@ -84,6 +89,10 @@ pub enum Primitive {
         /// Its radius [m].
         radius: f32,
     },
+    /// A whole ellipse in a plane.
+    Disk(Disk),
+    /// The side of a cylinder.
+    Tube(Tube),
 }
 
 /// The points corner + u `edge_u` + v `edge_v`: u, v in [0, 1], and u + v <= 1 for a triangle.
@@ -107,6 +116,8 @@ impl Primitive {
     pub fn bounds(&self) -> (Vec3, Vec3) {
         match self {
             Self::Ball { center, radius } => (center - radius, center + radius),
+            Self::Disk(disk) => disk.bounds(),
+            Self::Tube(tube) => tube.bounds(),
             Self::Flat(flat) => {
                 let Flat { corner, edge_u, edge_v, triangle, .. } = *flat;
                 let (u, v) = (corner + edge_u, corner + edge_v);
@@ -124,7 +135,11 @@ pub enum Shape {
     Parallelograms(Parallelograms),
     /// Sphere.
     Sphere(Sphere),
-    /// Obj, ply.
+    /// Disk.
+    Disk(Disk),
+    /// Cylinder.
+    Cylinder(Cylinder),
+    /// Obj, ply, serialized.
     Mesh(Mesh),
 }
 
@@ -144,14 +159,18 @@ pub const ROWS: &[ShapeRow] = &[
     ShapeRow { name: "rectangle", build: rectangle::build },
     ShapeRow { name: "cube", build: cube::build },
     ShapeRow { name: "sphere", build: sphere::build },
+    ShapeRow { name: "disk", build: disk::build },
+    ShapeRow { name: "cylinder", build: cylinder::build },
     ShapeRow { name: "obj", build: obj::build },
     ShapeRow { name: "ply", build: ply::build },
+    ShapeRow { name: "serialized", build: serialized::build },
 ];
 
 /// Builds the shape that `params` describes. Does not call `finish`: children remain for the scene to read.
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
     let plugin = &params.object.plugin;
     if let Some(row) = ROWS.iter().find(|row| row.name == plugin) {
+        params.accept_unused(&["silhouette_sampling_weight"], "it matters to derivatives only");
         return (row.build)(params, recentre);
     }
     let names: Vec<_> = ROWS.iter().map(|row| row.name).collect();
@@ -164,7 +183,7 @@ impl Shape {
     pub fn primitive_count(&self) -> usize {
         match self {
             Self::Parallelograms(p) => p.faces().len(),
-            Self::Sphere(_) => 1,
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) => 1,
             Self::Mesh(m) => m.triangle_count(),
         }
     }
@@ -174,6 +193,8 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => Primitive::Flat(p.faces()[index].flat()),
             Self::Sphere(s) => Primitive::Ball { center: s.center(), radius: s.radius() },
+            Self::Disk(d) => Primitive::Disk(*d),
+            Self::Cylinder(c) => Primitive::Tube(c.tube()),
             Self::Mesh(m) => Primitive::Flat(m.flat(index)),
         }
     }
@@ -187,12 +208,16 @@ impl Shape {
     }
 
     /// The surface where `ray` met primitive `index`. For flat primitives `hit.u` and `hit.v` are those of
-    /// [`Flat`]; a sphere uses `hit.t`.
+    /// [`Flat`], for disks those of the unit disk; spheres and cylinders use `hit.t`.
     #[inline]
     pub fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
         match self {
             Self::Parallelograms(p) => p.faces()[index].point(hit.u, hit.v),
             Self::Sphere(s) => s.point_near(ray.origin + ray.direction * hit.t),
+            Self::Disk(d) => d.point(hit.u, hit.v),
+            Self::Cylinder(c) => {
+                c.point_near(ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t))
+            }
             Self::Mesh(m) => m.point(index, hit.u, hit.v),
         }
     }
@@ -202,6 +227,8 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => p.area(),
             Self::Sphere(s) => s.area(),
+            Self::Disk(d) => d.area(),
+            Self::Cylinder(c) => c.area(),
             Self::Mesh(m) => m.area(),
         }
     }
@@ -211,6 +238,8 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => p.sample_area(stream),
             Self::Sphere(s) => s.sample_area(stream),
+            Self::Disk(d) => d.sample_area(stream),
+            Self::Cylinder(c) => c.sample_area(stream),
             Self::Mesh(m) => m.sample_area(stream),
         }
     }
@@ -221,7 +250,9 @@ impl Shape {
         let (point, density) = match self {
             Self::Parallelograms(p) => p.sample_toward(reference, stream),
             Self::Sphere(s) => s.sample_toward(reference, stream),
-            Self::Mesh(m) => (m.sample_area(stream), 1.0 / m.area()),
+            Self::Disk(_) | Self::Cylinder(_) | Self::Mesh(_) => {
+                (self.sample_area(stream), 1.0 / self.area())
+            }
         };
         (density > 0.0 && density.is_finite()).then_some((point, density))
     }
@@ -231,7 +262,7 @@ impl Shape {
         match self {
             Self::Parallelograms(p) => p.density_toward(reference, point),
             Self::Sphere(s) => s.density_toward(reference, point),
-            Self::Mesh(m) => 1.0 / m.area(),
+            Self::Disk(_) | Self::Cylinder(_) | Self::Mesh(_) => 1.0 / self.area(),
         }
     }
 }

@@ -17,7 +17,13 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords", false)?;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
-    let data = Ply::open(&file, source)?.read(flip)?;
+    let ply = Ply::open(&file, source)?;
+    let unused = ply.unused();
+    if !unused.is_empty() {
+        let text = format!("{}: not used of it: {}", file.display(), unused.join(", "));
+        params.library.warn(params.location(), &text);
+    }
+    let data = ply.read(flip)?;
     Mesh::build(params, recentre, &file, data).map(Shape::Mesh)
 }
 
@@ -28,6 +34,9 @@ struct Vertex([f64; 8]);
 /// All names under which each number of a vertex is known.
 const NAMES: [&[&str]; 8] =
     [&["x"], &["y"], &["z"], &["nx"], &["ny"], &["nz"], &["u", "s", "texture_u"], &["v", "t", "texture_v"]];
+
+/// All names of the list of a face's corners.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// A face's corners; none where the list held something else than vertex numbers.
 struct Face(Option<Vec<u32>>);
@@ -56,7 +65,7 @@ impl PropertyAccess for Face {
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        if !matches!(name, "vertex_indices" | "vertex_index") {
+        if !CORNERS.contains(&name) {
             return PropertyAccessResult::Ignored;
         }
         self.0 = value.to_u32_list();
@@ -100,6 +109,23 @@ impl<'a> Ply<'a> {
 
     fn wrong(&self, expected: impl Into<String>, found: impl Into<String>) -> Error {
         Error::new(self.file.display(), expected, found, "correct the file, or export the mesh again")
+    }
+
+    /// Elements and properties that have no meaning here, such as colours.
+    fn unused(&self) -> Vec<String> {
+        let unknown = |element: &ElementDef| -> Vec<String> {
+            let known = |name: &str| match element.name.as_str() {
+                "vertex" => NAMES.iter().any(|names| names.contains(&name)),
+                _ => CORNERS.contains(&name),
+            };
+            let names = element.properties.keys().filter(|name| !known(name));
+            names.map(|name| format!("\"{name}\" of \"{}\"", element.name)).collect()
+        };
+        let of = |element: &ElementDef| match element.name.as_str() {
+            "vertex" | "face" => unknown(element),
+            name => vec![format!("\"{name}\"")],
+        };
+        self.header.elements.values().flat_map(of).collect()
     }
 
     fn read(mut self, flip: bool) -> Result<MeshData> {

@@ -7,5 +7,6 @@ const FACE: ObjectFace = [[-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [
 
 /// Reads `to_world` and `flip_normals`.
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+    params.accept_unused(&["face_normals"], "its faces are flat");
     Parallelograms::build(params, recentre, &[FACE]).map(Shape::Parallelograms)
 }

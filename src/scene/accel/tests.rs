@@ -62,10 +62,18 @@ fn within(stream: &mut Stream, half: f64) -> DVec3 {
     DVec3::new(one(), one(), one())
 }
 
+/// All shapes that need no file.
+const PLUGINS: [&str; 5] = ["rectangle", "cube", "sphere", "disk", "cylinder"];
+
 /// A shape of any kind, of size about `size`, turned anyhow, within `far` of the origin.
 fn any_shape(stream: &mut Stream, size: f64, far: f64) -> Shape {
-    let plugin = ["rectangle", "cube", "sphere"][stream.below(3)];
-    let stretch = if plugin == "sphere" { DVec3::ONE } else { within(stream, 0.45) + 0.55 };
+    let plugin = PLUGINS[stream.below(PLUGINS.len())];
+    let uneven = within(stream, 0.45) + 0.55;
+    let stretch = match plugin {
+        "sphere" => DVec3::ONE,
+        "cylinder" => DVec3::new(uneven.x, uneven.x, uneven.z),
+        _ => uneven,
+    };
     let steps = vec![
         scale(stretch.x * size, stretch.y * size, stretch.z * size),
         turn((within(stream, 1.0) + 1e-3).into(), f64::from(stream.uniform()) * 360.0),

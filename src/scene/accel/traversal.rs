@@ -89,6 +89,9 @@ impl Tree {
         for ball in &self.balls {
             best.offer(ball.closest(ray, best.t_max));
         }
+        for curved in &self.curved {
+            best.offer(curved.closest(ray, best.t_max));
+        }
         best.hit
     }
 
@@ -97,6 +100,7 @@ impl Tree {
         let wide = WideRay::new(ray);
         self.packs.iter().any(|pack| pack.occluded(&wide, ray.t_max))
             || self.balls.iter().any(|ball| ball.closest(ray, ray.t_max).is_some())
+            || self.curved.iter().any(|curved| curved.closest(ray, ray.t_max).is_some())
     }
 
     fn closest_below(&self, ray: &Ray, stack: &mut [Entry]) -> Option<Hit> {
@@ -109,7 +113,8 @@ impl Tree {
             match current & KIND {
                 INNER => height = self.open(index, &slabs, best.t_max, stack, height),
                 FLATS => best.offer(self.packs[index].closest(&wide, best.t_max)),
-                _ => best.offer(self.balls[index].closest(ray, best.t_max)),
+                BALL => best.offer(self.balls[index].closest(ray, best.t_max)),
+                _ => best.offer(self.curved[index].closest(ray, best.t_max)),
             }
             loop {
                 if height == 0 {
@@ -162,11 +167,12 @@ impl Tree {
                 let blocked = match child & KIND {
                     FLATS => self.packs[index].occluded(&wide, ray.t_max),
                     BALL => self.balls[index].closest(ray, ray.t_max).is_some(),
-                    _ => {
+                    INNER => {
                         stack[height] = child;
                         height += 1;
                         false
                     }
+                    _ => self.curved[index].closest(ray, ray.t_max).is_some(),
                 };
                 if blocked {
                     return true;

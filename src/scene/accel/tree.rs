@@ -1,10 +1,16 @@
 //! The hierarchy: obvhs builds it (PLOC and reinsertion), here it becomes four wide, for four boxes and four
 //! flat primitives are tested in the time of one.
 
-use super::pack::{Ball, FlatPack};
+use super::{
+    curved::Curved,
+    pack::{Ball, FlatPack},
+};
 use crate::{
-    math::{Vec3, offset::gamma},
-    shape::{Flat, Primitive},
+    math::{
+        Vec3,
+        offset::{SEAM, gamma},
+    },
+    shape::{Disk, Flat, Primitive, Tube},
 };
 use glam::{Vec3A, Vec4};
 use obvhs::{
@@ -14,7 +20,7 @@ use obvhs::{
 };
 use std::time::Duration;
 
-/// Scenes that need at most this many tests (four flat primitives or one sphere each) are a plain list: up to
+/// Scenes that need at most this many tests (four flat primitives or one round one each) are a plain list: up to
 /// here it is faster than any hierarchy (measured: see the timing test).
 const LIST_LIMIT: usize = 12;
 
@@ -24,6 +30,8 @@ pub const INNER: u32 = 0;
 pub const FLATS: u32 = 1 << 30;
 /// A `Ball`.
 pub const BALL: u32 = 2 << 30;
+/// A `Curved`: rare, and so the last to be asked for.
+pub const CURVED: u32 = 3 << 30;
 /// The bits of the kind.
 pub const KIND: u32 = 3 << 30;
 
@@ -42,6 +50,7 @@ pub struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) packs: Vec<FlatPack>,
     pub(super) balls: Vec<Ball>,
+    pub(super) curved: Vec<Curved>,
     /// Inner nodes on the longest way down.
     pub(super) depth: usize,
     bounds: Aabb,
@@ -73,7 +82,7 @@ impl Tree {
 
     fn empty(boxes: &[Aabb]) -> Self {
         let bounds = boxes.iter().copied().reduce(|all, one| all.union(&one)).unwrap_or_default();
-        Self { nodes: vec![], packs: vec![], balls: vec![], depth: 0, bounds }
+        Self { nodes: vec![], packs: vec![], balls: vec![], curved: vec![], depth: 0, bounds }
     }
 
     /// Least and greatest corner.
@@ -89,9 +98,16 @@ impl Tree {
                 Primitive::Ball { center, radius } => {
                     self.balls.push(Ball { center, radius, primitive: number });
                 }
+                Primitive::Disk(disk) => self.curved.push(Curved::disk(number, &disk)),
+                Primitive::Tube(tube) => self.curved.push(Curved::tube(number, tube)),
             }
         }
         self.packs = flats.chunks(4).map(FlatPack::new).collect();
+    }
+
+    fn push_curved(&mut self, curved: Curved) -> u32 {
+        self.curved.push(curved);
+        CURVED | (self.curved.len() - 1) as u32
     }
 
     fn fill_nodes(&mut self, primitives: &[Primitive], boxes: &[Aabb]) {
@@ -109,7 +125,22 @@ pub(super) fn bound(primitive: &Primitive) -> Aabb {
             let reach = Vec3A::splat(radius) + gamma(2) * (Vec3A::from(center).abs() + radius);
             Aabb::new(Vec3A::from(center) - reach, Vec3A::from(center) + reach)
         }
+        Primitive::Disk(disk) => bound_disk(&disk),
+        Primitive::Tube(tube) => bound_tube(&tube),
     }
+}
+
+fn bound_disk(disk: &Disk) -> Aabb {
+    let (low, high) = disk.bounds();
+    let error = gamma(5) * (disk.center.abs() + disk.edge_u.abs() + disk.edge_v.abs());
+    Aabb::new((low - error).into(), (high + error).into())
+}
+
+/// With the rounding of its corners, and the seams at its ends.
+fn bound_tube(tube: &Tube) -> Aabb {
+    let (low, high) = tube.bounds();
+    let error = gamma(2) * low.abs().max(high.abs()) + SEAM * (tube.length + tube.radius) as f32;
+    Aabb::new((low - error).into(), (high + error).into())
 }
 
 /// Around all corners, widened by what their sums may be rounded by.
@@ -180,7 +211,7 @@ impl Widening<'_> {
         }
     }
 
-    /// A leaf of its own: one pack or one sphere.
+    /// A leaf of its own: one pack or one round primitive.
     fn is_leaf(&self, node: usize) -> bool {
         self.bvh.nodes[node].is_leaf() || self.flats.is_pack(node)
     }
@@ -208,21 +239,22 @@ impl Widening<'_> {
             return INNER | (self.tree.nodes.len() - 1) as u32;
         }
         let numbers = self.below(node);
-        if let [number] = numbers[..]
-            && let Primitive::Ball { center, radius } = self.primitives[number as usize]
-        {
-            self.tree.balls.push(Ball { center, radius, primitive: number });
-            return BALL | (self.tree.balls.len() - 1) as u32;
+        let tree = &mut *self.tree;
+        let mut flats = Vec::new();
+        // A leaf that is no pack holds one primitive.
+        for number in numbers {
+            match self.primitives[number as usize] {
+                Primitive::Flat(flat) => flats.push((number, flat)),
+                Primitive::Ball { center, radius } => {
+                    tree.balls.push(Ball { center, radius, primitive: number });
+                    return BALL | (tree.balls.len() - 1) as u32;
+                }
+                Primitive::Disk(disk) => return tree.push_curved(Curved::disk(number, &disk)),
+                Primitive::Tube(tube) => return tree.push_curved(Curved::tube(number, tube)),
+            }
         }
-        let flats: Vec<_> = numbers
-            .into_iter()
-            .filter_map(|number| match self.primitives[number as usize] {
-                Primitive::Flat(flat) => Some((number, flat)),
-                Primitive::Ball { .. } => None,
-            })
-            .collect();
-        self.tree.packs.push(FlatPack::new(&flats));
-        FLATS | (self.tree.packs.len() - 1) as u32
+        tree.packs.push(FlatPack::new(&flats));
+        FLATS | (tree.packs.len() - 1) as u32
     }
 
     /// The primitives below `node`.

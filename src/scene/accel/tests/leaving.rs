@@ -4,7 +4,7 @@ use super::*;
 #[derive(Default, Debug)]
 struct Leaving {
     rays: usize,
-    /// Hits of the very primitive that was left, other than a sphere's far side from inside.
+    /// Hits of the very primitive that was left, other than the far side of a sphere or tube from inside.
     own_hits: usize,
     /// Rays into a closed shape that never came out.
     leaks: usize,
@@ -31,8 +31,10 @@ fn leave(plugin: &str, far: f64, rounds: u64) -> Leaving {
 
 fn matches(shape: &Shape, plugin: &str) -> bool {
     match plugin {
-        "rectangle" => shape.primitive_count() == 1 && !matches!(shape, Shape::Sphere(_)),
+        "rectangle" => matches!(shape, Shape::Parallelograms(_)) && shape.primitive_count() == 1,
         "cube" => shape.primitive_count() == 6,
+        "disk" => matches!(shape, Shape::Disk(_)),
+        "cylinder" => matches!(shape, Shape::Cylinder(_)),
         _ => matches!(shape, Shape::Sphere(_)),
     }
 }
@@ -50,13 +52,15 @@ fn leave_once(geometry: &Geometry, plugin: &str, stream: &mut Stream, counts: &m
     let hit = geometry.closest(&ray);
     let same_face = hit.is_some_and(|h| geometry.surface(&ray, &h).normal == point.normal);
     counts.rays += 1;
-    counts.own_hits += usize::from(if plugin == "sphere" { outwards && hit.is_some() } else { same_face });
-    counts.leaks += usize::from(plugin != "rectangle" && !outwards && hit.is_none());
+    let round = matches!(plugin, "sphere" | "cylinder");
+    counts.own_hits += usize::from(if round { outwards && hit.is_some() } else { same_face });
+    counts.leaks += usize::from(matches!(plugin, "cube" | "sphere") && !outwards && hit.is_none());
 }
 
 /// 1 where the normal points out of a closed shape.
 fn outside(geometry: &Geometry, plugin: &str, point: &SurfacePoint) -> f32 {
-    if plugin == "rectangle" {
+    if matches!(plugin, "rectangle" | "disk" | "cylinder") {
+        // Of a cylinder: as it was placed.
         return 1.0;
     }
     let (low, high) = geometry.bounds();
@@ -65,7 +69,7 @@ fn outside(geometry: &Geometry, plugin: &str, point: &SurfacePoint) -> f32 {
 
 #[test]
 fn no_ray_hits_the_primitive_it_leaves() {
-    for plugin in ["rectangle", "cube", "sphere"] {
+    for plugin in PLUGINS {
         for far in [0.0, 10.0, 1e3, 1e7] {
             let counts = leave(plugin, far, 100);
             eprintln!("{plugin} {far} {counts:?}");
@@ -161,5 +165,13 @@ fn distance_from_primitive(geometry: &Geometry, hit: &Hit, p: DVec3) -> f64 {
             (p - flat.corner.as_dvec3()).dot(normal).abs()
         }
         Primitive::Ball { center, radius } => (p.distance(center.as_dvec3()) - f64::from(radius)).abs(),
+        Primitive::Disk(disk) => {
+            let normal = disk.edge_u.as_dvec3().cross(disk.edge_v.as_dvec3()).normalize();
+            (p - disk.center.as_dvec3()).dot(normal).abs()
+        }
+        Primitive::Tube(tube) => {
+            let from = p - tube.base;
+            ((from - tube.axis * tube.axis.dot(from)).length() - tube.radius).abs()
+        }
     }
 }

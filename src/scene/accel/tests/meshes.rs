@@ -183,21 +183,39 @@ fn broken_ply_files_are_errors() {
     }
 }
 
-#[test]
-fn triangles_without_area_are_dropped_with_a_warning() {
-    let (_folder, path) = file("a.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 1 1 2\nf 1 2 2\n");
+/// The shape in a file, and what its reader warned of.
+fn warned(name: &str, text: &[u8]) -> (Shape, Vec<String>) {
+    let (_folder, path) = file(name, text);
     let location = Location { file: Arc::default(), position: Position::Path("$".into()) };
     let filename = Property {
         name: "filename".into(),
         value: Value::String(path.to_str().unwrap().into()),
         location: location.clone(),
     };
-    let object = Object { tag: None, plugin: "obj".into(), id: None, properties: vec![filename], location };
+    let plugin = name.rsplit('.').next().unwrap().into();
+    let object = Object { tag: None, plugin, id: None, properties: vec![filename], location };
     let library = Library::default();
     let shape = shape::build(&Params::new(&object, &library), DVec3::ZERO).unwrap();
+    (shape, library.take_warnings())
+}
+
+#[test]
+fn triangles_without_area_are_dropped_with_a_warning() {
+    let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 1 1 2\nf 1 2 2\n";
+    let (shape, warnings) = warned("a.obj", text);
     assert_eq!(shape.primitive_count(), 1);
-    let warnings = library.take_warnings();
     assert!(warnings.len() == 1 && warnings[0].contains("2 of 3"), "{warnings:?}");
+}
+
+#[test]
+fn what_a_ply_has_beyond_its_mesh_is_told() {
+    let text = String::from_utf8(ply_text(["u", "v"], "3 0 1 2\n3 0 2 3\n5 6\n")).unwrap();
+    let text = text.replace("end_header", "element edge 1\nproperty int a\nproperty int b\nend_header");
+    let (shape, warnings) = warned("a.ply", text.as_bytes());
+    assert_eq!(shape.primitive_count(), 2);
+    assert!(warnings.len() == 1 && warnings[0].contains("\"red\" of \"vertex\", \"edge\""), "{warnings:?}");
+    let (_, warnings) = warned("a.serialized", &serialized(4));
+    assert!(warnings.is_empty());
 }
 
 /// An obj sphere of 2 * rings * segments triangles or so.
@@ -275,4 +293,90 @@ fn meshes_are_sampled_uniformly_by_area() {
     let chi2: f64 = cells.iter().map(|c| (f64::from(*c) - expected).powi(2) / expected).sum();
     // 63 degrees of freedom: mean 63, deviation 11.2.
     assert!((25.0..125.0).contains(&chi2), "{chi2}");
+}
+
+/// Written by a few lines of Python after Mitsuba's documentation, and read by Mitsuba 3.9.1: the bent square;
+/// the same with normals and texture coordinates; and again in double precision, with colours too.
+fn serialized(version: u32) -> Vec<u8> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/shape/samples");
+    fs::read(folder.join(format!("three_v{version}.serialized"))).unwrap()
+}
+
+fn index(number: i64) -> (&'static str, Value) {
+    ("shape_index", Value::Integer(number))
+}
+
+#[test]
+fn serialized_meshes_are_as_in_mitsuba() {
+    let slope = [0.57735, -0.57735, 0.57735];
+    let down = slope.map(|x: f32| -x);
+    for version in [3, 4] {
+        let text = serialized(version);
+        let at = |more: &[(&str, Value)]| at(&load("a.serialized", &text, more).unwrap(), 0.2, 0.3);
+        check(&at(&[]), slope, [0.2, 0.1], [0.39403, -0.39403, 0.83035]);
+        for number in [1, 2] {
+            let at = |more: &[(&str, Value)]| at(&[&[index(number)], more].concat());
+            check(&at(&[]), slope, [0.2, 0.3], [0.0, 0.6, -0.8]);
+            check(&at(&[("flip_normals", YES)]), down, [0.2, 0.3], [0.0, -0.6, 0.8]);
+            check(&at(&[("face_normals", YES)]), slope, [0.2, 0.3], slope);
+        }
+        for number in [-1, 3, 4, 1 << 40] {
+            assert!(load("a.serialized", &text, &[index(number)]).is_err());
+        }
+    }
+}
+
+/// A version 4 file of one mesh.
+fn packed(flags: u32, vertices: u64, triangles: u64, data: &[u8]) -> Vec<u8> {
+    use std::io::Write;
+    let mut file = vec![0x1c, 0x04, 4, 0];
+    let mut zip = flate2::write::ZlibEncoder::new(&mut file, flate2::Compression::fast());
+    let header = [&flags.to_le_bytes()[..], b"name\0", &vertices.to_le_bytes(), &triangles.to_le_bytes()];
+    zip.write_all(&[&header.concat(), data].concat()).unwrap();
+    zip.finish().unwrap();
+    file
+}
+
+#[test]
+fn broken_serialized_files_are_errors() {
+    let corners = |x: f32| [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, x, 1.0, 0.0].map(f32::to_le_bytes).concat();
+    let face = |c: u32| [0, 1, c].map(u32::to_le_bytes).concat();
+    let good = |x, c| [corners(x), face(c)].concat();
+    assert!(load("a.serialized", &packed(0x1000, 3, 1, &good(0.0, 2)), &[]).is_ok());
+    for bad in [
+        packed(0x1000, 4_000_000_000, 1, &good(0.0, 2)),
+        packed(0x1000, 3, 4_000_000_000, &good(0.0, 2)),
+        packed(0x1000, u64::MAX, 1, &good(0.0, 2)),
+        packed(0x1000, 3, u64::MAX / 3, &good(0.0, 2)),
+        packed(0x1000, 3, 1, &good(0.0, 3)),
+        packed(0x1000, 3, 1, &good(f32::NAN, 2)),
+        packed(0x1000, 3, 0, &good(0.0, 2)),
+        packed(0x1000, 0, 0, &[]),
+        packed(0x3000, 3, 1, &good(0.0, 2)),
+        packed(0x100f, 3, 1, &good(0.0, 2)),
+        vec![0x1c, 0x04, 5, 0, 0],
+        vec![0x1d, 0x04, 4, 0, 0],
+        vec![0x1c, 0x04, 4, 0, 1, 2, 3, 4, 5],
+    ] {
+        assert!(load("a.serialized", &bad, &[]).unwrap_err().place.contains("a.serialized"));
+    }
+    let whole = serialized(4);
+    for cut in 0..whole.len() {
+        for number in [1, 2] {
+            assert!(load("a.serialized", &whole[..cut], &[index(number)]).is_err(), "cut at {cut}");
+        }
+    }
+    // A table that points anywhere.
+    for number in 1..256u64 {
+        let mut wrong = whole.clone();
+        let at = wrong.len() - 12;
+        wrong[at..at + 8].copy_from_slice(&number.wrapping_mul(0x0123_4567_89ab_cdef).to_le_bytes());
+        assert!(load("a.serialized", &wrong, &[index(2)]).is_err(), "{number}");
+    }
+    for (count, number) in [(u32::MAX, 7), (1, 1), (0, 1)] {
+        let mut wrong = whole.clone();
+        let at = wrong.len() - 4;
+        wrong[at..].copy_from_slice(&count.to_le_bytes());
+        assert!(load("a.serialized", &wrong, &[index(number)]).is_err());
+    }
 }

@@ -76,7 +76,7 @@ fn report_obvhs(name: &str, rays: &[Ray], geometry: &Geometry) {
         .iter()
         .map(|p| match p {
             Primitive::Flat(flat) => *flat,
-            Primitive::Ball { .. } => unreachable!("timed scenes are flat"),
+            _ => unreachable!("timed scenes are flat"),
         })
         .collect();
     let boxes: Vec<Aabb> = primitives.iter().map(tree::bound).collect();

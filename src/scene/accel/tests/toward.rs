@@ -63,6 +63,8 @@ fn shapes() -> Vec<Shape> {
         placed("rectangle", vec![skewed]),
         placed("cube", turned()),
         placed("sphere", vec![scale(0.8, 0.8, 0.8), shift(0.2, -0.3, 0.4)]),
+        placed("disk", turned()),
+        placed("cylinder", vec![scale(0.7, 0.7, 1.4), turn([1.0, 2.0, 3.0], 40.0)]),
     ]
 }
 

@@ -77,10 +77,7 @@ fn coincident_and_very_unequal_primitives_are_found() {
     let mut shapes: Vec<_> = (0..300).map(|_| placed("rectangle", vec![])).collect();
     shapes.extend((0..300).map(|i| {
         let size = 10f64.powi(i % 10 - 3);
-        placed(
-            ["rectangle", "cube", "sphere"][i as usize % 3],
-            vec![scale(size, size, size), shift(0.0, 0.0, -2e7)],
-        )
+        placed(PLUGINS[i as usize % PLUGINS.len()], vec![scale(size, size, size), shift(0.0, 0.0, -2e7)])
     }));
     let alone: Vec<_> = shapes.iter().map(|s| Geometry::build(vec![s.clone()])).collect();
     let all = Geometry::build(shapes);
@@ -93,7 +90,7 @@ fn coincident_and_very_unequal_primitives_are_found() {
 
 #[test]
 fn what_f32_cannot_hold_is_refused() {
-    for plugin in ["rectangle", "cube", "sphere"] {
+    for plugin in PLUGINS {
         for step in [scale(1e20, 1e20, 1e20), scale(1e-25, 1e-25, 1e-25), shift(1e20, 0.0, 0.0)] {
             assert!(shape_of(plugin, &[("to_world", Value::Transform(vec![step]))], DVec3::ZERO).is_err());
         }

@@ -1,0 +1,169 @@
+//! `cylinder`: the open side of a cylinder, without caps. In f64 throughout: a long thin tube has points far
+//! from its axis' base whose f32 roundings would be seen on the small scale of its radius.
+
+use super::{
+    Shape, SurfacePoint,
+    placement::{Placement, is_in_range},
+};
+use crate::{
+    description::Params,
+    error::{Error, Result},
+    math::{DMat4, DVec3, Frame, Vec3, offset::gamma, vec2},
+    sampling::Stream,
+};
+use std::f64::consts::TAU;
+
+/// A cylinder's side, and how it is turned (for its texture coordinates).
+#[derive(Clone, Copy, Debug)]
+pub struct Cylinder {
+    tube: Tube,
+    /// Unit vectors across the axis; with it left-handed where the transform mirrors.
+    across: [DVec3; 2],
+    /// 1 outwards, -1 inwards.
+    facing: f64,
+}
+
+/// All points at distance `radius` from the segment `base` + z `axis`, z in [0, `length`], beside it.
+#[derive(Clone, Copy, Debug)]
+pub struct Tube {
+    /// z = 0.
+    pub base: DVec3,
+    /// Unit vector.
+    pub axis: DVec3,
+    /// The greatest z [m].
+    pub length: f64,
+    /// Its radius [m].
+    pub radius: f64,
+}
+
+/// Reads `p0`, `p1`, `radius`, `to_world` and `flip_normals`.
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+    let p0 = params.optional_vector("p0")?.unwrap_or(DVec3::ZERO);
+    let p1 = params.optional_vector("p1")?.unwrap_or(DVec3::Z);
+    let radius = params.float("radius", 1.0)?;
+    let mut placement = Placement::read(params, recentre)?;
+    if radius == 0.0 {
+        return Err(params.complain("radius", "a number other than 0", "0"));
+    }
+    if p0 == p1 {
+        return Err(params.complain("p1", "a point other than p0", format!("{p1}")));
+    }
+    placement.matrix *= unit_to_object(p0, p1, radius);
+    Cylinder::place(&placement).map(Shape::Cylinder).ok_or_else(|| {
+        let expected = "a transform that keeps a cylinder round and upright, and that f32 can hold";
+        let found = "shearing, different scales across its axis, or too large or small a scale";
+        let remedy = "use one scale for all axes, or a mesh of the tube";
+        Error::new(params.location(), expected, found, remedy)
+    })
+}
+
+/// From the unit cylinder over [0, 1] along z.
+fn unit_to_object(p0: DVec3, p1: DVec3, radius: f64) -> DMat4 {
+    let length = (p1 - p0).length();
+    let axis = (p1 - p0) / length;
+    // Mitsuba's frame, its digits completed.
+    let x = Frame::around(axis.as_vec3()).tangent.as_dvec3();
+    let x = (x - axis * axis.dot(x)).normalize();
+    let y = axis.cross(x);
+    DMat4::from_cols(
+        (x * radius).extend(0.0),
+        (y * radius).extend(0.0),
+        (axis * length).extend(0.0),
+        p0.extend(1.0),
+    )
+}
+
+impl Cylinder {
+    /// The image of the unit cylinder; none where that is no upright round one. Normals stay outside under
+    /// mirroring, as in Mitsuba.
+    fn place(placement: &Placement) -> Option<Self> {
+        // Matrices typed with six digits are meant to be rotations too.
+        const TOLERANCE: f64 = 1e-5;
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| placement.vector(axis));
+        let (radius, length) = ((x.length() * y.length()).sqrt(), z.length());
+        let [x, y, axis] = [x / radius, y / radius, z / length];
+        let uneven = (x.length() - 1.0).abs() > TOLERANCE;
+        let sheared = [x.dot(y), y.dot(axis), axis.dot(x)].iter().any(|d| d.abs() > TOLERANCE);
+        let tube = Tube { base: placement.point(DVec3::ZERO), axis, length, radius };
+        let facing = if placement.flip_normals { -1.0 } else { 1.0 };
+        (tube.fits() && !uneven && !sheared).then_some(Self { tube, across: [x, y], facing })
+    }
+
+    /// As the ray tracer needs it.
+    pub fn tube(&self) -> Tube {
+        self.tube
+    }
+
+    /// The surface point nearest to `p`.
+    #[inline]
+    pub fn point_near(&self, p: DVec3) -> SurfacePoint {
+        let Tube { base, axis, length, .. } = self.tube;
+        let from = p - base;
+        let z = axis.dot(from);
+        let out = (from - axis * z).normalize_or(self.across[0]);
+        self.point(z.clamp(0.0, length), out)
+    }
+
+    /// The surface point at height `z` [m] in the unit direction `out` from the axis.
+    #[inline]
+    fn point(&self, z: f64, out: DVec3) -> SurfacePoint {
+        let Tube { base, axis, length, radius } = self.tube;
+        let [x, y] = self.across.map(|axis| axis.dot(out));
+        let turn = y.atan2(x) / TAU;
+        let along_u = self.across[1] * x - self.across[0] * y;
+        let normal = (out * self.facing).as_vec3();
+        let position = (base + axis * z + out * radius).as_vec3();
+        SurfacePoint {
+            position,
+            error: self.error(position, normal),
+            normal,
+            shading: Frame::along(normal, along_u.as_vec3()),
+            uv: vec2(if turn < 0.0 { turn + 1.0 } else { turn } as f32, (z / length) as f32),
+            shape: 0,
+        }
+    }
+
+    /// The rounding of the position; and room for that of `normal` and of its product with a direction: a ray
+    /// that grazes along the axis must not come down on the tube before its end.
+    #[inline]
+    fn error(&self, position: Vec3, normal: Vec3) -> Vec3 {
+        let reach = (self.tube.length + self.tube.radius) as f32;
+        gamma(2) * position.abs() + gamma(6) * reach * normal.abs()
+    }
+
+    /// Area [m^2].
+    pub fn area(&self) -> f32 {
+        self.tube.area() as f32
+    }
+
+    /// Uniform by area.
+    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+        let at = stream.square();
+        let (sin, cos) = (TAU * f64::from(at.x)).sin_cos();
+        let [x, y] = self.across;
+        self.point(f64::from(at.y) * self.tube.length, x * cos + y * sin)
+    }
+}
+
+impl Tube {
+    fn area(&self) -> f64 {
+        TAU * self.radius * self.length
+    }
+
+    /// f32 can hold it.
+    fn fits(&self) -> bool {
+        let (low, high) = self.bounds();
+        is_in_range(low)
+            && is_in_range(high)
+            && (self.radius as f32).is_normal()
+            && (self.area() as f32).is_normal()
+    }
+
+    /// Least and greatest corner of the box around it: that of the circles at its ends.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let Self { base, axis, length, radius } = *self;
+        let half = (DVec3::ONE - axis * axis).max(DVec3::ZERO).map(f64::sqrt) * radius;
+        let end = base + axis * length;
+        ((base.min(end) - half).as_vec3(), (base.max(end) + half).as_vec3())
+    }
+}

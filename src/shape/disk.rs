@@ -1,0 +1,97 @@
+//! `disk`: the unit disk in the xy plane, facing +z; any affine transform makes it an ellipse.
+
+use super::{
+    Shape, SurfacePoint,
+    parallelogram::flat_error,
+    placement::{Placement, is_in_range},
+};
+use crate::{
+    description::Params,
+    error::{Error, Result},
+    math::{DVec3, Frame, Vec3, vec2, warp},
+    sampling::Stream,
+};
+use std::f32::consts::{FRAC_1_PI, PI};
+
+/// center + x `edge_u` + y `edge_v` for x^2 + y^2 <= 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Disk {
+    /// x = y = 0.
+    pub center: Vec3,
+    /// To x = 1.
+    pub edge_u: Vec3,
+    /// To y = 1.
+    pub edge_v: Vec3,
+    /// Unit normal, the very one that surface points report (see [`super::Flat::normal`]).
+    pub normal: Vec3,
+    area: f32,
+}
+
+/// Reads `to_world` and `flip_normals`.
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+    let placement = Placement::read(params, recentre)?;
+    let disk = Disk::place(&placement);
+    if disk.fits() {
+        return Ok(Shape::Disk(disk));
+    }
+    Err(Error::new(
+        params.location(),
+        "a disk with finite axes and an area",
+        "one that f32 coordinates cannot hold (too large, too small or too flat)",
+        "correct \"to_world\"",
+    ))
+}
+
+impl Disk {
+    /// As in Mitsuba, a mirrored disk keeps facing where its transformed normal points.
+    fn place(placement: &Placement) -> Self {
+        let center = placement.point(DVec3::ZERO).as_vec3();
+        let (edge_u, edge_v) = (placement.vector(DVec3::X).as_vec3(), placement.vector(DVec3::Y).as_vec3());
+        // From the rounded edges, so that the plane is that of the points.
+        let cross = edge_u.as_dvec3().cross(edge_v.as_dvec3());
+        let turn = if placement.is_mirrored() != placement.flip_normals { -1.0 } else { 1.0 };
+        let normal = (cross.normalize() * turn).as_vec3();
+        Self { center, edge_u, edge_v, normal, area: PI * cross.length() as f32 }
+    }
+
+    /// f32 can hold it.
+    fn fits(&self) -> bool {
+        self.area.is_normal()
+            && [self.center, self.edge_u, self.edge_v, self.normal].into_iter().all(is_in_range)
+    }
+
+    /// Least and greatest corner of the box around it.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let reach = |u: f32, v: f32| u.hypot(v);
+        let (u, v) = (self.edge_u, self.edge_v);
+        let half = Vec3::new(reach(u.x, v.x), reach(u.y, v.y), reach(u.z, v.z));
+        (self.center - half, self.center + half)
+    }
+
+    /// The point (`x`, `y`) of the unit disk. Texture coordinates are polar: distance from the centre, and
+    /// angle in turns.
+    #[inline]
+    pub fn point(&self, x: f32, y: f32) -> SurfacePoint {
+        let (along_u, along_v) = (self.edge_u * x, self.edge_v * y);
+        let turn = y.atan2(x) * (0.5 * FRAC_1_PI);
+        SurfacePoint {
+            position: self.center + (along_u + along_v),
+            error: flat_error(self.center, along_u, along_v),
+            normal: self.normal,
+            shading: Frame::along(self.normal, along_u + along_v),
+            uv: vec2(x.hypot(y), if turn < 0.0 { turn + 1.0 } else { turn }),
+            shape: 0,
+        }
+    }
+
+    /// Area [m^2].
+    pub fn area(&self) -> f32 {
+        self.area
+    }
+
+    /// Uniform by area.
+    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+        let at = warp::to_disk(stream.square());
+        self.point(at.x, at.y)
+    }
+}
