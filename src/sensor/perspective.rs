@@ -58,6 +58,12 @@ impl Perspective {
         })
     }
 
+    /// The same camera, its film positions counted from `offset` [pixels] on.
+    pub fn counted_from(mut self, offset: [u32; 2]) -> Self {
+        self.centre -= vec2(offset[0] as f32, offset[1] as f32);
+        self
+    }
+
     /// Unit direction through a film position, and its cosine to the axis.
     #[inline]
     pub fn direction(&self, film: Vec2) -> (Vec3, f32) {
