@@ -3,32 +3,77 @@
 pub mod accumulator;
 pub mod exr;
 pub mod filter;
+pub mod format;
+mod lobes;
 pub mod output;
 pub mod png;
 
 use crate::math::{Spectrum, Vec2, vec2};
 use crate::sampling::Stream;
 use filter::{Axis, Filter};
+use format::Format;
+
+/// One value per pixel, and how it is called in a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Its name, such as "R" or "normal.X".
+    pub name: String,
+    /// Row-major, top row first.
+    pub values: Vec<f32>,
+}
+
+/// The part of a film that is rendered, as Mitsuba's crop window. The sensor sees the whole film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Pixels of the whole film, across and down.
+    pub full_size: [u32; 2],
+    /// The whole film's pixel in the window's top left corner.
+    pub offset: [u32; 2],
+    /// Pixels of the window, across and down.
+    pub size: [u32; 2],
+}
+
+impl Window {
+    /// All of a film of `width` x `height` pixels.
+    pub fn whole(width: u32, height: u32) -> Self {
+        Self { full_size: [width, height], offset: [0, 0], size: [width, height] }
+    }
+
+    /// True if it is all of its film.
+    pub fn is_whole(&self) -> bool {
+        self.size == self.full_size
+    }
+}
 
 /// The image's size and reconstruction filter. A pixel's value is the average of radiance over the film,
 /// weighted by the filter around the pixel's centre, the filter cut off at the image's border as in Mitsuba.
+/// Film positions are in pixels of the window, (0, 0) its top left corner.
 #[derive(Clone, Debug)]
 pub struct Film {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
+    /// Where in the whole film the image lies.
+    pub window: Window,
     /// The same filter along both axes.
     pub filter: Filter,
+    /// Also sampled this far beyond the window, where the filter still reaches its pixels [pixels].
+    pub border: u32,
+    /// What is written.
+    pub format: Format,
     across: Axis,
     down: Axis,
 }
 
 impl Film {
-    /// A film of `width` x `height` pixels, both > 0.
-    pub fn new(width: u32, height: u32, filter: Filter) -> Self {
-        let (across, down) = (Axis::new(filter, width), Axis::new(filter, height));
-        Self { width, height, filter, across, down }
+    /// A film of which `window` is rendered; its sizes are > 0. With `sample_border` the filter is not cut off
+    /// at the window's border.
+    pub fn new(window: Window, filter: Filter, sample_border: bool, format: Format) -> Self {
+        let border = if sample_border { (filter.radius() - 0.5).ceil() as u32 } else { 0 };
+        let [width, height] = window.size;
+        let (across, down) = (Axis::new(filter, width, border), Axis::new(filter, height, border));
+        Self { width, height, window, filter, border, format, across, down }
     }
 
     /// Number of pixels.
@@ -41,26 +86,29 @@ impl Film {
         self.len() == 0
     }
 
-    /// A film position distributed by the filter of `pixel` (row-major index).
+    /// A film position distributed by the magnitude of the filter of `pixel` (row-major index), and the weight
+    /// of a sample there: 1, but for filters with negative lobes.
     #[inline]
-    pub fn sample(&self, pixel: usize, stream: &mut Stream) -> Vec2 {
+    pub fn sample(&self, pixel: usize, stream: &mut Stream) -> (Vec2, f32) {
         let (x, y) = (pixel % self.width as usize, pixel / self.width as usize);
-        vec2(self.across.sample(x, stream), self.down.sample(y, stream))
+        let (x, across) = self.across.sample(x, stream);
+        let (y, down) = self.down.sample(y, stream);
+        (vec2(x, y), across * down)
     }
 
     /// True if a film position counts for some pixel.
     #[inline]
     pub fn covers(&self, film: Vec2) -> bool {
-        film.x >= 0.0 && film.y >= 0.0 && film.x < self.width as f32 && film.y < self.height as f32
+        self.across.covers(film.x) && self.down.covers(film.y)
     }
 
-    /// Gives every pixel whose filter covers `film` its share of `value`.
+    /// Gives every pixel whose filter covers `film` its share of `value`, which negative lobes make negative.
     #[inline]
     pub fn spread(&self, film: Vec2, value: Spectrum, mut add: impl FnMut(usize, Spectrum)) {
         for (y, wy) in self.down.weights(film.y) {
             for (x, wx) in self.across.weights(film.x) {
                 let weight = wx * wy;
-                if weight > 0.0 {
+                if weight != 0.0 {
                     add(y * self.width as usize + x, value * weight);
                 }
             }

@@ -91,8 +91,8 @@ impl Blocks {
         let eye = self.pixels(block).map(|pixel| {
             let mut stream = Stream::new(seed, pixel as u64, pass as u64, Purpose::Eye);
             let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
-            let position = film.sample(pixel, &mut stream);
-            (pixel as u32, estimator.sample_pixel(&cache, position, hero, &mut stream))
+            let (position, weight) = film.sample(pixel, &mut stream);
+            (pixel as u32, estimator.sample_pixel(&cache, position, hero, &mut stream) * weight)
         });
         Outcome { eye: eye.collect(), light: light.values }
     }

@@ -5,6 +5,7 @@ use super::{
     Boundary, Scene, Surface,
     accel::Geometry,
     boundary::{self, Found},
+    film,
     integrator::{self, Integrator},
     lights::{Light, Lights},
 };
@@ -13,7 +14,7 @@ use crate::{
     description::{Library, Location, Object, Params, Property, Value, nearest, params::Child},
     emitter::{self, Emitter},
     error::{Error, Result},
-    film::{Film, filter, filter::Filter},
+    film::Film,
     math::{DVec3, Spectrum, Vec3, offset},
     medium::{self, Homogeneous, MediumIndex},
     sensor::{self, Sensor, Window},
@@ -164,7 +165,7 @@ fn unknown_plugin(child: &Child<'_>) -> Error {
     )
 }
 
-fn only_one(second: &Child<'_>, what: &str) -> Error {
+pub(super) fn only_one(second: &Child<'_>, what: &str) -> Error {
     Error::new(second.location, format!("one {what}"), format!("a second {what}"), "remove one of them")
 }
 
@@ -330,9 +331,9 @@ impl<'a> Builder<'a> {
 
     fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View> {
         let params = Params::new(object, self.library);
-        let film = match params.children(|child| child.object.plugin == "hdrfilm")?.as_slice() {
-            [] => Film::new(768, 576, Filter::Gaussian { stddev: 0.5 }),
-            [one] => film(one.object, self.library, overrides)?,
+        let film = match params.children(film::is_film)?.as_slice() {
+            [] => film::default(overrides),
+            [one] => film::build(one.object, self.library, overrides)?,
             [_, second, ..] => return Err(only_one(second, "film")),
         };
         let samples_per_pixel = match params.children(|child| is_sampler(child.object))?.as_slice() {
@@ -341,7 +342,7 @@ impl<'a> Builder<'a> {
             [_, second, ..] => return Err(only_one(second, "sampler")),
         };
         let medium = self.stated_medium(&params)?;
-        let window = Window { film: [film.width, film.height], offset: [0, 0] };
+        let window = Window { film: film.window.full_size, offset: film.window.offset };
         let sensor = sensor::build(&params, self.recentre, window)?;
         params.finish()?;
         Ok(View { sensor, film, samples_per_pixel, medium })
@@ -455,35 +456,4 @@ fn sampler(object: &Object, library: &Library) -> Result<u64> {
         return Ok(count as u64);
     }
     Err(params.complain("sample_count", "an integer >= 1", count.to_string()))
-}
-
-fn film(object: &Object, library: &Library, overrides: Overrides) -> Result<Film> {
-    let params = Params::new(object, library);
-    let (width, height) = (pixels(&params, "width", 768)?, pixels(&params, "height", 576)?);
-    let is_filter = |child: &Child<'_>| {
-        child.name == "rfilter"
-            || child.object.tag.as_deref() == Some("rfilter")
-            || filter::ROWS.iter().any(|row| row.name == child.object.plugin)
-    };
-    let filter = match params.children(is_filter)?.as_slice() {
-        [] => Filter::Gaussian { stddev: 0.5 },
-        [one] => {
-            crate::description::build_by_row(one.object, library, "reconstruction filter", filter::ROWS)?
-        }
-        [_, second, ..] => return Err(only_one(second, "rfilter")),
-    };
-    let formats = ["pixel_format", "component_format", "file_format"];
-    params.accept_unused(&formats, "images are written as EXR with 32-bit float R, G, B");
-    params.accept_unused(&["sample_border", "banner", "compensate"], "it changes nothing here");
-    params.finish()?;
-    let (width, height) = overrides.size.unwrap_or((width, height));
-    Ok(Film::new(width, height, filter))
-}
-
-fn pixels(params: &Params<'_>, name: &'static str, default: i64) -> Result<u32> {
-    let value = params.integer(name, default)?;
-    if (1..=65_536).contains(&value) {
-        return Ok(value as u32);
-    }
-    Err(params.complain(name, "an integer from 1 to 65536", value.to_string()))
 }

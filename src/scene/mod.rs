@@ -3,6 +3,7 @@
 pub mod accel;
 pub mod boundary;
 pub mod build;
+mod film;
 pub mod integrator;
 mod json;
 pub mod lights;
