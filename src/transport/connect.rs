@@ -82,7 +82,7 @@ pub struct Joined {
 
 /// Joins `a` and `b` by a strategy of `count` expected samples; none where the way is blocked. The caller
 /// divides by the number of samples it took.
-#[inline]
+#[inline(always)]
 pub fn join<P: Profile>(
     scene: &Scene,
     a: &End<P::Lanes>,
@@ -99,7 +99,7 @@ pub fn join<P: Profile>(
 
 /// The same along a given ray that starts at `a` and stops `cut` short of `b`: for ends at infinity, where
 /// `distance_squared` is 1.
-#[inline]
+#[inline(always)]
 pub fn join_along<P: Profile>(
     scene: &Scene,
     ray: Ray,
