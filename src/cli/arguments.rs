@@ -28,9 +28,10 @@ pub struct Render {
     #[command(flatten)]
     pub scene: Scene,
 
-    /// Image to write: linear OpenEXR (.exr) or tone-mapped PNG (.png)
+    /// Image to write: linear OpenEXR (.exr), float map (.pfm) or Radiance (.rgbe, .hdr), with a tone-mapped
+    /// PNG (.png) beside it
     ///
-    /// Default: the scene's name with .exr, in the current folder.
+    /// Default: the scene's name, in the current folder, in the format that its film names.
     #[arg(short, long, value_name = "FILE", value_parser = image_file)]
     pub output: Option<PathBuf>,
 
@@ -46,7 +47,8 @@ pub struct Render {
 
     /// Stop after this time, a number with s, m or h (90, 90s, 5m, 1.5h; seconds if none) [default: no limit]
     ///
-    /// What is complete by then is written. With --spp as well, whichever is reached first counts.
+    /// What is complete by then is written. With --spp as well, whichever is reached first counts. Alpha and
+    /// the layers of an aov integrator come after it, and are quick.
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
     pub time_limit: Option<Duration>,
 
@@ -71,7 +73,7 @@ pub struct Render {
     #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
     pub max_depth: Option<MaxDepth>,
 
-    /// Size of the image in pixels [default: the scene's film]
+    /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
 
@@ -210,8 +212,8 @@ fn image_file(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     match extension.as_deref() {
-        Some("exr" | "png") => Ok(path),
-        _ => Err("expected a file name that ends in .exr or .png".into()),
+        Some("exr" | "pfm" | "rgbe" | "hdr" | "png") => Ok(path),
+        _ => Err("expected a file name that ends in .exr, .pfm, .rgbe, .hdr or .png".into()),
     }
 }
 
@@ -284,7 +286,7 @@ mod tests {
             ("render a.xml --max-depth -2", "-1 for no limit"),
             ("render a.xml -D res", "name=value"),
             ("render a.xml -D =3", "before \"=\""),
-            ("render a.xml -o a.jpg", ".exr or .png"),
+            ("render a.xml -o a.jpg", ".hdr or .png"),
             ("render a.xml --integrator bdp", "bdpt"),
             ("render a.xml --strategies hit,jion", "join"),
             ("render", "SCENE"),

@@ -5,6 +5,11 @@ use crate::{
     bsdf::BsdfModel,
     emitter::Emitter,
     error::Result,
+    film::{
+        Film, Window,
+        format::{Component, FileKind},
+        layer::Layer,
+    },
     phase::PhaseModel,
     scene::{
         Scene,
@@ -26,10 +31,13 @@ fn describe(setup: &Setup) -> String {
     let profile = ProfileName::leanest(Needs::of(scene));
     let left_out = profile.left_out();
     let mut lines = vec![
-        format!("image       {} x {}, {:?} filter", film.width, film.height, film.filter),
+        format!("image       {}", describe_film(film)),
         format!("integrator  {}, {samples_per_pixel} samples/pixel", describe_integrator(integrator)),
         format!("shapes      {}", describe_shapes(scene)),
     ];
+    if !integrator.layers.is_empty() {
+        lines.insert(2, format!("layers      {}", describe_layers(&integrator.layers)));
+    }
     lines.extend(scene.lights.all.iter().map(|light| {
         format!("emitter     {} in {}", light.emitter.name, medium_name(setup, light.medium.0))
     }));
@@ -40,6 +48,37 @@ fn describe(setup: &Setup) -> String {
     lines.push(format!("profile     {}, leaving out: {without}", profile.name()));
     lines.extend(unreachable(scene, integrator).into_iter().map(|text| format!("unreachable {text}")));
     lines.join("\n")
+}
+
+fn describe_film(film: &Film) -> String {
+    let Window { full_size: [width, height], offset: [x, y], .. } = film.window;
+    let part = if film.window.is_whole() {
+        String::new()
+    } else {
+        format!(" (the window at {x}, {y} of {width} x {height})")
+    };
+    let border = if film.border > 0 { ", sampled beyond its border" } else { "" };
+    let format = film.format;
+    let numbers = match (format.file, format.component) {
+        (FileKind::Rgbe, _) => "a common exponent",
+        (_, Component::Float16) => "float16",
+        (_, Component::Float32) => "float32",
+        (_, Component::Uint32) => "uint32",
+    };
+    format!(
+        "{} x {}{part}, {:?} filter{border}, {} as {numbers} in .{}",
+        film.width,
+        film.height,
+        film.filter,
+        format.names().concat(),
+        format.file.extension()
+    )
+}
+
+/// Every layer with the ends of its channels' names.
+fn describe_layers(layers: &[Layer]) -> String {
+    let described = layers.iter().map(|layer| format!("{} ({})", layer.name, layer.suffixes().concat()));
+    described.collect::<Vec<_>>().join(", ")
 }
 
 fn describe_integrator(integrator: &Integrator) -> String {

@@ -1,9 +1,12 @@
-//! `tyndall render`: a scene file in, an EXR and a PNG out.
+//! `tyndall render`: a scene file in, an image and its PNG preview out.
 
 use super::{arguments, load};
 use crate::{
     error::{Error, Result},
-    film,
+    film::{
+        self, Film,
+        format::{FileKind, Format},
+    },
     render::{self, Image, Progress, Settings, budget::Budget},
     scene::{build::Setup, integrator::Method},
     transport::{
@@ -23,22 +26,23 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
     let setup = load(&arguments.scene, arguments.size)?;
     let settings = settings(arguments, &setup)?;
-    let output = output_path(arguments);
+    let goal = Goal::new(arguments, &setup)?;
     let load_time = started.elapsed();
     let image = on_threads(arguments, || {
         let bar = Bar::new(&settings, setup.film.len());
-        let image = render::render(&setup.scene, &setup.film, &settings, &mut |progress| bar.tell(&progress));
+        let (scene, film, layers) = (&setup.scene, &setup.film, &setup.integrator.layers);
+        let image =
+            render::render_layers(scene, film, &settings, layers, &mut |progress| bar.tell(&progress));
         bar.bar.finish_and_clear();
         image
     })?;
-    let (width, height) = (setup.film.width as usize, setup.film.height as usize);
-    film::exr::write(&output, width, height, &image.pixels)?;
-    let preview = output.with_extension("png");
-    film::png::write(&preview, width, height, &image.pixels)?;
+    goal.write(&setup.film, &image)?;
+    let preview = goal.path.with_extension("png");
+    film::png::write(&preview, setup.film.width as usize, setup.film.height as usize, &image.pixels)?;
     if let Some(report) = &arguments.report {
         write_report(report, &image, load_time, settings.profile)?;
     }
-    print_summary(&image, &output, &preview);
+    print_summary(&image, &goal.path, &preview);
     Ok(())
 }
 
@@ -104,11 +108,52 @@ fn strategies(arguments: &arguments::Render, scene_method: Method) -> Result<Str
     ))
 }
 
-/// The output's name always ends in .exr; the PNG stands beside it.
-fn output_path(arguments: &arguments::Render) -> PathBuf {
-    match &arguments.output {
-        Some(path) => path.with_extension("exr"),
-        None => PathBuf::from(arguments.scene.file.file_stem().unwrap_or_default()).with_extension("exr"),
+/// The image file: where, and what is in it. The PNG stands beside it.
+struct Goal {
+    path: PathBuf,
+    format: Format,
+}
+
+impl Goal {
+    /// The kind of file is that of the output's name, else that of the scene's film.
+    fn new(arguments: &arguments::Render, setup: &Setup) -> Result<Self> {
+        let scene = setup.film.format;
+        let named = arguments.output.as_deref().and_then(|path| Some((path, path.extension()?)));
+        let named =
+            named.and_then(|(path, end)| Some((path, FileKind::of_extension(&end.to_string_lossy())?)));
+        let (path, file) = match (named, &arguments.output) {
+            (Some((path, file)), _) => (path.to_owned(), file),
+            (None, Some(path)) => (path.with_extension(scene.file.extension()), scene.file),
+            (None, None) => {
+                let stem = PathBuf::from(arguments.scene.file.file_stem().unwrap_or_default());
+                (stem.with_extension(scene.file.extension()), scene.file)
+            }
+        };
+        if file != FileKind::OpenExr && !setup.integrator.layers.is_empty() {
+            let expected = "an OpenEXR file, to hold the layers of the scene's aov or moment integrator";
+            let found = format!("a file that holds {}", file.holds());
+            let remedy = "let its name end in .exr, or set the film's file_format to openexr";
+            return Err(Error::new(path.display(), expected, found, remedy));
+        }
+        let format = scene.in_file(file);
+        if format.names() != scene.names() {
+            let (holds, names) = (file.holds(), format.names().concat());
+            super::complain(&format!("warning: {} holds {holds}; {names} is written", path.display()));
+        }
+        Ok(Self { path, format })
+    }
+
+    fn write(&self, film: &Film, image: &Image) -> Result<()> {
+        let (width, height) = (film.width as usize, film.height as usize);
+        let mut channels = self.format.channels(&image.pixels, &image.alpha);
+        match self.format.file {
+            FileKind::OpenExr => {
+                channels.extend(image.layers.iter().cloned());
+                film::exr::write(&self.path, width, height, &channels, self.format)
+            }
+            FileKind::Pfm => film::raster::write_pfm(&self.path, width, height, &channels),
+            FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
+        }
     }
 }
 

@@ -1,19 +1,27 @@
 //! Sums and square sums of the passes over an image: its mean, and how far the mean may be off.
 
-use crate::math::{Spectrum, SpectrumExt};
+use crate::math::{Spectrum, SpectrumExt, Vec3};
 
 /// Adds up passes; each pass is one independent estimate of the whole image.
 #[derive(Clone, Debug)]
 pub struct Accumulator {
     sums: Vec<[f64; 3]>,
     luminance_squares: Vec<f64>,
+    /// Sums of products of two channels, R R, R G, R B, G G, G B, B B; empty where nobody asks.
+    products: Vec<[f64; 6]>,
     passes: u64,
 }
 
 impl Accumulator {
     /// Nothing seen yet, for an image of `pixels`.
     pub fn new(pixels: usize) -> Self {
-        Self { sums: vec![[0.0; 3]; pixels], luminance_squares: vec![0.0; pixels], passes: 0 }
+        let (sums, luminance_squares) = (vec![[0.0; 3]; pixels], vec![0.0; pixels]);
+        Self { sums, luminance_squares, products: Vec::new(), passes: 0 }
+    }
+
+    /// The same, ready to tell second moments and variances.
+    pub fn with_products(pixels: usize) -> Self {
+        Self { products: vec![[0.0; 6]; pixels], ..Self::new(pixels) }
     }
 
     /// Adds one pass.
@@ -23,6 +31,11 @@ impl Accumulator {
                 *channel += f64::from(v);
             }
             *square += f64::from(value.luminance()).powi(2);
+        }
+        for (products, value) in self.products.iter_mut().zip(pass) {
+            let [r, g, b] = value.to_array().map(f64::from);
+            let pass = [r * r, r * g, r * b, g * g, g * b, b * b];
+            products.iter_mut().zip(pass).for_each(|(sum, product)| *sum += product);
         }
         self.passes += 1;
     }
@@ -36,6 +49,23 @@ impl Accumulator {
     pub fn mean(&self) -> Vec<Spectrum> {
         let scale = 1.0 / self.passes.max(1) as f64;
         self.sums.iter().map(|s| Spectrum::from_array(s.map(|channel| (channel * scale) as f32))).collect()
+    }
+
+    /// Mean over the passes of (`row` . rgb)^2: the second moment of a channel that is made of R, G and B.
+    pub fn second_moment(&self, row: Vec3) -> Vec<f32> {
+        let scale = 1.0 / self.passes.max(1) as f64;
+        self.products.iter().map(|products| (square_of(row, products) * scale) as f32).collect()
+    }
+
+    /// Estimated variance of the mean of `row` . rgb; none before the second pass.
+    pub fn variance(&self, row: Vec3) -> Option<Vec<f32>> {
+        let n = self.passes as f64;
+        let [r, g, b] = row.to_array().map(f64::from);
+        let of_pixel = |(sum, products): (&[f64; 3], &[f64; 6])| {
+            let mean = (r * sum[0] + g * sum[1] + b * sum[2]) / n;
+            ((square_of(row, products) / n - mean * mean) / (n - 1.0)).max(0.0) as f32
+        };
+        (self.passes > 1).then(|| self.sums.iter().zip(&self.products).map(of_pixel).collect())
     }
 
     /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01), by
@@ -54,9 +84,32 @@ impl Accumulator {
     }
 }
 
+/// (`row` . rgb)^2 from the products of r, g and b.
+fn square_of(row: Vec3, products: &[f64; 6]) -> f64 {
+    let [r, g, b] = row.to_array().map(f64::from);
+    let factors = [r * r, 2.0 * r * g, 2.0 * r * b, g * g, 2.0 * g * b, b * b];
+    factors.iter().zip(products).map(|(factor, product)| factor * product).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::vec3;
+
+    #[test]
+    fn moments_and_variances_of_known_passes() {
+        let mut film = Accumulator::with_products(1);
+        let row = vec3(1.0, 2.0, -1.0);
+        assert_eq!(film.variance(row), None);
+        // The row makes 0, 6 and 3 of them.
+        for pass in [vec3(1.0, 0.0, 1.0), vec3(2.0, 3.0, 2.0), vec3(0.0, 2.0, 1.0)] {
+            film.add(&[pass]);
+        }
+        assert_eq!(film.second_moment(row), [15.0]);
+        // Sample variance 9, of the mean a third of it.
+        assert!((film.variance(row).unwrap()[0] - 3.0).abs() < 1e-6);
+        assert!(Accumulator::new(1).second_moment(row).is_empty());
+    }
 
     #[test]
     fn mean_and_noise_of_known_passes() {

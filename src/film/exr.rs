@@ -1,22 +1,42 @@
-//! OpenEXR images: what was estimated, in 32-bit floats, linear sRGB.
+//! OpenEXR images: what was estimated, channel by channel, lossless but for the rounding of its numbers.
 
-use super::output;
-use crate::{error::Result, math::Spectrum};
+use super::{
+    Channel,
+    format::{Colours, Component, Format},
+    output,
+};
+use crate::error::Result;
 use ::exr::{
     error::Error as ExrError,
-    image::{Image, SpecificChannels, write::WritableImage},
+    image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, write::WritableImage},
     math::Vec2,
+    meta::{
+        attribute::Chromaticities,
+        header::{ImageAttributes, LayerAttributes},
+    },
+    prelude::f16,
 };
 use std::{io, path::Path};
 
-/// Writes `pixels` (row-major, top row first) to `path` with the channels R, G, B, lossless.
-pub fn write(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> Result<()> {
-    output::check_size(path, width, height, pixels)?;
-    let channels = SpecificChannels::rgb(|Vec2(x, y)| {
-        let Spectrum { x: red, y: green, z: blue } = pixels[y * width + x];
-        (red, green, blue)
+/// Writes `channels` to `path`. The window of a cropped film is an image of its own, as in Mitsuba.
+pub fn write(path: &Path, width: usize, height: usize, channels: &[Channel], format: Format) -> Result<()> {
+    for channel in channels {
+        output::check_size(path, width, height, channel.values.len())?;
+    }
+    let list = channels.iter().map(|channel| {
+        let samples = match format.component {
+            Component::Float16 => {
+                FlatSamples::F16(channel.values.iter().map(|v| f16::from_f32(*v)).collect())
+            }
+            Component::Float32 => FlatSamples::F32(channel.values.clone()),
+            Component::Uint32 => FlatSamples::U32(channel.values.iter().map(|v| whole(*v)).collect()),
+        };
+        AnyChannel::new(channel.name.as_str(), samples)
     });
-    let image = Image::from_channels((width, height), channels);
+    let list = AnyChannels::sort(list.collect());
+    let layer = Layer::new((width, height), LayerAttributes::default(), Encoding::FAST_LOSSLESS, list);
+    let mut image = Image::new(ImageAttributes::with_size((width, height)), layer);
+    image.attributes.chromaticities = (format.colours == Colours::Xyz).then_some(XYZ);
     output::write(path, |file| {
         image.write().to_buffered(file).map_err(|error| match error {
             ExrError::Io(error) => error,
@@ -25,26 +45,50 @@ pub fn write(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> R
     })
 }
 
+/// What X, Y, Z and white are, for readers that would take them for R, G, B.
+const XYZ: Chromaticities = Chromaticities {
+    red: Vec2(1.0, 0.0),
+    green: Vec2(0.0, 1.0),
+    blue: Vec2(0.0, 0.0),
+    white: Vec2(1.0 / 3.0, 1.0 / 3.0),
+};
+
+/// [0, 1] on all of the whole numbers; NaN as 0.
+fn whole(value: f32) -> u32 {
+    (f64::from(value) * f64::from(u32::MAX)).round() as u32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::vec3;
-    use ::exr::prelude::read_first_rgba_layer_from_file;
+    use ::exr::prelude::read_first_flat_layer_from_file;
+
+    fn channel(name: &str, values: &[f32]) -> Channel {
+        Channel { name: name.into(), values: values.to_vec() }
+    }
+
+    fn read(path: &Path) -> Vec<(String, FlatSamples)> {
+        let layer = read_first_flat_layer_from_file(path).unwrap().layer_data;
+        layer.channel_data.list.into_iter().map(|c| (c.name.to_string(), c.sample_data)).collect()
+    }
 
     #[test]
-    fn what_is_written_is_read_to_the_last_bit() {
+    fn what_is_written_is_read_in_every_component_format() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("image.exr");
-        let pixels: Vec<_> = (0..6).map(|i| vec3(i as f32, 0.1 * i as f32, -1e-30)).collect();
-        write(&path, 3, 2, &pixels).unwrap();
-        let image = read_first_rgba_layer_from_file(
-            &path,
-            |size, _| (size.width(), vec![Spectrum::ZERO; size.area()]),
-            |(width, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
-                pixels[at.y() * *width + at.x()] = vec3(r, g, b);
-            },
-        );
-        assert_eq!(image.unwrap().layer_data.channel_data.pixels, (3, pixels));
+        let values = [0.1, -1e-30, 7e4, 1.0, 0.25, 2.0];
+        let channels = [channel("R", &values), channel("n.X", &[0.5; 6])];
+        let format = Format::default();
+        write(&path, 3, 2, &channels, format).unwrap();
+        assert_eq!(read(&path)[0], ("R".into(), FlatSamples::F32(values.to_vec())));
+        assert_eq!(read(&path)[1].0, "n.X");
+        write(&path, 3, 2, &channels, Format { component: Component::Float16, ..format }).unwrap();
+        let halves = [0.099_975_586, -0.0, f32::INFINITY, 1.0, 0.25, 2.0].map(f16::from_f32);
+        assert_eq!(read(&path)[0].1, FlatSamples::F16(halves.to_vec()));
+        // What Mitsuba 3.9.1 writes for 1/4, up to the rounding of its single precision: 2^30.
+        write(&path, 3, 2, &channels, Format { component: Component::Uint32, ..format }).unwrap();
+        let whole = [429_496_736, 0, u32::MAX, u32::MAX, 1 << 30, u32::MAX];
+        assert_eq!(read(&path)[0].1, FlatSamples::U32(whole.to_vec()));
     }
 
     #[test]
@@ -52,7 +96,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("image.exr");
         for (width, height) in [(0, 0), (2, 2), (usize::MAX, 3)] {
-            assert!(write(&path, width, height, &[Spectrum::ONE; 3]).is_err());
+            assert!(write(&path, width, height, &[channel("Y", &[1.0; 3])], Format::default()).is_err());
         }
         assert!(!path.exists());
     }

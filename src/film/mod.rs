@@ -4,9 +4,11 @@ pub mod accumulator;
 pub mod exr;
 pub mod filter;
 pub mod format;
+pub mod layer;
 mod lobes;
 pub mod output;
 pub mod png;
+pub mod raster;
 
 use crate::math::{Spectrum, Vec2, vec2};
 use crate::sampling::Stream;

@@ -1,9 +1,6 @@
 //! Files written whole or not at all: into a temporary beside its goal, then renamed.
 
-use crate::{
-    error::{Error, Result},
-    math::Spectrum,
-};
+use crate::error::{Error, Result};
 use std::{
     io::{self, BufWriter, ErrorKind, Write},
     path::Path,
@@ -73,8 +70,7 @@ fn explain(path: &Path, error: &io::Error) -> Error {
 }
 
 /// An image must have as many pixels as its size says, and some.
-pub(super) fn check_size(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> Result<()> {
-    let count = pixels.len();
+pub(super) fn check_size(path: &Path, width: usize, height: usize, count: usize) -> Result<()> {
     if count > 0 && width.checked_mul(height) == Some(count) {
         return Ok(());
     }

@@ -20,7 +20,7 @@ const BELOW_WHITE: f64 = 0.995;
 
 /// Writes `pixels` (row-major, top row first; linear sRGB) to `path`, tone-mapped.
 pub fn write(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> Result<()> {
-    output::check_size(path, width, height, pixels)?;
+    output::check_size(path, width, height, pixels.len())?;
     let bytes = tone_mapped(pixels);
     output::write(path, |file| {
         let size = |n: usize| u32::try_from(n).map_err(io::Error::other);

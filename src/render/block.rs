@@ -22,6 +22,17 @@ pub struct Blocks {
     heroes: u64,
 }
 
+/// How an eye walk starts.
+pub struct EyeStart {
+    /// Its random numbers.
+    stream: Stream,
+    hero: usize,
+    /// Where on the film [pixels].
+    pub position: Vec2,
+    /// What it counts for.
+    pub weight: f32,
+}
+
 /// What a block adds to its pass.
 pub struct Outcome {
     eye: Vec<(u32, Spectrum)>,
@@ -69,6 +80,14 @@ impl Blocks {
         (low..high).map(|i| (i as u128 * self.stride as u128 % self.pixels as u128) as usize)
     }
 
+    /// Where the eye walk of `pixel` in `pass` starts.
+    pub fn eye_start(&self, film: &Film, seed: u64, pass: usize, pixel: usize) -> EyeStart {
+        let mut stream = Stream::new(seed, pixel as u64, pass as u64, Purpose::Eye);
+        let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
+        let (position, weight) = film.sample(pixel, &mut stream);
+        EyeStart { stream, hero, position, weight }
+    }
+
     /// Renders one sample of every pixel of `block`.
     pub fn render<P: Profile>(
         &self,
@@ -89,9 +108,7 @@ impl Blocks {
             }
         }
         let eye = self.pixels(block).map(|pixel| {
-            let mut stream = Stream::new(seed, pixel as u64, pass as u64, Purpose::Eye);
-            let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
-            let (position, weight) = film.sample(pixel, &mut stream);
+            let EyeStart { mut stream, hero, position, weight } = self.eye_start(film, seed, pass, pixel);
             (pixel as u32, estimator.sample_pixel(&cache, position, hero, &mut stream) * weight)
         });
         Outcome { eye: eye.collect(), light: light.values }

@@ -5,10 +5,16 @@
 
 mod block;
 pub mod budget;
+mod primary;
 
 use crate::{
-    film::{Film, accumulator::Accumulator},
-    math::Spectrum,
+    film::{
+        Channel, Film,
+        accumulator::Accumulator,
+        format::{XYZ_ROWS, planes, to_xyz},
+        layer::{Content, Layer},
+    },
+    math::{Spectrum, Vec3},
     scene::Scene,
     transport::{
         Estimator, Options,
@@ -57,6 +63,11 @@ pub struct Image {
     pub elapsed: Duration,
     /// See [`Accumulator::noise`].
     pub noise: Option<f64>,
+    /// The part of each pixel that the scene covers, in [0, 1] for filters without negative lobes; empty where
+    /// nobody asked for it.
+    pub alpha: Vec<f32>,
+    /// The channels of all layers, in their order.
+    pub layers: Vec<Channel>,
 }
 
 /// Blocks that are worked on between two looks at the clock: enough to keep any machine's threads busy, and
@@ -65,12 +76,23 @@ const BLOCKS_AT_ONCE: usize = 64;
 
 /// Renders `scene` onto `film`, telling `progress` now and then.
 pub fn render(scene: &Scene, film: &Film, settings: &Settings, progress: &mut dyn FnMut(Progress)) -> Image {
+    render_layers(scene, film, settings, &[], progress)
+}
+
+/// Renders `scene` onto `film`, and `layers` with it.
+pub fn render_layers(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    layers: &[Layer],
+    progress: &mut dyn FnMut(Progress),
+) -> Image {
     match settings.profile {
-        ProfileName::Vacuum => render_as::<Vacuum>(scene, film, settings, progress),
-        ProfileName::Fog => render_as::<Fog>(scene, film, settings, progress),
-        ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, progress),
-        ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, progress),
-        ProfileName::Everything => render_as::<Everything>(scene, film, settings, progress),
+        ProfileName::Vacuum => render_as::<Vacuum>(scene, film, settings, layers, progress),
+        ProfileName::Fog => render_as::<Fog>(scene, film, settings, layers, progress),
+        ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, layers, progress),
+        ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, layers, progress),
+        ProfileName::Everything => render_as::<Everything>(scene, film, settings, layers, progress),
     }
 }
 
@@ -78,46 +100,87 @@ fn render_as<P: Profile>(
     scene: &Scene,
     film: &Film,
     settings: &Settings,
+    layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
     let started = Instant::now();
     let blocks = Blocks::new::<P>(film.len());
     let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
     let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
-    let mut accumulator = Accumulator::new(film.len());
-    let mut pass = vec![Spectrum::ZERO; film.len()];
-    let (mut next, mut noise) = (0, None);
-    loop {
-        let tasks = next..settings.budget.limit_tasks(next + BLOCKS_AT_ONCE, blocks.count());
-        let outcomes: Vec<Outcome> = tasks
-            .clone()
-            .into_par_iter()
-            .map(|task| {
-                blocks.render(&estimator, film, settings.seed, task / blocks.count(), task % blocks.count())
-            })
-            .collect();
-        for (task, outcome) in tasks.clone().zip(&outcomes) {
-            outcome.add_to(&mut pass);
-            if (task + 1) % blocks.count() == 0 {
-                accumulator.add(&pass);
-                pass.fill(Spectrum::ZERO);
+    let squares = layers.iter().any(Layer::needs_squares);
+    let accumulator = if squares { Accumulator::with_products } else { Accumulator::new }(film.len());
+    let job = Job { estimator: &estimator, film, blocks: &blocks, settings, started };
+    let (accumulator, noise) = job.accumulate(accumulator, progress);
+    let passes = accumulator.passes();
+    let seen = primary::Pass::new(film, layers).run(scene, &job, passes);
+    let pixels = accumulator.mean();
+    let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
+    let elapsed = started.elapsed();
+    Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers }
+}
+
+/// What does not change during a render.
+struct Job<'a, P: Profile> {
+    estimator: &'a Estimator<'a, P>,
+    film: &'a Film,
+    blocks: &'a Blocks,
+    settings: &'a Settings,
+    started: Instant,
+}
+
+impl<P: Profile> Job<'_, P> {
+    /// Adds up passes until the budget is spent; with the noise of their mean.
+    fn accumulate(
+        &self,
+        mut accumulator: Accumulator,
+        progress: &mut dyn FnMut(Progress),
+    ) -> (Accumulator, Option<f64>) {
+        let Self { estimator, film, blocks, settings, started } = *self;
+        let mut pass = vec![Spectrum::ZERO; film.len()];
+        let (mut next, mut noise) = (0, None);
+        loop {
+            let tasks = next..settings.budget.limit_tasks(next + BLOCKS_AT_ONCE, blocks.count());
+            let outcomes: Vec<Outcome> = tasks
+                .clone()
+                .into_par_iter()
+                .map(|task| {
+                    let (pass, block) = (task / blocks.count(), task % blocks.count());
+                    blocks.render(estimator, film, settings.seed, pass, block)
+                })
+                .collect();
+            for (task, outcome) in tasks.clone().zip(&outcomes) {
+                outcome.add_to(&mut pass);
+                if (task + 1) % blocks.count() == 0 {
+                    accumulator.add(&pass);
+                    pass.fill(Spectrum::ZERO);
+                }
+            }
+            if next / blocks.count() != tasks.end / blocks.count() {
+                noise = accumulator.noise();
+            }
+            next = tasks.end;
+            let (elapsed, passes) = (started.elapsed(), accumulator.passes());
+            let samples = (next as u64 * film.len() as u64) / blocks.count() as u64;
+            progress(Progress { samples, passes, elapsed, noise });
+            if settings.budget.is_spent(next, blocks.count(), elapsed) {
+                return (accumulator, noise);
             }
         }
-        if next / blocks.count() != tasks.end / blocks.count() {
-            noise = accumulator.noise();
-        }
-        next = tasks.end;
-        let (elapsed, passes) = (started.elapsed(), accumulator.passes());
-        let samples = (next as u64 * film.len() as u64) / blocks.count() as u64;
-        progress(Progress { samples, passes, elapsed, noise });
-        if settings.budget.is_spent(next, blocks.count(), elapsed) {
-            break;
-        }
     }
-    Image {
-        pixels: accumulator.mean(),
-        samples_per_pixel: accumulator.passes(),
-        elapsed: started.elapsed(),
-        noise,
-    }
+}
+
+/// The channels of a layer. Variances are left out where a single pass does not tell them.
+fn develop(layer: &Layer, pixels: &[Spectrum], passes: &Accumulator, seen: &primary::Seen) -> Vec<Channel> {
+    let values = match layer.content {
+        Content::Surface(quantity) => seen.of(quantity),
+        Content::Image => {
+            let mut values = planes(pixels.iter().copied());
+            values.push(seen.alpha.clone());
+            values
+        }
+        Content::Mean => planes(pixels.iter().map(|pixel| to_xyz(*pixel))),
+        Content::SecondMoment => XYZ_ROWS.iter().map(|row| passes.second_moment(*row)).collect(),
+        Content::Variance => Vec3::AXES.iter().filter_map(|row| passes.variance(*row)).collect(),
+    };
+    layer.channel_names().zip(values).map(|(name, values)| Channel { name, values }).collect()
 }

@@ -70,6 +70,11 @@ impl Geometry {
         self.owner[hit.primitive as usize]
     }
 
+    /// The number of the primitive that was hit, in its own shape.
+    pub fn local_primitive(&self, hit: &Hit) -> u32 {
+        hit.primitive - self.first[self.shape_of(hit) as usize]
+    }
+
     /// Least and greatest corner of the box around everything; two zeros for an empty scene.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         self.tree.bounds()

@@ -390,6 +390,7 @@ impl<'a> Builder<'a> {
             media: self.media,
             sensor,
             sensor_medium,
+            recentre,
         })
     }
 }

@@ -1,8 +1,10 @@
-//! Which integrator a scene asks for. All are one estimator with strategies left out.
+//! Which integrator a scene asks for. All are one estimator with strategies left out; `aov` and `moment` hold
+//! another one and ask for more channels.
 
 use crate::{
-    description::{Library, Object, Params, Row, build_by_row},
-    error::Result,
+    description::{Library, Object, Params, Row, build_by_row, nearest, params::Child},
+    error::{Error, Result},
+    film::layer::{Content, Layer, QUANTITIES},
 };
 
 /// How paths are made.
@@ -17,7 +19,7 @@ pub enum Method {
 }
 
 /// An integrator as a scene file asks for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Integrator {
     /// How paths are made.
     pub method: Method,
@@ -25,11 +27,13 @@ pub struct Integrator {
     pub max_depth: Option<u32>,
     /// Leave out emitters seen directly.
     pub hide_emitters: bool,
+    /// What is written besides the image.
+    pub layers: Vec<Layer>,
 }
 
 impl Default for Integrator {
     fn default() -> Self {
-        Self { method: Method::Bdpt, max_depth: None, hide_emitters: false }
+        Self { method: Method::Bdpt, max_depth: None, hide_emitters: false, layers: Vec::new() }
     }
 }
 
@@ -40,11 +44,33 @@ pub const ROWS: &[Row<Integrator>] = &[
     Row { name: "volpath", build: |p| build_as(p, Method::Pt) },
     Row { name: "volpathmis", build: |p| build_as(p, Method::Pt) },
     Row { name: "ptracer", build: |p| build_as(p, Method::Lt) },
+    Row { name: "aov", build: build_aov },
+    Row { name: "moment", build: build_moment },
 ];
 
 /// Builds the integrator that `object` describes.
 pub fn build(object: &Object, library: &Library) -> Result<Integrator> {
-    build_by_row(object, library, "integrator", ROWS)
+    let integrator = build_by_row(object, library, "integrator", ROWS)?;
+    check_names(object, &integrator.layers)?;
+    Ok(integrator)
+}
+
+/// Every channel of a file has a name of its own, which OpenEXR can hold.
+fn check_names(object: &Object, layers: &[Layer]) -> Result<()> {
+    let names: Vec<String> = layers.iter().flat_map(Layer::channel_names).collect();
+    let remedy = "rename one of the layers";
+    if let Some((_, name)) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        let found = format!("\"{name}\" twice");
+        return Err(Error::new(&object.location, "channels with names of their own", found, remedy));
+    }
+    let fits = |name: &&String| name.len() < 256 && name.chars().all(|c| c.is_ascii_graphic());
+    match names.iter().find(|name| !fits(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let expected = "channel names of ASCII letters, digits and signs, at most 255 of them";
+            Err(Error::new(&object.location, expected, format!("\"{name}\""), remedy))
+        }
+    }
 }
 
 /// True if `object` is an integrator.
@@ -60,6 +86,103 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
         _ => return Err(params.complain("max_depth", "-1 (no limit) or an integer >= 0", depth.to_string())),
     };
     params.accept_unused(&["rr_depth"], "walks end by absorption, which is exact at any depth");
+    accept_division(params);
+    let hide_emitters = params.boolean("hide_emitters", false)?;
+    Ok(Integrator { method, max_depth, hide_emitters, layers: Vec::new() })
+}
+
+fn accept_division(params: &Params<'_>) {
     params.accept_unused(&["samples_per_pass", "block_size", "timeout"], "work is divided by Tyndall itself");
-    Ok(Integrator { method, max_depth, hide_emitters: params.boolean("hide_emitters", false)? })
+}
+
+/// `aov`: what the first surface is like, and the image of the integrator inside. Without one the image is
+/// black.
+fn build_aov(params: &Params<'_>) -> Result<Integrator> {
+    let mut built = match nested(params)? {
+        None => Integrator { method: Method::Pt, max_depth: Some(0), ..Integrator::default() },
+        Some(child) => {
+            let name = name_of(&child);
+            let inner = build_by_row(child.object, params.library, "integrator", ROWS)?;
+            let mut layers = vec![Layer { name: name.into(), content: Content::Image }];
+            layers.extend(inner.layers.iter().map(|layer| within(name, layer)));
+            Integrator { layers, ..inner }
+        }
+    };
+    built.layers.extend(surface_layers(params)?);
+    accept_outer(params);
+    Ok(built)
+}
+
+/// `moment`: the integrator inside, with second moments of its image and, beyond Mitsuba, the variance of its
+/// mean.
+fn build_moment(params: &Params<'_>) -> Result<Integrator> {
+    let Some(child) = nested(params)? else { return Err(params.missing("integrator", "an integrator")) };
+    let inner = build_by_row(child.object, params.library, "integrator", ROWS)?;
+    if !inner.layers.is_empty() {
+        let found = format!("\"{}\"", child.object.plugin);
+        let remedy =
+            "put the moment integrator inside the aov integrator, and one that makes paths inside it";
+        return Err(Error::new(child.location, "an integrator that makes paths", found, remedy));
+    }
+    accept_outer(params);
+    let name = name_of(&child);
+    let layers = vec![
+        Layer { name: name.into(), content: Content::Mean },
+        Layer { name: format!("m2_{name}"), content: Content::SecondMoment },
+        Layer { name: "variance".into(), content: Content::Variance },
+    ];
+    Ok(Integrator { layers, ..inner })
+}
+
+fn accept_outer(params: &Params<'_>) {
+    accept_division(params);
+    params.accept_unused(&["hide_emitters"], "the integrator inside decides it");
+}
+
+/// The integrator inside another.
+fn nested<'a>(params: &Params<'a>) -> Result<Option<Child<'a>>> {
+    let children = params
+        .children(|child| is_integrator(child.object) || child.object.tag.as_deref() == Some("integrator"))?;
+    match children.as_slice() {
+        [] => Ok(None),
+        [one] => Ok(Some(*one)),
+        [_, second, ..] => Err(Error::new(
+            second.location,
+            "one integrator inside",
+            "a second integrator",
+            "remove one of them, and render the scene once for each",
+        )),
+    }
+}
+
+/// Mitsuba's name of a child: its own, or what it calls the first without.
+fn name_of<'a>(child: &Child<'a>) -> &'a str {
+    if child.name.is_empty() { "_arg_0" } else { child.name }
+}
+
+fn within(outer: &str, layer: &Layer) -> Layer {
+    Layer { name: format!("{outer}.{}", layer.name), content: layer.content }
+}
+
+/// The list `aovs`: name:quantity, separated by commas or spaces.
+fn surface_layers(params: &Params<'_>) -> Result<Vec<Layer>> {
+    let Some(text) = params.optional_string("aovs")? else {
+        return Err(params.missing("aovs", "a list such as \"dd:depth,nn:sh_normal\""));
+    };
+    text.split([',', ' ']).filter(|item| !item.is_empty()).map(|item| surface_layer(params, item)).collect()
+}
+
+fn surface_layer(params: &Params<'_>, item: &str) -> Result<Layer> {
+    let expected = "name:quantity, such as dd:depth,";
+    let (name, quantity) = match item.split_once(':') {
+        Some((name, quantity)) if !name.is_empty() => (name, quantity),
+        _ => return Err(params.complain("aovs", expected, format!("\"{item}\""))),
+    };
+    let Some(row) = QUANTITIES.iter().find(|row| row.name == quantity) else {
+        let known: Vec<_> = QUANTITIES.iter().map(|row| row.name).collect();
+        let error = params.complain("aovs", "a quantity", format!("\"{quantity}\""));
+        let remedy = format!("{}known: {}", nearest(quantity, &known), known.join(", "));
+        return Err(Error { remedy, ..error });
+    };
+    Ok(Layer { name: name.into(), content: Content::Surface(row.quantity) })
 }

@@ -18,7 +18,7 @@ pub use read::read;
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},
-    math::{Spectrum, Vec3},
+    math::{DVec3, Spectrum, Vec3},
     medium::{Homogeneous, MediumIndex},
     sensor::Sensor,
     shape::{Ray, SurfacePoint},
@@ -64,6 +64,8 @@ pub struct Scene {
     pub sensor: Sensor,
     /// The medium around the camera.
     pub sensor_medium: MediumIndex,
+    /// Where the origin of all positions lies in the file's coordinates [m].
+    pub recentre: DVec3,
 }
 
 impl Scene {

@@ -26,6 +26,7 @@ use crate::{
     math::{Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
     scene::Scene,
+    shape::Ray,
 };
 use profile::Profile;
 
@@ -150,6 +151,17 @@ impl<'a, P: Profile> Estimator<'a, P> {
         stream: &mut Stream,
     ) {
         light::trace(self, cache, splats, hero, stream);
+    }
+
+    /// The ray of an eye walk through `film` [pixels].
+    pub fn primary_ray(&self, film: Vec2) -> Ray {
+        eye::depart(self, film).ray
+    }
+
+    /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
+    pub fn transmittance(&self, primary: Ray) -> Spectrum {
+        let passage = segment::pass::<P>(self.scene, primary, 0.0, self.scene.sensor_medium);
+        passage.map_or(Spectrum::ZERO, |passage| passage.transmittance)
     }
 
     /// Radiance estimate of one eye walk of channel `hero` through `film` [pixels].

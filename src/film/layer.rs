@@ -1,0 +1,116 @@
+//! What an image file can hold besides the image: layers of channels, named as Mitsuba's `aov` and `moment`
+//! integrators name them.
+
+/// What the first surface that a primary ray meets is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// pi times the BSDF towards the normal; of a diffuse surface its reflectance.
+    Albedo,
+    /// Distance from the near clip plane along the ray [m].
+    Depth,
+    /// World position [m].
+    Position,
+    /// Texture coordinates.
+    Uv,
+    /// Geometric normal, world space.
+    GeometricNormal,
+    /// Shading normal, world space.
+    ShadingNormal,
+    /// Change of position with the first texture coordinate [m].
+    DpDu,
+    /// Change of position with the second texture coordinate [m].
+    DpDv,
+    /// Change of the texture coordinates with a step across the film of 1 / sqrt(samples per pixel) pixels.
+    DuvDx,
+    /// The same for a step down.
+    DuvDy,
+    /// Number of the primitive in its shape, from 0.
+    PrimitiveIndex,
+    /// Number of the shape in the scene, from 1.
+    ShapeIndex,
+}
+
+/// One row of the registry of quantities.
+pub struct QuantityRow {
+    /// Mitsuba's name.
+    pub name: &'static str,
+    /// What it is.
+    pub quantity: Quantity,
+    /// Mitsuba's names of its channels.
+    pub channels: &'static [&'static str],
+}
+
+/// Every quantity, by the name it is asked for with.
+pub const QUANTITIES: &[QuantityRow] = &[
+    QuantityRow { name: "albedo", quantity: Quantity::Albedo, channels: &["R", "G", "B"] },
+    QuantityRow { name: "depth", quantity: Quantity::Depth, channels: &["T"] },
+    QuantityRow { name: "position", quantity: Quantity::Position, channels: &["X", "Y", "Z"] },
+    QuantityRow { name: "uv", quantity: Quantity::Uv, channels: &["U", "V"] },
+    QuantityRow { name: "geo_normal", quantity: Quantity::GeometricNormal, channels: &["X", "Y", "Z"] },
+    QuantityRow { name: "sh_normal", quantity: Quantity::ShadingNormal, channels: &["X", "Y", "Z"] },
+    QuantityRow { name: "dp_du", quantity: Quantity::DpDu, channels: &["X", "Y", "Z"] },
+    QuantityRow { name: "dp_dv", quantity: Quantity::DpDv, channels: &["X", "Y", "Z"] },
+    QuantityRow { name: "duv_dx", quantity: Quantity::DuvDx, channels: &["U", "V"] },
+    QuantityRow { name: "duv_dy", quantity: Quantity::DuvDy, channels: &["U", "V"] },
+    QuantityRow { name: "prim_index", quantity: Quantity::PrimitiveIndex, channels: &["I"] },
+    QuantityRow { name: "shape_index", quantity: Quantity::ShapeIndex, channels: &["I"] },
+];
+
+impl Quantity {
+    /// Names of its channels.
+    pub fn channels(self) -> &'static [&'static str] {
+        QUANTITIES.iter().find(|row| row.quantity == self).map_or(&[], |row| row.channels)
+    }
+}
+
+/// What a layer holds.
+///
+/// Moments are those of one pass over the image, which for the path tracer is one sample per pixel. With box,
+/// tent and Gaussian filters, E of the squared pass is the filtered square of a sample's radiance: Mitsuba's
+/// second moment. A filter with negative lobes makes it larger (a sample's signed weight is squared too), and
+/// what light walks bring adds to the pass before it is squared, so that with `bdpt` and `ptracer` the moment
+/// is that of the estimator, not of one path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// Of the first surface.
+    Surface(Quantity),
+    /// The image, as R, G, B, A.
+    Image,
+    /// The image in XYZ.
+    Mean,
+    /// Mean squares of X, Y, Z over the passes.
+    SecondMoment,
+    /// Variances of the image's R, G, B: how far its mean over all passes may be off, squared.
+    Variance,
+}
+
+/// A group of channels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layer {
+    /// What its channels' names begin with.
+    pub name: String,
+    /// What it holds.
+    pub content: Content,
+}
+
+impl Layer {
+    /// What its channels' names end with.
+    pub fn suffixes(&self) -> &'static [&'static str] {
+        match self.content {
+            Content::Surface(quantity) => quantity.channels(),
+            Content::Image => &["R", "G", "B", "A"],
+            Content::Mean | Content::SecondMoment => &["X", "Y", "Z"],
+            Content::Variance => &["R", "G", "B"],
+        }
+    }
+
+    /// Its channels' names.
+    pub fn channel_names(&self) -> impl Iterator<Item = String> + '_ {
+        self.suffixes().iter().map(|suffix| format!("{}.{suffix}", self.name))
+    }
+
+    /// True if it needs the squares of passes.
+    pub fn needs_squares(&self) -> bool {
+        matches!(self.content, Content::SecondMoment | Content::Variance)
+    }
+}

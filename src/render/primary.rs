@@ -1,0 +1,203 @@
+//! What primary rays see: alpha, and the layers that tell of the first surface. A cheap pass of its own, only
+//! where something asks for it, through the same film positions as the eye walks.
+
+use super::Job;
+use crate::{
+    bsdf::{BsdfModel, Transport},
+    film::{
+        Film,
+        layer::{Content, Layer, Quantity},
+    },
+    math::{Spectrum, Vec2, Vec3, vec2, vec3},
+    scene::{Scene, accel::Geometry},
+    shape::{Hit, Primitive, Ray, SurfacePoint},
+    transport::profile::Profile,
+};
+use rayon::prelude::*;
+use std::f32::consts::PI;
+
+/// What is asked of primary rays.
+pub struct Pass {
+    alpha: bool,
+    quantities: Vec<Quantity>,
+}
+
+/// What they saw.
+pub struct Seen {
+    /// The part of each pixel that the scene covers; empty where nobody asked.
+    pub alpha: Vec<f32>,
+    /// Per quantity, one plane per channel.
+    planes: Vec<(Quantity, Vec<Vec<f32>>)>,
+}
+
+impl Seen {
+    /// The planes of a quantity.
+    pub fn of(&self, quantity: Quantity) -> Vec<Vec<f32>> {
+        self.planes.iter().find(|(q, _)| *q == quantity).map_or(Vec::new(), |(_, planes)| planes.clone())
+    }
+}
+
+impl Pass {
+    /// What `film` and `layers` ask for.
+    pub fn new(film: &Film, layers: &[Layer]) -> Self {
+        let mut quantities: Vec<Quantity> = Vec::new();
+        for layer in layers {
+            if let Content::Surface(quantity) = layer.content
+                && !quantities.contains(&quantity)
+            {
+                quantities.push(quantity);
+            }
+        }
+        let alpha = film.format.alpha || layers.iter().any(|layer| layer.content == Content::Image);
+        Self { alpha, quantities }
+    }
+
+    /// Traces as many primary rays per pixel as there were `passes`.
+    pub fn run<P: Profile>(&self, scene: &Scene, job: &Job<'_, P>, passes: u64) -> Seen {
+        // Room for alpha and three components each.
+        let width = 1 + self.quantities.len();
+        if !self.alpha && self.quantities.is_empty() {
+            return Seen { alpha: Vec::new(), planes: Vec::new() };
+        }
+        let mut means = vec![Vec3::ZERO; job.film.len() * width];
+        means.par_chunks_mut(width).enumerate().for_each(|(pixel, means)| {
+            let mut sums = vec![[0f64; 3]; width];
+            for pass in 0..passes {
+                let start = job.blocks.eye_start(job.film, job.settings.seed, pass as usize, pixel);
+                let view = View::new(scene, job, start.position, passes);
+                let alpha = self.alpha.then(|| Vec3::splat(view.alpha()));
+                let values = self.quantities.iter().map(|quantity| view.quantity(*quantity));
+                for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
+                    let value = (value * start.weight).as_dvec3().to_array();
+                    sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value);
+                }
+            }
+            for (mean, sum) in means.iter_mut().zip(sums) {
+                *mean = Vec3::from_array(sum.map(|component| (component / passes as f64) as f32));
+            }
+        });
+        let plane = |item: usize, component: usize| -> Vec<f32> {
+            means.iter().skip(item).step_by(width).map(|mean| mean[component]).collect()
+        };
+        let first = usize::from(self.alpha);
+        let planes = self.quantities.iter().enumerate().map(|(i, quantity)| {
+            (*quantity, (0..quantity.channels().len()).map(|c| plane(first + i, c)).collect())
+        });
+        Seen { alpha: if self.alpha { plane(0, 0) } else { Vec::new() }, planes: planes.collect() }
+    }
+}
+
+/// A primary ray and what it meets first; nulls and boundaries of media count, as in Mitsuba.
+struct View<'a, P: Profile> {
+    scene: &'a Scene,
+    job: &'a Job<'a, P>,
+    film: Vec2,
+    ray: Ray,
+    hit: Option<(Hit, SurfacePoint)>,
+    /// Step across the film that `duv_dx` speaks of [pixels].
+    step: f32,
+}
+
+impl<'a, P: Profile> View<'a, P> {
+    fn new(scene: &'a Scene, job: &'a Job<'a, P>, film: Vec2, passes: u64) -> Self {
+        let ray = job.estimator.primary_ray(film);
+        let hit = scene.geometry.closest(&ray).map(|hit| (hit, scene.geometry.surface(&ray, &hit)));
+        Self { scene, job, film, ray, hit, step: 1.0 / (passes as f32).sqrt() }
+    }
+
+    /// The chance that the ray interacts with something or meets a visible environment: what Mitsuba's
+    /// `volpath` finds out by walking on. Emitters that are hidden do not count.
+    fn alpha(&self) -> f32 {
+        let hidden = self.job.settings.options.hide_emitters;
+        let environment = self.scene.lights.met_at_infinity(self.ray.direction).is_some();
+        if environment && !hidden {
+            return 1.0;
+        }
+        let mut ray = self.ray;
+        if hidden
+            && let Some((hit, point)) = &self.hit
+            && self.scene.surface(point.shape).emitter.is_some()
+        {
+            // To just before the emitter.
+            ray.t_max = hit.t * (1.0 - 1e-4);
+        }
+        let through = self.job.estimator.transmittance(ray);
+        1.0 - (through.x + through.y + through.z) / 3.0
+    }
+
+    /// 0 where nothing is met.
+    fn quantity(&self, quantity: Quantity) -> Vec3 {
+        let Some((hit, point)) = &self.hit else { return Vec3::ZERO };
+        let geometry = &self.scene.geometry;
+        match quantity {
+            Quantity::Albedo => self.albedo(point),
+            Quantity::Depth => vec3(hit.t, 0.0, 0.0),
+            Quantity::Position => (point.position.as_dvec3() + self.scene.recentre).as_vec3(),
+            Quantity::Uv => point.uv.extend(0.0),
+            Quantity::GeometricNormal => point.normal,
+            Quantity::ShadingNormal => point.shading.normal,
+            Quantity::DpDu => partials(geometry, &self.ray, hit, point).0,
+            Quantity::DpDv => partials(geometry, &self.ray, hit, point).1,
+            Quantity::DuvDx => self.uv_change(hit, point, vec2(1.0, 0.0)).extend(0.0),
+            Quantity::DuvDy => self.uv_change(hit, point, vec2(0.0, 1.0)).extend(0.0),
+            Quantity::PrimitiveIndex => vec3(geometry.local_primitive(hit) as f32, 0.0, 0.0),
+            Quantity::ShapeIndex => vec3((point.shape + 1) as f32, 0.0, 0.0),
+        }
+    }
+
+    /// As Mitsuba: pi f towards the normal, for models that say nothing better of themselves. Where the side
+    /// that is seen is black, that of the other, which a one-sided diffuse surface has too.
+    fn albedo(&self, point: &SurfacePoint) -> Spectrum {
+        let bsdf = self.scene.bsdf(point.shape);
+        let wi = point.shading.to_local(-self.ray.direction);
+        let towards = |wi: Vec3| {
+            let up = vec3(0.0, 0.0, 1f32.copysign(wi.z));
+            bsdf.evaluate(point.uv, wi, up, Transport::Radiance).value * PI
+        };
+        let seen = towards(wi);
+        if seen == Spectrum::ZERO { towards(vec3(wi.x, wi.y, -wi.z)) } else { seen }
+    }
+
+    /// How the texture coordinates change from here to where a neighbouring ray meets the tangent plane.
+    fn uv_change(&self, hit: &Hit, point: &SurfacePoint, across: Vec2) -> Vec2 {
+        let (du, dv) = partials(&self.scene.geometry, &self.ray, hit, point);
+        let neighbour = self.job.estimator.primary_ray(self.film + across);
+        let origin = self.ray.origin.lerp(neighbour.origin, self.step);
+        let direction = self.ray.direction.lerp(neighbour.direction, self.step);
+        let t = (point.position - origin).dot(point.normal) / direction.dot(point.normal);
+        let moved = origin + direction * t - point.position;
+        let (uu, uv, vv) = (du.dot(du), du.dot(dv), dv.dot(dv));
+        let (mu, mv) = (du.dot(moved), dv.dot(moved));
+        let change = vec2(vv * mu - uv * mv, uu * mv - uv * mu) / (uu * vv - uv * uv);
+        // A neighbour that runs along the surface, or a pole of the coordinates.
+        if change.is_finite() { change } else { Vec2::ZERO }
+    }
+}
+
+/// How position changes with the texture coordinates u and v [m].
+fn partials(geometry: &Geometry, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
+    let shape = &geometry.shapes()[point.shape as usize];
+    match shape.primitive(geometry.local_primitive(hit) as usize) {
+        Primitive::Flat(flat) => {
+            // Positions and texture coordinates both are linear in those of the primitive.
+            let uv = |u: f32, v: f32| geometry.surface(ray, &Hit { u, v, ..*hit }).uv;
+            let (along_u, along_v) = (uv(1.0, 0.0) - uv(0.0, 0.0), uv(0.0, 1.0) - uv(0.0, 0.0));
+            let area = along_u.perp_dot(along_v);
+            if area == 0.0 {
+                return (point.shading.tangent, point.shading.bitangent);
+            }
+            let du = (flat.edge_u * along_v.y - flat.edge_v * along_u.y) / area;
+            let dv = (flat.edge_v * along_u.x - flat.edge_u * along_v.x) / area;
+            (du, dv)
+        }
+        Primitive::Ball { center, radius } => {
+            // u runs along the parallels, v from pole to pole.
+            let out = (point.position - center) / radius;
+            let du = point.shading.tangent * (2.0 * PI * radius * (PI * point.uv.y).sin());
+            let along = out.cross(point.shading.tangent) * (PI * radius);
+            let moved = Ray { origin: point.position + along * 1e-3, ..*ray };
+            let further = geometry.surface(&moved, &Hit { t: 0.0, ..*hit }).uv.y > point.uv.y;
+            (du, if further { along } else { -along })
+        }
+    }
+}
