@@ -29,6 +29,8 @@ pub struct EyeStart {
     hero: usize,
     /// Where on the film [pixels].
     pub position: Vec2,
+    /// Through which point of the aperture [m].
+    pub aperture: Vec2,
     /// What it counts for.
     pub weight: f32,
 }
@@ -81,11 +83,19 @@ impl Blocks {
     }
 
     /// Where the eye walk of `pixel` in `pass` starts.
-    pub fn eye_start(&self, film: &Film, seed: u64, pass: usize, pixel: usize) -> EyeStart {
+    pub fn eye_start<P: Profile>(
+        &self,
+        estimator: &Estimator<'_, P>,
+        film: &Film,
+        seed: u64,
+        pass: usize,
+        pixel: usize,
+    ) -> EyeStart {
         let mut stream = Stream::new(seed, pixel as u64, pass as u64, Purpose::Eye);
         let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
         let (position, weight) = film.sample(pixel, &mut stream);
-        EyeStart { stream, hero, position, weight }
+        let aperture = estimator.sample_aperture(&mut stream);
+        EyeStart { stream, hero, position, aperture, weight }
     }
 
     /// Renders one sample of every pixel of `block`.
@@ -108,8 +118,10 @@ impl Blocks {
             }
         }
         let eye = self.pixels(block).map(|pixel| {
-            let EyeStart { mut stream, hero, position, weight } = self.eye_start(film, seed, pass, pixel);
-            (pixel as u32, estimator.sample_pixel(&cache, position, hero, &mut stream) * weight)
+            let mut start = self.eye_start(estimator, film, seed, pass, pixel);
+            let EyeStart { position, aperture, hero, weight, .. } = start;
+            let radiance = estimator.sample_pixel(&cache, position, aperture, hero, &mut start.stream);
+            (pixel as u32, radiance * weight)
         });
         Outcome { eye: eye.collect(), light: light.values }
     }

@@ -1,7 +1,7 @@
 //! What primary rays see: alpha, and the layers that tell of the first surface. A cheap pass of its own, only
 //! where something asks for it, through the same film positions as the eye walks.
 
-use super::Job;
+use super::{Job, block::EyeStart};
 use crate::{
     bsdf::{BsdfModel, Transport},
     film::{
@@ -63,8 +63,9 @@ impl Pass {
         means.par_chunks_mut(width).enumerate().for_each(|(pixel, means)| {
             let mut sums = vec![[0f64; 3]; width];
             for pass in 0..passes {
-                let start = job.blocks.eye_start(job.film, job.settings.seed, pass as usize, pixel);
-                let view = View::new(scene, job, start.position, passes);
+                let start =
+                    job.blocks.eye_start(job.estimator, job.film, job.settings.seed, pass as usize, pixel);
+                let view = View::new(scene, job, &start, passes);
                 let alpha = self.alpha.then(|| Vec3::splat(view.alpha()));
                 let values = self.quantities.iter().map(|quantity| view.quantity(*quantity));
                 for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
@@ -92,6 +93,7 @@ struct View<'a, P: Profile> {
     scene: &'a Scene,
     job: &'a Job<'a, P>,
     film: Vec2,
+    aperture: Vec2,
     ray: Ray,
     hit: Option<(Hit, SurfacePoint)>,
     /// Step across the film that `duv_dx` speaks of [pixels].
@@ -99,10 +101,11 @@ struct View<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> View<'a, P> {
-    fn new(scene: &'a Scene, job: &'a Job<'a, P>, film: Vec2, passes: u64) -> Self {
-        let ray = job.estimator.primary_ray(film);
+    fn new(scene: &'a Scene, job: &'a Job<'a, P>, start: &EyeStart, passes: u64) -> Self {
+        let EyeStart { position: film, aperture, .. } = *start;
+        let ray = job.estimator.primary_ray(film, aperture);
         let hit = scene.geometry.closest(&ray).map(|hit| (hit, scene.geometry.surface(&ray, &hit)));
-        Self { scene, job, film, ray, hit, step: 1.0 / (passes as f32).sqrt() }
+        Self { scene, job, film, aperture, ray, hit, step: 1.0 / (passes as f32).sqrt() }
     }
 
     /// The chance that the ray interacts with something or meets a visible environment: what Mitsuba's
@@ -161,7 +164,7 @@ impl<'a, P: Profile> View<'a, P> {
     /// How the texture coordinates change from here to where a neighbouring ray meets the tangent plane.
     fn uv_change(&self, hit: &Hit, point: &SurfacePoint, across: Vec2) -> Vec2 {
         let (du, dv) = partials(&self.scene.geometry, &self.ray, hit, point);
-        let neighbour = self.job.estimator.primary_ray(self.film + across);
+        let neighbour = self.job.estimator.primary_ray(self.film + across, self.aperture);
         let origin = self.ray.origin.lerp(neighbour.origin, self.step);
         let direction = self.ray.direction.lerp(neighbour.direction, self.step);
         let t = (point.position - origin).dot(point.normal) / direction.dot(point.normal);
@@ -189,6 +192,16 @@ fn partials(geometry: &Geometry, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> 
             let du = (flat.edge_u * along_v.y - flat.edge_v * along_u.y) / area;
             let dv = (flat.edge_v * along_u.x - flat.edge_u * along_v.x) / area;
             (du, dv)
+        }
+        Primitive::Disk(disk) => {
+            // u is the distance from the centre, v the angle in turns.
+            let Vec2 { x, y } = vec2(hit.u, hit.v);
+            let out = (disk.edge_u * x + disk.edge_v * y) / x.hypot(y).max(f32::MIN_POSITIVE);
+            (out, (disk.edge_v * x - disk.edge_u * y) * (2.0 * PI))
+        }
+        Primitive::Tube(tube) => {
+            let around = point.shading.tangent * (2.0 * PI * tube.radius as f32);
+            (around, (tube.axis * tube.length).as_vec3())
         }
         Primitive::Ball { center, radius } => {
             // u runs along the parallels, v from pole to pole.

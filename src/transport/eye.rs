@@ -29,16 +29,17 @@ pub struct Eye<'a, P: Profile> {
     radiance: Spectrum,
 }
 
-/// Radiance estimate of one eye walk through `film` [pixels], joined with the light walks of `cache`.
+/// Radiance estimate of one eye walk through `film` [pixels] and a point of the aperture, joined with the light
+/// walks of `cache`.
 pub fn sample<P: Profile>(
     estimator: &Estimator<'_, P>,
     cache: &LightCache<P::Lanes>,
     film: Vec2,
+    aperture: Vec2,
     hero: usize,
     stream: &mut Stream,
 ) -> Spectrum {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
-    let aperture = estimator.scene.sensor.sample_aperture(stream);
     let departure = depart(estimator, film, aperture);
     let mut eye = Eye::new(estimator, cache, hero, departure.position);
     walk(estimator.scene, kind, departure, &mut eye, stream);

@@ -153,9 +153,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
         light::trace(self, cache, splats, hero, stream);
     }
 
-    /// The ray of an eye walk through `film` [pixels].
-    pub fn primary_ray(&self, film: Vec2) -> Ray {
-        eye::depart(self, film).ray
+    /// The ray of an eye walk through `film` [pixels] and a point of the aperture.
+    pub fn primary_ray(&self, film: Vec2, aperture: Vec2) -> Ray {
+        eye::depart(self, film, aperture).ray
     }
 
     /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
@@ -164,15 +164,21 @@ impl<'a, P: Profile> Estimator<'a, P> {
         passage.map_or(Spectrum::ZERO, |passage| passage.transmittance)
     }
 
-    /// Radiance estimate of one eye walk of channel `hero` through `film` [pixels].
+    /// A point of the sensor's aperture.
+    pub fn sample_aperture(&self, stream: &mut Stream) -> Vec2 {
+        self.scene.sensor.sample_aperture(stream)
+    }
+
+    /// Radiance estimate of one eye walk of channel `hero` through `film` [pixels] and a point of the aperture.
     pub fn sample_pixel(
         &self,
         cache: &LightCache<P::Lanes>,
         film: Vec2,
+        aperture: Vec2,
         hero: usize,
         stream: &mut Stream,
     ) -> Spectrum {
-        eye::sample(self, cache, film, hero, stream)
+        eye::sample(self, cache, film, aperture, hero, stream)
     }
 }
 
