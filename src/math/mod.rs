@@ -1,6 +1,7 @@
 //! Vectors, frames, colours, warps and measures: what every other room stands on.
 
 pub mod frame;
+pub mod fresnel;
 pub mod measure;
 pub mod offset;
 pub mod spectrum;
