@@ -1,12 +1,15 @@
 //! A smooth metal: Mitsuba's `conductor`.
 
-use super::fresnel;
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, metals, mirror, reflectance};
 use crate::description::Params;
 use crate::error::{Error, Result};
+use crate::math::fresnel;
 use crate::math::{Spectrum, Vec2, Vec3};
 use crate::sampling::Stream;
-use crate::texture::Texture;
+use crate::texture::{self, Texture};
+
+/// Where the index varies, the mean may tell nothing of a place: a walk survives there one time in ten at least.
+const LEAST_SURVIVAL: f32 = 0.1;
 
 /// Reflects as Fresnel says, as a Dirac lobe; the lower side is black.
 #[derive(Clone, Debug)]
@@ -17,27 +20,33 @@ pub struct Conductor {
 /// What smooth and rough metals share: index of refraction and tint.
 #[derive(Clone, Debug)]
 pub(super) struct Metal {
-    eta: Spectrum,
-    k: Spectrum,
+    eta: Texture,
+    k: Texture,
     tint: Texture,
-    /// The reflectance averaged over the hemisphere by cosine: what a walk survives with.
+    /// The reflectance averaged over the hemisphere by cosine, of the mean index where that varies: what a walk
+    /// survives with.
     average: Spectrum,
 }
 
 impl Metal {
     /// `eta` and `k` are relative to the outside, >= 0.
-    pub(super) fn new(eta: Spectrum, k: Spectrum, tint: Texture) -> Self {
+    pub(super) fn new(eta: Texture, k: Texture, tint: Texture) -> Self {
+        let mean = (eta.mean(), k.mean());
         // Midpoint rule in cos^2, whose differential is 2 cos d cos.
         let steps = 256;
-        let at = |i| fresnel::conductor(((i as f32 + 0.5) / steps as f32).sqrt(), eta, k);
+        let at = |i| fresnel::conductor(((i as f32 + 0.5) / steps as f32).sqrt(), mean.0, mean.1);
         let average = (0..steps).map(at).sum::<Spectrum>() / steps as f32;
-        Self { eta, k, tint, average }
+        let varies = !matches!((&eta, &k), (Texture::Uniform(_), Texture::Uniform(_)));
+        // A mean index of 1 reflects nothing, though what it is the mean of may.
+        let least = if varies { LEAST_SURVIVAL } else { 0.0 };
+        Self { eta, k, tint, average: average.max(Spectrum::splat(least)) }
     }
 
-    /// `material` (a perfect mirror where not given) or `eta` (0) and `k` (1), and `specular_reflectance`.
+    /// `material` ("none", a perfect mirror, where not given) or `eta` (0) and `k` (1), and `specular_reflectance`.
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let own = params.has("eta") || params.has("k");
-        if own && params.has("material") {
+        let material = params.optional_string("material")?.filter(|name| *name != "none");
+        if own && material.is_some() {
             return Err(Error::new(
                 params.location(),
                 "either a \"material\" or \"eta\" and \"k\"",
@@ -45,9 +54,12 @@ impl Metal {
                 "drop one of the two",
             ));
         }
-        let (eta, k) = match params.optional_string("material")? {
-            Some(name) if name != "none" => metals::named(params, name)?,
-            _ => (params.color("eta", 0.0)?, params.color("k", 1.0)?),
+        let (eta, k) = match material {
+            Some(name) => {
+                let (eta, k) = metals::named(params, name)?;
+                (Texture::constant(eta), Texture::constant(k))
+            }
+            None => (texture::parameter(params, "eta", 0.0)?, texture::parameter(params, "k", 1.0)?),
         };
         Ok(Self::new(eta, k, reflectance(params, "specular_reflectance", 1.0)?))
     }
@@ -55,7 +67,7 @@ impl Metal {
     /// Tinted reflectance at `cosine` in [0, 1].
     #[inline]
     pub(super) fn reflectance(&self, uv: Vec2, cosine: f32) -> Spectrum {
-        self.tint.eval(uv) * fresnel::conductor(cosine.min(1.0), self.eta, self.k)
+        self.tint.eval(uv) * fresnel::conductor(cosine.min(1.0), self.eta.eval(uv), self.k.eval(uv))
     }
 
     #[inline]
@@ -65,12 +77,14 @@ impl Metal {
 
     #[cfg(test)]
     pub(super) fn examples() -> [Self; 3] {
-        let tint = Texture::constant(Spectrum::new(1.0, 0.5, 0.25));
+        let constant = Texture::constant;
+        let tint = constant(Spectrum::new(1.0, 0.5, 0.25));
+        let white = || constant(Spectrum::ONE);
         let gold = (Spectrum::new(0.143, 0.375, 1.442), Spectrum::new(3.983, 2.386, 1.603));
         [
-            Self::new(Spectrum::ZERO, Spectrum::ONE, Texture::constant(Spectrum::ONE)),
-            Self::new(gold.0, gold.1, Texture::constant(Spectrum::ONE)),
-            Self::new(Spectrum::splat(1.5), Spectrum::ZERO, tint),
+            Self::new(constant(Spectrum::ZERO), white(), white()),
+            Self::new(constant(gold.0), constant(gold.1), white()),
+            Self::new(constant(Spectrum::splat(1.5)), constant(Spectrum::ZERO), tint),
         ]
     }
 }

@@ -1,9 +1,9 @@
 //! A smooth interface between two dielectrics: Mitsuba's `dielectric`.
 
-use super::fresnel::Interfaces;
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror, reflectance};
 use crate::description::Params;
 use crate::error::Result;
+use crate::math::fresnel::Interfaces;
 use crate::math::{Spectrum, Vec2, Vec3};
 use crate::sampling::Stream;
 use crate::texture::Texture;
@@ -64,7 +64,7 @@ pub(super) fn choose(fresnel: f32, reflectance: Spectrum, transmittance: Spectru
 
 impl Dielectric {
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { interfaces: index::interfaces(params)?, tints: Tints::build(params)? })
+        Ok(Self { interfaces: index::interfaces(params, "bk7")?, tints: Tints::build(params)? })
     }
 
     #[cfg(test)]
@@ -116,7 +116,7 @@ impl BsdfModel for Dielectric {
         false
     }
 
-    fn transmits(&self) -> bool {
+    fn scatters_across(&self) -> bool {
         true
     }
 }

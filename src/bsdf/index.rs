@@ -1,8 +1,8 @@
 //! Indices of refraction by number or name, as Mitsuba knows them.
 
-use super::fresnel::Interfaces;
 use crate::description::{Params, Value, nearest};
 use crate::error::Result;
+use crate::math::fresnel::Interfaces;
 
 /// Mitsuba's names: indices at about 589 nm and room temperature (Hecht, Optics, 4th ed.).
 const NAMED: &[(&str, f64)] = &[
@@ -31,9 +31,9 @@ const NAMED: &[(&str, f64)] = &[
     ("diamond", 2.419),
 ];
 
-/// `int_ior` (bk7 where not given) and `ext_ior` (air).
-pub fn interfaces(params: &Params<'_>) -> Result<Interfaces> {
-    Ok(Interfaces::new(index(params, "int_ior", "bk7")?, index(params, "ext_ior", "air")?))
+/// `int_ior` (`inside` where not given) and `ext_ior` (air).
+pub fn interfaces(params: &Params<'_>, inside: &str) -> Result<Interfaces> {
+    Ok(Interfaces::new(index(params, "int_ior", inside)?, index(params, "ext_ior", "air")?))
 }
 
 /// Indices beyond these limits are no materials, and their squares would leave f32's range in time.

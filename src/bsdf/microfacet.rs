@@ -1,9 +1,10 @@
 //! Distributions of microfacet normals, their shadowing and the sampling of the visible ones (Walter et al.
 //! 2007; Heitz 2018). All in a shading frame turned so that the direction in question has z > 0.
 
+use super::number;
 use crate::description::Params;
 use crate::error::{Error, Result};
-use crate::math::{SpectrumExt, Vec2, Vec3, vec3};
+use crate::math::{Vec2, Vec3, vec3};
 use crate::texture::{self, Texture};
 use std::f32::consts::{PI, TAU};
 
@@ -62,6 +63,23 @@ impl Roughness {
         Ok(Self { kind, alpha })
     }
 
+    /// The same for a model that takes one number for the whole surface.
+    pub fn build_even(params: &Params<'_>) -> Result<Microfacets> {
+        let Self { kind, alpha: [u, v] } = Self::build(params)?;
+        match (&u, &v) {
+            (Texture::Uniform(along), Texture::Uniform(across)) if along.0 == across.0 => {
+                let alpha = number(&u, Vec2::ZERO);
+                Ok(Microfacets::new(kind, alpha, alpha))
+            }
+            _ => Err(Error::new(
+                params.location(),
+                "a roughness that is the same everywhere and in all directions",
+                "a texture, or two that differ",
+                format!("give the {} one number as \"alpha\"", params.object.plugin),
+            )),
+        }
+    }
+
     /// The largest roughness anywhere.
     pub fn max(&self) -> f32 {
         self.alpha[0].max().max(self.alpha[1].max()).max_element().max(LEAST_ALPHA)
@@ -70,7 +88,7 @@ impl Roughness {
     /// The distribution at texture position `uv`.
     #[inline]
     pub fn at(&self, uv: Vec2) -> Microfacets {
-        let alpha = |i: usize| self.alpha[i].eval(uv).luminance();
+        let alpha = |i: usize| number(&self.alpha[i], uv);
         Microfacets::new(self.kind, alpha(0), alpha(1))
     }
 
@@ -103,6 +121,12 @@ impl Microfacets {
     #[inline]
     pub fn density(&self, m: Vec3) -> f32 {
         self.density_as(self.kind, m)
+    }
+
+    /// D(m) [1/sr] of the distribution that `sample_visible` draws from.
+    #[inline]
+    pub fn sampled_density(&self, m: Vec3) -> f32 {
+        self.density_as(Kind::Ggx, m)
     }
 
     #[inline]
@@ -151,7 +175,7 @@ impl Microfacets {
     /// (Heitz 2018, eq. 3).
     #[inline]
     pub fn visible_density_over_cosine(&self, v: Vec3, m: Vec3) -> f32 {
-        2.0 * self.density_as(Kind::Ggx, m) / (v.z + self.stretched_length(v))
+        2.0 * self.sampled_density(m) / (v.z + self.stretched_length(v))
     }
 
     /// A normal that `v` (z > 0) sees, distributed as the visible normals of GGX (Heitz 2018, sec. 4).

@@ -5,33 +5,44 @@
 //! angle [1/sr]: `forward` is that of `wo` given `wi`, `backward` that of `wi` given `wo`. For a Dirac lobe
 //! they are the discrete probabilities of choosing that lobe.
 
+mod blend;
 mod conductor;
 mod dielectric;
+mod difftrans;
 mod diffuse;
-mod fresnel;
 mod index;
+mod mask;
 mod metals;
 mod microfacet;
 mod null;
+mod plastic;
 mod roughconductor;
 mod roughdielectric;
+mod roughplastic;
 #[cfg(test)]
 mod tests;
 mod thindielectric;
+mod translucent;
 mod twosided;
 
+pub use blend::Blend;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
+pub use difftrans::DiffuseTransmitter;
 pub use diffuse::Diffuse;
+pub use mask::Mask;
 pub use null::Null;
+pub use plastic::Plastic;
 pub use roughconductor::RoughConductor;
 pub use roughdielectric::RoughDielectric;
+pub use roughplastic::RoughPlastic;
 pub use thindielectric::ThinDielectric;
+pub use translucent::Translucent;
 pub use twosided::TwoSided;
 
 use crate::description::{Library, Object, Params, Row, build_by_row};
-use crate::error::Result;
-use crate::math::{Spectrum, Vec2, Vec3, vec3};
+use crate::error::{Error, Result};
+use crate::math::{Spectrum, SpectrumExt, Vec2, Vec3, vec3};
 use crate::sampling::Stream;
 use crate::texture::{self, Texture};
 
@@ -94,7 +105,8 @@ pub trait BsdfModel {
     /// Probability in [0, 1] with which a walk goes on from here (LW96 eq. 9: a walk ends by absorption):
     /// the largest channel of the albedo. It must be the same for both directions of any scattering pair, as
     /// it enters forward and backward densities alike, so it may depend on `uv` and, for models that do not
-    /// transmit, on the side of `wi`, on nothing else.
+    /// scatter across, on the side of `wi`, on nothing else. Where the albedo varies more with the direction,
+    /// the survival bounds it and `sample` gives none as often as the rest is absorbed; densities say so.
     fn survival(&self, uv: Vec2, wi: Vec3) -> f32;
 
     /// The part of light that passes straight through as if nothing were there (`null`: 1; `thindielectric`:
@@ -117,9 +129,14 @@ pub trait BsdfModel {
         false
     }
 
+    /// True if light can get to the other side other than straight through.
+    fn scatters_across(&self) -> bool {
+        false
+    }
+
     /// True if light can get to the other side, be it bent or straight through.
     fn transmits(&self) -> bool {
-        self.has_null()
+        self.has_null() || self.scatters_across()
     }
 }
 
@@ -175,8 +192,9 @@ macro_rules! bsdfs {
             fn has_null(&self) -> bool {
                 match self { $(Self::$model(model) => model.has_null(),)* }
             }
-            fn transmits(&self) -> bool {
-                match self { $(Self::$model(model) => model.transmits(),)* }
+            #[inline]
+            fn scatters_across(&self) -> bool {
+                match self { $(Self::$model(model) => model.scatters_across(),)* }
             }
         }
 
@@ -203,7 +221,13 @@ bsdfs! {
     "roughdielectric" => RoughDielectric,
     "conductor" => Conductor,
     "roughconductor" => RoughConductor,
+    "plastic" => Plastic,
+    "roughplastic" => RoughPlastic,
+    "difftrans" => DiffuseTransmitter,
+    "translucent" => Translucent,
     "twosided" => TwoSided,
+    "mask" => Mask,
+    "blendbsdf" => Blend,
 }
 
 /// Builds the surface model that `object` describes.
@@ -220,6 +244,40 @@ fn reflectance(params: &Params<'_>, name: &'static str, default: f32) -> Result<
     }
     let found = format!("one that reaches {max}: it would make light out of nothing");
     Err(params.complain(name, "a colour from 0 to 1", found))
+}
+
+/// The parameter `name` as a texture of numbers from 0 to 1; without a `default` it must be given.
+fn share(params: &Params<'_>, name: &'static str, default: Option<f32>) -> Result<Texture> {
+    let expected = "a number from 0 to 1 or a texture of such";
+    if default.is_none() && !params.has(name) {
+        return Err(params.missing(name, expected));
+    }
+    let texture = texture::parameter(params, name, default.unwrap_or(0.5))?;
+    let max = texture.max().max_element();
+    if max <= 1.0 {
+        Ok(texture)
+    } else {
+        Err(params.complain(name, expected, format!("one that reaches {max}")))
+    }
+}
+
+/// A texture as a number, as Mitsuba takes it: an image's luminance, the mean of the channels of all others.
+#[inline]
+fn number(texture: &Texture, uv: Vec2) -> f32 {
+    let color = texture.eval(uv);
+    if let Texture::Bitmap(_) = texture { color.luminance() } else { color.element_sum() / 3.0 }
+}
+
+/// The `COUNT` nested bsdfs, in file order; textures and other children are not among them.
+fn only_nested<const COUNT: usize>(params: &Params<'_>) -> Result<[Bsdf; COUNT]> {
+    let children = params.children(|child| ROWS.iter().any(|row| row.name == child.object.plugin))?;
+    let nested =
+        children.iter().map(|child| build(child.object, params.library)).collect::<Result<Vec<_>>>()?;
+    nested.try_into().map_err(|found: Vec<Bsdf>| {
+        let plural = if COUNT == 1 { "" } else { "s" };
+        let remedy = format!("nest {COUNT} bsdf{plural} in the {}", params.object.plugin);
+        Error::new(params.location(), format!("{COUNT} nested bsdf{plural}"), found.len().to_string(), remedy)
+    })
 }
 
 /// The mirror image of `w` about the shading normal.

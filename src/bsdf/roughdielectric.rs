@@ -1,11 +1,11 @@
 //! A rough interface between two dielectrics: Mitsuba's `roughdielectric`.
 
 use super::dielectric::{Dielectric, Tints, choose};
-use super::fresnel::{Interface, Interfaces};
 use super::microfacet::{Microfacets, Roughness};
 use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, index};
 use crate::description::Params;
 use crate::error::Result;
+use crate::math::fresnel::{Interface, Interfaces};
 use crate::math::{Vec2, Vec3, vec3};
 use crate::sampling::Stream;
 
@@ -34,7 +34,8 @@ impl RoughDielectric {
     /// A rough interface, or the smooth one that it cannot be told from: indices all but equal bend light by
     /// less than directions resolve.
     pub(super) fn build(params: &Params<'_>) -> Result<Bsdf> {
-        let smooth = Dielectric { interfaces: index::interfaces(params)?, tints: Tints::build(params)? };
+        let smooth =
+            Dielectric { interfaces: index::interfaces(params, "bk7")?, tints: Tints::build(params)? };
         let roughness = Roughness::build(params)?;
         if (smooth.interfaces.outside.ratio - 1.0).abs() * roughness.max() < LEAST_SPREAD {
             let text = "the indices are so close that this is the smooth \"dielectric\"";
@@ -159,7 +160,7 @@ impl BsdfModel for RoughDielectric {
         true
     }
 
-    fn transmits(&self) -> bool {
+    fn scatters_across(&self) -> bool {
         true
     }
 }

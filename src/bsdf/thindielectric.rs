@@ -1,10 +1,10 @@
 //! A pane of glass too thin to bend light: Mitsuba's `thindielectric`.
 
 use super::dielectric::Tints;
-use super::fresnel::Interfaces;
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror};
 use crate::description::Params;
 use crate::error::Result;
+use crate::math::fresnel::Interfaces;
 use crate::math::{Spectrum, Vec2, Vec3};
 use crate::sampling::Stream;
 
@@ -18,7 +18,7 @@ pub struct ThinDielectric {
 
 impl ThinDielectric {
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { interfaces: index::interfaces(params)?, tints: Tints::build(params)? })
+        Ok(Self { interfaces: index::interfaces(params, "bk7")?, tints: Tints::build(params)? })
     }
 
     /// R + T R T + T R^3 T + ... = 2 R / (1 + R) for a face that reflects R. The same from both sides, as

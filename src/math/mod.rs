@@ -2,6 +2,7 @@
 
 pub mod colour;
 pub mod frame;
+pub mod fresnel;
 pub mod measure;
 pub mod offset;
 pub mod spectrum;

@@ -1,7 +1,8 @@
-//! A weighted sum of two phase functions: Mitsuba's `blendphase` (P03 eq. 3, of any two).
+//! A weighted sum of two phase functions: Mitsuba's `blendphase`, and the two-term functions of P03 eq. 3 and
+//! P03T 2.3.4.
 
-use super::{Phase, PhaseModel, build};
-use crate::description::Params;
+use super::{Deflection, HenyeyGreenstein, Phase, PhaseModel, Schlick, asymmetry, build, required};
+use crate::description::{Params, Value};
 use crate::error::{Error, Result};
 use crate::math::Vec3;
 use crate::sampling::Stream;
@@ -21,8 +22,13 @@ impl Blend {
     }
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        if !params.has("weight") {
-            return Err(params.missing("weight", "a number from 0 to 1"));
+        let expected = "a number from 0 to 1 (a weight that varies in space is not supported)";
+        match params.property("weight").map(|weight| &weight.value) {
+            None => return Err(params.missing("weight", expected)),
+            Some(volume @ (Value::Object(_) | Value::Reference(_))) => {
+                return Err(params.complain("weight", expected, volume.describe()));
+            }
+            Some(_) => {}
         }
         let weight = params.float_within("weight", 0.5, 0.0, 1.0)? as f32;
         match params.children(|child| child.name != "weight")?.as_slice() {
@@ -37,6 +43,26 @@ impl Blend {
                 "give exactly two; a blend of three is a blend with a nested blend",
             )),
         }
+    }
+
+    /// Two Henyey & Greenstein functions: r of asymmetry g1 and 1 - r of g2.
+    pub(super) fn two_term_hg(params: &Params<'_>) -> Result<Self> {
+        Self::two_term(params, |g| HenyeyGreenstein::new(g).into())
+    }
+
+    /// The same of Schlick's functions.
+    pub(super) fn two_term_schlick(params: &Params<'_>) -> Result<Self> {
+        Self::two_term(params, |g| Schlick::new(g).into())
+    }
+
+    fn two_term(params: &Params<'_>, term: fn(f64) -> Phase) -> Result<Self> {
+        required(params, "r", "the share of the first term, a number from 0 to 1")?;
+        let first = params.float_within("r", 0.5, 0.0, 1.0)?;
+        let asymmetry = |name| {
+            required(params, name, "a number between -1 and 1")?;
+            asymmetry(params, name, 0.0)
+        };
+        Ok(Self::new((1.0 - first) as f32, term(asymmetry("g1")?), term(asymmetry("g2")?)))
     }
 
     #[cfg(test)]
@@ -55,9 +81,9 @@ impl Blend {
 
 impl PhaseModel for Blend {
     #[inline]
-    fn density(&self, cosine: f32) -> f32 {
+    fn density(&self, turn: Deflection) -> f32 {
         let [first, second] = &*self.parts;
-        first.density(cosine) * (1.0 - self.weight) + second.density(cosine) * self.weight
+        first.density(turn) * (1.0 - self.weight) + second.density(turn) * self.weight
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! Henyey & Greenstein's phase function (P03 eq. 2), precise from g = 0 to within rounding of g = +-1.
 
-use super::{PhaseModel, asymmetry, deflect};
+use super::{Deflection, PhaseModel, asymmetry, deflect};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::{Vec3, warp};
@@ -49,9 +49,9 @@ impl HenyeyGreenstein {
 
 impl PhaseModel for HenyeyGreenstein {
     #[inline]
-    fn density(&self, cosine: f32) -> f32 {
+    fn density(&self, turn: Deflection) -> f32 {
         let Self { size: g, complement, sign } = *self;
-        let squared = complement * complement + 2.0 * g * (1.0 - sign * cosine).max(0.0);
+        let squared = complement * complement + 2.0 * g * turn.from_peak(sign);
         warp::SPHERE_DENSITY * complement * (1.0 + g) / (squared * squared.sqrt())
     }
 
@@ -94,8 +94,8 @@ mod tests {
     fn the_density_keeps_its_digits_at_the_peak() {
         for g in [0.9f64, 0.999, 0.999_999_9] {
             let exact = (1.0 + g) / (4.0 * std::f64::consts::PI * (1.0 - g) * (1.0 - g));
-            for (g, cosine) in [(g, 1.0), (-g, -1.0)] {
-                let found = f64::from(HenyeyGreenstein::new(g).density(cosine));
+            for (g, sign) in [(g, 1.0), (-g, -1.0)] {
+                let found = f64::from(HenyeyGreenstein::new(g).density(Deflection::of(0.0, sign)));
                 assert!((found / exact - 1.0).abs() < 1e-6, "g {g}: {found} for {exact}");
             }
         }

@@ -1,6 +1,6 @@
 //! Scattering alike into all directions (P03 eq. 1).
 
-use super::PhaseModel;
+use super::{Deflection, PhaseModel};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::{Vec3, warp};
@@ -23,7 +23,7 @@ impl Isotropic {
 
 impl PhaseModel for Isotropic {
     #[inline]
-    fn density(&self, _: f32) -> f32 {
+    fn density(&self, _: Deflection) -> f32 {
         warp::SPHERE_DENSITY
     }
 

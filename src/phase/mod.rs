@@ -1,23 +1,39 @@
 //! Phase functions: one file a model; this page is the contract and the registry.
 //!
-//! All depend on the cosine between the directions of flight before and after scattering alone (cos > 0 is
+//! All depend on the angle between the directions of flight before and after scattering alone (cos > 0 is
 //! forward), are normalised to 1 over the sphere, and are sampled exactly: the density of a sampled direction
 //! is the value of the function, both ways.
 
 mod blend;
+mod cornette_shanks;
+mod deflection;
+mod diffuse_sphere;
+mod gaussian;
 mod hg;
 mod isotropic;
+mod linear;
+mod mie;
 mod rayleigh;
+mod sakas;
 mod schlick;
+mod specular_sphere;
 mod table;
 #[cfg(test)]
 mod tests;
 
 pub use blend::Blend;
+pub use cornette_shanks::CornetteShanks;
+pub use deflection::Deflection;
+pub use diffuse_sphere::DiffuseSphere;
+pub use gaussian::Gaussian;
 pub use hg::HenyeyGreenstein;
 pub use isotropic::Isotropic;
+pub use linear::Linear;
+pub use mie::Mie;
 pub use rayleigh::Rayleigh;
+pub use sakas::Sakas;
 pub use schlick::Schlick;
+pub use specular_sphere::SpecularSphere;
 pub use table::Table;
 
 use crate::description::{Library, Object, Params, Row, build_by_row};
@@ -27,8 +43,8 @@ use crate::sampling::Stream;
 
 /// What every phase function can do.
 pub trait PhaseModel {
-    /// Value and sampling density [1/sr] for the cosine between old and new direction of flight.
-    fn density(&self, cosine: f32) -> f32;
+    /// Value and sampling density [1/sr] of a turn from an old to a new direction of flight.
+    fn density(&self, turn: Deflection) -> f32;
 
     /// A new direction of flight after `direction`, with exactly `density`.
     fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3;
@@ -37,10 +53,11 @@ pub trait PhaseModel {
     fn mean_cosine(&self) -> f32;
 }
 
-/// Makes the enum, its dispatch, the registry and the list of test examples from one row a model. A model
-/// has `fn build(&Params) -> Result<Self>` and, for the tests, `fn examples() -> Vec<Self>`.
+/// Makes the enum, its dispatch, the registry and the list of test examples from one row a model: its type,
+/// and each of its names with the `fn(&Params) -> Result<Self>` that builds it. For the tests a model has
+/// `fn examples() -> Vec<Self>`.
 macro_rules! phases {
-    ($($name:literal => $model:ident,)*) => {
+    ($($model:ident: $($name:literal => $build:ident),+;)*) => {
         /// Any phase function.
         #[derive(Clone, Debug)]
         #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
@@ -48,10 +65,16 @@ macro_rules! phases {
             $($model($model),)*
         }
 
+        $(impl From<$model> for Phase {
+            fn from(model: $model) -> Self {
+                Self::$model(model)
+            }
+        })*
+
         impl PhaseModel for Phase {
             #[inline]
-            fn density(&self, cosine: f32) -> f32 {
-                match self { $(Self::$model(model) => model.density(cosine),)* }
+            fn density(&self, turn: Deflection) -> f32 {
+                match self { $(Self::$model(model) => model.density(turn),)* }
             }
             #[inline]
             fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
@@ -64,7 +87,10 @@ macro_rules! phases {
 
         /// Every phase function there is, by plugin name.
         pub const ROWS: &[Row<Phase>] = &[
-            $(Row { name: $name, build: |params: &Params<'_>| $model::build(params).map(Phase::$model) },)*
+            $($(Row {
+                name: $name,
+                build: |params: &Params<'_>| $model::$build(params).map(Phase::$model),
+            },)+)*
         ];
 
         /// Instances of every model, for the tests that hold for all.
@@ -78,12 +104,19 @@ macro_rules! phases {
 }
 
 phases! {
-    "isotropic" => Isotropic,
-    "hg" => HenyeyGreenstein,
-    "rayleigh" => Rayleigh,
-    "schlick" => Schlick,
-    "tabphase" => Table,
-    "blendphase" => Blend,
+    Isotropic: "isotropic" => build;
+    Linear: "linear" => build;
+    Rayleigh: "rayleigh" => build;
+    HenyeyGreenstein: "hg" => build;
+    CornetteShanks: "cornette_shanks" => build;
+    Schlick: "schlick" => build;
+    Mie: "mie_hazy" => hazy, "mie_murky" => murky;
+    Sakas: "sakas" => build;
+    Gaussian: "gaussian" => build;
+    DiffuseSphere: "diffuse_sphere" => build;
+    SpecularSphere: "specular_sphere" => build;
+    Table: "tabphase" => build;
+    Blend: "blendphase" => build, "two_term_hg" => two_term_hg, "two_term_schlick" => two_term_schlick;
 }
 
 /// Builds the phase function that `object` describes.
@@ -96,6 +129,11 @@ pub fn build(object: &Object, library: &Library) -> Result<Phase> {
 #[inline]
 fn deflect(direction: Vec3, local: Vec3) -> Vec3 {
     Frame::around(direction).to_world(local).normalize()
+}
+
+/// The parameter `name`, which must be given.
+fn required(params: &Params<'_>, name: &'static str, expected: &str) -> Result<f64> {
+    params.optional_float(name)?.ok_or_else(|| params.missing(name, expected))
 }
 
 /// The parameter `name` of a model that is a probability density only for values in (-1, 1).

@@ -1,6 +1,6 @@
 //! Rayleigh's phase function for particles much smaller than the wavelength (P03 eq. 5).
 
-use super::{PhaseModel, deflect};
+use super::{Deflection, PhaseModel, deflect};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::{Vec3, warp};
@@ -34,8 +34,9 @@ impl Rayleigh {
 
 impl PhaseModel for Rayleigh {
     #[inline]
-    fn density(&self, cosine: f32) -> f32 {
+    fn density(&self, turn: Deflection) -> f32 {
         const SCALE: f32 = 3.0 / (16.0 * PI);
+        let cosine = turn.cosine();
         SCALE * (1.0 + cosine * cosine)
     }
 

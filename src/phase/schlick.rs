@@ -1,6 +1,6 @@
 //! Schlick's phase function: like Henyey & Greenstein's, without the fractional power (P03 eq. 4).
 
-use super::{PhaseModel, asymmetry, deflect};
+use super::{Deflection, PhaseModel, asymmetry, deflect};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::{Vec3, warp};
@@ -45,9 +45,9 @@ impl Schlick {
 
 impl PhaseModel for Schlick {
     #[inline]
-    fn density(&self, cosine: f32) -> f32 {
+    fn density(&self, turn: Deflection) -> f32 {
         let Self { size: k, complement, sign } = *self;
-        let base = complement + k * (1.0 - sign * cosine).max(0.0);
+        let base = complement + k * turn.from_peak(sign);
         warp::SPHERE_DENSITY * complement * (1.0 + k) / (base * base)
     }
 

@@ -1,6 +1,6 @@
 //! A tabulated phase function, linear between its entries: Mitsuba's `tabphase`.
 
-use super::{PhaseModel, deflect};
+use super::{Deflection, PhaseModel, deflect};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::{Vec3, warp};
@@ -69,16 +69,17 @@ fn entry(params: &Params<'_>, word: &str) -> Result<f64> {
 
 /// Position in [0, 1] distributed linearly from `a` to `b` (>= 0, not both 0).
 #[inline]
-fn linear(a: f32, b: f32, u: f32) -> f32 {
+pub(super) fn linear(a: f32, b: f32, u: f32) -> f32 {
     let root = (a * a + u * (b * b - a * a)).max(0.0).sqrt();
-    (u * (a + b) / (a + root)).min(1.0)
+    let bottom = a + root;
+    if bottom > 0.0 { (u * (a + b) / bottom).min(1.0) } else { 0.0 }
 }
 
 impl PhaseModel for Table {
     #[inline]
-    fn density(&self, cosine: f32) -> f32 {
+    fn density(&self, turn: Deflection) -> f32 {
         let values = &self.0.values;
-        let position = (0.5 * (cosine + 1.0)).clamp(0.0, 1.0) * (values.len() - 1) as f32;
+        let position = 0.5 * (turn.cosine() + 1.0) * (values.len() - 1) as f32;
         let index = (position as usize).min(values.len() - 2);
         let t = position - index as f32;
         values[index] * (1.0 - t) + values[index + 1] * t

@@ -5,7 +5,7 @@ use crate::{
     bsdf::{BsdfModel, Transport},
     math::{Spectrum, Vec3, offset},
     medium::MediumIndex,
-    phase::PhaseModel,
+    phase::{Deflection, PhaseModel},
     scene::Scene,
     shape::SurfacePoint,
 };
@@ -131,7 +131,7 @@ impl<L: Lanes> Vertex<L> {
         match &self.site {
             Site::Medium => {
                 let medium = &scene.media[self.medium.0 as usize];
-                let phase = medium.phase.density(-self.incoming.dot(outgoing));
+                let phase = medium.phase.density(Deflection::between(-self.incoming, outgoing));
                 let density = phase * medium.survival();
                 Scattering { value: medium.albedo * phase, forward: density, backward: density }
             }

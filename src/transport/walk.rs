@@ -11,7 +11,7 @@ use crate::{
     bsdf::{BsdfModel, Transport},
     math::{Spectrum, Vec3, measure},
     medium::MediumIndex,
-    phase::PhaseModel,
+    phase::{Deflection, PhaseModel},
     sampling::Stream,
     scene::Scene,
     shape::{Ray, SurfacePoint},
@@ -205,7 +205,7 @@ fn collide<L: Lanes>(scene: &Scene, vertex: &Vertex<L>, stream: &mut Stream) -> 
         return None;
     }
     let direction = medium.phase.sample(-vertex.incoming, stream);
-    let density = medium.phase.density(-vertex.incoming.dot(direction)) * survival;
+    let density = medium.phase.density(Deflection::between(-vertex.incoming, direction)) * survival;
     let weight = medium.albedo / survival;
     Some(Turn { direction, weight, forward: density, backward: density, dirac: false })
 }

@@ -6,7 +6,7 @@ use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{Emitter, Kind},
     math::DVec3,
-    phase::PhaseModel,
+    phase::{Deflection, PhaseModel},
     sampling::{Stream, stream::Purpose},
     scene::{
         Scene,
@@ -164,7 +164,7 @@ impl<'a> Twin<'a> {
         match &here.place {
             Place::Volume(_) => {
                 let medium = &self.scene.media[here.medium.0 as usize];
-                f64::from(medium.phase.density((-back.dot(on)) as f32))
+                f64::from(medium.phase.density(Deflection::between(-back.as_vec3(), on.as_vec3())))
                     * f64::from(medium.albedo.max_element())
             }
             Place::Surface(point) => reflect(self.scene, point, back, on, here.dirac, transport),

@@ -69,6 +69,14 @@ fn dirac_vertices_in_fog() {
 }
 
 #[test]
+fn surfaces_with_several_kinds_of_lobes() {
+    examine_all::<Fog>("plastic", &build(&[FOG, INSIDE, ROOM, LAMP, PLASTIC_BALL, MIRROR]), 400);
+    examine_all::<Bounded>("veiled", &build(&[FOG, INSIDE, ROOM, LAMP, VEILED_BALL]), 400);
+    examine_all::<Bounded>("stained", &build(&[FOG, INSIDE, ROOM, LAMP, BALL, STAINED_PANE]), 400);
+    examine_all::<Fog>("blurred", &build(&[FOG, INSIDE, ROOM, BULB, BLURRED_PANE]), 400);
+}
+
+#[test]
 fn emitters_at_infinity() {
     examine_all::<Bounded>("sky", &build(&[OUTSIDE, SMOKE, KERNEL, GROUND, SKY]), 1000);
     let setup = build(&[OUTSIDE, SMOKE, GROUND, SUN]);

@@ -82,6 +82,26 @@ pub const PANE: &str = r#""pane": {"type": "rectangle", "to_world": [{"type": "s
     "bsdf": {"type": "thindielectric", "int_ior": 1.5,
              "specular_transmittance": {"type": "rgb", "value": [0.9, 0.5, 0.2]}, "specular_reflectance": 0.9}}"#;
 
+/// A surface that scatters both as a Dirac lobe and diffusely, on one side.
+pub const PLASTIC_BALL: &str = r#""ball": {"type": "sphere", "center": [0.3, -0.4, 0.2], "radius": 0.4,
+    "bsdf": {"type": "plastic", "int_ior": 2.0}}"#;
+
+/// Smooth glass and chalk at one place, and both with holes.
+pub const VEILED_BALL: &str = r#""ball": {"type": "sphere", "center": [0.3, -0.4, 0.2], "radius": 0.4,
+    "bsdf": {"type": "mask", "opacity": 0.7, "nested": {"type": "blendbsdf", "weight": 0.4,
+    "glass": {"type": "dielectric", "int_ior": 1.5},
+    "chalk": {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": 0.8}}}}}"#;
+
+/// Stained glass, half of which goes straight through.
+pub const STAINED_PANE: &str = r#""pane": {"type": "rectangle", "to_world": [{"type": "scale", "value": 0.9},
+    {"type": "rotate", "axis": [0, 1, 0], "angle": 10}, {"type": "translate", "value": [0, 0, 0.1]}],
+    "bsdf": {"type": "translucent", "transmittance": {"type": "rgb", "value": [0.9, 0.5, 0.2]}}}"#;
+
+/// The same with a lobe.
+pub const BLURRED_PANE: &str = r#""pane": {"type": "rectangle", "to_world": [{"type": "scale", "value": 0.9},
+    {"type": "rotate", "axis": [0, 1, 0], "angle": 10}, {"type": "translate", "value": [0, 0, 0.1]}],
+    "bsdf": {"type": "translucent", "transmittance": 0.9, "directional": 0.7, "exponent": 30}}"#;
+
 /// A cube of smoke in the open.
 pub const SMOKE: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
     "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],

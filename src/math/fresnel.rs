@@ -1,6 +1,6 @@
 //! Fresnel's equations for dielectrics and conductors, and refraction.
 
-use crate::math::{Spectrum, Vec3, vec3};
+use super::{Spectrum, Vec3, vec3};
 
 /// An interface between two dielectrics as seen from one side.
 #[derive(Clone, Copy, Debug)]
@@ -40,25 +40,55 @@ impl Interfaces {
 impl Interface {
     /// Fresnel's reflectance of unpolarised light at `cosine` in [0, 1] to the normal of the near side; 1 in
     /// total reflection.
+    #[inline]
+    pub fn reflectance(&self, cosine: f32) -> f32 {
+        let (s, p) = self.polarised(cosine);
+        (0.5 * (s + p)).min(1.0)
+    }
+
+    /// The same of light that swings across and along the plane of incidence.
     ///
     /// With q = ratio cos_t the amplitudes (c - q)/(c + q) and (ratio^2 c - q)/(ratio^2 c + q) are multiplied
     /// above and below by their denominators; what cancels above then is `excess`.
     #[inline]
-    pub fn reflectance(&self, cosine: f32) -> f32 {
+    pub fn polarised(&self, cosine: f32) -> (f32, f32) {
         let Self { ratio, excess } = *self;
         if excess == 0.0 {
-            return 0.0;
+            return (0.0, 0.0);
         }
         let square = cosine * cosine;
         let q_square = square + excess;
         if q_square <= 0.0 {
-            return 1.0;
+            return (1.0, 1.0);
         }
         let q = q_square.sqrt();
         let (across, along) = (cosine + q, ratio * ratio * cosine + q);
         let s = excess / (across * across);
         let p = excess * ((2.0 + excess) * square - 1.0) / (along * along);
-        (0.5 * (s * s + p * p)).min(1.0)
+        (s * s, p * p)
+    }
+
+    /// The reflectance averaged over the near hemisphere by cosine.
+    pub fn diffuse_reflectance(&self) -> f64 {
+        self.moment(0)
+    }
+
+    /// Integral of the reflectance times x^`power` over x = cos^2 from 0 to 1.
+    ///
+    /// In total reflection the integrand is 1. Beyond, it is smooth in cos or, seen from the denser side, in
+    /// q; the third power of the step crowds points where an interface of nearly equal indices reflects.
+    pub fn moment(&self, power: i32) -> f64 {
+        let excess = f64::from(self.excess);
+        let total = (-excess).max(0.0);
+        let (steps, end) = (8192, (1.0 - total).sqrt());
+        let at = |i: i32| {
+            let t = (f64::from(i) + 0.5) / f64::from(steps);
+            let v = end * t * t * t;
+            let x = v * v + total;
+            f64::from(self.reflectance(x.sqrt() as f32)) * x.powi(power) * 2.0 * v * 3.0 * end * t * t
+        };
+        let beyond = (0..steps).map(at).sum::<f64>() / f64::from(steps);
+        beyond + total.powi(power + 1) / f64::from(power + 1)
     }
 
     /// Cosine of the refracted direction to the normal of the far side; none in total reflection.
@@ -163,6 +193,23 @@ mod tests {
         assert_eq!(both.inside.reflectance(0.5), 1.0);
         assert_eq!(both.outside.reflectance(0.0), 1.0);
         assert_eq!(Interfaces::new(1.3, 1.3).outside.reflectance(0.0), 0.0);
+    }
+
+    /// Duntley's closed form of the average over the hemisphere, for n > 1.
+    #[test]
+    fn the_diffuse_reflectance_is_duntley_s() {
+        for n in [1.05f64, 1.33, 1.5, 2.4] {
+            let (n2, n4) = (n * n, n.powi(4));
+            let exact = 0.5
+                + (n - 1.0) * (3.0 * n + 1.0) / (6.0 * (n + 1.0).powi(2))
+                + n2 * (n2 - 1.0).powi(2) / (n2 + 1.0).powi(3) * ((n - 1.0) / (n + 1.0)).ln()
+                - 2.0 * n2 * n * (n2 + 2.0 * n - 1.0) / ((n2 + 1.0) * (n4 - 1.0))
+                + 8.0 * n4 * (n4 + 1.0) / ((n2 + 1.0) * (n4 - 1.0).powi(2)) * n.ln();
+            let both = Interfaces::new(n, 1.0);
+            let found = [both.outside.diffuse_reflectance(), both.inside.diffuse_reflectance()];
+            assert!((found[0] - exact).abs() < 1e-5, "{n}: {found:?} for {exact}");
+            assert!((found[1] - (1.0 - (1.0 - exact) / n2)).abs() < 1e-5, "{n}: {found:?}");
+        }
     }
 
     #[test]

@@ -1,0 +1,151 @@
+//! A mixture of two materials: Mitsuba's `blendbsdf`.
+
+use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, number, only_nested, share};
+use crate::description::Params;
+use crate::error::Result;
+use crate::math::{Spectrum, Vec2, Vec3};
+use crate::sampling::Stream;
+use crate::texture::Texture;
+use std::sync::Arc;
+
+/// (1 - weight) first + weight second.
+#[derive(Clone, Debug)]
+pub struct Blend {
+    weight: Texture,
+    parts: Arc<[Bsdf; 2]>,
+}
+
+impl Blend {
+    /// `weight` in [0, 1], which must be given, and two nested bsdfs.
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        let weight = share(params, "weight", None)?;
+        Ok(Self { weight, parts: Arc::new(only_nested(params)?) })
+    }
+
+    #[inline]
+    fn weights(&self, uv: Vec2) -> [f32; 2] {
+        let second = number(&self.weight, uv).clamp(0.0, 1.0);
+        [1.0 - second, second]
+    }
+
+    /// Survival of both parts: where light crosses the surface, that of whichever side has more.
+    #[inline]
+    fn survivals(&self, uv: Vec2, wi: Vec3) -> [f32; 2] {
+        let part = |i: usize| {
+            let (here, part) = (self.parts[i].survival(uv, wi), &self.parts[i]);
+            if self.scatters_across() { here.max(part.survival(uv, -wi)) } else { here }
+        };
+        [part(0), part(1)]
+    }
+
+    /// Probabilities of going on by either part, given `survival`: those with which light does. The part that
+    /// passes straight through each of them has been taken away before.
+    #[inline]
+    fn choices(&self, uv: Vec2, wi: Vec3) -> [f32; 2] {
+        let (weights, total) = (self.weights(uv), self.survival(uv, wi));
+        let kept = |i: usize| {
+            let through = self.parts[i].null_transmission(uv, wi.z.abs()).max_element();
+            weights[i] * (1.0 - through).max(0.0)
+        };
+        let kept = [kept(0), kept(1)];
+        let scale = (kept[0] + kept[1]) * total;
+        let choice = |i: usize| {
+            if kept[i] > 0.0 && total > 0.0 { kept[i] * self.parts[i].survival(uv, wi) / scale } else { 0.0 }
+        };
+        [choice(0), choice(1)]
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        use super::{Conductor, Dielectric, Diffuse, Mask, Null, Plastic, RoughDielectric, ThinDielectric};
+        let with = |weight, first: Bsdf, second: Bsdf| Self {
+            weight: Texture::constant(Spectrum::splat(weight)),
+            parts: Arc::new([first, second]),
+        };
+        let grey = |x| Bsdf::from(Diffuse::grey(x));
+        let glass = Bsdf::from(Dielectric::examples().swap_remove(0));
+        let frosted = Bsdf::from(RoughDielectric::examples().swap_remove(0));
+        let pane = Bsdf::from(ThinDielectric::examples().swap_remove(4));
+        let plastic = Bsdf::from(Plastic::examples().swap_remove(1));
+        let gold = Bsdf::from(Conductor::examples().swap_remove(1));
+        let masked = Bsdf::from(Mask::examples().swap_remove(0));
+        let inner = Bsdf::from(with(0.5, grey(0.9), glass.clone()));
+        vec![
+            with(0.25, grey(0.5), grey(0.9)),
+            with(0.5, grey(0.8), glass),
+            with(0.4, frosted.clone(), plastic.clone()),
+            with(0.5, pane, grey(0.6)),
+            with(0.3, gold.clone(), plastic),
+            with(0.2, Null.into(), frosted),
+            with(0.5, masked, inner),
+            with(1.0, gold, grey(0.3)),
+        ]
+    }
+}
+
+impl BsdfModel for Blend {
+    #[inline]
+    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
+        let weights = self.weights(uv);
+        let (there, back) = (self.choices(uv, wi), self.choices(uv, wo));
+        let part = |i: usize| {
+            let BsdfValue { value, forward, backward } = self.parts[i].evaluate(uv, wi, wo, transport);
+            (value * weights[i], forward * there[i], backward * back[i])
+        };
+        let (first, second) = (part(0), part(1));
+        BsdfValue { value: first.0 + second.0, forward: first.1 + second.1, backward: first.2 + second.2 }
+    }
+
+    /// A Dirac lobe belongs to its part alone; of the rest either part could have made the sample.
+    #[inline]
+    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+        let choices = self.choices(uv, wi);
+        let u = stream.uniform();
+        let chosen = usize::from(u >= choices[0]);
+        if u >= choices[0] + choices[1] {
+            return None;
+        }
+        let sample = self.parts[chosen].sample(uv, wi, transport, stream)?;
+        if !sample.dirac {
+            return self.evaluate(uv, wi, sample.wo, transport).sampled(sample.wo);
+        }
+        let (choice, back) = (choices[chosen], self.choices(uv, sample.wo)[chosen]);
+        Some(BsdfSample {
+            weight: sample.weight * (self.weights(uv)[chosen] / choice),
+            forward: sample.forward * choice,
+            backward: sample.backward * back,
+            ..sample
+        })
+    }
+
+    #[inline]
+    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+        let (weights, survivals) = (self.weights(uv), self.survivals(uv, wi));
+        let part = |i: usize| if weights[i] > 0.0 { survivals[i] } else { 0.0 };
+        part(0).max(part(1))
+    }
+
+    #[inline]
+    fn null_transmission(&self, uv: Vec2, cosine: f32) -> Spectrum {
+        let weights = self.weights(uv);
+        let part = |i: usize| self.parts[i].null_transmission(uv, cosine) * weights[i];
+        part(0) + part(1)
+    }
+
+    fn is_connectible(&self) -> bool {
+        self.parts.iter().any(BsdfModel::is_connectible)
+    }
+
+    fn has_dirac(&self) -> bool {
+        self.parts.iter().any(BsdfModel::has_dirac)
+    }
+
+    fn has_null(&self) -> bool {
+        self.parts.iter().any(BsdfModel::has_null)
+    }
+
+    #[inline]
+    fn scatters_across(&self) -> bool {
+        self.parts.iter().any(BsdfModel::scatters_across)
+    }
+}

@@ -1,0 +1,63 @@
+//! A sheet that light comes through as from a diffuse lamp: Mitsuba 0.6's `difftrans`.
+
+use super::{BsdfModel, BsdfSample, BsdfValue, Transport, reflectance};
+use crate::description::Params;
+use crate::error::Result;
+use crate::math::{Vec2, Vec3, vec3, warp};
+use crate::sampling::Stream;
+use crate::texture::Texture;
+use std::f32::consts::FRAC_1_PI;
+
+/// Transmits alike into the whole far hemisphere, from both sides: f = transmittance / pi. Reflects nothing.
+#[derive(Clone, Debug)]
+pub struct DiffuseTransmitter {
+    transmittance: Texture,
+}
+
+impl DiffuseTransmitter {
+    /// `transmittance` (0.5), a colour or a texture.
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        Ok(Self { transmittance: reflectance(params, "transmittance", 0.5)? })
+    }
+
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        use crate::math::Spectrum;
+        let with = |color| Self { transmittance: Texture::constant(color) };
+        vec![with(Spectrum::ONE), with(Spectrum::new(0.2, 0.9, 0.0))]
+    }
+}
+
+impl BsdfModel for DiffuseTransmitter {
+    #[inline]
+    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
+        if wi.z * wo.z.signum() >= 0.0 || wo.z == 0.0 {
+            return BsdfValue::ZERO;
+        }
+        BsdfValue {
+            value: self.transmittance.eval(uv) * FRAC_1_PI,
+            forward: warp::cosine_hemisphere_density(wo.z.abs()),
+            backward: warp::cosine_hemisphere_density(wi.z.abs()),
+        }
+    }
+
+    #[inline]
+    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+        let w = warp::to_cosine_hemisphere(stream.square());
+        let wo = vec3(w.x, w.y, -w.z.copysign(wi.z));
+        self.evaluate(uv, wi, wo, transport).sampled(wo)
+    }
+
+    #[inline]
+    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+        self.transmittance.eval(uv).max_element()
+    }
+
+    fn is_connectible(&self) -> bool {
+        true
+    }
+
+    fn scatters_across(&self) -> bool {
+        true
+    }
+}
