@@ -188,6 +188,38 @@ fn info_tells_how_a_scene_would_be_rendered() {
     assert_eq!(desk.files(), ["scene.json"]);
 }
 
+#[test]
+fn a_scene_is_converted_there_and_back() {
+    let desk = Desk::new(&foggy_room());
+    let run = desk.run("convert scene.json scene.xml").succeeds();
+    assert_eq!((run.out().trim(), run.err().as_str()), ("scene.xml", ""));
+    desk.run("convert scene.xml again.json").succeeds();
+    desk.run("render scene.json -o a.exr").succeeds();
+    desk.run("render scene.xml -o b.exr").succeeds();
+    desk.run("render again.json -o c.exr").succeeds();
+    assert_eq!(desk.bytes("a.exr"), desk.bytes("b.exr"));
+    assert_eq!(desk.bytes("a.exr"), desk.bytes("c.exr"));
+}
+
+#[test]
+fn a_conversion_says_what_it_changed_and_writes_all_or_nothing() {
+    let text = "<scene version=\"3.0.0\"><default name=\"up\" value=\"0 1 0\"/>
+        <shape type=\"sphere\"><point name=\"center\" value=\"$up\"/></shape></scene>";
+    let desk = Desk::new(&foggy_room());
+    fs::write(desk.path("ball.xml"), text).unwrap();
+    let run = desk.run("convert ball.xml ball.json").succeeds();
+    assert!(run.err().contains("note: ball.xml:2:30: $up is written as its value"), "{}", run.err());
+    let before = desk.bytes("ball.json");
+    fs::write(desk.path("ball.xml"), text.replace("$up", "$u")).unwrap();
+    desk.run("convert ball.xml ball.json").is_refused(&["$u", "did you mean", "expected", "found"]);
+    assert_eq!(desk.bytes("ball.json"), before);
+    desk.run("convert ball.xml missing/ball.json -D up=x").is_refused(&["ball.xml"]);
+    desk.run("convert scene.json missing/scene.xml").is_refused(&["missing", "create the folder"]);
+    desk.run("convert scene.json scene.txt").is_refused(&["scene.txt", ".xml or .json"]);
+    desk.run("convert scene.json scene.json").is_refused(&["the same file", "another name"]);
+    assert_eq!(desk.files(), ["ball.json", "ball.xml", "scene.json"]);
+}
+
 /// Every mistake is refused with code 2 and a message that says what to mend, and leaves no file behind.
 #[test]
 fn mistakes_are_refused_and_leave_nothing_behind() {

@@ -199,7 +199,7 @@ fn parameters_are_put_in_place_of_their_names() {
     assert_eq!(shape.plugin, "sphere");
     for (name, value) in [
         ("n", Value::Integer(4)),
-        ("x", Value::Integer(3)),
+        ("x", Value::Float(3.0)),
         ("on", Value::Boolean(true)),
         ("f", Value::String("7/a.png".into())),
         ("v", Value::Vector([3.0, 4.0, 2.0])),
@@ -399,11 +399,7 @@ fn broken_files_of_xml_are_refused() {
     let rows = [
         broken("<shape version='3.0.0' type='s'/>", "scene.xml:1:1", &["<scene>", "<shape>"]),
         broken("<scene/>", "scene.xml:1:1", &["version"]),
-        broken(
-            "<scene version='0.6.0'/>",
-            "scene.xml:1:8",
-            &["2.x or 3.x", "convert the scene with Mitsuba 3"],
-        ),
+        broken("<scene version='0.6.0'/>", "scene.xml:1:8", &["2.x or 3.x", "upgrade it with Mitsuba 3"]),
         broken("<scene version='4.0.0'/>", "scene.xml:1:8", &["2.x or 3.x"]),
         broken("<scene version='three'/>", "scene.xml:1:8", &["2.x or 3.x"]),
         broken("<!DOCTYPE s [<!ENTITY a 'b'>]><scene version='3.0.0'/>", "", &["document type", "<default>"]),

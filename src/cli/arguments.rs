@@ -19,6 +19,8 @@ pub enum Command {
     Render(Render),
     /// Say what a scene holds, without rendering it
     Info(Info),
+    /// Spell a scene anew: Mitsuba 3 XML as JSON, or JSON as XML
+    Convert(Convert),
 }
 
 /// Render a scene to an image.
@@ -88,6 +90,29 @@ pub struct Info {
     /// Which scene.
     #[command(flatten)]
     pub scene: Scene,
+}
+
+/// Spell a scene anew: Mitsuba 3 XML as JSON, or JSON as XML
+///
+/// Kept: plugins, names, ids, references, order, every number to the last bit, colours, spectra, transforms step
+/// by step, and parameters with their defaults (XML's <default> is JSON's "$defaults"). Included files come into
+/// the one new file, and so do the values of spectrum files; an alias gives way to the id that it stands for.
+/// Comments and layout are not kept. Names of other files are changed so that they still lead to the same files,
+/// which stay where they are. Where a parameter stands in a place that the other spelling has no words for, its
+/// value is written instead, and a note on standard error says where.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Convert {
+    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json)
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+
+    /// Scene file to write; its ending, .xml or .json, says how
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+
+    /// Change the default of a $name parameter in OUT; may be repeated
+    #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
+    pub definitions: Vec<(String, String)>,
 }
 
 /// A scene file and what to set in it.

@@ -1,6 +1,7 @@
 //! The command line: arguments in, exit code out.
 
 pub mod arguments;
+mod convert;
 mod info;
 mod render;
 
@@ -21,6 +22,7 @@ pub fn run() -> ExitCode {
     let outcome = match &arguments.command {
         Command::Render(render) => render::run(render),
         Command::Info(info) => info::run(info),
+        Command::Convert(convert) => convert::run(convert),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -10,7 +10,7 @@ use std::{fmt, path::PathBuf, sync::Arc};
 pub use transform::TransformStep;
 
 /// Where in which file something stands.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Location {
     /// The file as the user named it (an included file under its own name).
     pub file: Arc<PathBuf>,
@@ -19,7 +19,7 @@ pub struct Location {
 }
 
 /// A place in a file, in the file's own terms.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Position {
     /// XML: line and column, both from 1.
     Text {

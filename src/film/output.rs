@@ -66,7 +66,7 @@ fn explain(path: &Path, error: &io::Error) -> Error {
         ErrorKind::NotADirectory => format!("choose a folder; {folder} is none"),
         _ => format!("check that {folder} can be written to"),
     };
-    Error::new(path.display(), "to write the image", error.to_string(), remedy)
+    Error::new(path.display(), "to write the file", error.to_string(), remedy)
 }
 
 /// An image must have as many pixels as its size says, and some.

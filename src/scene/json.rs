@@ -24,26 +24,30 @@
 //! | `{"type": "ref", "id": ...}` | a reference to the object with that id |
 //! | `{"type": ..., ...}` | a plugin |
 //!
+//! A plugin that Tyndall does not know may say in `"$tag"` which tag of XML it goes with; converting asks for it.
+//!
 //! The outermost object is a `scene`. Its direct children have their key as id; where one has an `"id"` of its
 //! own, either name leads to it. Objects further in have an id only if they say so.
 //!
 //! `$defaults`, at the top of the scene only, is Tyndall's own: parameters with their defaults, each a number,
 //! a boolean or a string. A value that is just `"$name"` becomes what the parameter is, number or not; inside a
 //! longer string the parameter's text is put in its place (`"$maps/brick.png"`). `-D name=value` on the command
-//! line overrides a default, with a value of the same kind. `\$` (in JSON: `"\\$"`) is a dollar sign.
+//! line overrides a default, with a value of the same kind (a number with a point stays one: `-D x=3` for
+//! `"x": 0.5` is 3.0). `\$` (in JSON: `"\\$"`) is a dollar sign.
 
 mod document;
 mod node;
 mod transform;
 mod values;
 
-use super::{parameters::Parameters, read::Draft, references::Alias, text};
+use super::{parameters::Parameters, read::Draft, references::Alias, tags::TAGS, text};
 use crate::{
-    description::{Object, Property, Value},
+    description::{Object, Property, Value, nearest},
     error::{Error, Result},
 };
 use document::Json;
 use node::Node;
+pub(super) use node::{below, index, key};
 use std::{path::Path, sync::Arc};
 
 /// Reads the scene at `path`.
@@ -86,6 +90,7 @@ fn object(node: &Node) -> Result<Object> {
     for child in node.entries()? {
         match child.name.as_str() {
             "type" => {}
+            TAG => object.tag = Some(tag(&child.node)?),
             "id" => object.id = Some(child.node.string()?.to_owned()),
             name => {
                 let value = value(&child.node)?;
@@ -94,6 +99,18 @@ fn object(node: &Node) -> Result<Object> {
         }
     }
     Ok(object)
+}
+
+/// The key of an object's tag in XML.
+const TAG: &str = "$tag";
+
+fn tag(node: &Node) -> Result<String> {
+    let word = node.string()?;
+    if TAGS[1..].contains(&word) {
+        return Ok(word.to_owned());
+    }
+    let remedy = format!("{}known: {}", nearest(word, &TAGS[1..]), TAGS[1..].join(", "));
+    Err(Error::new(&node.location, "a tag of Mitsuba's XML", format!("\"{word}\""), remedy))
 }
 
 /// Whatever can stand for a key.

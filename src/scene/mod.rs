@@ -7,14 +7,18 @@ mod film;
 pub mod integrator;
 mod json;
 pub mod lights;
+mod origins;
 mod parameters;
 mod read;
 mod references;
 mod steps;
+mod tags;
 mod text;
+mod write;
 mod xml;
 
-pub use read::read;
+pub use read::{Spelling, read};
+pub use write::{Conversion, convert, write};
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},

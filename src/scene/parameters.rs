@@ -1,13 +1,16 @@
 //! `$name` parameters: declared with a default in the scene, overridden by the user, put in place of `$name`.
 
+use super::origins::{Declaration, Kind, Origins};
 use crate::{
-    description::nearest,
+    description::{Location, nearest},
     error::{Error, Result},
 };
 
 /// All parameters known so far and what they stand for.
 pub(super) struct Parameters {
     entries: Vec<Entry>,
+    /// What reading replaces.
+    pub origins: Origins,
 }
 
 struct Entry {
@@ -25,10 +28,15 @@ pub(super) struct Undefined {
     pub remedy: String,
 }
 
+/// `text` such that substitution gives `text`.
+pub(super) fn escaped(text: &str) -> String {
+    text.replace('$', "\\$")
+}
+
 impl Parameters {
     /// What the user gave; a name twice is an error.
     pub fn new(definitions: &[(String, String)]) -> Result<Self> {
-        let mut parameters = Self { entries: Vec::new() };
+        let mut parameters = Self { entries: Vec::new(), origins: Origins::default() };
         for (name, value) in definitions {
             if name.is_empty() || parameters.get(name).is_some() {
                 let found = format!("-D {name}={value}");
@@ -40,11 +48,33 @@ impl Parameters {
         Ok(parameters)
     }
 
-    /// The scene's own default for `name`; what stands already, stays.
-    pub fn declare(&mut self, name: &str, default: &str) {
+    /// The scene's own default for `name`, which it writes as `text`; what stands already, stays.
+    pub fn declare(&mut self, name: &str, default: &str, text: &str, kind: Option<Kind>) {
         if self.get(name).is_none() {
             self.insert(name, default, false);
+            self.origins.declare(name, default, text, kind);
+        } else if let Some(entry) = self.get(name).filter(|entry| entry.by_user) {
+            let value = entry.value.clone();
+            self.origins.declare(name, &value, &escaped(&value), kind);
         }
+    }
+
+    /// Everything known when reading has ended; what only the user gave is declared too, as a scene needs it to
+    /// be read without the user's word.
+    pub fn into_origins(mut self) -> Origins {
+        for Entry { name, value, .. } in &self.entries {
+            self.origins.declare(name, value, &escaped(value), None);
+        }
+        self.origins
+    }
+
+    /// What a scene was read with, to read more of it.
+    pub fn of(declarations: &[Declaration]) -> Self {
+        let mut parameters = Self { entries: Vec::new(), origins: Origins::default() };
+        for Declaration { name, value, .. } in declarations {
+            parameters.insert(name, value, false);
+        }
+        parameters
     }
 
     fn get(&self, name: &str) -> Option<&Entry> {
@@ -61,6 +91,19 @@ impl Parameters {
         let place = self.entries.partition_point(|entry| entry.name.len() >= name.len());
         let (name, value) = (name.to_owned(), value.to_owned());
         self.entries.insert(place, Entry { name, value, used: false, by_user });
+    }
+
+    /// [`Self::substitute`], remembering that `text` stands at the attribute `name` of what is at `place`.
+    pub fn substitute_at(
+        &mut self,
+        text: &str,
+        place: &Location,
+        name: &str,
+    ) -> std::result::Result<String, Undefined> {
+        if text.contains('$') {
+            self.origins.record(place.clone(), name, text);
+        }
+        self.substitute(text)
     }
 
     /// `text` with every `$name` replaced; `\$` is a dollar sign.
@@ -81,6 +124,20 @@ impl Parameters {
             rest = &after[entry.name.len()..];
         }
         Ok(result + rest)
+    }
+
+    /// The names of all parameters in `text`, every one as often as it stands there.
+    pub fn names_in(&self, text: &str) -> Vec<&str> {
+        let mut names = Vec::new();
+        let mut rest = text;
+        while let Some(at) = rest.find('$') {
+            let after = &rest[at + 1..];
+            let is_escaped = rest[..at].ends_with('\\');
+            let entry = self.entries.iter().find(|entry| !is_escaped && after.starts_with(&entry.name));
+            names.extend(entry.map(|entry| entry.name.as_str()));
+            rest = &after[entry.map_or(0, |entry| entry.name.len())..];
+        }
+        names
     }
 
     fn undefined(&self, after: &str) -> Undefined {
@@ -140,8 +197,8 @@ mod tests {
     #[test]
     fn users_override_defaults_and_hear_of_idle_ones() {
         let mut p = with(&[("a", "user")]);
-        p.declare("a", "scene");
-        p.declare("b", "idle defaults are fine");
+        p.declare("a", "scene", "scene", None);
+        p.declare("b", "idle defaults are fine", "", None);
         assert!(p.finish().unwrap_err().found.contains("-D a=user"));
         assert_eq!(substituted(&mut p, "$a"), "user");
         p.finish().unwrap();

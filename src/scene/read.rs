@@ -1,6 +1,6 @@
 //! A scene file, whichever its spelling, as a description whose references all lead somewhere.
 
-use super::{json, parameters::Parameters, references, references::Alias, xml};
+use super::{json, origins::Origins, parameters::Parameters, references, references::Alias, xml};
 use crate::{
     description::Object,
     error::{Error, Result},
@@ -24,21 +24,31 @@ pub(super) struct Draft {
 ///
 /// In what comes back, ids are unique, every reference leads to an object, and none leads back to itself.
 pub fn read(path: &Path, definitions: &[(String, String)]) -> Result<Object> {
+    read_with_origins(path, definitions).map(|(root, _)| root)
+}
+
+/// [`read`], and what it replaced.
+pub(super) fn read_with_origins(path: &Path, definitions: &[(String, String)]) -> Result<(Object, Origins)> {
     let mut parameters = Parameters::new(definitions)?;
     let draft = match spelling(path)? {
         Spelling::Xml => xml::read(path, &mut parameters)?,
         Spelling::Json => json::read(path, &mut parameters)?,
     };
     parameters.finish()?;
-    references::settle(draft)
+    Ok((references::settle(draft)?, parameters.into_origins()))
 }
 
-enum Spelling {
+/// How scenes are spelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spelling {
+    /// Mitsuba's XML.
     Xml,
+    /// The dictionary of `mitsuba.load_dict`, as JSON.
     Json,
 }
 
-fn spelling(path: &Path) -> Result<Spelling> {
+/// The spelling that the ending of a file's name tells.
+pub(super) fn spelling(path: &Path) -> Result<Spelling> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match extension.as_deref() {
         Some("xml") => Ok(Spelling::Xml),

@@ -13,31 +13,15 @@ use super::{
     parameters::Parameters,
     read::{DEEPEST, Draft},
     references::Alias,
+    tags::TAGS,
 };
 use crate::{
-    description::{Object, Property, Value, nearest},
+    description::{Object, Property, TransformStep, Value, nearest},
     error::{Error, Result},
 };
 use element::Element;
 use files::{Folders, Source};
 use std::path::{Path, PathBuf};
-
-/// Tags of plugins.
-const OBJECTS: [&str; 13] = [
-    "scene",
-    "integrator",
-    "sensor",
-    "film",
-    "sampler",
-    "rfilter",
-    "shape",
-    "bsdf",
-    "texture",
-    "emitter",
-    "medium",
-    "phase",
-    "volume",
-];
 
 /// Tags that direct the reading.
 const DIRECTIONS: [&str; 6] = ["ref", "transform", "include", "default", "alias", "path"];
@@ -85,7 +69,7 @@ impl Reader<'_> {
         let root = self.element(&page, document.root_element())?;
         self.version(&root)?;
         let mut object = self.object(&mut page, &root, &["version"], 1)?;
-        page.folders.settle(&mut object, &source.file);
+        page.folders.settle(&mut object, &source.file, &mut self.parameters.origins);
         Ok(object)
     }
 
@@ -99,7 +83,8 @@ impl Reader<'_> {
         let remedy = match numbers.next() {
             Some(Ok(2 | 3)) if numbers.all(|part| part.is_ok()) => return Ok(()),
             Some(Ok(0 | 1)) => {
-                "convert the scene with Mitsuba 3: mitsuba.load_file, then mitsuba.xml.dict_to_xml"
+                "upgrade it with Mitsuba 3: parse_file, transform_upgrade and write_file of mitsuba.parser, \
+                 then write version=\"3.0.0\""
             }
             _ => "write version=\"3.0.0\" if the scene is for Mitsuba 3",
         };
@@ -148,11 +133,9 @@ impl Reader<'_> {
             "transform" => {
                 child.allow(&["name"])?;
                 child.require("name")?.nonempty()?;
-                let steps = child.children()?.into_iter();
-                let steps = steps.map(|node| transform::step(&self.element(page, node)?));
-                Value::Transform(steps.collect::<Result<_>>()?)
+                Value::Transform(self.steps(page, child)?)
             }
-            tag if OBJECTS.contains(&tag) || child.is_spectrum_plugin() => {
+            tag if TAGS.contains(&tag) || child.is_spectrum_plugin() => {
                 Value::Object(self.object(page, child, &[], depth + 1)?)
             }
             tag => match values::find(tag) {
@@ -164,11 +147,24 @@ impl Reader<'_> {
         add(parent, Property { name, value, location: child.location.clone() })
     }
 
+    fn steps(&mut self, page: &Page, transform: &Element) -> Result<Vec<TransformStep>> {
+        let (mut steps, mut places) = (Vec::new(), Vec::new());
+        for node in transform.children()? {
+            let element = self.element(page, node)?;
+            steps.push(transform::step(&element)?);
+            places.push(element.location);
+        }
+        self.parameters.origins.record_steps(transform.location.clone(), places);
+        Ok(steps)
+    }
+
     fn default(&mut self, element: &Element) -> Result<()> {
         element.allow(&["name", "value"])?;
         element.childless()?;
         let name = element.require("name")?.nonempty()?;
-        self.parameters.declare(name, &element.require("value")?.value);
+        let value = &element.require("value")?.value;
+        let text = self.parameters.origins.attribute(&element.location, "value").unwrap_or(value).to_owned();
+        self.parameters.declare(name, value, &text, None);
         Ok(())
     }
 
@@ -196,6 +192,7 @@ impl Reader<'_> {
             return Err(name.wrong(expected, "include fewer files from included files"));
         }
         let included = self.file(&path, page.folders.clone())?;
+        self.parameters.origins.included.insert(path);
         self.open.pop();
         if included.tag.as_deref() == Some("scene") {
             return included.properties.into_iter().try_for_each(|property| add(parent, property));
@@ -231,7 +228,7 @@ fn unknown(element: &Element) -> Error {
     if super::steps::WORDS.contains(&tag) {
         return misplaced(element, "inside <transform>");
     }
-    let known: Vec<_> = [&OBJECTS[1..], &DIRECTIONS, &values::tags()].concat();
+    let known: Vec<_> = [&TAGS[1..], &DIRECTIONS, &values::tags()].concat();
     let remedy = format!("{}known: {}", nearest(tag, &known), known.join(", "));
     Error::new(&element.location, "a tag of Mitsuba's scene format", format!("<{tag}>"), remedy)
 }

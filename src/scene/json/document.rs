@@ -1,7 +1,7 @@
 //! JSON text as a tree that keeps the order of keys, with parameters substituted.
 
 use super::{
-    super::{parameters::Parameters, text::quoted},
+    super::{origins::Kind, parameters::Parameters, text::quoted},
     Node,
 };
 use crate::{
@@ -91,14 +91,26 @@ fn declare(defaults: &Node, parameters: &mut Parameters, kinds: &mut Kinds) -> R
                 return Err(Error::new(place, "a number, a boolean or a string", found, remedy));
             }
         };
-        parameters.declare(&entry.name, &text);
-        kinds.push((entry.name, entry.node.json.clone()));
+        let written = match entry.node.json {
+            Json::String(written) => written,
+            _ => &text,
+        };
+        let kind = kind_of(entry.node.json, kinds);
+        parameters.declare(&entry.name, &text, written, kind.as_kind());
+        kinds.push((entry.name, kind));
     }
     Ok(())
 }
 
+/// A default that is just another parameter's name is of that parameter's kind.
+fn kind_of(default: &Json, kinds: &Kinds) -> Json {
+    let Json::String(text) = default else { return default.clone() };
+    let other = kinds.iter().find(|(name, _)| text.strip_prefix('$') == Some(name));
+    other.map_or_else(|| default.clone(), |(_, kind)| kind.clone())
+}
+
 fn filled(text: &str, location: &Location, parameters: &mut Parameters) -> Result<String> {
-    parameters.substitute(text).map_err(|undefined| {
+    parameters.substitute_at(text, location, "value").map_err(|undefined| {
         let found = format!("${}", undefined.name);
         let remedy = format!("{} (defaults stand in \"{DEFAULTS}\" of the scene)", undefined.remedy);
         Error::new(location, "a defined parameter", found, remedy)
@@ -155,18 +167,31 @@ impl Substitution<'_> {
 /// A parameter's text as a value of its default's kind; without a default, as what it looks like.
 fn typed(text: &str, default: Option<&Json>) -> std::result::Result<Json, String> {
     let integer = text.parse().ok().map(Json::Integer);
-    let number = || integer.or(text.parse().ok().filter(|x: &f64| x.is_finite()).map(Json::Float));
+    let float = || text.parse().ok().filter(|x: &f64| x.is_finite()).map(Json::Float);
+    let number = || integer.or(float());
     let boolean = || text.parse().ok().map(Json::Boolean);
     let string = || Json::String(text.to_owned());
     match default {
         None => Ok(number().or_else(boolean).unwrap_or_else(string)),
-        Some(Json::Integer(_) | Json::Float(_)) => number().ok_or("a number".into()),
+        Some(Json::Integer(_)) => number().ok_or("a number".into()),
+        Some(Json::Float(_)) => float().ok_or("a number".into()),
         Some(Json::Boolean(_)) => boolean().ok_or("true or false".into()),
         Some(_) => Ok(string()),
     }
 }
 
 impl Json {
+    /// The kind of the parameters whose default it is.
+    fn as_kind(&self) -> Option<Kind> {
+        match self {
+            Self::Boolean(_) => Some(Kind::Boolean),
+            Self::Integer(_) => Some(Kind::Integer),
+            Self::Float(_) => Some(Kind::Float),
+            Self::String(_) => Some(Kind::String),
+            Self::Null | Self::Array(_) | Self::Object(_) => None,
+        }
+    }
+
     /// What it is, for error messages.
     pub fn describe(&self) -> String {
         match self {

@@ -23,18 +23,18 @@ pub(super) struct Entry<'j> {
 }
 
 /// The step to `name` in a JSON path.
-pub(super) fn key(name: &str) -> String {
+pub(in super::super) fn key(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "_-$".contains(c);
     if !name.is_empty() && name.chars().all(plain) { format!(".{name}") } else { format!("[{name:?}]") }
 }
 
 /// The step to an item in a JSON path.
-pub(super) fn index(i: usize) -> String {
+pub(in super::super) fn index(i: usize) -> String {
     format!("[{i}]")
 }
 
 /// The place reached from `location` by `steps`.
-pub(super) fn below(location: &Location, steps: &str) -> Location {
+pub(in super::super) fn below(location: &Location, steps: &str) -> Location {
     let path = match &location.position {
         Position::Path(path) => format!("{path}{steps}"),
         Position::Text { .. } => steps.to_owned(),
@@ -68,7 +68,7 @@ impl<'j> Node<'j> {
         let Json::Object(entries) = self.json else { return Err(self.wrong("an object in braces")) };
         let entry = |(name, json): &'j (String, Json)| {
             let node = self.child(name, json);
-            if name.is_empty() || name.contains(['.', '$']) {
+            if name.is_empty() || (name.contains(['.', '$']) && name != super::TAG) {
                 let expected = "a name with neither \".\" nor \"$\" in it";
                 let remedy = "rename it; \"$defaults\" stands in the scene itself";
                 return Err(Error::new(node.location, expected, format!("\"{name}\""), remedy));

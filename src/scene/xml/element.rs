@@ -40,9 +40,10 @@ impl<'s> Element<'s> {
             let found = format!("<{tag}> in a namespace");
             return Err(Error::new(location, "an element without namespaces", found, "remove the xmlns"));
         }
+        let place = location.clone();
         let attributes = node.attributes().map(|a| {
             let location = source.location(a.range().start);
-            let value = match parameters.substitute(a.value()) {
+            let value = match parameters.substitute_at(a.value(), &place, a.name()) {
                 Ok(value) => value,
                 Err(undefined) => {
                     let found = format!("${}", undefined.name);

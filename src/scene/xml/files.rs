@@ -1,6 +1,10 @@
 //! Files: the text of one with places in it, and the folders in which names of others are looked up.
 
-use super::{super::text, Element, element::Attribute};
+use super::{
+    super::{origins::Origins, text},
+    Element,
+    element::Attribute,
+};
 use crate::{
     description::{Location, Object, Position, Value},
     error::{Error, Result},
@@ -114,13 +118,13 @@ impl Folders {
 
     /// Makes names of files that `file` gives absolute where they lie in a folder other than its own, so that
     /// later stages need not know of folders. Such names are strings called `filename` or `..._filename`.
-    pub fn settle(&self, object: &mut Object, file: &Arc<PathBuf>) {
+    pub fn settle(&self, object: &mut Object, file: &Arc<PathBuf>, origins: &mut Origins) {
         if self.folders.len() < 2 {
             return;
         }
         for property in &mut object.properties {
             match &mut property.value {
-                Value::Object(child) => self.settle(child, file),
+                Value::Object(child) => self.settle(child, file, origins),
                 Value::String(name)
                     if property.name.ends_with("filename") && Arc::ptr_eq(&property.location.file, file) =>
                 {
@@ -128,6 +132,7 @@ impl Folders {
                     let path = elsewhere.and_then(|path| std::path::absolute(path).ok());
                     if let Some(path) = path.as_deref().and_then(Path::to_str) {
                         path.clone_into(name);
+                        origins.record_found(property.location.clone());
                     }
                 }
                 _ => {}

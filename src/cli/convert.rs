@@ -1,0 +1,17 @@
+//! `tyndall convert`: a scene in one spelling in, the same scene in the other out.
+
+use super::{arguments, complain};
+use crate::{error::Result, film, scene};
+use std::io::Write as _;
+
+/// Runs the command.
+pub fn run(arguments: &arguments::Convert) -> Result<()> {
+    let arguments::Convert { input, output, definitions } = arguments;
+    let conversion = scene::convert(input, output, definitions)?;
+    film::output::write(output, |file| file.write_all(conversion.text.as_bytes()))?;
+    for note in &conversion.notes {
+        complain(&format!("note: {note}"));
+    }
+    super::say(&output.display().to_string());
+    Ok(())
+}

@@ -1,0 +1,481 @@
+//! Scenes written again: nothing is lost on the way from one spelling to the other and back.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
+
+use proptest::{
+    collection::vec,
+    prelude::*,
+    sample::select,
+    test_runner::{Config, RngSeed},
+};
+use std::{
+    collections::HashSet,
+    fs,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+use tempfile::TempDir;
+use tyndall::{
+    description::{Location, Object, Position, Property, TransformStep, Value},
+    scene::{self, Spelling},
+};
+
+/// A folder to write scenes into.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        Self { folder }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The tree in a file, without places.
+    fn read(&self, name: &str, definitions: &[(&str, &str)]) -> Object {
+        let root = scene::read(&self.path(name), &pairs(definitions)).unwrap_or_else(|error| {
+            panic!("{error}\n{}", fs::read_to_string(self.path(name)).unwrap_or_default())
+        });
+        without_places(root, &nowhere())
+    }
+
+    /// Converts one file to another and gives its text and the notes.
+    fn convert(&self, from: &str, to: &str, definitions: &[(&str, &str)]) -> (String, Vec<String>) {
+        let conversion = scene::convert(&self.path(from), &self.path(to), &pairs(definitions)).unwrap();
+        fs::write(self.path(to), &conversion.text).unwrap();
+        (conversion.text, conversion.notes)
+    }
+
+    /// What comes back of `root` as a file of this spelling, and the file's text.
+    fn through(&self, root: &Object, spelling: Spelling) -> (Object, String) {
+        let text = scene::write(root, spelling, Path::new("nowhere")).unwrap();
+        let name = if spelling == Spelling::Xml { "scene.xml" } else { "scene.json" };
+        fs::write(self.path(name), &text).unwrap();
+        (self.read(name, &[]), text)
+    }
+}
+
+fn pairs(definitions: &[(&str, &str)]) -> Vec<(String, String)> {
+    definitions.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
+}
+
+fn nowhere() -> Location {
+    Location { file: Arc::new("nowhere/scene".into()), position: Position::Path(String::new()) }
+}
+
+fn without_places(mut object: Object, nowhere: &Location) -> Object {
+    object.location = nowhere.clone();
+    for property in &mut object.properties {
+        property.location = nowhere.clone();
+        if let Value::Object(child) = &mut property.value {
+            *child = without_places(child.clone(), nowhere);
+        }
+    }
+    object
+}
+
+/// Equal to the last bit: `-0.0` is not `0.0`.
+fn assert_same(a: &Object, b: &Object, text: &str) {
+    let (a, b) = (format!("{a:#?}"), format!("{b:#?}"));
+    if let Some((a, b)) = a.lines().zip(b.lines()).find(|(a, b)| a != b) {
+        panic!("{a} is not {b}:\n{text}");
+    }
+    assert_eq!(a, b, "{text}");
+}
+
+fn finite() -> impl Strategy<Value = f64> + Clone {
+    let odd = select(vec![0.0, -0.0, 1.0, -1.0, 5e-324, f64::MAX, 0.1 + 0.2, 1e16, 1e22, 123_456_789.0]);
+    prop_oneof![odd, -100.0..100.0, any::<u64>().prop_map(bits)]
+}
+
+/// Any finite number there is.
+fn bits(bits: u64) -> f64 {
+    Some(f64::from_bits(bits)).filter(|x| x.is_finite()).unwrap_or(2.5)
+}
+
+fn triple(number: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = [f64; 3]> {
+    [number.clone(), number.clone(), number]
+}
+
+/// Text that XML can hold.
+fn text() -> impl Strategy<Value = String> {
+    let odd = ["", "$", "\\$", "\\\\$x", " a ", "<&\"'>", "a\tb\nc\r", "#$%", "\u{e9}\u{1f30d}", "]]>"];
+    prop_oneof![select(odd.to_vec()).prop_map(str::to_owned), "[ -~\u{a0}-\u{ff}\u{4e00}-\u{4eff}]{0,12}"]
+}
+
+fn step() -> impl Strategy<Value = TransformStep> {
+    let apart = |[origin, target, up]: &[[f64; 3]; 3]| {
+        let d: Vec<f64> = (0..3).map(|i| target[i] - origin[i]).collect();
+        let cross = [up[1] * d[2] - up[2] * d[1], up[2] * d[0] - up[0] * d[2], up[0] * d[1] - up[1] * d[0]];
+        cross.iter().any(|c| c.abs() > 0.01)
+    };
+    let near = || triple(-10.0..10.0f64);
+    let look = [near(), near(), near()].prop_filter("a view", apart);
+    prop_oneof![
+        triple(finite()).prop_map(TransformStep::Translate),
+        triple(finite()).prop_map(TransformStep::Scale),
+        (triple(0.1..10.0f64), finite()).prop_map(|(axis, angle)| TransformStep::Rotate { axis, angle }),
+        look.prop_map(|[origin, target, up]| TransformStep::LookAt { origin, target, up }),
+        vec(finite(), 16).prop_map(|rows| TransformStep::Matrix(rows.try_into().unwrap())),
+    ]
+}
+
+fn spectrum() -> impl Strategy<Value = Value> {
+    vec((1.0..100.0f64, finite()), 1..5).prop_map(|steps| {
+        let rising = steps.iter().scan(300.0, |nm, (more, value)| {
+            *nm += more;
+            Some((*nm, *value))
+        });
+        Value::Spectrum(rising.collect())
+    })
+}
+
+fn value() -> impl Strategy<Value = Value> {
+    prop_oneof![
+        any::<bool>().prop_map(Value::Boolean),
+        any::<i64>().prop_map(Value::Integer),
+        finite().prop_map(Value::Float),
+        text().prop_map(Value::String),
+        triple(finite()).prop_map(Value::Rgb),
+        triple(finite()).prop_map(Value::Vector),
+        vec(step(), 0..4).prop_map(Value::Transform),
+        spectrum(),
+    ]
+}
+
+/// Tags with plugins, one of them unknown.
+const PLUGINS: &[(&str, &str)] = &[
+    ("shape", "sphere"),
+    ("bsdf", "diffuse"),
+    ("bsdf", "clay"),
+    ("medium", "homogeneous"),
+    ("rfilter", "gaussian"),
+    ("volume", "gridvolume"),
+    ("texture", "d65"),
+    ("phase", "a \"b\" <c> $d"),
+];
+
+fn property(name: String, value: Value) -> Property {
+    Property { name, value, location: nowhere() }
+}
+
+fn plugin(tag: &str, plugin: &str, properties: Vec<Property>) -> Object {
+    let [tag, plugin] = [tag, plugin].map(str::to_owned);
+    Object { tag: Some(tag), plugin, id: None, properties, location: nowhere() }
+}
+
+/// A plugin without ids and references; names are given later.
+fn object() -> impl Strategy<Value = Object> {
+    let values = || vec(value().prop_map(|v| property(String::new(), v)), 0..4);
+    let leaf = (select(PLUGINS), values()).prop_map(|((tag, name), values)| plugin(tag, name, values));
+    leaf.prop_recursive(3, 12, 3, move |inner| {
+        (select(PLUGINS), values(), vec(inner, 0..3)).prop_map(|((tag, name), mut values, children)| {
+            values.extend(children.into_iter().map(|child| property(String::new(), Value::Object(child))));
+            plugin(tag, name, values)
+        })
+    })
+}
+
+/// Names that are no tags. Names and ids come from here by turns.
+const NAMES: &[&str] = &["a", "to_world", "Größe", "x y", "interior", "p-1", "a<b>&\"c\"", "filename"];
+
+/// Gives names and ids, and refers from later objects to earlier ones.
+fn scene(children: Vec<Object>, choices: &[u8]) -> Object {
+    let mut christening = Christening { choices: choices.iter().copied().cycle(), ids: Vec::new() };
+    let mut properties = Vec::new();
+    for (index, mut child) in children.into_iter().enumerate() {
+        let earlier = christening.ids.clone();
+        christening.name(&mut child, &earlier);
+        if !index.is_multiple_of(3) {
+            child.id.get_or_insert_with(|| format!("top {index}"));
+            christening.ids.extend(child.id.clone());
+        }
+        properties.push(property(String::new(), Value::Object(child)));
+    }
+    plugin("scene", "scene", properties)
+}
+
+struct Christening<I> {
+    choices: I,
+    ids: Vec<String>,
+}
+
+impl<I: Iterator<Item = u8>> Christening<I> {
+    fn name(&mut self, object: &mut Object, earlier: &[String]) {
+        for (index, p) in object.properties.iter_mut().enumerate() {
+            let choice = usize::from(self.choices.next().unwrap());
+            let is_named = !matches!(p.value, Value::Object(_)) || choice.is_multiple_of(2);
+            if is_named {
+                p.name = format!("{}{index}", NAMES[choice % NAMES.len()]);
+            }
+            if let Value::Object(child) = &mut p.value {
+                self.name(child, earlier);
+                if choice.is_multiple_of(5) {
+                    let id = format!("{}.{}", ["id", "$id", "i\u{e9} d"][choice % 3], self.ids.len());
+                    self.ids.push(id.clone());
+                    child.id = Some(id);
+                }
+            }
+        }
+        for (index, id) in earlier.iter().enumerate().filter(|(index, _)| index.is_multiple_of(4)) {
+            let name = if index.is_multiple_of(3) { format!("link {index}") } else { String::new() };
+            object.properties.push(property(name, Value::Reference(id.clone())));
+        }
+    }
+}
+
+fn any_scene() -> impl Strategy<Value = Object> {
+    (vec(object(), 0..5), vec(any::<u8>(), 8)).prop_map(|(children, choices)| scene(children, &choices))
+}
+
+proptest! {
+    #![proptest_config(Config { cases: 1000, rng_seed: RngSeed::Fixed(1996), failure_persistence: None, ..Config::default() })]
+
+    #[test]
+    fn what_is_written_is_read_again(tree in any_scene()) {
+        let desk = Desk::new(&[]);
+        let (xml, text) = desk.through(&tree, Spelling::Xml);
+        assert_same(&tree, &xml, &text);
+        prop_assert_eq!(scene::write(&xml, Spelling::Xml, Path::new("nowhere")).unwrap(), text);
+    }
+
+    #[test]
+    fn both_ways_lose_nothing(tree in any_scene()) {
+        let desk = Desk::new(&[]);
+        let (json, text) = desk.through(&tree, Spelling::Json);
+        let (again, same_text) = desk.through(&json, Spelling::Json);
+        assert_same(&json, &again, &text);
+        prop_assert_eq!(&text, &same_text);
+        let (xml, _) = desk.through(&json, Spelling::Xml);
+        assert_same(&tree, &xml, &text);
+    }
+}
+
+#[test]
+fn numbers_keep_their_kind_and_every_bit() {
+    let text = r#"{"type": "scene", "s": {"type": "sphere", "a": 1, "b": 1.0, "c": -0.0, "d": 0.1, "e": 1e300,
+        "f": 9223372036854775807, "g": 5e-324, "v": [-0.0, 1e22, 3]}}"#;
+    let desk = Desk::new(&[("a.json", text)]);
+    desk.convert("a.json", "b.xml", &[]);
+    desk.convert("b.xml", "c.json", &[]);
+    assert_same(&desk.read("a.json", &[]), &desk.read("c.json", &[]), "");
+    let xml = fs::read_to_string(desk.path("b.xml")).unwrap();
+    for line in [r#"<integer name="a" value="1"/>"#, r#"<float name="b" value="1"/>"#, r#"value="-0.0""#] {
+        assert!(xml.contains(line), "{xml}");
+    }
+    assert!(fs::read_to_string(desk.path("c.json")).unwrap().contains(r#""b": 1.0"#));
+}
+
+/// Whatever the user sets, both files mean the same.
+fn assert_same_with(desk: &Desk, a: &str, b: &str, definitions: &[(&str, &str)]) {
+    let tidy = |name: &str| tidied(desk.read(name, definitions));
+    assert_same(&tidy(a), &tidy(b), &fs::read_to_string(desk.path(b)).unwrap());
+}
+
+/// Without what only one of the spellings has: tags, and names made up.
+fn tidied(mut object: Object) -> Object {
+    object.tag = None;
+    for p in &mut object.properties {
+        if let Value::Object(child) = &mut p.value {
+            *child = tidied(child.clone());
+        }
+        if matches!(p.value, Value::Object(_) | Value::Reference(_)) {
+            p.name.clear();
+        }
+    }
+    if object.id.as_ref().is_some_and(|id| id.starts_with("shape") || id == "sensor") {
+        object.id = None;
+    }
+    object
+}
+
+#[test]
+fn parameters_stay_parameters() {
+    let xml = r#"<scene version="3.0.0">
+        <default name="res" value="48"/><default name="fov" value="40"/><default name="on" value="true"/>
+        <default name="dir" value="maps"/><default name="wide" value="$fov"/><default name="idle" value="x"/>
+        <default name="kind" value="sphere"/><default name="axis" value="0 1 0"/><default name="grey" value="0.5"/>
+        <sensor type="perspective"><float name="fov" value="$fov"/><float name="wide" value="$wide"/>
+          <transform name="to_world"><rotate value="$axis" angle="$fov"/><translate x="$res" y="1"/>
+            <scale value="$grey"/><lookat origin="$grey, 1 0" target="0 0 0" up="0 0 1"/></transform>
+          <film type="hdrfilm"><integer name="width" value="$res"/><integer name="height" value="${res}0"/></film></sensor>
+        <shape type="$kind" id="$kind"><boolean name="flip" value="$on"/><string name="map" value="$dir/a $on.png"/>
+          <rgb name="c" value="$grey"/><rgb name="d" value="0.1 $grey 0.3"/><point name="p" value="$axis"/></shape>
+      </scene>"#
+        .replace("${res}0", "$res");
+    let desk = Desk::new(&[("a.xml", &xml)]);
+    let (json, notes) = desk.convert("a.xml", "b.json", &[]);
+    for part in [
+        r#""res": 48"#,
+        r#""fov": 40.0"#,
+        r#""wide": "$fov""#,
+        r#""on": true"#,
+        r#""dir": "maps""#,
+        r#""idle": "x""#,
+        r#""width": "$res""#,
+        r#""type": "$kind""#,
+        r#""map": "$dir/a $on.png""#,
+        r#"[0.1, "$grey", 0.3]"#,
+        r#""angle": "$fov""#,
+    ] {
+        assert!(json.contains(part), "no {part} in {json}");
+    }
+    assert!(notes.iter().all(|note| note.contains("$axis") && note.contains("in JSON")), "{notes:?}");
+    assert!(!notes.is_empty());
+    desk.convert("b.json", "c.xml", &[]);
+    let (again, _) = desk.convert("c.xml", "d.json", &[]);
+    assert_eq!(json, again);
+    for definitions in [
+        &[][..],
+        &[("res", "7"), ("fov", "12.5"), ("on", "false"), ("kind", "cube")],
+        &[("wide", "3"), ("dir", "elsewhere"), ("grey", "0.25")],
+    ] {
+        assert_same_with(&desk, "a.xml", "b.json", definitions);
+        assert_same_with(&desk, "a.xml", "c.xml", definitions);
+    }
+    // What the user sets becomes the default.
+    desk.convert("a.xml", "set.json", &[("res", "9")]);
+    assert_eq!(
+        format!("{:?}", tidied(desk.read("set.json", &[]))),
+        format!("{:?}", tidied(desk.read("b.json", &[("res", "9")])))
+    );
+    // The same spelling loses not even the lists.
+    let (_, notes) = desk.convert("a.xml", "same.xml", &[]);
+    assert_eq!(notes, [""; 0]);
+    assert_same_with(&desk, "a.xml", "same.xml", &[("axis", "1, 2, 3")]);
+}
+
+#[test]
+fn parameters_of_json_stay_too() {
+    let json = r#"{"type": "scene", "$defaults": {"n": 4, "x": 0.5, "on": false, "dir": "maps", "file": "$dir/a"},
+        "s": {"type": "sphere", "n": "$n", "x": "$x", "on": "$on", "f": "$file.png", "v": ["$x", "$n", 2], "t": "\\$n",
+              "c": {"type": "rgb", "value": "$x"}, "w": [{"type": "scale", "x": "$x"}, {"type": "rotate", "axis": [0, "$n", 0], "angle": "$x"}]}}"#;
+    let desk = Desk::new(&[("a.json", json)]);
+    for (to, back) in [("b.xml", "c.json"), ("b2.json", "c2.xml")] {
+        assert_eq!(desk.convert("a.json", to, &[]).1, [""; 0]);
+        assert_eq!(desk.convert(to, back, &[]).1, [""; 0]);
+        for definitions in [&[][..], &[("n", "3"), ("x", "0.25"), ("on", "true"), ("dir", "b")]] {
+            assert_same_with(&desk, "a.json", to, definitions);
+            assert_same_with(&desk, "a.json", back, definitions);
+        }
+    }
+}
+
+#[test]
+fn a_parameter_that_a_matrix_of_nine_hides_is_told() {
+    let json = r#"{"type": "scene", "$defaults": {"z": 0}, "s": {"type": "sphere",
+        "to_world": [{"type": "matrix", "value": [1, 0, 0, "$z", 1, 0, 0, 0, 1]}]}}"#;
+    let desk = Desk::new(&[("a.json", json)]);
+    let (_, notes) = desk.convert("a.json", "b.xml", &[]);
+    assert!(notes[0].contains("$.s.to_world") && notes[0].contains("$z"), "{notes:?}");
+    assert_same_with(&desk, "a.json", "b.xml", &[]);
+}
+
+#[test]
+fn files_are_found_from_the_new_folder() {
+    let desk = Desk::new(&[
+        (
+            "in/a.xml",
+            r#"<scene version="3.0.0"><path value="assets"/><default name="d" value="meshes"/>
+               <include filename="parts/b.xml"/><shape type="obj"><string name="filename" value="m.obj"/></shape>
+               <shape type="obj"><string name="filename" value="$d/n.obj"/></shape>
+               <shape type="obj"><string name="filename" value="/abs/o.obj"/></shape></scene>"#,
+        ),
+        ("in/assets/m.obj", ""),
+        ("in/meshes/n.obj", ""),
+        (
+            "in/parts/b.xml",
+            r#"<scene version="3.0.0"><shape type="ply"><string name="filename" value="c.ply"/></shape></scene>"#,
+        ),
+        ("in/parts/c.ply", ""),
+        ("out/keep", ""),
+    ]);
+    let (json, notes) = desk.convert("in/a.xml", "out/a.json", &[]);
+    for name in ["../in/parts/c.ply", "../in/assets/m.obj", "/abs/o.obj"] {
+        assert!(json.contains(&format!("\"filename\": \"{name}\"")), "{name} in {json}");
+    }
+    assert!(notes.iter().any(|note| note.contains("parts/b.xml")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.contains("files now start at")), "{notes:?}");
+    // In its own folder names stay, parameters in them too.
+    let (json, notes) = desk.convert("in/a.xml", "in/a.json", &[]);
+    for name in ["parts/c.ply", "assets/m.obj", "$d/n.obj", "/abs/o.obj"] {
+        assert!(json.contains(&format!("\"filename\": \"{name}\"")), "{name} in {json}");
+    }
+    assert!(notes.iter().any(|note| note.contains("names of 2 files")), "{notes:?}");
+}
+
+#[test]
+fn names_are_made_up_and_dropped_again() {
+    let xml = r#"<scene version="3.0.0"><bsdf type="diffuse" id="glass"/>
+        <sensor type="perspective"><film type="hdrfilm"><rfilter type="gaussian"/></film></sensor>
+        <shape type="sphere"><ref id="glass"/></shape><shape type="cube"/><shape type="cube" id="shape"/></scene>"#;
+    let desk = Desk::new(&[("a.xml", xml)]);
+    let (json, _) = desk.convert("a.xml", "b.json", &[]);
+    for key in
+        [r#""film""#, r#""rfilter""#, r#""bsdf": { "type": "ref""#, r#""shape_2": {"#, r#""shape_3": {"#]
+    {
+        assert!(json.contains(key), "no {key} in {json}");
+    }
+    let (again, _) = desk.convert("b.json", "c.xml", &[]);
+    assert!(again.contains("<film type=\"hdrfilm\">") && again.contains("<ref id=\"glass\"/>"), "{again}");
+    let (json_again, _) = desk.convert("c.xml", "d.json", &[]);
+    assert_eq!(json, json_again);
+}
+
+#[test]
+fn what_a_spelling_cannot_hold_is_an_error() {
+    let desk = Desk::new(&[
+        ("control.json", r#"{"type": "scene", "s": {"type": "sphere", "note": "a\u0001"}}"#),
+        (
+            "dotted.xml",
+            r#"<scene version="3.0.0"><shape type="sphere"><float name="a.b" value="1"/></shape></scene>"#,
+        ),
+        ("unknown.json", r#"{"type": "scene", "s": {"type": "blob"}}"#),
+        ("told.json", r#"{"type": "scene", "s": {"type": "blob", "$tag": "shape"}}"#),
+    ]);
+    let refused = |from: &str, to: &str, words: &[&str]| {
+        let error = scene::convert(&desk.path(from), &desk.path(to), &[]).unwrap_err().to_string();
+        words.iter().for_each(|word| assert!(error.contains(word), "{word}: {error}"));
+    };
+    refused("control.json", "a.xml", &["$.s.note", "U+0001", "what XML can hold"]);
+    refused("dotted.xml", "a.json", &["dotted.xml:1:45", "a.b", "what JSON can hold"]);
+    refused("unknown.json", "a.xml", &["$.s", "\"blob\"", "\"$tag\""]);
+    refused("unknown.json", "a.yaml", &[".xml or .json"]);
+    refused("told.json", "./told.json", &["the same file"]);
+    let (xml, _) = desk.convert("told.json", "told.xml", &[]);
+    assert!(xml.contains("<shape type=\"blob\" id=\"s\"/>"), "{xml}");
+    assert!(desk.convert("told.xml", "again.json", &[]).0.contains("\"$tag\": \"shape\""));
+}
+
+/// Every scene that is shipped, there and back.
+#[test]
+fn shipped_scenes_come_back() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["scenes", "scenes/crosscheck", "tests/scenes"];
+    let entries = folders.iter().flat_map(|folder| fs::read_dir(root.join(folder)).unwrap());
+    let mut seen = HashSet::new();
+    for path in entries.map(|entry| entry.unwrap().path()) {
+        let (ours, other) = match path.extension().and_then(|e| e.to_str()) {
+            Some("xml") => ("xml", "json"),
+            Some("json") => ("json", "xml"),
+            _ => continue,
+        };
+        // Beside the scene, so that names of files stay; nothing is written there.
+        let there = scene::convert(&path, &path.with_extension(format!("new.{other}")), &[]).unwrap();
+        let desk = Desk::new(&[(&format!("there.{other}"), &there.text)]);
+        let back = desk.convert(&format!("there.{other}"), &format!("back.{ours}"), &[]).0;
+        let direct = scene::convert(&path, &path.with_extension(format!("new.{ours}")), &[]).unwrap();
+        assert_eq!(direct.text, back, "{}", path.display());
+        assert!(there.notes.is_empty(), "{:?}", there.notes);
+        seen.insert(ours);
+    }
+    assert_eq!(seen.len(), 2);
+}
