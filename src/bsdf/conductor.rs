@@ -47,7 +47,7 @@ impl Metal {
         }
         let (eta, k) = match params.optional_string("material")? {
             Some(name) if name != "none" => metals::named(params, name)?,
-            _ => (params.color("eta", 0.0)?, params.color("k", 1.0)?),
+            _ => (params.index("eta", 0.0)?, params.index("k", 1.0)?),
         };
         Ok(Self::new(eta, k, reflectance(params, "specular_reflectance", 1.0)?))
     }

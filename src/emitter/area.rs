@@ -20,7 +20,7 @@ pub struct Area {
 impl Area {
     /// Reads `radiance`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { radiance: params.color("radiance", 1.0)?, sampling_weight: sampling_weight(params)? })
+        Ok(Self { radiance: params.emission("radiance", 1.0)?, sampling_weight: sampling_weight(params)? })
     }
 
     /// Radiance leaving at `cosine` to the normal: none behind.

@@ -15,6 +15,6 @@ pub struct Constant {
 impl Constant {
     /// Reads `radiance`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { radiance: params.color("radiance", 1.0)?, sampling_weight: sampling_weight(params)? })
+        Ok(Self { radiance: params.emission("radiance", 1.0)?, sampling_weight: sampling_weight(params)? })
     }
 }

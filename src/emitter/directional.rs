@@ -33,7 +33,7 @@ impl Directional {
         };
         Ok(Self {
             direction: direction.normalize().as_vec3(),
-            irradiance: params.color("irradiance", 1.0)?,
+            irradiance: params.emission("irradiance", 1.0)?,
             sampling_weight: sampling_weight(params)?,
         })
     }

@@ -23,7 +23,7 @@ impl Point {
     pub fn build(params: &Params<'_>) -> Result<Self> {
         Ok(Self {
             position: point_position(params)?,
-            intensity: params.color("intensity", 1.0)?,
+            intensity: params.emission("intensity", 1.0)?,
             sampling_weight: sampling_weight(params)?,
         })
     }

@@ -37,7 +37,7 @@ impl Spot {
         let beam = params.float_within("beam_width", cutoff * 0.75, 0.0, cutoff)?;
         Ok(Self {
             position: to_world.transform_point3(DVec3::ZERO),
-            intensity: params.color("intensity", 1.0)?,
+            intensity: params.emission("intensity", 1.0)?,
             sampling_weight: sampling_weight(params)?,
             axis: Frame::around(axis),
             cutoff: cutoff.to_radians() as f32,
