@@ -123,7 +123,11 @@ fn every_value_has_both_spellings() {
             r##"{"type": "rgb", "value": "#ff00ff"}"##,
             Value::Rgb([1.0, 0.0, 1.0]),
         ),
-        (r#"<spectrum name="v" value="0.5"/>"#, r#"{"type": "spectrum", "value": 0.5}"#, Value::Float(0.5)),
+        (
+            r#"<spectrum name="v" value="0.5"/>"#,
+            r#"{"type": "spectrum", "value": 0.5}"#,
+            Value::Spectrum(vec![(0.0, 0.5)]),
+        ),
         (
             r#"<spectrum name="v" value="400:0.1, 700:0.4"/>"#,
             r#"{"type": "spectrum", "value": [[400, 0.1], [700, 0.4]]}"#,

@@ -1,5 +1,6 @@
 //! The scene description: one tree, whichever spelling it was read from. Models build themselves from it.
 
+pub mod colour;
 mod library;
 pub mod params;
 pub mod transform;
@@ -80,7 +81,7 @@ pub enum Value {
     String(String),
     /// A linear-sRGB colour.
     Rgb([f64; 3]),
-    /// Wavelength [nm] and value pairs.
+    /// Wavelength [nm] and value pairs in order of wavelength; a single pair has its value at all wavelengths.
     Spectrum(Vec<(f64, f64)>),
     /// A point or vector.
     Vector([f64; 3]),

@@ -1,6 +1,10 @@
 //! Typed access to an object's parameters. What nobody asked for is an error: nothing is ignored silently.
 
-use super::{Library, Location, Object, Property, Value, nearest, transform};
+use super::{
+    Library, Location, Object, Property, Value,
+    colour::{self, Role},
+    nearest, transform,
+};
 use crate::{
     error::{Error, Result},
     math::{DMat4, DVec3, Spectrum},
@@ -142,15 +146,31 @@ impl<'a> Params<'a> {
         Err(self.complain(name, "an invertible transform", found))
     }
 
-    /// A colour with finite entries >= 0: a number (grey), rgb, or a spectrum of equal values; where given.
+    /// A colour of matter with finite entries >= 0: a number (grey), rgb, a spectrum, or a plugin that stands
+    /// for one; where given.
     pub fn optional_color(&self, name: &'static str) -> Result<Option<Spectrum>> {
-        let Some(property) = self.property(name) else { return Ok(None) };
-        color(property).map(Some)
+        self.color_of(name, Role::Matter)
     }
 
-    /// A colour with finite entries >= 0.
+    /// A colour of matter with finite entries >= 0: a reflectance, an albedo, an extinction.
     pub fn color(&self, name: &'static str, default: f32) -> Result<Spectrum> {
         Ok(self.optional_color(name)?.unwrap_or(Spectrum::splat(default)))
+    }
+
+    /// An index of refraction or the like: as [`Self::color`], but spectra may exceed 1.
+    pub fn index(&self, name: &'static str, default: f32) -> Result<Spectrum> {
+        Ok(self.color_of(name, Role::Index)?.unwrap_or(Spectrum::splat(default)))
+    }
+
+    /// Radiance, irradiance or intensity, with finite entries >= 0: spectra are the light itself, not seen in
+    /// daylight.
+    pub fn emission(&self, name: &'static str, default: f32) -> Result<Spectrum> {
+        Ok(self.color_of(name, Role::Light)?.unwrap_or(Spectrum::splat(default)))
+    }
+
+    fn color_of(&self, name: &'static str, role: Role) -> Result<Option<Spectrum>> {
+        let Some(property) = self.property(name) else { return Ok(None) };
+        colour::read(property, self.library, role).map(Some)
     }
 
     /// A file named by the string `name`, relative to the file that names it. Must exist.
@@ -267,26 +287,4 @@ fn wrong(property: &Property, expected: &str) -> Error {
         value.describe(),
         format!("correct \"{name}\""),
     )
-}
-
-/// A property as a colour (see [`Params::optional_color`]).
-pub fn color(property: &Property) -> Result<Spectrum> {
-    let expected = "a colour (a number, rgb or constant spectrum) with finite entries >= 0";
-    let rgb = match &property.value {
-        Value::Rgb(c) => *c,
-        Value::Spectrum(pairs) if pairs.iter().all(|p| p.1 == pairs[0].1) && !pairs.is_empty() => {
-            [pairs[0].1; 3]
-        }
-        value => [number(value).ok_or_else(|| wrong(property, expected))?; 3],
-    };
-    if rgb.iter().all(|c| c.is_finite() && *c >= 0.0) {
-        return Ok(DVec3::from(rgb).as_vec3());
-    }
-    let (name, found) = (&property.name, format!("{rgb:?}"));
-    Err(Error::new(
-        &property.location,
-        format!("{expected} for \"{name}\""),
-        found,
-        format!("correct \"{name}\""),
-    ))
 }

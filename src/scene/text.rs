@@ -150,8 +150,9 @@ pub(super) fn spectrum(text: &str) -> Parsed<Spectrum> {
 
 /// Checks the order of wavelengths.
 pub(super) fn samples(pairs: Vec<(f64, f64)>) -> Parsed<Spectrum> {
-    if pairs.is_empty() {
-        return mistake("a spectrum: one number, or wavelength:value pairs", "nothing");
+    if pairs.len() < 2 {
+        let found = format!("{} pairs", pairs.len());
+        return mistake("a spectrum: one number, or two or more wavelength:value pairs", found);
     }
     match pairs.windows(2).find(|pair| pair[0].0 >= pair[1].0) {
         None => Ok(Spectrum::Sampled(pairs)),
@@ -218,7 +219,7 @@ mod tests {
         assert_eq!(spectrum(" 0.4").unwrap(), Spectrum::Constant(0.4));
         let sampled = Spectrum::Sampled(vec![(400.0, 0.1), (700.0, 0.4)]);
         assert_eq!(spectrum("400:0.1, 700:0.4").unwrap(), sampled);
-        for text in ["700:0.1 400:0.4", "0.1 0.4", "", "400:", "400:1:2"] {
+        for text in ["400:0.1", "700:0.1 400:0.4", "0.1 0.4", "", "400:", "400:1:2"] {
             assert!(spectrum(text).is_err(), "{text}");
         }
     }
