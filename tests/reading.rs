@@ -353,12 +353,12 @@ fn broken_xml_is_refused_with_place_and_remedy() {
         broken(
             "<transform name='t'><lookat origin='1 1 1' target='1,1,1'/></transform>",
             "scene.xml:1:44",
-            &["target is not its origin"],
+            &["target other than the origin"],
         ),
         broken(
             "<transform name='t'><lookat origin='0 0 0' target='0,1,0' up='0 2 0'/></transform>",
             "scene.xml:1:44",
-            &["up is not along"],
+            &["up that is not along"],
         ),
         broken("<float name='a' value='$res'/>", "scene.xml:1:40", &["$res", "-D res="]),
         broken(
@@ -411,7 +411,7 @@ fn broken_files_of_xml_are_refused() {
 #[test]
 fn broken_json_is_refused_with_place_and_remedy() {
     let rows = [
-        broken(r#"{"type": "scene""#, "scene.json:1:16", &["well-formed JSON", "eof"]),
+        broken(r#"{"type": "scene""#, "scene.json:1:16", &["well-formed JSON", "the end of the file"]),
         broken("{\"type\": \"scene\",\n \"a\": 1,\n \"a\": 2}", "scene.json:3:5", &["once", "\"a\""]),
         broken("[1, 2, 3]", "$", &["\"type\"", "a list of 3"]),
         broken("{}", "$", &["\"type\""]),
@@ -421,7 +421,7 @@ fn broken_json_is_refused_with_place_and_remedy() {
         broken(r#"{"type": "scene", "s": null}"#, "$.s", &["null"]),
         broken(r#"{"type": "scene", "s": [1, 2]}"#, "$.s", &["three numbers", "2 numbers"]),
         broken(r#"{"type": "scene", "s": [1, "2", 3]}"#, "$.s[1]", &["a number", "\"2\""]),
-        broken(r#"{"type": "scene", "s": 1e999}"#, "scene.json:1:29", &["number out of range"]),
+        broken(r#"{"type": "scene", "s": 1e999}"#, "scene.json:1:29", &["within +-1.8e308"]),
         broken(r#"{"type": "scene", "a.b": 1}"#, r#"$["a.b"]"#, &["\".\""]),
         broken(
             r#"{"type": "scene", "s": {"type": "s", "$defaults": {}}}"#,
@@ -534,7 +534,7 @@ fn deep_nesting_is_an_error_not_a_crash() {
     assert!(read_xml(&xml(50_000), &[]).unwrap_err().to_string().contains("at most 100 deep"));
     let json = |n| format!("{}1{}", r#"{"type": "scene", "a": "#.repeat(n), "}".repeat(n));
     read_json(&json(90), &[]).unwrap();
-    assert!(read_json(&json(50_000), &[]).unwrap_err().to_string().contains("recursion limit"));
+    assert!(read_json(&json(50_000), &[]).unwrap_err().to_string().contains("at most 127 levels"));
     read_json(&json(110), &[]).unwrap_err();
 }
 
