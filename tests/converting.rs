@@ -237,7 +237,7 @@ fn any_scene() -> impl Strategy<Value = Object> {
 }
 
 proptest! {
-    #![proptest_config(Config { cases: 1000, rng_seed: RngSeed::Fixed(1996), failure_persistence: None, ..Config::default() })]
+    #![proptest_config(Config { cases: 400, rng_seed: RngSeed::Fixed(1996), failure_persistence: None, ..Config::default() })]
 
     #[test]
     fn what_is_written_is_read_again(tree in any_scene()) {

@@ -4,7 +4,10 @@
 //! cannot evaluate the plugins `regular`, `irregular` and `blackbody`; here they are taken like the plain
 //! spectra of the same values, which is also what the spectral variants show.
 
-use super::{Library, Object, Params, Property, Value};
+use super::{
+    Library, Object, Params, Property, Value,
+    params::{COLOR, spelling},
+};
 use crate::{
     error::{Error, Result},
     math::{
@@ -100,9 +103,7 @@ struct Place<'a> {
 impl Place<'_> {
     fn wrong(&self, found: String) -> Error {
         let Property { name, location, .. } = self.property;
-        let expected =
-            format!("a colour (a number, rgb or spectrum) with finite entries >= 0 for \"{name}\"");
-        Error::new(location, expected, found, format!("correct \"{name}\""))
+        Error::new(location, format!("{COLOR} for \"{name}\""), found, spelling(self.property, COLOR))
     }
 
     fn checked(&self, rgb: DVec3) -> Result<Spectrum> {

@@ -34,7 +34,10 @@ fn mistake<T>(expected: impl Into<String>, found: impl Into<String>) -> Parsed<T
 pub(super) fn of_file(path: &Path) -> Result<String> {
     let bytes = std::fs::read(path).map_err(|error| Error::io(path, "read", &error))?;
     let text = String::from_utf8(bytes).map_err(|error| {
-        let found = format!("other bytes at offset {}", error.utf8_error().valid_up_to());
+        let found = match error.as_bytes() {
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "text in UTF-16".into(),
+            _ => format!("other bytes at offset {}", error.utf8_error().valid_up_to()),
+        };
         Error::new(path.display(), "text in UTF-8", found, "save the file as UTF-8")
     })?;
     // Some editors mark UTF-8 with a byte-order mark, which is no part of the text.
