@@ -159,7 +159,12 @@ fn misplaced(child: &Child<'_>) -> Error {
     }
     if tags.contains(&"sensor") {
         let found = format!("\"{plugin}\", which only Mitsuba has");
-        return Error::new(child.location, "a sensor of Tyndall", found, "replace it by a perspective, thinlens or orthographic");
+        return Error::new(
+            child.location,
+            "a sensor of Tyndall",
+            found,
+            "replace it by a perspective, thinlens or orthographic",
+        );
     }
     let remedy = "move it into the object that it belongs to (films and samplers into the sensor)";
     Error::new(child.location, "a plugin that stands in the scene itself", format!("\"{plugin}\""), remedy)
