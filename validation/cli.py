@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from validation import compare, contenders, matrix, pane, race, references, selftest, truths
+from validation import assets, cells, compare, contenders, coverage, matrix, pane, race, references, selftest, truths
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, SCENES
@@ -11,6 +11,8 @@ from validation.scene import open_scene
 
 QUICK = Effort(batches=16, spp=48)
 FULL = Effort(batches=32, spp=256)
+SAMPLE = 24
+"""Generated cells that the quick matrix takes."""
 
 
 def main(arguments: list[str]) -> int:
@@ -98,12 +100,18 @@ def add_matrix(commands) -> None:
     command = add(commands, "matrix", run_matrix, "Every cross-check scene through all integrators that can render it.")
     effort = command.add_mutually_exclusive_group()
     effort.add_argument("--quick", dest="effort", action="store_const", const=QUICK, default=QUICK, help="minutes (default)")
-    effort.add_argument("--full", dest="effort", action="store_const", const=FULL, help="an hour")
-    command.add_argument("--only", default="", help="only scenes whose file name contains this")
+    effort.add_argument("--full", dest="effort", action="store_const", const=FULL, help="all generated cells; hours")
+    command.add_argument("--only", default="", help="only scenes whose name contains this")
+    command.add_argument(
+        "--matrix-seed", type=int, default=cells.SEED, metavar="N", help="another sample of the generated cells (default %(default)s)"
+    )
+    add(commands, "coverage", lambda _: coverage.run(), "Which shared plugins no cross-check scene has.")
+    add(commands, "assets", lambda _: assets.run(), "Makes the cross-check scenes' images and meshes anew.")
 
 
 def run_matrix(options) -> bool:
-    return matrix.run(options.effort, options.only)
+    sample = SAMPLE if options.effort == QUICK else None
+    return matrix.run(options.effort, options.only, sample, options.matrix_seed)
 
 
 def add_selftest(commands) -> None:

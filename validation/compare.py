@@ -18,6 +18,8 @@ TILES = 6
 """The image is also compared as so many tiles a side, all of which must pass: what is wrong in one place only."""
 IMAGE_ERRORS = 3
 """How many standard errors the image means may be apart."""
+NAME_WIDTH = 36
+"""Of the printed table's first column [characters]."""
 RETRY = 4
 """A disagreement is tried again with so many times the samples and new seeds: a bias stays, bad luck does not."""
 
@@ -36,6 +38,10 @@ class Effort:
     def harder(self) -> "Effort":
         """The effort of the second trial."""
         return Effort(self.batches, RETRY * self.spp, self.seed + 1000)
+
+    def times(self, factor: float) -> "Effort":
+        """The effort with so many times the samples."""
+        return Effort(self.batches, max(1, round(factor * self.spp)), self.seed)
 
 
 @dataclass(frozen=True)
@@ -68,14 +74,14 @@ class Verdict:
         where = "" if self.passed else f"  worst pixel {self.worst}"
         again = "" if self.trials == 1 else f"  ({self.trials} trials)"
         return (
-            f"{self.scene:24} {self.integrator:8} {100 * self.accepted:8.2f} % {self.tile_score:6.2f} {self.image_score:+8.2f}"
+            f"{self.scene:{NAME_WIDTH}} {self.integrator:8} {100 * self.accepted:8.2f} % {self.tile_score:6.2f} {self.image_score:+8.2f}"
             f" {100 * self.difference:+8.2f} % {100 * self.resolution:7.2f} % {self.seconds:7.1f} s"
             f"  {'agree' if self.passed else 'DISAGREE'}{where}{again}"
         )
 
 
 HEADER = (
-    f"{'scene':24} {'method':8} {'accepted':>10} {'tiles':>6} {'mean, se':>8} {'mean, rel':>10} {'resolves':>9} {'time':>9}  verdict"
+    f"{'scene':{NAME_WIDTH}} {'method':8} {'accepted':>10} {'tiles':>6} {'mean, se':>8} {'mean, rel':>10} {'resolves':>9} {'time':>9}  verdict"
 )
 
 
@@ -176,7 +182,7 @@ def tested(
         candidate = candidate_renderer(scene, method, size)
         verdict = compare(scene, method, effort, reference, candidate, output)
     except Failure as failure:
-        print(f"{scene.name:24} {method:8} CANNOT: {failure}", flush=True)
+        print(f"{scene.name:{NAME_WIDTH}} {method:8} CANNOT: {failure}", flush=True)
         return False
     print(verdict.row(), flush=True)
     return verdict.passed

@@ -40,6 +40,7 @@ def use(variant: str) -> None:
             raise Failure("LLVM 19 was not found", "install it (Debian: libllvm19) or set DRJIT_LIBLLVM_PATH to its library")
         os.environ["DRJIT_LIBLLVM_PATH"] = libllvm()
     mi.set_variant(variant)
+    mi.set_log_level(mi.LogLevel.Error)  # what it rounds and clamps is not what the table is about
 
 
 def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None = None):

@@ -9,16 +9,17 @@ from validation.places import CACHE
 from validation.scene import Scene
 
 
-def cached(scene: Scene, size=None) -> Callable[[Effort], np.ndarray]:
+def cached(scene: Scene, size=None, variant: str = "scalar_rgb") -> Callable[[Effort], np.ndarray]:
     """Reference batches by effort; rendered where they are not kept."""
 
     def batches(effort: Effort) -> np.ndarray:
         shape = "" if size is None else f"-{size[0]}x{size[1]}"
+        shape += "" if variant == "scalar_rgb" else f"-{variant}"
         name = f"{scene.name}-{scene.key()}{shape}-{effort.batches}x{effort.spp}-{effort.seed}.npy"
         path = CACHE / name
         if path.is_file():
             return np.load(path)
-        rendered = render_batches(mitsuba_renderer(scene, size=size), effort)
+        rendered = render_batches(mitsuba_renderer(scene, variant, size), effort)
         keep(path, rendered)
         return rendered
 

@@ -39,9 +39,14 @@ class Scene:
             digest.update(json.dumps(self.source).encode())
         else:
             digest.update(self.source.read_bytes())
-            for asset in sorted((self.folder / "assets").glob("*")):
-                digest.update(asset.read_bytes())
+        for path in self.beside():
+            digest.update(path.read_bytes())
         return digest.hexdigest()[:20]
+
+    def beside(self) -> list[Path]:
+        """The files that the scene may name: assets and, beside an XML file in a folder of its own, all there are."""
+        alone = self.is_xml and len(list(self.folder.glob("*.json"))) == 0
+        return sorted(path for path in self.folder.glob("**/*" if alone else "assets/*") if path.is_file())
 
 
 def open_scene(path: str | Path, parameters: dict[str, str] | None = None) -> Scene:

@@ -1,0 +1,137 @@
+"""Makes the small files of `scenes/crosscheck/assets/` that scenes name; run once, its results are kept by git."""
+
+import struct
+import zlib
+from pathlib import Path
+
+import mitsuba as mi
+import numpy as np
+
+from validation import mitsuba
+from validation.places import CROSSCHECK
+
+SERIALIZED_FORMAT, SERIALIZED_VERSION = 0x041C, 4
+NORMALS, TEXTURE_COORDINATES, SINGLE_PRECISION = 0x0001, 0x0002, 0x1000
+
+
+def run(folder: Path = CROSSCHECK / "assets") -> bool:
+    """Writes all of them anew."""
+    mitsuba.use("scalar_rgb")
+    images = {
+        "dusk.exr": dusk(),
+        "slide.hdr": slide(),
+        "tiles.exr": tiles(),
+        "tiles.png": eight_bits(tiles()),
+        "poster.jpg": eight_bits(poster()),
+        "holes.png": eight_bits(holes()),
+    }
+    for name, pixels in images.items():
+        kind = np.uint8 if pixels.dtype == np.uint8 else np.float32
+        mi.Bitmap(np.ascontiguousarray(pixels, dtype=kind)).write(str(folder / name))
+    solids = [(*pyramid(), 0), (*lantern(), NORMALS | TEXTURE_COORDINATES)]
+    (folder / "solids.serialized").write_bytes(serialized(solids))
+    (folder / "tent.obj").write_text(TENT)
+    return True
+
+
+def grid(width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
+    """The positions of an image's pixels, 0 to 1 each way."""
+    y, x = np.mgrid[:height, :width]
+    return (x + 0.5) / width, (y + 0.5) / height
+
+
+def colours(*channels) -> np.ndarray:
+    """One RGB image of three."""
+    return np.stack(np.broadcast_arrays(*channels), axis=-1).astype(np.float32)
+
+
+def eight_bits(image: np.ndarray) -> np.ndarray:
+    """As sRGB bytes of the same numbers: what they stand for is the file's own affair."""
+    return np.round(255 * image).astype(np.uint8)
+
+
+def dusk() -> np.ndarray:
+    """An environment: a sky that reddens towards the horizon, dark ground, a low sun, nothing symmetric."""
+    x, y = grid(32, 16)
+    sky = colours(0.15 + 0.5 * y, 0.25 + 0.15 * y, 0.6 - 0.3 * y) * (y < 0.55)[..., None]
+    sun = np.exp(-((x - 0.3) ** 2 + 0.25 * (y - 0.35) ** 2) / 0.0015)
+    return sky + colours(0.06, 0.05, 0.03 + 0.05 * x) + sun[..., None] * np.float32([30, 18, 8])
+
+
+def slide() -> np.ndarray:
+    """A window's light: coloured bars, one corner dark."""
+    x, y = grid(12, 8)
+    bars = colours(0.3 + 0.7 * (x < 0.34), 0.3 + 0.9 * (abs(x - 0.5) < 0.17), 0.3 + 0.5 * (x > 0.66))
+    return bars * np.where((x > 0.7) & (y < 0.4), 0.1, 0.8 - 0.5 * y)[..., None].astype(np.float32)
+
+
+def tiles() -> np.ndarray:
+    """Six by five colours without any symmetry."""
+    return np.random.default_rng(3).uniform(0.05, 0.9, (5, 6, 3)).astype(np.float32)
+
+
+def poster() -> np.ndarray:
+    """Smooth colours, so that one JPEG decoder differs little from another."""
+    x, y = grid(32, 24)
+    return colours(0.3 + 0.5 * x, 0.8 - 0.5 * y, 0.35 + 0.4 * x * y)
+
+
+def holes() -> np.ndarray:
+    """Grey: nothing, half and all."""
+    rows = ["#..#-.", ".##.--", "#.-#.#", "-#..##", "..#-#."]
+    return np.float32([[{"#": 1, "-": 0.5, ".": 0}[c] for c in row] for row in rows])[..., None]
+
+
+def pyramid() -> tuple[np.ndarray, ...]:
+    """A closed four-sided pyramid: corners and triangles."""
+    corners = np.float32([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1], [0.2, 1.6, -0.1]])
+    triangles = np.uint32([[0, 1, 2], [0, 2, 3], [1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]])
+    empty = np.zeros((5, 0), np.float32)
+    return corners, empty, empty, triangles
+
+
+def lantern(around: int = 12, up: int = 6) -> tuple[np.ndarray, ...]:
+    """A closed ball with a waist: corners, normals, texture coordinates, triangles; a seam of doubled corners."""
+    u, v = (a.ravel() for a in np.meshgrid(np.linspace(0, 1, around + 1), np.linspace(0, 1, up + 1)))
+    angle, theta = 2 * np.pi * u, np.pi * v
+    waist = 1 - 0.3 * np.sin(theta) ** 4
+    outwards = np.stack([np.sin(theta) * np.cos(angle), np.cos(theta), -np.sin(theta) * np.sin(angle)], axis=1)
+    first = (np.arange(up)[:, None] * (around + 1) + np.arange(around)).ravel()
+    below = first + around + 1
+    upper = np.stack([first, below, first + 1], axis=1)[around:]
+    lower = np.stack([first + 1, below, below + 1], axis=1)[:-around]
+    corners = outwards * np.stack([waist, np.ones_like(waist), waist], axis=1)
+    triangles = np.concatenate([upper, lower]).astype(np.uint32)
+    return corners.astype(np.float32), outwards.astype(np.float32), np.stack([u, v], 1).astype(np.float32), triangles
+
+
+def serialized(solids: list[tuple]) -> bytes:
+    """Mitsuba's container as its documentation of the plugin describes it: compressed meshes, then their places."""
+    parts, places = [], []
+    for number, (corners, normals, uvs, triangles, kind) in enumerate(solids):
+        places.append(sum(map(len, parts)))
+        name = f"solid {number}".encode() + b"\0"
+        sizes = struct.pack("<QQ", len(corners), len(triangles))
+        arrays = b"".join(a.tobytes() for a in (corners, normals, uvs, triangles))
+        header = struct.pack("<HH", SERIALIZED_FORMAT, SERIALIZED_VERSION)
+        parts.append(header + zlib.compress(struct.pack("<I", kind | SINGLE_PRECISION) + name + sizes + arrays))
+    return b"".join(parts) + struct.pack(f"<{len(places)}QI", *places, len(places))
+
+
+TENT = """# a closed roof of two slopes and two gables: polygons of four and of three corners, no normals
+v -1 0 -1
+v 1 0 -1
+v 1 0 1
+v -1 0 1
+v -1 1 0
+v 1 1 0
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+f 4/1 3/2 6/3 5/4
+f 2/1 1/2 5/3 6/4
+f 1/1 4/2 5/3
+f 3/1 2/2 6/3
+f 1/1 2/2 3/3 4/4
+"""
