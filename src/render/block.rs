@@ -81,7 +81,6 @@ impl Blocks {
     }
 
     /// Where the eye walk of `pixel` in `pass` starts.
-    #[inline]
     pub fn eye_start(&self, film: &Film, seed: u64, pass: usize, pixel: usize) -> EyeStart {
         let mut stream = Stream::new(seed, pixel as u64, pass as u64, Purpose::Eye);
         let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
