@@ -103,10 +103,10 @@ impl Filter {
     /// How positions are drawn.
     fn sampler(&self) -> Sampler {
         match *self {
-            Self::Box => Sampler::Box,
-            Self::Tent { radius } => Sampler::Tent { radius },
-            Self::Gaussian { stddev } => Sampler::Gaussian { stddev },
-            Self::Cubic { .. } | Self::Lanczos { .. } => Sampler::Lobes(Lobes::new(*self)),
+            Self::Box => Sampler::Plain(Plain::Box),
+            Self::Tent { radius } => Sampler::Plain(Plain::Tent { radius }),
+            Self::Gaussian { stddev } => Sampler::Plain(Plain::Gaussian { stddev }),
+            Self::Cubic { .. } | Self::Lanczos { .. } => Sampler::Lobes(Box::new(Lobes::new(*self))),
         }
     }
 
@@ -166,8 +166,9 @@ impl Filter {
     }
 }
 
-/// The cubic of parameters `b` and `c` at distance `x` >= 0.
-#[inline]
+/// The cubic of parameters `b` and `c` at distance `x` >= 0. Like the next kept apart, so that simpler filters do
+/// not carry its code along.
+#[inline(never)]
 fn cubic(b: f32, c: f32, x: f32) -> f32 {
     if x < 1.0 {
         (((12.0 - 9.0 * b - 6.0 * c) * x + (-18.0 + 12.0 * b + 6.0 * c)) * x * x + (6.0 - 2.0 * b)) / 6.0
@@ -180,7 +181,8 @@ fn cubic(b: f32, c: f32, x: f32) -> f32 {
     }
 }
 
-#[inline]
+/// The windowed sinc of so many lobes at distance `x` >= 0.
+#[inline(never)]
 fn lanczos(lobes: f32, x: f32) -> f32 {
     let angle = PI * x;
     if x >= lobes {
@@ -196,28 +198,33 @@ fn lanczos(lobes: f32, x: f32) -> f32 {
 /// Draws distances from a pixel's centre, distributed by the magnitude of a filter.
 #[derive(Clone, Debug)]
 enum Sampler {
+    Plain(Plain),
+    Lobes(Box<Lobes>),
+}
+
+/// A filter that is nowhere negative.
+#[derive(Clone, Copy, Debug)]
+enum Plain {
     Box,
     Tent { radius: f32 },
     Gaussian { stddev: f32 },
-    Lobes(Lobes),
 }
 
-impl Sampler {
-    /// A distance [pixels] and the sign of the filter there.
+impl Plain {
+    /// A distance [pixels].
     #[inline]
-    fn sample(&self, stream: &mut Stream) -> (f32, f32) {
+    fn sample(self, stream: &mut Stream) -> f32 {
         match self {
-            Self::Box => (stream.uniform() - 0.5, 1.0),
-            Self::Tent { radius } => (radius * (stream.uniform() - stream.uniform()), 1.0),
+            Self::Box => stream.uniform() - 0.5,
+            Self::Tent { radius } => radius * (stream.uniform() - stream.uniform()),
             Self::Gaussian { stddev } => loop {
                 // The pedestal is taken off by rejection: exact, and one draw in 10 000 is rejected.
                 let x = stream.normal();
                 let gauss = (-0.5 * x * x).exp();
                 if stream.uniform() * gauss >= (-8f32).exp() && x.abs() < 4.0 {
-                    break (x * stddev, 1.0);
+                    break x * stddev;
                 }
             },
-            Self::Lobes(lobes) => lobes.sample(stream),
         }
     }
 }
@@ -256,7 +263,7 @@ impl Axis {
         let sampler = filter.sampler();
         let cancelled = match sampler {
             Sampler::Lobes(_) => sums.iter().map(|(sum, magnitude)| (magnitude / sum) as f32).collect(),
-            _ => Vec::new(),
+            Sampler::Plain(_) => Vec::new(),
         };
         let scales = sums.iter().map(|(sum, _)| (1.0 / sum) as f32).collect();
         Self { filter, sampler, size, low: low as f32, high: high as f32, scales, cancelled }
@@ -272,11 +279,25 @@ impl Axis {
     /// sample there counts with: 1, or where the filter has negative lobes, of its sign.
     #[inline]
     pub fn sample(&self, pixel: usize, stream: &mut Stream) -> (f32, f32) {
+        match &self.sampler {
+            Sampler::Plain(plain) => loop {
+                let x = pixel as f32 + 0.5 + plain.sample(stream);
+                if self.covers(x) {
+                    break (x, 1.0);
+                }
+            },
+            Sampler::Lobes(lobes) => self.sample_lobes(lobes, pixel, stream),
+        }
+    }
+
+    /// Kept apart, so that filters without lobes do not carry its code along.
+    #[inline(never)]
+    fn sample_lobes(&self, lobes: &Lobes, pixel: usize, stream: &mut Stream) -> (f32, f32) {
         loop {
-            let (distance, sign) = self.sampler.sample(stream);
+            let (distance, sign) = lobes.sample(stream);
             let x = pixel as f32 + 0.5 + distance;
             if self.covers(x) {
-                break (x, self.cancelled.get(pixel).map_or(1.0, |cancelled| sign * cancelled));
+                break (x, sign * self.cancelled[pixel]);
             }
         }
     }

@@ -159,3 +159,44 @@ pub const XYZ_ROWS: [Vec3; 3] = [
 pub fn to_xyz(rgb: Spectrum) -> Vec3 {
     Vec3::from_array(XYZ_ROWS.map(|row| row.dot(rgb)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Mitsuba 3.9.1 writes these channels, and for a diffuse sRGB grey these values.
+    #[test]
+    fn every_pixel_format_has_mitsubas_channels() {
+        let grey = [Spectrum::splat(0.5)];
+        for (name, channels, values) in [
+            ("luminance", "Y", &[0.5][..]),
+            ("luminance_alpha", "YA", &[0.5, 0.25]),
+            ("rgb", "RGB", &[0.5, 0.5, 0.5]),
+            ("rgba", "RGBA", &[0.5, 0.5, 0.5, 0.25]),
+            ("xyz", "XYZ", &[0.475_228, 0.5, 0.544_377]),
+            ("xyza", "XYZA", &[0.475_228, 0.5, 0.544_377, 0.25]),
+        ] {
+            let (_, (colours, alpha)) = PIXEL_FORMATS.iter().find(|(known, _)| *known == name).unwrap();
+            let format = Format { colours: *colours, alpha: *alpha, ..Format::default() };
+            let made = format.channels(&grey, &[0.25]);
+            let names: String = made.iter().map(|channel| channel.name.as_str()).collect();
+            assert_eq!(names, channels, "{name}");
+            for (channel, value) in made.iter().zip(values) {
+                assert!((channel.values[0] - value).abs() < 1e-6, "{name}: {channel:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn older_files_hold_less() {
+        let all =
+            Format { colours: Colours::Xyz, alpha: true, component: Component::Float16, ..Format::default() };
+        assert_eq!(all.in_file(FileKind::OpenExr), all);
+        let rgb = Format { file: FileKind::Pfm, ..Format::default() };
+        assert_eq!(all.in_file(FileKind::Pfm), rgb);
+        assert_eq!(all.in_file(FileKind::Rgbe), Format { file: FileKind::Rgbe, ..rgb });
+        let grey = Format { colours: Colours::Luminance, ..rgb };
+        assert_eq!(grey.in_file(FileKind::Pfm), grey);
+        assert_eq!(grey.in_file(FileKind::Rgbe).colours, Colours::Rgb);
+    }
+}
