@@ -46,8 +46,7 @@ impl Curved {
         Self::Tube(tube, primitive)
     }
 
-    /// The nearest hit with t in (0, `t_max`). Not inlined: the loops over what is common stay small.
-    #[inline(never)]
+    /// The nearest hit with t in (0, `t_max`).
     pub(super) fn closest(&self, ray: &Ray, t_max: f32) -> Option<Hit> {
         match self {
             Self::Disk(plate) => plate.closest(ray, t_max),

@@ -2,7 +2,7 @@
 
 use super::{
     pack::WideRay,
-    tree::{BALL, FLATS, INNER, KIND, Node, Tree},
+    tree::{BEYOND, FLATS, INNER, KIND, Node, RARE, ROUND, Tree},
 };
 use crate::{
     math::offset::{BOX_WIDENING, LEAST_COMPONENT},
@@ -57,8 +57,8 @@ impl Tree {
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
         match self.stack_need() {
             0 => self.closest_of_list(ray),
-            1..=SHALLOW => self.closest_below(ray, &mut [(0.0, 0); SHALLOW]),
-            need => self.closest_below(ray, &mut vec![(0.0, 0); need]),
+            1..=SHALLOW => self.closest_below::<false>(ray, &mut [(0.0, 0); SHALLOW]),
+            need => self.closest_rarely(ray, need),
         }
     }
 
@@ -67,16 +67,42 @@ impl Tree {
     pub fn occluded(&self, ray: &Ray) -> bool {
         match self.stack_need() {
             0 => self.occluded_by_list(ray),
-            1..=SHALLOW => self.occluded_below(ray, &mut [0; SHALLOW]),
-            need => self.occluded_below(ray, &mut vec![0; need]),
+            1..=SHALLOW => self.occluded_below::<false>(ray, &mut [0; SHALLOW]),
+            need => self.occluded_rarely(ray, need),
         }
     }
 
     /// Each level on the way down leaves at most three siblings behind, and the last has all four of its
-    /// children waiting. 0 for a plain list.
+    /// children waiting. 0 for a plain list. With curved primitives, [`RARE`] levels more.
     #[inline]
     fn stack_need(&self) -> usize {
         if self.depth == 0 { 0 } else { 3 * self.depth + 1 }
+    }
+
+    /// Very deep trees, and curved primitives.
+    #[inline(never)]
+    fn closest_rarely(&self, ray: &Ray, need: usize) -> Option<Hit> {
+        if need < RARE {
+            return self.closest_below::<false>(ray, &mut vec![(0.0, 0); need]);
+        }
+        match need - 3 * RARE {
+            1 => self.closest_of_mixed_list(ray),
+            2..=SHALLOW => self.closest_below::<true>(ray, &mut [(0.0, 0); SHALLOW]),
+            need => self.closest_below::<true>(ray, &mut vec![(0.0, 0); need]),
+        }
+    }
+
+    /// Very deep trees, and curved primitives.
+    #[inline(never)]
+    fn occluded_rarely(&self, ray: &Ray, need: usize) -> bool {
+        if need < RARE {
+            return self.occluded_below::<false>(ray, &mut vec![0; need]);
+        }
+        match need - 3 * RARE {
+            1 => self.occluded_by_mixed_list(ray),
+            2..=SHALLOW => self.occluded_below::<true>(ray, &mut [0; SHALLOW]),
+            need => self.occluded_below::<true>(ray, &mut vec![0; need]),
+        }
     }
 
     #[inline]
@@ -89,6 +115,12 @@ impl Tree {
         for ball in &self.balls {
             best.offer(ball.closest(ray, best.t_max));
         }
+        best.hit
+    }
+
+    fn closest_of_mixed_list(&self, ray: &Ray) -> Option<Hit> {
+        let mut best = Best::new(ray);
+        best.offer(self.closest_of_list(ray));
         for curved in &self.curved {
             best.offer(curved.closest(ray, best.t_max));
         }
@@ -100,10 +132,23 @@ impl Tree {
         let wide = WideRay::new(ray);
         self.packs.iter().any(|pack| pack.occluded(&wide, ray.t_max))
             || self.balls.iter().any(|ball| ball.closest(ray, ray.t_max).is_some())
+    }
+
+    fn occluded_by_mixed_list(&self, ray: &Ray) -> bool {
+        self.occluded_by_list(ray)
             || self.curved.iter().any(|curved| curved.closest(ray, ray.t_max).is_some())
     }
 
-    fn closest_below(&self, ray: &Ray, stack: &mut [Entry]) -> Option<Hit> {
+    /// What `index` of a reference to a [`ROUND`] stands for, in a tree with `CURVED` primitives or without.
+    #[inline(always)]
+    fn closest_of_round<const CURVED: bool>(&self, index: usize, ray: &Ray, t_max: f32) -> Option<Hit> {
+        if CURVED && index & BEYOND as usize != 0 {
+            return self.curved[index & !(BEYOND as usize)].closest(ray, t_max);
+        }
+        self.balls[index].closest(ray, t_max)
+    }
+
+    fn closest_below<const CURVED: bool>(&self, ray: &Ray, stack: &mut [Entry]) -> Option<Hit> {
         let wide = WideRay::new(ray);
         let slabs = Slabs::new(ray, &wide);
         let mut best = Best::new(ray);
@@ -113,8 +158,7 @@ impl Tree {
             match current & KIND {
                 INNER => height = self.open(index, &slabs, best.t_max, stack, height),
                 FLATS => best.offer(self.packs[index].closest(&wide, best.t_max)),
-                BALL => best.offer(self.balls[index].closest(ray, best.t_max)),
-                _ => best.offer(self.curved[index].closest(ray, best.t_max)),
+                _ => best.offer(self.closest_of_round::<CURVED>(index, ray, best.t_max)),
             }
             loop {
                 if height == 0 {
@@ -151,7 +195,7 @@ impl Tree {
         height
     }
 
-    fn occluded_below(&self, ray: &Ray, stack: &mut [u32]) -> bool {
+    fn occluded_below<const CURVED: bool>(&self, ray: &Ray, stack: &mut [u32]) -> bool {
         let wide = WideRay::new(ray);
         let slabs = Slabs::new(ray, &wide);
         let mut height = 1;
@@ -166,13 +210,12 @@ impl Tree {
                 let index = (child & !KIND) as usize;
                 let blocked = match child & KIND {
                     FLATS => self.packs[index].occluded(&wide, ray.t_max),
-                    BALL => self.balls[index].closest(ray, ray.t_max).is_some(),
-                    INNER => {
+                    ROUND => self.closest_of_round::<CURVED>(index, ray, ray.t_max).is_some(),
+                    _ => {
                         stack[height] = child;
                         height += 1;
                         false
                     }
-                    _ => self.curved[index].closest(ray, ray.t_max).is_some(),
                 };
                 if blocked {
                     return true;

@@ -28,12 +28,17 @@ const LIST_LIMIT: usize = 12;
 pub const INNER: u32 = 0;
 /// A `FlatPack`.
 pub const FLATS: u32 = 1 << 30;
-/// A `Ball`.
-pub const BALL: u32 = 2 << 30;
-/// A `Curved`: rare, and so the last to be asked for.
-pub const CURVED: u32 = 3 << 30;
+/// A `Ball`; or, with [`BEYOND`], a `Curved`. No kind of its own: scenes without these rare ones shall not pay
+/// for asking.
+pub const ROUND: u32 = 2 << 30;
+/// Marks the index of a `Curved`.
+pub const BEYOND: u32 = 1 << 29;
 /// The bits of the kind.
 pub const KIND: u32 = 3 << 30;
+
+/// Added to the depth where there are curved primitives. Deeper than any tree, so that what is rare is asked
+/// for last.
+pub const RARE: usize = usize::MAX / 8;
 
 /// Four boxes and what is in them. Empty slots have empty boxes.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +56,7 @@ pub struct Tree {
     pub(super) packs: Vec<FlatPack>,
     pub(super) balls: Vec<Ball>,
     pub(super) curved: Vec<Curved>,
-    /// Inner nodes on the longest way down.
+    /// Inner nodes on the longest way down, 0 for a list; and [`RARE`].
     pub(super) depth: usize,
     bounds: Aabb,
 }
@@ -70,14 +75,21 @@ impl Tree {
         let boxes: Vec<Aabb> = primitives.iter().map(bound).collect();
         let mut tree = Self::empty(&boxes);
         tree.fill_list(primitives);
-        tree
+        tree.marked()
     }
 
     pub(super) fn build_nodes(primitives: &[Primitive]) -> Self {
         let boxes: Vec<Aabb> = primitives.iter().map(bound).collect();
         let mut tree = Self::empty(&boxes);
         tree.fill_nodes(primitives, &boxes);
-        tree
+        tree.marked()
+    }
+
+    fn marked(mut self) -> Self {
+        if !self.curved.is_empty() {
+            self.depth += RARE;
+        }
+        self
     }
 
     fn empty(boxes: &[Aabb]) -> Self {
@@ -107,7 +119,7 @@ impl Tree {
 
     fn push_curved(&mut self, curved: Curved) -> u32 {
         self.curved.push(curved);
-        CURVED | (self.curved.len() - 1) as u32
+        ROUND | BEYOND | (self.curved.len() - 1) as u32
     }
 
     fn fill_nodes(&mut self, primitives: &[Primitive], boxes: &[Aabb]) {
@@ -247,7 +259,7 @@ impl Widening<'_> {
                 Primitive::Flat(flat) => flats.push((number, flat)),
                 Primitive::Ball { center, radius } => {
                     tree.balls.push(Ball { center, radius, primitive: number });
-                    return BALL | (tree.balls.len() - 1) as u32;
+                    return ROUND | (tree.balls.len() - 1) as u32;
                 }
                 Primitive::Disk(disk) => return tree.push_curved(Curved::disk(number, &disk)),
                 Primitive::Tube(tube) => return tree.push_curved(Curved::tube(number, tube)),

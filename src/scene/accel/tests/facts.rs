@@ -277,6 +277,17 @@ fn cylinders_are_as_in_mitsuba() {
 }
 
 #[test]
+fn what_mitsuba_accepts_and_no_picture_shows_is_accepted() {
+    let weight = || ("silhouette_sampling_weight", Value::Float(0.5));
+    let faces = || ("face_normals", Value::Boolean(true));
+    for plugin in PLUGINS {
+        assert!(shape_of(plugin, &[weight()], DVec3::ZERO).is_ok(), "{plugin}");
+        let flat = matches!(plugin, "rectangle" | "cube");
+        assert_eq!(shape_of(plugin, &[faces()], DVec3::ZERO).is_ok(), flat, "{plugin}");
+    }
+}
+
+#[test]
 fn what_is_no_upright_round_cylinder_is_refused() {
     let refused = |properties: &[(&str, Value)]| shape_of("cylinder", properties, DVec3::ZERO).unwrap_err();
     let lean = TransformStep::Matrix([
@@ -342,7 +353,20 @@ fn a_can_of_a_cylinder_and_two_disks_holds_its_rays() {
             let origin = leave_surface(point.position, point.error, point.normal, direction);
             leaks += usize::from(!geometry.occluded(&Ray { origin, direction, t_max: f32::INFINITY }));
         }
-        eprintln!("can of size {size} at {at}: {leaks} leaks of 250000");
-        assert!(leaks <= 25, "{size} {at}: {leaks}");
+        // From inside, at the very rims.
+        let rims = [1, 2].map(|i| match &geometry.shapes()[i] {
+            Shape::Disk(disk) => *disk,
+            _ => unreachable!("a can has two lids"),
+        });
+        let inside = 0.5 * (rims[0].center + rims[1].center);
+        let mut slips = 0;
+        for i in 0..50_000 {
+            let (sin, cos) = (TAU * stream.uniform()).sin_cos();
+            let rim = rims[i % 2].point(cos, sin).position;
+            let start = inside + 0.2 * size as f32 * warp::to_sphere(stream.square());
+            slips += usize::from(!geometry.occluded(&ray(start, rim - start)));
+        }
+        eprintln!("can of size {size} at {at}: {leaks} leaks of 250000, {slips} at the rims of 50000");
+        assert!(leaks <= 25 && slips == 0, "{size} {at}: {leaks}, {slips}");
     }
 }
