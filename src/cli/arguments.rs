@@ -111,6 +111,10 @@ pub struct Convert {
     /// Change the default of a $name parameter in OUT; may be repeated
     #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
+
+    /// Write the values of parameters in place of their names (mitsuba.load_dict knows no parameters)
+    #[arg(long)]
+    pub fill: bool,
 }
 
 /// A scene file and what to set in it.

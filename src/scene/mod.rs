@@ -17,7 +17,7 @@ mod write;
 mod xml;
 
 pub use read::{Spelling, read};
-pub use write::{Conversion, convert, write};
+pub use write::{Conversion, Naming, convert, write};
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},
