@@ -487,6 +487,27 @@ fn names_are_made_up_and_dropped_again() {
 }
 
 #[test]
+fn names_ids_and_aliases_do_not_get_mixed_up() {
+    let xml = r#"<scene version="3.0.0"><default name="k" value="second"/>
+        <bsdf type="diffuse" name="x" id="a"/><bsdf type="null" id="x"/><alias id="a" as="second"/>
+        <float name="n" value="1"/><bsdf type="diffuse" id="n"/>
+        <shape type="sphere"><ref id="$k"/></shape><shape type="sphere"><ref id="x"/></shape>
+        <shape type="sphere"><ref id="n"/></shape></scene>"#;
+    let desk = Desk::new(&[("a.xml", xml)]);
+    for (from, to) in [("a.xml", "b.json"), ("b.json", "c.xml"), ("a.xml", "d.xml"), ("c.xml", "e.json")] {
+        desk.convert(from, to, &[]);
+        let root = desk.read(to, &[]);
+        let shapes = root.properties.iter().filter_map(|p| match &p.value {
+            Value::Object(child) if child.plugin == "sphere" => Some(child.properties[0].value.clone()),
+            _ => None,
+        });
+        let ids = ["a", "x", "n"].map(|id| Value::Reference(id.into()));
+        assert!(shapes.eq(ids), "{to}: {}", fs::read_to_string(desk.path(to)).unwrap());
+        assert!(root.properties.iter().any(|p| p.value == Value::Float(1.0) && p.name == "n"));
+    }
+}
+
+#[test]
 fn what_a_spelling_cannot_hold_is_an_error() {
     let desk = Desk::new(&[
         ("control.json", r#"{"type": "scene", "s": {"type": "sphere", "note": "a\u0001"}}"#),

@@ -8,6 +8,7 @@ mod json;
 pub mod lights;
 mod origins;
 mod parameters;
+mod plugins;
 mod read;
 mod references;
 mod steps;

@@ -7,7 +7,10 @@
 //! values stand in place). JSON gives a key to everything; a child without a name is called after its tag, and
 //! what is so called loses the name again on the way back.
 
+mod draw;
 mod json;
+mod keys;
+mod kinds;
 mod layout;
 mod outline;
 mod paths;
@@ -79,7 +82,7 @@ pub fn write(root: &Object, spelling: Spelling, folder: &Path) -> Result<String>
 }
 
 fn spell(root: &Object, origins: &Origins, spelling: Spelling, folder: &Path) -> Result<Conversion> {
-    let (outline, moved) = outline::draw(root, origins, folder)?;
+    let (outline, moved) = draw::draw(root, origins, folder)?;
     let mut known = Known::new(&origins.declarations);
     if moved > 0 {
         let folder = folder.display();
