@@ -16,7 +16,7 @@ use std::{
 use tempfile::TempDir;
 use tyndall::{
     description::{Location, Object, Position, Property, TransformStep, Value},
-    scene::{self, Spelling},
+    scene::{self, Naming, Spelling},
 };
 
 /// A folder to write scenes into.
@@ -49,7 +49,8 @@ impl Desk {
 
     /// Converts one file to another and gives its text and the notes.
     fn convert(&self, from: &str, to: &str, definitions: &[(&str, &str)]) -> (String, Vec<String>) {
-        let conversion = scene::convert(&self.path(from), &self.path(to), &pairs(definitions)).unwrap();
+        let conversion =
+            scene::convert(&self.path(from), &self.path(to), &pairs(definitions), Naming::Keep).unwrap();
         fs::write(self.path(to), &conversion.text).unwrap();
         (conversion.text, conversion.notes)
     }
@@ -395,6 +396,13 @@ fn parameters_stay_parameters() {
         format!("{:?}", tidied(desk.read("set.json", &[]))),
         format!("{:?}", tidied(desk.read("b.json", &[("res", "9")])))
     );
+    // Or all parameters go, and their values stay.
+    let filled =
+        scene::convert(&desk.path("a.xml"), &desk.path("e.json"), &pairs(&[("res", "9")]), Naming::Fill);
+    let filled = filled.unwrap();
+    assert_eq!((filled.text.contains('$'), filled.notes.len()), (false, 0), "{}", filled.text);
+    fs::write(desk.path("e.json"), filled.text).unwrap();
+    assert_same(&tidied(desk.read("a.xml", &[("res", "9")])), &tidied(desk.read("e.json", &[])), "filled");
     // The same spelling loses not even the lists.
     let (_, notes) = desk.convert("a.xml", "same.xml", &[]);
     assert_eq!(notes, [""; 0]);
@@ -479,6 +487,27 @@ fn names_are_made_up_and_dropped_again() {
 }
 
 #[test]
+fn names_ids_and_aliases_do_not_get_mixed_up() {
+    let xml = r#"<scene version="3.0.0"><default name="k" value="second"/>
+        <bsdf type="diffuse" name="x" id="a"/><bsdf type="null" id="x"/><alias id="a" as="second"/>
+        <float name="n" value="1"/><bsdf type="diffuse" id="n"/>
+        <shape type="sphere"><ref id="$k"/></shape><shape type="sphere"><ref id="x"/></shape>
+        <shape type="sphere"><ref id="n"/></shape></scene>"#;
+    let desk = Desk::new(&[("a.xml", xml)]);
+    for (from, to) in [("a.xml", "b.json"), ("b.json", "c.xml"), ("a.xml", "d.xml"), ("c.xml", "e.json")] {
+        desk.convert(from, to, &[]);
+        let root = desk.read(to, &[]);
+        let shapes = root.properties.iter().filter_map(|p| match &p.value {
+            Value::Object(child) if child.plugin == "sphere" => Some(child.properties[0].value.clone()),
+            _ => None,
+        });
+        let ids = ["a", "x", "n"].map(|id| Value::Reference(id.into()));
+        assert!(shapes.eq(ids), "{to}: {}", fs::read_to_string(desk.path(to)).unwrap());
+        assert!(root.properties.iter().any(|p| p.value == Value::Float(1.0) && p.name == "n"));
+    }
+}
+
+#[test]
 fn what_a_spelling_cannot_hold_is_an_error() {
     let desk = Desk::new(&[
         ("control.json", r#"{"type": "scene", "s": {"type": "sphere", "note": "a\u0001"}}"#),
@@ -490,7 +519,8 @@ fn what_a_spelling_cannot_hold_is_an_error() {
         ("told.json", r#"{"type": "scene", "s": {"type": "blob", "$tag": "shape"}}"#),
     ]);
     let refused = |from: &str, to: &str, words: &[&str]| {
-        let error = scene::convert(&desk.path(from), &desk.path(to), &[]).unwrap_err().to_string();
+        let error =
+            scene::convert(&desk.path(from), &desk.path(to), &[], Naming::Keep).unwrap_err().to_string();
         words.iter().for_each(|word| assert!(error.contains(word), "{word}: {error}"));
     };
     refused("control.json", "a.xml", &["$.s.note", "U+0001", "what XML can hold"]);
@@ -517,10 +547,12 @@ fn shipped_scenes_come_back() {
             _ => continue,
         };
         // Beside the scene, so that names of files stay; nothing is written there.
-        let there = scene::convert(&path, &path.with_extension(format!("new.{other}")), &[]).unwrap();
+        let there =
+            scene::convert(&path, &path.with_extension(format!("new.{other}")), &[], Naming::Keep).unwrap();
         let desk = Desk::new(&[(&format!("there.{other}"), &there.text)]);
         let back = desk.convert(&format!("there.{other}"), &format!("back.{ours}"), &[]).0;
-        let direct = scene::convert(&path, &path.with_extension(format!("new.{ours}")), &[]).unwrap();
+        let direct =
+            scene::convert(&path, &path.with_extension(format!("new.{ours}")), &[], Naming::Keep).unwrap();
         assert_eq!(direct.text, back, "{}", path.display());
         assert!(there.notes.is_empty(), "{:?}", there.notes);
         seen.insert(ours);

@@ -636,6 +636,34 @@ fn deep_nesting_is_an_error_not_a_crash() {
 }
 
 #[test]
+fn small_files_that_would_grow_without_end_are_errors() {
+    let laughs: String = (1..20)
+        .map(|i| format!("<default name='x{i}_' value='{}'/>", format!("$x{}_", i - 1).repeat(10)))
+        .collect();
+    let error = read_xml(&format!("<default name='x0_' value='0123456789'/>{laughs}"), &[]).unwrap_err();
+    assert!(error.expected.contains("at most 1048576 bytes"), "{error}");
+    let twice = |i: usize| {
+        format!("<scene version='3.0.0'>{0}{0}{0}</scene>", format!("<include filename='{i}.xml'/>"))
+    };
+    let files: Vec<(String, String)> = (0..12).map(|i| (format!("{i}.xml"), twice(i + 1))).collect();
+    let mut files: Vec<(&str, &str)> =
+        files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
+    files.push(("12.xml", "<scene version='3.0.0'/>"));
+    let error = Desk::new(&files).read("0.xml", &[]).unwrap_err();
+    assert!(error.expected.contains("at most 10000 includes"), "{error}");
+}
+
+/// Thousands of names of names must not take the square of their time.
+#[test]
+fn many_aliases_are_quick() {
+    let many: String =
+        (0..20_000).map(|i| format!("<bsdf type='b' id='a{i}'/><alias id='a{i}' as='b{i}'/>")).collect();
+    let started = std::time::Instant::now();
+    read_xml(&many, &[]).unwrap();
+    assert!(started.elapsed().as_secs() < 10, "{:?}", started.elapsed());
+}
+
+#[test]
 fn long_chains_and_fans_of_references_are_errors() {
     let chain: String = (0..50_000)
         .map(|i| format!("<bsdf type='b' id='b{i}'><ref id='b{}'/></bsdf>", i + 1))

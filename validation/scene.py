@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -29,8 +30,8 @@ class Scene:
         return self.source.resolve().parent if isinstance(self.source, Path) else self.base or Path.cwd()
 
     def dictionary(self) -> dict:
-        """The scene as a tree; only of scenes in JSON."""
-        return self.source if isinstance(self.source, dict) else json.loads(self.source.read_text())
+        """The scene as a tree, parameters filled in; only of scenes in JSON."""
+        return filled(self.source if isinstance(self.source, dict) else json.loads(self.source.read_text()), self.parameters)
 
     def key(self) -> str:
         """Changes whenever the scene, or a file beside it, does."""
@@ -63,7 +64,33 @@ def derived(scene: Scene, change) -> Scene:
     """The scene with `change` applied to each of its objects; of scenes in JSON."""
     if scene.is_xml:
         raise Failure(f"{scene.name}: an XML scene cannot be changed", "name a JSON scene")
-    return Scene(changed(scene.dictionary(), change), scene.name, scene.parameters, scene.folder)
+    return Scene(changed(scene.dictionary(), change), scene.name, {}, scene.folder)
+
+
+def filled(tree: dict, parameters: dict[str, str]) -> dict:
+    """A JSON scene with its $parameters replaced by `parameters` or else by the defaults it gives."""
+    values = {}
+    for name, default in tree.get("$defaults", {}).items():
+        given = parameters.get(name)
+        typed = given if given is None or isinstance(default, str) else json.loads(given)
+        values[name] = fill(default, values) if given is None else typed
+    return {key: fill(value, values) for key, value in tree.items() if key != "$defaults"}
+
+
+def fill(value, values: dict):
+    """A part of a JSON scene with `values` in place of their $names."""
+    if isinstance(value, dict):
+        return {key: fill(inner, values) for key, inner in value.items() if key != "$tag"}
+    if isinstance(value, list):
+        return [fill(inner, values) for inner in value]
+    if not isinstance(value, str) or "$" not in value:
+        return value
+    if value[1:] in values and value[0] == "$":
+        return values[value[1:]]
+    names = "|".join(re.escape(name) for name in sorted(values, key=len, reverse=True)) or "(?!)"
+    text = lambda inner: str(inner).lower() if isinstance(inner, bool) else str(inner)
+    replace = lambda found: "$" if found[1] is None else text(values[found[1]])
+    return re.sub(rf"\\\$|\$({names})", replace, value)
 
 
 def changed(tree, change):

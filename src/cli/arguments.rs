@@ -20,6 +20,13 @@ pub enum Command {
     /// Say what a scene holds, without rendering it
     Info(Info),
     /// Spell a scene anew: Mitsuba 3 XML as JSON, or JSON as XML
+    ///
+    /// Kept: plugins, names, ids, references, order, every number to the last bit, colours, spectra, transforms step
+    /// by step, and parameters with their defaults (XML's <default> is JSON's "$defaults"). Included files come into
+    /// the one new file, and so do the values of spectrum files; an alias gives way to the id that it stands for.
+    /// Comments and layout are not kept. Names of other files are changed so that they still lead to the same files,
+    /// which stay where they are. Where a parameter stands in a place that the other spelling has no words for, its
+    /// value is written instead, and a note on standard error says where.
     Convert(Convert),
 }
 
@@ -92,14 +99,7 @@ pub struct Info {
     pub scene: Scene,
 }
 
-/// Spell a scene anew: Mitsuba 3 XML as JSON, or JSON as XML
-///
-/// Kept: plugins, names, ids, references, order, every number to the last bit, colours, spectra, transforms step
-/// by step, and parameters with their defaults (XML's <default> is JSON's "$defaults"). Included files come into
-/// the one new file, and so do the values of spectrum files; an alias gives way to the id that it stands for.
-/// Comments and layout are not kept. Names of other files are changed so that they still lead to the same files,
-/// which stay where they are. Where a parameter stands in a place that the other spelling has no words for, its
-/// value is written instead, and a note on standard error says where.
+/// Spell a scene anew.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Convert {
     /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json)
@@ -113,6 +113,10 @@ pub struct Convert {
     /// Change the default of a $name parameter in OUT; may be repeated
     #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
+
+    /// Write the values of parameters in place of their names (mitsuba.load_dict knows no parameters)
+    #[arg(long)]
+    pub fill: bool,
 }
 
 /// A scene file and what to set in it.
@@ -281,6 +285,13 @@ mod tests {
     }
 
     #[test]
+    fn a_scene_can_be_converted() {
+        let Ok(Command::Convert(convert)) = parse("convert a.xml b/c.json -D x=2 --fill") else { panic!() };
+        assert_eq!((convert.input, convert.output), ("a.xml".into(), "b/c.json".into()));
+        assert_eq!((convert.definitions, convert.fill), (vec![("x".to_owned(), "2".to_owned())], true));
+    }
+
+    #[test]
     fn the_default_is_what_the_scene_says() {
         let r = render("");
         assert_eq!((r.spp, r.output, r.max_depth, r.seed), (None, None, None, 0));
@@ -314,6 +325,9 @@ mod tests {
             ("render a.xml -o a.jpg", ".hdr or .png"),
             ("render a.xml --integrator bdp", "bdpt"),
             ("render a.xml --strategies hit,jion", "join"),
+            ("convert a.xml", "OUT"),
+            ("convert a.xml b.json -D res", "name=value"),
+            ("convert --help", "Comments and layout are not kept"),
             ("render", "SCENE"),
             ("rendr a.xml", "render"),
         ] {

@@ -8,7 +8,7 @@ use super::{
     film,
     integrator::{self, Integrator},
     lights::{Light, Lights},
-    references, tags,
+    plugins, references, tags,
 };
 use crate::{
     bsdf::{self, Bsdf},
@@ -48,7 +48,7 @@ pub struct Overrides {
 
 /// Builds the scene that `root` describes.
 pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
-    tags::check(root)?;
+    plugins::check(root)?;
     let library = Library::new(root)?;
     let sections = Sections::sort(root, &library)?;
     let recentre = sections.viewpoint(&library)?;
@@ -155,7 +155,7 @@ fn misplaced(child: &Child<'_>) -> Error {
     let plugin = &child.object.plugin;
     let tags = tags::of_plugin(plugin);
     if tags.is_empty() {
-        return tags::unknown_in(child.object, "scene");
+        return plugins::unknown_in(child.object, "scene");
     }
     if tags.contains(&"sensor") {
         let found = format!("\"{plugin}\", which only Mitsuba has");

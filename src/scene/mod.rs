@@ -9,6 +9,7 @@ mod json;
 pub mod lights;
 mod origins;
 mod parameters;
+mod plugins;
 mod read;
 mod references;
 mod steps;
@@ -18,7 +19,7 @@ mod write;
 mod xml;
 
 pub use read::{Spelling, read};
-pub use write::{Conversion, convert, write};
+pub use write::{Conversion, Naming, convert, write};
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},

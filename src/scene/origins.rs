@@ -73,6 +73,12 @@ impl Origins {
         }
     }
 
+    /// Forgets all parameters: every value stands for itself.
+    pub fn fill(&mut self) {
+        self.texts.clear();
+        self.declarations.clear();
+    }
+
     /// True if the file named at `place` lies elsewhere than it says.
     pub fn was_found_elsewhere(&self, place: &Location) -> bool {
         self.found.contains(place)

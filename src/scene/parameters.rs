@@ -20,12 +20,27 @@ struct Entry {
     by_user: bool,
 }
 
-/// A `$name` that nobody declared.
-pub(super) struct Undefined {
-    /// The text after the `$`.
-    pub name: String,
+/// Why a text cannot be substituted; where it stands is for the caller to add.
+#[derive(Debug)]
+pub(super) struct Unfit {
+    /// What would have been right.
+    pub expected: String,
+    /// What stands there.
+    pub found: String,
     /// What to do about it.
     pub remedy: String,
+}
+
+/// A text may grow to so many bytes. Parameters in the defaults of others could otherwise double it without end.
+const LONGEST: usize = 1 << 20;
+
+fn too_long(after: &str) -> Unfit {
+    let name: String = after.chars().take_while(|c| c.is_alphanumeric() || *c == '_').take(80).collect();
+    Unfit {
+        expected: format!("a text of at most {LONGEST} bytes when parameters are in place"),
+        found: format!("more by ${name}"),
+        remedy: "shorten the defaults that name one another".into(),
+    }
 }
 
 /// `text` such that substitution gives `text`.
@@ -99,7 +114,7 @@ impl Parameters {
         text: &str,
         place: &Location,
         name: &str,
-    ) -> std::result::Result<String, Undefined> {
+    ) -> std::result::Result<String, Unfit> {
         if text.contains('$') {
             self.origins.record(place.clone(), name, text);
         }
@@ -107,7 +122,7 @@ impl Parameters {
     }
 
     /// `text` with every `$name` replaced; `\$` is a dollar sign.
-    pub fn substitute(&mut self, text: &str) -> std::result::Result<String, Undefined> {
+    pub fn substitute(&mut self, text: &str) -> std::result::Result<String, Unfit> {
         let mut result = String::new();
         let mut rest = text;
         while let Some(at) = rest.find('$') {
@@ -122,6 +137,9 @@ impl Parameters {
             entry.used = true;
             result.extend([before, &entry.value]);
             rest = &after[entry.name.len()..];
+            if result.len() > LONGEST {
+                return Err(too_long(after));
+            }
         }
         Ok(result + rest)
     }
@@ -140,7 +158,7 @@ impl Parameters {
         names
     }
 
-    fn undefined(&self, after: &str) -> Undefined {
+    fn undefined(&self, after: &str) -> Unfit {
         let end = after.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(after.len());
         let name = after[..end].to_owned();
         let known = self.names();
@@ -149,7 +167,7 @@ impl Parameters {
             "{hint}declare a default for it before this place, or give -D {name}=...; known: {}",
             if known.is_empty() { "none".into() } else { known.join(", ") }
         );
-        Undefined { name, remedy }
+        Unfit { expected: "a defined parameter".into(), found: format!("${name}"), remedy }
     }
 
     fn names(&self) -> Vec<&str> {
@@ -185,7 +203,7 @@ mod tests {
     }
 
     fn substituted(parameters: &mut Parameters, text: &str) -> String {
-        parameters.substitute(text).unwrap_or_else(|u| panic!("{} is undefined", u.name))
+        parameters.substitute(text).unwrap_or_else(|unfit| panic!("{unfit:?}"))
     }
 
     #[test]
@@ -205,9 +223,20 @@ mod tests {
     }
 
     #[test]
+    fn defaults_cannot_grow_without_end() {
+        let mut p = with(&[("x0", "0123456789")]);
+        let grown = (1..10).find_map(|i| {
+            let text = format!("$x{}", i - 1).repeat(10);
+            let value = p.substitute(&text);
+            value.map(|value| p.declare(&format!("x{i}"), &value, &text, None)).err()
+        });
+        assert!(grown.unwrap().expected.contains("at most"));
+    }
+
+    #[test]
     fn an_undefined_name_comes_with_the_nearest() {
-        let undefined = with(&[("density", "1")]).substitute("x$densty!").err().unwrap();
-        assert_eq!(undefined.name, "densty");
+        let undefined = with(&[("density", "1")]).substitute("x$densty!").unwrap_err();
+        assert_eq!(undefined.found, "$densty");
         assert!(undefined.remedy.contains("did you mean \"density\""));
     }
 }

@@ -36,16 +36,16 @@ fn targets(root: &Object, aliases: Vec<Alias>) -> Result<HashMap<String, String>
     if aliases.is_empty() {
         return Ok(names);
     }
-    let mut ids = Vec::new();
+    let mut ids = HashSet::new();
     collect_ids(root, &mut ids);
     for Alias { name, target, location } in aliases {
-        if names.contains_key(&name) || ids.contains(&name.as_str()) {
+        if names.contains_key(&name) || ids.contains(name.as_str()) {
             let found = format!("\"{name}\" again");
             return Err(Error::new(location, "a name not used before", found, "choose another name"));
         }
-        let Some(id) =
-            names.get(&target).map(String::as_str).or(ids.iter().copied().find(|id| *id == target))
-        else {
+        let Some(id) = names.get(&target).map(String::as_str).or(ids.get(target.as_str()).copied()) else {
+            let mut ids: Vec<_> = ids.into_iter().collect();
+            ids.sort_unstable();
             let remedy = suggest(&target, "known ids", &ids);
             return Err(Error::new(location, "the id of an object", format!("\"{target}\""), remedy));
         };
@@ -55,7 +55,7 @@ fn targets(root: &Object, aliases: Vec<Alias>) -> Result<HashMap<String, String>
     Ok(names)
 }
 
-fn collect_ids<'a>(object: &'a Object, ids: &mut Vec<&'a str>) {
+fn collect_ids<'a>(object: &'a Object, ids: &mut HashSet<&'a str>) {
     ids.extend(object.id.as_deref());
     for property in &object.properties {
         if let Value::Object(child) = &property.value {

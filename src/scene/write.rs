@@ -7,7 +7,10 @@
 //! values stand in place). JSON gives a key to everything; a child without a name is called after its tag, and
 //! what is so called loses the name again on the way back.
 
+mod draw;
 mod json;
+mod keys;
+mod kinds;
 mod layout;
 mod outline;
 mod paths;
@@ -33,9 +36,23 @@ pub struct Conversion {
     pub notes: Vec<String>,
 }
 
+/// What becomes of a scene's parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Naming {
+    /// They stay parameters, where the new spelling has words for it.
+    Keep,
+    /// Their values stand in their places.
+    Fill,
+}
+
 /// The scene at `input` as the file `output` has to spell it (by its ending); nothing is written. `definitions`
 /// are `name=value` pairs that become the defaults of the scene's parameters.
-pub fn convert(input: &Path, output: &Path, definitions: &[(String, String)]) -> Result<Conversion> {
+pub fn convert(
+    input: &Path,
+    output: &Path,
+    definitions: &[(String, String)],
+    naming: Naming,
+) -> Result<Conversion> {
     let spelling = spelling(output)?;
     if input.canonicalize().is_ok_and(|file| output.canonicalize().is_ok_and(|other| file == other)) {
         let remedy = "give the new file another name";
@@ -46,7 +63,10 @@ pub fn convert(input: &Path, output: &Path, definitions: &[(String, String)]) ->
             remedy,
         ));
     }
-    let (root, origins) = read_with_origins(input, definitions)?;
+    let (root, mut origins) = read_with_origins(input, definitions)?;
+    if naming == Naming::Fill {
+        origins.fill();
+    }
     let mut conversion = spell(&root, &origins, spelling, paths::folder(output))?;
     if !origins.included.is_empty() {
         let files: Vec<_> = origins.included.iter().map(|file| file.display().to_string()).collect();
@@ -62,7 +82,7 @@ pub fn write(root: &Object, spelling: Spelling, folder: &Path) -> Result<String>
 }
 
 fn spell(root: &Object, origins: &Origins, spelling: Spelling, folder: &Path) -> Result<Conversion> {
-    let (outline, moved) = outline::draw(root, origins, folder)?;
+    let (outline, moved) = draw::draw(root, origins, folder)?;
     let mut known = Known::new(&origins.declarations);
     if moved > 0 {
         let folder = folder.display();

@@ -29,9 +29,12 @@ const DIRECTIONS: [&str; 6] = ["ref", "transform", "include", "default", "alias"
 /// As in Mitsuba.
 const DEEPEST_INCLUDE: usize = 15;
 
+/// Files that include others twice each could be read without end.
+const MOST_INCLUDES: usize = 10_000;
+
 /// Reads the scene at `path`.
 pub(super) fn read(path: &Path, parameters: &mut Parameters) -> Result<Draft> {
-    let mut reader = Reader { parameters, aliases: Vec::new(), open: Vec::new() };
+    let mut reader = Reader { parameters, aliases: Vec::new(), open: Vec::new(), includes: 0 };
     let root = reader.file(path, Folders::default())?;
     if root.tag.as_deref() != Some("scene") {
         let found = format!("<{}>", root.tag.unwrap_or_default());
@@ -51,6 +54,8 @@ struct Reader<'p> {
     aliases: Vec<Alias>,
     /// The files being read, outermost first, under names that no two spellings of a path share.
     open: Vec<PathBuf>,
+    /// How many files have been included.
+    includes: usize,
 }
 
 /// What all elements of one file share.
@@ -192,6 +197,11 @@ impl Reader<'_> {
         }
         if self.open.len() >= DEEPEST_INCLUDE {
             let expected = format!("includes at most {DEEPEST_INCLUDE} deep");
+            return Err(name.wrong(expected, "include fewer files from included files"));
+        }
+        self.includes += 1;
+        if self.includes > MOST_INCLUDES {
+            let expected = format!("at most {MOST_INCLUDES} includes in all");
             return Err(name.wrong(expected, "include fewer files from included files"));
         }
         let included = self.file(&path, page.folders.clone())?;

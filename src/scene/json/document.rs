@@ -142,10 +142,9 @@ fn kind_of(default: &Json, kinds: &Kinds) -> Json {
 }
 
 fn filled(text: &str, location: &Location, parameters: &mut Parameters) -> Result<String> {
-    parameters.substitute_at(text, location, "value").map_err(|undefined| {
-        let found = format!("${}", undefined.name);
-        let remedy = format!("{} (defaults stand in \"{DEFAULTS}\" of the scene)", undefined.remedy);
-        Error::new(location, "a defined parameter", found, remedy)
+    parameters.substitute_at(text, location, "value").map_err(|unfit| {
+        let remedy = format!("{} (defaults stand in \"{DEFAULTS}\" of the scene)", unfit.remedy);
+        Error::new(location, unfit.expected, unfit.found, remedy)
     })
 }
 

@@ -2,8 +2,10 @@
 
 use super::{
     Known,
+    keys::Keys,
+    kinds::{kinds, split},
     layout::Json,
-    outline::{Entry, Item, Leaf, Node, Numbers, Step, Texts, made_up},
+    outline::{Entry, Item, Leaf, Node, Numbers, Step, Texts},
     plain, unspeakable,
 };
 use crate::{
@@ -12,7 +14,7 @@ use crate::{
     scene::{
         origins::{Declaration, Kind},
         parameters::escaped,
-        tags, text,
+        tags,
     },
 };
 use std::collections::{HashMap, HashSet};
@@ -61,7 +63,8 @@ impl Writer<'_, '_> {
         if let Some(id) = node.id.as_ref().filter(|id| key != Some(&id.value) || id.text.is_some()) {
             entries.push(("id".to_owned(), self.string(id, &node.location)));
         }
-        let mut keys = Keys::new(node, if outermost { self.ids.clone() } else { HashSet::new() })?;
+        let ids = if outermost { self.ids.clone() } else { HashSet::new() };
+        let mut keys = Keys::new(node, ids)?;
         for entry in &node.entries {
             let key = keys.of(entry, outermost);
             let top = outermost.then_some(key.as_str());
@@ -248,139 +251,6 @@ impl Writer<'_, '_> {
     }
 }
 
-/// The text of each of `count` numbers, which together are `written`; none if its words are not that.
-fn split(written: &str, count: usize, known: &mut Known<'_>) -> Option<Vec<Option<String>>> {
-    let words: Vec<&str> = text::words(written).collect();
-    for word in &words {
-        text::float(&known.value_of(word)?).ok()?;
-    }
-    let texts = |word: &&str| word.contains('$').then(|| (*word).to_owned());
-    match words.len() {
-        1 if count == 3 => Some(vec![texts(&words[0]); 3]),
-        found if found == count => Some(words.iter().map(texts).collect()),
-        _ => None,
-    }
-}
-
 fn value(kind: &str, value: Json) -> Json {
     Json::Map(vec![("type".into(), Json::string(kind)), ("value".into(), value)])
-}
-
-/// Keys of one object's children.
-struct Keys {
-    taken: HashSet<String>,
-    seen: HashMap<String, usize>,
-}
-
-impl Keys {
-    /// Names that are given, and `others` that must not be used.
-    fn new(node: &Node, mut taken: HashSet<String>) -> Result<Self> {
-        for entry in node.entries.iter().filter(|entry| !entry.name.is_empty()) {
-            if !is_key(&entry.name) {
-                let found = format!("the name \"{}\"", entry.name);
-                let remedy = "rename it: without \".\" or \"$\", and neither \"type\" nor \"id\"";
-                return Err(unspeakable(&entry.location, "JSON", found, remedy));
-            }
-            taken.insert(entry.name.clone());
-        }
-        Ok(Self { taken, seen: HashMap::new() })
-    }
-
-    fn of(&mut self, entry: &Entry, outermost: bool) -> String {
-        if !entry.name.is_empty() {
-            return entry.name.clone();
-        }
-        if let (true, Item::Object(Node { id: Some(Leaf { value: id, text: None }), .. })) =
-            (outermost, &entry.item)
-            && is_key(id)
-        {
-            return id.clone();
-        }
-        let count = self.seen.entry(entry.tag.clone()).or_default();
-        loop {
-            let key = made_up(&entry.tag, *count);
-            *count += 1;
-            if self.taken.insert(key.clone()) {
-                return key;
-            }
-        }
-    }
-}
-
-fn is_key(name: &str) -> bool {
-    !name.is_empty() && !name.contains(['.', '$']) && !["type", "id"].contains(&name)
-}
-
-/// What each parameter is used as. One that is nowhere a whole value is text.
-fn kinds(root: &Node, known: &mut Known<'_>) -> HashMap<String, Kind> {
-    let mut uses = Uses { known, of: HashMap::new() };
-    uses.node(root);
-    let Uses { mut of, known } = uses;
-    let mut kinds = HashMap::new();
-    for Declaration { name, text, value, kind } in known.declarations.iter().rev().filter(|d| is_key(&d.name))
-    {
-        let used = of.remove(name.as_str()).unwrap_or_default();
-        let chosen = kind.unwrap_or_else(|| choose(&used, value));
-        if let (Some(other), true) = (known.whole(text), chosen != Kind::String) {
-            of.entry(other.to_owned()).or_default().push(chosen);
-        }
-        kinds.insert(name.clone(), chosen);
-    }
-    kinds
-}
-
-/// The kind that serves most uses; `value` is what the parameter stands for.
-fn choose(used: &[Kind], value: &str) -> Kind {
-    let is_integer = text::integer(value).is_ok();
-    let is_number = text::float(value).is_ok();
-    let is_boolean = text::boolean(value).is_ok();
-    let is_used = |kind| used.contains(&kind);
-    if is_used(Kind::Integer) && is_integer {
-        Kind::Integer
-    } else if is_used(Kind::Float) && is_number {
-        Kind::Float
-    } else if is_used(Kind::Boolean) && is_boolean {
-        Kind::Boolean
-    } else {
-        Kind::String
-    }
-}
-
-/// A walk that finds what parameters are used as.
-struct Uses<'k, 'a> {
-    known: &'k mut Known<'a>,
-    of: HashMap<String, Vec<Kind>>,
-}
-
-impl Uses<'_, '_> {
-    fn node(&mut self, node: &Node) {
-        for entry in &node.entries {
-            match &entry.item {
-                Item::Boolean(leaf) => self.add(leaf.text.as_deref(), Kind::Boolean),
-                Item::Integer(leaf) => self.add(leaf.text.as_deref(), Kind::Integer),
-                Item::Float(leaf) => self.add(leaf.text.as_deref(), Kind::Float),
-                Item::Rgb(numbers) | Item::Vector(numbers) => self.numbers(numbers),
-                Item::Transform(steps) => {
-                    steps.iter().flat_map(|step| &step.parts).for_each(|(_, numbers)| self.numbers(numbers));
-                }
-                Item::Object(node) => self.node(node),
-                Item::String(_) | Item::Spectrum(_) | Item::Reference(_) => {}
-            }
-        }
-    }
-
-    fn numbers(&mut self, numbers: &Numbers) {
-        let texts = match &numbers.text {
-            Texts::None | Texts::Lost(_) => return,
-            Texts::Each(texts) => texts.clone(),
-            Texts::Whole(text) => split(text, numbers.values.len(), self.known).unwrap_or_default(),
-        };
-        texts.iter().for_each(|text| self.add(text.as_deref(), Kind::Float));
-    }
-
-    fn add(&mut self, text: Option<&str>, kind: Kind) {
-        if let Some(name) = text.and_then(|text| self.known.whole(text)) {
-            self.of.entry(name.to_owned()).or_default().push(kind);
-        }
-    }
 }

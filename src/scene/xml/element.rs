@@ -46,10 +46,7 @@ impl<'s> Element<'s> {
             let location = source.location(a.range().start);
             let value = match parameters.substitute_at(a.value(), &place, a.name()) {
                 Ok(value) => value,
-                Err(undefined) => {
-                    let found = format!("${}", undefined.name);
-                    return Err(Error::new(location, "a defined parameter", found, undefined.remedy));
-                }
+                Err(unfit) => return Err(Error::new(location, unfit.expected, unfit.found, unfit.remedy)),
             };
             Ok(Attribute { name: a.name(), value, written: a.value(), location })
         });
