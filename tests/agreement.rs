@@ -108,6 +108,15 @@ fn with_a_hidden_lamp() {
     all_agree("hidden lamp", &scene(&parts), Kind::default(), 64);
 }
 
+/// A hidden lamp hides nothing: what lies behind it is seen, through the fog before and behind.
+#[test]
+fn with_a_wall_behind_a_hidden_lamp() {
+    let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
+    parts[3] = ("lamp", lamp_ball([0.0, 0.0, -0.3], 0.4, rgb(2.0, 3.0, 1.0)));
+    parts.push(("integrator", json!({"type": "bdpt", "hide_emitters": true})));
+    all_agree("seen through a lamp", &scene(&parts), Kind::default(), 96);
+}
+
 #[test]
 fn with_single_scattering_only() {
     let mut parts = foggy_room(medium(1.0, 0.8, 0.3));

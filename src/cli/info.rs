@@ -28,7 +28,7 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
 
 fn describe(setup: &Setup) -> String {
     let Setup { scene, film, integrator, samples_per_pixel, .. } = setup;
-    let profile = ProfileName::leanest(Needs::of(scene));
+    let profile = ProfileName::leanest(Needs::of(scene, integrator.hide_emitters));
     let left_out = profile.left_out();
     let mut lines = vec![
         format!("image       {}", describe_film(film)),

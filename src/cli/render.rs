@@ -47,7 +47,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
 }
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
-    let needed = ProfileName::leanest(Needs::of(&setup.scene));
+    let needed = ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.hide_emitters));
     let profile = match arguments.profile {
         arguments::Profile::Everything => ProfileName::Everything,
         arguments::Profile::Fitted => needed,

@@ -117,15 +117,7 @@ impl<'a, P: Profile> View<'a, P> {
         if self.environment && !hidden {
             return 1.0;
         }
-        let mut ray = self.ray;
-        if hidden
-            && let Some((hit, point)) = &self.hit
-            && self.scene.surface(point.shape).emitter.is_some()
-        {
-            // To just before the emitter.
-            ray.t_max = hit.t * (1.0 - 1e-4);
-        }
-        let through = self.job.estimator.transmittance(ray);
+        let through = self.job.estimator.transmittance(self.ray);
         1.0 - (through.x + through.y + through.z) / 3.0
     }
 

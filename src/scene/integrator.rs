@@ -25,7 +25,7 @@ pub struct Integrator {
     pub method: Method,
     /// Most segments of a path, null boundaries not counted; none for no limit.
     pub max_depth: Option<u32>,
-    /// Leave out emitters seen directly.
+    /// The camera does not see emitters, but what is behind them.
     pub hide_emitters: bool,
     /// What is written besides the image.
     pub layers: Vec<Layer>,

@@ -80,8 +80,8 @@ pub struct Joined {
     pub weight: f32,
 }
 
-/// Joins `a` and `b` by a strategy of `count` expected samples; none where the way is blocked. The caller
-/// divides by the number of samples it took.
+/// Joins `a` and `b` by a strategy of `count` expected samples; none where the way is blocked, which emitters
+/// that are `hidden` do not. The caller divides by the number of samples it took.
 #[inline(always)]
 pub fn join<P: Profile>(
     scene: &Scene,
@@ -89,12 +89,13 @@ pub fn join<P: Profile>(
     b: &End<P::Lanes>,
     distance_squared: f32,
     count: f32,
+    hidden: bool,
 ) -> Option<Joined> {
     let end = offset::clear_of_end(a.origin, b.origin, b.lift);
     let (direction, distance, _) = measure::between(a.origin, end)?;
     let ray = Ray { origin: a.origin, direction, t_max: distance };
     let cut = (b.origin - end).dot(direction);
-    join_along::<P>(scene, ray, cut, a, b, distance_squared, count)
+    join_along::<P>(scene, ray, cut, a, b, distance_squared, count, hidden)
 }
 
 /// The same along a given ray that starts at `a` and stops `cut` short of `b`: for ends at infinity, where
@@ -108,8 +109,9 @@ pub fn join_along<P: Profile>(
     b: &End<P::Lanes>,
     distance_squared: f32,
     count: f32,
+    hidden: bool,
 ) -> Option<Joined> {
-    let passage = segment::pass::<P>(scene, ray, cut, a.medium)?;
+    let passage = segment::pass::<P>(scene, ray, cut, a.medium, hidden)?;
     let geometry = 1.0 / distance_squared;
     let weight = weight::join(a, b, passage.density, geometry, count);
     let value = a.value * b.value * passage.transmittance * (geometry * weight);

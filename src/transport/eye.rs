@@ -57,6 +57,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Ve
         medium: estimator.scene.sensor_medium,
         from_infinity: sensor.is_parallel(),
         edges: 0,
+        hidden: estimator.hide_emitters,
         dirac: false,
         throughput: Spectrum::ONE,
         forward: density,
@@ -155,9 +156,9 @@ impl<'a, P: Profile> Eye<'a, P> {
         let light = connect::link_end(link, eye.medium, -direction, counts.hit);
         if P::INFINITE && link.infinite {
             let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
-            connect::join_along::<P>(scene, ray, 0.0, &eye, &light, 1.0, 1.0)
+            connect::join_along::<P>(scene, ray, 0.0, &eye, &light, 1.0, 1.0, false)
         } else {
-            connect::join::<P>(scene, &eye, &light, distance_squared, 1.0)
+            connect::join::<P>(scene, &eye, &light, distance_squared, 1.0, false)
         }
     }
 
@@ -182,6 +183,6 @@ impl<'a, P: Profile> Eye<'a, P> {
         let (direction, _, distance_squared) = measure::between(vertex.position, other.position)?;
         let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
         let light = connect::vertex_end(scene, other, -direction, Transport::Importance)?;
-        connect::join::<P>(scene, &eye, &light, distance_squared, self.estimator.counts.join)
+        connect::join::<P>(scene, &eye, &light, distance_squared, self.estimator.counts.join, false)
     }
 }

@@ -65,6 +65,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Depart
         medium: estimator.scene.lights.all[start.light as usize].medium,
         from_infinity: start.infinite,
         edges: 0,
+        hidden: false,
         dirac: start.dirac,
         throughput: start.throughput,
         forward: start.forward,
@@ -126,7 +127,8 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
     pub fn join_to_lens(&self, vertex: &Vertex<P::Lanes>, aperture: Vec2) -> Option<(Vec2, Joined)> {
         let scene = self.estimator.scene;
         let seen = scene.sensor.project(vertex.position, aperture)?;
-        if !self.splats.covers(seen.film) {
+        let hidden = self.estimator.hide_emitters && vertex.is_on_emitter(scene);
+        if hidden || !self.splats.covers(seen.film) {
             return None;
         }
         let end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
@@ -157,6 +159,7 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
     fn join_end(&self, end: &End<P::Lanes>, seen: &Projection, infinite: bool) -> Option<Joined> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let Projection { ray, density, distance_squared, .. } = *seen;
+        let hidden = self.estimator.hide_emitters;
         let lens = End {
             origin: ray.origin,
             lift: Vec3::ZERO,
@@ -170,9 +173,9 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
             tail: P::Lanes::splat(0.0),
         };
         if P::INFINITE && infinite {
-            connect::join_along::<P>(scene, ray, 0.0, &lens, end, distance_squared, counts.lens)
+            connect::join_along::<P>(scene, ray, 0.0, &lens, end, distance_squared, counts.lens, hidden)
         } else {
-            connect::join::<P>(scene, end, &lens, distance_squared, counts.lens)
+            connect::join::<P>(scene, end, &lens, distance_squared, counts.lens, hidden)
         }
     }
 }

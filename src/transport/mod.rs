@@ -59,7 +59,7 @@ pub struct Options {
     pub strategies: Strategies,
     /// Most segments of a path, null boundaries not counted; none for no limit.
     pub max_depth: Option<u32>,
-    /// Leave out emitters seen directly.
+    /// The camera does not see emitters, but what is behind them.
     pub hide_emitters: bool,
     /// Seed of the pilot walks.
     pub seed: u64,
@@ -160,7 +160,8 @@ impl<'a, P: Profile> Estimator<'a, P> {
 
     /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
     pub fn transmittance(&self, primary: Ray) -> Spectrum {
-        let passage = segment::pass::<P>(self.scene, primary, 0.0, self.scene.sensor_medium);
+        let passage =
+            segment::pass::<P>(self.scene, primary, 0.0, self.scene.sensor_medium, self.hide_emitters);
         passage.map_or(Spectrum::ZERO, |passage| passage.transmittance)
     }
 

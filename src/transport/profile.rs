@@ -62,19 +62,21 @@ pub struct Needs {
     pub media: bool,
     /// Some extinction differs between channels.
     pub chromatic: bool,
-    /// Some surface lets rays pass undeflected.
+    /// Some surface lets rays pass undeflected, were it only those from the camera.
     pub nulls: bool,
     /// Some emitter is at infinity, or the sensor is.
     pub infinite: bool,
 }
 
 impl Needs {
-    /// What `scene` needs.
-    pub fn of(scene: &Scene) -> Self {
+    /// What `scene` needs; `hide_emitters` as in [`super::Options`].
+    pub fn of(scene: &Scene, hide_emitters: bool) -> Self {
+        let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
+        let passed = hide_emitters && scene.surfaces.iter().any(|surface| surface.emitter.is_some());
         Self {
             media: scene.media.iter().any(|medium| medium.sigma_t != Spectrum::ZERO),
             chromatic: scene.media.iter().any(Homogeneous::is_chromatic),
-            nulls: scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null()),
+            nulls: nulls || passed,
             infinite: scene.lights.has_infinite() || scene.sensor.is_parallel(),
         }
     }

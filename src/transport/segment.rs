@@ -45,18 +45,20 @@ pub struct Passage<L> {
 }
 
 /// Samples a segment from `origin` along unit `direction`, starting in `medium`, no longer than `t_max`: an
-/// exponential optical depth by the `hero` channel, until a surface, a collision, or infinity.
+/// exponential optical depth by the `hero` channel, until a surface, a collision, or infinity. Where emitters are
+/// `hidden`, the ray passes them; only profiles with nulls can.
 #[inline]
 pub fn fly<P: Profile>(
     scene: &Scene,
     ray: Ray,
     medium: MediumIndex,
+    hidden: bool,
     hero: usize,
     stream: &mut Stream,
 ) -> Flight<P::Lanes> {
     let remaining = if P::MEDIA { stream.exponential() } else { 0.0 };
     if P::NULLS {
-        fly_through::<P>(scene, ray, medium, hero, remaining, stream)
+        fly_through::<P>(scene, ray, medium, hidden, hero, remaining, stream)
     } else {
         fly_straight::<P>(scene, ray, medium, hero, remaining)
     }
@@ -101,6 +103,7 @@ fn fly_through<P: Profile>(
     scene: &Scene,
     mut ray: Ray,
     mut medium: MediumIndex,
+    hidden: bool,
     hero: usize,
     mut remaining: f32,
     stream: &mut Stream,
@@ -113,7 +116,7 @@ fn fly_through<P: Profile>(
         let Landing::Surface(point) = leg.landing else {
             return Flight { landing: leg.landing, medium, depth, tint };
         };
-        let through = scene.null_transmission(&point, ray.direction);
+        let through = passed(scene, &point, ray.direction, hidden);
         let passing = through.max_element();
         if passing <= 0.0 || (passing < 1.0 && stream.uniform() >= passing) {
             // Stopping where a part passes has probability 1 - passing, from either side: it takes the place
@@ -129,6 +132,15 @@ fn fly_through<P: Profile>(
     }
 }
 
+/// The part of light that passes a surface point undeflected.
+#[inline]
+fn passed(scene: &Scene, point: &SurfacePoint, direction: Vec3, hidden: bool) -> Spectrum {
+    if hidden && scene.surface(point.shape).emitter.is_some() {
+        return Spectrum::ONE;
+    }
+    scene.null_transmission(point, direction)
+}
+
 /// The rest of a ray beyond a surface point that it crosses.
 #[inline]
 fn past(ray: &Ray, point: &SurfacePoint) -> Ray {
@@ -139,11 +151,17 @@ fn past(ray: &Ray, point: &SurfacePoint) -> Ray {
 
 /// What remains of radiance along `ray` (its `t_max` is the segment's length, infinite for an emitter at
 /// infinity), starting in `medium`; none where a surface blocks it. The ray stops `cut` short of the segment's
-/// end to be clear of the surface there: the medium reaches on to the end.
+/// end to be clear of the surface there: the medium reaches on to the end. `hidden` as in [`fly`].
 #[inline]
-pub fn pass<P: Profile>(scene: &Scene, ray: Ray, cut: f32, medium: MediumIndex) -> Option<Passage<P::Lanes>> {
+pub fn pass<P: Profile>(
+    scene: &Scene,
+    ray: Ray,
+    cut: f32,
+    medium: MediumIndex,
+    hidden: bool,
+) -> Option<Passage<P::Lanes>> {
     if P::NULLS {
-        return pass_through::<P>(scene, ray, cut, medium);
+        return pass_through::<P>(scene, ray, cut, medium, hidden);
     }
     if scene.geometry.occluded(&ray) {
         return None;
@@ -161,6 +179,7 @@ fn pass_through<P: Profile>(
     mut ray: Ray,
     cut: f32,
     mut medium: MediumIndex,
+    hidden: bool,
 ) -> Option<Passage<P::Lanes>> {
     let end = ray.origin + ray.direction * ray.t_max;
     let mut depth = P::Lanes::splat(0.0);
@@ -173,7 +192,7 @@ fn pass_through<P: Profile>(
             return Some(Passage { density: transmitted.scaled(passing), transmittance });
         };
         let point = scene.geometry.surface(&ray, &hit);
-        let through = scene.null_transmission(&point, ray.direction);
+        let through = passed(scene, &point, ray.direction, hidden);
         if through.max_element() <= 0.0 {
             return None;
         }

@@ -116,6 +116,12 @@ impl<L: Lanes> Vertex<L> {
         self.reach_before.scaled(self.joins) + self.partial.scaled(backward)
     }
 
+    /// True on a shape that emits.
+    #[inline]
+    pub fn is_on_emitter(&self, scene: &Scene) -> bool {
+        matches!(&self.site, Site::Surface(point) if scene.surface(point.shape).emitter.is_some())
+    }
+
     /// True if something of its scattering is not Dirac.
     #[inline]
     pub fn is_connectible(&self, scene: &Scene) -> bool {

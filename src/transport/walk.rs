@@ -30,6 +30,8 @@ pub struct Departure<L> {
     pub from_infinity: bool,
     /// Segments so far.
     pub edges: u32,
+    /// True where emitters do not stand in the way: before a camera that does not see them.
+    pub hidden: bool,
     /// True if the direction was sampled by a Dirac lobe.
     pub dirac: bool,
     /// Contribution over density, this vertex's scattering included.
@@ -77,7 +79,8 @@ pub fn walk<P: Profile>(
     stream: &mut Stream,
 ) {
     while departure.edges < kind.max_edges {
-        let flight = segment::fly::<P>(scene, departure.ray, departure.medium, kind.hero, stream);
+        let Departure { ray, medium, .. } = departure;
+        let flight = segment::fly::<P>(scene, ray, medium, departure.hidden, kind.hero, stream);
         let Some(vertex) = land::<P>(scene, &departure, &flight, kind.hero, visitor) else { return };
         if matches!(flight.landing, Landing::Escape) {
             if P::INFINITE {
@@ -189,6 +192,7 @@ pub fn set_out<L: Lanes>(scene: &Scene, vertex: &Vertex<L>, turn: &Turn) -> Depa
         medium,
         from_infinity: false,
         edges: vertex.edges,
+        hidden: false,
         dirac: turn.dirac,
         throughput: vertex.throughput * turn.weight,
         forward: turn.forward,

@@ -44,7 +44,7 @@ impl Stage {
         std::fs::write(&path, scene.to_string()).unwrap();
         let root = scene::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
         let setup = build::build(&root, Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
-        let profile = ProfileName::leanest(Needs::of(&setup.scene));
+        let profile = ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.hide_emitters));
         Self { setup, profile }
     }
 

@@ -114,5 +114,6 @@ fn sphere_around(geometry: &Geometry) -> (Vec3, f32) {
         return (Vec3::ZERO, 1.0);
     }
     let radius = 0.5 * (high - low).length() * (1.0 + 1e-3);
-    (0.5 * (low + high), radius.max(f32::MIN_POSITIVE))
+    // Where there is nothing, or a point, any sphere will do that has an area.
+    (0.5 * (low + high), if radius * radius > f32::MIN_POSITIVE { radius } else { 1.0 })
 }

@@ -186,7 +186,7 @@ fn paths_through_the_dark() {
             nodes.push(Node { place, medium: setup.scene.sensor_medium, dirac: false });
         }
         nodes.push(Node::lens(&setup.scene));
-        let path = Path::through(&setup.scene, 0, nodes).unwrap();
+        let path = Path::through(&setup.scene, false, 0, nodes).unwrap();
         let slow = report.lead(&estimator, &twin, &path);
         assert!(slow.iter().flatten().filter(|weight| **weight > 1e-6).count() > 0);
     }

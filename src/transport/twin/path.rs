@@ -135,8 +135,9 @@ struct Way {
 
 impl Path {
     /// Finds the depths; none where something stands in the way.
-    pub fn through(scene: &Scene, light: u32, nodes: Vec<Node>) -> Option<Self> {
-        let way = |pair: &[Node]| Way::both(scene, &pair[1], &pair[0]);
+    /// The lens does not see emitters that are `hidden`.
+    pub fn through(scene: &Scene, hidden: bool, light: u32, nodes: Vec<Node>) -> Option<Self> {
+        let way = |pair: &[Node]| Way::both(scene, hidden, &pair[1], &pair[0]);
         let ways = nodes.windows(2).map(way).collect::<Option<Vec<Way>>>()?;
         let rounding = ways.iter().map(|way| way.rounding).sum();
         Some(Self { light, nodes, depths: ways.iter().map(|way| way.depth).collect(), rounding })
@@ -146,18 +147,19 @@ impl Path {
 impl Way {
     /// From `from` to `to`, which may be at infinity; none where the other way would be another: along the very
     /// rim of a surface.
-    fn both(scene: &Scene, from: &Node, to: &Node) -> Option<Self> {
-        let there = Self::between(scene, from, to)?;
+    fn both(scene: &Scene, hidden: bool, from: &Node, to: &Node) -> Option<Self> {
+        let hidden = hidden && matches!(from.place, Place::Lens(_));
+        let there = Self::between(scene, hidden, from, to)?;
         if matches!(to.place, Place::Sky(_)) {
             return Some(there);
         }
-        let back = Self::between(scene, to, from)?;
+        let back = Self::between(scene, hidden, to, from)?;
         let agree = |c: usize| (there.depth[c] - back.depth[c]).abs() <= 1e-3 * (1.0 + there.depth[c]);
         (0..3).all(agree).then_some(there)
     }
 
     /// From `from` to `to` one way.
-    fn between(scene: &Scene, from: &Node, to: &Node) -> Option<Self> {
+    fn between(scene: &Scene, hidden: bool, from: &Node, to: &Node) -> Option<Self> {
         let direction = from.towards(to);
         let (mut ray, mut medium) = sight(scene, from, to, direction.as_vec3());
         let mut way = Self { depth: [0.0; 3], rounding: aim(from, to, direction) };
@@ -173,7 +175,9 @@ impl Way {
             };
             way.add_leg(scene, medium, reached, reach(from, to));
             let Some(point) = point else { return Some(way) };
-            let passing = f64::from(scene.null_transmission(&point, ray.direction).max_element());
+            let passed = hidden && scene.surface(point.shape).emitter.is_some();
+            let null = scene.null_transmission(&point, ray.direction).max_element();
+            let passing = if passed { 1.0 } else { f64::from(null) };
             if passing <= 0.0 {
                 return None;
             }

@@ -104,7 +104,7 @@ pub fn cases<P: Profile>(
 ) -> Vec<Case> {
     let cache = LightCache::new(P::Lanes::COUNT);
     let eye = eye_walk(estimator, &cache, film, hero, stream);
-    let mut cases = Cases { scene: estimator.scene, hero, all: Vec::new() };
+    let mut cases = Cases { scene: estimator.scene, hidden: estimator.hide_emitters, hero, all: Vec::new() };
     of_eye(estimator, &eye, &mut cases, stream);
     let Some(start) = estimator.scene.lights.sample_start(&estimator.scene.geometry, stream) else {
         return cases.all;
@@ -126,7 +126,7 @@ pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, strea
     let mut film = WideFilm;
     let light =
         light_walk(Light::new(estimator, &mut kept, &mut film, start, 0), estimator, &start, 0, stream);
-    let mut cases = Cases { scene, hero: 0, all: Vec::new() };
+    let mut cases = Cases { scene, hidden: estimator.hide_emitters, hero: 0, all: Vec::new() };
     let last = &eye.vertices[length - 1];
     let link =
         (0..100).find_map(|_| scene.lights.sample_link(&scene.geometry, last.position, stream)).unwrap();
@@ -143,6 +143,8 @@ pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, strea
 
 struct Cases<'a> {
     scene: &'a Scene,
+    /// The lens does not see emitters.
+    hidden: bool,
     hero: usize,
     all: Vec<Case>,
 }
@@ -157,7 +159,7 @@ impl Cases<'_> {
         nodes.extend(light);
         nodes.extend(eye.into_iter().rev());
         nodes.push(Node::lens(self.scene));
-        let path = Path::through(self.scene, index, nodes);
+        let path = Path::through(self.scene, self.hidden, index, nodes);
         self.all.push(Case { path, strategy, hero: self.hero, weight });
     }
 
