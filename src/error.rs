@@ -38,7 +38,7 @@ impl Error {
     pub fn io(path: &std::path::Path, action: &str, error: &std::io::Error) -> Self {
         Self::new(
             path.display(),
-            format!("to {action} it"),
+            format!("a file to {action}"),
             error.to_string(),
             "check that the path exists and that you may access it",
         )

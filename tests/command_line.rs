@@ -112,6 +112,52 @@ fn the_size_can_be_chosen() {
     assert_eq!(size_of(&desk.bytes("small.png")), (13, 5));
 }
 
+/// A foggy room whose film has more to it.
+fn filmed(more: &[(&str, Value)]) -> Value {
+    let sensor = foggy_room()["sensor"].clone();
+    let film = with(sensor["film"].clone(), more);
+    with(foggy_room(), &[("sensor", with(sensor, &[("film", film)]))])
+}
+
+#[test]
+fn a_crop_window_is_an_image_of_its_own() {
+    let crop = [("crop_offset_x", json!(2)), ("crop_width", json!(5)), ("crop_height", json!(3))];
+    let desk = Desk::new(&filmed(&crop));
+    desk.run("render scene.json --spp 1").succeeds();
+    assert_eq!(size_of(&desk.bytes("scene.png")), (5, 3));
+    desk.run("render scene.json --size 16x16").is_refused(&["--size", "crop window", "5 x 3"]);
+    assert!(desk.run("info scene.json").succeeds().out().contains("the window at 2, 0 of 8 x 8"));
+}
+
+#[test]
+fn the_film_or_the_name_decides_the_file() {
+    let desk = Desk::new(&filmed(&[("file_format", json!("pfm")), ("pixel_format", json!("luminance"))]));
+    desk.run("render scene.json --spp 1").succeeds();
+    assert_eq!(desk.files(), ["scene.json", "scene.pfm", "scene.png"]);
+    assert!(desk.bytes("scene.pfm").starts_with(b"Pf\n8 8\n"));
+    let told = desk.run("render scene.json --spp 1 -o bright.hdr").succeeds().err();
+    assert!(told.contains("warning") && told.contains("RGB is written"), "{told}");
+    assert!(desk.bytes("bright.hdr").starts_with(b"#?RADIANCE"));
+    desk.run("render scene.json --spp 1 -o exact.exr").succeeds();
+    assert!(desk.path("exact.exr").exists());
+    let desk = Desk::new(&filmed(&[("file_format", json!("rgbe")), ("pixel_format", json!("rgba"))]));
+    let told = desk.run("render scene.json --spp 1").succeeds().err();
+    assert!(told.contains("warning") && told.contains("RGB"), "{told}");
+}
+
+#[test]
+fn layers_need_a_file_that_holds_them() {
+    let integrator = json!({"type": "aov", "aovs": "n:sh_normal", "img": {"type": "path"}});
+    let desk = Desk::new(&with(foggy_room(), &[("integrator", integrator)]));
+    desk.run("render scene.json --spp 1").succeeds();
+    let layers = desk.bytes("scene.exr");
+    let holds = |name: &str| layers.windows(name.len()).any(|part| part == name.as_bytes());
+    assert!(["n.X", "n.Y", "n.Z", "img.R", "img.A"].into_iter().all(holds));
+    assert!(desk.run("info scene.json").succeeds().out().contains("img (RGBA), n (XYZ)"));
+    desk.run("render scene.json -o a.pfm").is_refused(&["a.pfm", "OpenEXR", "file_format"]);
+    assert!(!desk.path("a.pfm").exists());
+}
+
 #[test]
 fn the_seed_decides_the_image() {
     let desk = Desk::new(&foggy_room());

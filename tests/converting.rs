@@ -237,7 +237,7 @@ fn any_scene() -> impl Strategy<Value = Object> {
 }
 
 proptest! {
-    #![proptest_config(Config { cases: 1000, rng_seed: RngSeed::Fixed(1996), failure_persistence: None, ..Config::default() })]
+    #![proptest_config(Config { cases: 400, rng_seed: RngSeed::Fixed(1996), failure_persistence: None, ..Config::default() })]
 
     #[test]
     fn what_is_written_is_read_again(tree in any_scene()) {
@@ -256,6 +256,54 @@ proptest! {
         prop_assert_eq!(&text, &same_text);
         let (xml, _) = desk.through(&json, Spelling::Xml);
         assert_same(&tree, &xml, &text);
+    }
+}
+
+/// Puts parameters in place of values in XML as it is written, and says which could be set to what.
+fn parametrised(xml: &str, choices: &[u8]) -> (String, Vec<(String, &'static str)>) {
+    let others = [("float", "2.5"), ("integer", "7"), ("boolean", "false"), ("string", "other")];
+    let lists = ["point", "vector", "rgb", "translate", "scale", "matrix"];
+    let (mut defaults, mut body, mut settable) = (String::new(), String::new(), Vec::new());
+    for (line, choice) in xml.lines().skip(1).zip(choices.iter().cycle()) {
+        let tag = line.trim_start_matches([' ', '<']).split([' ', '/', '>']).next().unwrap();
+        let other = others.iter().find(|(known, _)| *known == tag).map(|(_, other)| *other);
+        let value = line.rsplit_once(" value=\"").and_then(|(_, rest)| rest.strip_suffix("\"/>"));
+        match value.filter(|_| choice % 3 != 0 && (other.is_some() || lists.contains(&tag))) {
+            Some(value) => {
+                let name = format!("p{}_", defaults.lines().count());
+                defaults += &format!("<default name=\"{name}\" value=\"{value}\"/>\n");
+                body += &format!(
+                    "{}value=\"${name}\"/>\n",
+                    line.strip_suffix(&format!("value=\"{value}\"/>")).unwrap()
+                );
+                settable.extend(other.filter(|_| choice % 2 == 0).map(|other| (name, other)));
+            }
+            None => body += &format!("{line}\n"),
+        }
+    }
+    (format!("<scene version=\"3.0.0\">\n{defaults}{body}"), settable)
+}
+
+proptest! {
+    #![proptest_config(Config { cases: 200, rng_seed: RngSeed::Fixed(2002), failure_persistence: None, ..Config::default() })]
+
+    #[test]
+    fn parameters_go_both_ways(tree in any_scene(), choices in vec(any::<u8>(), 16)) {
+        let plain = scene::write(&tree, Spelling::Xml, Path::new("nowhere")).unwrap();
+        prop_assume!(plain.lines().count() > 2);
+        let (text, settable) = parametrised(&plain, &choices);
+        let desk = Desk::new(&[("a.xml", &text)]);
+        assert_same(&tree, &desk.read("a.xml", &[]), &text);
+        let (json, _) = desk.convert("a.xml", "b.json", &[]);
+        desk.convert("b.json", "c.xml", &[]);
+        let (same, notes) = desk.convert("a.xml", "d.xml", &[]);
+        prop_assert_eq!(notes, [""; 0]);
+        let settings: Vec<_> = settable.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        for definitions in [&[][..], &settings] {
+            let expected = desk.read("a.xml", definitions);
+            assert_same(&expected, &desk.read("c.xml", definitions), &json);
+            assert_same(&expected, &desk.read("d.xml", definitions), &same);
+        }
     }
 }
 

@@ -114,10 +114,13 @@ def step(s: dict):
 
 
 def read_exr(path: Path) -> np.ndarray:
-    """An image file as linear RGB."""
+    """An image file as linear RGB, without the layers that may stand beside it."""
     if mi.variant() is None:
         use("scalar_rgb")
-    bitmap = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
+    bitmap = mi.Bitmap(str(path))
+    if bitmap.pixel_format() == mi.Bitmap.PixelFormat.MultiChannel:
+        bitmap = dict(bitmap.split())["<root>"]
+    bitmap = bitmap.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
     return np.array(bitmap, dtype=np.float64)
 
 

@@ -9,6 +9,10 @@ use crate::texture::Texture;
 use std::sync::Arc;
 
 /// (1 - weight) first + weight second.
+///
+/// Where one part is smooth and the other is not, Mitsuba 3.9.1 adds the density of the other part to the
+/// probability of the Dirac lobe and so loses light (of a mirror under 30% black paint it shows 62% and not
+/// 70%). That is not imitated.
 #[derive(Clone, Debug)]
 pub struct Blend {
     weight: Texture,

@@ -59,7 +59,7 @@ impl Metal {
                 let (eta, k) = metals::named(params, name)?;
                 (Texture::constant(eta), Texture::constant(k))
             }
-            None => (texture::parameter(params, "eta", 0.0)?, texture::parameter(params, "k", 1.0)?),
+            None => (texture::index(params, "eta", 0.0)?, texture::index(params, "k", 1.0)?),
         };
         Ok(Self::new(eta, k, reflectance(params, "specular_reflectance", 1.0)?))
     }

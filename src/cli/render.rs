@@ -28,7 +28,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let settings = settings(arguments, &setup)?;
     let goal = Goal::new(arguments, &setup)?;
     let load_time = started.elapsed();
-    let image = on_threads(arguments, || {
+    let mut image = on_threads(arguments, || {
         let bar = Bar::new(&settings, setup.film.len());
         let (scene, film, layers) = (&setup.scene, &setup.film, &setup.integrator.layers);
         let image =
@@ -36,7 +36,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
         bar.bar.finish_and_clear();
         image
     })?;
-    goal.write(&setup.film, &image)?;
+    goal.write(&setup.film, &mut image)?;
     let preview = goal.path.with_extension("png");
     film::png::write(&preview, setup.film.width as usize, setup.film.height as usize, &image.pixels)?;
     if let Some(report) = &arguments.report {
@@ -143,13 +143,14 @@ impl Goal {
         Ok(Self { path, format })
     }
 
-    fn write(&self, film: &Film, image: &Image) -> Result<()> {
+    /// Writes the image, and the layers that it then no longer has.
+    fn write(&self, film: &Film, image: &mut Image) -> Result<()> {
         let (width, height) = (film.width as usize, film.height as usize);
         let mut channels = self.format.channels(&image.pixels, &image.alpha);
         match self.format.file {
             FileKind::OpenExr => {
-                channels.extend(image.layers.iter().cloned());
-                film::exr::write(&self.path, width, height, &channels, self.format)
+                channels.append(&mut image.layers);
+                film::exr::write(&self.path, width, height, channels, self.format)
             }
             FileKind::Pfm => film::raster::write_pfm(&self.path, width, height, &channels),
             FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),

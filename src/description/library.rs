@@ -1,6 +1,6 @@
 //! What a description needs from around it: the objects that carry ids, files, and a place for warnings.
 
-use super::{Location, Object, Value, nearest};
+use super::{Location, Object, Value, suggest};
 use crate::error::{Error, Result};
 use std::{
     cell::RefCell,
@@ -49,7 +49,7 @@ impl Library {
                 location,
                 "the id of an object in this scene",
                 format!("\"{id}\""),
-                format!("{}known ids: {}", nearest(id, &known), known.join(", ")),
+                suggest(id, "known ids", &known),
             )
         })
     }

@@ -1,5 +1,6 @@
 //! The scene description: one tree, whichever spelling it was read from. Models build themselves from it.
 
+pub mod colour;
 mod library;
 pub mod params;
 pub mod transform;
@@ -80,7 +81,7 @@ pub enum Value {
     String(String),
     /// A linear-sRGB colour.
     Rgb([f64; 3]),
-    /// Wavelength [nm] and value pairs.
+    /// Wavelength [nm] and value pairs in order of wavelength; a single pair has its value at all wavelengths.
     Spectrum(Vec<(f64, f64)>),
     /// A point or vector.
     Vector([f64; 3]),
@@ -141,16 +142,40 @@ pub fn find_row<'a, T>(object: &Object, kind: &str, rows: &'a [Row<T>]) -> crate
             &object.location,
             format!("the type of a {kind}"),
             format!("\"{}\"", object.plugin),
-            format!("{}known: {}", nearest(&object.plugin, &names), names.join(", ")),
+            suggest(&object.plugin, "known", &names),
         )
     })
 }
 
+/// At most so many names are listed in a message.
+const LISTED: usize = 24;
+
+/// The known name closest to `found`, if one is close, and the names that are known after `what` ("known",
+/// "known ids"); of very many names only those that look most like it.
+pub fn suggest(found: &str, what: &str, known: &[&str]) -> String {
+    let mut shown = known.to_vec();
+    if known.len() > LISTED {
+        shown.sort_by_key(|name| (strsim::damerau_levenshtein(found, name), *name));
+        shown.truncate(LISTED / 2);
+    }
+    let list = if known.is_empty() { "none".into() } else { shown.join(", ") };
+    let rest = match known.len() - shown.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!("{}{what}: {list}{rest}", nearest(found, known))
+}
+
 /// "did you mean ...? " for the known name closest to `found`; empty where none is close.
 pub fn nearest(found: &str, known: &[&str]) -> String {
+    // Whether a name is written in camel case or with underscores is no great distance.
+    let plain = |name: &str| name.replace(['_', '-'], "").to_lowercase();
+    let between = |a: &str, b: &str| {
+        strsim::damerau_levenshtein(a, b).min(1 + strsim::damerau_levenshtein(&plain(a), &plain(b)))
+    };
     known
         .iter()
-        .map(|name| (strsim::damerau_levenshtein(found, name), name))
+        .map(|name| (between(found, name), name))
         .min()
         .filter(|(distance, name)| *distance <= 1 + name.len().min(found.len()) / 3)
         .map(|(_, name)| format!("did you mean \"{name}\"? "))

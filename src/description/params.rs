@@ -1,6 +1,10 @@
 //! Typed access to an object's parameters. What nobody asked for is an error: nothing is ignored silently.
 
-use super::{Library, Location, Object, Property, Value, nearest, transform};
+use super::{
+    Library, Location, Object, Position, Property, Value,
+    colour::{self, Role},
+    nearest, suggest, transform,
+};
 use crate::{
     error::{Error, Result},
     math::{DMat4, DVec3, Spectrum},
@@ -82,7 +86,11 @@ impl<'a> Params<'a> {
         if (low..=high).contains(&value) {
             return Ok(value);
         }
-        Err(self.complain(name, format!("a number from {low} to {high}"), value.to_string()))
+        let expected = match high == f64::MAX {
+            true => format!("a number >= {low}"),
+            false => format!("a number from {low} to {high}"),
+        };
+        Err(self.complain(name, expected, value.to_string()))
     }
 
     /// A whole number.
@@ -116,7 +124,10 @@ impl<'a> Params<'a> {
         let Some(word) = self.optional_string(name)? else { return Ok(default) };
         choices.iter().find(|(w, _)| *w == word).map(|(_, value)| *value).ok_or_else(|| {
             let words: Vec<_> = choices.iter().map(|(w, _)| *w).collect();
-            self.complain(name, format!("one of {}", words.join(", ")), format!("\"{word}\""))
+            let expected = format!("one of {}", words.join(", "));
+            let mut error = self.complain(name, expected, format!("\"{word}\""));
+            error.remedy = format!("{}{}", nearest(word, &words), error.remedy);
+            error
         })
     }
 
@@ -142,15 +153,31 @@ impl<'a> Params<'a> {
         Err(self.complain(name, "an invertible transform", found))
     }
 
-    /// A colour with finite entries >= 0: a number (grey), rgb, or a spectrum of equal values; where given.
+    /// A colour of matter with finite entries >= 0: a number (grey), rgb, a spectrum, or a plugin that stands
+    /// for one; where given.
     pub fn optional_color(&self, name: &'static str) -> Result<Option<Spectrum>> {
-        let Some(property) = self.property(name) else { return Ok(None) };
-        color(property).map(Some)
+        self.color_of(name, Role::Matter)
     }
 
-    /// A colour with finite entries >= 0.
+    /// A colour of matter with finite entries >= 0: a reflectance, an albedo, an extinction.
     pub fn color(&self, name: &'static str, default: f32) -> Result<Spectrum> {
         Ok(self.optional_color(name)?.unwrap_or(Spectrum::splat(default)))
+    }
+
+    /// An index of refraction or the like: as [`Self::color`], but spectra may exceed 1.
+    pub fn index(&self, name: &'static str, default: f32) -> Result<Spectrum> {
+        Ok(self.color_of(name, Role::Index)?.unwrap_or(Spectrum::splat(default)))
+    }
+
+    /// Radiance, irradiance or intensity, with finite entries >= 0: spectra are the light itself, not seen in
+    /// daylight.
+    pub fn emission(&self, name: &'static str, default: f32) -> Result<Spectrum> {
+        Ok(self.color_of(name, Role::Light)?.unwrap_or(Spectrum::splat(default)))
+    }
+
+    fn color_of(&self, name: &'static str, role: Role) -> Result<Option<Spectrum>> {
+        let Some(property) = self.property(name) else { return Ok(None) };
+        colour::read(property, self.library, role).map(Some)
     }
 
     /// A file named by the string `name`, relative to the file that names it. Must exist.
@@ -219,7 +246,9 @@ impl<'a> Params<'a> {
     pub fn complain(&self, name: &str, expected: impl Into<String>, found: impl Into<String>) -> Error {
         let property = self.object.properties.iter().find(|p| p.name == name);
         let place = property.map_or(self.location(), |p| &p.location);
-        Error::new(place, format!("{} for \"{name}\"", expected.into()), found, format!("correct \"{name}\""))
+        let expected = expected.into();
+        let remedy = format!("change \"{name}\" to {expected}");
+        Error::new(place, format!("{expected} for \"{name}\""), found, remedy)
     }
 
     /// The error for a parameter that must be given.
@@ -237,17 +266,25 @@ impl<'a> Params<'a> {
         let mut known = self.asked.borrow().clone();
         known.sort_unstable();
         known.dedup();
+        let mut found = property.value.describe();
+        let child = self.as_child(property)?.map(|child| &child.object.plugin);
+        if let (Value::Reference(_), Some(plugin)) = (&property.value, child) {
+            found = format!("{found}, the plugin \"{plugin}\"");
+        }
         let name = if property.name.is_empty() {
-            format!("an unnamed child, {}", property.value.describe())
+            "an unnamed child".into()
         } else {
-            format!("\"{}\", {}", property.name, property.value.describe())
+            format!("\"{}\"", property.name)
         };
-        Err(Error::new(
-            &property.location,
-            format!("a parameter of the {}", self.object.plugin),
-            name,
-            format!("{}known here: {}", nearest(&property.name, &known), known.join(", ")),
-        ))
+        let remedy = suggest(&property.name, "parameters known here", &known);
+        let (expected, remedy) = match child {
+            None => (format!("a parameter of the {}", self.object.plugin), remedy),
+            Some(_) => (
+                format!("a child that a {} can hold", self.object.plugin),
+                format!("move it to where it belongs, or remove it; {remedy}"),
+            ),
+        };
+        Err(Error::new(&property.location, expected, format!("{name}, {found}"), remedy))
     }
 }
 
@@ -261,32 +298,33 @@ fn number(value: &Value) -> Option<f64> {
 
 fn wrong(property: &Property, expected: &str) -> Error {
     let Property { name, value, location } = property;
-    Error::new(
-        location,
-        format!("{expected} for \"{name}\""),
-        value.describe(),
-        format!("correct \"{name}\""),
-    )
+    Error::new(location, format!("{expected} for \"{name}\""), value.describe(), spelling(property, expected))
 }
 
-/// A property as a colour (see [`Params::optional_color`]).
-pub fn color(property: &Property) -> Result<Spectrum> {
-    let expected = "a colour (a number, rgb or constant spectrum) with finite entries >= 0";
-    let rgb = match &property.value {
-        Value::Rgb(c) => *c,
-        Value::Spectrum(pairs) if pairs.iter().all(|p| p.1 == pairs[0].1) && !pairs.is_empty() => {
-            [pairs[0].1; 3]
-        }
-        value => [number(value).ok_or_else(|| wrong(property, expected))?; 3],
+/// How what is expected is written in the file that holds `property`.
+pub(super) fn spelling(property: &Property, expected: &str) -> String {
+    let name = &property.name;
+    let is_json = matches!(property.location.position, Position::Path(_));
+    let (json, tag, example) = match expected {
+        "a finite number" => ("1.5", "float", "value=\"1.5\"/"),
+        "an integer" => ("2", "integer", "value=\"2\"/"),
+        "a boolean" => ("true", "boolean", "value=\"true\"/"),
+        "a string" => ("\"text\"", "string", "value=\"text\"/"),
+        "three finite numbers" => ("[1, 2, 3]", "point", "value=\"1, 2, 3\"/"),
+        COLOR => ("{\"type\": \"rgb\", \"value\": [0.1, 0.2, 0.3]}", "rgb", "value=\"0.1, 0.2, 0.3\"/"),
+        "a transform" => (
+            "[{\"type\": \"translate\", \"value\": [1, 2, 3]}]",
+            "transform",
+            "><translate value=\"1, 2, 3\"/></transform",
+        ),
+        "an object or a reference" => ("{\"type\": \"ref\", \"id\": \"...\"}", "ref", "id=\"...\"/"),
+        _ => return format!("change \"{name}\" to {expected}"),
     };
-    if rgb.iter().all(|c| c.is_finite() && *c >= 0.0) {
-        return Ok(DVec3::from(rgb).as_vec3());
+    match is_json {
+        true => format!("write it like \"{name}\": {json}"),
+        false => format!("write it like <{tag} name=\"{name}\" {example}>"),
     }
-    let (name, found) = (&property.name, format!("{rgb:?}"));
-    Err(Error::new(
-        &property.location,
-        format!("{expected} for \"{name}\""),
-        found,
-        format!("correct \"{name}\""),
-    ))
 }
+
+/// What a colour is.
+pub(super) const COLOR: &str = "a colour (a number, rgb or spectrum) with finite entries >= 0";

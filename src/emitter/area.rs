@@ -23,7 +23,7 @@ impl Area {
     /// Reads `radiance` and `profile`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
         let profile = Profile::build(params)?;
-        Ok(Self { radiance: texture::parameter(params, "radiance", 1.0)?, profile })
+        Ok(Self { radiance: texture::emission(params, "radiance", 1.0)?, profile })
     }
 
     /// Radiance leaving from texture position `uv` at `cosine` to the normal: none behind.

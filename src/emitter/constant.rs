@@ -17,7 +17,7 @@ pub struct Constant {
 impl Constant {
     /// Reads `radiance`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { radiance: params.color("radiance", 1.0)? })
+        Ok(Self { radiance: params.emission("radiance", 1.0)? })
     }
 
     /// A direction, uniform.

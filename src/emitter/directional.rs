@@ -28,6 +28,9 @@ impl Directional {
             Some(direction) => direction,
             None => params.transform("to_world")?.transform_vector3(DVec3::Z),
         };
-        Ok(Self { direction: direction.normalize().as_vec3(), irradiance: params.color("irradiance", 1.0)? })
+        Ok(Self {
+            direction: direction.normalize().as_vec3(),
+            irradiance: params.emission("irradiance", 1.0)?,
+        })
     }
 }

@@ -17,7 +17,7 @@ pub struct DirectionalArea {
 impl DirectionalArea {
     /// Reads `radiance`: so Mitsuba calls it, though by its unit it is an exitance.
     pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { exitance: texture::parameter(params, "radiance", 1.0)? })
+        Ok(Self { exitance: texture::emission(params, "radiance", 1.0)? })
     }
 
     /// Power per area at texture position `uv` [W/m^2].

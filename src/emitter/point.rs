@@ -33,7 +33,7 @@ impl Point {
         };
         let axis = Frame::around(to_world.transform_vector3(DVec3::Z).normalize().as_vec3());
         let profile = Profile::build(params)?.map(|profile| (profile, axis));
-        Ok(Self { position, intensity: params.color("intensity", 1.0)?, profile })
+        Ok(Self { position, intensity: params.emission("intensity", 1.0)?, profile })
     }
 
     /// Intensity towards unit `direction` [W/sr].

@@ -43,7 +43,7 @@ impl Projector {
         if !params.has("irradiance") {
             return Err(params.missing("irradiance", "a texture"));
         }
-        let irradiance = texture::parameter(params, "irradiance", 1.0)?;
+        let irradiance = texture::emission(params, "irradiance", 1.0)?;
         let to_world = params.transform("to_world")?;
         let [width, height] = irradiance.resolution().map(|n| n as f64);
         let half = sensor::half_width(params, width / height)?;

@@ -47,7 +47,7 @@ impl Spot {
         let beam = params.float_within("beam_width", cutoff * 0.75, 0.0, cutoff)?;
         Ok(Self {
             position: to_world.transform_point3(DVec3::ZERO),
-            intensity: params.color("intensity", 1.0)?,
+            intensity: params.emission("intensity", 1.0)?,
             axis: Frame::around(axis),
             cutoff: cutoff.to_radians() as f32,
             beam: beam.to_radians() as f32,

@@ -19,19 +19,17 @@ use ::exr::{
 use std::{io, path::Path};
 
 /// Writes `channels` to `path`. The window of a cropped film is an image of its own, as in Mitsuba.
-pub fn write(path: &Path, width: usize, height: usize, channels: &[Channel], format: Format) -> Result<()> {
-    for channel in channels {
+pub fn write(path: &Path, width: usize, height: usize, channels: Vec<Channel>, format: Format) -> Result<()> {
+    for channel in &channels {
         output::check_size(path, width, height, channel.values.len())?;
     }
-    let list = channels.iter().map(|channel| {
+    let list = channels.into_iter().map(|Channel { name, values }| {
         let samples = match format.component {
-            Component::Float16 => {
-                FlatSamples::F16(channel.values.iter().map(|v| f16::from_f32(*v)).collect())
-            }
-            Component::Float32 => FlatSamples::F32(channel.values.clone()),
-            Component::Uint32 => FlatSamples::U32(channel.values.iter().map(|v| whole(*v)).collect()),
+            Component::Float16 => FlatSamples::F16(values.into_iter().map(f16::from_f32).collect()),
+            Component::Float32 => FlatSamples::F32(values),
+            Component::Uint32 => FlatSamples::U32(values.into_iter().map(whole).collect()),
         };
-        AnyChannel::new(channel.name.as_str(), samples)
+        AnyChannel::new(name.as_str(), samples)
     });
     let list = AnyChannels::sort(list.collect());
     let layer = Layer::new((width, height), LayerAttributes::default(), Encoding::FAST_LOSSLESS, list);
@@ -77,16 +75,16 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("image.exr");
         let values = [0.1, -1e-30, 7e4, 1.0, 0.25, 2.0];
-        let channels = [channel("R", &values), channel("n.X", &[0.5; 6])];
+        let channels = || vec![channel("R", &values), channel("n.X", &[0.5; 6])];
         let format = Format::default();
-        write(&path, 3, 2, &channels, format).unwrap();
+        write(&path, 3, 2, channels(), format).unwrap();
         assert_eq!(read(&path)[0], ("R".into(), FlatSamples::F32(values.to_vec())));
         assert_eq!(read(&path)[1].0, "n.X");
-        write(&path, 3, 2, &channels, Format { component: Component::Float16, ..format }).unwrap();
+        write(&path, 3, 2, channels(), Format { component: Component::Float16, ..format }).unwrap();
         let halves = [0.099_975_586, -0.0, f32::INFINITY, 1.0, 0.25, 2.0].map(f16::from_f32);
         assert_eq!(read(&path)[0].1, FlatSamples::F16(halves.to_vec()));
         // What Mitsuba 3.9.1 writes for 1/4, up to the rounding of its single precision: 2^30.
-        write(&path, 3, 2, &channels, Format { component: Component::Uint32, ..format }).unwrap();
+        write(&path, 3, 2, channels(), Format { component: Component::Uint32, ..format }).unwrap();
         let whole = [429_496_736, 0, u32::MAX, u32::MAX, 1 << 30, u32::MAX];
         assert_eq!(read(&path)[0].1, FlatSamples::U32(whole.to_vec()));
     }
@@ -96,7 +94,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("image.exr");
         for (width, height) in [(0, 0), (2, 2), (usize::MAX, 3)] {
-            assert!(write(&path, width, height, &[channel("Y", &[1.0; 3])], Format::default()).is_err());
+            assert!(write(&path, width, height, vec![channel("Y", &[1.0; 3])], Format::default()).is_err());
         }
         assert!(!path.exists());
     }

@@ -20,13 +20,15 @@ pub enum Quantity {
     DpDu,
     /// Change of position with the second texture coordinate [m].
     DpDv,
-    /// Change of the texture coordinates with a step across the film of 1 / sqrt(samples per pixel) pixels.
+    /// Change of the texture coordinates with a step across the film of 1 / sqrt(samples per pixel) pixels,
+    /// to where the ray from the lens meets the tangent plane (Mitsuba starts that ray at the near clip plane).
     DuvDx,
     /// The same for a step down.
     DuvDy,
-    /// Number of the primitive in its shape, from 0.
+    /// Number of the primitive in its shape, from 0: the triangle of a mesh, the face of a cube (Mitsuba counts
+    /// triangles there too).
     PrimitiveIndex,
-    /// Number of the shape in the scene, from 1.
+    /// Number of the shape in the order of the scene file, from 1 (Mitsuba's depend on how it stores shapes).
     ShapeIndex,
 }
 

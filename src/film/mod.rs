@@ -117,3 +117,30 @@ impl Film {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is spread evenly over the film makes every pixel 1, by negative shares too.
+    #[test]
+    fn an_even_light_makes_an_even_image() {
+        const STEPS: u32 = 120;
+        for (filter, border) in [Filter::Box, Filter::Cubic { b: 0.0, c: 0.5 }, Filter::Lanczos { lobes: 3 }]
+            .into_iter()
+            .flat_map(|filter| [(filter, false), (filter, true)])
+        {
+            let film = Film::new(Window::whole(4, 3), filter, border, Format::default());
+            let mut image = vec![0.0; film.len()];
+            let at = |i: u32| (i as f32 + 0.5) / STEPS as f32 - film.border as f32;
+            for y in 0..(film.height + 2 * film.border) * STEPS {
+                for x in 0..(film.width + 2 * film.border) * STEPS {
+                    assert!(film.covers(vec2(at(x), at(y))));
+                    let share = Spectrum::splat(1.0 / (STEPS * STEPS) as f32);
+                    film.spread(vec2(at(x), at(y)), share, |pixel, value| image[pixel] += f64::from(value.x));
+                }
+            }
+            assert!(image.iter().all(|value| (value - 1.0).abs() < 2e-3), "{filter:?}: {image:?}");
+        }
+    }
+}

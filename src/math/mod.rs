@@ -1,5 +1,6 @@
 //! Vectors, frames, colours, warps and measures: what every other room stands on.
 
+pub mod cie;
 pub mod colour;
 pub mod frame;
 pub mod fresnel;

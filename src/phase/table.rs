@@ -48,7 +48,7 @@ impl Table {
         if values.len() >= 2 && sum > 0.0 && sum.is_finite() {
             return Ok(Self::new(&values));
         }
-        let found = format!("{} numbers with sum {sum}", values.len());
+        let found = format!("{} with the sum {sum}", values.len());
         Err(params.complain("values", "at least two numbers with a finite sum > 0", found))
     }
 

@@ -54,18 +54,18 @@ impl Pass {
 
     /// Traces as many primary rays per pixel as there were `passes`.
     pub fn run<P: Profile>(&self, scene: &Scene, job: &Job<'_, P>, passes: u64) -> Seen {
-        // Room for alpha and three components each.
-        let width = 1 + self.quantities.len();
+        let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
             return Seen { alpha: Vec::new(), planes: Vec::new() };
         }
+        let environment = scene.lights.environment.is_some();
         let mut means = vec![Vec3::ZERO; job.film.len() * width];
         means.par_chunks_mut(width).enumerate().for_each(|(pixel, means)| {
             let mut sums = vec![[0f64; 3]; width];
             for pass in 0..passes {
                 let start =
                     job.blocks.eye_start(job.estimator, job.film, job.settings.seed, pass as usize, pixel);
-                let view = View::new(scene, job, &start, passes);
+                let view = View::new(scene, job, environment, &start, passes);
                 let alpha = self.alpha.then(|| Vec3::splat(view.alpha()));
                 let values = self.quantities.iter().map(|quantity| view.quantity(*quantity));
                 for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
@@ -96,24 +96,25 @@ struct View<'a, P: Profile> {
     aperture: Vec2,
     ray: Ray,
     hit: Option<(Hit, SurfacePoint)>,
+    /// Something shines from everywhere at infinity.
+    environment: bool,
     /// Step across the film that `duv_dx` speaks of [pixels].
     step: f32,
 }
 
 impl<'a, P: Profile> View<'a, P> {
-    fn new(scene: &'a Scene, job: &'a Job<'a, P>, start: &EyeStart, passes: u64) -> Self {
+    fn new(scene: &'a Scene, job: &'a Job<'a, P>, environment: bool, start: &EyeStart, passes: u64) -> Self {
         let EyeStart { position: film, aperture, .. } = *start;
         let ray = job.estimator.primary_ray(film, aperture);
         let hit = scene.geometry.closest(&ray).map(|hit| (hit, scene.geometry.surface(&ray, &hit)));
-        Self { scene, job, film, aperture, ray, hit, step: 1.0 / (passes as f32).sqrt() }
+        Self { scene, job, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }
     }
 
     /// The chance that the ray interacts with something or meets a visible environment: what Mitsuba's
     /// `volpath` finds out by walking on. Emitters that are hidden do not count.
     fn alpha(&self) -> f32 {
         let hidden = self.job.settings.options.hide_emitters;
-        let environment = self.scene.lights.met_at_infinity(self.ray.direction).is_some();
-        if environment && !hidden {
+        if self.environment && !hidden {
             return 1.0;
         }
         let mut ray = self.ray;
@@ -164,9 +165,8 @@ impl<'a, P: Profile> View<'a, P> {
     /// How the texture coordinates change from here to where a neighbouring ray meets the tangent plane.
     fn uv_change(&self, hit: &Hit, point: &SurfacePoint, across: Vec2) -> Vec2 {
         let (du, dv) = partials(&self.scene.geometry, &self.ray, hit, point);
-        let neighbour = self.job.estimator.primary_ray(self.film + across, self.aperture);
-        let origin = self.ray.origin.lerp(neighbour.origin, self.step);
-        let direction = self.ray.direction.lerp(neighbour.direction, self.step);
+        let neighbour = self.film + across * self.step;
+        let Ray { origin, direction, .. } = self.job.estimator.primary_ray(neighbour, self.aperture);
         let t = (point.position - origin).dot(point.normal) / direction.dot(point.normal);
         let moved = origin + direction * t - point.position;
         let (uu, uv, vv) = (du.dot(du), du.dot(dv), dv.dot(dv));

@@ -8,10 +8,11 @@ use super::{
     film,
     integrator::{self, Integrator},
     lights::{Light, Lights},
+    references, tags,
 };
 use crate::{
     bsdf::{self, Bsdf},
-    description::{Library, Location, Object, Params, Property, Value, nearest, params::Child},
+    description::{Library, Location, Object, Params, Position, Property, Value, params::Child},
     emitter::{self, Emitter},
     error::{Error, Result},
     film::Film,
@@ -47,6 +48,7 @@ pub struct Overrides {
 
 /// Builds the scene that `root` describes.
 pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
+    tags::check(root)?;
     let library = Library::new(root)?;
     let sections = Sections::sort(root, &library)?;
     let recentre = sections.viewpoint(&library)?;
@@ -105,6 +107,7 @@ impl<'a> Sections<'a> {
         for child in &definitions {
             check_definition(child.object, library)?;
         }
+        warn_of_idle(&definitions, root, library);
         if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
             !(is_shape(child.object)
                 || emitter::is_emitter(child.object)
@@ -112,11 +115,11 @@ impl<'a> Sections<'a> {
                 || integrator::is_integrator(child.object)
                 || is_definition(child.object))
         }) {
-            return Err(unknown_plugin(unknown));
+            return Err(misplaced(unknown));
         }
         params.finish()?;
         let sensor = match sensors.as_slice() {
-            [] => return Err(params.missing("sensor", "a sensor")),
+            [] => return Err(without_sensor(root)),
             [sensor] => sensor.object,
             [_, second, ..] => return Err(only_one(second, "sensor")),
         };
@@ -147,22 +150,43 @@ fn check_definition(object: &Object, library: &Library) -> Result<()> {
     }
 }
 
-fn unknown_plugin(child: &Child<'_>) -> Error {
-    let mut known: Vec<&str> = shape::ROWS.iter().map(|row| row.name).collect();
-    known.extend(emitter::ROWS.iter().map(|row| row.name));
-    known.extend(bsdf::ROWS.iter().map(|row| row.name));
-    known.extend(medium::ROWS.iter().map(|row| row.name));
-    known.extend(crate::phase::ROWS.iter().map(|row| row.name));
-    known.extend(crate::texture::ROWS.iter().map(|row| row.name));
-    known.extend(integrator::ROWS.iter().map(|row| row.name));
-    known.extend(sensor::names());
+/// A plugin that nobody knows, that a scene does not hold, or a sensor that only Mitsuba has.
+fn misplaced(child: &Child<'_>) -> Error {
     let plugin = &child.object.plugin;
-    Error::new(
-        child.location,
-        "a plugin that a scene can hold",
-        format!("\"{plugin}\""),
-        format!("{}known: {}", nearest(plugin, &known), known.join(", ")),
-    )
+    let tags = tags::of_plugin(plugin);
+    if tags.is_empty() {
+        return tags::unknown_in(child.object, "scene");
+    }
+    if tags.contains(&"sensor") {
+        let found = format!("\"{plugin}\", which only Mitsuba has");
+        return Error::new(
+            child.location,
+            "a sensor of Tyndall",
+            found,
+            "replace it by a perspective, thinlens or orthographic",
+        );
+    }
+    let remedy = "move it into the object that it belongs to (films and samplers into the sensor)";
+    Error::new(child.location, "a plugin that stands in the scene itself", format!("\"{plugin}\""), remedy)
+}
+
+/// Says which definitions have no effect.
+fn warn_of_idle(definitions: &[Child<'_>], root: &Object, library: &Library) {
+    let referred = references::referred(root);
+    for Child { object, location, .. } in definitions {
+        if object.id.as_deref().is_none_or(|id| !referred.contains(id)) {
+            let name = object.id.as_deref().unwrap_or(&object.plugin);
+            library.warn(location, &format!("\"{name}\" is not used: nothing refers to it"));
+        }
+    }
+}
+
+fn without_sensor(root: &Object) -> Error {
+    let remedy = match root.location.position {
+        Position::Text { .. } => "add <sensor type=\"perspective\">...</sensor>",
+        Position::Path(_) => "add \"camera\": {\"type\": \"perspective\", ...}",
+    };
+    Error::new(&root.location, "a sensor in the scene", "none", remedy)
 }
 
 pub(super) fn only_one(second: &Child<'_>, what: &str) -> Error {
@@ -297,10 +321,8 @@ impl<'a> Builder<'a> {
         if let Some(index) = self.default_bsdf[usize::from(emits)] {
             return Ok(index);
         }
-        let location = Location {
-            file: std::sync::Arc::default(),
-            position: crate::description::Position::Path("(default bsdf)".into()),
-        };
+        let location =
+            Location { file: std::sync::Arc::default(), position: Position::Path("(default bsdf)".into()) };
         let value = Value::Float(if emits { 0.0 } else { 0.5 });
         let properties = vec![Property { name: "reflectance".into(), value, location: location.clone() }];
         let object = Object { tag: None, plugin: "diffuse".into(), id: None, properties, location };

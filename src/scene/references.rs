@@ -2,10 +2,10 @@
 
 use super::read::{DEEPEST, Draft};
 use crate::{
-    description::{Library, Location, Object, Value, nearest},
+    description::{Library, Location, Object, Value, suggest},
     error::{Error, Result},
 };
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// More objects than this, every reference counted as a copy, is a scene that could never be built.
 const LARGEST: u64 = 100_000_000;
@@ -46,7 +46,7 @@ fn targets(root: &Object, aliases: Vec<Alias>) -> Result<HashMap<String, String>
         let Some(id) =
             names.get(&target).map(String::as_str).or(ids.iter().copied().find(|id| *id == target))
         else {
-            let remedy = format!("{}known ids: {}", nearest(&target, &ids), ids.join(", "));
+            let remedy = suggest(&target, "known ids", &ids);
             return Err(Error::new(location, "the id of an object", format!("\"{target}\""), remedy));
         };
         let id = id.to_owned();
@@ -62,6 +62,22 @@ fn collect_ids<'a>(object: &'a Object, ids: &mut Vec<&'a str>) {
             collect_ids(child, ids);
         }
     }
+}
+
+/// All ids that something in `root` refers to.
+pub(super) fn referred(root: &Object) -> HashSet<&str> {
+    let mut ids = HashSet::new();
+    let mut open = vec![root];
+    while let Some(object) = open.pop() {
+        for property in &object.properties {
+            match &property.value {
+                Value::Object(child) => open.push(child),
+                Value::Reference(id) => drop(ids.insert(id.as_str())),
+                _ => {}
+            }
+        }
+    }
+    ids
 }
 
 fn rename(object: &mut Object, names: &HashMap<String, String>) {

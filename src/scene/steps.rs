@@ -24,12 +24,12 @@ pub(super) fn rotate(axis: [f64; 3], angle: f64) -> Parsed<TransformStep> {
 /// Placement at `origin` towards `target`. As in Mitsuba, `up` left out (or zero) is chosen for you.
 pub(super) fn look_at(origin: [f64; 3], target: [f64; 3], up: Option<[f64; 3]>) -> Parsed<TransformStep> {
     let Some(direction) = (DVec3::from(target) - DVec3::from(origin)).try_normalize() else {
-        return mistake("a lookat whose target is not its origin", format!("both at {origin:?}"));
+        return mistake("a target other than the origin", format!("both at {origin:?}"));
     };
     let chosen = || Frame::around(direction.as_vec3()).tangent.as_dvec3().to_array();
     let up = up.filter(|up| *up != [0.0; 3]).unwrap_or_else(chosen);
     if DVec3::from(up).cross(direction).try_normalize().is_none() {
-        return mistake("a lookat whose up is not along its direction", format!("up = {up:?}"));
+        return mistake("an up that is not along the view", format!("up = {up:?}"));
     }
     Ok(TransformStep::LookAt { origin, target, up })
 }

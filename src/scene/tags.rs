@@ -1,7 +1,14 @@
 //! Which XML tag a plugin goes with. XML always says; JSON leaves it to the plugin's name and place.
 
 use super::integrator;
-use crate::{bsdf, description::Row, emitter, film::filter, medium, phase, shape, texture};
+use crate::{
+    bsdf,
+    description::{Object, Position, Row, Value, suggest},
+    emitter,
+    error::{Error, Result},
+    film::filter,
+    medium, phase, shape, texture,
+};
 
 /// Tags of plugins.
 pub(super) const TAGS: [&str; 13] = [
@@ -136,28 +143,29 @@ const INSIDE: [(&str, &[&str]); 13] = [
     ("volume", &["volume", "texture"]),
 ];
 
-fn has<T>(rows: &[Row<T>], plugin: &str) -> bool {
-    rows.iter().any(|row| row.name == plugin)
+fn names<T>(rows: &'static [Row<T>]) -> Vec<&'static str> {
+    rows.iter().map(|row| row.name).collect()
 }
 
-/// True if Tyndall itself builds `plugin` under `tag`.
-fn is_ours(tag: &str, plugin: &str) -> bool {
+/// Plugins that Tyndall itself builds under `tag`; none where there is no registry of them.
+fn ours(tag: &str) -> Vec<&'static str> {
     match tag {
-        "integrator" => has(integrator::ROWS, plugin),
-        "rfilter" => has(filter::ROWS, plugin),
-        "shape" => shape::ROWS.iter().any(|row| row.name == plugin),
-        "bsdf" => has(bsdf::ROWS, plugin),
-        "texture" => has(texture::ROWS, plugin),
-        "emitter" => has(emitter::ROWS, plugin),
-        "medium" => has(medium::ROWS, plugin),
-        "phase" => has(phase::ROWS, plugin),
-        _ => false,
+        "integrator" => names(integrator::ROWS),
+        "rfilter" => names(filter::ROWS),
+        "shape" => shape::ROWS.iter().map(|row| row.name).collect(),
+        "bsdf" => names(bsdf::ROWS),
+        "texture" => names(texture::ROWS),
+        "emitter" => names(emitter::ROWS),
+        "medium" => names(medium::ROWS),
+        "phase" => names(phase::ROWS),
+        _ => Vec::new(),
     }
 }
 
 /// All tags under which there is a plugin called `plugin`.
 pub(super) fn of_plugin(plugin: &str) -> Vec<&'static str> {
-    let known = |(tag, plugins): &(&'static str, &[&str])| plugins.contains(&plugin) || is_ours(tag, plugin);
+    let known =
+        |(tag, plugins): &(&'static str, &[&str])| plugins.contains(&plugin) || ours(tag).contains(&plugin);
     MITSUBA.iter().filter(|row| known(row)).map(|(tag, _)| *tag).collect()
 }
 
@@ -181,6 +189,107 @@ fn by_name(name: &str) -> &str {
         "sigma_t" | "albedo" => "volume",
         _ => name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_'),
     }
+}
+
+/// Every plugin in `root` must be one, and of the kind that its tag says. What is known but of no use where it
+/// stands is for builders to tell, and so are volumes.
+pub(super) fn check(root: &Object) -> Result<()> {
+    check_below(root, "scene")
+}
+
+fn check_below(object: &Object, tag: &str) -> Result<()> {
+    for property in &object.properties {
+        let Value::Object(child) = &property.value else { continue };
+        let derived = || derive(&child.plugin, &property.name, tag);
+        let Some(child_tag) = child.tag.as_deref().or_else(derived) else {
+            // Elsewhere it may be a density, and those are for builders to know.
+            match tag {
+                "shape" | "sensor" | "film" | "bsdf" | "integrator" => return Err(unknown_in(child, tag)),
+                _ => continue,
+            }
+        };
+        if child_tag == "volume" {
+            continue;
+        }
+        check_tag(child, child_tag)?;
+        check_below(child, child_tag)?;
+    }
+    Ok(())
+}
+
+fn check_tag(object: &Object, tag: &str) -> Result<()> {
+    let (tags, ours) = (of_plugin(&object.plugin), ours(tag));
+    if ours.contains(&object.plugin.as_str()) || (ours.is_empty() && tags.contains(&tag)) {
+        return Ok(());
+    }
+    let known = if ours.is_empty() { renderable(tag).to_vec() } else { ours };
+    if tags.contains(&tag) {
+        let found = format!("\"{}\", which only Mitsuba has", object.plugin);
+        let remedy = format!("replace it; Tyndall has: {}", known.join(", "));
+        return Err(Error::new(&object.location, format!("{} of Tyndall", kind(tag)), found, remedy));
+    }
+    match tags.first() {
+        None => Err(unknown(object, Some(tag), &known)),
+        Some(right) => {
+            let found = format!("\"{}\", which is {}", object.plugin, kind(right));
+            let remedy = match object.location.position {
+                Position::Text { .. } => {
+                    format!("write <{right} type=\"{}\">, or name {}", object.plugin, kind(tag))
+                }
+                Position::Path(_) => format!("correct \"$tag\", or name {}", kind(tag)),
+            };
+            Err(Error::new(&object.location, format!("the type of {}", kind(tag)), found, remedy))
+        }
+    }
+}
+
+fn unknown(object: &Object, tag: Option<&str>, known: &[&str]) -> Error {
+    let expected = tag.map_or("the type of a plugin".into(), |tag| format!("the type of {}", kind(tag)));
+    let found = format!("\"{}\"", object.plugin);
+    Error::new(&object.location, expected, found, suggest(&object.plugin, "known", known))
+}
+
+/// What can be rendered of the kinds that have no registry.
+fn renderable(tag: &str) -> &'static [&'static str] {
+    match tag {
+        "sensor" => &["perspective"],
+        "film" => &["hdrfilm"],
+        _ => MITSUBA.iter().find(|(known, _)| *known == tag).map_or(&[], |(_, plugins)| plugins),
+    }
+}
+
+/// A tag as a sentence needs it.
+pub(super) fn kind(tag: &str) -> &str {
+    match tag {
+        "integrator" => "an integrator",
+        "sensor" => "a sensor",
+        "film" => "a film",
+        "sampler" => "a sampler",
+        "rfilter" => "a reconstruction filter",
+        "shape" => "a shape",
+        "bsdf" => "a bsdf",
+        "texture" => "a texture",
+        "emitter" => "an emitter",
+        "medium" => "a medium",
+        "phase" => "a phase function",
+        "volume" => "a volume",
+        other => other,
+    }
+}
+
+/// The error for a plugin in a `parent` that nobody knows.
+pub(super) fn unknown_in(object: &Object, parent: &str) -> Error {
+    unknown(object, None, &known_in(parent))
+}
+
+/// All plugins that may stand in a `parent`.
+fn known_in(parent: &str) -> Vec<&'static str> {
+    let inside = INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[][..], |(_, tags)| tags);
+    let known = |tag: &&'static str| match ours(tag) {
+        ours if ours.is_empty() => renderable(tag).to_vec(),
+        ours => ours,
+    };
+    inside.iter().flat_map(known).collect()
 }
 
 #[cfg(test)]

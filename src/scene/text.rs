@@ -34,7 +34,10 @@ fn mistake<T>(expected: impl Into<String>, found: impl Into<String>) -> Parsed<T
 pub(super) fn of_file(path: &Path) -> Result<String> {
     let bytes = std::fs::read(path).map_err(|error| Error::io(path, "read", &error))?;
     let text = String::from_utf8(bytes).map_err(|error| {
-        let found = format!("other bytes at offset {}", error.utf8_error().valid_up_to());
+        let found = match error.as_bytes() {
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "text in UTF-16".into(),
+            _ => format!("other bytes at offset {}", error.utf8_error().valid_up_to()),
+        };
         Error::new(path.display(), "text in UTF-8", found, "save the file as UTF-8")
     })?;
     // Some editors mark UTF-8 with a byte-order mark, which is no part of the text.
@@ -150,8 +153,9 @@ pub(super) fn spectrum(text: &str) -> Parsed<Spectrum> {
 
 /// Checks the order of wavelengths.
 pub(super) fn samples(pairs: Vec<(f64, f64)>) -> Parsed<Spectrum> {
-    if pairs.is_empty() {
-        return mistake("a spectrum: one number, or wavelength:value pairs", "nothing");
+    if pairs.len() < 2 {
+        let found = format!("{} pairs", pairs.len());
+        return mistake("a spectrum: one number, or two or more wavelength:value pairs", found);
     }
     match pairs.windows(2).find(|pair| pair[0].0 >= pair[1].0) {
         None => Ok(Spectrum::Sampled(pairs)),
@@ -218,7 +222,7 @@ mod tests {
         assert_eq!(spectrum(" 0.4").unwrap(), Spectrum::Constant(0.4));
         let sampled = Spectrum::Sampled(vec![(400.0, 0.1), (700.0, 0.4)]);
         assert_eq!(spectrum("400:0.1, 700:0.4").unwrap(), sampled);
-        for text in ["700:0.1 400:0.4", "0.1 0.4", "", "400:", "400:1:2"] {
+        for text in ["400:0.1", "700:0.1 400:0.4", "0.1 0.4", "", "400:", "400:1:2"] {
             assert!(spectrum(text).is_err(), "{text}");
         }
     }

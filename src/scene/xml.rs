@@ -78,7 +78,10 @@ impl Reader<'_> {
     }
 
     fn version(&mut self, root: &Element) -> Result<()> {
-        let version = root.require("version")?;
+        let Some(version) = root.get("version") else {
+            let remedy = format!("write <{} version=\"3.0.0\" ...>", root.tag);
+            return Err(Error::new(&root.location, "the version of Mitsuba the file is for", "none", remedy));
+        };
         let mut numbers = version.value.split('.').map(|part| part.trim().parse::<u32>());
         let remedy = match numbers.next() {
             Some(Ok(2 | 3)) if numbers.all(|part| part.is_ok()) => return Ok(()),

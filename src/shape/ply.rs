@@ -206,8 +206,10 @@ impl Vertex {
 
 fn broken(file: &Path, error: &ParseError) -> Error {
     let line = error.line().map(|l| format!(":{l}")).unwrap_or_default();
-    let found: String =
-        error.to_string().split_whitespace().collect::<Vec<_>>().join(" ").chars().take(300).collect();
+    let message = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+    // What follows is the parser's view of itself.
+    let message = message.split(" Error: ").next().unwrap_or_default();
+    let found: String = message.chars().take(300).collect();
     let place = format!("{}{line}", file.display());
     Error::new(place, "a well-formed PLY file", found, "correct the file, or export the mesh again")
 }

@@ -5,7 +5,7 @@ use super::{
     image::{self, Image},
 };
 use crate::description::Params;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::math::{DVec3, Spectrum, Vec2, vec2};
 use std::sync::Arc;
 
@@ -35,10 +35,17 @@ pub struct Bitmap {
 
 impl Bitmap {
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        if params.has("data") || params.has("bitmap") {
+            let remedy = "save the image to a file and give its name as \"filename\"";
+            return Err(Error::new(params.location(), "an image file", "an image in memory", remedy));
+        }
         let path = params.file("filename")?;
         let filters = [("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)];
         let wraps = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let raw = params.boolean("raw", false)?;
+        params.choice("format", (), &[("auto", ()), ("variant", ()), ("fp16", ())])?;
+        params.boolean("accel", true)?;
+        params.accept_unused(&["format", "accel"], "images are kept in single precision");
         Ok(Self {
             filter: params.choice("filter_type", Filter::Bilinear, &filters)?,
             wrap: params.choice("wrap_mode", Wrap::Repeat, &wraps)?,

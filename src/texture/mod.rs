@@ -12,7 +12,10 @@ pub use checkerboard::Checkerboard;
 pub use image::Image;
 pub use uniform::Uniform;
 
-use crate::description::{Library, Object, Params, Row, Value, build_by_row};
+use crate::description::{
+    Library, Object, Params, Row, Value, build_by_row,
+    colour::{self, Role},
+};
 use crate::error::Result;
 use crate::math::{DMat4, Spectrum, Vec2, vec2};
 
@@ -30,9 +33,10 @@ pub trait TextureModel {
     }
 }
 
-/// Makes the enum, its dispatch, the registry and the list of test examples from one row a model.
+/// Makes the enum, its dispatch, the registry and the list of test examples from one row a model, and the
+/// names of more plugins that stand for one colour.
 macro_rules! textures {
-    ($($name:literal => $model:ident,)*) => {
+    ($($name:literal => $model:ident,)* colors: $($color:literal,)*) => {
         /// Any texture. Cheap to clone: images are shared.
         #[derive(Clone, Debug)]
         #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
@@ -63,6 +67,7 @@ macro_rules! textures {
         /// Every texture there is, by plugin name.
         pub const ROWS: &[Row<Texture>] = &[
             $(Row { name: $name, build: |params: &Params<'_>| $model::build(params).map(Texture::$model) },)*
+            $(color_row($color),)*
         ];
 
         /// Instances of every model, for the tests that hold for all.
@@ -79,6 +84,7 @@ textures! {
     "uniform" => Uniform,
     "checkerboard" => Checkerboard,
     "bitmap" => Bitmap,
+    colors: "rawconstant", "srgb", "d65", "regular", "irregular", "blackbody",
 }
 
 impl Texture {
@@ -96,13 +102,50 @@ pub fn build(object: &Object, library: &Library) -> Result<Texture> {
 /// The parameter `name` as a texture: a colour, or a nested or referenced texture; a grey `default` where
 /// not given. Bounds are the caller's to check, by [`Texture::max`].
 pub fn parameter(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
+    of_role(params, name, default, Role::Matter)
+}
+
+/// The same for radiance and other light. As in Mitsuba, the role ends at the texture: what a texture holds
+/// inside is matter.
+pub fn emission(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
+    of_role(params, name, default, Role::Light)
+}
+
+/// The same for indices of refraction, whose spectra may exceed 1.
+pub fn index(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
+    of_role(params, name, default, Role::Index)
+}
+
+fn of_role(params: &Params<'_>, name: &'static str, default: f32, role: Role) -> Result<Texture> {
     let property = params.object.properties.iter().find(|property| property.name == name);
     if let Some(Value::Object(_) | Value::Reference(_)) = property.map(|property| &property.value)
         && let Some(child) = params.child(name)?
+        && !colour::is_plugin(child.object)
     {
         return build(child.object, params.library);
     }
-    params.color(name, default).map(Texture::constant)
+    let color = match role {
+        Role::Light => params.emission(name, default),
+        Role::Index => params.index(name, default),
+        Role::Matter => params.color(name, default),
+    };
+    color.map(Texture::constant)
+}
+
+/// A plugin that stands for one colour; or `d65` around a texture, which is that texture.
+fn build_color(params: &Params<'_>) -> Result<Texture> {
+    if colour::is_plugin(params.object) {
+        return Uniform::build(params).map(Texture::Uniform);
+    }
+    params.accept_unused(&["scale"], "Mitsuba does not scale a texture in d65 either");
+    match params.children(|_| true)?.as_slice() {
+        [child] if !params.has("color") => build(child.object, params.library),
+        _ => Err(params.complain("", "either one texture or a \"color\" in d65", "more")),
+    }
+}
+
+const fn color_row(name: &'static str) -> Row<Texture> {
+    Row { name, build: build_color }
 }
 
 /// The part of a `to_uv` transform that acts on texture positions: an affine map of the plane.

@@ -71,7 +71,9 @@ fn bitmaps_are_read_as_mitsuba_reads_them() {
     let scale = steps(TransformStep::Scale([2.0, 3.0, 1.0]));
     let translate = steps(TransformStep::Translate([0.25, 0.1, 0.0]));
     let rotate = steps(TransformStep::Rotate { axis: [0.0, 0.0, 1.0], angle: 30.0 });
-    let rows: [(&str, Value, [f32; 9]); 7] = [
+    let rows: [(&str, Value, [f32; 9]); 9] = [
+        ("format", text("variant"), [0.1, 0.2, 0.3, 0.4, 0.23, 0.17, 0.53, 0.35, 0.362]),
+        ("accel", Value::Boolean(true), [0.1, 0.2, 0.3, 0.4, 0.23, 0.17, 0.53, 0.35, 0.362]),
         ("raw", Value::Boolean(false), [0.1, 0.2, 0.3, 0.4, 0.23, 0.17, 0.53, 0.35, 0.362]),
         ("filter_type", text("nearest"), [0.1, 0.2, 0.3, 0.4, 0.1, 0.1, 0.6, 0.1, 0.6]),
         ("wrap_mode", text("clamp"), [0.1, 0.2, 0.3, 0.4, 0.23, 0.3, 0.1, 0.1, 0.6]),
@@ -83,6 +85,12 @@ fn bitmaps_are_read_as_mitsuba_reads_them() {
     for (name, value, values) in rows {
         let object = object("bitmap", &[("filename", path.clone()), (name, value)]);
         check(&build(&object, &Library::default()).unwrap(), &values);
+    }
+    for (name, value) in
+        [("format", text("fp8")), ("accel", text("no")), ("data", text("x")), ("foo", text("x"))]
+    {
+        let object = object("bitmap", &[("filename", path.clone()), (name, value)]);
+        assert!(build(&object, &Library::default()).is_err(), "{name}");
     }
 }
 
@@ -125,6 +133,34 @@ fn a_parameter_is_a_number_a_colour_or_a_texture() {
     let nothing = object("diffuse", &[]);
     let default = parameter(&Params::new(&nothing, &library), "reflectance", 0.5).unwrap();
     assert_eq!(default.max(), Spectrum::splat(0.5));
+}
+
+#[test]
+fn light_and_matter_read_spectra_differently_and_textures_hold_matter() {
+    let library = Library::default();
+    let ramp = || Value::Spectrum(vec![(400.0, 0.1), (700.0, 0.4)]);
+    let board = || object("checkerboard", &[("color0", ramp()), ("color1", ramp())]);
+    let in_d65 = object("d65", &[("", Value::Object(board()))]);
+    let (matter, light) = (vec3(0.340_779, 0.242_912, 0.140_304), vec3(0.402_061, 0.231_368, 0.124_453));
+    // Values of Mitsuba 3.9.1, the checkerboard's from a picture of an area light.
+    let rows = [
+        (ramp(), matter, light),
+        (Value::Object(board()), matter, matter),
+        (Value::Object(in_d65), matter, matter),
+        (Value::Object(object("d65", &[])), Spectrum::ONE, Spectrum::ONE),
+    ];
+    for (value, as_matter, as_light) in rows {
+        let object = object("any", &[("v", value)]);
+        let texture = |read: fn(&Params<'_>, &'static str, f32) -> Result<Texture>| {
+            read(&Params::new(&object, &library), "v", 0.5).unwrap().eval(Vec2::splat(0.2))
+        };
+        assert!(texture(parameter).distance(as_matter) < 2e-6, "{object:?}");
+        assert!(texture(emission).distance(as_light) < 2e-6, "{object:?}");
+    }
+    let both = object("d65", &[("", Value::Object(board())), ("color", Value::Rgb([0.5; 3]))]);
+    assert!(build(&both, &library).is_err());
+    let black = object("blackbody", &[("temperature", Value::Float(3000.0))]);
+    assert!(build(&black, &library).is_ok());
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! One colour everywhere.
 
 use super::TextureModel;
-use crate::description::Params;
+use crate::description::{
+    Params,
+    colour::{self, Role},
+};
 use crate::error::Result;
 use crate::math::{Spectrum, Vec2};
 
@@ -10,8 +13,10 @@ use crate::math::{Spectrum, Vec2};
 pub struct Uniform(pub Spectrum);
 
 impl Uniform {
+    /// Of any plugin that stands for one colour. As light, for that has the widest range; where a plugin stands
+    /// in another, [`super::parameter`] reads it as what it is there.
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        params.color("value", 1.0).map(Self)
+        colour::of_plugin(params, Role::Light).map(Self)
     }
 
     #[cfg(test)]

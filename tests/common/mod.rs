@@ -9,7 +9,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 use tyndall::{
     math::Spectrum,
-    render::{self, Settings, budget::Budget},
+    render::{self, Image, Settings, budget::Budget},
     scene::{
         self,
         build::{self, Overrides, Setup},
@@ -55,12 +55,17 @@ impl Stage {
 
     /// Renders an image; depth and visibility of emitters are the scene's.
     pub fn render(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Vec<Spectrum> {
+        self.render_layers(strategies, samples_per_pixel, seed).pixels
+    }
+
+    /// The same with all layers that the scene's integrator asks for.
+    pub fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
         let Setup { scene, film, integrator, .. } = &self.setup;
         let (max_depth, hide_emitters) = (integrator.max_depth, integrator.hide_emitters);
         let options = Options { strategies, max_depth, hide_emitters, seed };
         let budget = Budget { samples_per_pixel: Some(samples_per_pixel), time: None };
         let settings = Settings { options, budget, seed, profile: self.profile };
-        render::render(scene, film, &settings, &mut |_| {}).pixels
+        render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {})
     }
 
     /// Renders one image per seed.

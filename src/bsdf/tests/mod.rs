@@ -1,5 +1,6 @@
 //! What holds for every surface model, over every model's examples.
 
+mod albedo;
 mod mitsuba;
 mod parameters;
 mod sampling;
@@ -210,6 +211,19 @@ fn dirac_lobes_come_with_the_probability_told() {
                 let (n, p) = (f64::from(samples), f64::from(told));
                 let slack = 5.0 * (n * p * (1.0 - p)).sqrt() + 3.0;
                 assert!((f64::from(count) - n * p).abs() < slack, "{bsdf:?} {wi} to {wo}: {count} for {p}");
+            }
+        }
+    }
+}
+
+#[test]
+fn walks_survive_alike_both_ways() {
+    for bsdf in examples() {
+        for (number, wi) in incoming().into_iter().enumerate() {
+            let mut stream = stream(number as u64);
+            for s in (0..100).filter_map(|_| bsdf.sample(UV, wi, Transport::Radiance, &mut stream)) {
+                let (there, back) = (bsdf.survival(UV, wi), bsdf.survival(UV, s.wo));
+                assert_eq!(there, back, "{bsdf:?} from {wi} to {}", s.wo);
             }
         }
     }

@@ -31,14 +31,46 @@ pub(super) fn parse(file: &Arc<PathBuf>, text: &str) -> Result<Json> {
         let place = Location { file: file.clone(), position: Position::Text { line, column } };
         let message = error.to_string();
         let end = message.rfind(" at line ").unwrap_or(message.len());
-        let (expected, remedy) = match message.starts_with("Duplicate") {
-            true => ("each key once in an object", "remove or rename one of the two"),
-            false => {
-                ("well-formed JSON, at most 127 levels deep", "correct the JSON at or before this place")
-            }
-        };
-        Error::new(place, expected, message[..end].to_lowercase(), remedy)
+        let (expected, found, remedy) = explain(&message[..end]);
+        Error::new(place, expected, found, remedy)
     })
+}
+
+/// The parser's message as what was expected, what was found, and what to do.
+fn explain(message: &str) -> (&'static str, String, &'static str) {
+    let message = message.to_lowercase();
+    let correct = "correct the JSON at or before this place";
+    let (expected, found, remedy) = match message.as_str() {
+        m if m.starts_with("duplicate") => (
+            "each key once in an object",
+            m.replace("duplicate field:", "a second"),
+            "remove or rename one of the two",
+        ),
+        "recursion limit exceeded" => {
+            ("JSON at most 127 levels deep", "deeper nesting".to_owned(), "flatten the scene")
+        }
+        "number out of range" => {
+            ("a number within +-1.8e308", "one beyond".to_owned(), "write a smaller number")
+        }
+        "trailing characters" => (
+            "the end of the file",
+            "more after the scene".to_owned(),
+            "remove what follows, or a brace too many before",
+        ),
+        "key must be a string" => (
+            "a key in double quotes",
+            "something else".to_owned(),
+            "quote it; a comment has no place in JSON",
+        ),
+        "trailing comma" => ("another entry after the comma", "none".to_owned(), "remove the comma"),
+        "expected value" => ("a JSON value", "none".to_owned(), correct),
+        m if m.starts_with("eof") => {
+            let found = m.replace("eof while parsing", "the end of the file within");
+            ("well-formed JSON", found, "add what is missing: a value, or closing brackets and braces")
+        }
+        m => ("well-formed JSON", m.replace("expected", "not"), correct),
+    };
+    (expected, found, remedy)
 }
 
 fn tree(value: spanned::Value) -> Json {

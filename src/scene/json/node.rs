@@ -55,12 +55,17 @@ impl<'j> Node<'j> {
 
     /// The error for a value that is not as `expected`.
     pub fn wrong(&self, expected: impl Into<String>) -> Error {
-        Error::new(&self.location, expected, self.json.describe(), "correct the value")
+        let expected = expected.into();
+        let remedy = format!("change it to {expected}");
+        Error::new(&self.location, expected, self.json.describe(), remedy)
     }
 
     /// What a reader of text or numbers makes of it.
     pub fn check<T>(&self, parsed: Parsed<T>) -> Result<T> {
-        parsed.map_err(|m| Error::new(&self.location, m.expected, m.found, "correct the value"))
+        parsed.map_err(|m| {
+            let remedy = format!("change it to {}", m.expected);
+            Error::new(&self.location, m.expected, m.found, remedy)
+        })
     }
 
     /// Everything in an object. Keys with a dot are errors, as in Mitsuba.

@@ -28,7 +28,7 @@ pub(super) fn rgb(node: &Node) -> Result<Value> {
 }
 
 /// `{"type": "spectrum", "value": ...}` or `{"type": "spectrum", "filename": ...}`. A constant spectrum is a
-/// number: that is what Mitsuba makes of it, and what every colour accepts.
+/// single pair.
 pub(super) fn spectrum(node: &Node) -> Result<Value> {
     node.allow(&["value", "filename"])?;
     let spectrum = match (node.get("value"), node.get("filename")) {
@@ -48,7 +48,7 @@ pub(super) fn spectrum(node: &Node) -> Result<Value> {
         }
     };
     Ok(match spectrum {
-        Spectrum::Constant(value) => Value::Float(value),
+        Spectrum::Constant(value) => Value::Spectrum(vec![(0.0, value)]),
         Spectrum::Sampled(pairs) => Value::Spectrum(pairs),
     })
 }

@@ -27,6 +27,7 @@ pub(super) struct Attribute<'s> {
     name: &'s str,
     /// Its value, every `$name` replaced.
     pub value: String,
+    written: &'s str,
     /// Where it starts.
     pub location: Location,
 }
@@ -50,7 +51,7 @@ impl<'s> Element<'s> {
                     return Err(Error::new(location, "a defined parameter", found, undefined.remedy));
                 }
             };
-            Ok(Attribute { name: a.name(), value, location })
+            Ok(Attribute { name: a.name(), value, written: a.value(), location })
         });
         Ok(Self { tag, location, attributes: attributes.collect::<Result<_>>()?, node, source })
     }
@@ -83,7 +84,11 @@ impl<'s> Element<'s> {
     pub fn allow(&self, names: &[&str]) -> Result<()> {
         let Some(odd) = self.attributes.iter().find(|a| !names.contains(&a.name)) else { return Ok(()) };
         let expected = format!("an attribute of <{}>", self.tag);
-        let remedy = format!("{}known here: {}", nearest(odd.name, names), names.join(", "));
+        let mut remedy = format!("{}known here: {}", nearest(odd.name, names), names.join(", "));
+        if names.contains(&"type") {
+            let element = format!("<float name=\"{}\" value=\"...\"/>", odd.name);
+            remedy = format!("{remedy}; a parameter is an element, such as {element}");
+        }
         Err(Error::new(&odd.location, expected, format!("\"{}\"", odd.name), remedy))
     }
 
@@ -125,8 +130,10 @@ impl<'s> Element<'s> {
 
     /// A mistake in the element as a whole.
     pub fn check<T>(&self, parsed: Parsed<T>) -> Result<T> {
-        let remedy = || format!("correct the <{}>", self.tag);
-        parsed.map_err(|m| Error::new(&self.location, m.expected, m.found, remedy()))
+        parsed.map_err(|m| {
+            let remedy = format!("give <{}> {}", self.tag, m.expected);
+            Error::new(&self.location, m.expected, m.found, remedy)
+        })
     }
 }
 
@@ -144,7 +151,12 @@ impl Attribute<'_> {
         let quoted = quoted(&self.value);
         parse(&self.value).map_err(|m| {
             let found = if m.found == quoted { quoted } else { format!("{} in {quoted}", m.found) };
-            let remedy = format!("correct \"{}\"", self.name);
+            let remedy = match self.written == self.value {
+                true => format!("change \"{}\" to {}", self.name, m.expected),
+                false => {
+                    format!("change {} (in \"{}\") so that it is {}", self.written, self.name, m.expected)
+                }
+            };
             Error::new(&self.location, m.expected, found, remedy)
         })
     }

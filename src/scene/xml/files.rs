@@ -49,13 +49,8 @@ impl Source {
                 file: self.file.clone(),
                 position: Position::Text { line: row.max(1), column: col.max(1) },
             };
-            let remedy = match error {
-                roxmltree::Error::DtdDetected => {
-                    "remove the <!DOCTYPE>; use <default> and $name for entities"
-                }
-                _ => "correct the XML at or before this place",
-            };
-            Error::new(place, "well-formed XML without a document type", error.to_string(), remedy)
+            let (expected, found, remedy) = explain(&error);
+            Error::new(place, expected, found, remedy)
         })
     }
 
@@ -67,6 +62,43 @@ impl Source {
         let column = offset - start - (inner(offset) - inner(start)) + 1;
         let position = Position::Text { line: line as u32, column: column as u32 };
         Location { file: self.file.clone(), position }
+    }
+}
+
+/// What the parser expected, what it found, and what to do.
+fn explain(error: &roxmltree::Error) -> (&'static str, String, String) {
+    use roxmltree::Error as E;
+    let message = error.to_string();
+    let message = message.split(" at ").next().unwrap_or_default();
+    let message = message.strip_suffix(" found").unwrap_or(message);
+    let found = match message.strip_prefix("expected ").and_then(|rest| rest.split_once(" not ")) {
+        Some((due, given)) => format!("{given} where {due} is due"),
+        None => message.to_owned(),
+    };
+    let well_formed = "well-formed XML";
+    match error {
+        E::DtdDetected => (
+            "XML without a document type",
+            "<!DOCTYPE>".into(),
+            "remove the <!DOCTYPE>; use <default> and $name for entities".into(),
+        ),
+        E::NoRootNode => {
+            (well_formed, "no element at all".into(), "write <scene version=\"3.0.0\">...</scene>".into())
+        }
+        E::UnclosedRootNode => {
+            (well_formed, "the end of the file within an element".into(), "close every element".into())
+        }
+        E::UnknownToken(_) => (
+            "one element outermost and nothing after it",
+            "more".into(),
+            "remove what stands here, or correct the markup before it".into(),
+        ),
+        E::UnexpectedCloseTag(due, given, _) => (
+            well_formed,
+            format!("</{given}> where </{due}> is due"),
+            format!("close the <{due}>, or correct its tag"),
+        ),
+        _ => (well_formed, found, "correct the XML at or before this place".into()),
     }
 }
 

@@ -80,7 +80,7 @@ fn both(element: &Element) -> Error {
     Error::new(&element.location, "either \"value\" or \"x\", \"y\", \"z\"", "both", "remove one of the two")
 }
 
-/// A constant spectrum is a number: that is what Mitsuba makes of it, and what every colour accepts.
+/// A constant spectrum is a single pair.
 fn spectrum(element: &Element, folders: &Folders) -> Result<Value> {
     let spectrum = match (element.get("value"), element.get("filename")) {
         (Some(value), None) => value.parse(text::spectrum)?,
@@ -94,7 +94,7 @@ fn spectrum(element: &Element, folders: &Folders) -> Result<Value> {
         }
     };
     Ok(match spectrum {
-        Spectrum::Constant(value) => Value::Float(value),
+        Spectrum::Constant(value) => Value::Spectrum(vec![(0.0, value)]),
         Spectrum::Sampled(pairs) => Value::Spectrum(pairs),
     })
 }

@@ -1,6 +1,7 @@
 //! What Mitsuba 3.9.1 (scalar_rgb) says of its shapes: `ray_intersect`'s n, uv, sh_frame.n, sh_frame.s.
 
 use super::*;
+use std::f32::consts::{PI, TAU};
 
 /// Shape, transform, flip_normals, and per ray: origin, direction, normal, uv, shading normal.
 struct Fact {
@@ -199,16 +200,16 @@ fn disks_are_as_in_mitsuba() {
     let (a, b) = ([0.83205, 0.5547, 0.0], [-0.1644, -0.98639, 0.0]);
     let plain = |n| [Some((5.0, n, [0.36056, 0.09358], a)), Some((5.0, n, [0.60828, 0.72372], b))];
     let centre = Some((5.0, UP, [0.0, 0.0], [1.0, 0.0, 0.0]));
-    check(&[], 3.141_592_7, [1.0, 1.0, 0.0], &[plain(UP)[0], plain(UP)[1], centre]);
-    check(&[flipped()], 3.141_592_7, [1.0, 1.0, 0.0], &plain(DOWN));
-    check(&[place(vec![scale(1.0, 1.0, -1.0)])], 3.141_592_7, [1.0, 1.0, 0.0], &plain(DOWN));
+    check(&[], PI, [1.0, 1.0, 0.0], &[plain(UP)[0], plain(UP)[1], centre]);
+    check(&[flipped()], PI, [1.0, 1.0, 0.0], &plain(DOWN));
+    check(&[place(vec![scale(1.0, 1.0, -1.0)])], PI, [1.0, 1.0, 0.0], &plain(DOWN));
     let mirrored = |n| [Some((5.0, n, [0.36056, 0.40642], a)), Some((5.0, n, [0.60828, 0.77628], b))];
-    check(&[place(mirror())], 3.141_592_7, [1.0, 1.0, 0.0], &mirrored(UP));
-    check(&[place(mirror()), flipped()], 3.141_592_7, [1.0, 1.0, 0.0], &mirrored(DOWN));
+    check(&[place(mirror())], PI, [1.0, 1.0, 0.0], &mirrored(UP));
+    check(&[place(mirror()), flipped()], PI, [1.0, 1.0, 0.0], &mirrored(DOWN));
     let ellipse = [Some((5.0, UP, [0.3227, 0.17306], a)), Some((5.0, UP, [0.8586, 0.74073], b))];
     check(&[place(vec![scale(2.0, 0.7, 3.0)])], 4.398_229_6, [2.0, 0.7, 0.0], &ellipse);
     let sheared = [Some((5.0, UP, [0.28284, 0.125], a)), Some((5.0, UP, [0.63246, 0.80121], b))];
-    check(&[place(shear())], 3.141_592_7, [1.11803, 1.0, 0.0], &sheared);
+    check(&[place(shear())], PI, [1.11803, 1.0, 0.0], &sheared);
     let n = [0.38302, -0.66341, 0.64279];
     let answers = [
         Some((4.97235, n, [0.18081, 0.01592], [0.82961, 0.55308, 0.07648])),
@@ -239,12 +240,12 @@ fn cylinders_are_as_in_mitsuba() {
         std::array::from_fn(|i| Some((t[i], out[i].map(|x| sign * x), uv[i], along[i].map(|x| tangent * x))))
     };
     let uv = [[0.03205, 0.4], [0.44458, 0.7], [0.07242, 0.47983], [0.78205, 0.45]];
-    check(&[], 6.283_185_5, unit, &turned_by(1.0, 1.0, uv));
-    check(&[("flip_normals", Value::Boolean(true))], 6.283_185_5, unit, &turned_by(-1.0, 1.0, uv));
+    check(&[], TAU, unit, &turned_by(1.0, 1.0, uv));
+    check(&[("flip_normals", Value::Boolean(true))], TAU, unit, &turned_by(-1.0, 1.0, uv));
     let opposite = uv.map(|[u, v]: [f32; 2]| [if u < 0.5 { u + 0.5 } else { u - 0.5 }, v]);
-    check(&[radius(-1.0)], 6.283_185_5, unit, &turned_by(1.0, 1.0, opposite));
+    check(&[radius(-1.0)], TAU, unit, &turned_by(1.0, 1.0, opposite));
     let mirrored = [[0.46795, 0.4], [0.05542, 0.7], [0.42758, 0.47983], [0.71795, 0.45]];
-    check(&[place(mirror())], 6.283_185_5, unit, &turned_by(1.0, -1.0, mirrored));
+    check(&[place(mirror())], TAU, unit, &turned_by(1.0, -1.0, mirrored));
     let thrice = [[0.03205, 0.13333], [0.44458, 0.23333], [0.07242, 0.15994], [0.78205, 0.15]];
     let high = [[-1.0, -1.0, 0.0], [1.0, 1.0, 3.0]];
     check(&[place(vec![scale(1.0, 1.0, 3.0)])], 18.849_556, high, &turned_by(1.0, 1.0, thrice));

@@ -1,0 +1,259 @@
+//! The broken scenes, each by its name.
+
+/// A file beside the scene, or the scene itself.
+pub struct File {
+    pub name: &'static str,
+    pub content: Vec<u8>,
+}
+
+/// A scene that is not as it should be.
+pub struct Case {
+    pub name: &'static str,
+    /// The scene first.
+    pub files: Vec<File>,
+    pub definitions: &'static [(&'static str, &'static str)],
+    /// It is rendered all the same; something is said.
+    pub is_warned: bool,
+    /// What to read, where it is not the first file.
+    reads: Option<&'static str>,
+}
+
+const CAMERA: [&str; 2] = ["<sensor type=\"perspective\"/>", "\"camera\": {\"type\": \"perspective\"}"];
+
+impl Case {
+    fn of(name: &'static str, file: &'static str, content: impl Into<Vec<u8>>) -> Self {
+        let files = vec![File { name: file, content: content.into() }];
+        Self { name, files, definitions: &[], is_warned: false, reads: None }
+    }
+
+    /// In a scene of XML that has a camera.
+    fn xml(name: &'static str, inside: &str) -> Self {
+        Self::of(name, "scene.xml", format!("<scene version=\"3.0.0\">\n{inside}\n{}</scene>", CAMERA[0]))
+    }
+
+    /// In a scene of JSON that has a camera.
+    fn json(name: &'static str, inside: &str) -> Self {
+        Self::of(name, "scene.json", format!("{{\"type\": \"scene\",\n{inside},\n{}}}", CAMERA[1]))
+    }
+
+    fn beside(mut self, name: &'static str, content: &str) -> Self {
+        self.files.push(File { name, content: content.into() });
+        self
+    }
+
+    fn with(mut self, definitions: &'static [(&'static str, &'static str)]) -> Self {
+        self.definitions = definitions;
+        self
+    }
+
+    fn reading(mut self, name: &'static str) -> Self {
+        self.reads = Some(name);
+        self
+    }
+
+    fn warned(mut self) -> Self {
+        self.is_warned = true;
+        self
+    }
+
+    /// The name of the file to read.
+    pub fn main(&self) -> &'static str {
+        self.reads.unwrap_or(self.files[0].name.split('/').next().unwrap_or_default())
+    }
+
+    /// What is broken, on one line.
+    pub fn shown(&self) -> String {
+        let text = String::from_utf8_lossy(&self.files[0].content).replace('\n', " ");
+        let text = CAMERA.iter().fold(text, |text, camera| text.replace(camera, ""));
+        let scene = ["<scene version=\"3.0.0\"> ", " </scene>", "{\"type\": \"scene\", ", ", }"];
+        let inside = scene.iter().fold(text, |text, part| text.replace(part, ""));
+        let short: String = inside.chars().filter(|c| !c.is_control()).take(160).collect();
+        let set: String =
+            self.definitions.iter().map(|(name, value)| format!(" -D {name}={value}")).collect();
+        format!("{}{}{set}", short.trim(), if short.len() < inside.len() { " ..." } else { "" })
+    }
+}
+
+/// All of them.
+pub fn all() -> Vec<Case> {
+    vec![
+        Case::xml("unknown shape", r#"<shape type="shpere"/>"#),
+        Case::json("unknown shape in JSON", r#""a": {"type": "shpere"}"#),
+        Case::xml("unknown bsdf", r#"<bsdf type="difuse"/>"#),
+        Case::xml("unknown bsdf on a shape", r#"<shape type="sphere"><bsdf type="difuse"/></shape>"#),
+        Case::xml("unknown emitter", r#"<emitter type="pointlight"/>"#),
+        Case::xml("unknown emitter on a shape", r#"<shape type="sphere"><emitter type="aera"/></shape>"#),
+        Case::xml("unknown medium", r#"<shape type="sphere"><medium type="homogenous" name="interior"/></shape>"#),
+        Case::xml("unknown phase function", r#"<medium type="homogeneous"><phase type="hgg"/></medium>"#),
+        Case::json("unknown phase function in JSON", r#""fog": {"type": "homogeneous", "phase": {"type": "henyey"}}"#),
+        Case::xml("unknown texture", r#"<bsdf type="diffuse"><texture type="bitmpa" name="reflectance"/></bsdf>"#),
+        Case::xml("unknown integrator", r#"<integrator type="volpth"/>"#),
+        Case::of("unknown sensor", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspectiv"/></scene>"#),
+        Case::of("unknown film", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilms"/></sensor></scene>"#),
+        Case::of("unknown sampler", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><sampler type="independant"/></sensor></scene>"#),
+        Case::of("unknown reconstruction filter", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><rfilter type="gausian"/></film></sensor></scene>"#),
+        Case::xml("a plugin of another kind", r#"<bsdf type="sphere"/>"#),
+        Case::xml("nothing like it", r#"<shape type="zzzzzzzz"/>"#),
+        Case::xml("unknown parameter", r#"<shape type="sphere"><float name="raduis" value="2"/></shape>"#),
+        Case::json("unknown parameter in JSON", r#""ball": {"type": "sphere", "raduis": 2}"#),
+        Case::xml("unknown parameter of a bsdf", r#"<bsdf type="dielectric"><float name="intIOR" value="1.5"/></bsdf>"#),
+        Case::xml("camel case of old scenes", r#"<shape type="sphere"><transform name="toWorld"/></shape>"#),
+        Case::xml("unknown parameter of a definition nothing refers to", r#"<bsdf type="twosided" id="idle"><bsdf type="diffuse"><rgb name="reflectence" value="1"/></bsdf></bsdf>"#),
+        Case::xml("unknown parameter of the scene", r#"<float name="exposure" value="2"/>"#),
+        Case::xml("unknown unnamed child", r#"<shape type="sphere"><film type="hdrfilm"/></shape>"#),
+        Case::xml("wrong kind of child", r#"<bsdf type="diffuse"><bsdf type="diffuse" name="reflectance"/></bsdf>"#),
+        Case::json("text for a number", r#""ball": {"type": "sphere", "radius": "big"}"#),
+        Case::json("number for a boolean", r#""ball": {"type": "sphere", "flip_normals": 1}"#),
+        Case::json("number for a vector", r#""ball": {"type": "sphere", "center": 1}"#),
+        Case::json("number for a transform", r#""ball": {"type": "sphere", "to_world": 1}"#),
+        Case::json("vector for a colour", r#""lamp": {"type": "point", "intensity": [1, 2, 3]}"#),
+        Case::json("text for a colour", r#""lamp": {"type": "point", "intensity": "white"}"#),
+        Case::json("colour for a number", r#""ball": {"type": "sphere", "radius": {"type": "rgb", "value": 1}}"#),
+        Case::json("number for text", r#""mesh": {"type": "obj", "filename": 3}"#),
+        Case::json("number for a child", r#""ball": {"type": "sphere", "interior": 3}"#),
+        Case::of("fraction for a whole number", "scene.json", r#"{"type": "scene", "c": {"type": "perspective", "film": {"type": "hdrfilm", "width": 2.5}}}"#),
+        Case::json("null", r#""ball": {"type": "sphere", "radius": null}"#),
+        Case::xml("a spectrum that is not constant", r#"<emitter type="point"><spectrum name="intensity" value="400:1, 700:2"/></emitter>"#),
+        Case::xml("text where a float is", r#"<shape type="sphere"><float name="radius" value="2cm"/></shape>"#),
+        Case::xml("a word that is no choice", r#"<bsdf type="roughconductor"><string name="distribution" value="phong"/></bsdf>"#),
+        Case::xml("negative extinction", r#"<medium type="homogeneous"><float name="sigma_t" value="-1"/></medium>"#),
+        Case::xml("albedo above one", r#"<medium type="homogeneous"><rgb name="albedo" value="0.5 1.5 0.5"/></medium>"#),
+        Case::xml("g of one", r#"<medium type="homogeneous"><phase type="hg"><float name="g" value="1"/></phase></medium>"#),
+        Case::xml("radius of zero", r#"<shape type="sphere"><float name="radius" value="0"/></shape>"#),
+        Case::xml("reflectance above one", r#"<bsdf type="diffuse"><rgb name="reflectance" value="2"/></bsdf>"#),
+        Case::xml("index of refraction of zero", r#"<bsdf type="dielectric"><float name="int_ior" value="0"/></bsdf>"#),
+        Case::xml("unknown material of an index", r#"<bsdf type="dielectric"><string name="int_ior" value="glas"/></bsdf>"#),
+        Case::xml("unknown metal", r#"<bsdf type="conductor"><string name="material" value="Agg"/></bsdf>"#),
+        Case::of("field of view of 180", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="180"/></sensor></scene>"#),
+        Case::of("near clip behind far clip", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><float name="near_clip" value="10"/><float name="far_clip" value="1"/></sensor></scene>"#),
+        Case::of("film without width", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><integer name="width" value="0"/></film></sensor></scene>"#),
+        Case::of("film of enormous width", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><integer name="width" value="1000000"/></film></sensor></scene>"#),
+        Case::of("no samples", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><sampler type="independent"><integer name="sample_count" value="0"/></sampler></sensor></scene>"#),
+        Case::xml("depth below minus one", r#"<integrator type="path"><integer name="max_depth" value="-2"/></integrator>"#),
+        Case::xml("spot wider than its cutoff", r#"<emitter type="spot"><float name="cutoff_angle" value="10"/><float name="beam_width" value="20"/></emitter>"#),
+        Case::xml("negative sampling weight", r#"<emitter type="point"><float name="sampling_weight" value="-1"/></emitter>"#),
+        Case::xml("blend weight above one", r#"<medium type="homogeneous"><phase type="blendphase"><float name="weight" value="2"/><phase type="hg"/><phase type="isotropic"/></phase></medium>"#),
+        Case::xml("tabulated phase of one entry", r#"<medium type="homogeneous"><phase type="tabphase"><string name="values" value="1"/></phase></medium>"#),
+        Case::xml("tabulated phase with a word in it", r#"<medium type="homogeneous"><phase type="tabphase"><string name="values" value="1, two"/></phase></medium>"#),
+        Case::xml("tabulated phase without values", r#"<medium type="homogeneous"><phase type="tabphase"/></medium>"#),
+        Case::xml("not a number", r#"<shape type="sphere"><float name="radius" value="nan"/></shape>"#),
+        Case::xml("infinite", r#"<shape type="sphere"><float name="radius" value="-inf"/></shape>"#),
+        Case::xml("too large for a float", r#"<shape type="sphere"><float name="radius" value="1e999"/></shape>"#),
+        Case::json("too large for a float in JSON", r#""ball": {"type": "sphere", "radius": 1e999}"#),
+        Case::xml("too large for an integer", r#"<shape type="sphere"><integer name="radius" value="99999999999999999999"/></shape>"#),
+        Case::json("too large for single precision", r#""lamp": {"type": "point", "intensity": 1e300}"#),
+        Case::json("too large a place", r#""ball": {"type": "sphere", "center": [1e300, 0, 0]}"#),
+        Case::json("too large a scale", r#""ball": {"type": "sphere", "to_world": [{"type": "scale", "value": 1e200}, {"type": "scale", "value": 1e200}]}"#),
+        Case::xml("missing mesh", r#"<shape type="obj"><string name="filename" value="no.obj"/></shape>"#),
+        Case::json("missing image", r#""w": {"type": "diffuse", "reflectance": {"type": "bitmap", "filename": "no.png"}}"#),
+        Case::xml("mesh without a file name", r#"<shape type="ply"/>"#),
+        Case::xml("garbage for an image", r#"<bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="a.png"/></texture></bsdf>"#).beside("a.png", "this is no image"),
+        Case::xml("an image of an unknown format", r#"<bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="a.xyz"/></texture></bsdf>"#).beside("a.xyz", "this is no image"),
+        Case::xml("garbage for a mesh", r#"<shape type="ply"><string name="filename" value="a.ply"/></shape>"#).beside("a.ply", "this is no mesh"),
+        Case::xml("truncated mesh", r#"<shape type="ply"><string name="filename" value="a.ply"/></shape>"#).beside("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n"),
+        Case::xml("a face beyond the vertices", r#"<shape type="obj"><string name="filename" value="a.obj"/></shape>"#).beside("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"),
+        Case::xml("a word for a coordinate", r#"<shape type="obj"><string name="filename" value="a.obj"/></shape>"#).beside("a.obj", "v 0 0 zero\n"),
+        Case::xml("empty mesh", r#"<shape type="obj"><string name="filename" value="a.obj"/></shape>"#).beside("a.obj", ""),
+        Case::xml("missing include", r#"<include filename="parts/no.xml"/>"#),
+        Case::xml("include of itself", r#"<include filename="scene.xml"/>"#),
+        Case::xml("broken include", r#"<include filename="part.xml"/>"#).beside("part.xml", r#"<scene version="3.0.0">
+  <shape type="sphere" radius="1"/>
+</scene>"#),
+        Case::xml("missing folder", r#"<path value="assets"/>"#),
+        Case::xml("missing spectrum file", r#"<emitter type="point"><spectrum name="intensity" filename="no.spd"/></emitter>"#),
+        Case::xml("broken spectrum file", r#"<emitter type="point"><spectrum name="intensity" filename="a.spd"/></emitter>"#).beside("a.spd", "400 1\n300 1\n"),
+        Case::xml("dangling reference", r#"<shape type="sphere"><ref id="glas"/></shape><bsdf type="dielectric" id="glass"/>"#),
+        Case::json("dangling reference in JSON", r#""ball": {"type": "sphere", "bsdf": {"type": "ref", "id": "glas"}}, "glass": {"type": "dielectric"}"#),
+        Case::xml("dangling reference among many", &((0..40).map(|i| format!("<bsdf type=\"diffuse\" id=\"wall_{i}\"/>")).collect::<String>() + "<shape type=\"sphere\"><ref id=\"floor\"/></shape>")),
+        Case::xml("circular reference", r#"<bsdf type="twosided" id="a"><ref id="b"/></bsdf><bsdf type="twosided" id="b"><ref id="a"/></bsdf>"#),
+        Case::xml("id given twice", r#"<bsdf type="diffuse" id="a"/>
+<bsdf type="null" id="a"/>"#),
+        Case::xml("reference to the wrong kind", r#"<shape type="sphere"><ref id="c"/></shape><integrator type="path" id="c"/>"#),
+        Case::xml("alias of nothing", r#"<alias id="b" as="c"/>"#),
+        Case::xml("parameter given twice", r#"<shape type="sphere"><float name="radius" value="1"/><float name="radius" value="2"/></shape>"#),
+        Case::of("key given twice", "scene.json", r#"{"type": "scene",
+ "a": {"type": "sphere"},
+ "a": {"type": "cube"}}"#),
+        Case::xml("undefined parameter", r#"<shape type="sphere"><float name="radius" value="$r"/></shape>"#),
+        Case::xml("undefined parameter that is nearly one", r#"<default name="radius" value="1"/><shape type="sphere"><float name="radius" value="$radus"/></shape>"#),
+        Case::json("undefined parameter in JSON", r#""ball": {"type": "sphere", "radius": "$r"}"#),
+        Case::xml("unused definition", r#"<default name="r" value="1"/><shape type="sphere"><float name="radius" value="$r"/></shape>"#).with(&[("rr", "2")]),
+        Case::xml("definition without parameters", r#"<shape type="sphere"/>"#).with(&[("r", "2")]),
+        Case::of("definition of another kind", "scene.json", r#"{"type": "scene", "$defaults": {"r": 1}, "ball": {"type": "sphere", "radius": "$r"}}"#).with(&[("r", "big")]),
+        Case::xml("definition that is no number", r#"<default name="r" value="1"/><shape type="sphere"><float name="radius" value="$r"/></shape>"#).with(&[("r", "big")]),
+        Case::xml("definition given twice", r#"<shape type="sphere"/>"#).with(&[("r", "1"), ("r", "2")]),
+        Case::of("a list as a default", "scene.json", r#"{"type": "scene", "$defaults": {"r": [1, 2]}}"#),
+        Case::of("two sensors", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"/><sensor type="perspective"/></scene>"#),
+        Case::of("no sensor", "scene.xml", r#"<scene version="3.0.0"><shape type="sphere"/></scene>"#),
+        Case::xml("two integrators", r#"<integrator type="path"/><integrator type="volpath"/>"#),
+        Case::of("two films", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"/><film type="hdrfilm"/></sensor></scene>"#),
+        Case::of("two samplers", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><sampler type="independent"/><sampler type="stratified"/></sensor></scene>"#),
+        Case::xml("two environments", r#"<emitter type="constant"/><emitter type="constant"/>"#),
+        Case::xml("two emitters on a shape", r#"<shape type="sphere"><emitter type="area"/><emitter type="area"/></shape>"#),
+        Case::xml("two bsdfs on a shape", r#"<shape type="sphere"><bsdf type="diffuse"/><bsdf type="null"/></shape>"#),
+        Case::xml("an area emitter in the scene", r#"<emitter type="area"/>"#),
+        Case::xml("a point emitter on a shape", r#"<shape type="sphere"><emitter type="point"/></shape>"#),
+        Case::xml("a film in the scene", r#"<film type="hdrfilm"/>"#),
+        Case::xml("a phase function of one", r#"<medium type="homogeneous"><phase type="blendphase"><phase type="hg"/></phase></medium>"#),
+        Case::xml("a two-sided bsdf of none", r#"<bsdf type="twosided"/>"#),
+        Case::xml("a two-sided bsdf of glass", r#"<bsdf type="twosided"><bsdf type="dielectric"/></bsdf>"#),
+        Case::xml("two phase functions", r#"<medium type="homogeneous"><phase type="hg"/><phase type="isotropic"/></medium>"#),
+        Case::xml("nesting too deep", &("<bsdf type=\"twosided\">".repeat(101) + &"</bsdf>".repeat(101))),
+        Case::of("nesting too deep in JSON", "scene.json", format!("{}1{}", r#"{"a":"#.repeat(130), "}".repeat(130))),
+        Case::xml("singular transform", r#"<shape type="sphere"><transform name="to_world"><scale x="0"/></transform></shape>"#),
+        Case::xml("rotation about nothing", r#"<shape type="sphere"><transform name="to_world"><rotate value="0 0 0" angle="90"/></transform></shape>"#),
+        Case::json("rotation about nothing in JSON", r#""ball": {"type": "sphere", "to_world": [{"type": "rotate", "axis": [0, 0, 0], "angle": 90}]}"#),
+        Case::xml("look nowhere", r#"<shape type="sphere"><transform name="to_world"><lookat origin="1 1 1" target="1 1 1"/></transform></shape>"#),
+        Case::xml("look along up", r#"<shape type="sphere"><transform name="to_world"><lookat origin="0 0 0" target="0 1 0" up="0 1 0"/></transform></shape>"#),
+        Case::xml("a matrix of ten", r#"<shape type="sphere"><transform name="to_world"><matrix value="1 2 3 4 5 6 7 8 9 10"/></transform></shape>"#),
+        Case::xml("unknown step", r#"<shape type="sphere"><transform name="to_world"><lookAt origin="0 0 0" target="0 1 0"/></transform></shape>"#),
+        Case::json("one step without brackets", r#""ball": {"type": "sphere", "to_world": {"type": "scale", "value": 2}}"#),
+        Case::json("a step without its angle", r#""ball": {"type": "sphere", "to_world": [{"type": "rotate", "axis": [0, 1, 0]}]}"#),
+        Case::of("malformed XML", "scene.xml", r#"<scene version="3.0.0">
+  <shape type="sphere">
+</scene>"#),
+        Case::of("unclosed attribute", "scene.xml", r#"<scene version="3.0.0>
+</scene>"#),
+        Case::of("a document type", "scene.xml", r#"<!DOCTYPE scene>
+<scene version="3.0.0"/>"#),
+        Case::of("two scenes in a file", "scene.xml", r#"<scene version="3.0.0"/><scene version="3.0.0"/>"#),
+        Case::of("malformed JSON", "scene.json", r#"{"type": "scene",
+ "a": }"#),
+        Case::of("a comma too many", "scene.json", r#"{"type": "scene",
+ "a": {"type": "sphere",},
+}"#),
+        Case::of("a comment in JSON", "scene.json", r#"{"type": "scene", // mine
+}"#),
+        Case::of("cut off JSON", "scene.json", r#"{"type": "scene", "a": {"#),
+        Case::of("two values in a file", "scene.json", r#"{"type": "scene"} {}"#),
+        Case::of("a list for a scene", "scene.json", "[1, 2]"),
+        Case::of("a shape for a scene", "scene.json", r#"{"type": "sphere"}"#),
+        Case::of("an object without a type", "scene.json", r#"{"type": "scene", "a": {"radius": 1}}"#),
+        Case::xml("unknown tag", r#"<shap type="sphere"/>"#),
+        Case::xml("unknown attribute", r#"<shape type="sphere" radius="2"/>"#),
+        Case::xml("a missing type", "<shape/>"),
+        Case::xml("a missing value", r#"<shape type="sphere"><float name="radius"/></shape>"#),
+        Case::xml("stray text", "hello"),
+        Case::of("no version", "scene.xml", "<scene/>"),
+        Case::of("an old version", "scene.xml", r#"<scene version="0.6.0"/>"#),
+        Case::of("a future version", "scene.xml", r#"<scene version="4.0.0"/>"#),
+        Case::of("a word for a version", "scene.xml", r#"<scene version="latest"/>"#),
+        Case::of("empty XML", "scene.xml", ""),
+        Case::of("empty JSON", "scene.json", ""),
+        Case::of("unknown ending", "scene.blend", ""),
+        Case::of("no ending", "scene", ""),
+        Case::of("no file", "other.xml", "").reading("no.xml"),
+        Case::of("a folder", "folder.xml/a", ""),
+        Case::of("bytes that are no text", "scene.xml", *b"<scene version=\"3.0.0\">\xff</scene>"),
+        Case::of("text in UTF-16", "scene.json", *b"\xff\xfe{\x00}\x00"),
+        Case::of("a zero byte", "scene.xml", *b"<scene version=\"3.0.0\">\x00</scene>"),
+        Case::of("a seed", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><sampler type="independent"><integer name="seed" value="2"/></sampler></sensor></scene>"#).warned(),
+        Case::of("a pixel format", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><string name="pixel_format" value="rgba"/></film></sensor></scene>"#).warned(),
+        Case::xml("a definition that nothing refers to", r#"<bsdf type="diffuse" id="idle"/>"#).warned(),
+        Case::xml("a sensor of Mitsuba's", r#"<sensor type="batch"/>"#),
+        Case::xml("a bsdf of Mitsuba's", r#"<bsdf type="hair" id="idle"/>"#),
+        Case::json("a tag that is none", r#""a": {"type": "blob", "$tag": "shap"}"#),
+        Case::json("a tag of another kind", r#""a": {"type": "sphere", "$tag": "bsdf"}"#),
+        Case::json("unknown child in JSON", r#""ball": {"type": "sphere", "skin": {"type": "difuse"}}"#),
+    ]
+}

@@ -1,0 +1,4 @@
+//! Images: Radiance HDR.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| tyndall_fuzz::image("hdr", data));

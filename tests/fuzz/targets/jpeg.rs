@@ -1,0 +1,4 @@
+//! Images: JPEG.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| tyndall_fuzz::image("jpg", data));

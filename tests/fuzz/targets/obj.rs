@@ -1,0 +1,4 @@
+//! Meshes: Wavefront OBJ.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| tyndall_fuzz::shape("obj", data));

@@ -1,0 +1,4 @@
+//! Meshes: PLY.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| tyndall_fuzz::shape("ply", data));
