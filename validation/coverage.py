@@ -16,7 +16,6 @@ from validation.tyndall import binary
 PLUGIN_FOLDER = Path(mi.__file__).parent / "plugins"
 QUESTIONS = (
     {"thing": {"type": "?"}},
-    {"sensor": {"type": "perspective", "film": {"type": "?"}}},
     {"sensor": {"type": "perspective", "film": {"type": "hdrfilm", "rfilter": {"type": "?"}}}},
     {"sensor": {"type": "perspective", "film": {"type": "hdrfilm"}, "sampler": {"type": "?"}}},
 )
