@@ -80,6 +80,19 @@ pub struct Joined {
     pub weight: f32,
 }
 
+/// The segment of a join.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// From the first end, to just before the second.
+    pub ray: Ray,
+    /// How much further the second end lies.
+    pub cut: f32,
+    /// Squared distance of the ends; 1 where one is at infinity.
+    pub distance_squared: f32,
+    /// Emitters do not stand in the way.
+    pub hidden: bool,
+}
+
 /// Joins `a` and `b` by a strategy of `count` expected samples; none where the way is blocked, which emitters
 /// that are `hidden` do not. The caller divides by the number of samples it took.
 #[inline(always)]
@@ -95,22 +108,19 @@ pub fn join<P: Profile>(
     let (direction, distance, _) = measure::between(a.origin, end)?;
     let ray = Ray { origin: a.origin, direction, t_max: distance };
     let cut = (b.origin - end).dot(direction);
-    join_along::<P>(scene, ray, cut, a, b, distance_squared, count, hidden)
+    join_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, count)
 }
 
-/// The same along a given ray that starts at `a` and stops `cut` short of `b`: for ends at infinity, where
-/// `distance_squared` is 1.
+/// The same along a given span that starts at `a`: for ends at infinity.
 #[inline(always)]
 pub fn join_along<P: Profile>(
     scene: &Scene,
-    ray: Ray,
-    cut: f32,
+    span: &Span,
     a: &End<P::Lanes>,
     b: &End<P::Lanes>,
-    distance_squared: f32,
     count: f32,
-    hidden: bool,
 ) -> Option<Joined> {
+    let Span { ray, cut, distance_squared, hidden } = *span;
     let passage = segment::pass::<P>(scene, ray, cut, a.medium, hidden)?;
     let geometry = 1.0 / distance_squared;
     let weight = weight::join(a, b, passage.density, geometry, count);

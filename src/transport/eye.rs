@@ -3,7 +3,7 @@
 use super::{
     Estimator,
     cache::LightCache,
-    connect::{self, Joined},
+    connect::{self, Joined, Span},
     lanes::Lanes,
     profile::Profile,
     vertex::{Site, Vertex},
@@ -156,7 +156,8 @@ impl<'a, P: Profile> Eye<'a, P> {
         let light = connect::link_end(link, eye.medium, -direction, counts.hit);
         if P::INFINITE && link.infinite {
             let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
-            connect::join_along::<P>(scene, ray, 0.0, &eye, &light, 1.0, 1.0, false)
+            let span = Span { ray, cut: 0.0, distance_squared: 1.0, hidden: false };
+            connect::join_along::<P>(scene, &span, &eye, &light, 1.0)
         } else {
             connect::join::<P>(scene, &eye, &light, distance_squared, 1.0, false)
         }

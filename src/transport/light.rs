@@ -3,7 +3,7 @@
 use super::{
     Estimator,
     cache::LightCache,
-    connect::{self, Joined},
+    connect::{self, Joined, Span},
     lanes::Lanes,
     profile::Profile,
     vertex::Vertex,
@@ -173,7 +173,8 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
             tail: P::Lanes::splat(0.0),
         };
         if P::INFINITE && infinite {
-            connect::join_along::<P>(scene, ray, 0.0, &lens, end, distance_squared, counts.lens, hidden)
+            let span = Span { ray, cut: 0.0, distance_squared, hidden };
+            connect::join_along::<P>(scene, &span, &lens, end, counts.lens)
         } else {
             connect::join::<P>(scene, end, &lens, distance_squared, counts.lens, hidden)
         }
