@@ -130,7 +130,7 @@ fn step() -> impl Strategy<Value = TransformStep> {
 }
 
 fn spectrum() -> impl Strategy<Value = Value> {
-    vec((1.0..100.0f64, finite()), 1..5).prop_map(|steps| {
+    vec((1.0..100.0f64, finite()), 2..5).prop_map(|steps| {
         let rising = steps.iter().scan(300.0, |nm, (more, value)| {
             *nm += more;
             Some((*nm, *value))
@@ -558,4 +558,17 @@ fn shipped_scenes_come_back() {
         seen.insert(ours);
     }
     assert_eq!(seen.len(), 2);
+}
+
+#[test]
+fn a_constant_spectrum_stays_one() {
+    let xml = r#"<scene version="3.0.0"><default name="s" value="0.25"/><bsdf type="diffuse" id="b">
+        <spectrum name="reflectance" value="0.5"/><spectrum name="other" value="$s"/></bsdf></scene>"#;
+    let desk = Desk::new(&[("a.xml", xml)]);
+    desk.convert("a.xml", "b.json", &[]);
+    desk.convert("b.json", "c.xml", &[]);
+    for definitions in [&[][..], &[("s", "0.75")]] {
+        assert_same_with(&desk, "a.xml", "b.json", definitions);
+        assert_same_with(&desk, "a.xml", "c.xml", definitions);
+    }
 }

@@ -125,6 +125,11 @@ impl<'a> Known<'a> {
     }
 }
 
+/// The value of a spectrum that has it at all wavelengths: a single pair, at no wavelength.
+fn constant(pairs: &[(f64, f64)]) -> Option<f64> {
+    if let [(0.0, value)] = pairs { Some(*value) } else { None }
+}
+
 /// A number, with a point or an exponent unless it is `-0`, `0`, `1`, ... itself. What is read from it is the
 /// same to the last bit.
 fn plain(x: f64) -> String {

@@ -113,7 +113,6 @@ pub fn all() -> Vec<Case> {
         Case::json("number for a child", r#""ball": {"type": "sphere", "interior": 3}"#),
         Case::of("fraction for a whole number", "scene.json", r#"{"type": "scene", "c": {"type": "perspective", "film": {"type": "hdrfilm", "width": 2.5}}}"#),
         Case::json("null", r#""ball": {"type": "sphere", "radius": null}"#),
-        Case::xml("a spectrum that is not constant", r#"<emitter type="point"><spectrum name="intensity" value="400:1, 700:2"/></emitter>"#),
         Case::xml("text where a float is", r#"<shape type="sphere"><float name="radius" value="2cm"/></shape>"#),
         Case::xml("a word that is no choice", r#"<bsdf type="roughconductor"><string name="distribution" value="phong"/></bsdf>"#),
         Case::xml("negative extinction", r#"<medium type="homogeneous"><float name="sigma_t" value="-1"/></medium>"#),

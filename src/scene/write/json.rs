@@ -1,7 +1,7 @@
 //! A scene as JSON.
 
 use super::{
-    Known,
+    Known, constant,
     keys::Keys,
     kinds::{kinds, split},
     layout::Json,
@@ -93,13 +93,7 @@ impl Writer<'_, '_> {
             Item::String(leaf) => self.string(leaf, place),
             Item::Rgb(numbers) => value("rgb", self.rgb(numbers, place)),
             Item::Vector(numbers) => self.numbers(numbers, place),
-            Item::Spectrum(leaf) => {
-                if let Some(text) = &leaf.text {
-                    self.known.note(place, text, WHOLE);
-                }
-                let pair = |(nm, x): &(f64, f64)| Json::List([nm, x].map(|x| Json::Word(plain(*x))).into());
-                value("spectrum", Json::List(leaf.value.iter().map(pair).collect()))
-            }
+            Item::Spectrum(leaf) => value("spectrum", self.spectrum(leaf, place)),
             Item::Transform(steps) => Json::List(steps.iter().map(|step| self.step(step, place)).collect()),
             Item::Object(node) => self.node(node, key)?,
             Item::Reference(leaf) => {
@@ -107,6 +101,18 @@ impl Writer<'_, '_> {
                 Json::Map(vec![("type".into(), Json::string("ref")), ("id".into(), id)])
             }
         })
+    }
+
+    fn spectrum(&mut self, leaf: &Leaf<Vec<(f64, f64)>>, place: &Location) -> Json {
+        if let Some(value) = constant(&leaf.value) {
+            let leaf = Leaf { value, text: leaf.text.clone() };
+            return self.whole(&leaf, Kind::Float, place, |x| plain(*x));
+        }
+        if let Some(text) = &leaf.text {
+            self.known.note(place, text, WHOLE);
+        }
+        let pair = |(nm, x): &(f64, f64)| Json::List([nm, x].map(|x| Json::Word(plain(*x))).into());
+        Json::List(leaf.value.iter().map(pair).collect())
     }
 
     fn step(&mut self, step: &Step, place: &Location) -> Json {

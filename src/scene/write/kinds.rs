@@ -64,7 +64,8 @@ impl Uses<'_, '_> {
                     steps.iter().flat_map(|step| &step.parts).for_each(|(_, numbers)| self.numbers(numbers));
                 }
                 Item::Object(node) => self.node(node),
-                Item::String(_) | Item::Spectrum(_) | Item::Reference(_) => {}
+                Item::Spectrum(leaf) => self.add(leaf.text.as_deref(), Kind::Float),
+                Item::String(_) | Item::Reference(_) => {}
             }
         }
     }

@@ -1,7 +1,7 @@
 //! A scene as Mitsuba's XML.
 
 use super::{
-    Known,
+    Known, constant,
     outline::{Entry, Item, Leaf, Node, Numbers, Step, Texts},
     plain, unspeakable,
 };
@@ -145,7 +145,11 @@ fn listed(values: &[f64]) -> String {
     values.iter().map(|x| plain(*x)).collect::<Vec<_>>().join(", ")
 }
 
+/// The same value everywhere is one number.
 fn spectrum(pairs: &[(f64, f64)]) -> String {
+    if let Some(value) = constant(pairs) {
+        return plain(value);
+    }
     let pair = |(nm, value): &(f64, f64)| format!("{}:{}", plain(*nm), plain(*value));
     pairs.iter().map(pair).collect::<Vec<_>>().join(", ")
 }
