@@ -44,13 +44,13 @@ impl Lens {
     }
 
     /// The point of the film plane (camera space, z = 1 left out) that a film position stands for.
-    #[inline]
+    #[inline(always)]
     pub fn plane(&self, film: Vec2) -> Vec2 {
         (self.centre - film) / self.scale
     }
 
     /// The film position that a point of the film plane stands for.
-    #[inline]
+    #[inline(always)]
     pub fn film(&self, plane: Vec2) -> Vec2 {
         self.centre - plane * self.scale
     }
@@ -58,25 +58,25 @@ impl Lens {
     /// Density per solid angle of directions whose film positions have density 1 per pixel area
     /// [pixels/sr]: scale^2 / cos^3. It holds through any point of a lens: what a lens in focus at distance F
     /// spreads over F^2 times the area lies F^2 times further away.
-    #[inline]
+    #[inline(always)]
     pub fn density(&self, cosine: f32) -> f32 {
         self.scale * self.scale / (cosine * cosine * cosine)
     }
 
     /// `point` in camera space.
-    #[inline]
+    #[inline(always)]
     pub fn to_local(&self, point: Vec3) -> Vec3 {
         self.frame.to_local(point - self.position)
     }
 
     /// A point of the aperture in the world.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, aperture: Vec2) -> Vec3 {
         self.position + self.frame.tangent * aperture.x + self.frame.bitangent * aperture.y
     }
 
     /// Camera direction through a point of the film plane.
-    #[inline]
+    #[inline(always)]
     pub fn through(plane: Vec2) -> Vec3 {
         vec3(plane.x, plane.y, 1.0).normalize()
     }

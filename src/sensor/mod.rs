@@ -116,7 +116,7 @@ pub fn viewpoint(object: &Object, library: &Library) -> Result<DVec3> {
 
 impl Sensor {
     /// A point of the aperture for one walk or join, uniform by area, in the lens's own axes [m].
-    #[inline]
+    #[inline(always)]
     pub fn sample_aperture(&self, stream: &mut Stream) -> Vec2 {
         match self {
             Self::ThinLens(lens) => lens.sample_aperture(stream),
@@ -125,7 +125,7 @@ impl Sensor {
     }
 
     /// The ray through a film position and a point of the aperture.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, film: Vec2, aperture: Vec2) -> SensorRay {
         match self {
             Self::Perspective(sensor) => sensor.ray(film),
@@ -135,7 +135,7 @@ impl Sensor {
     }
 
     /// How `point` is seen through a point of the aperture; none where it lies outside the clip distances.
-    #[inline]
+    #[inline(always)]
     pub fn project(&self, point: Vec3, aperture: Vec2) -> Option<Projection> {
         match self {
             Self::Perspective(sensor) => sensor.project(point),
@@ -145,7 +145,7 @@ impl Sensor {
     }
 
     /// How the point at infinity in unit `direction` is seen; none where it is not, or in one single direction.
-    #[inline]
+    #[inline(always)]
     pub fn project_direction(&self, direction: Vec3, aperture: Vec2) -> Option<Projection> {
         match self {
             Self::Perspective(sensor) => sensor.project_direction(direction),
@@ -155,7 +155,7 @@ impl Sensor {
     }
 
     /// True where all rays are parallel: the sensor stands for a point at infinity.
-    #[inline]
+    #[inline(always)]
     pub fn is_parallel(&self) -> bool {
         matches!(self, Self::Orthographic(_))
     }
@@ -205,13 +205,13 @@ impl Clip {
 
     /// The part between the clip distances of the ray from `position` in unit `direction`, `cosine` > 0 to the
     /// axis.
-    #[inline]
+    #[inline(always)]
     fn ray(&self, position: Vec3, direction: Vec3, cosine: f32) -> Ray {
         let origin = position + direction * (self.near / cosine);
         Ray { origin, direction, t_max: (self.far - self.near) / cosine }
     }
 
-    #[inline]
+    #[inline(always)]
     fn holds(&self, depth: f32) -> bool {
         depth > self.near && depth < self.far
     }

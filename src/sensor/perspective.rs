@@ -24,7 +24,7 @@ impl Perspective {
     }
 
     /// The ray through a film position.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, film: Vec2) -> SensorRay {
         let Self(lens) = self;
         let local = Lens::through(lens.plane(film));
@@ -33,7 +33,7 @@ impl Perspective {
     }
 
     /// How `point` is seen; none where it lies outside the clip distances.
-    #[inline]
+    #[inline(always)]
     pub fn project(&self, point: Vec3) -> Option<Projection> {
         let local = self.0.to_local(point);
         let distance_squared = local.length_squared();
@@ -41,13 +41,13 @@ impl Perspective {
     }
 
     /// How the point at infinity in unit `direction` is seen; none behind the camera.
-    #[inline]
+    #[inline(always)]
     pub fn project_direction(&self, direction: Vec3) -> Option<Projection> {
         let local = self.0.frame.to_local(direction);
         (local.z > 0.0).then(|| self.see(local, 1.0))
     }
 
-    #[inline]
+    #[inline(always)]
     fn see(&self, local: Vec3, distance_squared: f32) -> Projection {
         let Self(lens) = self;
         Projection {

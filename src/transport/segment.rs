@@ -47,7 +47,7 @@ pub struct Passage<L> {
 /// Samples a segment from `origin` along unit `direction`, starting in `medium`, no longer than `t_max`: an
 /// exponential optical depth by the `hero` channel, until a surface, a collision, or infinity. Where emitters are
 /// `hidden`, the ray passes them; only profiles with nulls can.
-#[inline]
+#[inline(always)]
 pub fn fly<P: Profile>(
     scene: &Scene,
     ray: Ray,
@@ -65,7 +65,7 @@ pub fn fly<P: Profile>(
 }
 
 /// A flight where every surface scatters: one ray, no longer than the sampled distance.
-#[inline]
+#[inline(always)]
 fn fly_straight<P: Profile>(
     scene: &Scene,
     mut ray: Ray,

@@ -133,8 +133,10 @@ pub fn land<P: Profile>(
         partial: departure.carried,
     };
     let sigma_t = if escaped { P::Lanes::splat(1.0) } else { vertex.sigma_t(scene) };
-    let ratio = flight.depth.flight_ratio(sigma_t, hero);
-    let transmitted = flight.depth.exp_neg();
+    let one = P::Lanes::splat(1.0);
+    let attenuates = P::MEDIA || P::NULLS;
+    let ratio = if attenuates { flight.depth.flight_ratio(sigma_t, hero) } else { one };
+    let transmitted = if attenuates { flight.depth.exp_neg() } else { one };
     let geometry = measure::solid_angle_to_vertex(vertex.cosine(direction), distance_squared);
     let density = departure.forward * transmitted.hero(hero) * sigma_t.hero(hero) * geometry;
     vertex.inverse = 1.0 / density;
