@@ -425,6 +425,18 @@ fn parameters_of_json_stay_too() {
     }
 }
 
+/// JSON spells truth values and numbers in one way; where a text shows how they were spelled, it stays text.
+#[test]
+fn how_a_parameter_was_spelled_shows_in_no_text() {
+    let xml = r#"<scene version="3.0.0"><default name="on" value="True"/><default name="n" value="007"/>
+        <shape type="sphere" id="s"><boolean name="a" value="$on"/><integer name="b" value="$n"/>
+        <string name="c" value="is $on"/><string name="d" value="agent $n"/></shape></scene>"#;
+    let desk = Desk::new(&[("a.xml", xml)]);
+    let (json, notes) = desk.convert("a.xml", "b.json", &[]);
+    assert!(json.contains("is True") && json.contains("agent 007") && notes.len() == 2, "{json} {notes:?}");
+    assert_same_with(&desk, "a.xml", "b.json", &[]);
+}
+
 #[test]
 fn a_parameter_that_a_matrix_of_nine_hides_is_told() {
     let json = r#"{"type": "scene", "$defaults": {"z": 0}, "s": {"type": "sphere",

@@ -247,7 +247,12 @@ pub fn all() -> Vec<Case> {
         Case::of("text in UTF-16", "scene.json", *b"\xff\xfe{\x00}\x00"),
         Case::of("a zero byte", "scene.xml", *b"<scene version=\"3.0.0\">\x00</scene>"),
         Case::of("a seed", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><sampler type="independent"><integer name="seed" value="2"/></sampler></sensor></scene>"#).warned(),
-        Case::of("a pixel format", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><string name="pixel_format" value="rgba"/></film></sensor></scene>"#).warned(),
+        Case::of(
+            "a sampler's jitter",
+            "scene.xml",
+            r#"<scene version="3.0.0"><sensor type="perspective"><sampler type="stratified"><boolean name="jitter" value="true"/></sampler></sensor></scene>"#,
+        )
+        .warned(),
         Case::xml("a definition that nothing refers to", r#"<bsdf type="diffuse" id="idle"/>"#).warned(),
         Case::xml("a sensor of Mitsuba's", r#"<sensor type="batch"/>"#),
         Case::xml("a bsdf of Mitsuba's", r#"<bsdf type="hair" id="idle"/>"#),

@@ -169,7 +169,8 @@ impl Writer<'_, '_> {
         match self.kinds.get(name) {
             Some(Kind::Float) => value.parse().is_ok_and(|x: f64| format!("{x:?}") == *value),
             Some(Kind::Integer) => value.parse().is_ok_and(|i: i64| i.to_string() == *value),
-            Some(_) => true,
+            Some(Kind::Boolean) => matches!(value.as_str(), "true" | "false"),
+            Some(Kind::String) => true,
             None => false,
         }
     }
