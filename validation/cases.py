@@ -98,7 +98,7 @@ CASES = (
     Case("texture_files.json"),
     Case("emitter_envmap.json"),
     Case("emitter_projector.json"),
-    Case("emitter_spot.json"),
+    Case("emitter_spot.json", effort=2),
     Case("emitter_textured_area.json", EYE),
     Case("emitter_directional_area.json", LIGHT),
     Case("phase_functions.json"),

@@ -17,7 +17,6 @@ PLUGIN_FOLDER = Path(mi.__file__).parent / "plugins"
 QUESTIONS = (
     {"thing": {"type": "?"}},
     {"sensor": {"type": "perspective", "film": {"type": "hdrfilm", "rfilter": {"type": "?"}}}},
-    {"sensor": {"type": "perspective", "film": {"type": "hdrfilm"}, "sampler": {"type": "?"}}},
 )
 """Scenes that each ask for a plugin that nobody has: what Tyndall answers lists those that it has."""
 ELSEWHERE = {"heterogeneous", "constvolume", "gridvolume"}
