@@ -111,7 +111,9 @@ impl Place<'_> {
         if color.is_finite() && rgb.min_element() >= 0.0 {
             return Ok(color);
         }
-        Err(self.wrong(format!("{rgb}")))
+        let Property { name, location, .. } = self.property;
+        let remedy = format!("change \"{name}\" to values from 0 to {:e}", f32::MAX);
+        Err(Error::new(location, format!("{COLOR} for \"{name}\""), format!("{:?}", rgb.to_array()), remedy))
     }
 
     /// A single pair is a constant: grey as a property of matter, but light of that kind is not white.

@@ -47,6 +47,10 @@ impl<'a> Params<'a> {
     /// The property called `name`, marked as read.
     pub fn property(&self, name: &'static str) -> Option<&'a Property> {
         self.asked.borrow_mut().push(name);
+        self.take(name)
+    }
+
+    fn take(&self, name: &str) -> Option<&'a Property> {
         let index = self.object.properties.iter().position(|p| p.name == name)?;
         self.used.borrow_mut()[index] = true;
         Some(&self.object.properties[index])
@@ -236,7 +240,8 @@ impl<'a> Params<'a> {
     /// Reads and drops parameters that have no meaning here, with a warning that says so.
     pub fn accept_unused(&self, names: &[&'static str], why: &str) {
         for name in names {
-            if let Some(property) = self.property(name) {
+            // Not asked for: nobody is to be told to use them.
+            if let Some(property) = self.take(name) {
                 self.library.warn(&property.location, &format!("\"{name}\" is accepted but not used: {why}"));
             }
         }

@@ -196,7 +196,7 @@ impl Clip {
         if far <= near {
             return Err(params.complain(
                 "far_clip",
-                format!("a distance above near_clip, {near}"),
+                format!("a distance above near_clip ({near})"),
                 far.to_string(),
             ));
         }

@@ -69,7 +69,7 @@ fn decode_hdr(reader: FileReader, mut limits: Limits) -> ImageResult<DynamicImag
 }
 
 fn undecodable(path: &Path, error: impl std::fmt::Display) -> Error {
-    let expected = format!("an image of at most {MOST_PIXELS} pixels, {LONGEST_SIDE} a side");
+    let expected = format!("an image file, of at most {MOST_PIXELS} pixels and {LONGEST_SIDE} a side");
     let remedy = "give a png, jpeg, hdr, exr, bmp, tga or ppm file, or a smaller image";
     Error::new(path.display(), expected, format!("something that does not decode: {error}"), remedy)
 }
