@@ -36,7 +36,9 @@ class Case:
 
 
 def filters() -> tuple[Case, ...]:
-    """One scene by every reconstruction filter and, in passing, every sampler."""
+    """One scene by every reconstruction filter and, in passing, every sampler. The picture is smooth: Mitsuba's scalar
+    variants look filters up in a table of 31 steps, which at a sharp edge is up to 0.015 of the contrast off. (And
+    `ldsampler` appears here only: what it makes of walks through media differs from Mitsuba's other samplers.)"""
     pairs = {
         "box": "independent",
         "tent": "stratified",
@@ -109,4 +111,9 @@ CASES = (
     Case("integrator_volpathmis.json"),
     Case("integrator_moment.json"),
     Case("integrator_aov.json"),
+    Case("files/cellar/scene.xml", EYE, effort=2, parameters={"density": "0.2", "depth": "8"}),
+    Case("files/aquarium/scene.xml", EYE),
+    Case("files/stage/scene.xml", effort=2, parameters={"g": "-0.3"}),
+    Case("files/greenhouse/scene.xml", effort=3),
+    Case("files/observatory/scene.xml", EYE, parameters={"turn": "200"}),
 )

@@ -154,7 +154,7 @@ class Cell:
     def light(self) -> dict:
         """The emitter; where it is inside, it shines on the ball from behind and above the inner camera."""
         inside = self.place == "inside"
-        position = [-0.3, 1.35, 0.5] if inside else [-1.1, 2.3, 1.0]
+        position = [-0.35, 1.2, 0.35] if inside else [-1.1, 2.3, 1.0]
         aim = [{"type": "lookat", "origin": position, "target": [0.1, 0.6, -0.25], "up": [0, 1, 0.1]}]
         power = 0.25 if inside else 1.0
         return {"light": self.emitters(position, aim, power)}
@@ -164,7 +164,7 @@ class Cell:
         picture = {"type": "bitmap", "filename": "assets/slide.hdr", "raw": True}
         match self.emitter:
             case "area" | "textured":
-                size = 0.25 if self.place == "inside" else 0.9
+                size = 0.12 if self.place == "inside" else 0.9
                 radiance = picture if self.emitter == "textured" else rgb(3, 2.5, 2)
                 to_world = [{"type": "scale", "value": size}, *aim]
                 lamp = {"type": "rectangle", "to_world": to_world, "bsdf": diffuse(0, 0, 0)}
