@@ -114,6 +114,6 @@ CASES = (
     Case("files/cellar/scene.xml", EYE, effort=2, parameters={"density": "0.2", "depth": "8"}),
     Case("files/aquarium/scene.xml", EYE),
     Case("files/stage/scene.xml", effort=2, parameters={"g": "-0.3"}),
-    Case("files/greenhouse/scene.xml", effort=3),
+    Case("files/greenhouse/scene.xml", effort=2, parameters={"alpha": "0.6"}),
     Case("files/observatory/scene.xml", EYE, parameters={"turn": "200"}),
 )
