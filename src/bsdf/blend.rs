@@ -149,6 +149,11 @@ impl BsdfModel for Blend {
     }
 
     #[inline]
+    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+        let [first, second] = self.weights(uv);
+        self.parts[0].albedo(uv, wi) * first + self.parts[1].albedo(uv, wi) * second
+    }
+
     fn scatters_across(&self) -> bool {
         self.parts.iter().any(BsdfModel::scatters_across)
     }

@@ -84,6 +84,11 @@ impl BsdfModel for Mask {
         true
     }
 
+    /// As in Mitsuba, holes do not count.
+    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+        self.nested.albedo(uv, wi)
+    }
+
     fn scatters_across(&self) -> bool {
         self.nested.scatters_across()
     }

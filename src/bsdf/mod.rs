@@ -45,6 +45,7 @@ use crate::error::{Error, Result};
 use crate::math::{Spectrum, SpectrumExt, Vec2, Vec3, vec3};
 use crate::sampling::Stream;
 use crate::texture::{self, Texture};
+use std::f32::consts::PI;
 
 /// What a walk carries: it decides whether refraction scales by the squared index ratio (radiance) or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +135,13 @@ pub trait BsdfModel {
         false
     }
 
+    /// What an `albedo` layer shows, seen from `wi`: as in Mitsuba the diffuse reflectance of models that have
+    /// one, pi f towards the normal of others.
+    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+        let up = vec3(0.0, 0.0, 1f32.copysign(wi.z));
+        self.evaluate(uv, wi, up, Transport::Radiance).value * PI
+    }
+
     /// True if light can get to the other side, be it bent or straight through.
     fn transmits(&self) -> bool {
         self.has_null() || self.scatters_across()
@@ -193,6 +201,9 @@ macro_rules! bsdfs {
                 match self { $(Self::$model(model) => model.has_null(),)* }
             }
             #[inline]
+            fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+                match self { $(Self::$model(model) => model.albedo(uv, wi),)* }
+            }
             fn scatters_across(&self) -> bool {
                 match self { $(Self::$model(model) => model.scatters_across(),)* }
             }

@@ -23,7 +23,7 @@ pub struct Plastic {
 #[derive(Clone, Debug)]
 pub(super) struct Base {
     specular: Texture,
-    diffuse: Texture,
+    pub diffuse: Texture,
     /// True if what the coat throws back to the base takes on its colour each time.
     nonlinear: bool,
     /// The part of light from the base that the coat throws back.
@@ -178,6 +178,10 @@ impl BsdfModel for Plastic {
     #[inline]
     fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
         if wi.z > 0.0 { self.base.at(uv, self.entering).survival } else { 0.0 }
+    }
+
+    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+        if wi.z > 0.0 { self.base.diffuse.eval(uv) } else { Spectrum::ZERO }
     }
 
     fn is_connectible(&self) -> bool {

@@ -6,7 +6,7 @@ use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::fresnel::{Interface, Interfaces};
-use crate::math::{Vec2, Vec3, vec2, vec3, warp};
+use crate::math::{Spectrum, Vec2, Vec3, vec2, vec3, warp};
 use crate::sampling::Stream;
 use std::sync::Arc;
 
@@ -178,6 +178,10 @@ impl BsdfModel for RoughPlastic {
     #[inline]
     fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
         if wi.z > 0.0 { self.base.at(uv, self.entering).survival } else { 0.0 }
+    }
+
+    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+        if wi.z > 0.0 { self.base.diffuse.eval(uv) } else { Spectrum::ZERO }
     }
 
     fn is_connectible(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, build};
 use crate::description::{Location, Object, Params};
 use crate::error::{Error, Result};
-use crate::math::{Vec2, Vec3, vec3};
+use crate::math::{Spectrum, Vec2, Vec3, vec3};
 use crate::sampling::Stream;
 use std::sync::Arc;
 
@@ -90,6 +90,11 @@ impl BsdfModel for TwoSided {
     fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
         let (bsdf, turn) = self.side(wi);
         bsdf.survival(uv, wi * turn)
+    }
+
+    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+        let (bsdf, turn) = self.side(wi);
+        bsdf.albedo(uv, wi * turn)
     }
 
     fn is_connectible(&self) -> bool {

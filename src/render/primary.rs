@@ -3,7 +3,7 @@
 
 use super::{Job, block::EyeStart};
 use crate::{
-    bsdf::{BsdfModel, Transport},
+    bsdf::BsdfModel,
     film::{
         Film,
         layer::{Content, Layer, Quantity},
@@ -141,17 +141,12 @@ impl<'a, P: Profile> View<'a, P> {
         }
     }
 
-    /// As Mitsuba: pi f towards the normal, for models that say nothing better of themselves. Where the side
-    /// that is seen is black, that of the other, which a one-sided diffuse surface has too.
+    /// Where the side that is seen is black, as in Mitsuba that of the other, which a one-sided surface has too.
     fn albedo(&self, point: &SurfacePoint) -> Spectrum {
         let bsdf = self.scene.bsdf(point.shape);
         let wi = point.shading.to_local(-self.ray.direction);
-        let towards = |wi: Vec3| {
-            let up = vec3(0.0, 0.0, 1f32.copysign(wi.z));
-            bsdf.evaluate(point.uv, wi, up, Transport::Radiance).value * PI
-        };
-        let seen = towards(wi);
-        if seen == Spectrum::ZERO { towards(vec3(wi.x, wi.y, -wi.z)) } else { seen }
+        let seen = bsdf.albedo(point.uv, wi);
+        if seen == Spectrum::ZERO { bsdf.albedo(point.uv, vec3(wi.x, wi.y, -wi.z)) } else { seen }
     }
 
     /// How the texture coordinates change from here to where a neighbouring ray meets the tangent plane.

@@ -173,7 +173,7 @@ fn surface_layers(params: &Params<'_>) -> Result<Vec<Layer>> {
 }
 
 fn surface_layer(params: &Params<'_>, item: &str) -> Result<Layer> {
-    let expected = "name:quantity, such as dd:depth,";
+    let expected = "name:quantity, such as dd:depth";
     let (name, quantity) = match item.split_once(':') {
         Some((name, quantity)) if !name.is_empty() => (name, quantity),
         _ => return Err(params.complain("aovs", expected, format!("\"{item}\""))),

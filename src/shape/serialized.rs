@@ -132,11 +132,11 @@ impl Container {
             let found = format!("{vertices} and {triangles}");
             return Err(Fault::new("at most 2^32 - 1 vertices and triangles", found));
         }
+        let positions = numbers(&mut stream, flags & DOUBLE != 0, vertices * 3)?;
         let mut list = |flag: u32, width: u64| match flags & flag {
             0 => Ok(vec![]),
             _ => numbers(&mut stream, flags & DOUBLE != 0, vertices * width),
         };
-        let positions = list(!0, 3)?;
         let (normals, uvs) = (list(NORMALS, 3)?, list(UVS, 2)?);
         drop(list(COLORS, 3)?);
         let triple = |list: Vec<f64>| list.as_chunks().0.iter().map(|p| DVec3::from_array(*p)).collect();

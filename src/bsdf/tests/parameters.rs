@@ -64,7 +64,7 @@ fn parameters_may_be_textures() {
         built("roughconductor", &[("alpha", squares()), ("specular_reflectance", squares())]).unwrap();
     let at = |uv| rough.evaluate(uv, Vec3::Z, Vec3::Z, Transport::Radiance);
     // The checkerboard's 0.4 and 0.2, for Beckmann and a perfect mirror: reflectance / (4 pi alpha^2).
-    let expected = |x: f32| x / (4.0 * std::f32::consts::PI * x * x);
+    let expected = |x: f32| x / (4.0 * PI * x * x);
     assert!(close(at(vec2(0.2, 0.2)).value.x, expected(0.4), 1e-4));
     assert!(close(at(vec2(0.7, 0.2)).value.x, expected(0.2), 1e-4));
 }

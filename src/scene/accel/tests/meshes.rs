@@ -343,6 +343,8 @@ fn broken_serialized_files_are_errors() {
     let face = |c: u32| [0, 1, c].map(u32::to_le_bytes).concat();
     let good = |x, c| [corners(x), face(c)].concat();
     assert!(load("a.serialized", &packed(0x1000, 3, 1, &good(0.0, 2)), &[]).is_ok());
+    // No flag at all means single precision (found by fuzzing: its positions were taken for absent).
+    assert!(load("a.serialized", &packed(0, 3, 1, &good(0.0, 2)), &[]).is_ok());
     for bad in [
         packed(0x1000, 4_000_000_000, 1, &good(0.0, 2)),
         packed(0x1000, 3, 4_000_000_000, &good(0.0, 2)),
