@@ -107,7 +107,7 @@ class Cell:
     def effort(self) -> float:
         """Samples relative to the common number: more where Mitsuba finds the light by chance only."""
         by_chance = self.boundary in SMOOTH and self.place == "inside" or self.boundary == "rough"
-        return (4 if by_chance else 2) * (0.5 if self.medium in ("dense", "white") and not self.point_in_medium else 1)
+        return (3 if by_chance else 1.5) * (0.5 if self.medium in ("dense", "white") and not self.point_in_medium else 1)
 
     def scene(self) -> Scene:
         """The dictionary of `mitsuba.load_dict`."""
@@ -163,9 +163,11 @@ class Cell:
         return {"walls": {"type": "cube", "flip_normals": True, "to_world": to_world, "bsdf": diffuse(0.5, 0.5, 0.6)}}
 
     def light(self) -> dict:
-        """The emitter; where it is inside, it shines on the ball from behind and above the inner camera."""
+        """The emitter; where it is inside, it shines on the ball from behind and above the inner camera,
+        and touches no boundary."""
         inside = self.place == "inside"
-        position = [-0.35, 1.2, 0.35] if inside else [-1.1, 2.3, 1.0]
+        within = [-0.35, 1.2, 0.35] if self.camera == "inside" else [-0.35, 1.15, 0.1]
+        position = within if inside else [-1.1, 2.3, 1.0]
         aim = [{"type": "lookat", "origin": position, "target": [0.1, 0.6, -0.25], "up": [0, 1, 0.1]}]
         power = 0.25 if inside else 1.0
         return {"light": self.emitters(position, aim, power)}
@@ -175,7 +177,7 @@ class Cell:
         picture = {"type": "bitmap", "filename": "assets/slide.hdr", "raw": True}
         match self.emitter:
             case "area" | "textured":
-                size = 0.12 if self.place == "inside" else 0.9
+                size = 0.9 if self.place == "outside" else 0.12 if self.camera == "inside" else 0.3
                 radiance = picture if self.emitter == "textured" else rgb(3, 2.5, 2)
                 to_world = [{"type": "scale", "value": size}, *aim]
                 lamp = {"type": "rectangle", "to_world": to_world, "bsdf": diffuse(0, 0, 0)}
