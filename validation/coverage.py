@@ -41,13 +41,13 @@ def shared() -> set[str]:
 
 
 def known(name: str, place) -> bool:
-    """True unless Tyndall complains to have found this very name: whatever else it says of so poor a scene, it knows
-    the plugin."""
+    """True unless Tyndall complains to have found this very name, or that plugin out of place: whatever else it says of
+    so poor a scene, it knows the plugin."""
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         path = Path(folder, "question.json")
         path.write_text(json.dumps({"type": "scene", **place({"type": name})}))
         said = subprocess.run([str(binary()), "info", str(path)], capture_output=True, text=True).stderr
-    return f'found "{name}"' not in said
+    return not any(complaint in said for complaint in (f'found "{name}"', f'the plugin "{name}"'))
 
 
 def covered() -> set[str]:
