@@ -1,5 +1,7 @@
 """Every cross-check scene through Mitsuba and through each of Tyndall's integrators that can render it."""
 
+from collections.abc import Iterable
+
 from validation import cells, compare, coverage, references
 from validation.cases import CASES, Case
 from validation.compare import Effort
@@ -7,13 +9,12 @@ from validation.places import OUTPUT
 from validation.scene import Scene
 
 
-def run(effort: Effort, only: str = "", sample: int | None = None, seed: int = cells.SEED) -> bool:
-    """Compares every case and `sample` generated cells (all of them if None) whose names contain `only`, printing as
-    it goes; true if all agree and, where all were asked for, no plugin is in none of the scenes."""
+def run(effort: Effort, chosen: Iterable[cells.Cell], cell_effort: Effort, only: str = "") -> bool:
+    """Compares every case and the chosen generated cells whose names contain `only`, printing as it goes; true if all
+    agree and, where all were asked for, no shared plugin is in none of the scenes."""
     print(compare.HEADER, flush=True)
     passed = [one for case in CASES if only in case.scene().name for one in run_case(case, effort)]
-    chosen = cells.cells() if sample is None else cells.sample(sample, seed)
-    passed += [one for cell in chosen if only in cell.name for one in run_cell(cell, effort)]
+    passed += [one for cell in chosen if only in cell.name for one in run_cell(cell, cell_effort)]
     print(f"{sum(passed)} of {len(passed)} comparisons agree; pictures are in {OUTPUT}")
     return all(passed) and (bool(only) or coverage.run())
 
