@@ -78,6 +78,21 @@ fn light_walks_start_in_the_fog_around_their_lamp() {
     }
 }
 
+/// A lamp that reaches out of its fog: the light of either half starts in a medium of its own.
+#[test]
+fn a_lamp_across_a_boundary_starts_in_both_media() {
+    let fog = medium(3.0, 0.8, 0.0);
+    for x in [0.3, 0.5] {
+        let parts = [
+            ("sensor", camera([0.0, 0.5, 3.5], [0.0, 0.0, 0.0], 8)),
+            ("floor", floor(-1.0, 2.0, 0.5)),
+            ("cloud", null_box([-0.5; 3], [0.5; 3], Some(fog.clone()))),
+            ("lamp", lamp_panel([x, 0.3, 0.0], 0.4, 2.0)),
+        ];
+        methods_agree(&format!("lamp at {x}"), &Stage::new(&scene(&parts)), 128);
+    }
+}
+
 #[test]
 fn fog_without_bounds_is_fog_in_a_large_box() {
     let parts = vec![

@@ -17,13 +17,20 @@ use std::sync::Arc;
 pub struct Blend {
     weight: Texture,
     parts: Arc<[Bsdf; 2]>,
+    /// Which parts let light get to the other side.
+    across: [bool; 2],
 }
 
 impl Blend {
     /// `weight` in [0, 1], which must be given, and two nested bsdfs.
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let weight = share(params, "weight", None)?;
-        Ok(Self { weight, parts: Arc::new(only_nested(params)?) })
+        Ok(Self::new(weight, only_nested(params)?))
+    }
+
+    fn new(weight: Texture, parts: [Bsdf; 2]) -> Self {
+        let across = [parts[0].scatters_across(), parts[1].scatters_across()];
+        Self { weight, parts: Arc::new(parts), across }
     }
 
     #[inline]
@@ -32,21 +39,32 @@ impl Blend {
         [1.0 - second, second]
     }
 
-    /// Survival of both parts: where light crosses the surface, that of whichever side has more.
+    /// Survival of both parts on this side, and where light crosses the surface, on whichever side has more. What
+    /// lets light across survives alike on both: asking it twice would double at every depth of blends.
     #[inline]
-    fn survivals(&self, uv: Vec2, wi: Vec3) -> [f32; 2] {
-        let part = |i: usize| {
-            let (here, part) = (self.parts[i].survival(uv, wi), &self.parts[i]);
-            if self.scatters_across() { here.max(part.survival(uv, -wi)) } else { here }
+    fn survivals(&self, uv: Vec2, wi: Vec3) -> ([f32; 2], [f32; 2]) {
+        let here = [self.parts[0].survival(uv, wi), self.parts[1].survival(uv, wi)];
+        let most = |i: usize| match self.across {
+            [false, false] => here[i],
+            across if across[i] => here[i],
+            _ => here[i].max(self.parts[i].survival(uv, -wi)),
         };
-        [part(0), part(1)]
+        (here, [most(0), most(1)])
+    }
+
+    /// Survival of the whole, given that of its parts.
+    #[inline]
+    fn total(weights: [f32; 2], survivals: [f32; 2]) -> f32 {
+        let part = |i: usize| if weights[i] > 0.0 { survivals[i] } else { 0.0 };
+        part(0).max(part(1))
     }
 
     /// Probabilities of going on by either part, given `survival`: those with which light does. The part that
     /// passes straight through each of them has been taken away before.
     #[inline]
     fn choices(&self, uv: Vec2, wi: Vec3) -> [f32; 2] {
-        let (weights, total) = (self.weights(uv), self.survival(uv, wi));
+        let (weights, (here, most)) = (self.weights(uv), self.survivals(uv, wi));
+        let total = Self::total(weights, most);
         let kept = |i: usize| {
             let through = self.parts[i].null_transmission(uv, wi.z.abs()).max_element();
             weights[i] * (1.0 - through).max(0.0)
@@ -54,7 +72,7 @@ impl Blend {
         let kept = [kept(0), kept(1)];
         let scale = (kept[0] + kept[1]) * total;
         let choice = |i: usize| {
-            if kept[i] > 0.0 && total > 0.0 { kept[i] * self.parts[i].survival(uv, wi) / scale } else { 0.0 }
+            if kept[i] > 0.0 && total > 0.0 { kept[i] * here[i] / scale } else { 0.0 }
         };
         [choice(0), choice(1)]
     }
@@ -62,9 +80,8 @@ impl Blend {
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
         use super::{Conductor, Dielectric, Diffuse, Mask, Null, Plastic, RoughDielectric, ThinDielectric};
-        let with = |weight, first: Bsdf, second: Bsdf| Self {
-            weight: Texture::constant(Spectrum::splat(weight)),
-            parts: Arc::new([first, second]),
+        let with = |weight, first: Bsdf, second: Bsdf| {
+            Self::new(Texture::constant(Spectrum::splat(weight)), [first, second])
         };
         let grey = |x| Bsdf::from(Diffuse::grey(x));
         let glass = Bsdf::from(Dielectric::examples().swap_remove(0));
@@ -124,9 +141,7 @@ impl BsdfModel for Blend {
 
     #[inline]
     fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
-        let (weights, survivals) = (self.weights(uv), self.survivals(uv, wi));
-        let part = |i: usize| if weights[i] > 0.0 { survivals[i] } else { 0.0 };
-        part(0).max(part(1))
+        Self::total(self.weights(uv), self.survivals(uv, wi).1)
     }
 
     #[inline]
@@ -155,6 +170,6 @@ impl BsdfModel for Blend {
     }
 
     fn scatters_across(&self) -> bool {
-        self.parts.iter().any(BsdfModel::scatters_across)
+        self.across != [false, false]
     }
 }

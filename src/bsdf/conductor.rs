@@ -28,6 +28,9 @@ pub(super) struct Metal {
     average: Spectrum,
 }
 
+/// No metal has more, and the square of its square is still an f32.
+const LARGEST_INDEX: f32 = 1e4;
+
 impl Metal {
     /// `eta` and `k` are relative to the outside, >= 0.
     pub(super) fn new(eta: Texture, k: Texture, tint: Texture) -> Self {
@@ -61,6 +64,13 @@ impl Metal {
             }
             None => (texture::index(params, "eta", 0.0)?, texture::index(params, "k", 1.0)?),
         };
+        for (name, texture) in [("eta", &eta), ("k", &k)] {
+            let most = texture.max().max_element();
+            if most > LARGEST_INDEX {
+                let expected = format!("an index from 0 to {LARGEST_INDEX}");
+                return Err(params.complain(name, expected, most.to_string()));
+            }
+        }
         Ok(Self::new(eta, k, reflectance(params, "specular_reflectance", 1.0)?))
     }
 

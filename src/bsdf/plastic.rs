@@ -32,6 +32,9 @@ pub(super) struct Base {
     compression: f32,
 }
 
+/// Beyond, next to nothing gets out of the coat again, and f32 does not know how much.
+const HIGHEST_RATIO: f32 = 20.0;
+
 /// What plastic does with light, in its own proportions.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shares {
@@ -51,6 +54,10 @@ impl Base {
     /// `specular_reflectance` (1), `diffuse_reflectance` (0.5) and `nonlinear` (false). `ratio` is the index of
     /// the coat over that outside; `returned` see the field.
     pub(super) fn build(params: &Params<'_>, ratio: f32, returned: f32) -> Result<Self> {
+        if !(1.0 / HIGHEST_RATIO..=HIGHEST_RATIO).contains(&ratio) {
+            let expected = format!("an index at most {HIGHEST_RATIO} times that of the other side");
+            return Err(params.complain("int_ior", expected, format!("{ratio} times that")));
+        }
         Ok(Self {
             specular: reflectance(params, "specular_reflectance", 1.0)?,
             diffuse: reflectance(params, "diffuse_reflectance", 0.5)?,

@@ -220,6 +220,9 @@ fn blackbody(params: &Params<'_>, role: Role) -> Result<DVec3> {
     if temperature <= 0.0 {
         return Err(params.complain("temperature", "a temperature > 0 [K]", temperature.to_string()));
     }
+    if low >= high {
+        return Err(params.complain("wavelength_max", "a wavelength above wavelength_min", high.to_string()));
+    }
     if role != Role::Light {
         let remedy = "use it as radiance, irradiance or intensity";
         return Err(Error::new(

@@ -4,7 +4,7 @@ use super::Profile;
 use crate::{
     description::Params,
     error::Result,
-    math::{Spectrum, Vec2, Vec3, warp},
+    math::{DVec3, Spectrum, Vec2, Vec3, warp},
     sampling::Stream,
     texture::{self, Texture},
 };
@@ -55,7 +55,8 @@ impl Area {
     }
 
     /// Emitted power per area [W/m^2].
-    pub fn exitance(&self) -> Spectrum {
-        self.radiance.mean() * self.profile.as_ref().map_or(PI, Profile::projected_integral)
+    pub fn exitance(&self) -> DVec3 {
+        let leaving = self.profile.as_ref().map_or(PI, Profile::projected_integral);
+        self.radiance.mean().as_dvec3() * f64::from(leaving)
     }
 }

@@ -22,15 +22,17 @@ impl Directional {
             Some(_) if params.has("to_world") => {
                 return Err(params.complain("direction", "direction or to_world, not both", "both"));
             }
-            Some(d) if d.length_squared() == 0.0 => {
+            Some(d) if d == DVec3::ZERO => {
                 return Err(params.complain("direction", "a non-zero vector", "0, 0, 0"));
             }
             Some(direction) => direction,
             None => params.transform("to_world")?.transform_vector3(DVec3::Z),
         };
-        Ok(Self {
-            direction: direction.normalize().as_vec3(),
-            irradiance: params.emission("irradiance", 1.0)?,
-        })
+        Ok(Self { direction: unit(direction).as_vec3(), irradiance: params.emission("irradiance", 1.0)? })
     }
+}
+
+/// `v` at length 1, however long it is.
+fn unit(v: DVec3) -> DVec3 {
+    (v / v.abs().max_element()).normalize()
 }

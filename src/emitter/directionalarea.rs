@@ -3,7 +3,7 @@
 use crate::{
     description::Params,
     error::Result,
-    math::{Spectrum, Vec2},
+    math::{DVec3, Spectrum, Vec2},
     texture::{self, Texture},
 };
 
@@ -27,7 +27,7 @@ impl DirectionalArea {
     }
 
     /// Its mean [W/m^2].
-    pub fn exitance(&self) -> Spectrum {
-        self.exitance.mean()
+    pub fn exitance(&self) -> DVec3 {
+        self.exitance.mean().as_dvec3()
     }
 }

@@ -3,7 +3,7 @@
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::{DMat3, DMat4, Mat3, Spectrum, SpectrumExt, Vec3, vec3},
+    math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec3, similarity, vec3},
     sampling::{Cell, Grid, Stream},
     texture::image::{self, Image},
 };
@@ -26,7 +26,7 @@ pub struct EnvMap {
     to_local: Mat3,
     scale: f32,
     /// Integral of radiance over all directions [W/m^2].
-    fluence: Spectrum,
+    fluence: DVec3,
 }
 
 #[derive(Debug)]
@@ -58,9 +58,14 @@ impl EnvMap {
             let remedy = "give a larger image (a constant environment needs none)";
             return Err(Error::new(path.display(), "an image of at least 2 x 3 pixels", found, remedy));
         }
-        let to_local = rotation(params)?.transpose().as_mat3();
+        let to_world = params.transform("to_world")?;
+        if !similarity::is_rigid(to_world) {
+            let expected = "a transform made of rotations and mirrors";
+            return Err(params.complain("to_world", expected, "one that scales or shears"));
+        }
+        let to_local = DMat3::from_mat4(to_world).transpose().as_mat3();
         let (map, fluence) = Map::new(image);
-        Ok(Self { map: Arc::new(map), to_local, scale, fluence: fluence * scale })
+        Ok(Self { map: Arc::new(map), to_local, scale, fluence: fluence * f64::from(scale) })
     }
 
     /// Radiance from unit direction `towards` [W/(m^2 sr)].
@@ -92,32 +97,20 @@ impl EnvMap {
     }
 
     /// Integral of radiance over all directions [W/m^2].
-    pub fn fluence(&self) -> Spectrum {
+    pub fn fluence(&self) -> DVec3 {
         self.fluence
     }
 }
 
-/// `to_world`, which must keep angles: the sphere of directions must remain one.
-fn rotation(params: &Params<'_>) -> Result<DMat3> {
-    const TOLERANCE: f64 = 1e-3;
-    let to_world: DMat4 = params.transform("to_world")?;
-    let linear = DMat3::from_mat4(to_world);
-    let square = linear.transpose() * linear;
-    if square.abs_diff_eq(DMat3::IDENTITY, TOLERANCE) {
-        return Ok(linear);
-    }
-    Err(params.complain("to_world", "a transform made of rotations and mirrors", "one that scales or shears"))
-}
-
 impl Map {
     /// The map and the integral of its radiance.
-    fn new(image: Image) -> (Self, Spectrum) {
+    fn new(image: Image) -> (Self, DVec3) {
         let cosines =
             (0..image.height).map(|row| (PI * row as f64 / (image.height - 1) as f64).cos()).collect();
         let mut map = Self { image, cells: Grid::new(1, &[0.0]), cosines };
         let (width, rows) = (map.image.width, map.image.height - 1);
         let mut weights = Vec::with_capacity(width * rows);
-        let mut fluence = crate::math::DVec3::ZERO;
+        let mut fluence = DVec3::ZERO;
         for row in 0..rows {
             for column in 0..width {
                 let corners = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
@@ -127,7 +120,7 @@ impl Map {
             }
         }
         map.cells = Grid::new(width, &weights);
-        (map, fluence.as_vec3())
+        (map, fluence)
     }
 
     #[inline]

@@ -26,7 +26,7 @@ pub use spot::Spot;
 use crate::{
     description::{Library, Object, Params, Row, find_row},
     error::Result,
-    math::{DVec3, Spectrum, SpectrumExt, Vec3},
+    math::{DVec3, Spectrum, Vec3, spectrum::LUMINANCE},
     medium,
     sampling::Stream,
 };
@@ -135,16 +135,16 @@ impl Emitter {
 
     /// Emitted power [W], luminance-weighted; `area` [m^2] of the emitting shape, `radius` [m] of the scene. Of
     /// textured shapes an estimate: the mean of the texture counts.
-    pub fn power(&self, area: f32, radius: f32) -> f32 {
-        let disk = PI * radius * radius;
-        let power: Spectrum = match &self.kind {
-            Kind::Area(e) => e.exitance() * area,
-            Kind::DirectionalArea(e) => e.exitance() * area,
+    pub fn power(&self, area: f32, radius: f32) -> f64 {
+        let disk = f64::from(PI) * f64::from(radius).powi(2);
+        let power = match &self.kind {
+            Kind::Area(e) => e.exitance() * f64::from(area),
+            Kind::DirectionalArea(e) => e.exitance() * f64::from(area),
             Kind::Point(e) => e.power(),
-            Kind::Directional(e) => e.irradiance * disk,
+            Kind::Directional(e) => e.irradiance.as_dvec3() * disk,
             Kind::Environment(e) => e.fluence() * disk,
         };
-        power.luminance()
+        power.dot(LUMINANCE.as_dvec3())
     }
 
     /// Where it stands, in the file's coordinates: emitters at a point only.
@@ -190,7 +190,7 @@ impl PointKind {
     }
 
     /// Emitted power [W].
-    pub fn power(&self) -> Spectrum {
+    pub fn power(&self) -> DVec3 {
         match self {
             Self::Point(e) => e.power(),
             Self::Spot(e) => e.power(),
@@ -228,9 +228,9 @@ impl Environment {
     }
 
     /// The integral of radiance over all directions [W/m^2].
-    pub fn fluence(&self) -> Spectrum {
+    pub fn fluence(&self) -> DVec3 {
         match self {
-            Self::Constant(e) => e.radiance * (4.0 * PI),
+            Self::Constant(e) => e.radiance.as_dvec3() * f64::from(4.0 * PI),
             Self::EnvMap(e) => e.fluence(),
         }
     }
@@ -238,9 +238,10 @@ impl Environment {
 
 /// Mitsuba's `sampling_weight`: a factor > 0 on the probability of choosing an emitter.
 fn sampling_weight(params: &Params<'_>) -> Result<f32> {
-    let weight = params.float("sampling_weight", 1.0)? as f32;
-    if weight > 0.0 {
-        return Ok(weight);
+    let weight = params.float("sampling_weight", 1.0)?;
+    // Within these f32 holds it and what it is multiplied with.
+    if (1e-20..=1e20).contains(&weight) {
+        return Ok(weight as f32);
     }
-    Err(params.complain("sampling_weight", "a number > 0", weight.to_string()))
+    Err(params.complain("sampling_weight", "a number from 1e-20 to 1e20", weight.to_string()))
 }

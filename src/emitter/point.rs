@@ -64,7 +64,8 @@ impl Point {
     }
 
     /// Emitted power [W].
-    pub fn power(&self) -> Spectrum {
-        self.intensity * self.profile.as_ref().map_or(4.0 * PI, |(profile, _)| profile.integral())
+    pub fn power(&self) -> DVec3 {
+        let around = self.profile.as_ref().map_or(4.0 * PI, |(profile, _)| profile.integral());
+        self.intensity.as_dvec3() * f64::from(around)
     }
 }

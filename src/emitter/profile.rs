@@ -36,7 +36,7 @@ impl Profile {
     /// Reads `profile`: pairs of an angle [degrees] and a value, such as `"0:1, 30:0.8, 90:0"`.
     pub(super) fn build(params: &Params<'_>) -> Result<Option<Self>> {
         let Some(text) = params.optional_string("profile")? else { return Ok(None) };
-        let expected = "pairs angle:value (degrees from 0 to 180, increasing; values >= 0, not all 0)";
+        let expected = "pairs angle:value (degrees from 0 to 180, increasing; values 0 or from 1e-30 to 1e30, not all 0)";
         let wrong = || params.complain("profile", expected, format!("\"{text}\""));
         let points = parse(text).ok_or_else(wrong)?;
         let profile = Self::new(&points);
@@ -166,7 +166,9 @@ fn parse(text: &str) -> Option<Vec<(f64, f64)>> {
     let pair = |word: &str| {
         let (angle, value) = word.split_once(':')?;
         let (angle, value) = (angle.parse::<f64>().ok()?, value.parse::<f64>().ok()?);
-        ((0.0..=180.0).contains(&angle) && value >= 0.0 && value.is_finite()).then_some((angle, value))
+        // What f32 would take for 0 or for infinite is neither.
+        let fits = value == 0.0 || (1e-30..=1e30).contains(&value);
+        ((0.0..=180.0).contains(&angle) && fits).then_some((angle, value))
     };
     let points = words.map(pair).collect::<Option<Vec<_>>>()?;
     let increasing = points.windows(2).all(|pair| pair[0].0 < pair[1].0);

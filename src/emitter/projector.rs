@@ -3,7 +3,7 @@
 use crate::{
     description::Params,
     error::Result,
-    math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec2, Vec3, vec2, vec3},
+    math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec2, Vec3, similarity, vec2, vec3},
     sampling::{Cell, Grid, Stream},
     sensor,
     texture::{self, Texture},
@@ -45,11 +45,16 @@ impl Projector {
         }
         let irradiance = texture::emission(params, "irradiance", 1.0)?;
         let to_world = params.transform("to_world")?;
+        let Some(size) = similarity::scale_of(to_world) else {
+            let expected = "a transform that neither shears nor stretches";
+            return Err(params.complain("to_world", expected, "one that does"));
+        };
         let [width, height] = irradiance.resolution().map(|n| n as f64);
         let half = sensor::half_width(params, width / height)?;
         Ok(Self {
             position: to_world.transform_point3(DVec3::ZERO),
-            scale: params.float_within("scale", 1.0, 0.0, f64::from(f32::MAX))? as f32,
+            // Mitsuba's projector grows brighter with its size.
+            scale: (params.float_within("scale", 1.0, 0.0, f64::from(f32::MAX))? * size) as f32,
             to_local: DMat3::from_mat4(to_world).inverse().as_mat3(),
             half: vec2(half as f32, (half * height / width) as f32),
             cells: Arc::new(Cells::new(&irradiance)),
@@ -95,9 +100,9 @@ impl Projector {
     }
 
     /// Emitted power [W]: the mean of the texture counts. At distance 1 it falls on an area of `area`.
-    pub fn power(&self) -> Spectrum {
+    pub fn power(&self) -> DVec3 {
         let area = 4.0 * self.half.x * self.half.y;
-        self.irradiance.mean() * (PI * self.scale * area)
+        self.irradiance.mean().as_dvec3() * f64::from(PI * area) * f64::from(self.scale)
     }
 }
 

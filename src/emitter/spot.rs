@@ -3,7 +3,7 @@
 use crate::{
     description::Params,
     error::Result,
-    math::{DMat3, DMat4, DVec3, Frame, Mat3, Spectrum, Vec3, vec2, warp},
+    math::{DMat3, DMat4, DVec3, Frame, Mat3, Spectrum, Vec3, similarity, vec2, warp},
     sampling::Stream,
     texture::{self, Texture},
 };
@@ -39,6 +39,10 @@ impl Spot {
     /// local +z.
     pub fn build(params: &Params<'_>) -> Result<Self> {
         let to_world = params.transform("to_world")?;
+        if similarity::scale_of(to_world).is_none() {
+            let expected = "a transform that neither shears nor stretches";
+            return Err(params.complain("to_world", expected, "one that does"));
+        }
         let axis = to_world.transform_vector3(DVec3::Z).normalize().as_vec3();
         let cutoff = params.float_within("cutoff_angle", 20.0, 0.0, 180.0)?;
         if cutoff == 0.0 {
@@ -98,7 +102,7 @@ impl Spot {
 
     /// Emitted power [W]: 2 pi times the integral of falloff(a) sin(a), in closed form; of a texture its mean
     /// counts.
-    pub fn power(&self) -> Spectrum {
+    pub fn power(&self) -> DVec3 {
         let (beam, cutoff) = (f64::from(self.beam), f64::from(self.cutoff));
         let inner = 2.0 * (0.5 * beam).sin().powi(2);
         let ramp = if cutoff - beam < 1e-6 {
@@ -107,7 +111,7 @@ impl Spot {
             beam.cos() - (cutoff.sin() - beam.sin()) / (cutoff - beam)
         };
         let mean = self.slide.as_ref().map_or(Spectrum::ONE, |slide| slide.texture.mean());
-        self.intensity * mean * (TAU * (inner + ramp) as f32)
+        self.intensity.as_dvec3() * mean.as_dvec3() * (f64::from(TAU) * (inner + ramp))
     }
 }
 

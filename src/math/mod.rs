@@ -6,6 +6,7 @@ pub mod frame;
 pub mod fresnel;
 pub mod measure;
 pub mod offset;
+pub mod similarity;
 pub mod spectrum;
 pub mod warp;
 

@@ -5,6 +5,9 @@ use super::{Vec3, vec3};
 /// One value per linear-sRGB channel.
 pub type Spectrum = Vec3;
 
+/// What each channel counts for luminance (Rec. 709).
+pub const LUMINANCE: Spectrum = vec3(0.212_671, 0.715_160, 0.072_169);
+
 /// What a colour can be asked beyond vector arithmetic.
 pub trait SpectrumExt {
     /// Rec. 709 luminance.
@@ -18,7 +21,7 @@ pub trait SpectrumExt {
 impl SpectrumExt for Spectrum {
     #[inline]
     fn luminance(self) -> f32 {
-        self.dot(vec3(0.212_671, 0.715_160, 0.072_169))
+        self.dot(LUMINANCE)
     }
     #[inline]
     fn is_grey(&self) -> bool {

@@ -11,14 +11,14 @@ use super::{
     plugins, references, tags,
 };
 use crate::{
-    bsdf::{self, Bsdf},
+    bsdf::{self, Bsdf, BsdfModel},
     description::{Library, Location, Object, Params, Position, Property, Value, params::Child},
     emitter::{self, Emitter},
     error::{Error, Result},
     film::Film,
     math::{DVec3, Spectrum, Vec3, offset},
     medium::{self, Homogeneous, MediumIndex},
-    sensor::{self, Sensor, Window},
+    sensor::{self, Crop, Sensor},
     shape::{self, Shape},
 };
 use std::collections::HashMap;
@@ -66,6 +66,9 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     };
     let medium_names = builder.medium_names.clone();
     let scene = builder.finish(view.sensor, view.medium, &sections.sensor.location)?;
+    if let Some(object) = sections.integrator {
+        warn_of_counted_nulls(object, &integrator, &scene, &library);
+    }
     Ok(Setup {
         scene,
         film: view.film,
@@ -74,6 +77,18 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         warnings: library.take_warnings(),
         medium_names,
     })
+}
+
+/// Mitsuba's `path` counts the passage through a null surface, a mask or a thin pane as a bounce; its volumetric
+/// integrators do not, and neither does anything here.
+fn warn_of_counted_nulls(object: &Object, integrator: &Integrator, scene: &Scene, library: &Library) {
+    let limited = integrator.max_depth.is_some() || integrator.hide_emitters;
+    let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
+    if object.plugin == "path" && limited && nulls {
+        let text = "a passage through a null surface, a mask or a thin pane is no bounce here, as in volpath; \
+                    Mitsuba's path counts it in max_depth";
+        library.warn(&object.location, text);
+    }
 }
 
 /// The scene's children by kind.
@@ -163,7 +178,7 @@ fn misplaced(child: &Child<'_>) -> Error {
             child.location,
             "a sensor of Tyndall",
             found,
-            "replace it by a perspective, thinlens or orthographic",
+            format!("replace it by one of {}", sensor::names().collect::<Vec<_>>().join(", ")),
         );
     }
     let remedy = "move it into the object that it belongs to (films and samplers into the sensor)";
@@ -364,8 +379,8 @@ impl<'a> Builder<'a> {
             [_, second, ..] => return Err(only_one(second, "sampler")),
         };
         let medium = self.stated_medium(&params)?;
-        let window = Window { film: film.window.full_size, offset: film.window.offset };
-        let sensor = sensor::build(&params, self.recentre, window)?;
+        let crop = Crop { film: film.window.full_size, offset: film.window.offset };
+        let sensor = sensor::build(&params, self.recentre, crop)?;
         params.finish()?;
         Ok(View { sensor, film, samples_per_pixel, medium })
     }
@@ -389,15 +404,16 @@ impl<'a> Builder<'a> {
         let recentre = self.recentre;
         let lights = self.emitters.into_iter().map(|Placed { emitter, shape, stated, location }| {
             let position = emitter.position().map(|position| (position - recentre).as_vec3());
+            let straddles = stated.is_none() && shape.is_some_and(|shape| finder.straddles(shape));
             let medium = match (stated, shape, position) {
                 (Some(medium), ..) => medium,
-                (None, Some(shape), _) => finder.in_front_of(shape, sensor_medium, location),
+                (None, Some(shape), _) if !straddles => finder.in_front_of(shape, sensor_medium, location),
                 (None, None, Some(position)) => {
                     finder.around(position, sensor_medium, location, "an emitter")
                 }
-                (None, None, None) => finder.far_outside(sensor_medium),
+                _ => finder.far_outside(sensor_medium),
             };
-            Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium }
+            Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles }
         });
         let lights: Vec<Light> = lights.collect();
         let outside = self.media[finder.far_outside(sensor_medium).0 as usize].sigma_t;
@@ -416,6 +432,9 @@ impl<'a> Builder<'a> {
         })
     }
 }
+
+/// Points of an emitting shape that are asked whether they lie in one medium.
+const POINTS_ASKED: u32 = 256;
 
 /// Finds the media of points, with a warning where the shapes contradict each other.
 struct Finder<'a> {
@@ -450,6 +469,23 @@ impl Finder<'_> {
         let point = self.geometry.sample_area(shape, &mut stream);
         let origin = offset::leave_surface(point.position, point.error, point.normal, point.shading.normal);
         self.around(origin, ambient, location, "an emitting shape")
+    }
+
+    /// True if rays from different points of an emitting shape start in different media.
+    fn straddles(&self, shape: u32) -> bool {
+        if self.surfaces[shape as usize].boundary.is_some() {
+            return false;
+        }
+        let mut stream =
+            crate::sampling::Stream::new(1, u64::from(shape), 0, crate::sampling::stream::Purpose::Pilot);
+        let mut media = (0..POINTS_ASKED).map(|_| {
+            let point = self.geometry.sample_area(shape, &mut stream);
+            let towards = point.shading.normal;
+            let origin = offset::leave_surface(point.position, point.error, point.normal, towards);
+            boundary::ask(self.geometry, self.surfaces, origin, towards)
+        });
+        let first = media.next();
+        media.any(|medium| Some(medium) != first)
     }
 
     /// The medium far from everything: in front of the first boundary on the way in from outside.

@@ -13,6 +13,8 @@ use crate::{
 
 /// The size of a film that says nothing [pixels].
 const DEFAULT_SIZE: [u32; 2] = [768, 576];
+/// A larger image would take more than 10 GB while it is rendered.
+const MOST_PIXELS: u64 = 1 << 28;
 const DEFAULT_FILTER: Filter = Filter::Gaussian { stddev: 0.5 };
 
 /// True if `child` is meant to be a film.
@@ -65,6 +67,17 @@ fn window(params: &Params<'_>, overrides: Overrides) -> Result<Window> {
         }
     }
     let window = Window { full_size, offset, size: crop };
+    let [across, down] = overrides.size.map_or(crop, |(width, height)| [width, height]).map(u64::from);
+    if across * down > MOST_PIXELS {
+        let found = format!("{across} x {down}");
+        let remedy = "render it in several crop windows, or smaller";
+        return Err(Error::new(
+            params.location(),
+            format!("an image of at most {MOST_PIXELS} pixels"),
+            found,
+            remedy,
+        ));
+    }
     match overrides.size {
         None => Ok(window),
         Some((width, height)) if window.is_whole() => Ok(Window::whole(width, height)),

@@ -108,6 +108,14 @@ impl Scene {
         self.medium_towards(point, ray.direction, medium)
     }
 
+    /// The medium that light of an emitter is in when it leaves from `origin` in `direction`.
+    #[inline]
+    pub fn emission_medium(&self, light: u32, origin: Vec3, direction: Vec3) -> MediumIndex {
+        let light = &self.lights.all[light as usize];
+        let asked = || boundary::ask(&self.geometry, &self.surfaces, origin, direction);
+        if light.straddles { asked().unwrap_or(light.medium) } else { light.medium }
+    }
+
     /// The part of light that passes `point` undeflected along `direction`.
     #[inline]
     pub fn null_transmission(&self, point: &SurfacePoint, direction: Vec3) -> Spectrum {

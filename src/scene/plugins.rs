@@ -68,7 +68,6 @@ fn unknown(object: &Object, tag: Option<&str>, known: &[&str]) -> Error {
 /// What can be rendered of the kinds that have no registry.
 fn renderable(tag: &str) -> &'static [&'static str] {
     match tag {
-        "sensor" => &["perspective"],
         "film" => &["hdrfilm"],
         _ => MITSUBA.iter().find(|(known, _)| *known == tag).map_or(&[], |(_, plugins)| plugins),
     }

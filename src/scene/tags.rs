@@ -1,7 +1,7 @@
 //! Which XML tag a plugin goes with. XML always says; JSON leaves it to the plugin's name and place.
 
 use super::integrator;
-use crate::{bsdf, description::Row, emitter, film::filter, medium, phase, shape, texture};
+use crate::{bsdf, description::Row, emitter, film::filter, medium, phase, sensor, shape, texture};
 
 /// Tags of plugins.
 pub(super) const TAGS: [&str; 13] = [
@@ -143,6 +143,7 @@ fn names<T>(rows: &'static [Row<T>]) -> Vec<&'static str> {
 /// Plugins that Tyndall itself builds under `tag`; none where there is no registry of them.
 pub(super) fn ours(tag: &str) -> Vec<&'static str> {
     match tag {
+        "sensor" => sensor::names().collect(),
         "integrator" => names(integrator::ROWS),
         "rfilter" => names(filter::ROWS),
         "shape" => shape::ROWS.iter().map(|row| row.name).collect(),

@@ -1,10 +1,10 @@
 //! What pinhole and thin lens share: place, orientation, field of view, clip distances.
 
-use super::{Clip, Window};
+use super::{Clip, Crop};
 use crate::{
     description::Params,
     error::Result,
-    math::{DMat4, DVec3, Frame, Vec2, Vec3, vec2, vec3},
+    math::{DMat4, DVec3, Frame, Vec2, Vec3, similarity, vec2, vec3},
 };
 
 /// A place to look from, and a film plane at distance 1 in front of it.
@@ -22,18 +22,21 @@ pub(super) struct Lens {
 
 impl Lens {
     /// Reads Mitsuba's parameters of projective cameras.
-    pub fn build(params: &Params<'_>, recentre: DVec3, window: Window) -> Result<Self> {
+    pub fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
         let to_world = DMat4::from_translation(-recentre) * params.transform("to_world")?;
-        let frame = rigid(to_world).ok_or_else(|| {
-            let found = "one that scales or shears";
-            params.complain("to_world", "a transform made of rotations, translations and mirrors", found)
-        })?;
-        let [width, height] = window.film.map(f64::from);
+        if !similarity::is_rigid(to_world) {
+            let expected = "a transform made of rotations, translations and mirrors";
+            return Err(params.complain("to_world", expected, "one that scales or shears"));
+        }
+        let axis = |axis| to_world.transform_vector3(axis).normalize().as_vec3();
+        let [tangent, bitangent, normal] = [DVec3::X, DVec3::Y, DVec3::Z].map(axis);
+        let frame = Frame { tangent, bitangent, normal };
+        let [width, height] = crop.film.map(f64::from);
         let half_width = half_width(params, width / height)?;
         let offset =
             [params.float("principal_point_offset_x", 0.0)?, params.float("principal_point_offset_y", 0.0)?];
         let centre = vec2(((0.5 - offset[0]) * width) as f32, ((0.5 - offset[1]) * height) as f32);
-        let corner = vec2(window.offset[0] as f32, window.offset[1] as f32);
+        let corner = vec2(crop.offset[0] as f32, crop.offset[1] as f32);
         Ok(Self {
             position: to_world.transform_point3(DVec3::ZERO).as_vec3(),
             frame,
@@ -80,17 +83,6 @@ impl Lens {
     pub fn through(plane: Vec2) -> Vec3 {
         vec3(plane.x, plane.y, 1.0).normalize()
     }
-}
-
-/// The axes of a transform that keeps lengths and angles; none of any other.
-fn rigid(to_world: DMat4) -> Option<Frame> {
-    // Matrices typed with four digits are meant to be rotations too.
-    const TOLERANCE: f64 = 1e-3;
-    let axes @ [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
-    let scaled = axes.iter().any(|axis| (axis.length() - 1.0).abs() > TOLERANCE);
-    let sheared = [x.dot(y), y.dot(z), z.dot(x)].iter().any(|dot| dot.abs() > TOLERANCE);
-    let [tangent, bitangent, normal] = axes.map(|axis| axis.normalize().as_vec3());
-    (!scaled && !sheared).then_some(Frame { tangent, bitangent, normal })
 }
 
 /// Tangent of half the horizontal field of view, whichever way it is given; `aspect` is width / height.

@@ -39,7 +39,7 @@ pub enum Sensor {
 
 /// The image that a sensor makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
+pub struct Crop {
     /// Width and height of the whole film [pixels].
     pub film: [u32; 2],
     /// The top left corner of the part of it that is the image [pixels].
@@ -74,15 +74,13 @@ pub struct Projection {
 
 /// Reads the parameters of one kind of sensor (except film, sampler and medium); the point `recentre` of the
 /// file's coordinates becomes the origin.
-type BuildSensor = fn(&Params<'_>, DVec3, Window) -> Result<Sensor>;
+type BuildSensor = fn(&Params<'_>, DVec3, Crop) -> Result<Sensor>;
 
 /// All sensors: Mitsuba's plugin name and the builder.
 const ROWS: &[(&str, BuildSensor)] = &[
-    ("perspective", |p, recentre, window| Perspective::build(p, recentre, window).map(Sensor::Perspective)),
-    ("thinlens", |p, recentre, window| ThinLens::build(p, recentre, window).map(Sensor::ThinLens)),
-    ("orthographic", |p, recentre, window| {
-        Orthographic::build(p, recentre, window).map(Sensor::Orthographic)
-    }),
+    ("perspective", |p, recentre, crop| Perspective::build(p, recentre, crop).map(Sensor::Perspective)),
+    ("thinlens", |p, recentre, crop| ThinLens::build(p, recentre, crop).map(Sensor::ThinLens)),
+    ("orthographic", |p, recentre, crop| Orthographic::build(p, recentre, crop).map(Sensor::Orthographic)),
 ];
 
 /// The plugin names of all sensors.
@@ -97,10 +95,10 @@ pub fn is_sensor(object: &Object) -> bool {
 
 /// Builds the sensor that `params` describes. Does not call `finish`: film, sampler and medium remain for the
 /// scene to read.
-pub fn build(params: &Params<'_>, recentre: DVec3, window: Window) -> Result<Sensor> {
+pub fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Sensor> {
     let plugin = &params.object.plugin;
     if let Some((_, build)) = ROWS.iter().find(|(name, _)| name == plugin) {
-        let sensor = build(params, recentre, window)?;
+        let sensor = build(params, recentre, crop)?;
         params.accept_unused(&["shutter_open", "shutter_close"], "nothing moves");
         return Ok(sensor);
     }

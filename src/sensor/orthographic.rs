@@ -1,6 +1,6 @@
 //! Parallel projection: Mitsuba's `orthographic`.
 
-use super::{Clip, Projection, SensorRay, Window};
+use super::{Clip, Crop, Projection, SensorRay};
 use crate::{
     description::Params,
     error::Result,
@@ -31,16 +31,16 @@ pub struct Orthographic {
 impl Orthographic {
     /// Reads Mitsuba's parameters (except film, sampler and medium). As there, the near clip distance is in the
     /// units of `to_world`, that between near and far in those of the world.
-    pub(super) fn build(params: &Params<'_>, recentre: DVec3, window: Window) -> Result<Self> {
+    pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
         params.accept_unused(&["focus_distance"], "parallel rays have no focus");
         let to_world = DMat4::from_translation(-recentre) * params.transform("to_world")?;
         let clip = Clip::build(params)?;
-        let [width, height] = window.film.map(f64::from);
+        let [width, height] = crop.film.map(f64::from);
         let film = |x: f64, y: f64| {
             let local = DVec3::new(1.0 - 2.0 * x / width, (height - 2.0 * y) / width, f64::from(clip.near));
             to_world.transform_point3(local)
         };
-        let [left, top] = window.offset.map(f64::from);
+        let [left, top] = crop.offset.map(f64::from);
         let corner = film(left, top);
         let (across, down) = (film(left + 1.0, top) - corner, film(left, top + 1.0) - corner);
         let direction = to_world.transform_vector3(DVec3::Z).normalize();

@@ -1,6 +1,6 @@
 //! The pinhole camera: Mitsuba's `perspective`.
 
-use super::{Projection, SensorRay, Window, lens::Lens};
+use super::{Crop, Projection, SensorRay, lens::Lens};
 use crate::{
     description::Params,
     error::Result,
@@ -13,9 +13,9 @@ pub struct Perspective(Lens);
 
 impl Perspective {
     /// Reads Mitsuba's parameters (except film, sampler and medium).
-    pub(super) fn build(params: &Params<'_>, recentre: DVec3, window: Window) -> Result<Self> {
+    pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
         params.accept_unused(&["focus_distance"], "a pinhole has all in focus (a thinlens has not)");
-        Lens::build(params, recentre, window).map(Self)
+        Lens::build(params, recentre, crop).map(Self)
     }
 
     /// The pinhole.

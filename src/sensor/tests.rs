@@ -7,12 +7,12 @@ use crate::{
     testing::object,
 };
 
-const WINDOW: Window = Window { film: [200, 100], offset: [30, 10] };
+const CROP: Crop = Crop { film: [200, 100], offset: [30, 10] };
 
-fn built(plugin: &str, properties: &[(&str, Value)], window: Window) -> Result<Sensor> {
+fn built(plugin: &str, properties: &[(&str, Value)], crop: Crop) -> Result<Sensor> {
     let (object, library) = (object(plugin, properties), Library::default());
     let params = Params::new(&object, &library);
-    let sensor = build(&params, DVec3::ZERO, window)?;
+    let sensor = build(&params, DVec3::ZERO, crop)?;
     params.finish()?;
     Ok(sensor)
 }
@@ -26,10 +26,10 @@ fn examples() -> Vec<Sensor> {
     let to_world = |steps: &Vec<TransformStep>| ("to_world", Value::Transform(steps.clone()));
     let lens = [number("aperture_radius", 0.2), number("focus_distance", 3.0), number("fov", 60.0)];
     [
-        built("perspective", &[to_world(&place), number("fov", 50.0)], WINDOW),
-        built("perspective", &[to_world(&mirrored), number("principal_point_offset_x", 0.2)], WINDOW),
-        built("thinlens", &[lens.to_vec(), vec![to_world(&place)]].concat(), WINDOW),
-        built("orthographic", &[to_world(&stretched), number("near_clip", 0.5)], WINDOW),
+        built("perspective", &[to_world(&place), number("fov", 50.0)], CROP),
+        built("perspective", &[to_world(&mirrored), number("principal_point_offset_x", 0.2)], CROP),
+        built("thinlens", &[lens.to_vec(), vec![to_world(&place)]].concat(), CROP),
+        built("orthographic", &[to_world(&stretched), number("near_clip", 0.5)], CROP),
     ]
     .into_iter()
     .map(Result::unwrap)
@@ -115,7 +115,7 @@ fn a_lens_is_sharp_in_its_plane_of_focus() {
 fn orthographic_rays_are_those_of_mitsuba() {
     let place = vec![TransformStep::Scale([2.0, 3.0, 4.0]), TransformStep::Translate([1.0, 2.0, 3.0])];
     let properties = [("to_world", Value::Transform(place)), ("near_clip", Value::Float(0.5))];
-    let sensor = built("orthographic", &properties, Window { film: [200, 100], offset: [0, 0] }).unwrap();
+    let sensor = built("orthographic", &properties, Crop { film: [200, 100], offset: [0, 0] }).unwrap();
     for (film, origin) in [
         (vec2(0.0, 0.0), [3.0, 3.5, 5.0]),
         (vec2(100.0, 50.0), [1.0, 2.0, 5.0]),
@@ -146,6 +146,6 @@ fn parameters_out_of_range_are_errors() {
         ("orthographic", vec![number("fov", 40.0)]),
         ("fisheye", vec![]),
     ] {
-        assert!(built(plugin, &properties, WINDOW).is_err(), "{plugin} {properties:?}");
+        assert!(built(plugin, &properties, CROP).is_err(), "{plugin} {properties:?}");
     }
 }

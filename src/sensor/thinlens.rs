@@ -1,6 +1,6 @@
 //! A camera with depth of field: Mitsuba's `thinlens`.
 
-use super::{Projection, SensorRay, Window, lens::Lens};
+use super::{Crop, Projection, SensorRay, lens::Lens};
 use crate::{
     description::Params,
     error::Result,
@@ -22,8 +22,8 @@ pub struct ThinLens {
 impl ThinLens {
     /// Reads Mitsuba's parameters (except film, sampler and medium). As there, the focus lies at `far_clip`
     /// where `focus_distance` is not given.
-    pub(super) fn build(params: &Params<'_>, recentre: DVec3, window: Window) -> Result<Self> {
-        let lens = Lens::build(params, recentre, window)?;
+    pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
+        let lens = Lens::build(params, recentre, crop)?;
         let Some(radius) = params.optional_float("aperture_radius")? else {
             return Err(params.missing("aperture_radius", "the radius of the lens"));
         };

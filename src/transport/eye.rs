@@ -123,11 +123,12 @@ impl<'a, P: Profile> Eye<'a, P> {
         let joins = match (vertex.after_dirac, vertex.edges) {
             (true, _) => 0.0,
             (false, 1) if unseen => 0.0,
-            (false, 1) => counts.lens,
-            (false, _) => counts.next_event * link.connect / link.start,
+            (false, 1) => counts.lens * link.start,
+            (false, _) => counts.next_event * link.connect,
         };
-        let tail = vertex.reach_before.scaled(joins) + vertex.partial.scaled(link.forward);
-        let others = tail.scaled(link.start * vertex.inverse / counts.hit);
+        let unit = vertex.inverse / counts.hit;
+        let by_light = vertex.partial.scaled(link.forward * link.start * unit);
+        let others = vertex.reach_before.scaled(joins * unit) + by_light;
         // `value` is radiance x cosine on shapes: the walk's density already contains that cosine.
         let radiance = link.value / link.cosine;
         let weight = weight::hit(vertex.reach, others);

@@ -62,7 +62,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Depart
     Departure {
         position: start.position,
         ray: Ray { origin: start.origin, direction: start.direction, t_max: f32::INFINITY },
-        medium: estimator.scene.lights.all[start.light as usize].medium,
+        medium: estimator.scene.emission_medium(start.light, start.origin, start.direction),
         from_infinity: start.infinite,
         edges: 0,
         hidden: false,
@@ -197,7 +197,7 @@ fn start_end<P: Profile>(
         origin,
         // Never the far end of a join: the lens is.
         lift: Vec3::ZERO,
-        medium: estimator.scene.lights.all[start.light as usize].medium,
+        medium: estimator.scene.emission_medium(start.light, origin, towards),
         value: emission.value / start.start,
         forward: emission.forward,
         cosine: emission.cosine,

@@ -39,7 +39,8 @@ impl Lights {
         if self.connections.is_empty() {
             return None;
         }
-        let (index, chosen) = self.connections.sample(stream.uniform());
+        let (index, chosen) = self.connections.sample_precisely(stream.uniform_precisely());
+        let chosen = chosen as f32;
         let light = &self.all[index];
         match &light.emitter.kind {
             Kind::Area(_) => {

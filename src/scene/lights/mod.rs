@@ -32,6 +32,8 @@ pub struct Light {
     pub shape: Option<u32>,
     /// The medium its light starts in.
     pub medium: MediumIndex,
+    /// A shape that lies in several media: each ray asks for its own, and `medium` is where no boundary is met.
+    pub straddles: bool,
 }
 
 /// All emitters.
@@ -69,7 +71,7 @@ impl Lights {
             let area = light.shape.map_or(0.0, |shape| geometry.area(shape));
             let arriving = if light.emitter.is_infinite() { from_infinity.max_element() } else { 1.0 };
             let power = light.emitter.power(area, radius);
-            f64::from(power) * f64::from(light.emitter.sampling_weight * arriving)
+            power * f64::from(light.emitter.sampling_weight * arriving)
         };
         let powers: Vec<f64> = all.iter().map(weight).collect();
         let joinable =

@@ -54,7 +54,8 @@ impl Lights {
         if self.starts.is_empty() {
             return None;
         }
-        let (index, chosen) = self.starts.sample(stream.uniform());
+        let (index, chosen) = self.starts.sample_precisely(stream.uniform_precisely());
+        let chosen = chosen as f32;
         let start = match &self.all[index].emitter.kind {
             Kind::Area(area) => self.start_on_area(index, area, chosen, geometry, stream)?,
             Kind::DirectionalArea(area) => self.start_along_normal(index, area, chosen, geometry, stream)?,
