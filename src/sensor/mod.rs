@@ -177,7 +177,7 @@ impl Sensor {
     }
 }
 
-/// Distances along the axis between which things are seen [m]: 0 < near < far.
+/// Distances along the axis between which things are seen [m]: 0 <= near < far.
 #[derive(Clone, Copy, Debug)]
 struct Clip {
     near: f32,
@@ -187,8 +187,8 @@ struct Clip {
 impl Clip {
     fn build(params: &Params<'_>) -> Result<Self> {
         let near = params.float("near_clip", 1e-2)?;
-        if near <= 0.0 {
-            return Err(params.complain("near_clip", "a distance > 0", near.to_string()));
+        if near < 0.0 {
+            return Err(params.complain("near_clip", "a distance >= 0", near.to_string()));
         }
         let far = params.float("far_clip", 1e4)?;
         if far <= near {

@@ -135,7 +135,7 @@ fn parameters_out_of_range_are_errors() {
     for (plugin, properties) in [
         ("perspective", vec![number("fov", 0.0)]),
         ("perspective", vec![number("fov", 180.0)]),
-        ("perspective", vec![number("near_clip", 0.0)]),
+        ("perspective", vec![number("near_clip", -1.0)]),
         ("perspective", vec![number("near_clip", 2.0), number("far_clip", 1.0)]),
         ("perspective", vec![number("fov", 40.0), ("focal_length", Value::String("50mm".into()))]),
         ("perspective", vec![number("aperture_radius", 0.1)]),
