@@ -147,7 +147,7 @@ fn power_is_what_leaves() {
             other => panic!("{other:?}"),
         };
         let found: f64 = found.iter().sum();
-        assert!((found / f64::from(told) - 1.0).abs() < 1e-2, "{}: {found}, told {told}", emitter.name);
+        assert!((found / told - 1.0).abs() < 1e-2, "{}: {found}, told {told}", emitter.name);
     }
 }
 
@@ -159,7 +159,7 @@ fn a_profile_leaves_surfaces_as_it_says() {
         let radiance = |d: Vec3| area.radiance(vec2(0.5, 0.5), d.z);
         check(text, |s| area.sample(s), |d| area.density(d.z), radiance);
         let leaving: f64 = integrals(|d| radiance(d).x * d.z.max(0.0)).iter().sum();
-        assert!((leaving / f64::from(area.exitance().x) - 1.0).abs() < 1e-2, "{text}: {leaving}");
+        assert!((leaving / area.exitance().x - 1.0).abs() < 1e-2, "{text}: {leaving}");
     }
 }
 
