@@ -4,11 +4,12 @@
 use super::{
     Boundary, Scene, Surface,
     accel::Geometry,
-    boundary::{self, Found},
-    film,
+    boundary, film,
+    finder::Finder,
     integrator::{self, Integrator},
     lights::{Light, Lights},
-    plugins, references, tags,
+    plugins,
+    sections::Sections,
 };
 use crate::{
     bsdf::{self, Bsdf, BsdfModel},
@@ -16,7 +17,7 @@ use crate::{
     emitter::{self, Emitter},
     error::{Error, Result},
     film::Film,
-    math::{DVec3, Spectrum, Vec3, offset},
+    math::{DVec3, Spectrum, Vec3},
     medium::{self, Homogeneous, MediumIndex},
     sensor::{self, Crop, Sensor},
     shape::{self, Shape},
@@ -89,119 +90,6 @@ fn warn_of_counted_nulls(object: &Object, integrator: &Integrator, scene: &Scene
                     Mitsuba's path counts it in max_depth";
         library.warn(&object.location, text);
     }
-}
-
-/// The scene's children by kind.
-struct Sections<'a> {
-    integrator: Option<&'a Object>,
-    sensor: &'a Object,
-    shapes: Vec<Child<'a>>,
-    emitters: Vec<Child<'a>>,
-}
-
-/// True if `object` only waits to be referred to.
-fn is_definition(object: &Object) -> bool {
-    bsdf::ROWS.iter().any(|row| row.name == object.plugin)
-        || medium::is_medium(object)
-        || crate::phase::is_phase(object)
-        || crate::texture::ROWS.iter().any(|row| row.name == object.plugin)
-}
-
-fn is_shape(object: &Object) -> bool {
-    shape::ROWS.iter().any(|row| row.name == object.plugin)
-}
-
-impl<'a> Sections<'a> {
-    fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
-        let params = Params::new(root, library);
-        let shapes = params.children(|child| is_shape(child.object))?;
-        let emitters = params.children(|child| emitter::is_emitter(child.object))?;
-        let sensors = params.children(|child| sensor::is_sensor(child.object))?;
-        let integrators = params.children(|child| integrator::is_integrator(child.object))?;
-        let definitions = params.children(|child| is_definition(child.object))?;
-        for child in &definitions {
-            check_definition(child.object, library)?;
-        }
-        warn_of_idle(&definitions, root, library);
-        if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
-            !(is_shape(child.object)
-                || emitter::is_emitter(child.object)
-                || sensor::is_sensor(child.object)
-                || integrator::is_integrator(child.object)
-                || is_definition(child.object))
-        }) {
-            return Err(misplaced(unknown));
-        }
-        params.finish()?;
-        let sensor = match sensors.as_slice() {
-            [] => return Err(without_sensor(root)),
-            [sensor] => sensor.object,
-            [_, second, ..] => return Err(only_one(second, "sensor")),
-        };
-        if let [_, second, ..] = integrators.as_slice() {
-            return Err(only_one(second, "integrator"));
-        }
-        let integrator = integrators.first().map(|child| child.object);
-        Ok(Self { integrator, sensor, shapes, emitters })
-    }
-
-    /// Where the camera stands, in the file's coordinates: it becomes the origin, so that f32 geometry is most
-    /// precise where it is seen from nearest, however far from the file's origin that is.
-    fn viewpoint(&self, library: &Library) -> Result<DVec3> {
-        sensor::viewpoint(self.sensor, library)
-    }
-}
-
-/// Definitions are built even if nothing refers to them, so that a mistake in one is told.
-fn check_definition(object: &Object, library: &Library) -> Result<()> {
-    if bsdf::ROWS.iter().any(|row| row.name == object.plugin) {
-        bsdf::build(object, library).map(drop)
-    } else if medium::is_medium(object) {
-        medium::build(object, library).map(drop)
-    } else if crate::phase::is_phase(object) {
-        crate::phase::build(object, library).map(drop)
-    } else {
-        crate::texture::build(object, library).map(drop)
-    }
-}
-
-/// A plugin that nobody knows, that a scene does not hold, or a sensor that only Mitsuba has.
-fn misplaced(child: &Child<'_>) -> Error {
-    let plugin = &child.object.plugin;
-    let tags = tags::of_plugin(plugin);
-    if tags.is_empty() {
-        return plugins::unknown_in(child.object, "scene");
-    }
-    if tags.contains(&"sensor") {
-        let found = format!("\"{plugin}\", which only Mitsuba has");
-        return Error::new(
-            child.location,
-            "a sensor of Tyndall",
-            found,
-            format!("replace it by one of {}", sensor::names().collect::<Vec<_>>().join(", ")),
-        );
-    }
-    let remedy = "move it into the object that it belongs to (films and samplers into the sensor)";
-    Error::new(child.location, "a plugin that stands in the scene itself", format!("\"{plugin}\""), remedy)
-}
-
-/// Says which definitions have no effect.
-fn warn_of_idle(definitions: &[Child<'_>], root: &Object, library: &Library) {
-    let referred = references::referred(root);
-    for Child { object, location, .. } in definitions {
-        if object.id.as_deref().is_none_or(|id| !referred.contains(id)) {
-            let name = object.id.as_deref().unwrap_or(&object.plugin);
-            library.warn(location, &format!("\"{name}\" is not used: nothing refers to it"));
-        }
-    }
-}
-
-fn without_sensor(root: &Object) -> Error {
-    let remedy = match root.location.position {
-        Position::Text { .. } => "add <sensor type=\"perspective\">...</sensor>",
-        Position::Path(_) => "add \"camera\": {\"type\": \"perspective\", ...}",
-    };
-    Error::new(&root.location, "a sensor in the scene", "none", remedy)
 }
 
 pub(super) fn only_one(second: &Child<'_>, what: &str) -> Error {
@@ -401,22 +289,23 @@ impl<'a> Builder<'a> {
             Some(medium) => medium,
             None => finder.around(sensor.position(), ambient, sensor_location, "the camera"),
         };
-        let recentre = self.recentre;
+        let (recentre, outside) = (self.recentre, finder.far_outside(sensor_medium));
         let lights = self.emitters.into_iter().map(|Placed { emitter, shape, stated, location }| {
             let position = emitter.position().map(|position| (position - recentre).as_vec3());
-            let straddles = stated.is_none() && shape.is_some_and(|shape| finder.straddles(shape));
+            let across = |shape| finder.straddles(shape, outside);
+            let straddles = stated.is_none() && shape.is_some_and(across);
             let medium = match (stated, shape, position) {
                 (Some(medium), ..) => medium,
                 (None, Some(shape), _) if !straddles => finder.in_front_of(shape, sensor_medium, location),
                 (None, None, Some(position)) => {
                     finder.around(position, sensor_medium, location, "an emitter")
                 }
-                _ => finder.far_outside(sensor_medium),
+                _ => outside,
             };
             Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles }
         });
         let lights: Vec<Light> = lights.collect();
-        let outside = self.media[finder.far_outside(sensor_medium).0 as usize].sigma_t;
+        let outside = self.media[outside.0 as usize].sigma_t;
         let lane = |sigma_t: f32| if sigma_t > 0.0 { 0.0 } else { 1.0 };
         let from_infinity = Spectrum::new(lane(outside.x), lane(outside.y), lane(outside.z));
         let lights = Lights::new(lights, &geometry, from_infinity);
@@ -430,73 +319,6 @@ impl<'a> Builder<'a> {
             sensor_medium,
             recentre,
         })
-    }
-}
-
-/// Points of an emitting shape that are asked whether they lie in one medium.
-const POINTS_ASKED: u32 = 256;
-
-/// Finds the media of points, with a warning where the shapes contradict each other.
-struct Finder<'a> {
-    geometry: &'a Geometry,
-    surfaces: &'a [Surface],
-    library: &'a Library,
-}
-
-impl Finder<'_> {
-    fn around(&self, point: Vec3, ambient: MediumIndex, location: &Location, what: &str) -> MediumIndex {
-        match boundary::medium_at(self.geometry, self.surfaces, point) {
-            Found::Nothing => ambient,
-            Found::Medium(medium) => medium,
-            Found::Ambiguous(medium) => {
-                let text = format!(
-                    "rays from {what} meet boundaries of different media; the most frequent one is taken. \
-                     Close the shapes that bound media, or name the medium of the camera in its description"
-                );
-                self.library.warn(location, &text);
-                medium
-            }
-        }
-    }
-
-    /// The medium on the emitting side of a shape: the shape's own exterior, else that around points on it.
-    fn in_front_of(&self, shape: u32, ambient: MediumIndex, location: &Location) -> MediumIndex {
-        if let Some(boundary) = self.surfaces[shape as usize].boundary {
-            return boundary.exterior;
-        }
-        let mut stream =
-            crate::sampling::Stream::new(0, u64::from(shape), 0, crate::sampling::stream::Purpose::Pilot);
-        let point = self.geometry.sample_area(shape, &mut stream);
-        let origin = offset::leave_surface(point.position, point.error, point.normal, point.shading.normal);
-        self.around(origin, ambient, location, "an emitting shape")
-    }
-
-    /// True if rays from different points of an emitting shape start in different media.
-    fn straddles(&self, shape: u32) -> bool {
-        if self.surfaces[shape as usize].boundary.is_some() {
-            return false;
-        }
-        let mut stream =
-            crate::sampling::Stream::new(1, u64::from(shape), 0, crate::sampling::stream::Purpose::Pilot);
-        let mut media = (0..POINTS_ASKED).map(|_| {
-            let point = self.geometry.sample_area(shape, &mut stream);
-            let towards = point.shading.normal;
-            let origin = offset::leave_surface(point.position, point.error, point.normal, towards);
-            boundary::ask(self.geometry, self.surfaces, origin, towards)
-        });
-        let first = media.next();
-        media.any(|medium| Some(medium) != first)
-    }
-
-    /// The medium far from everything: in front of the first boundary on the way in from outside.
-    fn far_outside(&self, ambient: MediumIndex) -> MediumIndex {
-        let (low, high) = self.geometry.bounds();
-        let (centre, size) = (0.5 * (low + high), (high - low).length().max(f32::MIN_POSITIVE));
-        let from = |towards: Vec3| {
-            boundary::ask(self.geometry, self.surfaces, centre - towards * (2.0 * size), towards)
-        };
-        let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (axis + Vec3::splat(0.013)).normalize());
-        axes.iter().flat_map(|axis| [*axis, -*axis]).find_map(from).unwrap_or(ambient)
     }
 }
 

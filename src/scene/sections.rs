@@ -1,0 +1,129 @@
+//! The children of a scene by kind.
+
+use super::{build::only_one, integrator, plugins, references, tags};
+use crate::{
+    bsdf,
+    description::{Library, Object, Params, Position, params::Child},
+    emitter,
+    error::{Error, Result},
+    math::DVec3,
+    medium, sensor, shape,
+};
+
+/// The scene's children by kind.
+pub struct Sections<'a> {
+    /// Who renders it, if the file says.
+    pub integrator: Option<&'a Object>,
+    /// The one sensor.
+    pub sensor: &'a Object,
+    /// In file order.
+    pub shapes: Vec<Child<'a>>,
+    /// Those beside the shapes, in file order.
+    pub emitters: Vec<Child<'a>>,
+}
+
+/// True if `object` only waits to be referred to.
+fn is_definition(object: &Object) -> bool {
+    bsdf::ROWS.iter().any(|row| row.name == object.plugin)
+        || medium::is_medium(object)
+        || crate::phase::is_phase(object)
+        || crate::texture::ROWS.iter().any(|row| row.name == object.plugin)
+}
+
+fn is_shape(object: &Object) -> bool {
+    shape::ROWS.iter().any(|row| row.name == object.plugin)
+}
+
+impl<'a> Sections<'a> {
+    /// Sorts the children of `root`; one that no scene can hold is an error.
+    pub fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
+        let params = Params::new(root, library);
+        let shapes = params.children(|child| is_shape(child.object))?;
+        let emitters = params.children(|child| emitter::is_emitter(child.object))?;
+        let sensors = params.children(|child| sensor::is_sensor(child.object))?;
+        let integrators = params.children(|child| integrator::is_integrator(child.object))?;
+        let definitions = params.children(|child| is_definition(child.object))?;
+        for child in &definitions {
+            check_definition(child.object, library)?;
+        }
+        warn_of_idle(&definitions, root, library);
+        if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
+            !(is_shape(child.object)
+                || emitter::is_emitter(child.object)
+                || sensor::is_sensor(child.object)
+                || integrator::is_integrator(child.object)
+                || is_definition(child.object))
+        }) {
+            return Err(misplaced(unknown));
+        }
+        params.finish()?;
+        let sensor = match sensors.as_slice() {
+            [] => return Err(without_sensor(root)),
+            [sensor] => sensor.object,
+            [_, second, ..] => return Err(only_one(second, "sensor")),
+        };
+        if let [_, second, ..] = integrators.as_slice() {
+            return Err(only_one(second, "integrator"));
+        }
+        let integrator = integrators.first().map(|child| child.object);
+        Ok(Self { integrator, sensor, shapes, emitters })
+    }
+
+    /// Where the camera stands, in the file's coordinates: it becomes the origin, so that f32 geometry is most
+    /// precise where it is seen from nearest, however far from the file's origin that is.
+    pub fn viewpoint(&self, library: &Library) -> Result<DVec3> {
+        sensor::viewpoint(self.sensor, library)
+    }
+}
+
+/// Definitions are built even if nothing refers to them, so that a mistake in one is told.
+fn check_definition(object: &Object, library: &Library) -> Result<()> {
+    if bsdf::ROWS.iter().any(|row| row.name == object.plugin) {
+        bsdf::build(object, library).map(drop)
+    } else if medium::is_medium(object) {
+        medium::build(object, library).map(drop)
+    } else if crate::phase::is_phase(object) {
+        crate::phase::build(object, library).map(drop)
+    } else {
+        crate::texture::build(object, library).map(drop)
+    }
+}
+
+/// A plugin that nobody knows, that a scene does not hold, or a sensor that only Mitsuba has.
+fn misplaced(child: &Child<'_>) -> Error {
+    let plugin = &child.object.plugin;
+    let tags = tags::of_plugin(plugin);
+    if tags.is_empty() {
+        return plugins::unknown_in(child.object, "scene");
+    }
+    if tags.contains(&"sensor") {
+        let found = format!("\"{plugin}\", which only Mitsuba has");
+        return Error::new(
+            child.location,
+            "a sensor of Tyndall",
+            found,
+            format!("replace it by one of {}", sensor::names().collect::<Vec<_>>().join(", ")),
+        );
+    }
+    let remedy = "move it into the object that it belongs to (films and samplers into the sensor)";
+    Error::new(child.location, "a plugin that stands in the scene itself", format!("\"{plugin}\""), remedy)
+}
+
+/// Says which definitions have no effect.
+fn warn_of_idle(definitions: &[Child<'_>], root: &Object, library: &Library) {
+    let referred = references::referred(root);
+    for Child { object, location, .. } in definitions {
+        if object.id.as_deref().is_none_or(|id| !referred.contains(id)) {
+            let name = object.id.as_deref().unwrap_or(&object.plugin);
+            library.warn(location, &format!("\"{name}\" is not used: nothing refers to it"));
+        }
+    }
+}
+
+fn without_sensor(root: &Object) -> Error {
+    let remedy = match root.location.position {
+        Position::Text { .. } => "add <sensor type=\"perspective\">...</sensor>",
+        Position::Path(_) => "add \"camera\": {\"type\": \"perspective\", ...}",
+    };
+    Error::new(&root.location, "a sensor in the scene", "none", remedy)
+}
