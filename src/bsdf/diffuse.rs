@@ -32,7 +32,8 @@ impl Diffuse {
 }
 
 impl BsdfModel for Diffuse {
-    #[inline]
+    // The model that most surfaces have: worth its room in every dispatch.
+    #[inline(always)]
     fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return BsdfValue::ZERO;
@@ -56,7 +57,7 @@ impl BsdfModel for Diffuse {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
         if wi.z > 0.0 { self.reflectance.eval(uv).max_element() } else { 0.0 }
     }

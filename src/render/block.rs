@@ -83,6 +83,7 @@ impl Blocks {
     }
 
     /// Where the eye walk of `pixel` in `pass` starts.
+    #[inline]
     pub fn eye_start<P: Profile>(
         &self,
         estimator: &Estimator<'_, P>,

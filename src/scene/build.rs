@@ -159,7 +159,8 @@ impl<'a> Builder<'a> {
         };
         params.finish()?;
         self.shapes.push(shape);
-        self.surfaces.push(Surface { bsdf, emitter, boundary, touching: false });
+        let connectible = self.bsdfs[bsdf as usize].is_connectible();
+        self.surfaces.push(Surface { bsdf, emitter, boundary, touching: false, connectible });
         Ok(())
     }
 

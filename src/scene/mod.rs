@@ -53,6 +53,8 @@ pub struct Surface {
     pub boundary: Option<Boundary>,
     /// The boundary may share faces with another shape's (see [`boundary::touching`]).
     pub touching: bool,
+    /// Some of its scattering is not Dirac: the answer of its BSDF, kept where every vertex asks.
+    pub connectible: bool,
 }
 
 /// Everything transport needs to know.

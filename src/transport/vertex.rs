@@ -126,7 +126,7 @@ impl<L: Lanes> Vertex<L> {
     #[inline]
     pub fn is_connectible(&self, scene: &Scene) -> bool {
         match &self.site {
-            Site::Surface(point) => scene.bsdf(point.shape).is_connectible(),
+            Site::Surface(point) => scene.surface(point.shape).connectible,
             Site::Medium => true,
         }
     }
