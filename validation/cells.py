@@ -105,9 +105,11 @@ class Cell:
         return ALL if not in_medium and self.boundary in ("null", "room") else EYE
 
     def effort(self) -> float:
-        """Samples relative to the common number: more where Mitsuba finds the light by chance only."""
+        """Samples relative to the common number: more where Mitsuba finds the light by chance only, most where it has to
+        come out of a smooth container first."""
         by_chance = self.boundary in SMOOTH and self.place == "inside" or self.boundary == "rough"
-        return (3 if by_chance else 1.5) * (0.5 if self.medium in ("dense", "white") and not self.point_in_medium else 1)
+        enclosed = self.boundary in SMOOTH and self.place == "inside" and self.camera == "outside"
+        return (6 if enclosed else 3 if by_chance else 1.5) * (0.5 if self.medium in ("dense", "white") and not self.point_in_medium else 1)
 
     def scene(self) -> Scene:
         """The dictionary of `mitsuba.load_dict`."""
