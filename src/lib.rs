@@ -8,6 +8,7 @@ pub mod sampling;
 
 pub mod description;
 
+pub mod density;
 pub mod phase;
 pub mod texture;
 

@@ -11,7 +11,7 @@ use std::{
 const LAYERS: &[&[&str]] = &[
     &["error", "math", "sampling"],
     &["description"],
-    &["phase", "texture"],
+    &["density", "phase", "texture"],
     &["medium", "bsdf", "shape", "emitter", "sensor"],
     &["film", "scene"],
     &["transport"],

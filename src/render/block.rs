@@ -2,9 +2,9 @@
 
 use crate::{
     film::Film,
-    math::{Spectrum, Vec2},
+    math::{Lanes, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
-    transport::{Estimator, Lanes, LightCache, Splats, profile::Profile},
+    transport::{Estimator, LightCache, Splats, profile::Profile},
 };
 
 /// Pixels (and light walks) of a block: a cache of this many walks still fits near the processor, and its

@@ -2,7 +2,6 @@
 //! (LW96 eq. 10) and weight (eq. 14).
 
 use super::{
-    lanes::Lanes,
     profile::Profile,
     segment,
     vertex::Vertex,
@@ -10,7 +9,7 @@ use super::{
 };
 use crate::{
     bsdf::Transport,
-    math::{Spectrum, Vec3, measure, offset},
+    math::{Lanes, Spectrum, Vec3, measure, offset},
     medium::MediumIndex,
     scene::{Scene, lights::Link},
     shape::Ray,

@@ -4,7 +4,6 @@ use super::{
     Estimator,
     cache::LightCache,
     connect::{self, Joined, Span},
-    lanes::Lanes,
     profile::Profile,
     vertex::Vertex,
     walk::{Departure, Kind, Visitor, walk},
@@ -12,7 +11,7 @@ use super::{
 };
 use crate::{
     bsdf::Transport,
-    math::{Spectrum, Vec2, Vec3, offset},
+    math::{Lanes, Spectrum, Vec2, Vec3, offset},
     sampling::Stream,
     scene::lights::Start,
     sensor::Projection,

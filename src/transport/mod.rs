@@ -8,7 +8,6 @@
 mod cache;
 mod connect;
 mod eye;
-mod lanes;
 mod light;
 pub mod profile;
 mod segment;
@@ -19,11 +18,11 @@ mod walk;
 mod weight;
 
 pub use cache::LightCache;
-pub use lanes::Lanes;
+
 pub use light::Splats;
 
 use crate::{
-    math::{Spectrum, Vec2},
+    math::{Lanes, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
     scene::Scene,
     shape::Ray,

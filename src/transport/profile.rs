@@ -1,7 +1,7 @@
 //! Profiles: what a compiled estimator contains. Chosen once per render; what a scene does not have is not
 //! tested for, it is not there.
 
-use super::lanes::Lanes;
+use crate::math::Lanes;
 use crate::{bsdf::BsdfModel, math::Spectrum, medium::Homogeneous, scene::Scene};
 
 /// Compile-time constants that remove code.

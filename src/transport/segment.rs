@@ -1,9 +1,9 @@
 //! Segments between path vertices: the flight that samples one, and the passage along a given one. They own
 //! distances, optical depths and boundary crossings; media enter transport here and nowhere else.
 
-use super::{lanes::Lanes, profile::Profile};
+use super::profile::Profile;
 use crate::{
-    math::{Spectrum, Vec3, measure, offset},
+    math::{Lanes, Spectrum, Vec3, measure, offset},
     medium::MediumIndex,
     sampling::Stream,
     scene::Scene,

@@ -1,6 +1,6 @@
 //! A path vertex: where it is, how it scatters, and what the balance heuristic needs of the walk behind it.
 
-use super::lanes::Lanes;
+use crate::math::Lanes;
 use crate::{
     bsdf::{BsdfModel, Transport},
     math::{Spectrum, Vec3, offset},

@@ -2,14 +2,13 @@
 //! running sums of the balance heuristic.
 
 use super::{
-    lanes::Lanes,
     profile::Profile,
     segment::{self, Flight, Landing},
     vertex::{Site, Vertex, shading_correction},
 };
 use crate::{
     bsdf::{BsdfModel, Transport},
-    math::{Spectrum, Vec3, measure},
+    math::{Lanes, Spectrum, Vec3, measure},
     medium::MediumIndex,
     phase::{Deflection, PhaseModel},
     sampling::Stream,

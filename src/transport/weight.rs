@@ -1,6 +1,6 @@
 //! The balance heuristic (LW96 eq. 14), O(1) per connection.
 
-use super::lanes::Lanes;
+use crate::math::Lanes;
 use crate::math::{Spectrum, Vec3};
 use crate::medium::MediumIndex;
 

@@ -14,11 +14,10 @@ mod scenes;
 
 use super::{
     Estimator, LightCache, Nowhere, Options, Strategies,
-    lanes::Lanes,
     profile::{Bounded, ChromaticFog, Everything, Fog, Profile, Vacuum},
 };
 use crate::{
-    math::{vec2, vec3},
+    math::{Lanes, vec2, vec3},
     sampling::{Stream, stream::Purpose},
     scene::build::Setup,
 };

@@ -3,7 +3,7 @@
 use super::path::{APERTURE, Node, Path, Place};
 use crate::{
     bsdf::Transport,
-    math::{Spectrum, Vec2, Vec3, vec2},
+    math::{Lanes, Spectrum, Vec2, Vec3, vec2},
     sampling::Stream,
     scene::{
         Scene,
@@ -13,7 +13,6 @@ use crate::{
         Estimator, LightCache, Splats,
         connect::Joined,
         eye::{self, Eye},
-        lanes::Lanes,
         light::{self, Light},
         profile::Profile,
         vertex::{Site, Vertex},

@@ -8,12 +8,11 @@ use super::{
 };
 use crate::{
     bsdf::Transport,
-    math::{Spectrum, vec3},
+    math::{Lanes, Spectrum, vec3},
     scene::lights::Start,
     transport::{
         Estimator, LightCache,
         eye::{self, Eye},
-        lanes::Lanes,
         light::{self, Light},
         profile::Profile,
         segment::{Flight, Landing},

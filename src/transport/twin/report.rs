@@ -1,7 +1,10 @@
 //! Comparison of the fast weights with the slow ones, and what came out for a scene.
 
 use super::{density::Twin, path::Path, record::Case, replay};
-use crate::transport::{Estimator, lanes::Lanes, profile::Profile};
+use crate::{
+    math::Lanes,
+    transport::{Estimator, profile::Profile},
+};
 
 /// Largest relative difference between the two: f32 rounding over some hundred operations.
 const TOLERANCE: f64 = 1e-4;

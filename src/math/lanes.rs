@@ -1,7 +1,7 @@
 //! Quantities per extinction channel: one lane in grey scenes, three in chromatic ones. The balance heuristic
 //! sums over lanes; a grey scene pays nothing for that.
 
-use crate::math::{Spectrum, vec3};
+use super::{Spectrum, vec3};
 use std::ops::{Add, Mul};
 
 /// One value per channel whose extinction can differ.
