@@ -1,11 +1,13 @@
 //! Volumes: numbers and colours that vary in space, of which extinction, albedo and emission are made. One file a
 //! model; this page is the contract and the registry.
 
+mod coarse;
 mod constant;
 mod samples;
 #[cfg(test)]
 mod tests;
 
+pub use coarse::{Coarse, Piece};
 pub use constant::Constant;
 pub use samples::Samples;
 
@@ -34,7 +36,7 @@ impl Place {
 
 /// What every volume can do. Positions are world positions, recentred.
 pub trait VolumeModel {
-    /// The value at `position`, per lane; 0 outside the domain.
+    /// The value at `position`, per lane. Who looks where the volume does not reach asks `contains` first.
     fn eval<L: Lanes>(&self, position: Vec3) -> L;
 
     /// Bounds of every channel within the box from `low` to `high`: conservative, and as narrow as is cheap.
@@ -42,6 +44,11 @@ pub trait VolumeModel {
 
     /// The box outside of which the value is 0 (or, of an albedo, of no matter); none where there is no such box.
     fn domain(&self) -> Option<[Vec3; 2]>;
+
+    /// True if `position` is not outside the volume: a box of it placed askew is smaller than the `domain` around it.
+    fn contains(&self, _position: Vec3) -> bool {
+        true
+    }
 
     /// True if all channels are equal everywhere.
     fn is_grey(&self) -> bool;
@@ -74,6 +81,10 @@ macro_rules! volumes {
             }
             fn domain(&self) -> Option<[Vec3; 2]> {
                 match self { $(Self::$model(model) => model.domain(),)* }
+            }
+            #[inline]
+            fn contains(&self, position: Vec3) -> bool {
+                match self { $(Self::$model(model) => model.contains(position),)* }
             }
             fn is_grey(&self) -> bool {
                 match self { $(Self::$model(model) => model.is_grey(),)* }
