@@ -10,6 +10,7 @@ use crate::{
         format::{Component, FileKind},
         layer::Layer,
     },
+    medium::tracker::Tracker,
     phase::PhaseModel,
     scene::{
         Scene,
@@ -110,11 +111,25 @@ fn describe_medium(setup: &Setup, index: usize) -> String {
     let medium = &setup.scene.media[index];
     let [r, g, b] = medium.sigma_t.to_array();
     let [ar, ag, ab] = medium.albedo.to_array();
+    let (kind, most) =
+        if medium.varying.is_some() { ("heterogeneous", "at most ") } else { ("homogeneous", "") };
     format!(
-        "{}: homogeneous, sigma_t {r} {g} {b} /m, albedo {ar} {ag} {ab}, mean cosine {:.3}; closed-form tracker",
+        "{}: {kind}, sigma_t {most}{r} {g} {b} /m, albedo {most}{ar} {ag} {ab}, mean cosine {:.3}; {}",
         medium_name(setup, index as u32),
-        medium.phase.mean_cosine()
+        medium.phase.mean_cosine(),
+        medium
+            .varying
+            .as_ref()
+            .map_or("closed-form tracker".into(), |varying| describe_tracker(varying.tracker()))
     )
+}
+
+fn describe_tracker(tracker: &Tracker) -> String {
+    let march = match tracker {
+        Tracker::March(march) => format!(" by steps of at most {} m", march.step),
+        _ => String::new(),
+    };
+    format!("tracker {}{march}", tracker.choice().name())
 }
 
 /// Kinds of paths that no strategy of the integrator can make: they are black, not noisy.

@@ -36,7 +36,7 @@ pub fn run() -> ExitCode {
 /// Reads and builds a scene; warnings go to standard error.
 fn load(scene: &arguments::Scene, size: Option<arguments::Size>) -> Result<Setup> {
     let root = scene::read(&scene.file, &scene.definitions)?;
-    let overrides = Overrides { size: size.map(|size| (size.width, size.height)) };
+    let overrides = Overrides { size: size.map(|size| (size.width, size.height)), ..Overrides::default() };
     let setup = scene::build::build(&root, overrides)?;
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));

@@ -12,8 +12,8 @@ pub use constant::Constant;
 pub use samples::Samples;
 
 use crate::{
-    description::{Library, Object, Params, Value, suggest},
-    error::{Error, Result},
+    description::{Library, Object, Params, Value, find_row},
+    error::Result,
     math::{DAffine3, DVec3, Lanes, Section, Spectrum, Vec3},
 };
 
@@ -128,6 +128,23 @@ pub struct Row {
     pub build: fn(&Params<'_>, &Place) -> Result<Volume>,
 }
 
+impl Volume {
+    /// The grey `value` everywhere.
+    pub fn constant(value: f32) -> Self {
+        Self::Constant(Constant(Spectrum::splat(value)))
+    }
+
+    /// True if it interpolates a grid, whose cells an exact tracker walks.
+    pub fn is_grid(&self) -> bool {
+        false
+    }
+
+    /// How many cells of a grid `section` crosses, those of uniform bricks counted as one; 0 of anything else.
+    pub fn cells_crossed(&self, _section: &Section) -> u32 {
+        0
+    }
+}
+
 /// True if `object` is a volume.
 pub fn is_volume(object: &Object) -> bool {
     ROWS.iter().any(|row| row.name == object.plugin)
@@ -135,11 +152,7 @@ pub fn is_volume(object: &Object) -> bool {
 
 /// Builds the volume that `object` describes.
 pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Volume> {
-    let row = ROWS.iter().find(|row| row.name == object.plugin).ok_or_else(|| {
-        let names: Vec<_> = ROWS.iter().map(|row| row.name).collect();
-        let found = format!("\"{}\"", object.plugin);
-        Error::new(&object.location, "the type of a volume", found, suggest(&object.plugin, "known", &names))
-    })?;
+    let row = find_row(object, "volume", ROWS, |row| row.name)?;
     let params = Params::new(object, library);
     let built = (row.build)(&params, place)?;
     params.finish()?;

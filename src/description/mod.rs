@@ -127,17 +127,22 @@ pub fn build_by_row<T>(
     kind: &str,
     rows: &[Row<T>],
 ) -> crate::error::Result<T> {
-    let row = find_row(object, kind, rows)?;
+    let row = find_row(object, kind, rows, |row| row.name)?;
     let params = Params::new(object, library);
     let built = (row.build)(&params)?;
     params.finish()?;
     Ok(built)
 }
 
-/// The row that bears the plugin name of `object`.
-pub fn find_row<'a, T>(object: &Object, kind: &str, rows: &'a [Row<T>]) -> crate::error::Result<&'a Row<T>> {
-    rows.iter().find(|row| row.name == object.plugin).ok_or_else(|| {
-        let names: Vec<_> = rows.iter().map(|row| row.name).collect();
+/// The row that bears the plugin name of `object`; `name` is a row's.
+pub fn find_row<'a, R>(
+    object: &Object,
+    kind: &str,
+    rows: &'a [R],
+    name: fn(&R) -> &'static str,
+) -> crate::error::Result<&'a R> {
+    rows.iter().find(|row| name(row) == object.plugin).ok_or_else(|| {
+        let names: Vec<_> = rows.iter().map(name).collect();
         crate::error::Error::new(
             &object.location,
             format!("the type of a {kind}"),

@@ -94,7 +94,7 @@ pub const ROWS: &[Row<Kind>] = &[
 /// its children (the one it stands in) is the scene's to read.
 pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
     let params = Params::new(object, library);
-    let row = find_row(object, "emitter", ROWS)?;
+    let row = find_row(object, "emitter", ROWS, |row| row.name)?;
     let kind = (row.build)(&params)?;
     let sampling_weight = sampling_weight(&params)?;
     params.children(|child| medium::is_medium(child.object))?;

@@ -1,12 +1,18 @@
-//! Participating media: coefficients and a phase function.
+//! Participating media: coefficients, a phase function, and where they vary, how flights are sampled.
 
-mod homogeneous;
+mod blueprint;
+mod extinction;
+mod heterogeneous;
+pub mod tracker;
 
 use crate::{
-    description::{Library, Object, Row, build_by_row},
-    error::Result,
+    math::{Spectrum, SpectrumExt},
+    phase::{self, Phase},
 };
-pub use homogeneous::Homogeneous;
+pub use blueprint::{Blueprint, ROWS, build, is_medium};
+pub use extinction::Extinction;
+pub use heterogeneous::Heterogeneous;
+pub use tracker::{Choice, Leg};
 
 /// Index of a medium in its scene. Vacuum is a medium like any other, with nothing in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -17,15 +23,61 @@ impl MediumIndex {
     pub const VACUUM: Self = Self(0);
 }
 
-/// Every kind of medium.
-pub const ROWS: &[Row<Homogeneous>] = &[Row { name: "homogeneous", build: Homogeneous::build }];
-
-/// Builds the medium that `object` describes.
-pub fn build(object: &Object, library: &Library) -> Result<Homogeneous> {
-    build_by_row(object, library, "medium", ROWS)
+/// A medium: the same everywhere, or varying in space.
+#[derive(Clone, Debug)]
+pub struct Medium {
+    /// Extinction coefficient, kappa in LW96 [1/m], >= 0; where it varies, a bound on it.
+    pub sigma_t: Spectrum,
+    /// sigma_s / sigma_t, in [0, 1]; where it varies, a bound on it.
+    pub albedo: Spectrum,
+    /// Directions after scattering.
+    pub phase: Phase,
+    /// What varies; none in a homogeneous medium, whose transmittance is exp(-sigma_t d).
+    pub varying: Option<Box<Heterogeneous>>,
 }
 
-/// True if `object` is a medium.
-pub fn is_medium(object: &Object) -> bool {
-    ROWS.iter().any(|row| row.name == object.plugin)
+/// What a medium is made of at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Matter {
+    /// Extinction coefficient [1/m].
+    pub sigma_t: Spectrum,
+    /// sigma_s / sigma_t, in [0, 1].
+    pub albedo: Spectrum,
+}
+
+impl Matter {
+    /// None.
+    pub const NOTHING: Self = Self { sigma_t: Spectrum::ZERO, albedo: Spectrum::ZERO };
+
+    /// Probability that a walk goes on after a collision (LW96 eq. 8): the largest channel of the albedo.
+    #[inline]
+    pub fn survival(&self) -> f32 {
+        self.albedo.max_element()
+    }
+}
+
+impl Medium {
+    /// Nothing: no extinction.
+    pub fn vacuum() -> Self {
+        Self {
+            sigma_t: Spectrum::ZERO,
+            albedo: Spectrum::ZERO,
+            phase: Phase::Isotropic(phase::Isotropic),
+            varying: None,
+        }
+    }
+
+    /// What a homogeneous medium is made of, and a bound on a varying one.
+    #[inline]
+    pub fn matter(&self) -> Matter {
+        Matter { sigma_t: self.sigma_t, albedo: self.albedo }
+    }
+
+    /// True if extinction differs between channels, so that flights need a hero channel.
+    pub fn is_chromatic(&self) -> bool {
+        match &self.varying {
+            None => !self.sigma_t.is_grey(),
+            Some(varying) => varying.is_chromatic(),
+        }
+    }
 }

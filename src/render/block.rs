@@ -25,7 +25,7 @@ pub struct Blocks {
 /// How an eye walk starts.
 pub struct EyeStart {
     /// Its random numbers.
-    stream: Stream,
+    pub stream: Stream,
     hero: usize,
     /// Where on the film [pixels].
     pub position: Vec2,

@@ -9,6 +9,7 @@ use crate::{
         layer::{Content, Layer, Quantity},
     },
     math::{Spectrum, Vec2, Vec3, vec2, vec3},
+    sampling::Stream,
     scene::{Scene, accel::Geometry},
     shape::{Hit, Primitive, Ray, SurfacePoint},
     transport::profile::Profile,
@@ -63,10 +64,10 @@ impl Pass {
         means.par_chunks_mut(width).enumerate().for_each(|(pixel, means)| {
             let mut sums = vec![[0f64; 3]; width];
             for pass in 0..passes {
-                let start =
+                let mut start =
                     job.blocks.eye_start(job.estimator, job.film, job.settings.seed, pass as usize, pixel);
                 let view = View::new(scene, job, environment, &start, passes);
-                let alpha = self.alpha.then(|| Vec3::splat(view.alpha()));
+                let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
                 let values = self.quantities.iter().map(|quantity| view.quantity(*quantity));
                 for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
                     let value = (value * start.weight).as_dvec3().to_array();
@@ -112,12 +113,12 @@ impl<'a, P: Profile> View<'a, P> {
 
     /// The chance that the ray interacts with something or meets a visible environment: what Mitsuba's
     /// `volpath` finds out by walking on. Emitters that are hidden do not count.
-    fn alpha(&self) -> f32 {
+    fn alpha(&self, stream: &mut Stream) -> f32 {
         let hidden = self.job.settings.options.hide_emitters;
         if self.environment && !hidden {
             return 1.0;
         }
-        let through = self.job.estimator.transmittance(self.ray);
+        let through = self.job.estimator.transmittance(self.ray, stream);
         1.0 - (through.x + through.y + through.z) / 3.0
     }
 

@@ -4,7 +4,9 @@
 use super::{
     Boundary, Scene, Surface,
     accel::Geometry,
-    boundary, film,
+    boundary,
+    extents::Extents,
+    film,
     finder::Finder,
     integrator::{self, Integrator},
     lights::{Light, Lights},
@@ -13,12 +15,13 @@ use super::{
 };
 use crate::{
     bsdf::{self, Bsdf, BsdfModel},
+    density::Place,
     description::{Library, Location, Object, Params, Position, Property, Value, params::Child},
     emitter::{self, Emitter},
     error::{Error, Result},
     film::Film,
-    math::{DVec3, Spectrum, Vec3},
-    medium::{self, Homogeneous, MediumIndex},
+    math::{DVec3, Vec3},
+    medium::{self, Blueprint, Choice, MediumIndex},
     sensor::{self, Crop, Sensor},
     shape::{self, Shape},
 };
@@ -45,6 +48,8 @@ pub struct Setup {
 pub struct Overrides {
     /// Width and height [pixels].
     pub size: Option<(u32, u32)>,
+    /// How flights through media that vary are sampled.
+    pub tracker: Option<Choice>,
 }
 
 /// Builds the scene that `root` describes.
@@ -66,7 +71,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         None => Integrator::default(),
     };
     let medium_names = builder.medium_names.clone();
-    let scene = builder.finish(view.sensor, view.medium, &sections.sensor.location)?;
+    let scene = builder.finish(view.sensor, view.medium, &sections.sensor.location, overrides.tracker)?;
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }
@@ -120,7 +125,8 @@ struct Builder<'a> {
     surfaces: Vec<Surface>,
     bsdfs: Vec<Bsdf>,
     bsdf_index: HashMap<*const Object, u32>,
-    media: Vec<Homogeneous>,
+    place: Place,
+    media: Vec<Blueprint>,
     medium_names: Vec<String>,
     medium_index: HashMap<*const Object, MediumIndex>,
     emitters: Vec<Placed<'a>>,
@@ -137,7 +143,8 @@ impl<'a> Builder<'a> {
             surfaces: Vec::new(),
             bsdfs: Vec::new(),
             bsdf_index: HashMap::new(),
-            media: vec![Homogeneous::vacuum()],
+            place: Place { recentre, time: 0.0 },
+            media: vec![Blueprint::vacuum()],
             medium_names: Vec::new(),
             medium_index: HashMap::new(),
             emitters: Vec::new(),
@@ -240,7 +247,7 @@ impl<'a> Builder<'a> {
             return Ok(*index);
         }
         let index = MediumIndex(self.media.len() as u32);
-        self.media.push(medium::build(object, self.library)?);
+        self.media.push(medium::build(object, self.library, &self.place)?);
         self.medium_names.push(object.id.clone().unwrap_or_else(|| object.plugin.clone()));
         self.medium_index.insert(std::ptr::from_ref(object), index);
         Ok(index)
@@ -280,6 +287,7 @@ impl<'a> Builder<'a> {
         sensor: Sensor,
         stated: Option<MediumIndex>,
         sensor_location: &Location,
+        tracker: Option<Choice>,
     ) -> Result<Scene> {
         let geometry = Geometry::build(self.shapes);
         let touching = boundary::touching(&geometry, &self.surfaces);
@@ -291,6 +299,9 @@ impl<'a> Builder<'a> {
             None => finder.around(sensor.position(), ambient, sensor_location, "the camera"),
         };
         let (recentre, outside) = (self.recentre, finder.far_outside(sensor_medium));
+        let viewpoint = sensor.position();
+        let extents = Extents { geometry: &geometry, surfaces: &self.surfaces, viewpoint, outside };
+        let media = extents.finish(self.media, tracker)?;
         let lights = self.emitters.into_iter().map(|Placed { emitter, shape, stated, location }| {
             let position = emitter.position().map(|position| (position - recentre).as_vec3());
             let across = |shape| finder.straddles(shape, outside);
@@ -306,16 +317,13 @@ impl<'a> Builder<'a> {
             Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles }
         });
         let lights: Vec<Light> = lights.collect();
-        let outside = self.media[outside.0 as usize].sigma_t;
-        let lane = |sigma_t: f32| if sigma_t > 0.0 { 0.0 } else { 1.0 };
-        let from_infinity = Spectrum::new(lane(outside.x), lane(outside.y), lane(outside.z));
-        let lights = Lights::new(lights, &geometry, from_infinity);
+        let lights = Lights::new(lights, &geometry, &media[outside.0 as usize]);
         Ok(Scene {
             lights,
             geometry,
             surfaces: self.surfaces,
             bsdfs: self.bsdfs,
-            media: self.media,
+            media,
             sensor,
             sensor_medium,
             recentre,

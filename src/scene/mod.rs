@@ -3,6 +3,7 @@
 pub mod accel;
 pub mod boundary;
 pub mod build;
+mod extents;
 mod film;
 mod finder;
 pub mod integrator;
@@ -26,7 +27,7 @@ pub use write::{Conversion, Naming, convert, write};
 use crate::{
     bsdf::{Bsdf, BsdfModel},
     math::{DVec3, Spectrum, Vec3},
-    medium::{Homogeneous, MediumIndex},
+    medium::{Medium, MediumIndex},
     sensor::Sensor,
     shape::{Ray, SurfacePoint},
 };
@@ -66,7 +67,7 @@ pub struct Scene {
     /// All BSDFs.
     pub bsdfs: Vec<Bsdf>,
     /// All media; the first is vacuum.
-    pub media: Vec<Homogeneous>,
+    pub media: Vec<Medium>,
     /// All emitters.
     pub lights: Lights,
     /// The camera.

@@ -3,6 +3,7 @@
 use super::{build::only_one, integrator, plugins, references, tags};
 use crate::{
     bsdf,
+    density::Place,
     description::{Library, Object, Params, Position, params::Child},
     emitter,
     error::{Error, Result},
@@ -43,10 +44,7 @@ impl<'a> Sections<'a> {
         let sensors = params.children(|child| sensor::is_sensor(child.object))?;
         let integrators = params.children(|child| integrator::is_integrator(child.object))?;
         let definitions = params.children(|child| is_definition(child.object))?;
-        for child in &definitions {
-            check_definition(child.object, library)?;
-        }
-        warn_of_idle(&definitions, root, library);
+        check_idle(&definitions, root, library)?;
         if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
             !(is_shape(child.object)
                 || emitter::is_emitter(child.object)
@@ -76,12 +74,12 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// Definitions are built even if nothing refers to them, so that a mistake in one is told.
+/// A definition is built even if nothing refers to it, so that a mistake in it is told.
 fn check_definition(object: &Object, library: &Library) -> Result<()> {
     if bsdf::ROWS.iter().any(|row| row.name == object.plugin) {
         bsdf::build(object, library).map(drop)
     } else if medium::is_medium(object) {
-        medium::build(object, library).map(drop)
+        medium::build(object, library, &Place { recentre: DVec3::ZERO, time: 0.0 }).map(drop)
     } else if crate::phase::is_phase(object) {
         crate::phase::build(object, library).map(drop)
     } else {
@@ -109,15 +107,17 @@ fn misplaced(child: &Child<'_>) -> Error {
     Error::new(child.location, "a plugin that stands in the scene itself", format!("\"{plugin}\""), remedy)
 }
 
-/// Says which definitions have no effect.
-fn warn_of_idle(definitions: &[Child<'_>], root: &Object, library: &Library) {
+/// Says which definitions have no effect, and checks them all the same. What is referred to will be built anyway.
+fn check_idle(definitions: &[Child<'_>], root: &Object, library: &Library) -> Result<()> {
     let referred = references::referred(root);
     for Child { object, location, .. } in definitions {
         if object.id.as_deref().is_none_or(|id| !referred.contains(id)) {
             let name = object.id.as_deref().unwrap_or(&object.plugin);
+            check_definition(object, library)?;
             library.warn(location, &format!("\"{name}\" is not used: nothing refers to it"));
         }
     }
+    Ok(())
 }
 
 fn without_sensor(root: &Object) -> Error {

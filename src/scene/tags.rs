@@ -150,7 +150,7 @@ pub(super) fn ours(tag: &str) -> Vec<&'static str> {
         "bsdf" => names(bsdf::ROWS),
         "texture" => names(texture::ROWS),
         "emitter" => names(emitter::ROWS),
-        "medium" => names(medium::ROWS),
+        "medium" => medium::ROWS.iter().map(|row| row.name).collect(),
         "phase" => names(phase::ROWS),
         _ => Vec::new(),
     }

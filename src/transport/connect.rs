@@ -11,6 +11,7 @@ use crate::{
     bsdf::Transport,
     math::{Lanes, Spectrum, Vec3, measure, offset},
     medium::MediumIndex,
+    sampling::Stream,
     scene::{Scene, lights::Link},
     shape::Ray,
 };
@@ -37,7 +38,7 @@ pub fn vertex_end<L: Lanes>(
         forward: scattering.forward,
         cosine: vertex.cosine(towards),
         inverse: vertex.inverse,
-        sigma_t: vertex.sigma_t(scene),
+        sigma_t: vertex.sigma_t(),
         reach: vertex.reach,
         tail: vertex.tail(scattering.backward),
     })
@@ -102,12 +103,13 @@ pub fn join<P: Profile>(
     distance_squared: f32,
     count: f32,
     hidden: bool,
+    stream: &mut Stream,
 ) -> Option<Joined> {
     let end = offset::clear_of_end(a.origin, b.origin, b.lift);
     let (direction, distance, _) = measure::between(a.origin, end)?;
     let ray = Ray { origin: a.origin, direction, t_max: distance };
     let cut = (b.origin - end).dot(direction);
-    join_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, count)
+    join_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, count, stream)
 }
 
 /// The same along a given span that starts at `a`: for ends at infinity.
@@ -118,9 +120,10 @@ pub fn join_along<P: Profile>(
     a: &End<P::Lanes>,
     b: &End<P::Lanes>,
     count: f32,
+    stream: &mut Stream,
 ) -> Option<Joined> {
     let Span { ray, cut, distance_squared, hidden } = *span;
-    let passage = segment::pass::<P>(scene, ray, cut, a.medium, hidden)?;
+    let passage = segment::pass::<P>(scene, ray, cut, a.medium, hidden, stream)?;
     let geometry = 1.0 / distance_squared;
     let weight = weight::join(a, b, passage.density, geometry, count);
     let value = a.value * b.value * passage.transmittance * (geometry * weight);

@@ -139,12 +139,12 @@ impl<'a, P: Profile> Eye<'a, P> {
     fn next_event(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
         let scene = self.estimator.scene;
         let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream) else { return };
-        self.radiance += self.link(vertex, &link).map_or(Spectrum::ZERO, |joined| joined.value);
+        self.radiance += self.link(vertex, &link, stream).map_or(Spectrum::ZERO, |joined| joined.value);
     }
 
     /// The join with an emitter point picked by next-event estimation.
     #[inline]
-    pub fn link(&self, vertex: &Vertex<P::Lanes>, link: &Link) -> Option<Joined> {
+    pub fn link(&self, vertex: &Vertex<P::Lanes>, link: &Link, stream: &mut Stream) -> Option<Joined> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let (direction, distance_squared) = if P::INFINITE && link.infinite {
             (link.position, 1.0)
@@ -157,9 +157,9 @@ impl<'a, P: Profile> Eye<'a, P> {
         if P::INFINITE && link.infinite {
             let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
             let span = Span { ray, cut: 0.0, distance_squared: 1.0, hidden: false };
-            connect::join_along::<P>(scene, &span, &eye, &light, 1.0)
+            connect::join_along::<P>(scene, &span, &eye, &light, 1.0, stream)
         } else {
-            connect::join::<P>(scene, &eye, &light, distance_squared, 1.0, false)
+            connect::join::<P>(scene, &eye, &light, distance_squared, 1.0, false, stream)
         }
     }
 
@@ -171,7 +171,7 @@ impl<'a, P: Profile> Eye<'a, P> {
         for _ in 0..estimator.joins_per_vertex {
             let other = &pool[stream.below(pool.len())];
             if vertex.edges + other.edges < estimator.max_edges {
-                let joined = self.join_with(vertex, other);
+                let joined = self.join_with(vertex, other, stream);
                 self.radiance += joined.map_or(Spectrum::ZERO, |joined| joined.value) * scale;
             }
         }
@@ -179,11 +179,16 @@ impl<'a, P: Profile> Eye<'a, P> {
 
     /// The join with a vertex of a light walk.
     #[inline]
-    pub fn join_with(&self, vertex: &Vertex<P::Lanes>, other: &Vertex<P::Lanes>) -> Option<Joined> {
+    pub fn join_with(
+        &self,
+        vertex: &Vertex<P::Lanes>,
+        other: &Vertex<P::Lanes>,
+        stream: &mut Stream,
+    ) -> Option<Joined> {
         let scene = self.estimator.scene;
         let (direction, _, distance_squared) = measure::between(vertex.position, other.position)?;
         let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
         let light = connect::vertex_end(scene, other, -direction, Transport::Importance)?;
-        connect::join::<P>(scene, &eye, &light, distance_squared, self.estimator.counts.join, false)
+        connect::join::<P>(scene, &eye, &light, distance_squared, self.estimator.counts.join, false, stream)
     }
 }

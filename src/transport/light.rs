@@ -51,7 +51,7 @@ pub fn trace<P: Profile>(
         Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
     let mut light = Light::new(estimator, cache, splats, start, hero);
     let aperture = scene.sensor.sample_aperture(stream);
-    light.splat(light.join_start_to_lens(aperture));
+    light.splat(light.join_start_to_lens(aperture, stream));
     walk(scene, kind, departure, &mut light, stream);
 }
 
@@ -91,7 +91,7 @@ impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
         }
         if self.estimator.counts.lens > 0.0 {
             let aperture = self.estimator.scene.sensor.sample_aperture(stream);
-            self.splat(self.join_to_lens(vertex, aperture));
+            self.splat(self.join_to_lens(vertex, aperture, stream));
         }
         let keep = self.estimator.keep;
         if keep > 0.0 && (keep >= 1.0 || stream.uniform() < keep) {
@@ -123,7 +123,12 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
 
     /// t = 1: a vertex as the sensor sees it through a point of its aperture, and where on the film [pixels].
     #[inline]
-    pub fn join_to_lens(&self, vertex: &Vertex<P::Lanes>, aperture: Vec2) -> Option<(Vec2, Joined)> {
+    pub fn join_to_lens(
+        &self,
+        vertex: &Vertex<P::Lanes>,
+        aperture: Vec2,
+        stream: &mut Stream,
+    ) -> Option<(Vec2, Joined)> {
         let scene = self.estimator.scene;
         let seen = scene.sensor.project(vertex.position, aperture)?;
         let hidden = self.estimator.hide_emitters && vertex.is_on_emitter(scene);
@@ -131,12 +136,12 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
             return None;
         }
         let end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
-        let joined = self.join_end(&end, &seen, false)?;
+        let joined = self.join_end(&end, &seen, false, stream)?;
         Some((seen.film, joined))
     }
 
     /// s = 1, t = 1: the emitter itself as the sensor sees it, where an eye walk could have met it.
-    pub fn join_start_to_lens(&self, aperture: Vec2) -> Option<(Vec2, Joined)> {
+    pub fn join_start_to_lens(&self, aperture: Vec2, stream: &mut Stream) -> Option<(Vec2, Joined)> {
         let (estimator, start) = (self.estimator, &self.start);
         let seen_directly = estimator.max_edges > 0 && !estimator.hide_emitters;
         if estimator.counts.lens <= 0.0 || !start.hittable || !seen_directly {
@@ -150,12 +155,18 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
         };
         let seen = seen.filter(|seen| self.splats.covers(seen.film))?;
         let end = start_end::<P>(estimator, start, -seen.ray.direction)?;
-        let joined = self.join_end(&end, &seen, start.infinite)?;
+        let joined = self.join_end(&end, &seen, start.infinite, stream)?;
         Some((seen.film, joined))
     }
 
     #[inline]
-    fn join_end(&self, end: &End<P::Lanes>, seen: &Projection, infinite: bool) -> Option<Joined> {
+    fn join_end(
+        &self,
+        end: &End<P::Lanes>,
+        seen: &Projection,
+        infinite: bool,
+        stream: &mut Stream,
+    ) -> Option<Joined> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let Projection { ray, density, distance_squared, .. } = *seen;
         let hidden = self.estimator.hide_emitters;
@@ -173,9 +184,9 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
         };
         if P::INFINITE && infinite {
             let span = Span { ray, cut: 0.0, distance_squared, hidden };
-            connect::join_along::<P>(scene, &span, &lens, end, counts.lens)
+            connect::join_along::<P>(scene, &span, &lens, end, counts.lens, stream)
         } else {
-            connect::join::<P>(scene, end, &lens, distance_squared, counts.lens, hidden)
+            connect::join::<P>(scene, end, &lens, distance_squared, counts.lens, hidden, stream)
         }
     }
 }

@@ -158,9 +158,15 @@ impl<'a, P: Profile> Estimator<'a, P> {
     }
 
     /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
-    pub fn transmittance(&self, primary: Ray) -> Spectrum {
-        let passage =
-            segment::pass::<P>(self.scene, primary, 0.0, self.scene.sensor_medium, self.hide_emitters);
+    pub fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
+        let passage = segment::pass::<P>(
+            self.scene,
+            primary,
+            0.0,
+            self.scene.sensor_medium,
+            self.hide_emitters,
+            stream,
+        );
         passage.map_or(Spectrum::ZERO, |passage| passage.transmittance)
     }
 

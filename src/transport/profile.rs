@@ -2,7 +2,7 @@
 //! tested for, it is not there.
 
 use crate::math::Lanes;
-use crate::{bsdf::BsdfModel, math::Spectrum, medium::Homogeneous, scene::Scene};
+use crate::{bsdf::BsdfModel, math::Spectrum, medium::Medium, scene::Scene};
 
 /// Compile-time constants that remove code.
 pub trait Profile: Copy + Send + Sync + 'static {
@@ -12,6 +12,8 @@ pub trait Profile: Copy + Send + Sync + 'static {
     const MEDIA: bool;
     /// Rays can pass surfaces undeflected, so segments cross boundaries.
     const NULLS: bool;
+    /// Some medium's coefficients vary in space.
+    const HETEROGENEOUS: bool;
     /// Some emitter is at infinity, or the sensor is: its rays are parallel.
     const INFINITE: bool;
     /// As printed and as typed.
@@ -20,7 +22,7 @@ pub trait Profile: Copy + Send + Sync + 'static {
 
 macro_rules! profile {
     ($(#[$doc:meta])* $name:ident, $text:literal, lanes: $lanes:ty, media: $media:literal, nulls: $nulls:literal,
-     infinite: $infinite:literal) => {
+     heterogeneous: $heterogeneous:literal, infinite: $infinite:literal) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         pub struct $name;
@@ -28,6 +30,7 @@ macro_rules! profile {
             type Lanes = $lanes;
             const MEDIA: bool = $media;
             const NULLS: bool = $nulls;
+            const HETEROGENEOUS: bool = $heterogeneous;
             const INFINITE: bool = $infinite;
             const NAME: &'static str = $text;
         }
@@ -36,23 +39,27 @@ macro_rules! profile {
 
 profile! {
     /// Surfaces only.
-    Vacuum, "vacuum", lanes: f32, media: false, nulls: false, infinite: true
+    Vacuum, "vacuum", lanes: f32, media: false, nulls: false, heterogeneous: false, infinite: true
 }
 profile! {
     /// Grey media behind surfaces that scatter, all light from within the scene: a closed room in fog.
-    Fog, "fog", lanes: f32, media: true, nulls: false, infinite: false
+    Fog, "fog", lanes: f32, media: true, nulls: false, heterogeneous: false, infinite: false
 }
 profile! {
     /// Grey media with index-matched boundaries, under any emitter.
-    Bounded, "bounded", lanes: f32, media: true, nulls: true, infinite: true
+    Bounded, "bounded", lanes: f32, media: true, nulls: true, heterogeneous: false, infinite: true
 }
 profile! {
-    /// Media of any colour under emitters within the scene, no index-matched boundaries.
-    ChromaticFog, "chromatic-fog", lanes: Spectrum, media: true, nulls: false, infinite: false
+    /// Grey media, some of which vary in space.
+    Smoke, "smoke", lanes: f32, media: true, nulls: true, heterogeneous: true, infinite: true
+}
+profile! {
+    /// Homogeneous media of any colour under emitters within the scene, no index-matched boundaries.
+    ChromaticFog, "chromatic-fog", lanes: Spectrum, media: true, nulls: false, heterogeneous: false, infinite: false
 }
 profile! {
     /// All there is.
-    Everything, "everything", lanes: Spectrum, media: true, nulls: true, infinite: true
+    Everything, "everything", lanes: Spectrum, media: true, nulls: true, heterogeneous: true, infinite: true
 }
 
 /// What a scene needs of its profile.
@@ -62,6 +69,8 @@ pub struct Needs {
     pub media: bool,
     /// Some extinction differs between channels.
     pub chromatic: bool,
+    /// Some medium's coefficients vary in space.
+    pub heterogeneous: bool,
     /// Some surface lets rays pass undeflected, were it only those from the camera.
     pub nulls: bool,
     /// Some emitter is at infinity, or the sensor is.
@@ -75,7 +84,8 @@ impl Needs {
         let passed = hide_emitters && scene.surfaces.iter().any(|surface| surface.emitter.is_some());
         Self {
             media: scene.media.iter().any(|medium| medium.sigma_t != Spectrum::ZERO),
-            chromatic: scene.media.iter().any(Homogeneous::is_chromatic),
+            chromatic: scene.media.iter().any(Medium::is_chromatic),
+            heterogeneous: scene.media.iter().any(|medium| medium.varying.is_some()),
             nulls: nulls || passed,
             infinite: scene.lights.has_infinite() || scene.sensor.is_parallel(),
         }
@@ -91,6 +101,8 @@ pub enum ProfileName {
     Fog,
     /// [`Bounded`].
     Bounded,
+    /// [`Smoke`].
+    Smoke,
     /// [`ChromaticFog`].
     ChromaticFog,
     /// [`Everything`].
@@ -101,6 +113,8 @@ impl ProfileName {
     /// The leanest profile that has all a scene needs.
     pub fn leanest(needs: Needs) -> Self {
         match needs {
+            Needs { heterogeneous: true, chromatic: false, .. } => Self::Smoke,
+            Needs { heterogeneous: true, .. } => Self::Everything,
             Needs { media: false, nulls: false, .. } => Self::Vacuum,
             Needs { chromatic: false, nulls: false, infinite: false, .. } => Self::Fog,
             Needs { chromatic: false, .. } => Self::Bounded,
@@ -115,6 +129,7 @@ impl ProfileName {
             Self::Vacuum => Vacuum::NAME,
             Self::Fog => Fog::NAME,
             Self::Bounded => Bounded::NAME,
+            Self::Smoke => Smoke::NAME,
             Self::ChromaticFog => ChromaticFog::NAME,
             Self::Everything => Everything::NAME,
         }
@@ -125,6 +140,7 @@ impl ProfileName {
         fn of<P: Profile>() -> Vec<&'static str> {
             let parts = [
                 (P::MEDIA, "media"),
+                (P::HETEROGENEOUS, "varying media"),
                 (P::Lanes::COUNT > 1, "chromatic extinction"),
                 (P::NULLS, "index-matched boundaries"),
                 (P::INFINITE, "infinite emitters"),
@@ -135,6 +151,7 @@ impl ProfileName {
             Self::Vacuum => of::<Vacuum>(),
             Self::Fog => of::<Fog>(),
             Self::Bounded => of::<Bounded>(),
+            Self::Smoke => of::<Smoke>(),
             Self::ChromaticFog => of::<ChromaticFog>(),
             Self::Everything => of::<Everything>(),
         }
@@ -147,13 +164,20 @@ mod tests {
 
     #[test]
     fn the_leanest_profile_has_all_that_is_needed() {
-        for bits in 0..16u32 {
+        for bits in 0..32u32 {
             let has = |bit: u32| bits >> bit & 1 == 1;
-            let needs = Needs { media: has(0), chromatic: has(1) && has(0), nulls: has(2), infinite: has(3) };
+            let needs = Needs {
+                media: has(0),
+                chromatic: has(1) && has(0),
+                heterogeneous: has(4) && has(0),
+                nulls: has(2),
+                infinite: has(3),
+            };
             let left_out = ProfileName::leanest(needs).left_out();
             for (needed, what) in [
                 (needs.media, "media"),
                 (needs.chromatic, "chromatic extinction"),
+                (needs.heterogeneous, "varying media"),
                 (needs.nulls, "index-matched boundaries"),
                 (needs.infinite, "infinite emitters"),
             ] {

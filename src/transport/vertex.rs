@@ -4,7 +4,7 @@ use crate::math::Lanes;
 use crate::{
     bsdf::{BsdfModel, Transport},
     math::{Spectrum, Vec3, offset},
-    medium::MediumIndex,
+    medium::{Matter, MediumIndex},
     phase::{Deflection, PhaseModel},
     scene::Scene,
     shape::SurfacePoint,
@@ -15,8 +15,8 @@ use crate::{
 pub enum Site {
     /// On a surface.
     Surface(SurfacePoint),
-    /// In the medium that the segment before it ran through.
-    Medium,
+    /// In the medium that the segment before it ran through, made of this.
+    Medium(Matter),
 }
 
 /// Scattering at a vertex between two given directions.
@@ -72,10 +72,10 @@ pub struct Vertex<L> {
 impl<L: Lanes> Vertex<L> {
     /// sigma_t per lane in a medium, 1 on a surface.
     #[inline]
-    pub fn sigma_t(&self, scene: &Scene) -> L {
+    pub fn sigma_t(&self) -> L {
         match self.site {
             Site::Surface(_) => L::splat(1.0),
-            Site::Medium => L::from_spectrum(scene.media[self.medium.0 as usize].sigma_t),
+            Site::Medium(matter) => L::from_spectrum(matter.sigma_t),
         }
     }
 
@@ -84,7 +84,7 @@ impl<L: Lanes> Vertex<L> {
     pub fn cosine(&self, direction: Vec3) -> f32 {
         match &self.site {
             Site::Surface(point) => point.normal.dot(direction).abs(),
-            Site::Medium => 1.0,
+            Site::Medium(_) => 1.0,
         }
     }
 
@@ -92,7 +92,7 @@ impl<L: Lanes> Vertex<L> {
     #[inline]
     pub fn depart(&self, scene: &Scene, direction: Vec3) -> (Vec3, MediumIndex) {
         match &self.site {
-            Site::Medium => (self.position, self.medium),
+            Site::Medium(_) => (self.position, self.medium),
             Site::Surface(point) => {
                 let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
                 (origin, scene.medium_towards(point, direction, self.medium))
@@ -104,7 +104,7 @@ impl<L: Lanes> Vertex<L> {
     #[inline]
     pub fn lift(&self, direction: Vec3) -> Vec3 {
         match &self.site {
-            Site::Medium => Vec3::ZERO,
+            Site::Medium(_) => Vec3::ZERO,
             Site::Surface(point) => offset::side_of(point.normal, direction),
         }
     }
@@ -127,7 +127,7 @@ impl<L: Lanes> Vertex<L> {
     pub fn is_connectible(&self, scene: &Scene) -> bool {
         match &self.site {
             Site::Surface(point) => scene.surface(point.shape).connectible,
-            Site::Medium => true,
+            Site::Medium(_) => true,
         }
     }
 
@@ -135,11 +135,11 @@ impl<L: Lanes> Vertex<L> {
     #[inline]
     pub fn scatter_towards(&self, scene: &Scene, outgoing: Vec3, transport: Transport) -> Scattering {
         match &self.site {
-            Site::Medium => {
+            Site::Medium(matter) => {
                 let medium = &scene.media[self.medium.0 as usize];
                 let phase = medium.phase.density(Deflection::between(-self.incoming, outgoing));
-                let density = phase * medium.survival();
-                Scattering { value: medium.albedo * phase, forward: density, backward: density }
+                let density = phase * matter.survival();
+                Scattering { value: matter.albedo * phase, forward: density, backward: density }
             }
             Site::Surface(point) => self.reflect_towards(scene, point, outgoing, transport),
         }

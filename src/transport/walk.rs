@@ -9,7 +9,7 @@ use super::{
 use crate::{
     bsdf::{BsdfModel, Transport},
     math::{Lanes, Spectrum, Vec3, measure},
-    medium::MediumIndex,
+    medium::{Matter, MediumIndex},
     phase::{Deflection, PhaseModel},
     sampling::Stream,
     scene::Scene,
@@ -80,7 +80,7 @@ pub fn walk<P: Profile>(
     while departure.edges < kind.max_edges {
         let Departure { ray, medium, .. } = departure;
         let flight = segment::fly::<P>(scene, ray, medium, departure.hidden, kind.hero, stream);
-        let Some(vertex) = land::<P>(scene, &departure, &flight, kind.hero, visitor) else { return };
+        let Some(vertex) = land::<P>(&departure, &flight, kind.hero, visitor) else { return };
         if matches!(flight.landing, Landing::Escape) {
             if P::INFINITE {
                 visitor.escape(&vertex);
@@ -99,7 +99,6 @@ pub fn walk<P: Profile>(
 /// The vertex at the end of a flight; none if it coincides with the one before.
 #[inline]
 pub fn land<P: Profile>(
-    scene: &Scene,
     departure: &Departure<P::Lanes>,
     flight: &Flight<P::Lanes>,
     hero: usize,
@@ -108,8 +107,8 @@ pub fn land<P: Profile>(
     let direction = departure.ray.direction;
     let (position, site) = match flight.landing {
         Landing::Surface(point) => (point.position, Site::Surface(point)),
-        Landing::Medium(position) => (position, Site::Medium),
-        Landing::Escape => (direction, Site::Medium),
+        Landing::Medium(position, matter) => (position, Site::Medium(matter)),
+        Landing::Escape => (direction, Site::Medium(Matter::NOTHING)),
     };
     let escaped = matches!(flight.landing, Landing::Escape);
     let distance_squared = if (P::INFINITE && departure.from_infinity) || escaped {
@@ -131,7 +130,7 @@ pub fn land<P: Profile>(
         reach: departure.reach,
         partial: departure.carried,
     };
-    let sigma_t = if escaped { P::Lanes::splat(1.0) } else { vertex.sigma_t(scene) };
+    let sigma_t = if escaped { P::Lanes::splat(1.0) } else { vertex.sigma_t() };
     let one = P::Lanes::splat(1.0);
     let attenuates = P::MEDIA || P::NULLS;
     let ratio = if attenuates { flight.depth.flight_ratio(sigma_t, hero) } else { one };
@@ -145,7 +144,8 @@ pub fn land<P: Profile>(
     }
     vertex.partial = (departure.carried * transmitted).scaled(1.0 / distance_squared);
     vertex.reach = departure.reach * ratio;
-    vertex.throughput *= ratio.to_spectrum();
+    let sampled = if P::HETEROGENEOUS { flight.ratio } else { ratio };
+    vertex.throughput *= sampled.to_spectrum();
     if P::NULLS {
         vertex.throughput *= flight.tint;
     }
@@ -176,7 +176,7 @@ fn scatter<L: Lanes>(
     stream: &mut Stream,
 ) -> Option<Departure<L>> {
     let turn = match &vertex.site {
-        Site::Medium => collide(scene, vertex, stream)?,
+        Site::Medium(matter) => collide(scene, vertex, matter, stream)?,
         Site::Surface(point) => reflect(scene, vertex, point, transport, stream)?,
     };
     Some(set_out(scene, vertex, &turn))
@@ -197,21 +197,26 @@ pub fn set_out<L: Lanes>(scene: &Scene, vertex: &Vertex<L>, turn: &Turn) -> Depa
         dirac: turn.dirac,
         throughput: vertex.throughput * turn.weight,
         forward: turn.forward,
-        carried: (tail * vertex.sigma_t(scene)).scaled(vertex.cosine(turn.direction) * vertex.inverse),
+        carried: (tail * vertex.sigma_t()).scaled(vertex.cosine(turn.direction) * vertex.inverse),
         reach: vertex.reach,
     }
 }
 
 #[inline]
-fn collide<L: Lanes>(scene: &Scene, vertex: &Vertex<L>, stream: &mut Stream) -> Option<Turn> {
+fn collide<L: Lanes>(
+    scene: &Scene,
+    vertex: &Vertex<L>,
+    matter: &Matter,
+    stream: &mut Stream,
+) -> Option<Turn> {
     let medium = &scene.media[vertex.medium.0 as usize];
-    let survival = medium.survival();
+    let survival = matter.survival();
     if stream.uniform() >= survival {
         return None;
     }
     let direction = medium.phase.sample(-vertex.incoming, stream);
     let density = medium.phase.density(Deflection::between(-vertex.incoming, direction)) * survival;
-    let weight = medium.albedo / survival;
+    let weight = matter.albedo / survival;
     Some(Turn { direction, weight, forward: density, backward: density, dirac: false })
 }
 

@@ -15,7 +15,7 @@ use super::accel::Geometry;
 use crate::{
     emitter::Emitter,
     math::{Spectrum, Vec3},
-    medium::MediumIndex,
+    medium::{Medium, MediumIndex},
     sampling::Discrete,
     shape::SurfacePoint,
 };
@@ -63,10 +63,10 @@ fn front(point: &SurfacePoint) -> Vec3 {
 }
 
 impl Lights {
-    /// Arranges `all` emitters of a scene within a sphere around `geometry`, in a surrounding medium with
-    /// transmittance `from_infinity` (0 or 1) along an infinite way.
-    pub fn new(all: Vec<Light>, geometry: &Geometry, from_infinity: Spectrum) -> Self {
-        let (centre, radius) = sphere_around(geometry);
+    /// Arranges `all` emitters of a scene within a sphere around `geometry` and what varies of the medium `outside`.
+    pub fn new(all: Vec<Light>, geometry: &Geometry, outside: &Medium) -> Self {
+        let (centre, radius) = sphere_around(geometry, outside);
+        let from_infinity = from_infinity(outside);
         let weight = |light: &Light| {
             let area = light.shape.map_or(0.0, |shape| geometry.area(shape));
             let arriving = if light.emitter.is_infinite() { from_infinity.max_element() } else { 1.0 };
@@ -109,9 +109,18 @@ impl Lights {
     }
 }
 
+/// What remains of light along an infinite way through a medium: 1 where it varies, for then it ends somewhere.
+fn from_infinity(outside: &Medium) -> Spectrum {
+    let lane = |sigma_t: f32| if sigma_t > 0.0 && outside.varying.is_none() { 0.0 } else { 1.0 };
+    Spectrum::new(lane(outside.sigma_t.x), lane(outside.sigma_t.y), lane(outside.sigma_t.z))
+}
+
 /// Centre and radius of a sphere that holds everything.
-fn sphere_around(geometry: &Geometry) -> (Vec3, f32) {
-    let (low, high) = geometry.bounds();
+fn sphere_around(geometry: &Geometry, outside: &Medium) -> (Vec3, f32) {
+    let (mut low, mut high) = geometry.bounds();
+    if let Some(varying) = &outside.varying {
+        (low, high) = (low.min(varying.extinction().low), high.max(varying.extinction().high));
+    }
     if !(low.is_finite() && high.is_finite()) {
         return (Vec3::ZERO, 1.0);
     }

@@ -1,7 +1,7 @@
 //! The densities of all strategies of a path, each written out vertex by vertex (LW96 eq. 11-13), and the balance
 //! heuristic over them (eq. 14). Logarithms in f64: no path is too long or too dense for them.
 
-use super::path::{APERTURE, Node, Path, Place};
+use super::path::{APERTURE, Node, Path, Place, matter};
 use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{Emitter, Kind},
@@ -162,10 +162,10 @@ impl<'a> Twin<'a> {
     fn scatter(&self, before: &Node, here: &Node, after: &Node, transport: Transport) -> f64 {
         let (back, on) = (here.towards(before), here.towards(after));
         match &here.place {
-            Place::Volume(_) => {
+            Place::Volume(position) => {
                 let medium = &self.scene.media[here.medium.0 as usize];
                 f64::from(medium.phase.density(Deflection::between(-back.as_vec3(), on.as_vec3())))
-                    * f64::from(medium.albedo.max_element())
+                    * f64::from(matter(self.scene, here.medium, *position).survival())
             }
             Place::Surface(point) => reflect(self.scene, point, back, on, here.dirac, transport),
             _ => 0.0,

@@ -1,8 +1,8 @@
 //! An explicit path: its vertices from emitter to lens, and the optical depths between them.
 
 use crate::{
-    math::{DVec3, Vec2, Vec3, offset, vec2},
-    medium::MediumIndex,
+    math::{DVec3, Section, Spectrum, Vec2, Vec3, offset, vec2},
+    medium::{Choice, Heterogeneous, Matter, MediumIndex},
     scene::Scene,
     shape::{Ray, SurfacePoint},
 };
@@ -84,7 +84,7 @@ impl Node {
     /// sigma_t of `channel` in a medium; 1 elsewhere.
     pub fn sigma_t(&self, scene: &Scene, channel: usize) -> f64 {
         match self.place {
-            Place::Volume(_) => f64::from(scene.media[self.medium.0 as usize].sigma_t[channel]),
+            Place::Volume(p) => f64::from(matter(scene, self.medium, p).sigma_t[channel]),
             _ => 1.0,
         }
     }
@@ -173,7 +173,7 @@ impl Way {
                 (None, Place::Sky(_)) => f64::INFINITY,
                 (None, _) => (end - left).dot(direction),
             };
-            way.add_leg(scene, medium, reached, reach(from, to));
+            way.add_leg(scene, medium, left, direction, reached, reach(from, to));
             let Some(point) = point else { return Some(way) };
             let passed = hidden && scene.surface(point.shape).emitter.is_some();
             let null = scene.null_transmission(&point, ray.direction).max_element();
@@ -189,14 +189,28 @@ impl Way {
         }
     }
 
-    fn add_leg(&mut self, scene: &Scene, medium: MediumIndex, distance: f64, reach: f64) {
-        let sigma_t = scene.media[medium.0 as usize].sigma_t;
+    fn add_leg(
+        &mut self,
+        scene: &Scene,
+        medium: MediumIndex,
+        left: DVec3,
+        direction: DVec3,
+        distance: f64,
+        reach: f64,
+    ) {
+        let medium = &scene.media[medium.0 as usize];
+        let sigma_t = medium.sigma_t;
+        self.rounding += ULP * reach * f64::from(sigma_t.max_element());
+        if let Some(varying) = &medium.varying {
+            let depth = depth_of(varying, left, direction, distance);
+            self.depth = std::array::from_fn(|channel| self.depth[channel] + depth[channel]);
+            return;
+        }
         for (channel, depth) in self.depth.iter_mut().enumerate() {
             if sigma_t[channel] > 0.0 {
                 *depth += f64::from(sigma_t[channel]) * distance.max(0.0);
             }
         }
-        self.rounding += ULP * reach * f64::from(sigma_t.max_element());
     }
 
     /// The nearer to grazing a boundary is met, the less certain is where.
@@ -205,6 +219,30 @@ impl Way {
         let cosine = point.normal.as_dvec3().dot(direction).abs();
         self.rounding += ULP * f64::from(point.position.abs().max_element()) * sigma_t / cosine;
     }
+}
+
+/// Optical depth of a varying medium: by quadrature where its tracker is exact, else what the tracker says, which the
+/// weights must use whatever it is.
+fn depth_of(varying: &Heterogeneous, left: DVec3, direction: DVec3, distance: f64) -> DVec3 {
+    let section =
+        Section { origin: left.as_vec3(), direction: direction.as_vec3(), length: distance.max(0.0) as f32 };
+    if !matches!(varying.tracker().choice(), Choice::ClosedForm | Choice::Exact) {
+        return varying.depth::<Spectrum>(&section).as_dvec3();
+    }
+    let medium = varying.extinction();
+    let Some([first, last]) = medium.clip(&section) else { return DVec3::ZERO };
+    let step = f64::from(last - first) / f64::from(POINTS);
+    let point = |i: u32| left + direction * (f64::from(first) + (f64::from(i) + 0.5) * step);
+    (0..POINTS).map(|i| medium.at::<Spectrum>(point(i).as_vec3()).as_dvec3()).sum::<DVec3>() * step
+}
+
+/// Points of the quadrature of an optical depth.
+const POINTS: u32 = 4_000;
+
+/// What a medium is made of at `position`.
+pub fn matter(scene: &Scene, medium: MediumIndex, position: Vec3) -> Matter {
+    let medium = &scene.media[medium.0 as usize];
+    medium.varying.as_ref().map_or(medium.matter(), |varying| varying.at::<Spectrum>(position))
 }
 
 const ULP: f64 = f32::EPSILON as f64;

@@ -111,7 +111,7 @@ pub fn cases<P: Profile>(
     let (mut kept, mut film) = (LightCache::new(P::Lanes::COUNT), WideFilm);
     let visitor = Light::new(estimator, &mut kept, &mut film, start, hero);
     let trail = light_walk(visitor, estimator, &start, hero, stream);
-    of_light(estimator, &start, &trail, &mut cases);
+    of_light(estimator, &start, &trail, &mut cases, stream);
     of_both(estimator, &eye, &start, &trail.vertices, &mut cases, stream);
     cases.all
 }
@@ -131,11 +131,11 @@ pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, strea
         (0..100).find_map(|_| scene.lights.sample_link(&scene.geometry, last.position, stream)).unwrap();
     let of_eye = |count| chain(&eye.vertices[..count], false);
     let of_light = |count| chain(&light.vertices[..count], false);
-    cases.add(emitter_of(&link), Vec::new(), of_eye(length), eye.visitor.link(last, &link));
+    cases.add(emitter_of(&link), Vec::new(), of_eye(length), eye.visitor.link(last, &link, stream));
     let half = length / 2;
-    let joined = eye.visitor.join_with(&eye.vertices[half - 1], &light.vertices[half - 1]);
+    let joined = eye.visitor.join_with(&eye.vertices[half - 1], &light.vertices[half - 1], stream);
     cases.add(start_of(&start), of_light(half), of_eye(half), joined);
-    let seen = light.visitor.join_to_lens(&light.vertices[length - 1], APERTURE);
+    let seen = light.visitor.join_to_lens(&light.vertices[length - 1], APERTURE, stream);
     cases.add(start_of(&start), of_light(length), Vec::new(), seen.map(|(_, joined)| joined));
     cases.all
 }
@@ -175,7 +175,7 @@ fn chain<L: Lanes>(vertices: &[Vertex<L>], dirac: bool) -> Vec<Node> {
     let node = |(index, vertex): (usize, &Vertex<L>)| Node {
         place: match vertex.site {
             Site::Surface(point) => Place::Surface(point),
-            Site::Medium => Place::Volume(vertex.position),
+            Site::Medium(_) => Place::Volume(vertex.position),
         },
         medium: vertex.medium,
         dirac: vertices.get(index + 1).map_or(dirac, |next| next.after_dirac),
@@ -203,7 +203,7 @@ fn of_eye<P: Profile>(
             && estimator.counts.next_event > 0.0
             && let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream)
         {
-            let joined = eye.visitor.link(vertex, &link);
+            let joined = eye.visitor.link(vertex, &link, stream);
             cases.add(emitter_of(&link), Vec::new(), chain(&eye.vertices[..=index], false), joined);
         }
         previous = vertex.position;
@@ -225,15 +225,16 @@ fn of_light<P: Profile>(
     start: &Start,
     light: &Trail<Light<'_, P, WideFilm>, P::Lanes>,
     cases: &mut Cases<'_>,
+    stream: &mut Stream,
 ) {
     if estimator.counts.lens <= 0.0 {
         return;
     }
-    let joined = light.visitor.join_start_to_lens(APERTURE).map(|(_, joined)| joined);
+    let joined = light.visitor.join_start_to_lens(APERTURE, stream).map(|(_, joined)| joined);
     cases.add(start_of(start), Vec::new(), Vec::new(), joined);
     for (index, vertex) in light.vertices.iter().enumerate() {
         if vertex.is_connectible(estimator.scene) {
-            let joined = light.visitor.join_to_lens(vertex, APERTURE).map(|(_, joined)| joined);
+            let joined = light.visitor.join_to_lens(vertex, APERTURE, stream).map(|(_, joined)| joined);
             cases.add(start_of(start), chain(&light.vertices[..=index], false), Vec::new(), joined);
         }
     }
@@ -254,7 +255,7 @@ fn of_both<P: Profile>(
         let other = stream.below(light.len());
         let (ours, theirs) = (can_join(estimator, vertex), light[other].is_connectible(estimator.scene));
         if ours && theirs && vertex.edges + light[other].edges < estimator.max_edges {
-            let joined = eye.visitor.join_with(vertex, &light[other]);
+            let joined = eye.visitor.join_with(vertex, &light[other], stream);
             let (eye, light) = (chain(&eye.vertices[..=index], false), chain(&light[..=other], false));
             cases.add(start_of(start), light, eye, joined);
         }

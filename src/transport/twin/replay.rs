@@ -3,12 +3,13 @@
 
 use super::{
     density::{Twin, reflect},
-    path::{APERTURE, Node, Path, Place},
+    path::{APERTURE, Node, Path, Place, matter},
     record::WideFilm,
 };
 use crate::{
     bsdf::Transport,
     math::{Lanes, Spectrum, vec3},
+    sampling::{Stream, stream::Purpose},
     scene::lights::Start,
     transport::{
         Estimator, LightCache,
@@ -50,20 +51,24 @@ pub fn weights<P: Profile>(
     let lens_side = |i: usize| by_eye.get(last - 1 - i);
     let emitter_side = |i: usize| by_light.get(i - 1);
     let one = |s: usize| {
+        // Estimates of transmittance are of no concern to weights.
+        let stream = &mut Stream::new(17, 0, 0, Purpose::Study);
         if twin.count(path, s) == 0.0 {
             return Some(0.0);
         }
         let joined = match s {
             0 => lens_side(0).map(|vertex| eye.hit(vertex, &twin.link(path)?)),
-            1 if last == 1 => Some(light.join_start_to_lens(APERTURE).map(|(_, joined)| joined)),
+            1 if last == 1 => Some(light.join_start_to_lens(APERTURE, stream).map(|(_, joined)| joined)),
             _ if s == last => {
-                emitter_side(s - 1).map(|v| light.join_to_lens(v, APERTURE).map(|(_, joined)| joined))
+                emitter_side(s - 1).map(|v| light.join_to_lens(v, APERTURE, stream).map(|(_, joined)| joined))
             }
             1 => twin
                 .link(path)
                 .filter(|link| link.connect > 0.0)
-                .and_then(|link| lens_side(1).map(|vertex| eye.link(vertex, &link))),
-            _ => lens_side(s).zip(emitter_side(s - 1)).map(|(ours, theirs)| eye.join_with(ours, theirs)),
+                .and_then(|link| lens_side(1).map(|vertex| eye.link(vertex, &link, stream))),
+            _ => lens_side(s)
+                .zip(emitter_side(s - 1))
+                .map(|(ours, theirs)| eye.join_with(ours, theirs, stream)),
         };
         // The hero cannot walk here (no extinction of its own, say): a density of 0.
         let Some(joined) = joined else { return Some(0.0) };
@@ -144,7 +149,7 @@ impl Lead<'_> {
         }
         for i in 1..self.nodes.len() {
             let flight = self.flight(i);
-            let Some(vertex) = land::<P>(scene, &departure, &flight, self.hero, visitor) else { break };
+            let Some(vertex) = land::<P>(&departure, &flight, self.hero, visitor) else { break };
             made.push(vertex);
             if i + 1 < self.nodes.len() {
                 departure = set_out(scene, &vertex, &self.turn(i, &vertex));
@@ -158,10 +163,10 @@ impl Lead<'_> {
         let landing = match node.place {
             Place::Surface(point) => Landing::Surface(point),
             Place::Sky(_) => Landing::Escape,
-            _ => Landing::Medium(node.position()),
+            _ => Landing::Medium(node.position(), matter(self.twin.scene, node.medium, node.position())),
         };
         let depth = L::from_spectrum(vec3(depth[0], depth[1], depth[2]));
-        Flight { landing, medium: node.medium, depth, tint: Spectrum::ONE }
+        Flight { landing, medium: node.medium, depth, ratio: L::splat(1.0), tint: Spectrum::ONE }
     }
 
     fn turn<L: Lanes>(&self, i: usize, vertex: &Vertex<L>) -> Turn {

@@ -1,0 +1,123 @@
+//! From a description to a medium: parameters are read first; where coefficients vary, what they are like within the
+//! medium's bounds is looked at once those are known.
+
+use super::{Choice, Heterogeneous, Medium, heterogeneous::Fields};
+use crate::{
+    density::{self, Place, Volume},
+    description::{Library, Object, Params, find_row},
+    error::{Error, Result},
+    math::Vec3,
+    phase::{self, Phase},
+};
+
+/// How a medium is called and read.
+pub struct Row {
+    /// Mitsuba's plugin name.
+    pub name: &'static str,
+    read: fn(&Params<'_>, &Place) -> Result<Blueprint>,
+}
+
+/// Every kind of medium.
+pub const ROWS: &[Row] =
+    &[Row { name: "homogeneous", read: homogeneous }, Row { name: "heterogeneous", read: heterogeneous }];
+
+/// A medium whose parameters have been read.
+#[derive(Clone, Debug)]
+pub struct Blueprint {
+    medium: Medium,
+    fields: Option<Fields>,
+}
+
+/// Reads the medium that `object` describes.
+pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Blueprint> {
+    let row = find_row(object, "medium", ROWS, |row| row.name)?;
+    let params = Params::new(object, library);
+    let read = (row.read)(&params, place)?;
+    params.finish()?;
+    Ok(read)
+}
+
+/// True if `object` is a medium.
+pub fn is_medium(object: &Object) -> bool {
+    ROWS.iter().any(|row| row.name == object.plugin)
+}
+
+impl Blueprint {
+    /// Vacuum.
+    pub fn vacuum() -> Self {
+        Self { medium: Medium::vacuum(), fields: None }
+    }
+
+    /// True if coefficients vary.
+    pub fn varies(&self) -> bool {
+        self.fields.is_some()
+    }
+
+    /// The medium, which lies in the box from `low` to `high` where its volumes do not say so themselves. `forced`
+    /// is a tracker that goes before the description's own.
+    pub fn finish(self, low: Vec3, high: Vec3, forced: Option<Choice>) -> Result<Medium> {
+        let Some(fields) = self.fields else { return Ok(self.medium) };
+        let varying = Heterogeneous::new(fields, [low, high], forced)?;
+        let (sigma_t, albedo) = varying.bounds();
+        Ok(Medium { sigma_t, albedo, varying: Some(Box::new(varying)), ..self.medium })
+    }
+}
+
+/// `sigma_t` [1/m], `albedo`, `scale` and the phase function, with Mitsuba's defaults.
+fn homogeneous(params: &Params<'_>, _: &Place) -> Result<Blueprint> {
+    let scale = scale(params)?;
+    let sigma_t = params.color("sigma_t", 1.0)? * scale;
+    if !sigma_t.is_finite() {
+        return Err(params.complain("sigma_t", "a finite product with scale", format!("{sigma_t}")));
+    }
+    let albedo = params.color("albedo", 0.75)?;
+    if albedo.max_element() > 1.0 {
+        return Err(params.complain("albedo", "values from 0 to 1", format!("{albedo}")));
+    }
+    let phase = common(params)?;
+    let medium = Medium { sigma_t, albedo, phase, varying: None };
+    Ok(Blueprint { medium, fields: None })
+}
+
+/// `sigma_t` [1/m] and `albedo` as volumes, `scale`, the phase function, and which tracker: `tracker`, `step` [m] or
+/// `march_error` for ray marching.
+fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
+    let volume = |name, default| {
+        let given = density::parameter(params, name, place)?;
+        Ok(given.unwrap_or_else(|| Volume::constant(default)))
+    };
+    let fields = Fields {
+        sigma_t: volume("sigma_t", 1.0)?,
+        scale: scale(params)?,
+        albedo: volume("albedo", 0.75)?,
+        tracker: params.choice("tracker", Choice::Auto, &Choice::NAMES)?,
+        step: params.optional_float("step")?,
+        march_error: params.float_within("march_error", 1e-3, 1e-7, 1.0)?,
+        recentre: place.recentre,
+        location: params.location().clone(),
+    };
+    if fields.step.is_some_and(|step| !(step > 0.0 && step < f64::INFINITY)) {
+        return Err(params.complain("step", "a length above 0", format!("{:?}", fields.step)));
+    }
+    let medium = Medium { phase: common(params)?, ..Medium::vacuum() };
+    Ok(Blueprint { medium, fields: Some(fields) })
+}
+
+fn scale(params: &Params<'_>) -> Result<f32> {
+    params.float_within("scale", 1.0, 0.0, f64::from(f32::MAX)).map(|scale| scale as f32)
+}
+
+/// What all media have: the phase function, and parameters of Mitsuba's that have no meaning here.
+fn common(params: &Params<'_>) -> Result<Phase> {
+    params.accept_unused(&["sample_emitters", "has_spectral_extinction"], "the scene itself decides");
+    match params.children(|child| phase::is_phase(child.object))?.as_slice() {
+        [] => Ok(Phase::Isotropic(phase::Isotropic)),
+        [one] => phase::build(one.object, params.library),
+        [_, second, ..] => Err(Error::new(
+            second.location,
+            "one phase function in a medium",
+            "a second one",
+            "blend them with a blendphase, or remove one",
+        )),
+    }
+}

@@ -1,0 +1,131 @@
+//! Ray marching (LW96 sec. 5): the way through the medium is cut into intervals, each taken for homogeneous.
+//!
+//! The cuts divide the whole chord of the line through the medium's box, wherever a walk on it starts or ends: both
+//! directions of a segment see the same intervals, so that T(x, y) = T(y, x), and a flight is sampled from the same
+//! depths that joins are given. What is biased is the transmittance alone: at vertices the medium has its own
+//! coefficients.
+
+use super::{Extinction, Leg};
+use crate::math::{Lanes, Section, Vec3};
+
+/// Intervals of at most this length [m].
+#[derive(Clone, Copy, Debug)]
+pub struct March {
+    /// The longest interval [m].
+    pub step: f32,
+}
+
+/// The intervals that a section meets.
+struct Intervals {
+    /// t where the chord begins, possibly behind the section's origin.
+    start: f32,
+    /// Length of an interval [m].
+    width: f32,
+    /// The part of the section in the box.
+    first: f32,
+    last: f32,
+    index: u32,
+    until: u32,
+}
+
+/// One of them.
+struct Interval {
+    /// t of its middle.
+    middle: f32,
+    first: f32,
+    last: f32,
+}
+
+impl Iterator for Intervals {
+    type Item = Interval;
+
+    #[inline]
+    fn next(&mut self) -> Option<Interval> {
+        if self.index >= self.until {
+            return None;
+        }
+        let at = |index: u32| self.start + self.width * index as f32;
+        let first = if at(self.index) < self.first { self.first } else { at(self.index) };
+        let last = at(self.index + 1).min(self.last);
+        let middle = self.start + self.width * (self.index as f32 + 0.5);
+        self.index += 1;
+        Some(Interval { middle, first, last: last.max(first) })
+    }
+}
+
+impl March {
+    #[inline]
+    fn intervals(&self, medium: &Extinction, section: &Section) -> Option<Intervals> {
+        let [first, last] = medium.clip(section)?;
+        let [start, end] = chord(section, medium.low, medium.high, [first, last]);
+        let count = ((end - start) / self.step).ceil().clamp(1.0, 1e6);
+        let width = (end - start) / count;
+        let index = ((first - start) / width).floor().clamp(0.0, count - 1.0) as u32;
+        let until = ((last - start) / width).ceil().clamp(1.0, count) as u32;
+        Some(Intervals { start, width, first, last, index, until })
+    }
+
+    /// Optical depth along `section`.
+    #[inline]
+    pub fn depth<L: Lanes>(&self, medium: &Extinction, section: &Section) -> L {
+        let Some(intervals) = self.intervals(medium, section) else { return L::splat(0.0) };
+        intervals.fold(L::splat(0.0), |sum, interval| {
+            sum + medium.at::<L>(section.at(interval.middle)).scaled(interval.last - interval.first)
+        })
+    }
+
+    /// A flight to where the `hero` lane's depth is `remaining`.
+    #[inline]
+    pub fn fly<L: Lanes>(
+        &self,
+        medium: &Extinction,
+        section: &Section,
+        hero: usize,
+        remaining: f32,
+    ) -> Leg<L> {
+        let Some(intervals) = self.intervals(medium, section) else { return Leg::empty() };
+        let mut depth = L::splat(0.0);
+        for interval in intervals {
+            let sigma_t = medium.at::<L>(section.at(interval.middle));
+            let beyond = depth + sigma_t.scaled(interval.last - interval.first);
+            if beyond.hero(hero) > remaining {
+                let t = interval.first + (remaining - depth.hero(hero)) / sigma_t.hero(hero);
+                let t = t.clamp(interval.first, interval.last);
+                let depth = depth + sigma_t.scaled(t - interval.first);
+                return landed(medium, section, t, depth, sigma_t, hero);
+            }
+            depth = beyond;
+        }
+        Leg::exact(None, depth, hero)
+    }
+}
+
+/// A collision sampled by the interval's `sigma_t`, at a point that has its own.
+#[inline]
+fn landed<L: Lanes>(
+    medium: &Extinction,
+    section: &Section,
+    t: f32,
+    depth: L,
+    sigma_t: L,
+    hero: usize,
+) -> Leg<L> {
+    let own = medium.at::<L>(section.at(t)).hero(hero);
+    let leg = Leg::exact(Some(t), depth, hero);
+    Leg { ratio: leg.ratio.scaled(own / sigma_t.hero(hero)), ..leg }
+}
+
+/// The range of t, before 0 and beyond the section's end too, in which its line is in the box; at least `within`.
+#[inline]
+fn chord(section: &Section, low: Vec3, high: Vec3, within: [f32; 2]) -> [f32; 2] {
+    let (mut start, mut end) = (f32::NEG_INFINITY, f32::INFINITY);
+    for axis in 0..3 {
+        if section.direction[axis] != 0.0 {
+            let t = |plane: f32| (plane - section.origin[axis]) / section.direction[axis];
+            let (a, b) = (t(low[axis]), t(high[axis]));
+            start = start.max(a.min(b));
+            end = end.min(a.max(b));
+        }
+    }
+    [start.min(within[0]), end.max(within[1])]
+}

@@ -1,0 +1,125 @@
+//! Null-collision tracking: delta tracking for distances (Woodcock et al. 1965), ratio tracking for transmittance
+//! (Cramer 1978; Novak et al. 2014), both by the local majorants of a coarse lattice.
+//!
+//! Unbiased for any bounded medium, and random: the weights of the balance heuristic use the depth of the lattice's
+//! means instead, the same for every strategy.
+
+use super::{Extinction, Leg};
+use crate::{
+    density::{Coarse, Piece},
+    math::{Lanes, Section},
+    sampling::Stream,
+};
+
+/// Estimates that fall below this go on with a probability of their own size over it.
+const ROULETTE: f32 = 0.05;
+
+/// The deterministic depth that stands in for the medium's own.
+#[inline]
+pub fn stand_in<L: Lanes>(medium: &Extinction, coarse: &Coarse, section: &Section) -> L {
+    coarse.integral::<L>(section).scaled(medium.scale)
+}
+
+/// Tentative collisions along `section`, at the rate of the local majorants: `visit` is given t and the majorant
+/// [1/m], and tells whether to go on.
+#[inline]
+fn collisions(
+    medium: &Extinction,
+    coarse: &Coarse,
+    section: &Section,
+    stream: &mut Stream,
+    mut visit: impl FnMut(f32, f32, &mut Stream) -> bool,
+) {
+    let mut remaining = stream.exponential();
+    for Piece { cell, first, last } in coarse.pieces(section) {
+        let majorant = coarse.most(cell) * medium.scale;
+        let mut at = first;
+        // A cell without matter has no collisions: 0 < 0 is false whatever remains.
+        while remaining < majorant * (last - at) {
+            at += remaining / majorant;
+            remaining = stream.exponential();
+            if !visit(at, majorant, stream) {
+                return;
+            }
+        }
+        remaining -= majorant * (last - at);
+    }
+}
+
+/// Ratio tracking: an unbiased estimate of every lane's transmittance along `section`.
+#[inline]
+pub fn transmittance<L: Lanes>(
+    medium: &Extinction,
+    coarse: &Coarse,
+    section: &Section,
+    stream: &mut Stream,
+) -> L {
+    product(medium, coarse, section, stream, |sigma_t: L, majorant| {
+        L::splat(1.0) + sigma_t.scaled(-1.0 / majorant)
+    })
+}
+
+/// The product of `factor` over tentative collisions, cut short by Russian roulette.
+#[inline]
+fn product<L: Lanes>(
+    medium: &Extinction,
+    coarse: &Coarse,
+    section: &Section,
+    stream: &mut Stream,
+    factor: impl Fn(L, f32) -> L,
+) -> L {
+    let mut product = L::splat(1.0);
+    collisions(medium, coarse, section, stream, |t, majorant, stream| {
+        product = product * factor(medium.at::<L>(section.at(t)), majorant);
+        let size = product.to_spectrum().abs().max_element();
+        if size >= ROULETTE {
+            return true;
+        }
+        let goes_on = stream.uniform() * ROULETTE < size;
+        product = if goes_on { product.scaled(ROULETTE / size) } else { L::splat(0.0) };
+        goes_on
+    });
+    product
+}
+
+/// Delta tracking by the `hero` lane.
+#[inline]
+pub fn fly<L: Lanes>(
+    medium: &Extinction,
+    coarse: &Coarse,
+    section: &Section,
+    hero: usize,
+    stream: &mut Stream,
+) -> Leg<L> {
+    let mut collision = None;
+    collisions(medium, coarse, section, stream, |t, majorant, stream| {
+        let real = stream.uniform() * majorant < medium.at::<L>(section.at(t)).hero(hero);
+        if real {
+            collision = Some(t);
+        }
+        !real
+    });
+    let flown = Section { length: collision.unwrap_or(section.length), ..*section };
+    let depth = stand_in(medium, coarse, &flown);
+    let ratio = transmittance_ratio(medium, coarse, &flown, hero, stream);
+    Leg { collision, depth, ratio, spent: 0.0 }
+}
+
+/// An unbiased estimate of every lane's transmittance over the hero's: exp of the integral of the difference, which
+/// may have either sign.
+#[inline]
+fn transmittance_ratio<L: Lanes>(
+    medium: &Extinction,
+    coarse: &Coarse,
+    flown: &Section,
+    hero: usize,
+    stream: &mut Stream,
+) -> L {
+    if L::COUNT == 1 {
+        return L::splat(1.0);
+    }
+    product(medium, coarse, flown, stream, |sigma_t: L, majorant| {
+        let difference = sigma_t + L::splat(-sigma_t.hero(hero));
+        L::splat(1.0) + difference.scaled(-1.0 / majorant)
+    })
+}

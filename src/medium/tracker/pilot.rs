@@ -1,0 +1,119 @@
+//! Measurements before a render: which tracker costs least, and how long a marching step may be. Costs are counted,
+//! not timed, so that the same scene is rendered the same way on any machine.
+
+use super::{Choice, Extinction, March, Tracker, null_collision};
+use crate::{
+    density::{Coarse, VolumeModel},
+    math::{Lanes, Section, Spectrum, Vec3, vec3},
+    sampling::{Stream, stream::Purpose},
+};
+
+/// Sections that are tried.
+const SECTIONS: u64 = 128;
+/// Estimates of the transmittance of each, whose variance counts as cost.
+const ESTIMATES: u64 = 8;
+/// Marching steps are at least the box's diagonal over this.
+const FINEST: f32 = 16_384.0;
+
+/// The method `choice`, ready for work.
+pub fn choose(medium: &Extinction, choice: Choice, step: Option<f64>, march_error: f64) -> Tracker {
+    let coarse = || Box::new(Coarse::over(&medium.volume, medium.low, medium.high));
+    match choice {
+        Choice::ClosedForm => Tracker::ClosedForm,
+        Choice::Exact => Tracker::Exact,
+        Choice::March => Tracker::March(March {
+            step: step.map_or_else(|| longest_step(medium, march_error), |s| s as f32),
+        }),
+        Choice::NullCollision => Tracker::NullCollision(coarse()),
+        Choice::Auto if Choice::ClosedForm.applies_to(&medium.volume) => Tracker::ClosedForm,
+        Choice::Auto if Choice::Exact.applies_to(&medium.volume) => {
+            let coarse = coarse();
+            let exact =
+                COST_OF_CELL * mean(medium, |section, _| f64::from(medium.volume.cells_crossed(section)));
+            if exact <= cost_of_tracking(medium, &coarse) {
+                Tracker::Exact
+            } else {
+                Tracker::NullCollision(coarse)
+            }
+        }
+        Choice::Auto => Tracker::NullCollision(coarse()),
+    }
+}
+
+/// Integrating a cell of a grid, entering a coarse cell, and looking up a density, in the same unit (about a
+/// nanosecond on the machines it was measured on; see the timing test of the trackers).
+const COST_OF_CELL: f64 = 12.0;
+const COST_OF_PIECE: f64 = 8.0;
+const COST_OF_LOOKUP: f64 = 40.0;
+
+/// Cost of a transmittance by null collisions, times by how much its noise adds to that of the light it attenuates
+/// (taken to vary by its own mean).
+fn cost_of_tracking(medium: &Extinction, coarse: &Coarse) -> f64 {
+    let work = mean(medium, |section, _| {
+        let pieces = coarse.pieces(section).count() as f64;
+        let lookups: f64 = coarse
+            .pieces(section)
+            .map(|piece| f64::from(coarse.most(piece.cell) * medium.scale * (piece.last - piece.first)))
+            .sum();
+        COST_OF_PIECE * pieces + COST_OF_LOOKUP * lookups
+    });
+    let estimate = |section: &Section, stream: &mut Stream| {
+        f64::from(null_collision::transmittance::<Spectrum>(medium, coarse, section, stream).max_element())
+    };
+    let first = mean(medium, |section, stream| {
+        (0..ESTIMATES).map(|_| estimate(section, stream)).sum::<f64>().powi(2)
+            / (ESTIMATES * ESTIMATES) as f64
+    });
+    let second = mean(medium, |section, stream| {
+        (0..ESTIMATES).map(|_| estimate(section, stream).powi(2)).sum::<f64>() / ESTIMATES as f64
+    });
+    let variance = if first > 0.0 { (second / first - 1.0).max(0.0) } else { 0.0 };
+    work * (1.0 + variance)
+}
+
+/// The longest step by which no section's transmittance errs by more than `error`, in steps of a factor of 2.
+fn longest_step(medium: &Extinction, error: f64) -> f32 {
+    let diagonal = (medium.high - medium.low).length();
+    let finest = diagonal / FINEST;
+    let transmittance = |section: &Section, step: f32| -> Spectrum {
+        March { step }.depth::<Spectrum>(medium, section).exp_neg()
+    };
+    let truth: Vec<Spectrum> = sections(medium)
+        .map(|(section, _)| match medium.volume.has_integral() {
+            true => super::closed_form::depth::<Spectrum>(medium, &section).exp_neg(),
+            false => transmittance(&section, 2.0 * finest),
+        })
+        .collect();
+    let mut step = 0.25 * diagonal;
+    while step > 4.0 * finest {
+        let off = |((section, _), truth): ((Section, Stream), &Spectrum)| {
+            f64::from((transmittance(&section, step) - *truth).abs().max_element())
+        };
+        if sections(medium).zip(&truth).map(off).fold(0.0, f64::max) <= error {
+            break;
+        }
+        step *= 0.5;
+    }
+    step
+}
+
+/// The mean over the sections that are tried.
+fn mean(medium: &Extinction, of: impl Fn(&Section, &mut Stream) -> f64) -> f64 {
+    let sum: f64 = sections(medium).map(|(section, mut stream)| of(&section, &mut stream)).sum();
+    sum / SECTIONS as f64
+}
+
+/// Sections between random points of the medium's box, each with random numbers of its own.
+fn sections(medium: &Extinction) -> impl Iterator<Item = (Section, Stream)> + use<'_> {
+    (0..SECTIONS).map(|index| {
+        let mut stream = Stream::new(0, index, 0, Purpose::Pilot);
+        let mut point = || -> Vec3 {
+            let u = vec3(stream.uniform(), stream.uniform(), stream.uniform());
+            medium.low + u * (medium.high - medium.low)
+        };
+        let (a, b) = (point(), point());
+        let length = a.distance(b);
+        let direction = if length > 0.0 { (b - a) / length } else { Vec3::X };
+        (Section { origin: a, direction, length }, stream)
+    })
+}

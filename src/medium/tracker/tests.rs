@@ -1,0 +1,1 @@
+//! Trackers against quadrature and against each other.

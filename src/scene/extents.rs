@@ -1,0 +1,64 @@
+//! How far the media of a scene reach: the boxes in which coefficients that vary without bounds of their own are
+//! looked at.
+
+use super::{Surface, accel::Geometry};
+use crate::{
+    error::Result,
+    math::Vec3,
+    medium::{Blueprint, Choice, Medium, MediumIndex},
+};
+
+/// Boxes reach beyond shapes by this part of their size: the boundary itself lies within.
+const MARGIN: f32 = 1e-3;
+
+/// Boxes around the media of a scene.
+pub struct Extents<'a> {
+    /// All shapes.
+    pub geometry: &'a Geometry,
+    /// What they are made of.
+    pub surfaces: &'a [Surface],
+    /// A point that the scene's own box holds: the camera.
+    pub viewpoint: Vec3,
+    /// The medium around everything.
+    pub outside: MediumIndex,
+}
+
+impl Extents<'_> {
+    /// Finishes all media.
+    pub fn finish(&self, media: Vec<Blueprint>, forced: Option<Choice>) -> Result<Vec<Medium>> {
+        let finish = |(index, blueprint): (usize, Blueprint)| {
+            let [low, high] = self.of(MediumIndex(index as u32));
+            blueprint.finish(low, high, forced)
+        };
+        media.into_iter().enumerate().map(finish).collect()
+    }
+
+    /// The box around the shapes that hold `medium`; around the whole scene where it also lies outside of some.
+    fn of(&self, medium: MediumIndex) -> [Vec3; 2] {
+        let boundaries = || self.surfaces.iter().zip(self.geometry.shapes());
+        let holds = |surface: &Surface| surface.boundary.is_some_and(|b| b.interior == medium);
+        let leaks = |surface: &Surface| surface.boundary.is_some_and(|b| b.exterior == medium);
+        let inside = boundaries().filter(|(surface, _)| holds(surface)).map(|(_, shape)| shape.bounds());
+        let everywhere = medium == self.outside || boundaries().any(|(surface, _)| leaks(surface));
+        match inside.reduce(union) {
+            Some(bounds) if !everywhere => widened(bounds),
+            _ => self.scene(),
+        }
+    }
+
+    fn scene(&self) -> [Vec3; 2] {
+        let (low, high) = self.geometry.bounds();
+        let camera = (self.viewpoint, self.viewpoint);
+        widened(if low.is_finite() && high.is_finite() { union((low, high), camera) } else { camera })
+    }
+}
+
+fn union(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
+    (a.0.min(b.0), a.1.max(b.1))
+}
+
+fn widened((low, high): (Vec3, Vec3)) -> [Vec3; 2] {
+    let size = (high - low).max_element();
+    let margin = Vec3::splat(MARGIN * if size > 0.0 { size } else { 1.0 });
+    [low - margin, high + margin]
+}

@@ -1,0 +1,179 @@
+//! The flight: a segment sampled from one end (LW96 eq. 4-7).
+
+use super::{depth_of, passed, past};
+use crate::{
+    math::{Lanes, Section, Spectrum, Vec3},
+    medium::{Heterogeneous, Matter, Medium, MediumIndex, tracker::collision_ratio},
+    sampling::Stream,
+    scene::Scene,
+    shape::{Ray, SurfacePoint},
+    transport::profile::Profile,
+};
+
+/// How a flight ended.
+#[derive(Clone, Copy, Debug)]
+pub enum Landing {
+    /// On a surface that scatters.
+    Surface(SurfacePoint),
+    /// At a collision in the medium, and what that is made of there.
+    Medium(Vec3, Matter),
+    /// At infinity.
+    Escape,
+}
+
+/// A sampled segment.
+#[derive(Clone, Copy, Debug)]
+pub struct Flight<L> {
+    /// Where it ended.
+    pub landing: Landing,
+    /// The medium at its end.
+    pub medium: MediumIndex,
+    /// Optical depth per lane, the logarithms of null-passing probabilities included: the flight density that weights
+    /// know is exp(-depth), times sigma_t at a collision.
+    pub depth: L,
+    /// Contribution over the density by which the flight was really sampled, per lane. Profiles without varying media
+    /// have it from `depth`.
+    pub ratio: L,
+    /// Null transmittances over their passing probabilities; 1 where none was tinted.
+    pub tint: Spectrum,
+}
+
+/// Samples a segment along `ray`, starting in `medium`: an exponential optical depth by the `hero` channel, until a
+/// surface, a collision, or infinity. Where emitters are `hidden`, the ray passes them; only profiles with nulls can.
+#[inline(always)]
+pub fn fly<P: Profile>(
+    scene: &Scene,
+    ray: Ray,
+    medium: MediumIndex,
+    hidden: bool,
+    hero: usize,
+    stream: &mut Stream,
+) -> Flight<P::Lanes> {
+    let remaining = if P::MEDIA { stream.exponential() } else { 0.0 };
+    if P::NULLS {
+        fly_through::<P>(scene, ray, medium, hidden, hero, remaining, stream)
+    } else {
+        let Leg { landing, depth, ratio, .. } = fly_leg::<P>(scene, ray, medium, hero, remaining, stream);
+        Flight { landing, medium, depth, ratio, tint: Spectrum::ONE }
+    }
+}
+
+/// A flight as far as the next surface.
+struct Leg<L> {
+    landing: Landing,
+    depth: L,
+    ratio: L,
+    /// What it used up of the optical depth to go.
+    spent: f32,
+}
+
+/// A flight to the next surface, in one medium.
+#[inline(always)]
+fn fly_leg<P: Profile>(
+    scene: &Scene,
+    ray: Ray,
+    medium: MediumIndex,
+    hero: usize,
+    remaining: f32,
+    stream: &mut Stream,
+) -> Leg<P::Lanes> {
+    let medium = &scene.media[medium.0 as usize];
+    if P::HETEROGENEOUS
+        && let Some(varying) = &medium.varying
+    {
+        return fly_varying::<P>(scene, ray, varying, hero, remaining, stream);
+    }
+    fly_straight::<P>(scene, ray, medium, hero, remaining)
+}
+
+/// In a homogeneous medium: one ray, no longer than the sampled distance.
+#[inline(always)]
+fn fly_straight<P: Profile>(
+    scene: &Scene,
+    mut ray: Ray,
+    medium: &Medium,
+    hero: usize,
+    remaining: f32,
+) -> Leg<P::Lanes> {
+    let sigma_t = P::Lanes::from_spectrum(medium.sigma_t);
+    let limit = ray.t_max;
+    let collision = if P::MEDIA { remaining / sigma_t.hero(hero) } else { f32::INFINITY };
+    ray.t_max = collision.min(limit);
+    let (landing, distance) = match scene.geometry.closest(&ray) {
+        Some(hit) => (Landing::Surface(scene.geometry.surface(&ray, &hit)), hit.t),
+        None if collision < limit => {
+            (Landing::Medium(ray.origin + ray.direction * collision, medium.matter()), collision)
+        }
+        None => (Landing::Escape, f32::INFINITY),
+    };
+    let one = P::Lanes::splat(1.0);
+    let depth = if P::MEDIA { depth_of(sigma_t, distance) } else { P::Lanes::splat(0.0) };
+    let ratio = match landing {
+        _ if !P::HETEROGENEOUS => one,
+        Landing::Medium(..) => depth.flight_ratio(sigma_t, hero),
+        _ => depth.flight_ratio(one, hero),
+    };
+    Leg { landing, depth, ratio, spent: depth.hero(hero) }
+}
+
+/// In a varying medium: the ray first, for its tracker need not look beyond the surface.
+fn fly_varying<P: Profile>(
+    scene: &Scene,
+    ray: Ray,
+    varying: &Heterogeneous,
+    hero: usize,
+    remaining: f32,
+    stream: &mut Stream,
+) -> Leg<P::Lanes> {
+    let hit = scene.geometry.closest(&ray);
+    let length = hit.map_or(ray.t_max, |hit| hit.t);
+    let section = Section { origin: ray.origin, direction: ray.direction, length };
+    let leg = varying.fly::<P::Lanes>(&section, hero, remaining, stream);
+    let (landing, ratio) = match (leg.collision, hit) {
+        (Some(t), _) => {
+            let position = section.at(t);
+            let matter = varying.at::<P::Lanes>(position);
+            (Landing::Medium(position, matter), leg.ratio * collision_ratio(matter.sigma_t, hero))
+        }
+        (None, Some(hit)) => (Landing::Surface(scene.geometry.surface(&ray, &hit)), leg.ratio),
+        (None, None) => (Landing::Escape, leg.ratio),
+    };
+    Leg { landing, depth: leg.depth, ratio, spent: leg.spent }
+}
+
+/// A flight that may pass surfaces: each crossing switches the medium, and takes its toll where the surface
+/// lets only a part through.
+fn fly_through<P: Profile>(
+    scene: &Scene,
+    mut ray: Ray,
+    mut medium: MediumIndex,
+    hidden: bool,
+    hero: usize,
+    mut remaining: f32,
+    stream: &mut Stream,
+) -> Flight<P::Lanes> {
+    let mut depth = P::Lanes::splat(0.0);
+    let mut ratio = P::Lanes::splat(1.0);
+    let mut tint = Spectrum::ONE;
+    loop {
+        let leg = fly_leg::<P>(scene, ray, medium, hero, remaining, stream);
+        depth = depth + leg.depth;
+        ratio = ratio * leg.ratio;
+        let Landing::Surface(point) = leg.landing else {
+            return Flight { landing: leg.landing, medium, depth, ratio, tint };
+        };
+        let through = passed(scene, &point, ray.direction, hidden);
+        let passing = through.max_element();
+        if passing <= 0.0 || (passing < 1.0 && stream.uniform() >= passing) {
+            // Stopping where a part passes has probability 1 - passing, from either side: it takes the place
+            // of sigma_t at a collision, cancels in every ratio of densities, and divides the throughput.
+            tint /= 1.0 - passing.max(0.0);
+            return Flight { landing: leg.landing, medium, depth, ratio, tint };
+        }
+        tint *= through / passing;
+        depth = depth + P::Lanes::splat(-passing.ln());
+        remaining = (remaining - leg.spent).max(0.0);
+        ray = past(&ray, &point);
+        medium = scene.medium_beyond(&point, &ray, medium);
+    }
+}
