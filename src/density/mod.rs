@@ -1,19 +1,39 @@
 //! Volumes: numbers and colours that vary in space, of which extinction, albedo and emission are made. One file a
 //! model; this page is the contract and the registry.
 
+mod check;
 mod coarse;
 mod constant;
+mod cosine;
+mod equipotential;
+mod exponential;
+mod noise;
+mod placed;
+mod polynomial;
+mod product;
+mod quadrature;
 mod samples;
+mod sum;
 #[cfg(test)]
 mod tests;
+mod wind;
 
+pub use check::{Negative, check_non_negative};
 pub use coarse::{Coarse, Piece};
 pub use constant::Constant;
+pub use cosine::Cosine;
+pub use equipotential::Equipotential;
+pub use exponential::Exponential;
+pub use noise::Noise;
+pub use polynomial::Polynomial;
+pub use product::Product;
 pub use samples::Samples;
+pub use sum::Sum;
+pub use wind::Wind;
 
 use crate::{
     description::{Library, Object, Params, Value, find_row},
-    error::Result,
+    error::{Error, Result},
     math::{DAffine3, DVec3, Lanes, Section, Spectrum, Vec3},
 };
 
@@ -118,7 +138,18 @@ macro_rules! volumes {
 
 volumes! {
     "constvolume" => Constant,
+    "cosine" => Cosine,
+    "polynomial" => Polynomial,
+    "equipotential" => Equipotential,
+    "exponential" => Exponential,
+    "noise" => Noise,
+    "sum" => Sum,
+    "product" => Product,
+    "wind" => Wind,
 }
+
+/// Plugins that are parts of a volume and none themselves, and whose parts they are.
+pub const PARTS: &[(&str, &str)] = &[("wave", "cosine"), ("term", "polynomial")];
 
 /// How a volume is called and built.
 pub struct Row {
@@ -171,4 +202,14 @@ pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Resu
         },
         Some(_) => params.color(name, 0.0).map(|color| Some(Volume::Constant(Constant(color)))),
     }
+}
+
+/// All volumes nested in another, at least one.
+fn nested(params: &Params<'_>, place: &Place) -> Result<Vec<Volume>> {
+    let children = params.children(|child| is_volume(child.object))?;
+    if children.is_empty() {
+        let remedy = format!("put a volume into the {}", params.object.plugin);
+        return Err(Error::new(params.location(), "one or more nested volumes", "none", remedy));
+    }
+    children.iter().map(|child| build(child.object, params.library, place)).collect()
 }

@@ -1,0 +1,197 @@
+//! `noise`: turbulence, max(0, bias + amplitude s), s being a mean of octaves of Perlin's gradient noise.
+//!
+//! Octave i has `frequency` lacunarity^i (in cells per metre) and the weight gain^i. The `style` `turbulence` (where not
+//! given) takes absolute values, so that s is from 0 to 1 with creases; with `fractal` it is from -1 to 1 and smooth.
+//! Where the sum is below 0 the value is 0, which makes clouds with clear air between them. The same `seed` gives the
+//! same noise everywhere.
+//!
+//! Defaults: `frequency` 1, `octaves` 4 (1 to 16), `lacunarity` 2, `gain` 0.5, `amplitude` 1, `bias` 0, `seed` 0. There
+//! is no closed form along a line.
+
+use super::placed::{Function, Line, Placed, positive};
+use crate::{description::Params, error::Result, math::DVec3};
+use noise::{NoiseFn, Perlin};
+use std::{fmt, sync::Arc};
+
+/// Turbulence.
+pub type Noise = Placed<Turbulence>;
+
+/// The function itself.
+#[derive(Clone, Debug)]
+pub struct Turbulence {
+    bias: f64,
+    amplitude: f64,
+    /// Octaves are taken as absolute values.
+    creases: bool,
+    octaves: Arc<[Octave]>,
+}
+
+struct Octave {
+    noise: Perlin,
+    frequency: f64,
+    /// All sum to 1.
+    weight: f64,
+    /// [cells] All octaves are 0 at the corners of their cells; those must not fall together.
+    shift: DVec3,
+}
+
+impl fmt::Debug for Octave {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let seed = noise::Seedable::seed(&self.noise);
+        write!(f, "Octave({seed}, {}, {}, {})", self.frequency, self.weight, self.shift)
+    }
+}
+
+/// The noise repeats after so many cells, as its table of gradients has 256 entries.
+const PERIOD: f64 = 256.0;
+
+/// No slope of the noise is greater [1/cell]. It interpolates, with a fade of slope s' along every axis, between
+/// g . (x - corner) with |g|^2 = 2, and scales the result by 2 / sqrt 3. Its slope is a mean of the g, and along
+/// every axis s' times a difference of two such terms. Interpolated along the other axes a term is at most
+/// max(a + 1/2, 1), where a is the distance along this one. So that part is at most
+/// s'(a) (max(a + 1/2, 1) + max(3/2 - a, 1)), which is below 3.78 for all a.
+const SLOPE: f64 = 1.154_700_538_379_252 * (std::f64::consts::SQRT_2 + 3.78 * 1.732_050_807_568_878);
+
+impl Octave {
+    fn at(&self, position: DVec3) -> f64 {
+        let cells = position * self.frequency + self.shift;
+        self.noise.get(cells.to_array().map(|x| x.rem_euclid(PERIOD)))
+    }
+}
+
+impl Turbulence {
+    fn new(
+        [bias, amplitude]: [f64; 2],
+        creases: bool,
+        frequencies: &[f64],
+        weights: &[f64],
+        seed: u32,
+    ) -> Self {
+        let total: f64 = weights.iter().sum();
+        let octave = |(i, (frequency, weight)): (u32, (&f64, &f64))| Octave {
+            noise: Perlin::new(seed.wrapping_add(i)),
+            frequency: *frequency,
+            weight: weight / total,
+            // Multiples of irrational numbers (the plastic number's powers) never meet.
+            shift: DVec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5) * f64::from(i + 1) % 1.0,
+        };
+        let octaves = (0..).zip(frequencies.iter().zip(weights)).map(octave).collect();
+        Self { bias, amplitude, creases, octaves }
+    }
+
+    fn value(&self, mean: f64) -> f64 {
+        (self.bias + self.amplitude * mean).max(0.0)
+    }
+}
+
+/// A whole number from `low` to `high`.
+fn whole(params: &Params<'_>, name: &'static str, default: i64, [low, high]: [i64; 2]) -> Result<i64> {
+    match params.integer(name, default)? {
+        number if (low..=high).contains(&number) => Ok(number),
+        other => {
+            Err(params.complain(name, format!("a whole number from {low} to {high}"), other.to_string()))
+        }
+    }
+}
+
+impl Function for Turbulence {
+    fn read(params: &Params<'_>) -> Result<Self> {
+        let count = whole(params, "octaves", 4, [1, 16])? as i32;
+        let frequency = positive(params, "frequency", 1.0)?;
+        let lacunarity = params.float_within("lacunarity", 2.0, 0.0, 100.0)?;
+        let gain = params.float_within("gain", 0.5, 0.0, 100.0)?;
+        let seed = whole(params, "seed", 0, [0, i64::from(u32::MAX)])? as u32;
+        let limit = |name, default| params.float_within(name, default, -1e30, 1e30);
+        let creases = params.choice("style", true, &[("turbulence", true), ("fractal", false)])?;
+        if frequency > 1e30 {
+            return Err(params.complain("frequency", "a number of at most 1e30", frequency.to_string()));
+        }
+        let [frequencies, weights] = [(frequency, lacunarity), (1.0, gain)]
+            .map(|(first, ratio)| (0..count).map(|i| first * ratio.powi(i)).collect::<Vec<_>>());
+        let levels = [limit("bias", 0.0)?, limit("amplitude", 1.0)?];
+        Ok(Self::new(levels, creases, &frequencies, &weights, seed))
+    }
+
+    fn eval(&self, position: DVec3) -> f64 {
+        let octave = |octave: &Octave| {
+            let noise = octave.at(position);
+            octave.weight * if self.creases { noise.abs() } else { noise }
+        };
+        self.value(self.octaves.iter().map(octave).sum())
+    }
+
+    /// Every octave stays within its slope of what it is in the middle, where that tells more than that it is from -1
+    /// to 1.
+    fn range(&self, low: DVec3, high: DVec3) -> [f64; 2] {
+        let (center, reach) = (0.5 * (low + high), 0.5 * (high - low).length());
+        let mut mean = [0.0; 2];
+        for octave in self.octaves.iter() {
+            let change = SLOPE * reach * octave.frequency + 1e-9;
+            let [mut least, mut most] = [-1.0, 1.0];
+            if change < 2.0 {
+                let middle = octave.at(center);
+                (least, most) = ((middle - change).max(-1.0), (middle + change).min(1.0));
+            }
+            if self.creases {
+                (least, most) = (least.max(-most).max(0.0), most.max(-least));
+            }
+            mean = [mean[0] + octave.weight * least, mean[1] + octave.weight * most];
+        }
+        let (a, b) = (self.value(mean[0] - 1e-12), self.value(mean[1] + 1e-12));
+        let (c, d) = (self.value(mean[0] + 1e-12), self.value(mean[1] - 1e-12));
+        [a.min(b).min(c).min(d), a.max(b).max(c).max(d)]
+    }
+
+    fn has_integral(&self) -> bool {
+        false
+    }
+
+    /// Not asked for: there is none.
+    fn integral(&self, _: &Line, _: f64, _: f64) -> f64 {
+        0.0
+    }
+
+    #[cfg(test)]
+    fn examples() -> Vec<Self> {
+        let halves = [1.0, 0.5, 0.25, 0.125];
+        vec![
+            Self::new([0.0, 1.0], true, &[1.0, 2.0, 4.0, 8.0], &halves, 0),
+            Self::new([0.2, 1.5], false, &[0.3, 0.6, 1.2, 2.4], &halves, 7),
+            Self::new([0.8, -1.5], true, &[0.1], &[1.0], u32::MAX),
+            Self::new([0.1, 1.0], false, &[1e6, 1e9], &[1.0, 0.0], 3),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{Stream, stream::Purpose};
+
+    /// The bound on slopes, against differences; that it is within a few times the steepest shows that it is of use.
+    #[test]
+    fn slopes_are_within_their_bound() {
+        let mut stream = Stream::new(5, 0, 0, Purpose::Study);
+        let noise = Perlin::new(11);
+        let step = 1e-5;
+        let steepest = (0..200_000).fold(0.0f64, |steepest, _| {
+            let at: [f64; 3] = std::array::from_fn(|_| 20.0 * f64::from(stream.uniform()) + 20.0);
+            let slope = |axis: usize| {
+                let mut beside = at;
+                beside[axis] += step;
+                (noise.get(beside) - noise.get(at)) / step
+            };
+            steepest.max(DVec3::new(slope(0), slope(1), slope(2)).length())
+        });
+        assert!(steepest < SLOPE && steepest > 0.25 * SLOPE, "{steepest} {SLOPE}");
+    }
+
+    /// The same on every machine and for every release: what the crate gave when this was written.
+    #[test]
+    fn the_seed_decides() {
+        let make = |seed| Turbulence::new([0.0, 1.0], false, &[1.0, 2.0], &[1.0, 0.5], seed);
+        let at = DVec3::new(0.3, -7.2, 1e5 + 0.7);
+        assert_ne!(make(0).eval(at), make(1).eval(at));
+        assert_eq!(make(5).eval(at), make(5).eval(at));
+    }
+}

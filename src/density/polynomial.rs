@@ -1,0 +1,384 @@
+//! `polynomial`: polynomials of the coordinates on a box, repeated in space or 0 outside (BMA02 3.2.2).
+//!
+//! `x`, `y` and `z` are lists of coefficients in a string, constant first: "0.8, -1, 0, 0, 1" is 0.8 - x + x^4. Every
+//! nested `term` adds `coefficient` (1 where not given) times powers of the three coordinates, `powers` (three whole
+//! numbers, which must be given). The value is the sum of all. The degree of each, a term's being that of its powers
+//! together, is at most 31.
+//!
+//! The box is [-C, C] along every axis, C being `half_width` (> 0, 1 where not given). With the `wrap` `repeat` (where
+//! not given) the same stands in every such box, side by side without end; with `zero` it is 0 beyond C along the
+//! axes that the function depends on.
+//!
+//! Along a line, what depends on one axis is integrated at no more cost over many boxes than over two. Mixed terms
+//! are integrated box by box; of a line that crosses more than 8192 boxes only as many at its two ends, and what lies
+//! between is taken to be like them.
+
+use super::{
+    placed::{Function, Line, Placed, parts, positive, vector},
+    quadrature::gauss,
+};
+use crate::{
+    description::Params,
+    error::{Error, Result},
+    math::DVec3,
+};
+use std::sync::Arc;
+
+/// Polynomials on boxes.
+pub type Polynomial = Placed<Tile>;
+
+/// The function itself.
+#[derive(Clone, Debug)]
+pub struct Tile(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    /// Coefficients of what depends on one axis, constant first.
+    axes: [Vec<f64>; 3],
+    /// What depends on more.
+    mixed: Vec<Term>,
+    half: f64,
+    repeats: bool,
+    /// Exact for every axis, and for the mixed terms along any line.
+    rules: [Vec<[f64; 2]>; 4],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    coefficient: f64,
+    powers: [u32; 3],
+}
+
+const DEGREE: usize = 31;
+/// So many boxes are crossed one by one.
+const CROSSED: f64 = 8192.0;
+
+fn term(params: &Params<'_>) -> Result<Term> {
+    let given = vector(params, "powers")?;
+    let is_power = |p: &f64| p.fract() == 0.0 && *p >= 0.0;
+    if !given.to_array().iter().all(is_power) || given.element_sum() > DEGREE as f64 {
+        let expected = format!("three whole numbers >= 0 with a sum of at most {DEGREE}");
+        return Err(params.complain("powers", expected, given.to_string()));
+    }
+    Ok(Term { coefficient: params.float("coefficient", 1.0)?, powers: given.to_array().map(|p| p as u32) })
+}
+
+/// The numbers in the string `name`; none where not given.
+fn coefficients(params: &Params<'_>, name: &'static str) -> Result<Vec<f64>> {
+    let text = params.optional_string(name)?.unwrap_or_default();
+    let words = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty());
+    let numbers = words.map(|word| match word.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(params.complain(name, "finite numbers in a string, constant first", format!("\"{word}\""))),
+    });
+    let numbers: Vec<f64> = numbers.collect::<Result<_>>()?;
+    if numbers.len() > DEGREE + 1 {
+        let expected = format!("at most {} coefficients", DEGREE + 1);
+        return Err(params.complain(name, expected, numbers.len().to_string()));
+    }
+    Ok(numbers)
+}
+
+/// The polynomial by Horner's rule.
+fn horner(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+}
+
+/// The axis that all powers but one leave alone; none for mixed terms.
+fn only_axis(powers: [u32; 3]) -> Option<usize> {
+    match powers.map(|power| power > 0) {
+        [_, false, false] => Some(0),
+        [false, _, false] => Some(1),
+        [false, false, _] => Some(2),
+        _ => None,
+    }
+}
+
+impl Tile {
+    fn new(mut axes: [Vec<f64>; 3], terms: &[Term], half: f64, repeats: bool) -> Self {
+        let mut mixed = Vec::new();
+        for term in terms {
+            match only_axis(term.powers) {
+                Some(axis) => {
+                    let (power, list) = (term.powers[axis] as usize, &mut axes[axis]);
+                    list.resize(list.len().max(power + 1), 0.0);
+                    list[power] += term.coefficient;
+                }
+                None => mixed.push(*term),
+            }
+        }
+        let degree = |term: &Term| term.powers.iter().sum::<u32>() as usize;
+        let most = mixed.iter().map(degree).max().unwrap_or(0);
+        let lengths = [axes[0].len(), axes[1].len(), axes[2].len(), most + 1];
+        Self(Arc::new(Inner { axes, mixed, half, repeats, rules: lengths.map(|n| gauss(n.div_ceil(2))) }))
+    }
+
+    /// Along `axis` something changes.
+    fn depends(&self, axis: usize) -> bool {
+        self.0.axes[axis].len() > 1 || self.mixes(axis)
+    }
+
+    fn mixes(&self, axis: usize) -> bool {
+        self.0.mixed.iter().any(|term| term.powers[axis] > 0)
+    }
+
+    /// The number of the box that holds the coordinate `x`; 0 is the one around the origin.
+    fn cell(&self, x: f64) -> f64 {
+        if self.0.repeats { (x / (2.0 * self.0.half)).round() } else { 0.0 }
+    }
+
+    /// The coordinate `x` within its box `cell`. Far out, where f64 does not tell boxes apart, it stays in it.
+    fn local(&self, x: f64, cell: f64) -> f64 {
+        (x - 2.0 * self.0.half * cell).clamp(-self.0.half, self.0.half)
+    }
+
+    fn mixed_value(&self, at: DVec3) -> f64 {
+        let power = |term: &Term, axis: usize| at[axis].powi(term.powers[axis] as i32);
+        self.0.mixed.iter().map(|t| t.coefficient * power(t, 0) * power(t, 1) * power(t, 2)).sum()
+    }
+
+    /// The mean over one box of what depends on `axis`.
+    fn mean(&self, axis: usize) -> f64 {
+        let half = self.0.half;
+        self.0.rules[axis].iter().map(|[x, weight]| weight * horner(&self.0.axes[axis], x * half)).sum()
+    }
+
+    /// The integral of what depends on `axis` from `first` to `last`, all in the box `cell`.
+    fn part(&self, axis: usize, line: &Line, [first, last]: [f64; 2], cell: f64) -> f64 {
+        let (origin, direction) = (line.origin[axis], line.direction[axis]);
+        let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
+        let value = |x: f64| {
+            let at = origin + direction * (middle + half * x);
+            horner(&self.0.axes[axis], self.local(at, cell))
+        };
+        let mean: f64 = self.0.rules[axis].iter().map(|[x, weight]| weight * value(*x)).sum();
+        mean * (last - first)
+    }
+
+    /// The integral of what depends on `axis`: the begun boxes at both ends, and the mean of all whole ones.
+    fn along(&self, axis: usize, line: &Line, first: f64, last: f64) -> f64 {
+        let (origin, direction) = (line.origin[axis], line.direction[axis]);
+        let cells = [first, last].map(|t| self.cell(origin + direction * t));
+        if cells[0] == cells[1] {
+            return self.part(axis, line, [first, last], cells[0]);
+        }
+        let towards = 0.5 * direction.signum();
+        let border = |cell: f64| (2.0 * self.0.half * cell - origin) / direction;
+        let leaves = border(cells[0] + towards).clamp(first, last);
+        let enters = border(cells[1] - towards).clamp(leaves, last);
+        let ends = self.part(axis, line, [first, leaves], cells[0])
+            + self.part(axis, line, [enters, last], cells[1]);
+        ends + self.mean(axis) * (enters - leaves)
+    }
+
+    /// The integral of the mixed terms.
+    fn mixed_integral(&self, line: &Line, first: f64, last: f64) -> f64 {
+        let rate = |axis: usize| if self.mixes(axis) { line.direction[axis].abs() } else { 0.0 };
+        let per_metre =
+            if self.0.repeats { (rate(0) + rate(1) + rate(2)) / (2.0 * self.0.half) } else { 0.0 };
+        if per_metre * (last - first) <= CROSSED {
+            return self.walk(line, first, last);
+        }
+        let end = 0.5 * CROSSED / per_metre;
+        let ends = self.walk(line, first, first + end) + self.walk(line, last - end, last);
+        ends * ((last - first) / (2.0 * end))
+    }
+
+    /// The same, box by box.
+    fn walk(&self, line: &Line, first: f64, last: f64) -> f64 {
+        let start = line.at(first);
+        let mut cell = [0, 1, 2].map(|axis| self.cell(start[axis]));
+        let step = [0, 1, 2].map(|axis| line.direction[axis].signum());
+        let border = |cell: &[f64; 3], axis: usize| match self.0.repeats && self.mixes(axis) {
+            true if line.direction[axis] != 0.0 => {
+                let plane = 2.0 * self.0.half * (cell[axis] + 0.5 * step[axis]);
+                (plane - line.origin[axis]) / line.direction[axis]
+            }
+            _ => f64::INFINITY,
+        };
+        let mut next = [0, 1, 2].map(|axis| border(&cell, axis));
+        let (mut at, mut sum) = (first, 0.0);
+        // Far out, where f64 does not tell boxes apart, borders may stop moving.
+        for _ in 0..2 * CROSSED as usize {
+            let axis =
+                if next[0] <= next[1] && next[0] <= next[2] { 0 } else { usize::from(next[1] > next[2]) + 1 };
+            let until = next[axis].clamp(at, last);
+            sum += self.mixed_part(line, [at, until], cell);
+            at = until;
+            if next[axis] >= last {
+                return sum;
+            }
+            cell[axis] += step[axis];
+            next[axis] = border(&cell, axis);
+        }
+        sum + self.mixed_part(line, [at, last], cell)
+    }
+
+    fn mixed_part(&self, line: &Line, [first, last]: [f64; 2], cell: [f64; 3]) -> f64 {
+        let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
+        let value = |x: f64| {
+            let at = line.at(middle + half * x);
+            self.mixed_value(DVec3::from_array([0, 1, 2].map(|axis| self.local(at[axis], cell[axis]))))
+        };
+        let mean: f64 = self.0.rules[3].iter().map(|[x, weight]| weight * value(*x)).sum();
+        mean * (last - first)
+    }
+
+    /// The intervals within one box that the coordinates from `low` to `high` fold to.
+    fn folded(&self, low: f64, high: f64) -> [[f64; 2]; 2] {
+        let (half, cells) = (self.0.half, [self.cell(low), self.cell(high)]);
+        let (a, b) = (self.local(low, cells[0]), self.local(high, cells[1]));
+        match cells[1] - cells[0] {
+            0.0 => [[a, b]; 2],
+            1.0 => [[a, half], [-half, b]],
+            _ => [[-half, half]; 2],
+        }
+    }
+}
+
+/// Bounds of a polynomial on an interval, cut into pieces to be narrow.
+fn bounds(coefficients: &[f64], [low, high]: [f64; 2]) -> [f64; 2] {
+    const PIECES: i32 = 8;
+    let piece = (high - low) / f64::from(PIECES);
+    let all = (0..PIECES).map(|i| around(coefficients, low + (f64::from(i) + 0.5) * piece, 0.5 * piece));
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [c, d]| [a.min(c), b.max(d)])
+}
+
+/// Bounds within `half` of `middle`, by the coefficients of the polynomial moved there.
+fn around(coefficients: &[f64], middle: f64, half: f64) -> [f64; 2] {
+    let mut moved = coefficients.to_vec();
+    for start in 0..moved.len() {
+        for i in (start..moved.len() - 1).rev() {
+            moved[i] += middle * moved[i + 1];
+        }
+    }
+    let slack = 1e-13 * magnitude(coefficients, middle.abs() + half);
+    let center = moved.first().copied().unwrap_or(0.0);
+    let mut bounds = [center - slack, center + slack];
+    for (power, c) in (0..).zip(&moved).skip(1) {
+        let reach = c * half.powi(power);
+        let other = if power % 2 == 0 { 0.0 } else { -reach };
+        bounds = [bounds[0] + reach.min(other), bounds[1] + reach.max(other)];
+    }
+    bounds
+}
+
+/// The sum of all terms' absolute values at `x` >= 0.
+fn magnitude(coefficients: &[f64], x: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c.abs())
+}
+
+/// Bounds of a power on an interval.
+fn power([low, high]: [f64; 2], power: u32) -> [f64; 2] {
+    let (a, b) = (low.powi(power as i32), high.powi(power as i32));
+    let least = if power > 0 && power % 2 == 0 && low <= 0.0 && high >= 0.0 { 0.0 } else { a.min(b) };
+    [least, a.max(b)]
+}
+
+/// Bounds of a product.
+pub(super) fn product([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    let ends = [a * c, a * d, b * c, b * d];
+    [
+        ends.iter().copied().fold(f64::INFINITY, f64::min),
+        ends.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ]
+}
+
+impl Function for Tile {
+    fn read(params: &Params<'_>) -> Result<Self> {
+        let axes = [coefficients(params, "x")?, coefficients(params, "y")?, coefficients(params, "z")?];
+        let terms = parts(params, "term", term)?;
+        if terms.is_empty() && axes.iter().all(Vec::is_empty) {
+            return Err(Error::new(
+                params.location(),
+                "coefficients of a polynomial",
+                "none",
+                "add \"x\", \"y\" or \"z\", such as \"0.8, -1, 0, 0, 1\", or a nested plugin \"term\"",
+            ));
+        }
+        let repeats = params.choice("wrap", true, &[("repeat", true), ("zero", false)])?;
+        let tile = Self::new(axes, &terms, positive(params, "half_width", 1.0)?, repeats);
+        let most = tile.greatest();
+        match most <= 1e30 {
+            true => Ok(tile),
+            false => Err(params.complain(
+                "half_width",
+                "one with values within 1e30",
+                format!("values up to {most:e}"),
+            )),
+        }
+    }
+
+    #[inline]
+    fn eval(&self, position: DVec3) -> f64 {
+        let at =
+            DVec3::from_array([0, 1, 2].map(|axis| self.local(position[axis], self.cell(position[axis]))));
+        let axes: f64 = (0..3).map(|axis| horner(&self.0.axes[axis], at[axis])).sum();
+        if self.0.mixed.is_empty() { axes } else { axes + self.mixed_value(at) }
+    }
+
+    fn range(&self, low: DVec3, high: DVec3) -> [f64; 2] {
+        let folded = [0, 1, 2].map(|axis| self.folded(low[axis], high[axis]));
+        let mut sum = [0.0; 2];
+        let mut add = |[least, most]: [f64; 2]| sum = [sum[0] + least, sum[1] + most];
+        for (list, [a, b]) in self.0.axes.iter().zip(folded).filter(|(list, _)| !list.is_empty()) {
+            let (a, b) = (bounds(list, a), bounds(list, b));
+            add([a[0].min(b[0]), a[1].max(b[1])]);
+        }
+        let hull = folded.map(|[a, b]| [a[0].min(b[0]), a[1].max(b[1])]);
+        for Term { coefficient, powers } in &self.0.mixed {
+            let [x, y, z] = [0, 1, 2].map(|axis| power(hull[axis], powers[axis]));
+            let [a, b] = product(product(x, y), z).map(|bound| bound * coefficient);
+            let slack = 1e-13 * a.abs().max(b.abs());
+            add([a.min(b) - slack, a.max(b) + slack]);
+        }
+        sum
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        let half = |axis: usize| match !self.0.repeats && self.depends(axis) {
+            true => self.0.half,
+            false => f64::INFINITY,
+        };
+        let corner = DVec3::new(half(0), half(1), half(2));
+        [-corner, corner]
+    }
+
+    #[inline]
+    fn integral(&self, line: &Line, first: f64, last: f64) -> f64 {
+        let axes: f64 = (0..3).map(|axis| self.along(axis, line, first, last)).sum();
+        if self.0.mixed.is_empty() { axes } else { axes + self.mixed_integral(line, first, last) }
+    }
+
+    #[cfg(test)]
+    fn examples() -> Vec<Self> {
+        let none = || [Vec::new(), Vec::new(), Vec::new()];
+        let wave = || vec![0.8, -1.0, 0.0, 0.0, 1.0];
+        let term = |coefficient, powers| Term { coefficient, powers };
+        let saddle = [term(1.0, [2, 0, 0]), term(-2.0, [1, 1, 0]), term(1.0, [0, 2, 0])];
+        vec![
+            // BMA02 fig. 7.
+            Self::new([wave(), Vec::new(), wave()], &[], 1.0, true),
+            Self::new([wave(), Vec::new(), wave()], &[], 0.7, false),
+            Self::new([Vec::new(), vec![0.2], Vec::new()], &[], 0.1, true),
+            Self::new(none(), &saddle, 0.6, true),
+            Self::new(
+                [vec![1.0, 0.5], vec![], vec![]],
+                &[term(-0.3, [1, 2, 3]), term(0.2, [0, 1, 1])],
+                1.1,
+                false,
+            ),
+            Self::new([vec![1.0; 32], vec![], vec![]], &[term(0.7, [3, 1, 4])], 0.2, true),
+        ]
+    }
+}
+
+impl Tile {
+    /// No value is greater, of either sign.
+    fn greatest(&self) -> f64 {
+        let half = self.0.half;
+        let axes: f64 = self.0.axes.iter().map(|list| magnitude(list, half)).sum();
+        let degree = |term: &Term| term.powers.iter().sum::<u32>() as i32;
+        axes + self.0.mixed.iter().map(|t| t.coefficient.abs() * half.powi(degree(t))).sum::<f64>()
+    }
+}
