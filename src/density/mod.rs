@@ -3,12 +3,14 @@
 
 mod coarse;
 mod constant;
+pub mod grid;
 mod samples;
 #[cfg(test)]
 mod tests;
 
 pub use coarse::{Coarse, Piece};
 pub use constant::Constant;
+pub use grid::Grid;
 pub use samples::Samples;
 
 use crate::{
@@ -118,6 +120,7 @@ macro_rules! volumes {
 
 volumes! {
     "constvolume" => Constant,
+    "gridvolume" => Grid,
 }
 
 /// How a volume is called and built.
