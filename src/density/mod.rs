@@ -7,6 +7,7 @@ mod constant;
 mod cosine;
 mod equipotential;
 mod exponential;
+pub mod grid;
 mod noise;
 mod placed;
 mod polynomial;
@@ -24,6 +25,7 @@ pub use constant::Constant;
 pub use cosine::Cosine;
 pub use equipotential::Equipotential;
 pub use exponential::Exponential;
+pub use grid::Grid;
 pub use noise::Noise;
 pub use polynomial::Polynomial;
 pub use product::Product;
@@ -146,6 +148,7 @@ volumes! {
     "sum" => Sum,
     "product" => Product,
     "wind" => Wind,
+    "gridvolume" => Grid,
 }
 
 /// Plugins that are parts of a volume and none themselves, and whose parts they are.

@@ -1,0 +1,178 @@
+//! Mitsuba's `.vol` files: a header of 48 bytes, then f32 values, channels fastest, then x, y, z; little endian.
+
+use super::file::{Source, Values};
+use super::{super::Samples, memory};
+use crate::{
+    error::{Error, Result},
+    math::{DAffine3, DMat3, DVec3, Spectrum, vec3},
+};
+use std::{
+    fs::File,
+    io::{BufReader, Read},
+    path::Path,
+};
+
+const HEADER: usize = 48;
+
+/// Voxels of a file in memory.
+#[derive(Debug)]
+struct Voxels<V> {
+    size: [usize; 3],
+    values: Vec<V>,
+}
+
+impl<V: Copy> Samples<V> for Voxels<V> {
+    fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    #[inline]
+    fn at(&self, [x, y, z]: [usize; 3]) -> V {
+        self.values[x + self.size[0] * (y + self.size[1] * z)]
+    }
+
+    fn uniform(&self, low: [usize; 3], high: [usize; 3]) -> Option<V> {
+        (low == high).then(|| self.at(low))
+    }
+}
+
+/// What the first bytes tell.
+struct Header {
+    size: [usize; 3],
+    channels: usize,
+    bounds: [DVec3; 2],
+}
+
+/// Reads a whole file.
+pub fn read(path: &Path) -> Result<Source> {
+    let io = |error| Error::io(path, "read", &error);
+    let file = File::open(path).map_err(io)?;
+    let length = file.metadata().map_err(io)?.len();
+    let mut file = BufReader::new(file);
+    let header = Header::read(path, &mut file, length)?;
+    let [low, high] = header.bounds;
+    let to_file = DAffine3 { matrix3: DMat3::from_diagonal(high - low), translation: low };
+    let size = header.size;
+    let values = match header.channels {
+        1 => Values::Grey(Box::new(Voxels { size, values: numbers(path, &mut file, length, |[x]| x)? })),
+        _ => {
+            let values = numbers(path, &mut file, length, |[r, g, b]| vec3(r, g, b))?;
+            Values::Chromatic(Box::new(Voxels::<Spectrum> { size, values }))
+        }
+    };
+    Ok(Source { values, to_file })
+}
+
+impl Header {
+    /// Reads it and compares it with the length of its file.
+    fn read(path: &Path, file: &mut impl Read, length: u64) -> Result<Self> {
+        let mut bytes = [0; HEADER];
+        if length < HEADER as u64 {
+            let expected = format!("a .vol file, with a header of {HEADER} bytes");
+            let remedy = "save the grid again; the file may have been cut off";
+            return Err(Error::new(path.display(), expected, format!("{length} bytes"), remedy));
+        }
+        file.read_exact(&mut bytes).map_err(|error| Error::io(path, "read", &error))?;
+        check_kind(path, &bytes)?;
+        let header = Self {
+            size: dimensions(path, &bytes)?,
+            channels: channels(path, &bytes)?,
+            bounds: [bounds(&bytes, 24), bounds(&bytes, 36)],
+        };
+        header.check_length(path, length)?;
+        Ok(header)
+    }
+
+    fn check_length(&self, path: &Path, length: u64) -> Result<()> {
+        let product = |factors: &[usize]| {
+            factors.iter().try_fold(1u64, |product, factor| product.checked_mul(*factor as u64))
+        };
+        let [x, y, z] = self.size;
+        let data = product(&[x, y, z, self.channels, 4]);
+        let whole = data.and_then(|data| data.checked_add(HEADER as u64));
+        if whole == Some(length) {
+            return memory::check(path, self.size, data);
+        }
+        let needed = whole.map_or("more than 2^64".into(), |whole| whole.to_string());
+        let channels = self.channels;
+        let expected = format!("{needed} bytes, for {x} x {y} x {z} voxels of {channels} channel(s)");
+        let found = format!("{length} bytes");
+        Err(Error::new(path.display(), expected, found, "save the grid again; header and data disagree"))
+    }
+}
+
+fn check_kind(path: &Path, bytes: &[u8; HEADER]) -> Result<()> {
+    let remedy = "save the grid as Mitsuba 3's .vol: version 3, 32-bit floats";
+    let wrong = |expected: &str, found: String| Err(Error::new(path.display(), expected, found, remedy));
+    if &bytes[..3] != b"VOL" {
+        return wrong("\"VOL\" as the first three bytes", format!("\"{}\"", bytes[..3].escape_ascii()));
+    }
+    if bytes[3] != 3 {
+        return wrong("version 3 of the .vol format", format!("version {}", bytes[3]));
+    }
+    match integer(bytes, 4) {
+        1 => Ok(()),
+        kind => wrong("values of type 1 (32-bit float)", format!("type {kind}")),
+    }
+}
+
+fn dimensions(path: &Path, bytes: &[u8; HEADER]) -> Result<[usize; 3]> {
+    let size = [8, 12, 16].map(|at| integer(bytes, at));
+    if size.iter().all(|n| *n > 0) {
+        return Ok(size.map(|n| n as usize));
+    }
+    let found = format!("{} x {} x {}", size[0], size[1], size[2]);
+    Err(Error::new(
+        path.display(),
+        "at least one voxel along every axis",
+        found,
+        "save a grid that is not empty",
+    ))
+}
+
+fn channels(path: &Path, bytes: &[u8; HEADER]) -> Result<usize> {
+    match integer(bytes, 20) {
+        channels @ (1 | 3) => Ok(channels as usize),
+        other => {
+            let remedy =
+                "give a grid of densities or colours; phase function parameters (6 channels) have no use";
+            Err(Error::new(path.display(), "1 or 3 channels", format!("{other} channels"), remedy))
+        }
+    }
+}
+
+fn word(bytes: &[u8; HEADER], at: usize) -> [u8; 4] {
+    [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]
+}
+
+fn integer(bytes: &[u8; HEADER], at: usize) -> i32 {
+    i32::from_le_bytes(word(bytes, at))
+}
+
+fn bounds(bytes: &[u8; HEADER], at: usize) -> DVec3 {
+    DVec3::from([0, 4, 8].map(|offset| f64::from(f32::from_le_bytes(word(bytes, at + offset)))))
+}
+
+/// The rest of the file as values of `N` numbers.
+fn numbers<V, const N: usize>(
+    path: &Path,
+    file: &mut impl Read,
+    length: u64,
+    value: impl Fn([f32; N]) -> V,
+) -> Result<Vec<V>> {
+    let count = (length as usize - HEADER) / (4 * N);
+    let mut values = Vec::with_capacity(count);
+    let mut buffer = vec![0; 4 * N * (1 << 14)];
+    while values.len() < count {
+        let bytes = (count - values.len()).min(1 << 14) * 4 * N;
+        let buffer = &mut buffer[..bytes];
+        file.read_exact(buffer).map_err(|error| Error::io(path, "read", &error))?;
+        let numbers = |bytes: &[u8]| std::array::from_fn(|i| number(&bytes[4 * i..]));
+        values.extend(buffer.chunks_exact(4 * N).map(|bytes| value(numbers(bytes))));
+    }
+    Ok(values)
+}
+
+fn number(bytes: &[u8]) -> f32 {
+    bytes.first_chunk().map_or(0.0, |bytes| f32::from_le_bytes(*bytes))
+}
