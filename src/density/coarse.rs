@@ -32,8 +32,11 @@ pub struct Piece {
 }
 
 impl Coarse {
-    /// Looks at `volume` in the box from `low` to `high`.
+    /// Looks at `volume` in the box from `low` to `high`; at a grid by its bricks.
     pub fn over(volume: &Volume, low: Vec3, high: Vec3) -> Self {
+        if let Some(grid) = volume.grid() {
+            return grid.coarse();
+        }
         let range = |low, high| volume.range(low, high)[1].max_element();
         Self::of(low, high, |p| volume.eval::<Spectrum>(p), range)
     }

@@ -1,36 +1,56 @@
-//! `constvolume`: one value in the unit cube of `to_world`, as in Mitsuba.
+//! `constvolume`: one value everywhere. As the extinction of a medium it fills the unit cube of `to_world`, as in
+//! Mitsuba.
 
 use super::{Place, VolumeModel};
 use crate::{
     description::Params,
     error::Result,
-    math::{Lanes, Section, Spectrum, SpectrumExt, Vec3},
+    math::{DVec3, Lanes, Section, Spectrum, SpectrumExt, Vec3},
 };
 
-/// One value everywhere.
+/// One value.
 #[derive(Clone, Debug)]
-pub struct Constant(pub Spectrum);
+pub struct Constant {
+    value: Spectrum,
+    cube: [Vec3; 2],
+}
 
 impl Constant {
-    /// Reads `value`.
-    pub fn build(params: &Params<'_>, _: &Place) -> Result<Self> {
-        params.color("value", 1.0).map(Self)
+    /// Reads `value` and `to_world`.
+    pub fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
+        let to_world = place.to_world(params)?;
+        let corner = |i: u32| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);
+        let corners = || (0..8).map(|i| to_world.transform_point3(corner(i)).as_vec3());
+        let low = corners().fold(Vec3::INFINITY, Vec3::min);
+        let high = corners().fold(Vec3::NEG_INFINITY, Vec3::max);
+        Ok(Self::new(params.color("value", 1.0)?, [low, high]))
+    }
+
+    /// `value`, and the box that it fills as an extinction.
+    pub fn new(value: Spectrum, cube: [Vec3; 2]) -> Self {
+        Self { value, cube }
+    }
+
+    /// The world box around the unit cube.
+    pub fn cube(&self) -> [Vec3; 2] {
+        self.cube
     }
 
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
-        vec![Self(Spectrum::splat(0.3)), Self(Spectrum::new(0.0, 1.0, 1e3))]
+        let cube = [Vec3::ZERO, Vec3::ONE];
+        vec![Self::new(Spectrum::splat(0.3), cube), Self::new(Spectrum::new(0.0, 1.0, 1e3), cube)]
     }
 }
 
 impl VolumeModel for Constant {
     #[inline]
     fn eval<L: Lanes>(&self, _: Vec3) -> L {
-        L::from_spectrum(self.0)
+        L::from_spectrum(self.value)
     }
 
     fn range(&self, _: Vec3, _: Vec3) -> [Spectrum; 2] {
-        [self.0; 2]
+        [self.value; 2]
     }
 
     fn domain(&self) -> Option<[Vec3; 2]> {
@@ -38,7 +58,7 @@ impl VolumeModel for Constant {
     }
 
     fn is_grey(&self) -> bool {
-        self.0.is_grey()
+        self.value.is_grey()
     }
 
     fn has_integral(&self) -> bool {
@@ -46,6 +66,6 @@ impl VolumeModel for Constant {
     }
 
     fn integral<L: Lanes>(&self, section: &Section) -> L {
-        L::from_spectrum(self.0).scaled(section.length)
+        L::from_spectrum(self.value).scaled(section.length)
     }
 }

@@ -54,6 +54,11 @@ impl Place {
         let to_file = DAffine3::from_mat4(params.transform("to_world")?);
         Ok(DAffine3::from_translation(-self.recentre) * to_file)
     }
+
+    /// The file's unit cube.
+    fn unit_cube(&self) -> [Vec3; 2] {
+        [DVec3::ZERO, DVec3::ONE].map(|corner| (corner - self.recentre).as_vec3())
+    }
 }
 
 /// What every volume can do. Positions are world positions, recentred.
@@ -163,19 +168,28 @@ pub struct Row {
 }
 
 impl Volume {
-    /// The grey `value` everywhere.
-    pub fn constant(value: f32) -> Self {
-        Self::Constant(Constant(Spectrum::splat(value)))
+    /// The grey `value` everywhere, given where the unit cube lies.
+    pub fn constant(value: f32, place: &Place) -> Self {
+        Self::Constant(Constant::new(Spectrum::splat(value), place.unit_cube()))
     }
 
-    /// True if it interpolates a grid, whose cells an exact tracker walks.
-    pub fn is_grid(&self) -> bool {
-        false
+    /// The grid, if it is one, whose cells an exact tracker walks; drifting or not.
+    #[inline]
+    pub fn grid(&self) -> Option<&Grid> {
+        match self {
+            Self::Grid(grid) => Some(grid),
+            Self::Wind(wind) => wind.nested().grid(),
+            _ => None,
+        }
     }
 
-    /// How many cells of a grid `section` crosses, those of uniform bricks counted as one; 0 of anything else.
-    pub fn cells_crossed(&self, _section: &Section) -> u32 {
-        0
+    /// The box that the volume fills as the extinction of a medium: its domain; of one value its unit cube, as in
+    /// Mitsuba.
+    pub fn fills(&self) -> Option<[Vec3; 2]> {
+        match self {
+            Self::Constant(constant) => Some(constant.cube()),
+            _ => self.domain(),
+        }
     }
 }
 
@@ -196,14 +210,15 @@ pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Volume
 /// The parameter `name` as a volume: a nested or referenced volume, or a number or colour for one everywhere; none
 /// where not given.
 pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Option<Volume>> {
+    let constant = |color| Some(Volume::Constant(Constant::new(color, place.unit_cube())));
     let property = params.object.properties.iter().find(|property| property.name == name);
     match property.map(|property| &property.value) {
         None => Ok(None),
         Some(Value::Object(_) | Value::Reference(_)) => match params.child(name)? {
             Some(child) if is_volume(child.object) => build(child.object, params.library, place).map(Some),
-            _ => params.color(name, 0.0).map(|color| Some(Volume::Constant(Constant(color)))),
+            _ => params.color(name, 0.0).map(constant),
         },
-        Some(_) => params.color(name, 0.0).map(|color| Some(Volume::Constant(Constant(color)))),
+        Some(_) => params.color(name, 0.0).map(constant),
     }
 }
 

@@ -25,7 +25,7 @@ impl Product {
         let (mut constant, mut factors) = (Spectrum::ONE, Vec::new());
         for factor in all {
             match factor {
-                Volume::Constant(_) if factor.domain().is_none() => {
+                Volume::Constant(_) => {
                     constant *= factor.eval::<Spectrum>(Vec3::ZERO);
                 }
                 _ => factors.push(factor),
@@ -36,7 +36,7 @@ impl Product {
 
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
-        let constant = |c| Volume::Constant(super::Constant(c));
+        let constant = |c| Volume::Constant(super::Constant::new(c, [Vec3::ZERO, Vec3::ONE]));
         let red = constant(Spectrum::new(0.5, 0.2, 0.1));
         let wave = |i: usize| Volume::Cosine(super::Cosine::examples().swap_remove(i));
         let fog = Volume::Exponential(super::Exponential::examples().remove(1));

@@ -28,6 +28,12 @@ impl Wind {
         Ok(Self(Arc::new(inner)))
     }
 
+    /// What drifts.
+    #[inline]
+    pub(super) fn nested(&self) -> &Volume {
+        &self.0
+    }
+
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
         super::Cosine::examples()

@@ -84,7 +84,7 @@ fn homogeneous(params: &Params<'_>, _: &Place) -> Result<Blueprint> {
 fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     let volume = |name, default| {
         let given = density::parameter(params, name, place)?;
-        Ok(given.unwrap_or_else(|| Volume::constant(default)))
+        Ok(given.unwrap_or_else(|| Volume::constant(default, place)))
     };
     let fields = Fields {
         sigma_t: volume("sigma_t", 1.0)?,

@@ -5,7 +5,7 @@ use super::{
     tracker::{self, Tracker},
 };
 use crate::{
-    density::{Volume, VolumeModel},
+    density::{Place, Volume, VolumeModel, check_non_negative},
     description::Location,
     error::{Error, Result},
     math::{DVec3, Lanes, Section, Spectrum, Vec3},
@@ -45,7 +45,7 @@ impl Heterogeneous {
     /// Looks at `fields` within their own bounds, or the box `around` where they have none, and chooses a tracker.
     pub fn new(fields: Fields, around: [Vec3; 2], forced: Option<Choice>) -> Result<Self> {
         let location = &fields.location;
-        let [low, high] = fields.sigma_t.domain().unwrap_or(around);
+        let [low, high] = fields.sigma_t.fills().unwrap_or(around);
         let extinction = Extinction { volume: fields.sigma_t, scale: fields.scale, low, high };
         let checks = [
             (extinction.bound().max_element() < f32::INFINITY, "sigma_t", "a finite product with scale"),
@@ -54,6 +54,10 @@ impl Heterogeneous {
         if let Some((_, name, expected)) = checks.iter().find(|(fine, ..)| !fine) {
             let remedy = format!("change \"{name}\" of the medium");
             return Err(Error::new(location, format!("{expected} for \"{name}\""), "larger ones", remedy));
+        }
+        let place = Place { recentre: fields.recentre, time: 0.0 };
+        for volume in [&extinction.volume, &fields.albedo] {
+            check_non_negative(volume, low, high).map_err(|negative| negative.error(location, &place))?;
         }
         let choice = forced.unwrap_or(fields.tracker);
         if !choice.applies_to(&extinction.volume) {

@@ -19,7 +19,10 @@ use super::{Coarse, Place, VolumeModel};
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::{Affine3A, DAffine3, DVec3, Lanes, Section, Spectrum, SpectrumExt, Vec3},
+    math::{
+        Affine3A, DAffine3, DVec3, Lanes, Section, Spectrum, SpectrumExt, Vec3,
+        cells::{Cells, Crossing},
+    },
 };
 use lattice::{BRICK, Brick, Extent, Fault, Lattice};
 use std::{path::Path, sync::Arc};
@@ -184,6 +187,21 @@ impl Grid {
     pub fn brick_mean<L: Lanes>(&self, [x, y, z]: [u32; 3]) -> L {
         let at = [x as usize, y as usize, z as usize];
         each!(self, lattice => lanes(lattice.bricks[lattice.index(at)].mean))
+    }
+
+    /// About how many cells `section` crosses: their boundaries, and bricks of one value counted as one.
+    pub fn cells_crossed(&self, section: &Section) -> f64 {
+        each!(self, lattice => {
+            let Some((line, [first, last])) = self.clip(section, lattice.cells) else { return 0.0 };
+            let per_metre: f64 = line.direction.iter().map(|d| d.abs()).sum();
+            let mapped = section.mapped(&self.to_bricks());
+            let cells = Cells::new(&mapped, first as f32, last as f32, self.bricks());
+            let cost = |Crossing { cell, first, last }: Crossing| {
+                let brick = &lattice.bricks[lattice.index(cell.map(|i| i as usize))];
+                1.0 + if brick.values.is_some() { per_metre * f64::from(last - first) } else { 0.0 }
+            };
+            cells.map(cost).sum()
+        })
     }
 
     /// The first place along `section` where the integral of the hero's lane, times its `scale`, exceeds `remaining`.

@@ -66,8 +66,8 @@ impl Choice {
     pub fn applies_to(self, volume: &Volume) -> bool {
         match self {
             Self::Auto | Self::March | Self::NullCollision => true,
-            Self::ClosedForm => volume.has_integral() && !volume.is_grid(),
-            Self::Exact => volume.is_grid(),
+            Self::ClosedForm => volume.has_integral() && volume.grid().is_none(),
+            Self::Exact => volume.grid().is_some(),
         }
     }
 }

@@ -28,8 +28,7 @@ pub fn choose(medium: &Extinction, choice: Choice, step: Option<f64>, march_erro
         Choice::Auto if Choice::ClosedForm.applies_to(&medium.volume) => Tracker::ClosedForm,
         Choice::Auto if Choice::Exact.applies_to(&medium.volume) => {
             let coarse = coarse();
-            let exact =
-                COST_OF_CELL * mean(medium, |section, _| f64::from(medium.volume.cells_crossed(section)));
+            let exact = COST_OF_CELL * mean(medium, |section, _| cells(medium, section));
             if exact <= cost_of_tracking(medium, &coarse) {
                 Tracker::Exact
             } else {
@@ -45,6 +44,11 @@ pub fn choose(medium: &Extinction, choice: Choice, step: Option<f64>, march_erro
 const COST_OF_CELL: f64 = 12.0;
 const COST_OF_PIECE: f64 = 8.0;
 const COST_OF_LOOKUP: f64 = 40.0;
+
+/// Cells of a grid that a section crosses.
+fn cells(medium: &Extinction, section: &Section) -> f64 {
+    medium.volume.grid().map_or(0.0, |grid| grid.cells_crossed(section))
+}
 
 /// Cost of a transmittance by null collisions, times by how much its noise adds to that of the light it attenuates
 /// (taken to vary by its own mean).
