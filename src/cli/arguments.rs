@@ -1,5 +1,6 @@
 //! What can be asked on the command line.
 
+use crate::medium::Choice;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 
@@ -69,7 +70,26 @@ pub struct Render {
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
 
+    /// Render frames A to B of an animation, both included, or the one frame A: frame k shows the scene at its own
+    /// time + k / FPS
+    ///
+    /// What a wind moves has moved; the scene is loaded once. Files are numbered by frame with four digits or more:
+    /// fog.0007.exr and fog.0007.png. --spp and --time-limit hold for each frame. Every frame has random numbers of its
+    /// own, made of --seed and its number: rendered alone it is the same image.
+    #[arg(long, value_name = "A..B", value_parser = frames, allow_hyphen_values = true)]
+    pub frames: Option<Frames>,
+
+    /// Frames per second [default: 24]
+    #[arg(long, value_name = "FPS", value_parser = fps, requires = "frames", allow_negative_numbers = true)]
+    pub fps: Option<f64>,
+
+    /// How flights through media that vary are sampled [default: as each medium says]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub tracker: Option<Tracker>,
+
     /// Light transport algorithm [default: the scene's integrator]
+    ///
+    /// In scenes with the integrator single_scattering or non_scattering, media stay restricted as it says.
     #[arg(long, value_enum, value_name = "NAME")]
     pub integrator: Option<Integrator>,
 
@@ -97,6 +117,10 @@ pub struct Info {
     /// Which scene.
     #[command(flatten)]
     pub scene: Scene,
+
+    /// How flights through media that vary are sampled [default: as each medium says]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub tracker: Option<Tracker>,
 }
 
 /// Spell a scene anew.
@@ -140,6 +164,47 @@ pub enum Integrator {
     Pt,
     /// Light tracing (particle tracing) from the lamps
     Lt,
+    /// A preview: first surfaces without shadows, behind fog of one radiance; 4 samples per pixel are enough
+    Fog,
+}
+
+/// How flights through media that vary are sampled.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Tracker {
+    /// The cheapest that is unbiased
+    Auto,
+    /// Optical depths in closed form; not for every density
+    #[value(name = "closed_form")]
+    ClosedForm,
+    /// Grids, exactly, cell by cell
+    Exact,
+    /// Ray marching, biased by its step
+    March,
+    /// Delta and ratio tracking
+    #[value(name = "null_collision")]
+    NullCollision,
+}
+
+impl Tracker {
+    /// What it is called elsewhere.
+    pub fn choice(self) -> Choice {
+        match self {
+            Self::Auto => Choice::Auto,
+            Self::ClosedForm => Choice::ClosedForm,
+            Self::Exact => Choice::Exact,
+            Self::March => Choice::March,
+            Self::NullCollision => Choice::NullCollision,
+        }
+    }
+}
+
+/// Frames of an animation, both included.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Frames {
+    /// The first.
+    pub first: u32,
+    /// The last.
+    pub last: u32,
 }
 
 /// Ways of making a path from a light subpath and an eye subpath.
@@ -191,6 +256,22 @@ fn positive_u32(text: &str) -> Result<u32, String> {
         Ok(number) => Ok(number),
         Err(_) => Err("expected a whole number from 1 to 4294967295, such as 64".into()),
     }
+}
+
+fn frames(text: &str) -> Result<Frames, String> {
+    let expected = || "expected frames from 0 to 99999999, such as 0..47, or one, such as 12".to_owned();
+    let frame = |text: &str| text.parse().ok().filter(|n| *n <= 99_999_999).ok_or_else(expected);
+    let (first, last) = text.split_once("..").unwrap_or((text, text));
+    let (first, last) = (frame(first)?, frame(last)?);
+    if first > last {
+        return Err(format!("expected the first frame before the last: {last}..{first}"));
+    }
+    Ok(Frames { first, last })
+}
+
+fn fps(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|fps: &f64| (1e-6..=1e9).contains(fps));
+    number.ok_or_else(|| "expected frames per second from 1e-6 to 1e9, such as 24 or 29.97".to_owned())
 }
 
 fn threads(text: &str) -> Result<NonZeroUsize, String> {
@@ -309,8 +390,32 @@ mod tests {
     }
 
     #[test]
+    fn frames_are_a_range_or_one() {
+        let frames = |first, last| Some(Frames { first, last });
+        assert_eq!(render("--frames 0..47 --fps 25").frames, frames(0, 47));
+        assert_eq!(render("--frames 7").frames, frames(7, 7));
+        assert_eq!(render("--frames 3..3").frames, frames(3, 3));
+        assert_eq!((render("--frames 1").fps, render("--frames 1 --fps 29.97").fps), (None, Some(29.97)));
+        assert_eq!((render("").frames, render("").tracker), (None, None));
+        for (name, choice) in Choice::NAMES {
+            assert_eq!(render(&format!("--tracker {name}")).tracker.map(Tracker::choice), Some(choice));
+        }
+    }
+
+    #[test]
     fn nonsense_is_refused_with_a_hint() {
         for (words, hint) in [
+            ("render a.xml --frames 5..2", "2..5"),
+            ("render a.xml --frames -1..2", "from 0"),
+            ("render a.xml --frames 1..", "such as 0..47"),
+            ("render a.xml --frames 0..=4", "such as 0..47"),
+            ("render a.xml --frames 0..123456789", "99999999"),
+            ("render a.xml --fps 25", "--frames"),
+            ("render a.xml --frames 1 --fps 0", "such as 24"),
+            ("render a.xml --frames 1 --fps -24", "such as 24"),
+            ("render a.xml --frames 1 --fps nan", "such as 24"),
+            ("render a.xml --tracker exakt", "exact"),
+            ("info a.xml --tracker delta", "null_collision"),
             ("render a.xml --size 0x5", "from 1 to"),
             ("render a.xml --size 5", "640x480"),
             ("render a.xml --size -5x5", "from 1 to"),

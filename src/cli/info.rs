@@ -10,19 +10,19 @@ use crate::{
         format::{Component, FileKind},
         layer::Layer,
     },
-    medium::tracker::Tracker,
+    medium::{Choice, Heterogeneous, tracker::Tracker},
     phase::PhaseModel,
     scene::{
         Scene,
         build::Setup,
-        integrator::{Integrator, Method},
+        integrator::{Integrator, Method, Restriction},
     },
     transport::profile::{Needs, ProfileName},
 };
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Info) -> Result<()> {
-    let setup = load(&arguments.scene, None)?;
+    let setup = load(&arguments.scene, None, arguments.tracker)?;
     say(&describe(&setup));
     Ok(())
 }
@@ -87,10 +87,16 @@ fn describe_integrator(integrator: &Integrator) -> String {
         Method::Bdpt => "bdpt",
         Method::Pt => "pt",
         Method::Lt => "lt",
+        Method::Fog => return "fog, a preview of first surfaces".to_owned(),
+    };
+    let media = match integrator.restriction {
+        Restriction::None => "",
+        Restriction::SingleScattering { .. } => ", single scattering",
+        Restriction::NonScattering => ", media that absorb and emit only",
     };
     match integrator.max_depth {
-        Some(depth) => format!("{method}, paths of at most {depth} segments"),
-        None => format!("{method}, paths of any length"),
+        Some(depth) => format!("{method}, paths of at most {depth} segments{media}"),
+        None => format!("{method}, paths of any length{media}"),
     }
 }
 
@@ -120,20 +126,33 @@ fn describe_medium(setup: &Setup, index: usize) -> String {
         medium
             .varying
             .as_ref()
-            .map_or("closed-form tracker".into(), |varying| describe_tracker(varying.tracker()))
+            .map_or("closed-form tracker".into(), |varying| describe_tracker(setup, varying))
     )
 }
 
-fn describe_tracker(tracker: &Tracker) -> String {
+/// Which tracker a medium has, and who wanted it.
+fn describe_tracker(setup: &Setup, varying: &Heterogeneous) -> String {
+    let tracker = varying.tracker();
     let march = match tracker {
         Tracker::March(march) => format!(" by steps of at most {} m", march.step),
         _ => String::new(),
     };
-    format!("tracker {}{march}", tracker.choice().name())
+    let restricted = setup.integrator.restriction.treatment().tracker;
+    let why = match (varying.forced(), varying.asked()) {
+        (Some(Choice::Auto), _) | (None, Choice::Auto) => "chosen by cost",
+        (Some(forced), _) if restricted == Some(forced) => "as the integrator demands",
+        (Some(_), _) => "forced by --tracker",
+        (None, asked) if asked == tracker.choice() => "asked for by the scene",
+        (None, _) => "chosen by cost",
+    };
+    format!("tracker {}{march}, {why}", tracker.choice().name())
 }
 
 /// Kinds of paths that no strategy of the integrator can make: they are black, not noisy.
 fn unreachable(scene: &Scene, integrator: &Integrator) -> Vec<String> {
+    if integrator.method == Method::Fog {
+        return Vec::new();
+    }
     let bsdfs = scene.surfaces.iter().map(|surface| &scene.bsdfs[surface.bsdf as usize]);
     let smooth = bsdfs
         .clone()

@@ -34,12 +34,22 @@ pub fn run() -> ExitCode {
 }
 
 /// Reads and builds a scene; warnings go to standard error.
-fn load(scene: &arguments::Scene, size: Option<arguments::Size>) -> Result<Setup> {
+fn load(
+    scene: &arguments::Scene,
+    size: Option<arguments::Size>,
+    tracker: Option<arguments::Tracker>,
+) -> Result<Setup> {
     let root = scene::read(&scene.file, &scene.definitions)?;
-    let overrides = Overrides { size: size.map(|size| (size.width, size.height)), ..Overrides::default() };
+    let overrides = Overrides {
+        size: size.map(|size| (size.width, size.height)),
+        tracker: tracker.map(arguments::Tracker::choice),
+    };
     let setup = scene::build::build(&root, overrides)?;
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
+    }
+    if tracker.is_some() && setup.scene.media.iter().all(|medium| medium.varying.is_none()) {
+        complain("warning: --tracker has no effect: no medium of this scene varies");
     }
     Ok(setup)
 }

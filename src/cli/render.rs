@@ -8,7 +8,10 @@ use crate::{
         format::{FileKind, Format},
     },
     render::{self, Image, Progress, Settings, budget::Budget},
-    scene::{build::Setup, integrator::Method},
+    scene::{
+        build::Setup,
+        integrator::{Method, Restriction},
+    },
     transport::{
         Options, Strategies,
         profile::{Needs, ProfileName},
@@ -24,26 +27,79 @@ use std::{
 /// Runs the command.
 pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
-    let setup = load(&arguments.scene, arguments.size)?;
+    let mut setup = load(&arguments.scene, arguments.size, arguments.tracker)?;
     let settings = settings(arguments, &setup)?;
     let goal = Goal::new(arguments, &setup)?;
-    let load_time = started.elapsed();
-    let mut image = on_threads(arguments, || {
-        let bar = Bar::new(&settings, setup.film.len());
-        let (scene, film, layers) = (&setup.scene, &setup.film, &setup.integrator.layers);
-        let image =
-            render::render_layers(scene, film, &settings, layers, &mut |progress| bar.tell(&progress));
-        bar.bar.finish_and_clear();
-        image
-    })?;
-    goal.write(&setup.film, &mut image)?;
-    let preview = goal.path.with_extension("png");
-    film::png::write(&preview, setup.film.width as usize, setup.film.height as usize, &image.pixels)?;
-    if let Some(report) = &arguments.report {
-        write_report(report, &image, load_time, settings.profile)?;
+    let load_time = started.elapsed().as_secs_f64();
+    let pool = threads(arguments)?;
+    let figures = match arguments.frames {
+        None => vec![pool.install(|| shoot(&setup, &settings, &goal, None))?],
+        Some(frames) => pool.install(|| animate(arguments, &mut setup, &settings, &goal, frames))?,
+    };
+    match &arguments.report {
+        Some(path) => write_report(path, figures, load_time, arguments.frames.is_some()),
+        None => Ok(()),
     }
-    print_summary(&image, &goal.path, &preview);
-    Ok(())
+}
+
+/// Frames per second where nobody says.
+const FPS: f64 = 24.0;
+
+/// Renders frame after frame; their figures.
+fn animate(
+    arguments: &arguments::Render,
+    setup: &mut Setup,
+    settings: &Settings,
+    goal: &Goal,
+    frames: arguments::Frames,
+) -> Result<Vec<serde_json::Value>> {
+    let arguments::Frames { first, last } = frames;
+    let digits = last.to_string().len().max(4);
+    let mut figures = Vec::new();
+    for frame in first..=last {
+        let time = setup.time + f64::from(frame) / arguments.fps.unwrap_or(FPS);
+        let moved = setup.scene.set_time(time).map_err(|error| {
+            let place = format!("frame {frame}, at {time} s: {}", error.place);
+            Error { place, ..error }
+        })?;
+        if !moved && frame == first && first < last {
+            super::complain("warning: nothing in this scene moves (no wind): frames differ by noise alone");
+        }
+        let settings = Settings { seed: seed_of(settings.seed, frame), ..*settings };
+        let label = format!("frame {frame} of {first}..{last}");
+        let mut told = shoot(setup, &settings, &goal.numbered(frame, digits), Some(&label))?;
+        told["frame"] = frame.into();
+        told["time"] = time.into();
+        figures.push(told);
+    }
+    Ok(figures)
+}
+
+/// Seed of a frame: no two frames of nearby seeds share one.
+fn seed_of(seed: u64, frame: u32) -> u64 {
+    seed ^ (u64::from(frame) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+/// Renders one image and writes it; its figures.
+fn shoot(setup: &Setup, settings: &Settings, goal: &Goal, label: Option<&str>) -> Result<serde_json::Value> {
+    let bar = Bar::new(settings, setup.film.len(), label);
+    let Setup { scene, film, integrator, .. } = setup;
+    let tell = &mut |progress| bar.tell(&progress);
+    let mut image = match settings.options.strategies == Strategies::NONE {
+        true => render::preview(scene, film, settings, &integrator.look, &integrator.layers, tell),
+        false => render::render_layers(scene, film, settings, &integrator.layers, tell),
+    };
+    bar.bar.finish_and_clear();
+    goal.write(film, &mut image)?;
+    let preview = goal.path.with_extension("png");
+    film::png::write(&preview, film.width as usize, film.height as usize, &image.pixels)?;
+    print_summary(&image, &goal.path, &preview, label);
+    Ok(serde_json::json!({
+        "samples_per_pixel": image.samples_per_pixel,
+        "render_seconds": image.elapsed.as_secs_f64(),
+        "relative_error": image.noise,
+        "profile": settings.profile.name(),
+    }))
 }
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
@@ -52,24 +108,46 @@ fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
         arguments::Profile::Everything => ProfileName::Everything,
         arguments::Profile::Fitted => needed,
     };
-    let max_depth = match arguments.max_depth {
+    let strategies = strategies(arguments, setup.integrator.method)?;
+    if strategies == Strategies::NONE && arguments.max_depth.is_some() {
+        super::complain("warning: --max-depth has no effect: the integrator fog makes no paths");
+    }
+    let options = Options {
+        strategies,
+        max_depth: max_depth(arguments, setup)?,
+        hide_emitters: setup.integrator.hide_emitters,
+        seed: arguments.seed,
+    };
+    let budget = budget(arguments, setup, strategies == Strategies::NONE);
+    Ok(Settings { options, budget, seed: arguments.seed, profile })
+}
+
+fn max_depth(arguments: &arguments::Render, setup: &Setup) -> Result<Option<u32>> {
+    let asked = match arguments.max_depth {
         Some(arguments::MaxDepth::Edges(edges)) => Some(edges),
         Some(arguments::MaxDepth::Unbounded) => None,
         None => setup.integrator.max_depth,
     };
-    let options = Options {
-        strategies: strategies(arguments, setup.integrator.method)?,
-        max_depth,
-        hide_emitters: setup.integrator.hide_emitters,
-        seed: arguments.seed,
-    };
-    Ok(Settings { options, budget: budget(arguments, setup), seed: arguments.seed, profile })
+    let single = matches!(setup.integrator.restriction, Restriction::SingleScattering { .. });
+    if single && asked.is_none_or(|edges| edges > Restriction::SINGLE) {
+        return Err(Error::new(
+            "--max-depth",
+            "0, 1 or 2, for the scene's integrator single_scattering",
+            asked.map_or("-1".to_owned(), |edges| edges.to_string()),
+            "replace the integrator in the scene, by volpath for example",
+        ));
+    }
+    Ok(asked)
 }
 
-fn budget(arguments: &arguments::Render, setup: &Setup) -> Budget {
+/// Samples per pixel of a preview are no more than these, unless they are asked for.
+const PREVIEW_SAMPLES: u64 = 4;
+
+fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Budget {
     let samples_per_pixel = match (arguments.spp, arguments.time_limit) {
         (Some(spp), _) => Some(u64::from(spp)),
         (None, Some(_)) => None,
+        (None, None) if is_preview => Some(setup.samples_per_pixel.min(PREVIEW_SAMPLES)),
         (None, None) => Some(setup.samples_per_pixel),
     };
     Budget { samples_per_pixel, time: arguments.time_limit }
@@ -80,6 +158,7 @@ fn strategies(arguments: &arguments::Render, scene_method: Method) -> Result<Str
         (Some(arguments::Integrator::Bdpt), _) | (None, Method::Bdpt) => Strategies::BDPT,
         (Some(arguments::Integrator::Pt), _) | (None, Method::Pt) => Strategies::PT,
         (Some(arguments::Integrator::Lt), _) | (None, Method::Lt) => Strategies::LT,
+        (Some(arguments::Integrator::Fog), _) | (None, Method::Fog) => Strategies::NONE,
     };
     if arguments.strategies.is_empty() {
         return Ok(all);
@@ -143,6 +222,12 @@ impl Goal {
         Ok(Self { path, format })
     }
 
+    /// The same for one frame of an animation: its number before the ending.
+    fn numbered(&self, frame: u32, digits: usize) -> Self {
+        let end = self.path.extension().unwrap_or_default().to_string_lossy();
+        Self { path: self.path.with_extension(format!("{frame:0digits$}.{end}")), format: self.format }
+    }
+
     /// Writes the image, and the layers that it then no longer has.
     fn write(&self, film: &Film, image: &mut Image) -> Result<()> {
         let (width, height) = (film.width as usize, film.height as usize);
@@ -158,17 +243,17 @@ impl Goal {
     }
 }
 
-fn on_threads<T: Send>(arguments: &arguments::Render, work: impl FnOnce() -> T + Send) -> Result<T> {
+/// The threads that render.
+fn threads(arguments: &arguments::Render) -> Result<rayon::ThreadPool> {
     let threads = arguments.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
         Error::new(
             "--threads",
             "a number of threads this machine can start",
             error.to_string(),
             "ask for fewer",
         )
-    })?;
-    Ok(pool.install(work))
+    })
 }
 
 /// A progress bar over pixel samples, or over time where only time ends the render.
@@ -178,19 +263,21 @@ struct Bar {
 }
 
 impl Bar {
-    fn new(settings: &Settings, pixels: usize) -> Self {
+    fn new(settings: &Settings, pixels: usize, label: Option<&str>) -> Self {
         let (length, template) = match settings.budget {
             Budget { samples_per_pixel: Some(spp), .. } => {
-                (spp.saturating_mul(pixels as u64), "{bar:30} {percent:>3} %  {msg}  {eta} left")
+                (spp.saturating_mul(pixels as u64), "{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
             }
-            Budget { time, .. } => {
-                (milliseconds(time.unwrap_or(Duration::MAX)), "{bar:30} {percent:>3} %  {msg}  {eta} left")
-            }
+            Budget { time, .. } => (
+                milliseconds(time.unwrap_or(Duration::MAX)),
+                "{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left",
+            ),
         };
         let bar = ProgressBar::new(length);
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
+        bar.set_prefix(label.map_or(String::new(), |label| format!("{label}  ")));
         Self { bar, by_time: settings.budget.samples_per_pixel.is_none() }
     }
 
@@ -218,10 +305,11 @@ fn percent(relative: f64) -> String {
     format!("{:.digits$} %", 100.0 * relative)
 }
 
-fn print_summary(image: &Image, output: &Path, preview: &Path) {
+fn print_summary(image: &Image, output: &Path, preview: &Path, label: Option<&str>) {
     let noise = image.noise.map_or(String::new(), |n| format!(", noise {}", percent(n)));
+    let label = label.map_or(String::new(), |label| format!("{label}: "));
     super::say(&format!(
-        "{} samples/pixel in {:.1} s{noise}: {} and {}",
+        "{label}{} samples/pixel in {:.1} s{noise}: {} and {}",
         image.samples_per_pixel,
         image.elapsed.as_secs_f64(),
         output.display(),
@@ -229,14 +317,17 @@ fn print_summary(image: &Image, output: &Path, preview: &Path) {
     ));
 }
 
-/// Figures for scripts, as JSON.
-fn write_report(path: &Path, image: &Image, load_time: Duration, profile: ProfileName) -> Result<()> {
-    let report = serde_json::json!({
-        "samples_per_pixel": image.samples_per_pixel,
-        "render_seconds": image.elapsed.as_secs_f64(),
-        "load_seconds": load_time.as_secs_f64(),
-        "relative_error": image.noise,
-        "profile": profile.name(),
-    });
+/// Figures for scripts, as JSON: those of one image, or of every frame.
+fn write_report(
+    path: &Path,
+    mut figures: Vec<serde_json::Value>,
+    load_seconds: f64,
+    is_animation: bool,
+) -> Result<()> {
+    let mut report = match is_animation {
+        true => serde_json::json!({ "frames": figures }),
+        false => figures.pop().unwrap_or_default(),
+    };
+    report["load_seconds"] = load_seconds.into();
     film::output::write(path, |file| writeln!(file, "{report:#}"))
 }

@@ -36,6 +36,11 @@ impl Constant {
         self.cube
     }
 
+    /// 1 - the value.
+    pub fn complement(&self) -> Self {
+        Self::new(Spectrum::ONE - self.value, self.cube)
+    }
+
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
         let cube = [Vec3::ZERO, Vec3::ONE];
@@ -67,5 +72,9 @@ impl VolumeModel for Constant {
 
     fn integral<L: Lanes>(&self, section: &Section) -> L {
         L::from_spectrum(self.value).scaled(section.length)
+    }
+
+    fn moved(&self, by: DVec3) -> Self {
+        Self::new(self.value, self.cube.map(|corner| (corner.as_dvec3() + by).as_vec3()))
     }
 }

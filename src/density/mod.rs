@@ -38,6 +38,7 @@ use crate::{
     error::{Error, Result},
     math::{DAffine3, DVec3, Lanes, Section, Spectrum, Vec3},
 };
+use std::sync::Arc;
 
 /// Where and when volumes are built.
 #[derive(Clone, Copy, Debug)]
@@ -86,6 +87,19 @@ pub trait VolumeModel {
     /// The integral along `section`, whose length is finite unless `domain` says otherwise; meaningful only where
     /// `has_integral` is true.
     fn integral<L: Lanes>(&self, section: &Section) -> L;
+
+    /// The same volume, moved by `by` [m].
+    fn moved(&self, by: DVec3) -> Self
+    where
+        Self: Sized;
+
+    /// The volume as it is at `time` [s]; none where it is the same at all times.
+    fn at_time(&self, _time: f64) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
 }
 
 /// Makes the enum, its dispatch, the registry and the list of test examples from one row a model.
@@ -122,6 +136,12 @@ macro_rules! volumes {
             #[inline]
             fn integral<L: Lanes>(&self, section: &Section) -> L {
                 match self { $(Self::$model(model) => model.integral(section),)* }
+            }
+            fn moved(&self, by: DVec3) -> Self {
+                match self { $(Self::$model(model) => Self::$model(model.moved(by)),)* }
+            }
+            fn at_time(&self, time: f64) -> Option<Self> {
+                match self { $(Self::$model(model) => model.at_time(time).map(Self::$model),)* }
             }
         }
 
@@ -173,6 +193,15 @@ impl Volume {
         Self::Constant(Constant::new(Spectrum::splat(value), place.unit_cube()))
     }
 
+    /// `self` times 1 - `albedo`: what is absorbed of an extinction.
+    pub fn absorbed(self, albedo: Self) -> Self {
+        let rest = match albedo {
+            Self::Constant(constant) => Self::Constant(constant.complement()),
+            varying => Self::Sum(Sum::complement(varying)),
+        };
+        Self::Product(Product::new(vec![self, rest]))
+    }
+
     /// The grid, if it is one, whose cells an exact tracker walks; drifting or not.
     #[inline]
     pub fn grid(&self) -> Option<&Grid> {
@@ -220,6 +249,13 @@ pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Resu
         },
         Some(_) => params.color(name, 0.0).map(constant),
     }
+}
+
+/// `volumes` at `time`; none where all are the same at all times.
+fn all_at_time(volumes: &[Volume], time: f64) -> Option<Arc<[Volume]>> {
+    let moved: Vec<_> = volumes.iter().map(|volume| volume.at_time(time)).collect();
+    let all = || moved.iter().zip(volumes).map(|(moved, volume)| moved.as_ref().unwrap_or(volume).clone());
+    moved.iter().any(Option::is_some).then(|| all().collect())
 }
 
 /// All volumes nested in another, at least one.

@@ -222,6 +222,13 @@ impl<F: Function> VolumeModel for Placed<F> {
             None => L::splat(0.0),
         }
     }
+
+    fn moved(&self, by: DVec3) -> Self {
+        let to_world = DAffine3::from_translation(by) * self.to_own.inverse();
+        let own = Self::new(self.function.clone(), to_world, self.value, self.bounds);
+        // Inverted once, not twice, positions are as exact as before.
+        Self { to_own: self.to_own * DAffine3::from_translation(-by), ..own }
+    }
 }
 
 /// The parameter `name`, a number > 0.

@@ -1,10 +1,10 @@
 //! `product`: the values of nested volumes, multiplied: a shape times a texture.
 
-use super::{Place, Volume, VolumeModel, nested};
+use super::{Place, Volume, VolumeModel, all_at_time, nested};
 use crate::{
     description::Params,
     error::Result,
-    math::{Lanes, Section, Spectrum, Vec3},
+    math::{DVec3, Lanes, Section, Spectrum, Vec3},
 };
 use std::sync::Arc;
 
@@ -76,6 +76,10 @@ impl VolumeModel for Product {
         Some([low, high.max(low)])
     }
 
+    fn contains(&self, position: Vec3) -> bool {
+        self.factors.iter().all(|factor| factor.contains(position))
+    }
+
     fn is_grey(&self) -> bool {
         use crate::math::SpectrumExt;
         self.constant.is_grey() && self.factors.iter().all(VolumeModel::is_grey)
@@ -90,5 +94,13 @@ impl VolumeModel for Product {
         let varying =
             self.factors.first().map_or(L::splat(section.length), |factor| factor.integral(section));
         L::from_spectrum(self.constant) * varying
+    }
+
+    fn moved(&self, by: DVec3) -> Self {
+        Self { factors: self.factors.iter().map(|factor| factor.moved(by)).collect(), ..*self }
+    }
+
+    fn at_time(&self, time: f64) -> Option<Self> {
+        all_at_time(&self.factors, time).map(|factors| Self { factors, ..*self })
     }
 }

@@ -1,12 +1,12 @@
 //! From a description to a medium: parameters are read first; where coefficients vary, what they are like within the
 //! medium's bounds is looked at once those are known.
 
-use super::{Choice, Heterogeneous, Medium, heterogeneous::Fields};
+use super::{Choice, Heterogeneous, Medium, Treatment, heterogeneous::Fields};
 use crate::{
     density::{self, Place, Volume},
     description::{Library, Object, Params, find_row},
     error::{Error, Result},
-    math::Vec3,
+    math::{Spectrum, Vec3},
     phase::{self, Phase},
 };
 
@@ -53,13 +53,20 @@ impl Blueprint {
         self.fields.is_some()
     }
 
-    /// The medium, which lies in the box from `low` to `high` where its volumes do not say so themselves. `forced`
-    /// is a tracker that goes before the description's own.
-    pub fn finish(self, low: Vec3, high: Vec3, forced: Option<Choice>) -> Result<Medium> {
-        let Some(fields) = self.fields else { return Ok(self.medium) };
-        let varying = Heterogeneous::new(fields, [low, high], forced)?;
-        let (sigma_t, albedo) = varying.bounds();
-        Ok(Medium { sigma_t, albedo, varying: Some(Box::new(varying)), ..self.medium })
+    /// The medium, which lies in the box from `low` to `high` where its volumes do not say so themselves.
+    pub fn finish(self, low: Vec3, high: Vec3, treatment: &Treatment) -> Result<Medium> {
+        let Some(fields) = self.fields else { return Ok(treated(self.medium, treatment)) };
+        let varying = Heterogeneous::new(fields, [low, high], *treatment)?;
+        Ok(self.medium.with(varying))
+    }
+}
+
+/// What `treatment` makes of a homogeneous medium.
+fn treated(medium: Medium, treatment: &Treatment) -> Medium {
+    let Medium { sigma_t, albedo, .. } = medium;
+    match treatment.absorbing {
+        false => medium,
+        true => Medium { sigma_t: sigma_t * (Spectrum::ONE - albedo), albedo: Spectrum::ZERO, ..medium },
     }
 }
 

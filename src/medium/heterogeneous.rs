@@ -1,7 +1,7 @@
 //! A medium whose extinction and albedo vary in space.
 
 use super::{
-    Choice, Extinction, Leg, Matter,
+    Choice, Extinction, Leg, Matter, Treatment,
     tracker::{self, Tracker},
 };
 use crate::{
@@ -33,38 +33,75 @@ pub struct Fields {
     pub location: Location,
 }
 
+impl Fields {
+    /// The extinction that `treatment` makes of them, before its factor; the factor; and the albedo.
+    fn treated(&self, treatment: &Treatment) -> (Volume, f32, Volume) {
+        let Self { sigma_t, scale, albedo, .. } = self;
+        if !treatment.absorbing {
+            return (sigma_t.clone(), *scale, albedo.clone());
+        }
+        let range = albedo.range(Vec3::ZERO, Vec3::ZERO);
+        let (absorbed, scale) = match albedo {
+            // A factor leaves the volume what it is, and its trackers what they are.
+            Volume::Constant(_) if albedo.is_grey() => (sigma_t.clone(), scale * (1.0 - range[0].x)),
+            albedo => (sigma_t.clone().absorbed(albedo.clone()), *scale),
+        };
+        (absorbed, scale, Volume::constant(0.0, &Place { recentre: self.recentre, time: 0.0 }))
+    }
+
+    /// The fields at `time` [s]; none where they are the same at all times.
+    fn at_time(&self, time: f64) -> Option<Self> {
+        let (sigma_t, albedo) = (self.sigma_t.at_time(time), self.albedo.at_time(time));
+        if sigma_t.is_none() && albedo.is_none() {
+            return None;
+        }
+        let (sigma_t, albedo) =
+            (sigma_t.unwrap_or_else(|| self.sigma_t.clone()), albedo.unwrap_or_else(|| self.albedo.clone()));
+        Some(Self { sigma_t, albedo, location: self.location.clone(), ..*self })
+    }
+}
+
 /// Extinction, albedo, and how flights through them are sampled.
 #[derive(Clone, Debug)]
 pub struct Heterogeneous {
     extinction: Extinction,
     albedo: Volume,
     tracker: Tracker,
+    /// What it was made of, to be made anew for another time.
+    fields: Fields,
+    around: [Vec3; 2],
+    treatment: Treatment,
 }
 
 impl Heterogeneous {
     /// Looks at `fields` within their own bounds, or the box `around` where they have none, and chooses a tracker.
-    pub fn new(fields: Fields, around: [Vec3; 2], forced: Option<Choice>) -> Result<Self> {
+    pub fn new(fields: Fields, around: [Vec3; 2], treatment: Treatment) -> Result<Self> {
         let location = &fields.location;
         let [low, high] = fields.sigma_t.fills().unwrap_or(around);
-        let extinction = Extinction { volume: fields.sigma_t, scale: fields.scale, low, high };
-        let checks = [
-            (extinction.bound().max_element() < f32::INFINITY, "sigma_t", "a finite product with scale"),
-            (fields.albedo.range(low, high)[1].max_element() <= 1.0, "albedo", "values from 0 to 1"),
-        ];
-        if let Some((_, name, expected)) = checks.iter().find(|(fine, ..)| !fine) {
-            let remedy = format!("change \"{name}\" of the medium");
-            return Err(Error::new(location, format!("{expected} for \"{name}\""), "larger ones", remedy));
+        check(&fields, [low, high])?;
+        let (volume, scale, albedo) = fields.treated(&treatment);
+        let choice = match (treatment.tracker, fields.tracker) {
+            (Some(forced), _) => forced,
+            // What is left of extinction may not be the kind of volume that its tracker was named for.
+            (None, asked) if treatment.absorbing && !asked.applies_to(&volume) => Choice::Auto,
+            (None, asked) => asked,
+        };
+        if !choice.applies_to(&volume) {
+            return Err(inapplicable(choice, &volume, location));
         }
-        let place = Place { recentre: fields.recentre, time: 0.0 };
-        for volume in [&extinction.volume, &fields.albedo] {
-            check_non_negative(volume, low, high).map_err(|negative| negative.error(location, &place))?;
-        }
-        let choice = forced.unwrap_or(fields.tracker);
-        if !choice.applies_to(&extinction.volume) {
-            return Err(inapplicable(choice, &extinction.volume, location));
-        }
-        let tracker = tracker::choose(&extinction, choice, fields.step, fields.march_error);
-        Ok(Self { extinction, albedo: fields.albedo, tracker })
+        let (step, error) = match treatment {
+            Treatment { step: None, march_error: None, .. } => (fields.step, fields.march_error),
+            Treatment { step, march_error, .. } => (step, march_error.unwrap_or(fields.march_error)),
+        };
+        let extinction = Extinction { volume, scale, low, high };
+        let tracker = tracker::choose(&extinction, choice, step, error);
+        Ok(Self { extinction, albedo, tracker, fields, around, treatment })
+    }
+
+    /// The same at `time` [s]; none where it is the same at all times.
+    pub fn at_time(&self, time: f64) -> Result<Option<Self>> {
+        let fields = self.fields.at_time(time);
+        fields.map(|fields| Self::new(fields, self.around, self.treatment)).transpose()
     }
 
     /// Bounds on extinction [1/m] and albedo.
@@ -81,6 +118,25 @@ impl Heterogeneous {
     /// Where it is, and how much.
     pub fn extinction(&self) -> &Extinction {
         &self.extinction
+    }
+
+    /// The tracker that its description asks for.
+    pub fn asked(&self) -> Choice {
+        self.fields.tracker
+    }
+
+    /// The tracker that goes before that, if any.
+    pub fn forced(&self) -> Option<Choice> {
+        self.treatment.tracker
+    }
+
+    /// Optical depth for a picture that need not be exact but must not be noisy: in closed form where there is one,
+    /// by coarse marching where the tracker is random.
+    pub fn quick_depth<L: Lanes>(&self, section: &Section) -> L {
+        match &self.tracker {
+            Tracker::NullCollision(_) => tracker::quick_depth(&self.extinction, section),
+            tracker => tracker.depth(&self.extinction, section),
+        }
     }
 
     /// How its flights are sampled.
@@ -118,6 +174,25 @@ impl Heterogeneous {
     ) -> Leg<L> {
         self.tracker.fly(&self.extinction, section, hero, remaining, stream)
     }
+}
+
+/// Extinction and albedo must be possible ones everywhere in the box from `low` to `high`.
+fn check(fields: &Fields, [low, high]: [Vec3; 2]) -> Result<()> {
+    let Fields { sigma_t, scale, albedo, location, .. } = fields;
+    let most = |volume: &Volume| volume.range(low, high)[1].max_element();
+    let checks = [
+        (most(sigma_t) * scale < f32::INFINITY, "sigma_t", "a finite product with scale"),
+        (most(albedo) <= 1.0, "albedo", "values from 0 to 1"),
+    ];
+    if let Some((_, name, expected)) = checks.iter().find(|(fine, ..)| !fine) {
+        let remedy = format!("change \"{name}\" of the medium");
+        return Err(Error::new(location, format!("{expected} for \"{name}\""), "larger ones", remedy));
+    }
+    let place = Place { recentre: fields.recentre, time: 0.0 };
+    for volume in [sigma_t, albedo] {
+        check_non_negative(volume, low, high).map_err(|negative| negative.error(location, &place))?;
+    }
+    Ok(())
 }
 
 fn inapplicable(choice: Choice, volume: &Volume, location: &Location) -> Error {

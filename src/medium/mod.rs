@@ -4,8 +4,10 @@ mod blueprint;
 mod extinction;
 mod heterogeneous;
 pub mod tracker;
+mod treatment;
 
 use crate::{
+    error::Result,
     math::{Spectrum, SpectrumExt},
     phase::{self, Phase},
 };
@@ -13,6 +15,7 @@ pub use blueprint::{Blueprint, ROWS, build, is_medium};
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;
 pub use tracker::{Choice, Leg};
+pub use treatment::Treatment;
 
 /// Index of a medium in its scene. Vacuum is a medium like any other, with nothing in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -65,6 +68,18 @@ impl Medium {
             phase: Phase::Isotropic(phase::Isotropic),
             varying: None,
         }
+    }
+
+    /// The medium as it is at `time` [s]; none where it is the same at all times.
+    pub fn at_time(&self, time: f64) -> Result<Option<Self>> {
+        let Some(varying) = &self.varying else { return Ok(None) };
+        Ok(varying.at_time(time)?.map(|varying| self.clone().with(varying)))
+    }
+
+    /// The medium with coefficients that vary.
+    fn with(self, varying: Heterogeneous) -> Self {
+        let (sigma_t, albedo) = varying.bounds();
+        Self { sigma_t, albedo, varying: Some(Box::new(varying)), ..self }
     }
 
     /// What a homogeneous medium is made of, and a bound on a varying one.

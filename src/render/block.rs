@@ -1,9 +1,11 @@
 //! A block: a fixed set of pixels scattered over the image, rendered together with a light cache of their own.
 
+use super::fog::{PILOT_RAYS, Preview};
 use crate::{
     film::Film,
     math::{Lanes, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
+    shape::Ray,
     transport::{Estimator, LightCache, Splats, profile::Profile},
 };
 
@@ -125,6 +127,42 @@ impl Blocks {
             (pixel as u32, radiance * weight)
         });
         Outcome { eye: eye.collect(), light: light.values }
+    }
+}
+
+impl Blocks {
+    /// Shows one sample of every pixel of `block` as a preview.
+    pub fn show<P: Profile>(
+        &self,
+        estimator: &Estimator<'_, P>,
+        preview: &Preview<'_>,
+        film: &Film,
+        seed: u64,
+        pass: usize,
+        block: usize,
+    ) -> Outcome {
+        let eye = self.pixels(block).map(|pixel| {
+            let mut start = self.eye_start(estimator, film, seed, pass, pixel);
+            let ray = estimator.primary_ray(start.position, start.aperture);
+            (pixel as u32, preview.radiance(ray, &mut start.stream) * start.weight)
+        });
+        Outcome { eye: eye.collect(), light: Vec::new() }
+    }
+
+    /// Rays through pixels all over the film, with random numbers of their own.
+    pub fn pilot_rays<'a, P: Profile>(
+        &'a self,
+        estimator: &'a Estimator<'_, P>,
+        film: &'a Film,
+        seed: u64,
+    ) -> impl Iterator<Item = (Ray, Stream)> + 'a {
+        (0..PILOT_RAYS).map(move |index| {
+            let pixel = (index as u128 * self.pixels as u128 / PILOT_RAYS as u128) as usize;
+            let mut stream = Stream::new(seed, index as u64, 0, Purpose::Pilot);
+            let (position, _) = film.sample(pixel, &mut stream);
+            let aperture = estimator.sample_aperture(&mut stream);
+            (estimator.primary_ray(position, aperture), stream)
+        })
     }
 }
 

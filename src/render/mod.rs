@@ -5,6 +5,7 @@
 
 mod block;
 pub mod budget;
+mod fog;
 mod primary;
 
 use crate::{
@@ -15,14 +16,15 @@ use crate::{
         layer::{Content, Layer},
     },
     math::{Spectrum, Vec3},
-    scene::Scene,
+    scene::{Scene, integrator::Look},
     transport::{
-        Estimator, Options,
+        Estimator, Options, Strategies,
         profile::{Bounded, ChromaticFog, Everything, Fog, Profile, ProfileName, Smoke, Vacuum},
     },
 };
 use block::{Blocks, Outcome};
 use budget::Budget;
+use fog::Preview;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -87,13 +89,38 @@ pub fn render_layers(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
+    dispatch(scene, film, settings, None, layers, progress)
+}
+
+/// Shows `scene` on `film` as a preview that looks like `look`, and `layers` with it. Of the options only the
+/// visibility of emitters counts.
+pub fn preview(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    look: &Look,
+    layers: &[Layer],
+    progress: &mut dyn FnMut(Progress),
+) -> Image {
+    let options = Options { strategies: Strategies::NONE, ..settings.options };
+    dispatch(scene, film, &Settings { options, ..*settings }, Some(look), layers, progress)
+}
+
+fn dispatch(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    look: Option<&Look>,
+    layers: &[Layer],
+    progress: &mut dyn FnMut(Progress),
+) -> Image {
     match settings.profile {
-        ProfileName::Vacuum => render_as::<Vacuum>(scene, film, settings, layers, progress),
-        ProfileName::Fog => render_as::<Fog>(scene, film, settings, layers, progress),
-        ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, layers, progress),
-        ProfileName::Smoke => render_as::<Smoke>(scene, film, settings, layers, progress),
-        ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, layers, progress),
-        ProfileName::Everything => render_as::<Everything>(scene, film, settings, layers, progress),
+        ProfileName::Vacuum => render_as::<Vacuum>(scene, film, settings, look, layers, progress),
+        ProfileName::Fog => render_as::<Fog>(scene, film, settings, look, layers, progress),
+        ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, look, layers, progress),
+        ProfileName::Smoke => render_as::<Smoke>(scene, film, settings, look, layers, progress),
+        ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, look, layers, progress),
+        ProfileName::Everything => render_as::<Everything>(scene, film, settings, look, layers, progress),
     }
 }
 
@@ -101,6 +128,7 @@ fn render_as<P: Profile>(
     scene: &Scene,
     film: &Film,
     settings: &Settings,
+    look: Option<&Look>,
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
@@ -110,7 +138,11 @@ fn render_as<P: Profile>(
     let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
     let squares = layers.iter().any(Layer::needs_squares);
     let accumulator = if squares { Accumulator::with_products } else { Accumulator::new }(film.len());
-    let job = Job { estimator: &estimator, film, blocks: &blocks, settings, started };
+    let Options { hide_emitters, seed, .. } = settings.options;
+    let rays = || blocks.pilot_rays(&estimator, film, seed);
+    let preview = look.map(|look| Preview::new(scene, look, hide_emitters, rays()));
+    let preview = preview.as_ref();
+    let job = Job { estimator: &estimator, preview, film, blocks: &blocks, settings, started };
     let (accumulator, noise) = job.accumulate(accumulator, progress);
     let passes = accumulator.passes();
     let seen = primary::Pass::new(film, layers).run(scene, &job, passes);
@@ -123,6 +155,8 @@ fn render_as<P: Profile>(
 /// What does not change during a render.
 struct Job<'a, P: Profile> {
     estimator: &'a Estimator<'a, P>,
+    /// Shown in place of what the estimator says.
+    preview: Option<&'a Preview<'a>>,
     film: &'a Film,
     blocks: &'a Blocks,
     settings: &'a Settings,
@@ -136,7 +170,7 @@ impl<P: Profile> Job<'_, P> {
         mut accumulator: Accumulator,
         progress: &mut dyn FnMut(Progress),
     ) -> (Accumulator, Option<f64>) {
-        let Self { estimator, film, blocks, settings, started } = *self;
+        let Self { estimator, preview, film, blocks, settings, started } = *self;
         let mut pass = vec![Spectrum::ZERO; film.len()];
         let (mut next, mut noise) = (0, None);
         loop {
@@ -146,7 +180,10 @@ impl<P: Profile> Job<'_, P> {
                 .into_par_iter()
                 .map(|task| {
                     let (pass, block) = (task / blocks.count(), task % blocks.count());
-                    blocks.render(estimator, film, settings.seed, pass, block)
+                    match preview {
+                        None => blocks.render(estimator, film, settings.seed, pass, block),
+                        Some(preview) => blocks.show(estimator, preview, film, settings.seed, pass, block),
+                    }
                 })
                 .collect();
             for (task, outcome) in tasks.clone().zip(&outcomes) {

@@ -21,7 +21,7 @@ use crate::{
     error::{Error, Result},
     film::Film,
     math::{DVec3, Vec3},
-    medium::{self, Blueprint, Choice, MediumIndex},
+    medium::{self, Blueprint, Choice, MediumIndex, Treatment},
     sensor::{self, Crop, Sensor},
     shape::{self, Shape},
 };
@@ -41,6 +41,8 @@ pub struct Setup {
     pub warnings: Vec<String>,
     /// Id (or plugin name) of each medium after vacuum, for listings.
     pub medium_names: Vec<String>,
+    /// When the scene is seen [s].
+    pub time: f64,
 }
 
 /// What the caller asks of the film instead of the file's word.
@@ -71,7 +73,10 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         None => Integrator::default(),
     };
     let medium_names = builder.medium_names.clone();
-    let scene = builder.finish(view.sensor, view.medium, &sections.sensor.location, overrides.tracker)?;
+    let treatment = integrator.restriction.treatment();
+    let treatment = Treatment { tracker: overrides.tracker.or(treatment.tracker), ..treatment };
+    let time = builder.place.time;
+    let scene = builder.finish(view.sensor, view.medium, &sections.sensor.location, &treatment)?;
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }
@@ -82,6 +87,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         samples_per_pixel: view.samples_per_pixel,
         warnings: library.take_warnings(),
         medium_names,
+        time,
     })
 }
 
@@ -287,7 +293,7 @@ impl<'a> Builder<'a> {
         sensor: Sensor,
         stated: Option<MediumIndex>,
         sensor_location: &Location,
-        tracker: Option<Choice>,
+        treatment: &Treatment,
     ) -> Result<Scene> {
         let geometry = Geometry::build(self.shapes);
         let touching = boundary::touching(&geometry, &self.surfaces);
@@ -301,7 +307,7 @@ impl<'a> Builder<'a> {
         let (recentre, outside) = (self.recentre, finder.far_outside(sensor_medium));
         let viewpoint = sensor.position();
         let extents = Extents { geometry: &geometry, surfaces: &self.surfaces, viewpoint, outside };
-        let media = extents.finish(self.media, tracker)?;
+        let media = extents.finish(self.media, treatment)?;
         let lights = self.emitters.into_iter().map(|Placed { emitter, shape, stated, location }| {
             let position = emitter.position().map(|position| (position - recentre).as_vec3());
             let across = |shape| finder.straddles(shape, outside);
@@ -324,6 +330,7 @@ impl<'a> Builder<'a> {
             surfaces: self.surfaces,
             bsdfs: self.bsdfs,
             media,
+            outside,
             sensor,
             sensor_medium,
             recentre,

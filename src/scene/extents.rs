@@ -5,7 +5,7 @@ use super::{Surface, accel::Geometry};
 use crate::{
     error::Result,
     math::Vec3,
-    medium::{Blueprint, Choice, Medium, MediumIndex},
+    medium::{Blueprint, Medium, MediumIndex, Treatment},
 };
 
 /// Boxes reach beyond shapes by this part of their size: the boundary itself lies within.
@@ -25,10 +25,10 @@ pub struct Extents<'a> {
 
 impl Extents<'_> {
     /// Finishes all media.
-    pub fn finish(&self, media: Vec<Blueprint>, forced: Option<Choice>) -> Result<Vec<Medium>> {
+    pub fn finish(&self, media: Vec<Blueprint>, treatment: &Treatment) -> Result<Vec<Medium>> {
         let finish = |(index, blueprint): (usize, Blueprint)| {
             let [low, high] = self.of(MediumIndex(index as u32));
-            blueprint.finish(low, high, forced)
+            blueprint.finish(low, high, treatment)
         };
         media.into_iter().enumerate().map(finish).collect()
     }

@@ -1,10 +1,13 @@
 //! Which integrator a scene asks for. All are one estimator with strategies left out; `aov` and `moment` hold
-//! another one and ask for more channels.
+//! another one and ask for more channels. `fog` is a preview that makes no paths; `single_scattering` and
+//! `non_scattering` restrict what media do.
 
 use crate::{
     description::{Library, Object, Params, Row, build_by_row, nearest, params::Child},
     error::{Error, Result},
     film::layer::{Content, Layer, QUANTITIES},
+    math::Spectrum,
+    medium::{Choice, Treatment},
 };
 
 /// How paths are made.
@@ -16,10 +19,58 @@ pub enum Method {
     Pt,
     /// Light walks joined to the lens.
     Lt,
+    /// First surfaces behind a constant veil (BMA02 eq. 5).
+    Fog,
+}
+
+/// What light does in media.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Restriction {
+    /// All that the media say.
+    #[default]
+    None,
+    /// It is scattered once at most, in media that vary found by ray marching (P03 eq. 18-19).
+    SingleScattering {
+        /// The longest interval [m], in place of the media's own.
+        step: Option<f64>,
+        /// The error of transmittance, in place of the media's own steps and errors.
+        march_error: Option<f64>,
+    },
+    /// It is absorbed and emitted (P03T eq. 2.9).
+    NonScattering,
+}
+
+impl Restriction {
+    /// Most segments of a path that single scattering has.
+    pub const SINGLE: u32 = 2;
+
+    /// What it asks of all media.
+    pub fn treatment(&self) -> Treatment {
+        match *self {
+            Self::None => Treatment::default(),
+            Self::SingleScattering { step, march_error } => {
+                Treatment { tracker: Some(Choice::March), step, march_error, absorbing: false }
+            }
+            Self::NonScattering => Treatment { absorbing: true, ..Treatment::default() },
+        }
+    }
+}
+
+/// How the preview `fog` looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Look {
+    /// L_fog: radiance of the fog [W/(m^2 sr)]; where none is given, the mean radiance of the surroundings, else the
+    /// mean of the surfaces that are seen.
+    pub color: Option<Spectrum>,
+    /// Radiance that surfaces are lit by from everywhere, besides the emitters [W/(m^2 sr)]; where none is given, that
+    /// of the fog where nothing surrounds the scene, else 0.
+    pub ambient: Option<Spectrum>,
+    /// What is further than this is fog alone [m]; none for no limit.
+    pub threshold: Option<f32>,
 }
 
 /// An integrator as a scene file asks for it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Integrator {
     /// How paths are made.
     pub method: Method,
@@ -27,13 +78,24 @@ pub struct Integrator {
     pub max_depth: Option<u32>,
     /// The camera does not see emitters, but what is behind them.
     pub hide_emitters: bool,
+    /// What light does in media.
+    pub restriction: Restriction,
+    /// How a preview looks.
+    pub look: Look,
     /// What is written besides the image.
     pub layers: Vec<Layer>,
 }
 
 impl Default for Integrator {
     fn default() -> Self {
-        Self { method: Method::Bdpt, max_depth: None, hide_emitters: false, layers: Vec::new() }
+        Self {
+            method: Method::Bdpt,
+            max_depth: None,
+            hide_emitters: false,
+            restriction: Restriction::None,
+            look: Look::default(),
+            layers: Vec::new(),
+        }
     }
 }
 
@@ -44,6 +106,9 @@ pub const ROWS: &[Row<Integrator>] = &[
     Row { name: "volpath", build: |p| build_as(p, Method::Pt) },
     Row { name: "volpathmis", build: |p| build_as(p, Method::Pt) },
     Row { name: "ptracer", build: |p| build_as(p, Method::Lt) },
+    Row { name: "fog", build: build_fog },
+    Row { name: "single_scattering", build: build_single_scattering },
+    Row { name: "non_scattering", build: build_non_scattering },
     Row { name: "aov", build: build_aov },
     Row { name: "moment", build: build_moment },
 ];
@@ -88,7 +153,51 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
     params.accept_unused(&["rr_depth"], "walks end by absorption, which is exact at any depth");
     accept_division(params);
     let hide_emitters = params.boolean("hide_emitters", false)?;
-    Ok(Integrator { method, max_depth, hide_emitters, layers: Vec::new() })
+    Ok(Integrator { method, max_depth, hide_emitters, ..Integrator::default() })
+}
+
+/// `fog`: `fog_color`, `ambient`, `threshold` [m] (BMA02 sec. 3.1 and 4.2).
+fn build_fog(params: &Params<'_>) -> Result<Integrator> {
+    params.accept_unused(&["max_depth", "rr_depth"], "a preview shows the first surfaces only");
+    accept_division(params);
+    let emission = |name| params.has(name).then(|| params.emission(name, 0.0)).transpose();
+    let threshold = match params.optional_float("threshold")? {
+        Some(far) if !(far > 0.0 && far <= f64::from(f32::MAX)) => {
+            return Err(params.complain("threshold", "a distance above 0", far.to_string()));
+        }
+        far => far.map(|far| far as f32),
+    };
+    let look = Look { color: emission("fog_color")?, ambient: emission("ambient")?, threshold };
+    let hide_emitters = params.boolean("hide_emitters", false)?;
+    Ok(Integrator { method: Method::Fog, hide_emitters, look, ..Integrator::default() })
+}
+
+/// `single_scattering`: path tracing of at most two segments, with marching by `step` [m] or within `march_error`.
+fn build_single_scattering(params: &Params<'_>) -> Result<Integrator> {
+    let most = Restriction::SINGLE;
+    let depth = params.integer("max_depth", i64::from(most))?;
+    if !(0..=i64::from(most)).contains(&depth) {
+        let error =
+            params.complain("max_depth", "0, 1 or 2, for light that scatters once", depth.to_string());
+        return Err(Error { remedy: "use the integrator volpath for longer paths".into(), ..error });
+    }
+    let step = params.optional_float("step")?;
+    if step.is_some_and(|step| step <= 0.0) {
+        return Err(params.complain("step", "a length above 0", format!("{step:?}")));
+    }
+    let march_error = match params.has("march_error") {
+        true => Some(params.float_within("march_error", 1e-3, 1e-7, 1.0)?),
+        false => None,
+    };
+    let integrator = build_as(params, Method::Pt)?;
+    let restriction = Restriction::SingleScattering { step, march_error };
+    Ok(Integrator { restriction, max_depth: Some(depth as u32), ..integrator })
+}
+
+/// `non_scattering`: media that absorb and emit only, among surfaces as they are.
+fn build_non_scattering(params: &Params<'_>) -> Result<Integrator> {
+    let integrator = build_as(params, Method::Bdpt)?;
+    Ok(Integrator { restriction: Restriction::NonScattering, ..integrator })
 }
 
 fn accept_division(params: &Params<'_>) {

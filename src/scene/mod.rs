@@ -18,6 +18,7 @@ mod sections;
 mod steps;
 mod tags;
 mod text;
+mod time;
 mod write;
 mod xml;
 
@@ -72,6 +73,8 @@ pub struct Scene {
     pub lights: Lights,
     /// The camera.
     pub sensor: Sensor,
+    /// The medium around everything.
+    pub outside: MediumIndex,
     /// The medium around the camera.
     pub sensor_medium: MediumIndex,
     /// Where the origin of all positions lies in the file's coordinates [m].

@@ -43,6 +43,8 @@ pub struct Strategies {
 }
 
 impl Strategies {
+    /// None at all: an estimator that is asked about primary rays only.
+    pub const NONE: Self = Self { hit: false, next_event: false, join: false, lens: false };
     /// Bidirectional path tracing.
     pub const BDPT: Self = Self { hit: true, next_event: true, join: true, lens: true };
     /// Path tracing with next-event estimation.

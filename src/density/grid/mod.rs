@@ -295,6 +295,15 @@ impl VolumeModel for Grid {
             Some((line, [first, last])) => narrow(lattice, lattice.integral(&line, first, last)),
         })
     }
+
+    fn moved(&self, by: DVec3) -> Self {
+        let Frame { wrap, to_local, to_lattice, scale, shift, domain } = *self.frame;
+        let back = DAffine3::from_translation(-by);
+        let (to_local, to_lattice) = (to_local * back, to_lattice * back);
+        let domain = domain.map(|corner| corner + by);
+        let frame = Frame { wrap, to_local, to_lattice, scale, shift, domain };
+        Self { bricks: self.bricks.clone(), frame: Arc::new(frame) }
+    }
 }
 
 /// A voxel in the lanes that are asked for.

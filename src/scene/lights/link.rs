@@ -40,7 +40,18 @@ impl Lights {
             return None;
         }
         let (index, chosen) = self.connections.sample_precisely(stream.uniform_precisely());
-        let chosen = chosen as f32;
+        self.link_to(geometry, index, chosen as f32, reference, stream)
+    }
+
+    /// Samples a point of the emitter `index`, which is chosen with probability `chosen`.
+    pub fn link_to(
+        &self,
+        geometry: &Geometry,
+        index: usize,
+        chosen: f32,
+        reference: Vec3,
+        stream: &mut Stream,
+    ) -> Option<Link> {
         let light = &self.all[index];
         match &light.emitter.kind {
             Kind::Area(_) => {

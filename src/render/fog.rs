@@ -1,0 +1,258 @@
+//! The preview `fog` (BMA02 eq. 5): surfaces as they are lit, behind a veil of constant radiance as thick as the media
+//! make it. One ray a sample and no shadows: a picture to place things by, not to measure.
+
+use crate::{
+    bsdf::{BsdfModel, Transport},
+    emitter::{Environment, Kind},
+    math::{Lanes, Section, Spectrum, Vec3, measure, offset},
+    medium::MediumIndex,
+    sampling::Stream,
+    scene::{Scene, integrator::Look, lights::Link},
+    shape::{Ray, SurfacePoint},
+};
+use std::f32::consts::PI;
+
+/// Surfaces that a ray passes, or is mirrored or refracted by, before it gives up.
+const MOST_LEGS: u32 = 64;
+/// Where there are no more emitters than this, all light every point; else so many are drawn for each.
+const LIGHTS_PER_POINT: usize = 16;
+/// Rays that measure how bright surfaces are.
+pub const PILOT_RAYS: usize = 1024;
+
+/// A scene in fog of one radiance.
+pub struct Preview<'a> {
+    scene: &'a Scene,
+    hide_emitters: bool,
+    threshold: f32,
+    /// L_fog.
+    veil: Spectrum,
+    /// What surfaces receive from everywhere.
+    ambient: Spectrum,
+}
+
+/// What a ray has come to.
+struct Sight {
+    /// The part of radiance from there that remains.
+    through: Spectrum,
+    /// What share of the veil is before it.
+    veiled: Spectrum,
+    end: End,
+}
+
+enum End {
+    /// A surface, seen along this direction; with its own light.
+    Surface(Box<SurfacePoint>, Vec3, Spectrum),
+    /// Infinity, or nothing that could be seen.
+    Radiance(Spectrum),
+}
+
+impl<'a> Preview<'a> {
+    /// Prepares to show `scene`. Where `look` leaves it open, radiance is measured along `rays`.
+    pub fn new(
+        scene: &'a Scene,
+        look: &Look,
+        hide_emitters: bool,
+        rays: impl Iterator<Item = (Ray, Stream)>,
+    ) -> Self {
+        let threshold = look.threshold.unwrap_or(f32::INFINITY);
+        let dark = Self { scene, hide_emitters, threshold, veil: Spectrum::ZERO, ambient: Spectrum::ZERO };
+        let sky = surroundings(scene);
+        let veil = look.color.or(sky).unwrap_or_else(|| dark.brightness(rays));
+        let ambient = look.ambient.unwrap_or(if sky.is_some() { Spectrum::ZERO } else { veil });
+        Self { veil, ambient: ambient + even_sky(scene), ..dark }
+    }
+
+    /// The mean of what emitters make of the surfaces that rays meet; 1 where they make nothing.
+    fn brightness(&self, rays: impl Iterator<Item = (Ray, Stream)>) -> Spectrum {
+        let (mut sum, mut count) = (Spectrum::ZERO, 0);
+        for (ray, mut stream) in rays {
+            if let End::Surface(point, incoming, _) = self.follow(ray, &mut stream).end {
+                sum += self.lit(&point, incoming, &mut stream);
+                count += 1;
+            }
+        }
+        if sum.max_element() > 0.0 { sum / count as f32 } else { Spectrum::ONE }
+    }
+
+    /// Radiance along a primary ray.
+    pub fn radiance(&self, ray: Ray, stream: &mut Stream) -> Spectrum {
+        let Sight { through, veiled, end } = self.follow(ray, stream);
+        let behind = match end {
+            End::Radiance(radiance) => radiance,
+            End::Surface(point, incoming, own) => {
+                own + self.lit(&point, incoming, stream) + self.surrounded(&point, incoming, stream)
+            }
+        };
+        veiled * self.veil + through * behind
+    }
+
+    /// Follows a ray to the first surface that scatters light; what is smooth or not there it passes as light does.
+    fn follow(&self, mut ray: Ray, stream: &mut Stream) -> Sight {
+        let scene = self.scene;
+        let (mut through, mut veiled) = (Spectrum::ONE, Spectrum::ZERO);
+        let (mut medium, mut hidden) = (scene.sensor_medium, self.hide_emitters);
+        let mut left = self.threshold;
+        for _ in 0..MOST_LEGS {
+            let far = ray.t_max;
+            ray.t_max = far.min(left);
+            let hit = scene.geometry.closest(&ray);
+            if hit.is_none() && left < far {
+                // Beyond the threshold there is fog alone.
+                let end = End::Radiance(Spectrum::ZERO);
+                return Sight { through: Spectrum::ZERO, veiled: veiled + through, end };
+            }
+            let length = hit.map_or(ray.t_max, |hit| hit.t);
+            let remains = self.transmittance(medium, &ray, length);
+            veiled += through * (Spectrum::ONE - remains);
+            through *= remains;
+            let Some(hit) = hit else {
+                let link = scene.lights.met_at_infinity(ray.direction).filter(|_| !hidden);
+                let sky = link.map_or(Spectrum::ZERO, |link| link.value);
+                return Sight { through, veiled, end: End::Radiance(sky) };
+            };
+            left -= length;
+            let point = scene.geometry.surface(&ray, &hit);
+            let Some(turned) = self.pass(&point, &ray, hidden, stream) else {
+                let own = self.emitted(&point, &ray);
+                return Sight { through, veiled, end: End::Surface(Box::new(point), -ray.direction, own) };
+            };
+            let (direction, weight, straight) = turned;
+            through *= weight;
+            let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+            let t_max = if straight { far - (origin - ray.origin).dot(direction) } else { f32::INFINITY };
+            ray = Ray { origin, direction, t_max };
+            medium = match straight {
+                true => scene.medium_beyond(&point, &ray, medium),
+                false => scene.medium_towards(&point, direction, medium),
+            };
+            hidden &= straight;
+            if through.max_element() <= 0.0 {
+                break;
+            }
+        }
+        Sight { through: Spectrum::ZERO, veiled, end: End::Radiance(Spectrum::ZERO) }
+    }
+
+    /// The direction beyond a surface that is passed or smooth, its factor, and whether it is the old one; none where
+    /// the ray ends.
+    fn pass(
+        &self,
+        point: &SurfacePoint,
+        ray: &Ray,
+        hidden: bool,
+        stream: &mut Stream,
+    ) -> Option<(Vec3, Spectrum, bool)> {
+        let surface = self.scene.surface(point.shape);
+        if hidden && surface.emitter.is_some() {
+            return Some((ray.direction, Spectrum::ONE, true));
+        }
+        let passed = self.scene.null_transmission(point, ray.direction);
+        let passing = passed.max_element();
+        if passing >= 1.0 || (passing > 0.0 && stream.uniform() < passing) {
+            return Some((ray.direction, passed / passing, true));
+        }
+        if surface.connectible || surface.emitter.is_some() {
+            return None;
+        }
+        let wi = point.shading.to_local(-ray.direction);
+        let bsdf = self.scene.bsdf(point.shape);
+        let unpassed = if passing > 0.0 { 1.0 / (1.0 - passing) } else { 1.0 };
+        match bsdf.sample(point.uv, wi, Transport::Radiance, stream) {
+            Some(sample) => {
+                let direction = point.shading.to_world(sample.wo).normalize();
+                Some((direction, sample.weight * unpassed, false))
+            }
+            None => Some((ray.direction, Spectrum::ZERO, false)),
+        }
+    }
+
+    /// What remains of light along `length` of `ray`: f of BMA02 eq. 6.
+    fn transmittance(&self, medium: MediumIndex, ray: &Ray, length: f32) -> Spectrum {
+        let medium = &self.scene.media[medium.0 as usize];
+        let section = Section { origin: ray.origin, direction: ray.direction, length };
+        let depth = match &medium.varying {
+            Some(varying) => varying.quick_depth::<Spectrum>(&section),
+            // Nothing, times infinity, is nothing.
+            None => Spectrum::select(
+                medium.sigma_t.cmpgt(Spectrum::ZERO),
+                medium.sigma_t * length,
+                Spectrum::ZERO,
+            ),
+        };
+        depth.exp_neg()
+    }
+
+    /// Radiance that the surface itself emits along the ray.
+    fn emitted(&self, point: &SurfacePoint, ray: &Ray) -> Spectrum {
+        let Scene { lights, geometry, .. } = self.scene;
+        let light = self.scene.surface(point.shape).emitter;
+        let link = light.and_then(|light| lights.met(geometry, light, point, ray.origin));
+        link.map_or(Spectrum::ZERO, |link| link.value / link.cosine)
+    }
+
+    /// Light of all emitters reflected at a point, as if nothing stood in its way. The same sky everywhere is not
+    /// among them: it is ambient light.
+    fn lit(&self, point: &SurfacePoint, incoming: Vec3, stream: &mut Stream) -> Spectrum {
+        let Scene { lights, geometry, .. } = self.scene;
+        let reference = point.position;
+        if lights.all.len() > LIGHTS_PER_POINT {
+            let mut draw = |_| {
+                let link = lights.sample_link(geometry, reference, stream)?;
+                (!is_even_sky(&lights.all[link.light as usize].emitter.kind)).then_some(link)
+            };
+            let links = (0..LIGHTS_PER_POINT).filter_map(&mut draw);
+            let sum: Spectrum = links.map(|link| self.reflected(point, incoming, &link)).sum();
+            return sum / LIGHTS_PER_POINT as f32;
+        }
+        let others = lights.all.iter().enumerate().filter(|(_, light)| !is_even_sky(&light.emitter.kind));
+        let links = others.filter_map(|(index, _)| lights.link_to(geometry, index, 1.0, reference, stream));
+        links.map(|link| self.reflected(point, incoming, &link)).sum()
+    }
+
+    /// Light of one emitter point reflected at a surface point.
+    fn reflected(&self, point: &SurfacePoint, incoming: Vec3, link: &Link) -> Spectrum {
+        let towards = match link.infinite {
+            true => Some((link.position, 1.0)),
+            false => {
+                measure::between(point.position, link.position).map(|(direction, _, d2)| (direction, d2))
+            }
+        };
+        let Some((direction, distance_squared)) = towards else { return Spectrum::ZERO };
+        let (wi, wo) = (point.shading.to_local(incoming), point.shading.to_local(direction));
+        let bsdf = self.scene.bsdf(point.shape);
+        let value = bsdf.evaluate(point.uv, wi, wo, Transport::Radiance).value * wo.z.abs();
+        value * link.value / (link.connect * distance_squared)
+    }
+
+    /// Ambient light reflected at a point.
+    fn surrounded(&self, point: &SurfacePoint, incoming: Vec3, stream: &mut Stream) -> Spectrum {
+        if self.ambient == Spectrum::ZERO {
+            return Spectrum::ZERO;
+        }
+        let wi = point.shading.to_local(incoming);
+        let sample = self.scene.bsdf(point.shape).sample(point.uv, wi, Transport::Radiance, stream);
+        sample.map_or(Spectrum::ZERO, |sample| sample.weight) * self.ambient
+    }
+}
+
+/// Mean radiance of what surrounds the scene, if anything does.
+fn surroundings(scene: &Scene) -> Option<Spectrum> {
+    let index = scene.lights.environment?;
+    match &scene.lights.all[index as usize].emitter.kind {
+        Kind::Environment(sky) => Some(sky.fluence().as_vec3() / (4.0 * PI)),
+        _ => None,
+    }
+}
+
+/// Radiance of a sky that is the same everywhere: ambient light, known without samples.
+fn even_sky(scene: &Scene) -> Spectrum {
+    let even = |kind: &Kind| match kind {
+        Kind::Environment(Environment::Constant(sky)) => sky.radiance,
+        _ => Spectrum::ZERO,
+    };
+    scene.lights.all.iter().map(|light| even(&light.emitter.kind)).sum()
+}
+
+fn is_even_sky(kind: &Kind) -> bool {
+    matches!(kind, Kind::Environment(Environment::Constant(_)))
+}
