@@ -112,6 +112,79 @@ fn the_size_can_be_chosen() {
     assert_eq!(size_of(&desk.bytes("small.png")), (13, 5));
 }
 
+/// A cloud that drifts past the camera.
+fn drifting() -> Value {
+    let wave = json!({"type": "cosine", "w": {"type": "wave", "amplitude": 0.9, "vector": [3, 0, 0]}});
+    let wind = json!({"type": "wind", "velocity": [1, 0, 0], "a": wave});
+    let cloud = json!({"type": "heterogeneous", "sigma_t": wind, "albedo": 0.5});
+    scene(&[
+        ("sensor", camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 8)),
+        ("cloud", null_box([-1.0; 3], [1.0; 3], Some(cloud))),
+        ("sky", sky(1.0)),
+    ])
+}
+
+#[test]
+fn frames_are_numbered_files_and_the_same_alone() {
+    let desk = Desk::new(&drifting());
+    let run =
+        desk.run("render scene.json -o a.exr --frames 9..11 --fps 2 --report r.json --spp 1").succeeds();
+    let names = ["a.0009.exr", "a.0009.png", "a.0010.exr", "a.0010.png", "a.0011.exr", "a.0011.png"];
+    assert_eq!(desk.files(), [&names[..], &["r.json", "scene.json"]].concat());
+    assert!(run.out().contains("frame 10 of 9..11") && run.err().is_empty(), "{}{}", run.out(), run.err());
+    let figures: Value = serde_json::from_slice(&desk.bytes("r.json")).unwrap();
+    assert_eq!((&figures["frames"][1]["frame"], &figures["frames"][1]["time"]), (&json!(10), &json!(5.0)));
+    let all = desk.bytes("a.0010.exr");
+    desk.run("render scene.json -o a.exr --frames 10 --fps 2 --spp 1").succeeds();
+    assert_eq!(desk.bytes("a.0010.exr"), all);
+    desk.run("render scene.json -o a.exr --frames 10 --fps 4 --spp 1").succeeds();
+    assert_ne!(desk.bytes("a.0010.exr"), all);
+    let still = Desk::new(&foggy_room());
+    let told = still.run("render scene.json --frames 0..1 --spp 1").succeeds().err();
+    assert!(told.contains("warning") && told.contains("wind"), "{told}");
+    assert_eq!(still.files().len(), 5);
+    assert_ne!(still.bytes("scene.0000.exr"), still.bytes("scene.0001.exr"));
+}
+
+#[test]
+fn trackers_can_be_forced() {
+    let desk = Desk::new(&drifting());
+    let told = |words: &str| desk.run(&format!("info scene.json {words}")).succeeds().out();
+    assert!(told("").contains("tracker closed_form, chosen by cost"), "{}", told(""));
+    let forced = told("--tracker null_collision");
+    assert!(forced.contains("tracker null_collision, forced by --tracker"), "{forced}");
+    desk.run("render scene.json --tracker march --spp 1").succeeds();
+    desk.run("render scene.json --tracker exact").is_refused(&["gridvolume", "closed_form"]);
+    let still = Desk::new(&foggy_room());
+    let told = still.run("info scene.json --tracker march").succeeds().err();
+    assert!(told.contains("--tracker has no effect"), "{told}");
+}
+
+#[test]
+fn integrators_that_do_less_say_so() {
+    let with_integrator = |integrator: Value| Desk::new(&with(drifting(), &[("integrator", integrator)]));
+    let desk = with_integrator(json!({"type": "fog", "threshold": 50}));
+    desk.run("render scene.json").succeeds();
+    desk.run("render scene.json -o again.exr --integrator fog").succeeds();
+    assert_eq!(desk.bytes("scene.exr"), desk.bytes("again.exr"));
+    desk.run("render scene.json -o full.exr --integrator pt").succeeds();
+    assert_ne!(desk.bytes("scene.exr"), desk.bytes("full.exr"));
+    assert!(desk.run("info scene.json").succeeds().out().contains("fog, a preview"));
+    let told = desk.run("render scene.json --max-depth 3").succeeds().err();
+    assert!(told.contains("--max-depth has no effect"), "{told}");
+    desk.run("render scene.json --strategies hit").is_refused(&["--strategies"]);
+    let desk = with_integrator(json!({"type": "single_scattering", "step": 0.05}));
+    let told = desk.run("info scene.json").succeeds().out();
+    assert!(
+        told.contains("single scattering") && told.contains("march by steps of at most 0.05 m"),
+        "{told}"
+    );
+    desk.run("render scene.json --max-depth 3").is_refused(&["--max-depth", "single_scattering"]);
+    let desk = with_integrator(json!({"type": "non_scattering"}));
+    let told = desk.run("info scene.json").succeeds().out();
+    assert!(told.contains("absorb and emit only") && told.contains("albedo at most 0 0 0"), "{told}");
+}
+
 /// A foggy room whose film has more to it.
 fn filmed(more: &[(&str, Value)]) -> Value {
     let sensor = foggy_room()["sensor"].clone();
