@@ -176,7 +176,12 @@ impl<'a> Params<'a> {
     /// Radiance, irradiance or intensity, with finite entries >= 0: spectra are the light itself, not seen in
     /// daylight.
     pub fn emission(&self, name: &'static str, default: f32) -> Result<Spectrum> {
-        Ok(self.color_of(name, Role::Light)?.unwrap_or(Spectrum::splat(default)))
+        Ok(self.optional_emission(name)?.unwrap_or(Spectrum::splat(default)))
+    }
+
+    /// The same, where given.
+    pub fn optional_emission(&self, name: &'static str) -> Result<Option<Spectrum>> {
+        self.color_of(name, Role::Light)
     }
 
     fn color_of(&self, name: &'static str, role: Role) -> Result<Option<Spectrum>> {

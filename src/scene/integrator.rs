@@ -160,14 +160,14 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
 fn build_fog(params: &Params<'_>) -> Result<Integrator> {
     params.accept_unused(&["max_depth", "rr_depth"], "a preview shows the first surfaces only");
     accept_division(params);
-    let emission = |name| params.has(name).then(|| params.emission(name, 0.0)).transpose();
     let threshold = match params.optional_float("threshold")? {
         Some(far) if !(far > 0.0 && far <= f64::from(f32::MAX)) => {
             return Err(params.complain("threshold", "a distance above 0", far.to_string()));
         }
         far => far.map(|far| far as f32),
     };
-    let look = Look { color: emission("fog_color")?, ambient: emission("ambient")?, threshold };
+    let (color, ambient) = (params.optional_emission("fog_color")?, params.optional_emission("ambient")?);
+    let look = Look { color, ambient, threshold };
     let hide_emitters = params.boolean("hide_emitters", false)?;
     Ok(Integrator { method: Method::Fog, hide_emitters, look, ..Integrator::default() })
 }
@@ -177,18 +177,19 @@ fn build_single_scattering(params: &Params<'_>) -> Result<Integrator> {
     let most = Restriction::SINGLE;
     let depth = params.integer("max_depth", i64::from(most))?;
     if !(0..=i64::from(most)).contains(&depth) {
-        let error =
-            params.complain("max_depth", "0, 1 or 2, for light that scatters once", depth.to_string());
-        return Err(Error { remedy: "use the integrator volpath for longer paths".into(), ..error });
+        let error = params.complain("max_depth", "0, 1 or 2", depth.to_string());
+        return Err(Error {
+            remedy: "light scatters once here: use volpath for longer paths".into(),
+            ..error
+        });
     }
-    let step = params.optional_float("step")?;
-    if step.is_some_and(|step| step <= 0.0) {
-        return Err(params.complain("step", "a length above 0", format!("{step:?}")));
-    }
-    let march_error = match params.has("march_error") {
-        true => Some(params.float_within("march_error", 1e-3, 1e-7, 1.0)?),
-        false => None,
-    };
+    let within =
+        |name, expected: &str, range: std::ops::RangeInclusive<f64>| match params.optional_float(name)? {
+            Some(value) if !range.contains(&value) => Err(params.complain(name, expected, value.to_string())),
+            value => Ok(value),
+        };
+    let step = within("step", "a length above 0", f64::MIN_POSITIVE..=f64::MAX)?;
+    let march_error = within("march_error", "a number from 1e-7 to 1", 1e-7..=1.0)?;
     let integrator = build_as(params, Method::Pt)?;
     let restriction = Restriction::SingleScattering { step, march_error };
     Ok(Integrator { restriction, max_depth: Some(depth as u32), ..integrator })
