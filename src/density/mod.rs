@@ -180,9 +180,9 @@ pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Resu
     }
 }
 
-/// All volumes nested in another, at least one.
+/// All volumes nested in another, at least one; a child of another kind is an error.
 fn nested(params: &Params<'_>, place: &Place) -> Result<Vec<Volume>> {
-    let children = params.children(|child| is_volume(child.object))?;
+    let children = params.children(|_| true)?;
     if children.is_empty() {
         let remedy = format!("put a volume into the {}", params.object.plugin);
         return Err(Error::new(params.location(), "one or more nested volumes", "none", remedy));

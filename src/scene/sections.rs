@@ -2,7 +2,7 @@
 
 use super::{build::only_one, integrator, plugins, references, tags};
 use crate::{
-    bsdf,
+    bsdf, density,
     description::{Library, Object, Params, Position, params::Child},
     emitter,
     error::{Error, Result},
@@ -20,6 +20,9 @@ pub struct Sections<'a> {
     pub shapes: Vec<Child<'a>>,
     /// Those beside the shapes, in file order.
     pub emitters: Vec<Child<'a>>,
+    /// When it is seen [s]: what drifts in a wind has drifted since 0.
+    #[allow(dead_code, reason = "read where volumes are built")]
+    pub time: f64,
 }
 
 /// True if `object` only waits to be referred to.
@@ -28,6 +31,7 @@ fn is_definition(object: &Object) -> bool {
         || medium::is_medium(object)
         || crate::phase::is_phase(object)
         || crate::texture::ROWS.iter().any(|row| row.name == object.plugin)
+        || density::is_volume(object)
 }
 
 fn is_shape(object: &Object) -> bool {
@@ -38,13 +42,14 @@ impl<'a> Sections<'a> {
     /// Sorts the children of `root`; one that no scene can hold is an error.
     pub fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
         let params = Params::new(root, library);
+        let time = params.float("time", 0.0)?;
         let shapes = params.children(|child| is_shape(child.object))?;
         let emitters = params.children(|child| emitter::is_emitter(child.object))?;
         let sensors = params.children(|child| sensor::is_sensor(child.object))?;
         let integrators = params.children(|child| integrator::is_integrator(child.object))?;
         let definitions = params.children(|child| is_definition(child.object))?;
         for child in &definitions {
-            check_definition(child.object, library)?;
+            check_definition(child.object, library, time)?;
         }
         warn_of_idle(&definitions, root, library);
         if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
@@ -66,7 +71,7 @@ impl<'a> Sections<'a> {
             return Err(only_one(second, "integrator"));
         }
         let integrator = integrators.first().map(|child| child.object);
-        Ok(Self { integrator, sensor, shapes, emitters })
+        Ok(Self { integrator, sensor, shapes, emitters, time })
     }
 
     /// Where the camera stands, in the file's coordinates: it becomes the origin, so that f32 geometry is most
@@ -77,13 +82,17 @@ impl<'a> Sections<'a> {
 }
 
 /// Definitions are built even if nothing refers to them, so that a mistake in one is told.
-fn check_definition(object: &Object, library: &Library) -> Result<()> {
+fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()> {
     if bsdf::ROWS.iter().any(|row| row.name == object.plugin) {
         bsdf::build(object, library).map(drop)
     } else if medium::is_medium(object) {
         medium::build(object, library).map(drop)
     } else if crate::phase::is_phase(object) {
         crate::phase::build(object, library).map(drop)
+    } else if density::is_volume(object) {
+        // Where it will stand is of no matter to whether it can be built.
+        let place = density::Place { recentre: DVec3::ZERO, time };
+        density::build(object, library, &place).map(drop)
     } else {
         crate::texture::build(object, library).map(drop)
     }
