@@ -173,6 +173,23 @@ impl Volume {
         Self::Constant(Constant::new(Spectrum::splat(value), place.unit_cube()))
     }
 
+    /// The value at `position`, 0 where the volume is not.
+    #[inline]
+    pub fn inside<L: Lanes>(&self, position: Vec3) -> L {
+        if self.contains(position) { self.eval(position) } else { L::splat(0.0) }
+    }
+
+    /// Bounds of [`Self::inside`] within the box from `low` to `high`.
+    pub fn range_inside(&self, low: Vec3, high: Vec3) -> [Spectrum; 2] {
+        let [least, most] = self.range(low, high);
+        match self.domain() {
+            Some([first, last]) if !(first.cmple(low).all() && last.cmpge(high).all()) => {
+                [least.min(Spectrum::ZERO), most.max(Spectrum::ZERO)]
+            }
+            _ => [least, most],
+        }
+    }
+
     /// The grid, if it is one, whose cells an exact tracker walks; drifting or not.
     #[inline]
     pub fn grid(&self) -> Option<&Grid> {
@@ -222,9 +239,9 @@ pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Resu
     }
 }
 
-/// All volumes nested in another, at least one.
+/// All volumes nested in another, at least one; a child of another kind is an error.
 fn nested(params: &Params<'_>, place: &Place) -> Result<Vec<Volume>> {
-    let children = params.children(|child| is_volume(child.object))?;
+    let children = params.children(|_| true)?;
     if children.is_empty() {
         let remedy = format!("put a volume into the {}", params.object.plugin);
         return Err(Error::new(params.location(), "one or more nested volumes", "none", remedy));

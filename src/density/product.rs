@@ -59,11 +59,11 @@ impl VolumeModel for Product {
     #[inline]
     fn eval<L: Lanes>(&self, position: Vec3) -> L {
         let constant = L::from_spectrum(self.constant);
-        self.factors.iter().fold(constant, |product, factor| product * factor.eval(position))
+        self.factors.iter().fold(constant, |product, factor| product * factor.inside(position))
     }
 
     fn range(&self, low: Vec3, high: Vec3) -> [Spectrum; 2] {
-        let ranges = self.factors.iter().map(|factor| factor.range(low, high));
+        let ranges = self.factors.iter().map(|factor| factor.range_inside(low, high));
         let [least, most] = ranges.fold([self.constant; 2], times);
         let slack = least.abs().max(most.abs()) * (f32::EPSILON * (1 + self.factors.len()) as f32);
         [least - slack, most + slack]

@@ -39,11 +39,11 @@ impl Sum {
 impl VolumeModel for Sum {
     #[inline]
     fn eval<L: Lanes>(&self, position: Vec3) -> L {
-        self.0.iter().fold(L::splat(0.0), |sum, term| sum + term.eval(position))
+        self.0.iter().fold(L::splat(0.0), |sum, term| sum + term.inside(position))
     }
 
     fn range(&self, low: Vec3, high: Vec3) -> [Spectrum; 2] {
-        let ranges = || self.0.iter().map(|term| term.range(low, high));
+        let ranges = || self.0.iter().map(|term| term.range_inside(low, high));
         let [least, most] = ranges().fold([Spectrum::ZERO; 2], |[a, b], [c, d]| [a + c, b + d]);
         // What f32 loses where the terms are greater than their sum.
         let magnitude: Spectrum = ranges().map(|[a, b]| a.abs().max(b.abs())).sum();

@@ -50,6 +50,11 @@ impl VolumeModel for Wind {
         self.0.eval(position)
     }
 
+    #[inline]
+    fn contains(&self, position: Vec3) -> bool {
+        self.0.contains(position)
+    }
+
     fn range(&self, low: Vec3, high: Vec3) -> [Spectrum; 2] {
         self.0.range(low, high)
     }

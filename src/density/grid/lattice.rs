@@ -42,7 +42,7 @@ pub struct Brick<V> {
 }
 
 /// The bricks.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Lattice<V> {
     /// Cells along x, y and z.
     pub cells: [usize; 3],
@@ -52,6 +52,16 @@ pub struct Lattice<V> {
     pub filter: Filter,
     /// All bricks, x fastest.
     pub bricks: Vec<Brick<V>>,
+}
+
+/// Millions of voxels are nothing to read.
+impl<V> std::fmt::Debug for Lattice<V> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Lattice")
+            .field("cells", &self.cells)
+            .field("filter", &self.filter)
+            .finish_non_exhaustive()
+    }
 }
 
 /// A value that no density can have.
