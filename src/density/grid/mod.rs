@@ -216,6 +216,14 @@ impl Grid {
     pub(super) fn examples() -> Vec<Self> {
         tests::examples()
     }
+
+    /// How many bricks hold values of their own, and how many there are.
+    fn counts(&self) -> [usize; 2] {
+        each!(self, lattice => {
+            let full = lattice.bricks.iter().filter(|brick| brick.values.is_some());
+            [full.count(), lattice.bricks.len()]
+        })
+    }
 }
 
 impl VolumeModel for Grid {
