@@ -26,7 +26,7 @@ use crate::{
 };
 use lattice::{BRICK, Brick, Extent, Fault, Lattice};
 use std::{path::Path, sync::Arc};
-use voxel::{VALUES, Voxel};
+use voxel::Voxel;
 use walk::{Line, Target, Walk};
 
 pub use file::{Source, Values};
@@ -126,9 +126,9 @@ impl Grid {
         };
         let reach = reach(&values, wrap, image(&to_local, domain));
         let (extent, shift) = extent(size, filter, reach);
-        let bricks =
-            extent.cells.iter().try_fold(1u64, |n, cells| n.checked_mul(cells.div_ceil(BRICK) as u64));
-        let bytes = |one: usize| bricks.and_then(|bricks| bricks.checked_mul(one as u64));
+        let count = extent.size().iter().try_fold(1u64, |count, n| count.checked_mul(*n as u64));
+        let bytes = count.and_then(|count| count.checked_mul(size_of::<Brick<Spectrum>>() as u64));
+        memory::check(path, size, bytes)?;
         let scale = DVec3::from(size.map(|n| n as f64));
         let to_lattice = DAffine3::from_translation(shift) * DAffine3::from_scale(scale) * to_local;
         let to_world = to_lattice.inverse();
@@ -140,12 +140,14 @@ impl Grid {
         };
         let bricks = match values {
             Values::Grey(samples) => {
-                memory::check(path, size, bytes(4 * VALUES + size_of::<Brick<f32>>()))?;
+                let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
+                memory::check(path, size, Some(bytes))?;
                 let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
                 Bricks::Grey(Arc::new(lattice.map_err(|fault| refused(path, fault))?))
             }
             Values::Chromatic(samples) => {
-                memory::check(path, size, bytes(12 * VALUES + size_of::<Brick<Spectrum>>()))?;
+                let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
+                memory::check(path, size, Some(bytes))?;
                 let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
                 drop(samples);
                 collapse(lattice.map_err(|fault| refused(path, fault))?)
@@ -233,6 +235,14 @@ impl Grid {
 impl Grid {
     pub(super) fn examples() -> Vec<Self> {
         tests::examples()
+    }
+
+    /// How many bricks hold values of their own, and how many there are.
+    fn counts(&self) -> [usize; 2] {
+        each!(self, lattice => {
+            let full = lattice.bricks.iter().filter(|brick| brick.values.is_some());
+            [full.count(), lattice.bricks.len()]
+        })
     }
 }
 
