@@ -2,6 +2,7 @@
 //! model; this page is the contract and the registry.
 
 mod constant;
+pub mod files;
 mod samples;
 #[cfg(test)]
 mod tests;
