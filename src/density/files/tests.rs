@@ -283,3 +283,32 @@ fn a_tree_whose_nodes_are_shared_without_end_is_refused() {
     let problem = get(&file, None).unwrap_err();
     assert_eq!(problem.found, "more than fit");
 }
+
+/// A frame of Blosc: its flags, how many bytes it holds, and what follows the header.
+fn frame(flags: u8, count: u32, rest: &[u8]) -> Vec<u8> {
+    let mut bytes = vec![2, 1, flags, 4];
+    for number in [count, count, 16 + rest.len() as u32] {
+        bytes.extend(number.to_le_bytes());
+    }
+    bytes.extend(rest);
+    bytes
+}
+
+#[test]
+fn blosc_frames_hold_what_they_say_or_are_refused() {
+    let mut out = vec![];
+    let stored = frame(0b10, 6, b"clouds");
+    blosc::unpack(&stored, 6, &mut out).unwrap();
+    assert_eq!(out, b"clouds");
+    // A block at byte 20 in one piece of 8 bytes, whose bytes are put together by significance; the last two remain.
+    let shuffled = frame(0b11_0001, 10, b"\x14\0\0\0\x0a\0\0\0aAbBcCdDxy");
+    blosc::unpack(&shuffled, 10, &mut out).unwrap();
+    assert_eq!(out, b"abcdABCDxy");
+    assert!(blosc::unpack(&stored, 7, &mut out).is_err());
+    assert!(blosc::unpack(&stored[..20], 6, &mut out).is_err());
+    assert!(blosc::unpack(&shuffled[..33], 10, &mut out).is_err());
+    let zstandard = blosc::unpack(&frame(4 << 5, 6, b"clouds"), 6, &mut out).unwrap_err();
+    assert_eq!(zstandard.found, "Zstandard");
+    let bits = blosc::unpack(&frame(0b10_0100, 6, b"clouds"), 6, &mut out).unwrap_err();
+    assert_eq!(bits.found, "LZ4 with shuffled bits");
+}
