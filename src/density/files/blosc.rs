@@ -93,7 +93,7 @@ impl<'a> Frame<'a> {
             && length == self.block
             && self.width <= MOST_PIECES
             && length / self.width >= LEAST_VALUES
-            && length % self.width == 0;
+            && length.is_multiple_of(self.width);
         let mut at = start;
         for piece in out.chunks_mut(if is_split { length / self.width } else { length }) {
             let packed = u32::from_le_bytes(array(self.bytes, at)) as usize;

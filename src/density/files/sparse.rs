@@ -84,7 +84,7 @@ impl<V: Value> Samples<V> for Sparse<V> {
     fn uniform(&self, low: [usize; 3], high: [usize; 3]) -> Option<V> {
         let (low, high) = (self.index(low).map(|i| i >> 3), self.index(high).map(|i| i >> 3));
         let count = (0..3).try_fold(1_i64, |count, axis| count.checked_mul(high[axis] - low[axis] + 1));
-        if !count.is_some_and(|count| count <= MOST_LOOKED_AT) {
+        if count.is_none_or(|count| count > MOST_LOOKED_AT) {
             return None;
         }
         let mut first = None;
