@@ -7,6 +7,7 @@ mod constant;
 mod cosine;
 mod equipotential;
 mod exponential;
+pub mod files;
 pub mod grid;
 mod noise;
 mod placed;
@@ -72,7 +73,7 @@ pub trait VolumeModel {
     /// The box outside of which the value is 0 (or, of an albedo, of no matter); none where there is no such box.
     fn domain(&self) -> Option<[Vec3; 2]>;
 
-    /// True if `position` is not outside the volume: a box of it placed askew is smaller than the `domain` around it.
+    /// True if `position` is not outside the volume.
     fn contains(&self, _position: Vec3) -> bool {
         true
     }

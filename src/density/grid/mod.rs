@@ -91,14 +91,18 @@ macro_rules! each {
 }
 
 impl Grid {
-    /// Reads `filename`, `filter_type`, `wrap_mode`, `use_grid_bbox`, `to_world`; `raw`, `accel` and `max_value`
+    /// Reads `filename`, `filter_type`, `wrap_mode`, `use_grid_bbox` (true by default for files that know where they
+    /// lie, `.vdb` and `.nvdb`), `to_world`, and `grid`, the name of one of several; `raw`, `accel` and `max_value`
     /// change nothing.
     pub fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
-        if params.has("grid") || params.has("data") {
-            let remedy = "save the grid to a file and give its name as \"filename\"";
+        let path = params.file("filename")?;
+        let is_vdb = file::is_vdb(&path);
+        if params.has("data") || (params.has("grid") && !is_vdb) {
+            let remedy = "save the grid to a file and give its name as \"filename\"; \"grid\" names one of several \
+                          in a .vdb or .nvdb file";
             return Err(Error::new(params.location(), "a grid file", "a grid in memory", remedy));
         }
-        let path = params.file("filename")?;
+        let grid = params.optional_string("grid")?;
         let filters = [("trilinear", Filter::Trilinear), ("nearest", Filter::Nearest)];
         let wraps = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let filter = params.choice("filter_type", Filter::Trilinear, &filters)?;
@@ -106,8 +110,8 @@ impl Grid {
         params.boolean("raw", false)?;
         params.accept_unused(&["accel", "max_value"], "the maximum is known, and no texture unit runs");
         let mut to_world = place.to_world(params)?;
-        let uses_file_box = params.boolean("use_grid_bbox", false)?;
-        let source = file::open(&path)?;
+        let uses_file_box = params.boolean("use_grid_bbox", is_vdb)?;
+        let source = file::open(&path, grid)?;
         if uses_file_box {
             check_box(&path, &source.to_file)?;
             to_world *= source.to_file;

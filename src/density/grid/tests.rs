@@ -5,8 +5,10 @@ mod files;
 use super::*;
 use crate::{
     density::Samples,
+    description::{Library, Value},
     math::{DMat4, vec3},
     sampling::{Stream, stream::Purpose},
+    testing::object,
 };
 
 /// Samples in memory, x fastest.
@@ -548,4 +550,34 @@ fn a_walk_and_its_reverse_are_one() {
         let (there, back) = (towards(a, b), towards(b, a));
         assert!((there - back).abs() <= 1e-6 * there, "{there} {back} {a:?} {b:?}");
     }
+}
+
+/// A `.vdb` file as a volume of a scene: its own place in the world, and one of its grids by name.
+#[test]
+fn vdb_files_are_placed_by_their_own_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("smoke.vdb");
+    let packed = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/src/density/files/samples/blosc.vdb.gz"));
+    let mut unpacked = Vec::new();
+    std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&packed.unwrap()[..]), &mut unpacked).unwrap();
+    std::fs::write(&path, unpacked).unwrap();
+    let name = Value::String(path.to_str().unwrap().into());
+    let grid = crate::density::build(
+        &object("gridvolume", &[("filename", name)]),
+        &Library::default(),
+        &Place { recentre: DVec3::new(1.0, 0.0, 0.0), time: 0.0 },
+    )
+    .unwrap_or_else(|error| panic!("{error}"));
+    let source = crate::density::files::open(&path, None).unwrap();
+    let crate::density::files::Field::Grey(samples) = &source.samples else { panic!() };
+    let [x, y, z] = samples.size();
+    let mut seen = 0;
+    for at in (0..x).flat_map(|i| (0..y).flat_map(move |j| (0..z).map(move |k| [i, j, k]))) {
+        let index = DVec3::from_array(std::array::from_fn(|axis| (source.low[axis] + at[axis] as i64) as f64));
+        let world = source.to_world.transform_point3(index) - DVec3::X;
+        let (found, expected): (f32, f32) = (grid.eval(world.as_vec3()), samples.at(at));
+        assert!((found - expected).abs() <= 1e-3 * expected.abs() + 1e-4, "{at:?}: {found} {expected}");
+        seen += usize::from(expected != 0.0);
+    }
+    assert!(seen > 10);
 }
