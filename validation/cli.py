@@ -80,7 +80,7 @@ def add_compare(commands) -> None:
     command = add(commands, "compare", run_compare, "One scene through Mitsuba and Tyndall, pixel by pixel.")
     command.add_argument("scene")
     command.add_argument(
-        "--integrators", default="pt,lt,bdpt", help="any of pt, lt, bdpt, mitsuba (itself with other seeds)"
+        "--integrators", default="pt,lt,bdpt", help="any of pt, lt, bdpt, with a tracker as in pt:march if need be, mitsuba (itself with other seeds)"
     )
     command.add_argument("--size", type=size, help="WxH instead of the scene's own")
     command.add_argument("--output", type=Path, default=OUTPUT, help="folder for the pictures")

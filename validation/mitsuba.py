@@ -77,6 +77,8 @@ def translate_object(o: dict, folder: Path, size: tuple[int, int] | None) -> dic
     if o["type"] in OUR_INTEGRATORS:
         kept = {key: o[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in o}
         return {"type": "volpath", "rr_depth": ROULETTE[o.get("max_depth", -1) < 0], **kept}
+    if o["type"] == "heterogeneous":
+        out.pop("tracker", None)  # Mitsuba has only one
     if "filename" in o:
         out["filename"] = str(folder / o["filename"])  # an absolute name stays itself
     if size and o["type"] == "hdrfilm":
