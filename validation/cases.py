@@ -29,6 +29,8 @@ class Case:
     """Mitsuba's."""
     trackers: tuple[str, ...] = ()
     """Those to force in turn, besides the one that Tyndall chooses."""
+    twin: str = ""
+    """Another scene, whose picture must be the same: Mitsuba renders that one instead."""
     reference: str = ""
     """An integrator for Mitsuba instead of the scene's own; becomes part of the name."""
 
@@ -38,6 +40,10 @@ class Case:
         folder = "" if path.parent == CROSSCHECK else f"{path.parent.name}-"
         name = "-".join([folder + path.stem, *self.parameters.values()])
         return self.with_reference(Scene(path, name, self.parameters))
+
+    def truth(self) -> Scene:
+        """What Mitsuba renders."""
+        return replace(self, file=self.twin).scene() if self.twin else self.scene()
 
     def with_reference(self, scene: Scene) -> Scene:
         """The scene with the integrator that the case asks for."""
@@ -85,7 +91,7 @@ def grids() -> tuple[Case, ...]:
         Case("grid_chromatic.json", trackers=GRID),
         Case("grid_chromatic.json", ("bdpt",), reference="volpath"),
         Case("grid_chromatic_in_room.json", effort=0.5),
-        Case("grid_constant.json", effort=0.5),
+        Case("grid_constant.json", twin="cube_in_room.json"),
         Case("grid_dense_white.json", effort=0.5, trackers=GRID),
         Case("grid_envmap.json"),
         Case("grid_in_frosted_cube.json", effort=2),
@@ -105,6 +111,23 @@ def grids() -> tuple[Case, ...]:
         Case("grid_wrap_modes.json"),
         Case("volume_constant.json", effort=2),
         Case("volume_constant_chromatic.json"),
+    )
+
+
+def functions() -> tuple[Case, ...]:
+    """Media of density functions; Mitsuba renders them baked to grids."""
+    integrable = ("closed_form", "march", "null_collision")
+    return (
+        Case("function_cosine.json", trackers=integrable),
+        Case("function_cosine_chromatic.json", trackers=("closed_form",)),
+        Case("function_equipotential.json"),
+        Case("function_equipotential_sphere.json"),
+        Case("function_exponential.json", trackers=integrable),
+        Case("function_polynomial.json"),
+        Case("function_polynomial_zero.json"),
+        Case("function_product.json", trackers=("march", "null_collision")),
+        Case("function_sum.json"),
+        Case("function_wind.json"),
     )
 
 
@@ -159,6 +182,7 @@ CASES = (
     Case("emitter_textured_area.json", EYE),
     Case("emitter_directional_area.json", LIGHT),
     *grids(),
+    *functions(),
     Case("phase_functions.json"),
     Case("spectra.json"),
     Case("spectra_blackbody.json", variant="scalar_spectral"),

@@ -21,7 +21,8 @@ def run(effort: Effort, chosen: Iterable[cells.Cell], cell_effort: Effort, only:
 
 def run_case(case: Case, effort: Effort) -> list[bool]:
     """All comparisons of one scene: which of them agree."""
-    return agreements(case.scene(), tuple(case.all_methods()), effort.times(case.effort), references.cached(case.scene(), variant=case.variant))
+    reference = references.cached(case.truth(), variant=case.variant)
+    return agreements(case.scene(), tuple(case.all_methods()), effort.times(case.effort), reference)
 
 
 def run_cell(cell: cells.Cell, effort: Effort) -> list[bool]:
