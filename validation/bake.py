@@ -56,8 +56,6 @@ def box_of(tree: dict, medium: dict) -> np.ndarray:
     if len(shapes) != 1:
         raise Failure(f"a density function in a medium that {len(shapes)} shapes hold cannot be baked", "let one shape hold it")
     kept = {k: v for k, v in shapes[0].items() if k not in ("bsdf", "interior", "exterior", "emitter")}
-    if mi.variant() is None:
-        mitsuba.use("scalar_rgb")
     box = mi.load_dict({k: mitsuba.transform(v) if mitsuba.is_transform(v) else v for k, v in kept.items()}).bbox()
     return np.array([box.min, box.max], dtype=float)
 

@@ -40,7 +40,9 @@ def factor(given) -> np.ndarray:
 
 def to_own(o: dict, points: np.ndarray) -> np.ndarray:
     """World points in the function's own coordinates."""
-    matrix = np.linalg.inv(np.array(mitsuba.transform(o.get("to_world", [])).matrix, dtype=float))
+    if "to_world" not in o:
+        return points
+    matrix = np.linalg.inv(np.array(mitsuba.transform(o["to_world"]).matrix, dtype=float))
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
