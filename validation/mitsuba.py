@@ -82,7 +82,8 @@ def translate_object(o: dict, folder: Path, size: tuple[int, int] | None) -> dic
     if o["type"] == "scene":
         out.pop("time", None)
     if o["type"] == "heterogeneous":
-        out.pop("tracker", None)  # Mitsuba has only one
+        for ours in ("tracker", "step", "march_error"):
+            out.pop(ours, None)  # Mitsuba has only one way
     if "filename" in o:
         out["filename"] = str(folder / o["filename"])  # an absolute name stays itself
     if size and o["type"] == "hdrfilm":

@@ -169,10 +169,10 @@ def clouds() -> list[Case]:
     """Absorbing boxes of each density function."""
     wave = {"type": "wave", "amplitude": 0.7, "vector": [5, -3, 2], "phase": 0.4}
     functions = {
-        "cosine": {"type": "cosine", "value": 2, "first": wave},
-        "polynomial": {"type": "polynomial", "half_width": 0.5, "x": "0.5, 0.2, -1", "y": "1, 0, 3", "value": 1.5},
+        "cosine": {"type": "cosine", "value": 1, "first": wave},
+        "polynomial": {"type": "polynomial", "half_width": 0.5, "x": "0.5, 0.2, -1", "y": "1, 0, 3", "value": 0.6},
         "equipotential": {"type": "equipotential", "center": [0.1, 0.6, 0], "c": 0.1, "d": 3, "value": 0.5},
-        "exponential": {"type": "exponential", "scale_height": 0.4, "up": [0.3, 1, 0.2], "value": 4},
+        "exponential": {"type": "exponential", "scale_height": 0.4, "up": [0.3, 1, 0.2], "value": 2},
     }
     return [Case(cloud(name, function), seen(function), FUNCTION, effort=0.5) for name, function in functions.items()]
 
