@@ -11,6 +11,7 @@ Stiff rows have neighbouring voxels 1e6 apart, or an optical thickness of 1e4.
 """
 
 import hashlib
+from functools import cache
 
 import numpy as np
 
@@ -165,16 +166,18 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
 STEPS = 1000
 
 
+WAVE = {"type": "wave", "amplitude": 0.7, "vector": [5, -3, 2], "phase": 0.4}
+FUNCTIONS = {
+    "cosine": {"type": "cosine", "value": 1, "first": WAVE},
+    "polynomial": {"type": "polynomial", "half_width": 0.5, "x": "0.5, 0.2, -1", "y": "1, 0, 3", "value": 0.6},
+    "equipotential": {"type": "equipotential", "center": [0.1, 0.6, 0], "c": 0.1, "d": 3, "value": 0.5},
+    "exponential": {"type": "exponential", "scale_height": 0.4, "up": [0.3, 1, 0.2], "value": 2},
+}
+
+
 def clouds() -> list[Case]:
     """Absorbing boxes of each density function."""
-    wave = {"type": "wave", "amplitude": 0.7, "vector": [5, -3, 2], "phase": 0.4}
-    functions = {
-        "cosine": {"type": "cosine", "value": 1, "first": wave},
-        "polynomial": {"type": "polynomial", "half_width": 0.5, "x": "0.5, 0.2, -1", "y": "1, 0, 3", "value": 0.6},
-        "equipotential": {"type": "equipotential", "center": [0.1, 0.6, 0], "c": 0.1, "d": 3, "value": 0.5},
-        "exponential": {"type": "exponential", "scale_height": 0.4, "up": [0.3, 1, 0.2], "value": 2},
-    }
-    return [Case(cloud(name, function), seen(function), FUNCTION, effort=0.5) for name, function in functions.items()]
+    return [Case(cloud(name, function), seen(name), FUNCTION, effort=0.5) for name, function in FUNCTIONS.items()]
 
 
 def cloud(name: str, density: dict):
@@ -193,8 +196,10 @@ EYE, TARGET, FOV = (0.4, 1.9, 3.0), (0.0, 0.6, 0.0), 17.0
 """The box fills the view: of a pixel that it only grazes, hardly a sample would know of it."""
 
 
-def seen(density: dict) -> np.ndarray:
-    """exp(-tau) averaged over each pixel."""
+@cache
+def seen(name: str) -> np.ndarray:
+    """exp(-tau) of the box of a function, averaged over each pixel."""
+    density = FUNCTIONS[name]
     centres = np.arange(SIZE) + 0.5
     y, x, v, u = np.meshgrid(centres, centres, NODES / 2, NODES / 2, indexing="ij")
     directions = rays(x + u, y + v)
