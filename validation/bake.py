@@ -54,7 +54,8 @@ def box_of(tree: dict, medium: dict) -> np.ndarray:
     held = lambda o: interior(o) is medium or (name and interior(o) == {"type": "ref", "id": name})
     shapes = [child for child in tree.values() if held(child)]
     if len(shapes) != 1:
-        raise Failure(f"a density function in a medium that {len(shapes)} shapes hold cannot be baked", "let one shape hold it")
+        held_by = f"a density function in a medium that {len(shapes)} shapes hold"
+        raise Failure(f"{held_by} cannot be baked", "let one shape hold it")
     kept = {k: v for k, v in shapes[0].items() if k not in ("bsdf", "interior", "exterior", "emitter")}
     box = mi.load_dict({k: mitsuba.transform(v) if mitsuba.is_transform(v) else v for k, v in kept.items()}).bbox()
     return np.array([box.min, box.max], dtype=float)

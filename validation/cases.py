@@ -27,6 +27,8 @@ class Case:
     """XML's $parameters; their values become part of the name."""
     variant: str = "scalar_rgb"
     """Mitsuba's."""
+    own: str = ""
+    """A method of Tyndall's that stands in for Mitsuba, which has nothing like this scene."""
     trackers: tuple[str, ...] = ()
     """Those to force in turn, besides the one that Tyndall chooses."""
     twin: str = ""
@@ -115,7 +117,8 @@ def grids() -> tuple[Case, ...]:
 
 
 def functions() -> tuple[Case, ...]:
-    """Media of density functions; Mitsuba renders them baked to grids."""
+    """Media of density functions; Mitsuba renders them baked to grids, but for noise: numpy has no such table of
+    gradients, so that one tracker is held against the others."""
     integrable = ("closed_form", "march", "null_collision")
     return (
         Case("function_cosine.json", trackers=integrable),
@@ -123,6 +126,7 @@ def functions() -> tuple[Case, ...]:
         Case("function_equipotential.json"),
         Case("function_equipotential_sphere.json"),
         Case("function_exponential.json", trackers=integrable),
+        Case("function_noise.json", ("pt:march", "lt:march", "bdpt"), own="pt:null_collision"),
         Case("function_polynomial.json"),
         Case("function_polynomial_zero.json"),
         Case("function_product.json", trackers=("march", "null_collision")),

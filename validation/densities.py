@@ -72,7 +72,8 @@ def polynomial(o: dict, x: np.ndarray) -> np.ndarray:
     total = sum(np.polynomial.polynomial.polyval(local[..., i], coefficients) for i, coefficients in enumerate(lists))
     terms = [(t.get("coefficient", 1.0), np.asarray(t["powers"])) for t in children(o)]
     total = total + sum(c * np.prod(local**powers, axis=-1) for c, powers in terms)
-    depends = np.array([len(one) > 1 for one in lists]) | np.any([powers > 0 for _, powers in terms] or [[False] * 3], axis=0)
+    mixes = np.any([[False] * 3, *(powers > 0 for _, powers in terms)], axis=0)
+    depends = mixes | [len(one) > 1 for one in lists]
     within = repeats | (np.abs(x) <= half) | ~depends
     return np.where(within.all(axis=-1), total, 0.0)[..., None]
 

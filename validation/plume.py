@@ -185,7 +185,7 @@ def looped(files: Files, rounds: int) -> tuple[Timing, float, float]:
     """Ratio tracking by Mitsuba's own medium in one compiled loop, all connections at once; the mean transmittance, and
     how far from the truth one query is, relative to that mean."""
     loaded = mitsuba.load(Scene(json.loads(files.scene.read_text()), "plume"), "llvm_ad_rgb")
-    medium = loaded.shapes()[[shape.interior_medium() is not None for shape in loaded.shapes()].index(True)].interior_medium()
+    [medium] = [shape.interior_medium() for shape in loaded.shapes() if shape.interior_medium() is not None]
     ends = np.fromfile(files.chords, "<f4").reshape(-1, 2, 3)
     origin, target = (mi.Point3f(ends[:, i].T) for i in range(2))
     dr.eval(origin, target)

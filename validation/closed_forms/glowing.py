@@ -28,11 +28,13 @@ def cases() -> list[Case]:
 def slabs() -> list[Case]:
     """Slabs of thickness 1, seen from straight above, before black."""
     stiff = varying.grid(varying.uneven((1, 16, 1), varying.CONTRAST), varying.STRETCH, filter_type="nearest")
+    chromatic = {**homogeneous(DEPTH, 0, varying.ISOTROPIC), "radiance": COLOUR}
+    empty = {"type": "homogeneous", "sigma_t": 0.0, "emission": GAIN}
     thick = 2.0
     truth = RADIANCE * -np.expm1(-thick)
     found = [
-        Case(slab("chromatic", {**homogeneous(DEPTH, 0, varying.ISOTROPIC), "radiance": COLOUR}), RADIANCE * -np.expm1(-DEPTH)),
-        Case(slab("of gain only", {**homogeneous(1e-30, 0, varying.ISOTROPIC), "emission": GAIN}), GAIN),
+        Case(slab("chromatic", chromatic), RADIANCE * -np.expm1(-DEPTH)),
+        Case(slab("of gain only", empty), GAIN),
     ]
     for name, density in (("exponential", varying.thinning(0.3)), ("stiff layers", stiff)):
         found.append(Case(slab(name, {**varying.medium(density, 0, scale=thick), "radiance": COLOUR}), truth))
@@ -60,11 +62,13 @@ def cloud(name: str, density: dict) -> Case:
 
 def equilibria() -> list[Case]:
     """Balls in equilibrium with the sky: even, and of uneven voxels."""
-    ball = {"type": "sphere", "bsdf": varying.NULL}
     even = {**homogeneous(2, 0.6, {"type": "hg", "g": 0.5}), "radiance": 1.0}
     to_world = [{"type": "translate", "value": [-0.5, -0.5, -0.5]}, {"type": "scale", "value": 2.0}]
     uneven = {**varying.medium(varying.grid(varying.uneven((4, 5, 6), 1e3), to_world), 0.8, scale=3), "radiance": 1.0}
-    return [
-        Case(scene(f"equilibrium {name}", sensor=camera((0, 0, 5), (0, 0, 0), 25), sky=SKY, ball={**ball, "interior": inside}), 1)
-        for name, inside in (("even", even), ("uneven", uneven))
-    ]
+    return [equilibrium("even", even), equilibrium("uneven", uneven)]
+
+
+def equilibrium(name: str, inside: dict) -> Case:
+    """A unit sphere under the sky."""
+    ball = {"type": "sphere", "bsdf": varying.NULL, "interior": inside}
+    return Case(scene(f"equilibrium {name}", sensor=camera((0, 0, 5), (0, 0, 0), 25), sky=SKY, ball=ball), 1)
