@@ -167,6 +167,9 @@ fn integrators_that_do_less_say_so() {
     desk.run("render scene.json").succeeds();
     desk.run("render scene.json -o again.exr --integrator fog").succeeds();
     assert_eq!(desk.bytes("scene.exr"), desk.bytes("again.exr"));
+    desk.run("convert scene.json spelt.xml").succeeds();
+    desk.run("render spelt.xml -o spelt.exr").succeeds();
+    assert_eq!(desk.bytes("scene.exr"), desk.bytes("spelt.exr"));
     desk.run("render scene.json -o full.exr --integrator pt").succeeds();
     assert_ne!(desk.bytes("scene.exr"), desk.bytes("full.exr"));
     assert!(desk.run("info scene.json").succeeds().out().contains("fog, a preview"));

@@ -322,11 +322,12 @@ fn a_scene_at_another_time_is_the_scene_of_that_time() {
     };
     let drifting = json!({"type": "wind", "velocity": [0.25, -0.5, 0.0], "a": blob(&[])});
     let moved = json!([{"type": "translate", "value": [0.5, -1.0, 0.0]}]);
-    let of = |volume: Value| {
+    let of_time = |volume: Value, time: f64| {
         let sum = json!({"type": "sum", "a": volume, "b": {"type": "exponential", "value": 0.2}});
         let parts = [("sensor", view()), ("cloud", cloud(heterogeneous(sum, json!(0.5)))), ("sky", sky(1.0))];
-        Stage::new(&scene(&parts)).setup.scene
+        Stage::new(&scene(&[&parts[..], &[("time", json!(time))]].concat())).setup.scene
     };
+    let of = |volume: Value| of_time(volume, 0.0);
     let (mut later, there, now) = (of(drifting), of(blob(&[("to_world", moved)])), of(blob(&[])));
     let depths = |scene: &tyndall::scene::Scene| -> Vec<f32> {
         let varying = scene.media[1].varying.as_ref().unwrap();
@@ -344,6 +345,12 @@ fn a_scene_at_another_time_is_the_scene_of_that_time() {
     assert!(close(&depths(&later), &depths(&there)) && !close(&depths(&later), &still));
     assert!(later.set_time(0.0).unwrap());
     assert!(close(&depths(&later), &still));
+    // Built at another time, it comes back to where it was at 0.
+    let drifting = json!({"type": "wind", "velocity": [0.25, -0.5, 0.0], "a": blob(&[])});
+    let mut late = of_time(drifting, 2.0);
+    assert!(close(&depths(&late), &depths(&there)));
+    assert!(late.set_time(0.0).unwrap());
+    assert!(close(&depths(&late), &still));
     let mut unmoved = now;
     assert!(!unmoved.set_time(2.0).unwrap());
 }

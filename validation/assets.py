@@ -31,6 +31,8 @@ def run(folder: Path = CROSSCHECK / "assets") -> bool:
     solids = [(*pyramid(), 0), (*lantern(), NORMALS | TEXTURE_COORDINATES)]
     (folder / "solids.serialized").write_bytes(serialized(solids))
     (folder / "tent.obj").write_text(TENT)
+    for name, (samples, box) in grids().items():
+        (folder / name).write_bytes(vol(samples, box))
     return True
 
 
@@ -116,6 +118,37 @@ def serialized(solids: list[tuple]) -> bytes:
         header = struct.pack("<HH", SERIALIZED_FORMAT, SERIALIZED_VERSION)
         parts.append(header + zlib.compress(struct.pack("<I", kind | SINGLE_PRECISION) + name + sizes + arrays))
     return b"".join(parts) + struct.pack(f"<{len(places)}QI", *places, len(places))
+
+
+UNIT = (0, 0, 0, 1, 1, 1)
+"""The box of grids whose scenes do not look at it."""
+
+
+def grids() -> dict[str, tuple[np.ndarray, tuple]]:
+    """Volumes, (z, y, x) or (z, y, x, channel), and the boxes that their files name."""
+    random = np.random.default_rng(4)
+    return {
+        "even.vol": (np.ones((4, 2, 3)), UNIT),
+        "smoke.vol": (random.uniform(0, 1, (4, 5, 6)) ** 2, (-0.5, 0.2, -0.6, 0.4, 1.2, 0.1)),
+        "smoke_colours.vol": (random.uniform(0, 1, (3, 4, 5, 3)) ** 1.5, UNIT),
+        "albedo_colours.vol": (random.uniform(0.3, 1, (4, 3, 4, 3)), UNIT),
+        "puffs.vol": (puffs(), UNIT),
+    }
+
+
+def puffs() -> np.ndarray:
+    """Three round puffs, far apart; most of the box is empty, and so are whole blocks of 8 x 8 x 8."""
+    z, y, x = np.mgrid[:12, :18, :20] + 0.5
+    centres = ((3.5, 3, 3, 3.2), (16, 6, 8.5, 3.5), (9, 15.2, 5, 2.6))
+    distances = [np.sqrt((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / r for a, b, c, r in centres]
+    return sum(np.maximum(0, 1 - d) for d in distances)
+
+
+def vol(samples: np.ndarray, box: tuple = UNIT) -> bytes:
+    """Mitsuba's grid file, version 3, single precision: (z, y, x) or (z, y, x, channel)."""
+    data = np.asarray(samples, dtype="<f4")
+    z, y, x, channels = data.shape if data.ndim == 4 else (*data.shape, 1)
+    return b"VOL" + struct.pack("<B5i6f", 3, 1, x, y, z, channels, *box) + data.tobytes()
 
 
 TENT = """# a closed roof of two slopes and two gables: polygons of four and of three corners, no normals

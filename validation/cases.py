@@ -1,9 +1,10 @@
 """The scenes of `scenes/crosscheck/` and what can be asked of each."""
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 
 from validation.places import CROSSCHECK
-from validation.scene import Scene
+from validation.scene import Scene, derived
 
 ALL = ("pt", "lt", "bdpt")
 EYE = ("pt", "bdpt")
@@ -26,13 +27,38 @@ class Case:
     """XML's $parameters; their values become part of the name."""
     variant: str = "scalar_rgb"
     """Mitsuba's."""
+    own: str = ""
+    """A method of Tyndall's that stands in for Mitsuba, which has nothing like this scene."""
+    trackers: tuple[str, ...] = ()
+    """Those to force in turn, besides the one that Tyndall chooses."""
+    twin: str = ""
+    """Another scene, whose picture must be the same: Mitsuba renders that one instead."""
+    reference: str = ""
+    """An integrator for Mitsuba instead of the scene's own; becomes part of the name."""
 
     def scene(self) -> Scene:
         """The scene under a name of its own."""
         path = CROSSCHECK / self.file
         folder = "" if path.parent == CROSSCHECK else f"{path.parent.name}-"
         name = "-".join([folder + path.stem, *self.parameters.values()])
-        return Scene(path, name, self.parameters)
+        return self.with_reference(Scene(path, name, self.parameters))
+
+    def truth(self) -> Scene:
+        """What Mitsuba renders."""
+        return replace(self, file=self.twin).scene() if self.twin else self.scene()
+
+    def with_reference(self, scene: Scene) -> Scene:
+        """The scene with the integrator that the case asks for."""
+        if not self.reference:
+            return scene
+        integrator = lambda o: {**o, "type": self.reference} if o["type"] in ("volpath", "volpathmis") else o
+        return replace(derived(scene, integrator), name=f"{scene.name}-{self.reference}")
+
+    def all_methods(self) -> Iterator[str]:
+        """Integrators, and integrators with each forced tracker."""
+        yield from self.methods
+        for tracker in self.trackers:
+            yield from (f"{method}:{tracker}" for method in self.methods)
 
 
 def filters() -> tuple[Case, ...]:
@@ -50,6 +76,62 @@ def filters() -> tuple[Case, ...]:
     return tuple(
         Case("film_filters.xml", effort=0.7, parameters={"filter": filter, "sampler": sampler})
         for filter, sampler in pairs.items()
+    )
+
+
+GRID = ("exact", "march", "null_collision")
+"""The trackers that a grid can have."""
+
+
+def grids() -> tuple[Case, ...]:
+    """Media that vary in space."""
+    return (
+        Case("grid_albedo.json"),
+        Case("grid_albedo_and_extinction.json"),
+        Case("grid_all_over_the_room.json", EYE, effort=0.5),
+        Case("grid_camera_inside.json", EYE, effort=0.5, trackers=GRID),
+        Case("grid_chromatic.json", trackers=GRID),
+        Case("grid_chromatic.json", ("bdpt",), reference="volpath"),
+        Case("grid_chromatic_in_room.json", effort=0.5),
+        Case("grid_constant.json", twin="cube_in_room.json"),
+        Case("grid_dense_white.json", effort=0.5, trackers=GRID),
+        Case("grid_envmap.json"),
+        Case("grid_in_frosted_cube.json", effort=2),
+        Case("grid_in_glass.json", EYE, effort=0.7),
+        Case("grid_lamp_inside.json", effort=2),
+        Case("grid_nearest.json", trackers=("exact",)),
+        Case("grid_own_box.json"),
+        Case("grid_point_light.json"),
+        Case("grid_sheared.json"),
+        Case("grid_sparse.json", trackers=GRID),
+        Case("grid_sun_depth_4.json"),
+        Case("grid_surfaces_inside.json"),
+        Case("grid_trilinear.json", trackers=GRID),
+        Case("grid_trilinear.json", ("bdpt",), reference="volpathmis"),
+        Case("grid_two_containers.json"),
+        Case("grid_within_fog.json"),
+        Case("grid_wrap_modes.json"),
+        Case("volume_constant.json", effort=2),
+        Case("volume_constant_chromatic.json"),
+    )
+
+
+def functions() -> tuple[Case, ...]:
+    """Media of density functions; Mitsuba renders them baked to grids, but for noise: numpy has no such table of
+    gradients, so that one tracker is held against the others."""
+    integrable = ("closed_form", "march", "null_collision")
+    return (
+        Case("function_cosine.json", trackers=integrable),
+        Case("function_cosine_chromatic.json", trackers=("closed_form",)),
+        Case("function_equipotential.json"),
+        Case("function_equipotential_sphere.json"),
+        Case("function_exponential.json", trackers=integrable),
+        Case("function_noise.json", ("pt:march", "lt:march", "bdpt"), own="pt:null_collision"),
+        Case("function_polynomial.json"),
+        Case("function_polynomial_zero.json"),
+        Case("function_product.json", trackers=("march", "null_collision")),
+        Case("function_sum.json"),
+        Case("function_wind.json"),
     )
 
 
@@ -103,6 +185,8 @@ CASES = (
     Case("emitter_spot.json", effort=2),
     Case("emitter_textured_area.json", EYE),
     Case("emitter_directional_area.json", LIGHT),
+    *grids(),
+    *functions(),
     Case("phase_functions.json"),
     Case("spectra.json"),
     Case("spectra_blackbody.json", variant="scalar_spectral"),

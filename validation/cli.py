@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from validation import assets, cells, compare, contenders, coverage, matrix, pane, race, references, selftest, truths
+from validation import assets, cells, compare, contenders, coverage, matrix, pane, plume, race, references, selftest, truths
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, SCENES
@@ -32,6 +32,7 @@ def parser() -> argparse.ArgumentParser:
     add_closed_forms(commands)
     add_race(commands)
     add_pane(commands)
+    add_plume(commands)
     add_selftest(commands)
     return top
 
@@ -80,7 +81,7 @@ def add_compare(commands) -> None:
     command = add(commands, "compare", run_compare, "One scene through Mitsuba and Tyndall, pixel by pixel.")
     command.add_argument("scene")
     command.add_argument(
-        "--integrators", default="pt,lt,bdpt", help="any of pt, lt, bdpt, mitsuba (itself with other seeds)"
+        "--integrators", default="pt,lt,bdpt", help="any of pt, lt, bdpt, with a tracker as in pt:march if need be, mitsuba (itself with other seeds)"
     )
     command.add_argument("--size", type=size, help="WxH instead of the scene's own")
     command.add_argument("--output", type=Path, default=OUTPUT, help="folder for the pictures")
@@ -174,3 +175,13 @@ def add_pane(commands) -> None:
 
 def run_pane(options) -> bool:
     return pane.run(open_scene(options.scene), options.rounds, options.seconds, options.threads)
+
+
+def add_plume(commands) -> None:
+    command = add(commands, "plume", run_plume, "Nanoseconds per transmittance query on 256^3 voxels of smoke.")
+    command.add_argument("--rounds", type=int, default=8, help="repetitions (default %(default)s)")
+    command.add_argument("--spp", type=int, default=16, help="samples a pixel in each (default %(default)s)")
+
+
+def run_plume(options) -> bool:
+    return plume.run(options.rounds, options.spp)

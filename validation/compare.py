@@ -18,10 +18,12 @@ TILES = 6
 """The image is also compared as so many tiles a side, all of which must pass: what is wrong in one place only."""
 IMAGE_ERRORS = 3
 """How many standard errors the image means may be apart."""
-NAME_WIDTH = 36
-"""Of the printed table's first column [characters]."""
+NAME_WIDTH, METHOD_WIDTH = 36, 19
+"""Of the printed table's first columns [characters]."""
 RETRY = 4
 """A disagreement is tried again with so many times the samples and new seeds: a bias stays, bad luck does not."""
+
+MEDIA = ("homogeneous", "heterogeneous")
 
 Renderer = Callable[[int, int], np.ndarray]
 """spp, seed -> image."""
@@ -74,14 +76,14 @@ class Verdict:
         where = "" if self.passed else f"  worst pixel {self.worst}"
         again = "" if self.trials == 1 else f"  ({self.trials} trials)"
         return (
-            f"{self.scene:{NAME_WIDTH}} {self.integrator:8} {100 * self.accepted:8.2f} % {self.tile_score:6.2f} {self.image_score:+8.2f}"
+            f"{self.scene:{NAME_WIDTH}} {self.integrator:{METHOD_WIDTH}} {100 * self.accepted:8.2f} % {self.tile_score:6.2f} {self.image_score:+8.2f}"
             f" {100 * self.difference:+8.2f} % {100 * self.resolution:7.2f} % {self.seconds:7.1f} s"
             f"  {'agree' if self.passed else 'DISAGREE'}{where}{again}"
         )
 
 
 HEADER = (
-    f"{'scene':{NAME_WIDTH}} {'method':8} {'accepted':>10} {'tiles':>6} {'mean, se':>8} {'mean, rel':>10} {'resolves':>9} {'time':>9}  verdict"
+    f"{'scene':{NAME_WIDTH}} {'method':{METHOD_WIDTH}} {'accepted':>10} {'tiles':>6} {'mean, se':>8} {'mean, rel':>10} {'resolves':>9} {'time':>9}  verdict"
 )
 
 
@@ -96,13 +98,16 @@ def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size=None) -> Re
     return lambda spp, seed: mitsuba.image(loaded, spp, seed)
 
 
-def tyndall_renderer(scene: Scene, integrator: str, size=None) -> Renderer:
-    """Tyndall on this scene."""
-    return lambda spp, seed: tyndall.render(scene, integrator=integrator, spp=spp, seed=seed, size=size)
+def tyndall_renderer(scene: Scene, method: str, size=None) -> Renderer:
+    """Tyndall on this scene. The method is an integrator and, after a colon, a tracker that all media shall use."""
+    integrator, _, tracker = method.partition(":")
+    return lambda spp, seed: tyndall.render(
+        scene, integrator=integrator, tracker=tracker or None, spp=spp, seed=seed, size=size
+    )
 
 
 def candidate_renderer(scene: Scene, method: str, size=None) -> Renderer:
-    """One of Tyndall's integrators, or `mitsuba`: Mitsuba itself with other seeds, to test the test."""
+    """One of Tyndall's methods, or `mitsuba`: Mitsuba itself with other seeds, to test the test."""
     if method != "mitsuba":
         return tyndall_renderer(scene, method, size)
     other = mitsuba_renderer(scene, size=size)
@@ -170,7 +175,7 @@ def compare(
             break
         effort = effort.harder()
     if output:
-        save_picture(output / f"{scene.name}-{method}.png", theirs, ours, verdict.map)
+        save_picture(output / f"{scene.name}-{method.replace(':', '-')}.png", theirs, ours, verdict.map)
     return Verdict(**{**vars(verdict), "trials": trials})
 
 
@@ -182,7 +187,7 @@ def tested(
         candidate = candidate_renderer(scene, method, size)
         verdict = compare(scene, method, effort, reference, candidate, output)
     except Failure as failure:
-        print(f"{scene.name:{NAME_WIDTH}} {method:8} CANNOT: {failure}", flush=True)
+        print(f"{scene.name:{NAME_WIDTH}} {method:{METHOD_WIDTH}} CANNOT: {failure}", flush=True)
         return False
     print(verdict.row(), flush=True)
     return verdict.passed
@@ -200,6 +205,6 @@ def perturbed(scene: Scene, amount: float) -> Scene:
     """The scene with every extinction greater by the part `amount`; the test must notice."""
 
     def denser(o: dict) -> dict:
-        return {**o, "scale": (1 + amount) * o.get("scale", 1)} if o["type"] == "homogeneous" else o
+        return {**o, "scale": (1 + amount) * o.get("scale", 1)} if o["type"] in MEDIA else o
 
     return derived(scene, denser)

@@ -21,7 +21,14 @@ def run(effort: Effort, chosen: Iterable[cells.Cell], cell_effort: Effort, only:
 
 def run_case(case: Case, effort: Effort) -> list[bool]:
     """All comparisons of one scene: which of them agree."""
-    return agreements(case.scene(), case.methods, effort.times(case.effort), references.cached(case.scene(), variant=case.variant))
+    reference = own(case) if case.own else references.cached(case.truth(), variant=case.variant)
+    return agreements(case.scene(), tuple(case.all_methods()), effort.times(case.effort), reference)
+
+
+def own(case: Case):
+    """Batches of Tyndall's by another method, with other seeds."""
+    render = compare.candidate_renderer(case.scene(), case.own)
+    return lambda effort: compare.render_batches(lambda spp, seed: render(spp, seed + 500), effort)
 
 
 def run_cell(cell: cells.Cell, effort: Effort) -> list[bool]:

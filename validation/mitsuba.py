@@ -45,11 +45,13 @@ def use(variant: str) -> None:
 
 def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None = None):
     """The scene as a Mitsuba object, its variant made the current one."""
+    from validation import bake  # it needs this module
+
     use(variant)
     if scene.is_xml:
         loaded = mi.load_file(str(scene.source), **scene.parameters)
         return loaded if size is None else with_size(loaded, size)
-    tree = changed(scene.dictionary(), lambda o: translate_object(o, scene.folder, size))
+    tree = changed(bake.baked(scene.dictionary()), lambda o: translate_object(o, scene.folder, size))
     return mi.load_dict(tree)
 
 
@@ -77,6 +79,11 @@ def translate_object(o: dict, folder: Path, size: tuple[int, int] | None) -> dic
     if o["type"] in OUR_INTEGRATORS:
         kept = {key: o[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in o}
         return {"type": "volpath", "rr_depth": ROULETTE[o.get("max_depth", -1) < 0], **kept}
+    if o["type"] == "scene":
+        out.pop("time", None)
+    if o["type"] == "heterogeneous":
+        for ours in ("tracker", "step", "march_error"):
+            out.pop(ours, None)  # Mitsuba has only one way
     if "filename" in o:
         out["filename"] = str(folder / o["filename"])  # an absolute name stays itself
     if size and o["type"] == "hdrfilm":

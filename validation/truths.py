@@ -3,7 +3,7 @@
 import numpy as np
 
 from validation import compare
-from validation.closed_forms import furnace, point_light, slab
+from validation.closed_forms import furnace, glowing, point_light, slab, varying
 from validation.closed_forms.case import Case
 from validation.compare import Effort
 from validation.places import OUTPUT
@@ -12,7 +12,8 @@ from validation.places import OUTPUT
 def run(effort: Effort, methods: tuple[str, ...] = (), only: str = "") -> bool:
     """Tests all cases whose name contains `only`, by the given methods or by all that apply; true if all hold."""
     print(compare.HEADER, flush=True)
-    cases = [case for case in (*furnace.cases(), *slab.cases(), *point_light.cases()) if only in case.scene.name]
+    every = (*furnace.cases(), *slab.cases(), *point_light.cases(), *varying.cases(), *glowing.cases())
+    cases = [case for case in every if only in case.scene.name]
     passed = [test(case, method, effort) for case in cases for method in methods or case.methods]
     print(f"{sum(passed)} of {len(passed)} images are as theory says; pictures are in {OUTPUT}")
     return all(passed)

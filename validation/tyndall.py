@@ -41,6 +41,7 @@ def render(scene: Scene, **options) -> np.ndarray:
 def run(
     scene: Scene,
     integrator: str | None = None,
+    tracker: str | None = None,
     spp: int | None = None,
     seed: int = 0,
     threads: int | None = None,
@@ -56,6 +57,7 @@ def run(
             "--report": report,
             "--seed": seed,
             "--integrator": integrator,
+            "--tracker": tracker,
             "--spp": spp,
             "--threads": threads,
             "--size": size and f"{size[0]}x{size[1]}",

@@ -115,7 +115,7 @@ impl Function for Waves {
         let make = |constant, waves: &[Wave]| Self { constant, waves: waves.into() };
         let (fifth, tenth) = (0.2, 0.05);
         vec![
-            make(1.0, &[wave(-1.0, [0.0; 3], 0.0)]),
+            make(1.0, &[wave(-0.5, [0.0; 3], 0.0)]),
             make(0.5, &[wave(0.5, [1.0, -2.0, 0.5], 0.3)]),
             make(0.0, &[wave(1.0, [1.0, 0.0, 0.0], -PI), wave(0.3, [40.0, 0.0, 30.0], 1.0)]),
             // BMA02 fig. 6.

@@ -56,11 +56,11 @@ impl Quadratic {
     }
 }
 
-/// The integral of 1 / (m + n t^2) from t = `a` to `b`, the divisor being > 0 all the way: the difference of two
+/// The integral of 1 / (m + n t^2) from t = `a` on for `length`, the divisor being > 0 all the way: the difference of two
 /// arctangents (or, for m < 0, of inverse hyperbolic cotangents) as the one of their difference. `least` > 0 is what
 /// the divisor never falls below.
-fn reciprocal(m: f64, n: f64, [a, b]: [f64; 2], least: f64) -> f64 {
-    let (length, cross) = (b - a, m + n * a * b);
+fn reciprocal(m: f64, n: f64, [a, length]: [f64; 2], least: f64) -> f64 {
+    let cross = m + n * a * (a + length);
     let root = (n * m.abs()).sqrt();
     let tangent = root * length;
     if m > 0.0 && tangent > 1e-8 * cross {
@@ -185,7 +185,7 @@ impl Potential {
         let Some(Quadratic { nearest, rate, foot }) = squared else {
             return (last - first) / self.c;
         };
-        reciprocal(self.c + self.d * nearest, self.d * rate, [first - foot, last - foot], self.c)
+        reciprocal(self.c + self.d * nearest, self.d * rate, [first - foot, last - first], self.c)
     }
 }
 
@@ -234,5 +234,36 @@ impl Function for Potential {
             make(0.3, 0.2, 4.0, Thing::Sphere(DVec3::new(0.2, 0.0, 0.1), 1.3)),
             make(0.3, 1e-3, 1.0, Thing::Sphere(DVec3::ZERO, 0.5)),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The divisor integrated in closed form against quadrature that is fine where it is small.
+    #[test]
+    fn reciprocals_of_quadratics_at_their_ends() {
+        let third = std::f64::consts::FRAC_PI_3;
+        let root = 3f64.sqrt();
+        let cases = [
+            // (m, n, a, b), the integral
+            ((1.0, 1.0, -root, root), 2.0 * third),
+            ((1.0, 0.0, 5.0, 7.0), 2.0),
+            ((4.0, 0.0, -1e30, 1e30), 5e29),
+            ((1e-12, 1.0, -1.0, 1.0), 2e6 * (1e6f64).atan()),
+            ((1e-300, 1.0, -1.0, 1.0), std::f64::consts::PI * 1e150),
+            ((0.0, 1.0, 1.0, 3.0), 2.0 / 3.0),
+            ((-1.0, 1.0, 2.0, 3.0), 0.5 * 1.5f64.ln()),
+            ((-1.0, 1.0, -3.0, -2.0), 0.5 * 1.5f64.ln()),
+            ((1.0, 1.0, 1e8, 1e8 + 1.0), 1.0 / (1e8 * (1e8 + 1.0))),
+            ((1.0, 1.0, -1e38, 1e38), std::f64::consts::PI),
+            ((1.0, 1e-40, -1.0, 1.0), 2.0),
+            ((1.0, 1.0, 0.5, 0.5 + 1e-9), 0.8e-9),
+        ];
+        for ((m, n, a, b), expected) in cases {
+            let found = reciprocal(m, n, [a, b - a], 1e-320);
+            assert!((found - expected).abs() <= 1e-7 * expected, "{m} {n} {a} {b}: {found} {expected}");
+        }
     }
 }

@@ -7,6 +7,7 @@ mod constant;
 mod cosine;
 mod equipotential;
 mod exponential;
+pub mod files;
 pub mod grid;
 mod noise;
 mod placed;
@@ -73,7 +74,7 @@ pub trait VolumeModel {
     /// The box outside of which the value is 0 (or, of an albedo, of no matter); none where there is no such box.
     fn domain(&self) -> Option<[Vec3; 2]>;
 
-    /// True if `position` is not outside the volume: a box of it placed askew is smaller than the `domain` around it.
+    /// True if `position` is not outside the volume.
     fn contains(&self, _position: Vec3) -> bool {
         true
     }
@@ -195,11 +196,24 @@ impl Volume {
 
     /// `self` times 1 - `albedo`: what is absorbed of an extinction.
     pub fn absorbed(self, albedo: Self) -> Self {
-        let rest = match albedo {
-            Self::Constant(constant) => Self::Constant(constant.complement()),
-            varying => Self::Sum(Sum::complement(varying)),
-        };
-        Self::Product(Product::new(vec![self, rest]))
+        Self::Product(Product::absorbed(self, albedo))
+    }
+
+    /// The value at `position`, 0 where the volume is not.
+    #[inline]
+    pub fn inside<L: Lanes>(&self, position: Vec3) -> L {
+        if self.contains(position) { self.eval(position) } else { L::splat(0.0) }
+    }
+
+    /// Bounds of [`Self::inside`] within the box from `low` to `high`.
+    pub fn range_inside(&self, low: Vec3, high: Vec3) -> [Spectrum; 2] {
+        let [least, most] = self.range(low, high);
+        match self.domain() {
+            Some([first, last]) if !(first.cmple(low).all() && last.cmpge(high).all()) => {
+                [least.min(Spectrum::ZERO), most.max(Spectrum::ZERO)]
+            }
+            _ => [least, most],
+        }
     }
 
     /// The grid, if it is one, whose cells an exact tracker walks; drifting or not.
@@ -258,9 +272,9 @@ fn all_at_time(volumes: &[Volume], time: f64) -> Option<Arc<[Volume]>> {
     moved.iter().any(Option::is_some).then(|| all().collect())
 }
 
-/// All volumes nested in another, at least one.
+/// All volumes nested in another, at least one; a child of another kind is an error.
 fn nested(params: &Params<'_>, place: &Place) -> Result<Vec<Volume>> {
-    let children = params.children(|child| is_volume(child.object))?;
+    let children = params.children(|_| true)?;
     if children.is_empty() {
         let remedy = format!("put a volume into the {}", params.object.plugin);
         return Err(Error::new(params.location(), "one or more nested volumes", "none", remedy));

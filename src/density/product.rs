@@ -14,6 +14,8 @@ pub struct Product {
     /// All that does not vary.
     constant: Spectrum,
     factors: Arc<[Volume]>,
+    /// An albedo, of which the rest to 1 is a factor too. Like any albedo it is asked everywhere.
+    albedo: Option<Arc<Volume>>,
 }
 
 impl Product {
@@ -31,7 +33,15 @@ impl Product {
                 _ => factors.push(factor),
             }
         }
-        Self { constant, factors: factors.into() }
+        Self { constant, factors: factors.into(), albedo: None }
+    }
+
+    /// `sigma_t` times 1 - `albedo`.
+    pub(super) fn absorbed(sigma_t: Volume, albedo: Volume) -> Self {
+        match albedo {
+            Volume::Constant(constant) => Self::new(vec![sigma_t, Volume::Constant(constant.complement())]),
+            varying => Self { albedo: Some(Arc::new(varying)), ..Self::new(vec![sigma_t]) },
+        }
     }
 
     #[cfg(test)]
@@ -45,6 +55,8 @@ impl Product {
             Self::new(vec![red.clone(), fog, constant(Spectrum::splat(3.0))]),
             Self::new(vec![red]),
             Self::new(vec![wave(6), wave(4)]),
+            Self::absorbed(wave(6), wave(4)),
+            Self::absorbed(wave(6), constant(Spectrum::splat(0.25))),
         ]
     }
 }
@@ -59,13 +71,24 @@ impl VolumeModel for Product {
     #[inline]
     fn eval<L: Lanes>(&self, position: Vec3) -> L {
         let constant = L::from_spectrum(self.constant);
-        self.factors.iter().fold(constant, |product, factor| product * factor.eval(position))
+        let product = self.factors.iter().fold(constant, |product, factor| product * factor.inside(position));
+        match &self.albedo {
+            None => product,
+            Some(albedo) => {
+                let rest = Spectrum::ONE - albedo.eval::<L>(position).to_spectrum();
+                product * L::from_spectrum(rest)
+            }
+        }
     }
 
     fn range(&self, low: Vec3, high: Vec3) -> [Spectrum; 2] {
-        let ranges = self.factors.iter().map(|factor| factor.range(low, high));
-        let [least, most] = ranges.fold([self.constant; 2], times);
-        let slack = least.abs().max(most.abs()) * (f32::EPSILON * (1 + self.factors.len()) as f32);
+        let ranges = self.factors.iter().map(|factor| factor.range_inside(low, high));
+        let rest = self.albedo.as_ref().map(|albedo| {
+            let [least, most] = albedo.range(low, high);
+            [Spectrum::ONE - most, Spectrum::ONE - least]
+        });
+        let [least, most] = ranges.chain(rest).fold([self.constant; 2], times);
+        let slack = least.abs().max(most.abs()) * (f32::EPSILON * (2 + self.factors.len()) as f32);
         [least - slack, most + slack]
     }
 
@@ -76,17 +99,13 @@ impl VolumeModel for Product {
         Some([low, high.max(low)])
     }
 
-    fn contains(&self, position: Vec3) -> bool {
-        self.factors.iter().all(|factor| factor.contains(position))
-    }
-
     fn is_grey(&self) -> bool {
         use crate::math::SpectrumExt;
-        self.constant.is_grey() && self.factors.iter().all(VolumeModel::is_grey)
+        self.constant.is_grey() && self.factors.iter().chain(self.albedo.as_deref()).all(VolumeModel::is_grey)
     }
 
     fn has_integral(&self) -> bool {
-        self.factors.len() <= 1 && self.factors.iter().all(VolumeModel::has_integral)
+        self.albedo.is_none() && self.factors.len() <= 1 && self.factors.iter().all(VolumeModel::has_integral)
     }
 
     #[inline]
@@ -97,10 +116,17 @@ impl VolumeModel for Product {
     }
 
     fn moved(&self, by: DVec3) -> Self {
-        Self { factors: self.factors.iter().map(|factor| factor.moved(by)).collect(), ..*self }
+        let albedo = self.albedo.as_ref().map(|albedo| Arc::new(albedo.moved(by)));
+        Self { factors: self.factors.iter().map(|factor| factor.moved(by)).collect(), albedo, ..*self }
     }
 
     fn at_time(&self, time: f64) -> Option<Self> {
-        all_at_time(&self.factors, time).map(|factors| Self { factors, ..*self })
+        let factors = all_at_time(&self.factors, time);
+        let albedo = self.albedo.as_ref().and_then(|albedo| albedo.at_time(time)).map(Arc::new);
+        if factors.is_none() && albedo.is_none() {
+            return None;
+        }
+        let factors = factors.unwrap_or_else(|| Arc::clone(&self.factors));
+        Some(Self { factors, albedo: albedo.or_else(|| self.albedo.clone()), ..*self })
     }
 }

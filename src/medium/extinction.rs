@@ -23,10 +23,7 @@ impl Extinction {
     #[inline]
     pub fn at<L: Lanes>(&self, position: Vec3) -> L {
         let inside = position.cmpge(self.low).all() && position.cmple(self.high).all();
-        if !(inside && self.volume.contains(position)) {
-            return L::splat(0.0);
-        }
-        self.volume.eval::<L>(position).scaled(self.scale)
+        if inside { self.volume.inside::<L>(position).scaled(self.scale) } else { L::splat(0.0) }
     }
 
     /// Optical depth along the part of `section` from `first` to `last` [m], both within the box: by the volume's own

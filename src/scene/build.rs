@@ -60,7 +60,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     let library = Library::new(root)?;
     let sections = Sections::sort(root, &library)?;
     let recentre = sections.viewpoint(&library)?;
-    let mut builder = Builder::new(&library, recentre);
+    let mut builder = Builder::new(&library, Place { recentre, time: sections.time });
     for child in &sections.shapes {
         builder.shape(child)?;
     }
@@ -141,15 +141,15 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(library: &'a Library, recentre: DVec3) -> Self {
+    fn new(library: &'a Library, place: Place) -> Self {
         Self {
             library,
-            recentre,
+            recentre: place.recentre,
             shapes: Vec::new(),
             surfaces: Vec::new(),
             bsdfs: Vec::new(),
             bsdf_index: HashMap::new(),
-            place: Place { recentre, time: 0.0 },
+            place,
             media: vec![Blueprint::vacuum()],
             medium_names: Vec::new(),
             medium_index: HashMap::new(),

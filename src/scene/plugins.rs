@@ -1,14 +1,14 @@
 //! Is every plugin of a scene one, and of the kind that its tag or place says? Asked before anything is built, so
 //! that a misspelt name is told as that, with the nearest right one.
 
-use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours};
+use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours, whole_of};
 use crate::{
     description::{Object, Position, Value, suggest},
     error::{Error, Result},
 };
 
 /// Every plugin in `root` must be one, and of the kind that its tag says. What is known but of no use where it
-/// stands is for builders to tell, and so are volumes.
+/// stands is for builders to tell.
 pub(super) fn check(root: &Object) -> Result<()> {
     check_below(root, "scene")
 }
@@ -18,16 +18,17 @@ fn check_below(object: &Object, tag: &str) -> Result<()> {
         let Value::Object(child) = &property.value else { continue };
         let derived = || derive(&child.plugin, &property.name, tag);
         let Some(child_tag) = child.tag.as_deref().or_else(derived) else {
-            // Elsewhere it may be a density, and those are for builders to know.
+            // Elsewhere builders know better what can stand there.
             match tag {
                 "shape" | "sensor" | "film" | "bsdf" | "integrator" => return Err(unknown_in(child, tag)),
                 _ => continue,
             }
         };
-        if child_tag == "volume" {
-            continue;
+        match whole_of(&child.plugin) {
+            Some(whole) if whole == object.plugin && child_tag == "volume" => {}
+            Some(whole) => return Err(astray(child, whole)),
+            None => check_tag(child, child_tag)?,
         }
-        check_tag(child, child_tag)?;
         check_below(child, child_tag)?;
     }
     Ok(())
@@ -57,6 +58,12 @@ fn check_tag(object: &Object, tag: &str) -> Result<()> {
             Err(Error::new(&object.location, format!("the type of {}", kind(tag)), found, remedy))
         }
     }
+}
+
+/// The error for a part that stands elsewhere than in its `whole`.
+fn astray(part: &Object, whole: &str) -> Error {
+    let remedy = format!("put it into a {whole}");
+    Error::new(&part.location, format!("a {} in a {whole}", part.plugin), "it elsewhere", remedy)
 }
 
 fn unknown(object: &Object, tag: Option<&str>, known: &[&str]) -> Error {

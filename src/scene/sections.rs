@@ -3,7 +3,7 @@
 use super::{build::only_one, integrator, plugins, references, tags};
 use crate::{
     bsdf,
-    density::Place,
+    density::{self, Place},
     description::{Library, Object, Params, Position, params::Child},
     emitter,
     error::{Error, Result},
@@ -21,6 +21,9 @@ pub struct Sections<'a> {
     pub shapes: Vec<Child<'a>>,
     /// Those beside the shapes, in file order.
     pub emitters: Vec<Child<'a>>,
+    /// When it is seen [s]: what drifts in a wind has drifted since 0.
+    #[allow(dead_code, reason = "read where volumes are built")]
+    pub time: f64,
 }
 
 /// True if `object` only waits to be referred to.
@@ -29,6 +32,7 @@ fn is_definition(object: &Object) -> bool {
         || medium::is_medium(object)
         || crate::phase::is_phase(object)
         || crate::texture::ROWS.iter().any(|row| row.name == object.plugin)
+        || density::is_volume(object)
 }
 
 fn is_shape(object: &Object) -> bool {
@@ -39,12 +43,13 @@ impl<'a> Sections<'a> {
     /// Sorts the children of `root`; one that no scene can hold is an error.
     pub fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
         let params = Params::new(root, library);
+        let time = params.float("time", 0.0)?;
         let shapes = params.children(|child| is_shape(child.object))?;
         let emitters = params.children(|child| emitter::is_emitter(child.object))?;
         let sensors = params.children(|child| sensor::is_sensor(child.object))?;
         let integrators = params.children(|child| integrator::is_integrator(child.object))?;
         let definitions = params.children(|child| is_definition(child.object))?;
-        check_idle(&definitions, root, library)?;
+        check_idle(&definitions, root, library, time)?;
         if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
             !(is_shape(child.object)
                 || emitter::is_emitter(child.object)
@@ -64,7 +69,7 @@ impl<'a> Sections<'a> {
             return Err(only_one(second, "integrator"));
         }
         let integrator = integrators.first().map(|child| child.object);
-        Ok(Self { integrator, sensor, shapes, emitters })
+        Ok(Self { integrator, sensor, shapes, emitters, time })
     }
 
     /// Where the camera stands, in the file's coordinates: it becomes the origin, so that f32 geometry is most
@@ -74,14 +79,18 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// A definition is built even if nothing refers to it, so that a mistake in it is told.
-fn check_definition(object: &Object, library: &Library) -> Result<()> {
+/// A definition is built even if nothing refers to it, so that a mistake in it is told. Where it would stand is of no
+/// matter to whether it can be built.
+fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()> {
+    let place = Place { recentre: DVec3::ZERO, time };
     if bsdf::ROWS.iter().any(|row| row.name == object.plugin) {
         bsdf::build(object, library).map(drop)
     } else if medium::is_medium(object) {
-        medium::build(object, library, &Place { recentre: DVec3::ZERO, time: 0.0 }).map(drop)
+        medium::build(object, library, &place).map(drop)
     } else if crate::phase::is_phase(object) {
         crate::phase::build(object, library).map(drop)
+    } else if density::is_volume(object) {
+        density::build(object, library, &place).map(drop)
     } else {
         crate::texture::build(object, library).map(drop)
     }
@@ -108,12 +117,12 @@ fn misplaced(child: &Child<'_>) -> Error {
 }
 
 /// Says which definitions have no effect, and checks them all the same. What is referred to will be built anyway.
-fn check_idle(definitions: &[Child<'_>], root: &Object, library: &Library) -> Result<()> {
+fn check_idle(definitions: &[Child<'_>], root: &Object, library: &Library, time: f64) -> Result<()> {
     let referred = references::referred(root);
     for Child { object, location, .. } in definitions {
         if object.id.as_deref().is_none_or(|id| !referred.contains(id)) {
             let name = object.id.as_deref().unwrap_or(&object.plugin);
-            check_definition(object, library)?;
+            check_definition(object, library, time)?;
             library.warn(location, &format!("\"{name}\" is not used: nothing refers to it"));
         }
     }

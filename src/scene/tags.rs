@@ -1,7 +1,7 @@
 //! Which XML tag a plugin goes with. XML always says; JSON leaves it to the plugin's name and place.
 
 use super::integrator;
-use crate::{bsdf, description::Row, emitter, film::filter, medium, phase, sensor, shape, texture};
+use crate::{bsdf, density, description::Row, emitter, film::filter, medium, phase, sensor, shape, texture};
 
 /// Tags of plugins.
 pub(super) const TAGS: [&str; 13] = [
@@ -152,12 +152,21 @@ pub(super) fn ours(tag: &str) -> Vec<&'static str> {
         "emitter" => names(emitter::ROWS),
         "medium" => medium::ROWS.iter().map(|row| row.name).collect(),
         "phase" => names(phase::ROWS),
+        "volume" => density::ROWS.iter().map(|row| row.name).collect(),
         _ => Vec::new(),
     }
 }
 
+/// The plugin that `plugin` is a part of; none where it stands for itself.
+pub(super) fn whole_of(plugin: &str) -> Option<&'static str> {
+    density::PARTS.iter().find(|(part, _)| *part == plugin).map(|(_, whole)| *whole)
+}
+
 /// All tags under which there is a plugin called `plugin`.
 pub(super) fn of_plugin(plugin: &str) -> Vec<&'static str> {
+    if whole_of(plugin).is_some() {
+        return vec!["volume"];
+    }
     let known =
         |(tag, plugins): &(&'static str, &[&str])| plugins.contains(&plugin) || ours(tag).contains(&plugin);
     MITSUBA.iter().filter(|row| known(row)).map(|(tag, _)| *tag).collect()

@@ -2,8 +2,9 @@
 
 use super::{super::Samples, vol};
 use crate::{
+    density::files::{self, Field},
     error::Result,
-    math::{DAffine3, Spectrum},
+    math::{DAffine3, DVec3, Spectrum},
 };
 use std::path::Path;
 
@@ -23,7 +24,32 @@ pub struct Source {
     pub to_file: DAffine3,
 }
 
-/// Opens a grid file; the format follows from the extension, and is Mitsuba's `.vol` for any not known.
-pub fn open(path: &Path) -> Result<Source> {
-    vol::read(path)
+/// True if the extension of `path` is one of the formats that hold several grids by name, each with a place in the world.
+pub fn is_vdb(path: &Path) -> bool {
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
+    ["vdb", "nvdb"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+}
+
+/// Opens a grid file; the format follows from the extension, and is Mitsuba's `.vol` for any not known. `grid` is the
+/// name of the one that is meant, for formats that hold several.
+pub fn open(path: &Path, grid: Option<&str>) -> Result<Source> {
+    if !is_vdb(path) {
+        return vol::read(path);
+    }
+    let source = files::open(path, grid).map_err(|problem| problem.at(path.display()))?;
+    let values = match source.samples {
+        Field::Grey(samples) => Values::Grey(Box::new(samples)),
+        Field::Colour(samples) => Values::Chromatic(Box::new(samples)),
+    };
+    let size = match &values {
+        Values::Grey(samples) => samples.size(),
+        Values::Chromatic(samples) => samples.size(),
+    };
+    // Samples lie at integer indices, in the middle of their voxels.
+    let low = DVec3::from(source.low.map(|index| index as f64 - 0.5));
+    let box_of_voxels = DAffine3 {
+        matrix3: crate::math::DMat3::from_diagonal(DVec3::from(size.map(|n| n as f64))),
+        translation: low,
+    };
+    Ok(Source { values, to_file: source.to_world * box_of_voxels })
 }

@@ -28,6 +28,13 @@ pub struct Extent {
     pub counted: [[f64; 3]; 2],
 }
 
+impl Extent {
+    /// Bricks along x, y and z.
+    pub fn size(&self) -> [usize; 3] {
+        self.cells.map(|cells| cells.div_ceil(BRICK))
+    }
+}
+
 /// A cube of cells.
 #[derive(Clone, Debug)]
 pub struct Brick<V> {
@@ -42,7 +49,7 @@ pub struct Brick<V> {
 }
 
 /// The bricks.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Lattice<V> {
     /// Cells along x, y and z.
     pub cells: [usize; 3],
@@ -52,6 +59,16 @@ pub struct Lattice<V> {
     pub filter: Filter,
     /// All bricks, x fastest.
     pub bricks: Vec<Brick<V>>,
+}
+
+/// Millions of voxels are nothing to read.
+impl<V> std::fmt::Debug for Lattice<V> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Lattice")
+            .field("cells", &self.cells)
+            .field("filter", &self.filter)
+            .finish_non_exhaustive()
+    }
 }
 
 /// A value that no density can have.
@@ -66,6 +83,21 @@ pub struct Fault {
 }
 
 impl<V: Voxel> Lattice<V> {
+    /// The most bytes that [`Self::build`] may take: no brick of which the source knows that it is even needs values.
+    pub fn most_bytes<S: Samples<V> + ?Sized>(
+        samples: &S,
+        wrap: Wrap,
+        filter: Filter,
+        extent: &Extent,
+    ) -> u64 {
+        let size = extent.size();
+        let reader = Reader { samples, wrap, filter, extent, scratch: Vec::new() };
+        let all =
+            (0..size[2]).flat_map(|z| (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| [x, y, z])));
+        let bytes = |at| if reader.known(at).is_some() { 0 } else { size_of::<[V; VALUES]>() };
+        all.map(|at| (size_of::<Brick<V>>() + bytes(at)) as u64).sum()
+    }
+
     /// Copies `samples` within `extent` into bricks. Bricks for which `is_needed` is false (asked with their number
     /// along each axis) stay empty.
     pub fn build<S: Samples<V> + ?Sized>(
@@ -75,7 +107,7 @@ impl<V: Voxel> Lattice<V> {
         extent: &Extent,
         is_needed: impl Fn([usize; 3]) -> bool,
     ) -> Result<Self, Fault> {
-        let size = extent.cells.map(|cells| cells.div_ceil(BRICK));
+        let size = extent.size();
         let mut reader = Reader { samples, wrap, filter, extent, scratch: vec![V::splat(0.0); VALUES] };
         let mut bricks = Vec::with_capacity(size.iter().product());
         for z in 0..size[2] {

@@ -26,7 +26,7 @@ use crate::{
 };
 use lattice::{BRICK, Brick, Extent, Fault, Lattice};
 use std::{path::Path, sync::Arc};
-use voxel::{VALUES, Voxel};
+use voxel::Voxel;
 use walk::{Line, Target, Walk};
 
 pub use file::{Source, Values};
@@ -91,14 +91,18 @@ macro_rules! each {
 }
 
 impl Grid {
-    /// Reads `filename`, `filter_type`, `wrap_mode`, `use_grid_bbox`, `to_world`; `raw`, `accel` and `max_value`
+    /// Reads `filename`, `filter_type`, `wrap_mode`, `use_grid_bbox` (true by default for files that know where they
+    /// lie, `.vdb` and `.nvdb`), `to_world`, and `grid`, the name of one of several; `raw`, `accel` and `max_value`
     /// change nothing.
     pub fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
-        if params.has("grid") || params.has("data") {
-            let remedy = "save the grid to a file and give its name as \"filename\"";
+        let path = params.file("filename")?;
+        let is_vdb = file::is_vdb(&path);
+        if params.has("data") || (params.has("grid") && !is_vdb) {
+            let remedy = "save the grid to a file and give its name as \"filename\"; \"grid\" names one of several \
+                          in a .vdb or .nvdb file";
             return Err(Error::new(params.location(), "a grid file", "a grid in memory", remedy));
         }
-        let path = params.file("filename")?;
+        let grid = params.optional_string("grid")?;
         let filters = [("trilinear", Filter::Trilinear), ("nearest", Filter::Nearest)];
         let wraps = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let filter = params.choice("filter_type", Filter::Trilinear, &filters)?;
@@ -106,8 +110,8 @@ impl Grid {
         params.boolean("raw", false)?;
         params.accept_unused(&["accel", "max_value"], "the maximum is known, and no texture unit runs");
         let mut to_world = place.to_world(params)?;
-        let uses_file_box = params.boolean("use_grid_bbox", false)?;
-        let source = file::open(&path)?;
+        let uses_file_box = params.boolean("use_grid_bbox", is_vdb)?;
+        let source = file::open(&path, grid)?;
         if uses_file_box {
             check_box(&path, &source.to_file)?;
             to_world *= source.to_file;
@@ -126,9 +130,9 @@ impl Grid {
         };
         let reach = reach(&values, wrap, image(&to_local, domain));
         let (extent, shift) = extent(size, filter, reach);
-        let bricks =
-            extent.cells.iter().try_fold(1u64, |n, cells| n.checked_mul(cells.div_ceil(BRICK) as u64));
-        let bytes = |one: usize| bricks.and_then(|bricks| bricks.checked_mul(one as u64));
+        let count = extent.size().iter().try_fold(1u64, |count, n| count.checked_mul(*n as u64));
+        let bytes = count.and_then(|count| count.checked_mul(size_of::<Brick<Spectrum>>() as u64));
+        memory::check(path, size, bytes)?;
         let scale = DVec3::from(size.map(|n| n as f64));
         let to_lattice = DAffine3::from_translation(shift) * DAffine3::from_scale(scale) * to_local;
         let to_world = to_lattice.inverse();
@@ -140,12 +144,14 @@ impl Grid {
         };
         let bricks = match values {
             Values::Grey(samples) => {
-                memory::check(path, size, bytes(4 * VALUES + size_of::<Brick<f32>>()))?;
+                let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
+                memory::check(path, size, Some(bytes))?;
                 let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
                 Bricks::Grey(Arc::new(lattice.map_err(|fault| refused(path, fault))?))
             }
             Values::Chromatic(samples) => {
-                memory::check(path, size, bytes(12 * VALUES + size_of::<Brick<Spectrum>>()))?;
+                let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
+                memory::check(path, size, Some(bytes))?;
                 let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
                 drop(samples);
                 collapse(lattice.map_err(|fault| refused(path, fault))?)
@@ -233,6 +239,14 @@ impl Grid {
 impl Grid {
     pub(super) fn examples() -> Vec<Self> {
         tests::examples()
+    }
+
+    /// How many bricks hold values of their own, and how many there are.
+    fn counts(&self) -> [usize; 2] {
+        each!(self, lattice => {
+            let full = lattice.bricks.iter().filter(|brick| brick.values.is_some());
+            [full.count(), lattice.bricks.len()]
+        })
     }
 }
 

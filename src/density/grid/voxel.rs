@@ -122,13 +122,14 @@ impl Voxel for Spectrum {
 }
 
 /// How much every corner of a cell counts at a point of it, in the order of [`Voxel::weighted`]. The coordinates are
-/// those within the cell; a little beyond it counts as its border, so that no weight is negative.
+/// those within the cell; a little beyond it counts as its border, so that no weight is negative. Each weight is as
+/// exact as an f32 can be, the small ones too: a voxel may be a million times its neighbour.
 #[inline]
 pub fn weights(at: [f64; 3]) -> [Vec4; 2] {
-    let [x, y, z] = at.map(|x| (x as f32).clamp(0.0, 1.0));
-    let (a, b) = ((1.0 - x) * (1.0 - y), x * (1.0 - y));
-    let plane = Vec4::new(a, b, (1.0 - x) * y, x * y);
-    [plane * (1.0 - z), plane * z]
+    let positive = |x: f64| (if x > 0.0 { x } else { 0.0 }) as f32;
+    let [[x0, x1], [y0, y1], [z0, z1]] = at.map(|x| [positive(1.0 - x), positive(x)]);
+    let plane = Vec4::new(x0, x1, x0, x1) * Vec4::new(y0, y0, y1, y1);
+    [plane * z0, plane * z1]
 }
 
 /// The corners of the cell whose first corner is `values[index]`.

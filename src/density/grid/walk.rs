@@ -69,7 +69,7 @@ impl<V: Voxel> Lattice<V> {
         let mut walk = Walk { sum: V::ZERO, stop: None };
         let mut start = first;
         while let Some(brick) = self.brick(at.cell) {
-            let end = at.end().min(last).max(start);
+            let end = at.end(start, last);
             match &brick.values {
                 None => walk.even::<STOP>(brick.mean, start, end, target),
                 Some(values) => walk.cells::<K, STOP>(values, line, at.cell, [start, end], target),
@@ -125,28 +125,28 @@ impl Stepper {
         stepper
     }
 
-    /// t where the line leaves the cell.
+    /// t where the line leaves the cell, kept from `start` to `last`.
     #[inline]
-    fn end(&self) -> f64 {
+    fn end(&self, start: f64, last: f64) -> f64 {
+        // Not f64::min and f64::max, which ask for NaN.
+        let lesser = |x: f64, y: f64| if x < y { x } else { y };
         let [x, y, z] = self.next;
-        let xy = if x < y { x } else { y };
-        if xy < z { xy } else { z }
+        let end = lesser(lesser(x, y), lesser(z, last));
+        if end > start { end } else { start }
     }
 
-    /// Goes on to the next cell; returns the axis.
+    /// Goes on to the next cell; true for the axis along which. No branches: which axis comes next, nobody can guess.
     #[inline]
-    fn advance(&mut self) -> usize {
+    fn advance(&mut self) -> [bool; 3] {
         let [x, y, z] = self.next;
-        let axis = if x < y {
-            if x < z { 0 } else { 2 }
-        } else if y < z {
-            1
-        } else {
-            2
-        };
-        self.next[axis] += self.delta[axis];
-        self.cell[axis] += self.step[axis];
-        axis
+        let is_x = (x < y) & (x < z);
+        let is_y = !is_x & (y < z);
+        let axes = [is_x, is_y, !(is_x | is_y)];
+        for (axis, is_next) in axes.into_iter().enumerate() {
+            self.next[axis] += if is_next { self.delta[axis] } else { 0.0 };
+            self.cell[axis] += if is_next { self.step[axis] } else { 0 };
+        }
+        axes
     }
 }
 
@@ -178,14 +178,15 @@ impl<V: Voxel> Walk<V> {
         let corner = brick.map(|i| i * BRICK as i64);
         let mut at = Stepper::new(line, first, 1.0, corner, corner.map(|i| i + BRICK as i64 - 1));
         let local: [i64; 3] = std::array::from_fn(|i| at.cell[i] - corner[i]);
-        let mut index = (local[0] + SIDE as i64 * (local[1] + SIDE as i64 * local[2])) as usize;
-        let strides: [usize; 3] = std::array::from_fn(|i| at.step[i].wrapping_mul([1, 9, 81][i]) as usize);
+        let mut index = local[0] + SIDE as i64 * (local[1] + SIDE as i64 * local[2]);
+        let strides: [i64; 3] =
+            std::array::from_fn(|i| at.step[i] * [1, SIDE as i64, (SIDE * SIDE) as i64][i]);
         let mut base: [f64; 3] = std::array::from_fn(|i| line.origin[i] - at.cell[i] as f64);
         let backs = at.step.map(|step| step as f64);
         let mut start = first;
         loop {
-            let end = at.end().min(last).max(start);
-            let cell = Cell { index, line: Line { origin: base, direction: line.direction } };
+            let end = at.end(start, last);
+            let cell = Cell { index: index as usize, line: Line { origin: base, direction: line.direction } };
             let Some(gain) = K::integral(values, &cell, start, end) else { return };
             if STOP && V::lane(self.sum + gain, target.hero) > target.value {
                 return self.halt::<K>(values, &cell, [start, end], target);
@@ -195,9 +196,11 @@ impl<V: Voxel> Walk<V> {
                 return;
             }
             start = end;
-            let axis = at.advance();
-            index = index.wrapping_add(strides[axis]);
-            base[axis] -= backs[axis];
+            let axes = at.advance();
+            for (axis, is_next) in axes.into_iter().enumerate() {
+                index += if is_next { strides[axis] } else { 0 };
+                base[axis] -= if is_next { backs[axis] } else { 0.0 };
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use crate::{
     description::{Library, Object, Value},
     math::{DVec3, Vec3, vec3},
     sampling::stream::Purpose,
-    testing::{chi_square, nowhere, object, significance},
+    testing::{chi_square, object, significance},
 };
 
 const HERE: Place = Place { recentre: DVec3::ZERO, time: 0.0 };

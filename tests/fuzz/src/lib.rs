@@ -3,7 +3,10 @@
 
 use std::{fs, path::PathBuf, sync::OnceLock};
 use tempfile::TempDir;
-use tyndall::scene::{self, Spelling, build::Overrides};
+use tyndall::{
+    density::files,
+    scene::{self, Spelling, build::Overrides},
+};
 
 fn path(name: &str) -> PathBuf {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
@@ -41,7 +44,8 @@ pub fn scene(name: &str, data: &[u8]) {
     load(path);
 }
 
-const CAMERA: &str = r#""camera": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 4}}"#;
+const CAMERA: &str =
+    r#""camera": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 4}}"#;
 
 fn around(inside: &str) -> PathBuf {
     put("scene.json", format!(r#"{{"type": "scene", {CAMERA}, "thing": {inside}}}"#).as_bytes())
@@ -67,7 +71,17 @@ pub fn phase_table(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let plain = text.chars().filter(|c| !c.is_control() && !"\"\\$".contains(*c)).collect::<String>();
     let phase = format!(r#"{{"type": "tabphase", "values": "{plain}"}}"#);
-    load(around(&format!(
-        r#"{{"type": "cube", "interior": {{"type": "homogeneous", "phase": {phase}}}}}"#
-    )));
+    load(around(&format!(r#"{{"type": "cube", "interior": {{"type": "homogeneous", "phase": {phase}}}}}"#)));
+}
+
+/// `data` as a file of volumes, of which every usual grid is read.
+pub fn volume(ending: &str, data: &[u8]) {
+    let path = put(&format!("volume.{ending}"), data);
+    for grid in [None, Some("density"), Some("smoke"), Some("Cd"), Some("temperature")] {
+        if let Err(problem) = files::open(&path, grid) {
+            for part in [problem.expected, problem.found, problem.remedy] {
+                assert!(!part.is_empty(), "a message without one of its parts");
+            }
+        }
+    }
 }

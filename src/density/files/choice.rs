@@ -1,0 +1,65 @@
+//! Which of a file's grids is meant.
+
+use super::{Problem, Result};
+use crate::description::nearest;
+
+/// The name that is meant where none is given.
+const USUAL: &str = "density";
+
+/// No more grids than these are listed.
+const LISTED: usize = 24;
+
+/// No more of a name is shown [characters].
+const SHOWN: usize = 80;
+
+/// Name and type of a grid.
+pub struct Label {
+    /// The name.
+    pub name: String,
+    /// The type, as the file's makers call it.
+    pub kind: String,
+}
+
+impl Label {
+    fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.name.strip_suffix("[0]") == Some(name)
+    }
+}
+
+/// A file's text as it may stand in a message.
+pub fn shown(text: &str) -> String {
+    text.chars().flat_map(char::escape_debug).take(SHOWN).collect()
+}
+
+/// The number of the grid called `wanted` or, if none is, of "density" or the only one there is.
+pub fn choose(grids: &[Label], wanted: Option<&str>) -> Result<usize> {
+    let find = |name: &str| grids.iter().position(|grid| grid.is_called(name));
+    let only = || (grids.len() == 1).then_some(0);
+    match wanted {
+        Some(name) => find(name).ok_or_else(|| unknown(grids, name)),
+        None => find(USUAL).or_else(only).ok_or_else(|| ambiguous(grids)),
+    }
+}
+
+fn list(grids: &[Label]) -> String {
+    let one = |grid: &Label| format!("\"{}\" ({})", shown(&grid.name), shown(&grid.kind));
+    let names: Vec<_> = grids.iter().take(LISTED).map(one).collect();
+    let more = grids.len().saturating_sub(LISTED);
+    if more > 0 { format!("{} and {more} more", names.join(", ")) } else { names.join(", ") }
+}
+
+fn unknown(grids: &[Label], name: &str) -> Problem {
+    let known: Vec<_> = grids.iter().map(|grid| shown(&grid.name)).collect();
+    let known: Vec<_> = known.iter().map(String::as_str).collect();
+    let list = if grids.is_empty() { "none".into() } else { list(grids) };
+    let remedy = format!("{}the file's grids: {list}", nearest(name, &known));
+    Problem::new("the name of a grid of the file", format!("\"{}\"", shown(name)), remedy)
+}
+
+fn ambiguous(grids: &[Label]) -> Problem {
+    if grids.is_empty() {
+        return Problem::new("a file with a grid", "one without", "export the volume again");
+    }
+    let remedy = "say which one with the parameter \"grid\"";
+    Problem::new(format!("one grid, or one that is named \"{USUAL}\""), list(grids), remedy)
+}

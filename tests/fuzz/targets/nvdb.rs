@@ -1,0 +1,4 @@
+//! Volumes: NanoVDB.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| tyndall_fuzz::volume("nvdb", data));
