@@ -119,7 +119,7 @@ def run_matrix(options) -> bool:
 
 
 def add_selftest(commands) -> None:
-    command = add(commands, "selftest", run_selftest, "The test of the test: Mitsuba against itself, and against 5 % off.")
+    command = add(commands, "selftest", run_selftest, "The test of the test: Mitsuba against itself, and against 5 %% off.")
     add_effort(command, Effort())
 
 
