@@ -5,7 +5,7 @@ from validation.compare import Effort
 from validation.places import CROSSCHECK
 from validation.scene import open_scene
 
-SCENES = ("fog_isotropic.json", "fog_hg_backward.json", "camera_inside_cube.json", "fog_table_coarse.json")
+SCENES = ("fog_isotropic.json", "fog_hg_backward.json", "camera_inside_cube.json", "fog_table_coarse.json", "grid_trilinear.json")
 PERTURBATION = 0.05
 
 
