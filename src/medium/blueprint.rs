@@ -1,7 +1,11 @@
 //! From a description to a medium: parameters are read first; where coefficients vary, what they are like within the
 //! medium's bounds is looked at once those are known.
 
-use super::{Choice, Heterogeneous, Medium, heterogeneous::Fields};
+use super::{
+    Choice, Emission, Heterogeneous, Medium,
+    emission::{Given, Within},
+    heterogeneous::Fields,
+};
 use crate::{
     density::{self, Place, Volume},
     description::{Library, Object, Params, find_row},
@@ -9,6 +13,7 @@ use crate::{
     math::Vec3,
     phase::{self, Phase},
 };
+use std::sync::Arc;
 
 /// How a medium is called and read.
 pub struct Row {
@@ -26,6 +31,18 @@ pub const ROWS: &[Row] =
 pub struct Blueprint {
     medium: Medium,
     fields: Option<Fields>,
+    emission: Option<Given>,
+}
+
+/// Where a medium lies.
+#[derive(Clone, Copy, Debug)]
+pub struct Around {
+    /// The box's corner with the smallest coordinates [m].
+    pub low: Vec3,
+    /// The one with the largest.
+    pub high: Vec3,
+    /// True if the medium ends at shapes within the box; it may reach further where it is around everything.
+    pub is_bound: bool,
 }
 
 /// Reads the medium that `object` describes.
@@ -45,7 +62,7 @@ pub fn is_medium(object: &Object) -> bool {
 impl Blueprint {
     /// Vacuum.
     pub fn vacuum() -> Self {
-        Self { medium: Medium::vacuum(), fields: None }
+        Self { medium: Medium::vacuum(), fields: None, emission: None }
     }
 
     /// True if coefficients vary.
@@ -53,18 +70,33 @@ impl Blueprint {
         self.fields.is_some()
     }
 
-    /// The medium, which lies in the box from `low` to `high` where its volumes do not say so themselves. `forced`
-    /// is a tracker that goes before the description's own.
-    pub fn finish(self, low: Vec3, high: Vec3, forced: Option<Choice>) -> Result<Medium> {
-        let Some(fields) = self.fields else { return Ok(self.medium) };
+    /// True if it emits.
+    pub fn emits(&self) -> bool {
+        self.emission.is_some()
+    }
+
+    /// The medium, which lies `around` where its volumes do not say so themselves. `forced` is a tracker that goes
+    /// before the description's own.
+    pub fn finish(self, around: Around, forced: Option<Choice>) -> Result<Medium> {
+        let Around { low, high, .. } = around;
+        let Some(fields) = self.fields else {
+            let within = Within::Uniform(self.medium.matter());
+            return Ok(Medium { emission: emission(self.emission, within, &around)?, ..self.medium });
+        };
         let varying = Heterogeneous::new(fields, [low, high], forced)?;
         let (sigma_t, albedo) = varying.bounds();
-        Ok(Medium { sigma_t, albedo, varying: Some(Box::new(varying)), ..self.medium })
+        let emission = emission(self.emission, varying.within(), &around)?;
+        Ok(Medium { sigma_t, albedo, varying: Some(Box::new(varying)), emission, ..self.medium })
     }
 }
 
-/// `sigma_t` [1/m], `albedo`, `scale` and the phase function, with Mitsuba's defaults.
-fn homogeneous(params: &Params<'_>, _: &Place) -> Result<Blueprint> {
+fn emission(given: Option<Given>, within: Within, around: &Around) -> Result<Option<Arc<Emission>>> {
+    let Some(given) = given else { return Ok(None) };
+    Ok(Emission::new(given, within, around)?.map(Arc::new))
+}
+
+/// `sigma_t` [1/m], `albedo`, `scale`, the phase function, with Mitsuba's defaults, and what it emits.
+fn homogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     let scale = scale(params)?;
     let sigma_t = params.color("sigma_t", 1.0)? * scale;
     if !sigma_t.is_finite() {
@@ -75,12 +107,12 @@ fn homogeneous(params: &Params<'_>, _: &Place) -> Result<Blueprint> {
         return Err(params.complain("albedo", "values from 0 to 1", format!("{albedo}")));
     }
     let phase = common(params)?;
-    let medium = Medium { sigma_t, albedo, phase, varying: None };
-    Ok(Blueprint { medium, fields: None })
+    let medium = Medium { sigma_t, albedo, phase, ..Medium::vacuum() };
+    Ok(Blueprint { medium, fields: None, emission: Given::read(params, place)? })
 }
 
 /// `sigma_t` [1/m] and `albedo` as volumes, `scale`, the phase function, and which tracker: `tracker`, `step` [m] or
-/// `march_error` for ray marching.
+/// `march_error` for ray marching; and what it emits.
 fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     let volume = |name, default| {
         let given = density::parameter(params, name, place)?;
@@ -100,7 +132,7 @@ fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
         return Err(params.complain("step", "a length above 0", format!("{:?}", fields.step)));
     }
     let medium = Medium { phase: common(params)?, ..Medium::vacuum() };
-    Ok(Blueprint { medium, fields: Some(fields) })
+    Ok(Blueprint { medium, fields: Some(fields), emission: Given::read(params, place)? })
 }
 
 fn scale(params: &Params<'_>) -> Result<f32> {

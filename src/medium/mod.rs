@@ -1,6 +1,7 @@
-//! Participating media: coefficients, a phase function, and where they vary, how flights are sampled.
+//! Participating media: coefficients, a phase function, what they emit, and where they vary, how flights are sampled.
 
 mod blueprint;
+mod emission;
 mod extinction;
 mod heterogeneous;
 pub mod tracker;
@@ -9,7 +10,9 @@ use crate::{
     math::{Spectrum, SpectrumExt},
     phase::{self, Phase},
 };
-pub use blueprint::{Blueprint, ROWS, build, is_medium};
+use std::sync::Arc;
+pub use blueprint::{Around, Blueprint, ROWS, build, is_medium};
+pub use emission::Emission;
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;
 pub use tracker::{Choice, Leg};
@@ -34,6 +37,8 @@ pub struct Medium {
     pub phase: Phase,
     /// What varies; none in a homogeneous medium, whose transmittance is exp(-sigma_t d).
     pub varying: Option<Box<Heterogeneous>>,
+    /// What it emits.
+    pub emission: Option<Arc<Emission>>,
 }
 
 /// What a medium is made of at a point.
@@ -64,6 +69,7 @@ impl Medium {
             albedo: Spectrum::ZERO,
             phase: Phase::Isotropic(phase::Isotropic),
             varying: None,
+            emission: None,
         }
     }
 
