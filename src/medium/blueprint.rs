@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     density::{self, Place, Volume},
-    description::{Library, Object, Params, find_row},
+    description::{Library, Location, Object, Params, find_row},
     error::{Error, Result},
     math::Vec3,
     phase::{self, Phase},
@@ -70,9 +70,10 @@ impl Blueprint {
         self.fields.is_some()
     }
 
-    /// True if it emits.
-    pub fn emits(&self) -> bool {
-        self.emission.is_some()
+    /// Where the description of an emission stands that has no end but the medium's own.
+    pub fn endless_emission(&self) -> Option<&Location> {
+        let given = self.emission.as_ref()?;
+        given.has_no_end(self.varies()).then_some(&given.location)
     }
 
     /// The medium, which lies `around` where its volumes do not say so themselves. `forced` is a tracker that goes

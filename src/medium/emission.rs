@@ -39,7 +39,8 @@ pub struct Given {
     volume: Volume,
     scale: f32,
     place: Place,
-    location: Location,
+    /// Where it stands in the file.
+    pub(super) location: Location,
 }
 
 impl Given {
@@ -62,6 +63,11 @@ impl Given {
             return Err(Error::new(params.location(), "an emission to scale", found, remedy));
         }
         Ok(given.filter(|given| given.scale > 0.0))
+    }
+
+    /// True if neither its volume ends somewhere nor the matter that it takes, which `varies` or not.
+    pub fn has_no_end(&self, varies: bool) -> bool {
+        self.volume.domain().is_none() && (self.quantity == Quantity::Gain || !varies)
     }
 
     fn complain(&self, expected: &str, found: &str, remedy: &str) -> Error {

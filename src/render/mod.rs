@@ -18,7 +18,7 @@ use crate::{
     scene::Scene,
     transport::{
         Estimator, Options,
-        profile::{Bounded, ChromaticFog, Everything, Fog, Profile, ProfileName, Smoke, Vacuum},
+        profile::{Bounded, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName, Smoke, Vacuum},
     },
 };
 use block::{Blocks, Outcome};
@@ -92,6 +92,7 @@ pub fn render_layers(
         ProfileName::Fog => render_as::<Fog>(scene, film, settings, layers, progress),
         ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, layers, progress),
         ProfileName::Smoke => render_as::<Smoke>(scene, film, settings, layers, progress),
+        ProfileName::Fire => render_as::<Fire>(scene, film, settings, layers, progress),
         ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, layers, progress),
         ProfileName::Everything => render_as::<Everything>(scene, film, settings, layers, progress),
     }

@@ -74,6 +74,8 @@ pub struct Scene {
     pub sensor: Sensor,
     /// The medium around the camera.
     pub sensor_medium: MediumIndex,
+    /// The medium around everything.
+    pub outside: MediumIndex,
     /// Where the origin of all positions lies in the file's coordinates [m].
     pub recentre: DVec3,
 }
@@ -119,6 +121,11 @@ impl Scene {
         let light = &self.lights.all[light as usize];
         let asked = || boundary::ask(&self.geometry, &self.surfaces, origin, direction);
         if light.straddles { asked().unwrap_or(light.medium) } else { light.medium }
+    }
+
+    /// True if `position` lies in `medium`, as far as a ray from there towards `direction` can tell.
+    pub fn is_within(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> bool {
+        boundary::ask(&self.geometry, &self.surfaces, position, direction).unwrap_or(self.outside) == medium
     }
 
     /// The part of light that passes `point` undeflected along `direction`.
