@@ -188,10 +188,11 @@ fn extent(given: &Given, within: &Within, around: &Around) -> [Vec3; 2] {
         }
         _ => None,
     };
-    let known: Vec<[Vec3; 2]> = given.volume.domain().into_iter().chain(of_matter).collect();
-    let shapes = (around.is_bound || known.is_empty()).then_some([around.low, around.high]);
-    let boxes = known.into_iter().chain(shapes);
-    boxes.fold([Vec3::NEG_INFINITY, Vec3::INFINITY], |[low, high], [a, b]| [low.max(a), high.min(b)])
+    let common = |[low, high]: [Vec3; 2], [a, b]: [Vec3; 2]| [low.max(a), high.min(b)];
+    let known = given.volume.domain().into_iter().chain(of_matter);
+    let known = known.fold([Vec3::NEG_INFINITY, Vec3::INFINITY], common);
+    let ends = !around.is_bound && known.iter().all(|corner| corner.is_finite());
+    if ends { known } else { common(known, [around.low, around.high]) }
 }
 
 /// A cell is chosen as if it shone by this part of its maximum more than it does on average: so that what its few
