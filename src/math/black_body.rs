@@ -63,7 +63,8 @@ mod tests {
     fn the_table_is_planck_s_law() {
         // Some between the entries, some where channels leave the gamut.
         for temperature in [600.0, 800.0, 1234.5, 1900.0, 1950.0, 2000.0, 3333.0, 6504.0, 2e4, 1e6, 1e15] {
-            let (found, truth) = (radiance(temperature as f32).as_dvec3(), exact(f64::from(temperature as f32)));
+            let (found, truth) =
+                (radiance(temperature as f32).as_dvec3(), exact(f64::from(temperature as f32)));
             let allowed = 1e-4 * truth.max_element();
             assert!((found - truth).abs().max_element() < allowed, "{temperature}: {found} for {truth}");
         }

@@ -25,11 +25,8 @@ enum Quantity {
     Temperature,
 }
 
-const QUANTITIES: [(&str, Quantity); 3] = [
-    ("emission", Quantity::Gain),
-    ("radiance", Quantity::Radiance),
-    ("temperature", Quantity::Temperature),
-];
+const QUANTITIES: [(&str, Quantity); 3] =
+    [("emission", Quantity::Gain), ("radiance", Quantity::Radiance), ("temperature", Quantity::Temperature)];
 
 /// Emission as the description gives it.
 #[derive(Clone, Debug)]
@@ -59,7 +56,8 @@ impl Given {
         }
         if given.is_none() && params.has("emission_scale") {
             let found = "a factor on nothing";
-            let remedy = "give \"emission\", \"radiance\" or \"temperature\" too, or remove \"emission_scale\"";
+            let remedy =
+                "give \"emission\", \"radiance\" or \"temperature\" too, or remove \"emission_scale\"";
             return Err(Error::new(params.location(), "an emission to scale", found, remedy));
         }
         Ok(given.filter(|given| given.scale > 0.0))
@@ -179,6 +177,9 @@ impl Field {
         Coarse::from_cells([1; 3], to_cells, vec![gain.max_element()], vec![gain])
     }
 }
+
+/// The most radiance gained per metre: products with volumes and lengths of any scene stay finite.
+const BRIGHTEST: f32 = 1e30;
 
 /// The box that holds all that shines.
 fn extent(given: &Given, within: &Within, around: &Around) -> [Vec3; 2] {
@@ -316,5 +317,5 @@ impl Emission {
     }
 }
 
-/// The most radiance gained per metre: products with volumes and lengths of any scene stay finite.
-const BRIGHTEST: f32 = 1e30;
+#[cfg(test)]
+mod tests;

@@ -10,11 +10,11 @@ use crate::{
     math::{Spectrum, SpectrumExt},
     phase::{self, Phase},
 };
-use std::sync::Arc;
 pub use blueprint::{Around, Blueprint, ROWS, build, is_medium};
 pub use emission::Emission;
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;
+use std::sync::Arc;
 pub use tracker::{Choice, Leg};
 
 /// Index of a medium in its scene. Vacuum is a medium like any other, with nothing in it.

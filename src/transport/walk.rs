@@ -82,9 +82,9 @@ pub fn walk<P: Profile>(
 ) {
     while departure.edges < kind.max_edges {
         let Departure { ray, medium, .. } = departure;
-        let mut along = |flown: &Flown<P::Lanes>, stream: &mut Stream| visitor.pass(&departure, flown, stream);
-        let flight =
-            segment::fly::<P>(scene, ray, medium, departure.hidden, kind.hero, stream, &mut along);
+        let mut along =
+            |flown: &Flown<P::Lanes>, stream: &mut Stream| visitor.pass(&departure, flown, stream);
+        let flight = segment::fly::<P>(scene, ray, medium, departure.hidden, kind.hero, stream, &mut along);
         let Some(vertex) = land::<P>(&departure, &flight, kind.hero, visitor) else { return };
         if matches!(flight.landing, Landing::Escape) {
             if P::INFINITE {

@@ -55,7 +55,14 @@ pub struct Flown<L> {
 
 impl<L: Lanes> Flown<L> {
     /// The flight that would have ended `t` metres into this part, at a point made of `matter`.
-    pub fn until(&self, scene: &Scene, t: f32, matter: Matter, hero: usize, stream: &mut Stream) -> Flight<L> {
+    pub fn until(
+        &self,
+        scene: &Scene,
+        t: f32,
+        matter: Matter,
+        hero: usize,
+        stream: &mut Stream,
+    ) -> Flight<L> {
         let section = Section { length: t, ..self.section };
         let medium = &scene.media[self.medium.0 as usize];
         let (depth, ratio) = match &medium.varying {

@@ -133,7 +133,7 @@ fn normals_that_are_not_the_surface_s() {
 #[test]
 fn media_that_shine() {
     examine_all::<Fire>("glowing fog", &build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, BALL]), 300);
-    examine_all::<Fire>("fire ball", &build(&[OUTSIDE, SMOKE, FIRE_BALL, GROUND, LAMP, POINT]), 600);
+    examine_all::<Fire>("fire ball", &build(&[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP, POINT]), 600);
     examine_all::<Fire>("fire in a box", &build(&[OUTSIDE, FIRE_BOX, GROUND, SKY]), 600);
     examine_all::<Fire>("no matter", &build(&[OUTSIDE, NEON, GROUND, MIRROR]), 600);
     examine_all::<Everything>("colours", &build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]), 600);
@@ -159,8 +159,10 @@ fn media_that_shine_by_any_subset_of_strategies() {
 
 #[test]
 fn media_that_shine_within_a_limited_depth() {
-    let setup = build(&[OUTSIDE, SMOKE, FIRE_BALL, GROUND, LAMP]);
-    for (depth, name) in [(0, "fire, depth 0"), (1, "fire, depth 1"), (2, "fire, depth 2"), (3, "fire, depth 3")] {
+    let setup = build(&[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP]);
+    for (depth, name) in
+        [(0, "fire, depth 0"), (1, "fire, depth 1"), (2, "fire, depth 2"), (3, "fire, depth 3")]
+    {
         for hide_emitters in [false, true] {
             let options = Options { max_depth: Some(depth), hide_emitters, ..ALL };
             let report = examine::<Fire>(name, &setup, options, 300);

@@ -15,8 +15,8 @@ use crate::{
         eye::{self, Eye},
         light::{self, Light},
         profile::Profile,
-        vertex::{Site, Vertex},
         segment::Flown,
+        vertex::{Site, Vertex},
         walk::{Departure, Kind, Visitor, walk},
     },
 };

@@ -45,10 +45,16 @@ pub const GLOWING_CHROMATIC_FOG: &str = r#""fog": {"type": "homogeneous",
 pub const SHELL: &str = r#""room": {"type": "cube", "flip_normals": true, "exterior": {"type": "ref", "id": "fog"},
     "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.7, 0.6, 0.5]}}}"#;
 
-/// Fire in the smoke.
+/// Smoke of a medium that has a name.
+pub const HAZE: &str = r#""haze": {"type": "homogeneous", "sigma_t": 1.2, "albedo": 0.95,
+    "phase": {"type": "hg", "g": -0.3}},
+    "smoke": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "ref", "id": "haze"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}]}"#;
+
+/// Fire in that.
 pub const FIRE_BALL: &str = r#""kernel": {"type": "sphere", "radius": 0.5, "bsdf": {"type": "null"},
-    "interior": {"type": "homogeneous", "sigma_t": 2, "albedo": 0.4, "temperature": 1500, "emission_scale": 0.1},
-    "exterior": {"type": "homogeneous", "sigma_t": 1.2, "albedo": 0.95, "phase": {"type": "hg", "g": -0.3}}}"#;
+    "interior": {"type": "homogeneous", "sigma_t": 2, "albedo": 0.4, "temperature": 1500, "emission_scale": 2},
+    "exterior": {"type": "ref", "id": "haze"}}"#;
 
 /// Fire that varies, of smoke that varies, in a box that it does not fill.
 pub const FIRE_BOX: &str = r#""fire": {"type": "cube", "bsdf": {"type": "null"},
