@@ -312,6 +312,60 @@ fn under_lights_of_special_kinds() {
     all_agree("profiles, projector", &scene(&parts), Kind { points: true, ..LAMP_IN_VIEW }, 128);
 }
 
+/// A medium that also shines.
+fn glowing(medium: Value, radiance: Value) -> Value {
+    with(medium, &[("radiance", radiance)])
+}
+
+#[test]
+fn in_fog_that_glows() {
+    let fog = glowing(medium(1.0, 0.6, 0.3), rgb(1.0, 0.5, 0.2));
+    all_agree("glowing fog", &scene(&foggy_room(fog)), LAMP_IN_VIEW, 64);
+}
+
+#[test]
+fn before_a_fire_beside_a_lamp() {
+    let fire = json!({"type": "heterogeneous", "scale": 3, "albedo": 0.6,
+        "sigma_t": {"type": "exponential", "height": -0.8, "scale_height": 0.5},
+        "emission": {"type": "exponential", "height": -0.8, "scale_height": 0.2, "value": 20}});
+    let parts = [
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("room", room(0.6, None)),
+        ("lamp", lamp_panel([0.0, 0.95, 0.0], 0.3, 3.0)),
+        ("fire", null_ball([0.0, -0.4, -0.3], 0.5, fire)),
+    ];
+    all_agree("fire", &scene(&parts), LAMP_IN_VIEW, 96);
+}
+
+#[test]
+fn around_a_chromatic_fire_by_null_collisions() {
+    let fire = json!({"type": "heterogeneous", "tracker": "null_collision", "scale": 2, "albedo": 0.7,
+        "sigma_t": {"type": "product", "a": {"type": "constvolume", "value": rgb(0.5, 1.0, 2.0)},
+                    "b": {"type": "exponential", "height": -0.5, "scale_height": 0.5}},
+        "radiance": {"type": "exponential", "height": -0.5, "scale_height": 0.3}});
+    let parts = [
+        ("sensor", camera([0.0, 0.6, 3.2], [0.0, 0.2, 0.0], 8)),
+        ("floor", floor(-0.6, 2.0, 0.5)),
+        ("fire", null_box([-0.5, -0.5, -0.5], [0.5, 0.7, 0.5], Some(fire))),
+        ("point", point([1.2, 0.8, 0.5], 0.3)),
+    ];
+    all_agree("chromatic fire", &scene(&parts), Kind { points: true, ..LAMP_IN_VIEW }, 128);
+}
+
+#[test]
+fn around_a_glass_ball_that_glows() {
+    let glass = json!({
+        "type": "sphere", "center": [0, -0.2, -0.2], "radius": 0.6,
+        "bsdf": {"type": "dielectric", "int_ior": 1.5}, "interior": glowing(medium(2.0, 0.8, 0.3), json!(3)),
+    });
+    let parts = [
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("room", room(0.5, None)),
+        ("glass", glass),
+    ];
+    all_agree("glowing glass ball", &scene(&parts), Kind { smooth: true, ..LAMP_IN_VIEW }, 128);
+}
+
 /// Light that leaves along a normal only: what no eye walk can find, light walks bring, by either strategy.
 #[test]
 fn under_a_beam() {

@@ -42,6 +42,7 @@ fn scenes() -> Vec<(ProfileName, Value)> {
         (ProfileName::Vacuum, scene(&room_of(None))),
         (ProfileName::Fog, scene(&room_of(Some(medium(1.0, 0.8, 0.3))))),
         (ProfileName::Bounded, scene(&cloud_under_sky(json!(1.5)))),
+        (ProfileName::Fire, scene(&room_of(Some(with(medium(1.0, 0.8, 0.3), &[("radiance", json!(1))]))))),
         (ProfileName::ChromaticFog, scene(&room_of(Some(medium(chromatic.clone(), 0.8, 0.3))))),
         (ProfileName::Everything, scene(&cloud_under_sky(chromatic))),
     ]

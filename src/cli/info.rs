@@ -3,7 +3,7 @@
 use super::{arguments, load, say};
 use crate::{
     bsdf::BsdfModel,
-    emitter::Emitter,
+    emitter::{Emitter, Kind},
     error::Result,
     film::{
         Film, Window,
@@ -16,6 +16,7 @@ use crate::{
         Scene,
         build::Setup,
         integrator::{Integrator, Method, Restriction},
+        lights::Light,
     },
     transport::profile::{Needs, ProfileName},
 };
@@ -39,9 +40,9 @@ fn describe(setup: &Setup) -> String {
     if !integrator.layers.is_empty() {
         lines.insert(2, format!("layers      {}", describe_layers(&integrator.layers)));
     }
-    lines.extend(scene.lights.all.iter().map(|light| {
-        format!("emitter     {} in {}", light.emitter.name, medium_name(setup, light.medium.0))
-    }));
+    lines.extend(
+        scene.lights.all.iter().map(|light| format!("emitter     {}", describe_emitter(setup, light))),
+    );
     lines.push(format!("camera      in {}", medium_name(setup, scene.sensor_medium.0)));
     lines
         .extend((1..scene.media.len()).map(|index| format!("medium      {}", describe_medium(setup, index))));
@@ -111,6 +112,14 @@ fn medium_name(setup: &Setup, index: u32) -> &str {
         Some(index) => &setup.medium_names[index as usize],
         None => "vacuum",
     }
+}
+
+fn describe_emitter(setup: &Setup, light: &Light) -> String {
+    let (name, medium) = (light.emitter.name, medium_name(setup, light.medium.0));
+    let Kind::Medium(glow) = &light.emitter.kind else { return format!("{name} in {medium}") };
+    let [low, high] = glow.emission.bounds().map(|corner| corner.as_dvec3() + setup.scene.recentre);
+    let [r, g, b] = glow.power().to_array();
+    format!("{name} {medium} itself, {r:.3} {g:.3} {b:.3} W, from {low:.3} to {high:.3}")
 }
 
 fn describe_medium(setup: &Setup, index: usize) -> String {

@@ -6,6 +6,7 @@ mod constant;
 mod directional;
 mod directionalarea;
 mod envmap;
+mod glow;
 mod point;
 mod profile;
 mod projector;
@@ -18,6 +19,7 @@ pub use constant::Constant;
 pub use directional::Directional;
 pub use directionalarea::DirectionalArea;
 pub use envmap::EnvMap;
+pub use glow::Glow;
 pub use point::Point;
 pub use profile::Profile;
 pub use projector::Projector;
@@ -56,6 +58,8 @@ pub enum Kind {
     Directional(Directional),
     /// Light from all around at infinity.
     Environment(Environment),
+    /// A medium that shines. Its description is the medium's own.
+    Medium(Glow),
 }
 
 /// Emitters that stand at a point.
@@ -108,6 +112,11 @@ pub fn is_emitter(object: &Object) -> bool {
 }
 
 impl Emitter {
+    /// A medium that shines.
+    pub fn of_medium(glow: Glow) -> Self {
+        Self { name: "medium", kind: Kind::Medium(glow), sampling_weight: 1.0 }
+    }
+
     /// True for emitters that stand on a shape.
     pub fn needs_shape(&self) -> bool {
         matches!(self.kind, Kind::Area(_) | Kind::DirectionalArea(_))
@@ -120,7 +129,7 @@ impl Emitter {
 
     /// True if a walk can meet it by chance: it is neither a point nor a single direction.
     pub fn is_hittable(&self) -> bool {
-        matches!(self.kind, Kind::Area(_) | Kind::Environment(_))
+        matches!(self.kind, Kind::Area(_) | Kind::Environment(_) | Kind::Medium(_))
     }
 
     /// True if next-event estimation can find it: it emits towards more than a single direction at each point.
@@ -143,6 +152,7 @@ impl Emitter {
             Kind::Point(e) => e.power(),
             Kind::Directional(e) => e.irradiance.as_dvec3() * disk,
             Kind::Environment(e) => e.fluence() * disk,
+            Kind::Medium(e) => e.power(),
         };
         power.dot(LUMINANCE.as_dvec3())
     }

@@ -1,5 +1,6 @@
 //! Vectors, frames, colours, warps and measures: what every other room stands on.
 
+pub mod black_body;
 pub mod cells;
 pub mod cie;
 pub mod colour;

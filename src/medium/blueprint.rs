@@ -1,10 +1,10 @@
 //! From a description to a medium: parameters are read first; where coefficients vary, what they are like within the
 //! medium's bounds is looked at once those are known.
 
-use super::{Choice, Heterogeneous, Medium, Treatment, heterogeneous::Fields};
+use super::{Choice, Heterogeneous, Medium, Treatment, emission::Given, heterogeneous::Fields};
 use crate::{
     density::{self, Place, Volume},
-    description::{Library, Object, Params, find_row},
+    description::{Library, Location, Object, Params, find_row},
     error::{Error, Result},
     math::{Spectrum, Vec3},
     phase::{self, Phase},
@@ -26,6 +26,18 @@ pub const ROWS: &[Row] =
 pub struct Blueprint {
     medium: Medium,
     fields: Option<Fields>,
+    emission: Option<Given>,
+}
+
+/// Where a medium lies.
+#[derive(Clone, Copy, Debug)]
+pub struct Around {
+    /// The box's corner with the smallest coordinates [m].
+    pub low: Vec3,
+    /// The one with the largest.
+    pub high: Vec3,
+    /// True if the medium ends at shapes within the box; it may reach further where it is around everything.
+    pub is_bound: bool,
 }
 
 /// Reads the medium that `object` describes.
@@ -45,7 +57,7 @@ pub fn is_medium(object: &Object) -> bool {
 impl Blueprint {
     /// Vacuum.
     pub fn vacuum() -> Self {
-        Self { medium: Medium::vacuum(), fields: None }
+        Self { medium: Medium::vacuum(), fields: None, emission: None }
     }
 
     /// True if coefficients vary.
@@ -53,11 +65,24 @@ impl Blueprint {
         self.fields.is_some()
     }
 
-    /// The medium, which lies in the box from `low` to `high` where its volumes do not say so themselves.
-    pub fn finish(self, low: Vec3, high: Vec3, treatment: &Treatment) -> Result<Medium> {
-        let Some(fields) = self.fields else { return Ok(treated(self.medium, treatment)) };
-        let varying = Heterogeneous::new(fields, [low, high], *treatment)?;
-        Ok(self.medium.with(varying))
+    /// Where the description of an emission stands that has no end but the medium's own.
+    pub fn endless_emission(&self) -> Option<&Location> {
+        let given = self.emission.as_ref()?;
+        given.has_no_end(self.varies()).then_some(&given.location)
+    }
+
+    /// The medium, which lies `around` where its volumes do not say so themselves.
+    pub fn finish(self, around: Around, treatment: &Treatment) -> Result<Medium> {
+        let medium = match self.fields {
+            None => treated(self.medium, treatment),
+            Some(fields) => {
+                self.medium.with(Heterogeneous::new(fields, [around.low, around.high], *treatment)?)
+            }
+        };
+        match self.emission {
+            None => Ok(medium),
+            Some(given) => medium.shining(given, around),
+        }
     }
 }
 
@@ -70,8 +95,8 @@ fn treated(medium: Medium, treatment: &Treatment) -> Medium {
     }
 }
 
-/// `sigma_t` [1/m], `albedo`, `scale` and the phase function, with Mitsuba's defaults.
-fn homogeneous(params: &Params<'_>, _: &Place) -> Result<Blueprint> {
+/// `sigma_t` [1/m], `albedo`, `scale`, the phase function, with Mitsuba's defaults, and what it emits.
+fn homogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     let scale = scale(params)?;
     let sigma_t = params.color("sigma_t", 1.0)? * scale;
     if !sigma_t.is_finite() {
@@ -82,12 +107,12 @@ fn homogeneous(params: &Params<'_>, _: &Place) -> Result<Blueprint> {
         return Err(params.complain("albedo", "values from 0 to 1", format!("{albedo}")));
     }
     let phase = common(params)?;
-    let medium = Medium { sigma_t, albedo, phase, varying: None };
-    Ok(Blueprint { medium, fields: None })
+    let medium = Medium { sigma_t, albedo, phase, ..Medium::vacuum() };
+    Ok(Blueprint { medium, fields: None, emission: Given::read(params, place)? })
 }
 
 /// `sigma_t` [1/m] and `albedo` as volumes, `scale`, the phase function, and which tracker: `tracker`, `step` [m] or
-/// `march_error` for ray marching.
+/// `march_error` for ray marching; and what it emits.
 fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     let volume = |name, default| {
         let given = density::parameter(params, name, place)?;
@@ -107,7 +132,7 @@ fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
         return Err(params.complain("step", "a length above 0", format!("{:?}", fields.step)));
     }
     let medium = Medium { phase: common(params)?, ..Medium::vacuum() };
-    Ok(Blueprint { medium, fields: Some(fields) })
+    Ok(Blueprint { medium, fields: Some(fields), emission: Given::read(params, place)? })
 }
 
 fn scale(params: &Params<'_>) -> Result<f32> {

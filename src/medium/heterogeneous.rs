@@ -2,6 +2,7 @@
 
 use super::{
     Choice, Extinction, Leg, Matter, Treatment,
+    emission::Within,
     tracker::{self, Tracker},
 };
 use crate::{
@@ -151,6 +152,11 @@ impl Heterogeneous {
         Matter { sigma_t, albedo: self.albedo.eval::<Spectrum>(position) }
     }
 
+    /// What absorbs, for what shines there.
+    pub(super) fn within(&self) -> Within {
+        Within::Varying(self.extinction.clone(), self.albedo.clone())
+    }
+
     /// See [`Tracker::depth`].
     #[inline]
     pub fn depth<L: Lanes>(&self, section: &Section) -> L {
@@ -161,6 +167,12 @@ impl Heterogeneous {
     #[inline]
     pub fn transmittance<L: Lanes>(&self, section: &Section, depth: L, stream: &mut Stream) -> L {
         self.tracker.transmittance(&self.extinction, section, depth, stream)
+    }
+
+    /// See [`Tracker::ratio`].
+    #[inline]
+    pub fn ratio<L: Lanes>(&self, section: &Section, depth: L, hero: usize, stream: &mut Stream) -> L {
+        self.tracker.ratio(&self.extinction, section, depth, hero, stream)
     }
 
     /// See [`Tracker::fly`].

@@ -1,6 +1,7 @@
-//! Participating media: coefficients, a phase function, and where they vary, how flights are sampled.
+//! Participating media: coefficients, a phase function, what they emit, and where they vary, how flights are sampled.
 
 mod blueprint;
+mod emission;
 mod extinction;
 mod heterogeneous;
 pub mod tracker;
@@ -11,9 +12,12 @@ use crate::{
     math::{Spectrum, SpectrumExt},
     phase::{self, Phase},
 };
-pub use blueprint::{Blueprint, ROWS, build, is_medium};
+pub use blueprint::{Around, Blueprint, ROWS, build, is_medium};
+pub use emission::Emission;
+use emission::{Given, Within};
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;
+use std::sync::Arc;
 pub use tracker::{Choice, Leg};
 pub use treatment::Treatment;
 
@@ -37,6 +41,10 @@ pub struct Medium {
     pub phase: Phase,
     /// What varies; none in a homogeneous medium, whose transmittance is exp(-sigma_t d).
     pub varying: Option<Box<Heterogeneous>>,
+    /// What it emits.
+    pub emission: Option<Arc<Emission>>,
+    /// What that was made of, to be made anew for another time.
+    given: Option<Box<(Given, Around)>>,
 }
 
 /// What a medium is made of at a point.
@@ -67,13 +75,34 @@ impl Medium {
             albedo: Spectrum::ZERO,
             phase: Phase::Isotropic(phase::Isotropic),
             varying: None,
+            emission: None,
+            given: None,
         }
     }
 
     /// The medium as it is at `time` [s]; none where it is the same at all times.
     pub fn at_time(&self, time: f64) -> Result<Option<Self>> {
-        let Some(varying) = &self.varying else { return Ok(None) };
-        Ok(varying.at_time(time)?.map(|varying| self.clone().with(varying)))
+        let varying = self.varying.as_ref().map(|varying| varying.at_time(time)).transpose()?.flatten();
+        let given = self.given.as_ref().and_then(|given| given.0.at_time(time));
+        if varying.is_none() && given.is_none() {
+            return Ok(None);
+        }
+        let medium = match varying {
+            Some(varying) => self.clone().with(varying),
+            None => self.clone(),
+        };
+        let Some(before) = &self.given else { return Ok(Some(medium)) };
+        medium.shining(given.unwrap_or_else(|| before.0.clone()), before.1).map(Some)
+    }
+
+    /// The medium with an emission.
+    fn shining(self, given: Given, around: Around) -> Result<Self> {
+        let within = match &self.varying {
+            Some(varying) => varying.within(),
+            None => Within::Uniform(self.matter()),
+        };
+        let emission = Emission::new(given.clone(), within, &around)?.map(Arc::new);
+        Ok(Self { emission, given: Some(Box::new((given, around))), ..self })
     }
 
     /// The medium with coefficients that vary.

@@ -19,7 +19,7 @@ use crate::{
     scene::{Scene, integrator::Look},
     transport::{
         Estimator, Options, Strategies,
-        profile::{Bounded, ChromaticFog, Everything, Fog, Profile, ProfileName, Smoke, Vacuum},
+        profile::{Bounded, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName, Smoke, Vacuum},
     },
 };
 use block::{Blocks, Outcome};
@@ -119,6 +119,7 @@ fn dispatch(
         ProfileName::Fog => render_as::<Fog>(scene, film, settings, look, layers, progress),
         ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, look, layers, progress),
         ProfileName::Smoke => render_as::<Smoke>(scene, film, settings, look, layers, progress),
+        ProfileName::Fire => render_as::<Fire>(scene, film, settings, look, layers, progress),
         ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, look, layers, progress),
         ProfileName::Everything => render_as::<Everything>(scene, film, settings, look, layers, progress),
     }

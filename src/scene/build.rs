@@ -307,7 +307,9 @@ impl<'a> Builder<'a> {
         let (recentre, outside) = (self.recentre, finder.far_outside(sensor_medium));
         let viewpoint = sensor.position();
         let extents = Extents { geometry: &geometry, surfaces: &self.surfaces, viewpoint, outside };
+        finder.warn_of_endless_light(&self.media[outside.0 as usize]);
         let media = extents.finish(self.media, treatment)?;
+        let shining = finder.shining(&media, outside);
         let lights = self.emitters.into_iter().map(|Placed { emitter, shape, stated, location }| {
             let position = emitter.position().map(|position| (position - recentre).as_vec3());
             let across = |shape| finder.straddles(shape, outside);
@@ -322,7 +324,7 @@ impl<'a> Builder<'a> {
             };
             Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles }
         });
-        let lights: Vec<Light> = lights.collect();
+        let lights: Vec<Light> = lights.chain(shining).collect();
         let lights = Lights::new(lights, &geometry, &media[outside.0 as usize]);
         Ok(Scene {
             lights,

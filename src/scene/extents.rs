@@ -5,7 +5,7 @@ use super::{Surface, accel::Geometry};
 use crate::{
     error::Result,
     math::Vec3,
-    medium::{Blueprint, Medium, MediumIndex, Treatment},
+    medium::{Around, Blueprint, Medium, MediumIndex, Treatment},
 };
 
 /// Boxes reach beyond shapes by this part of their size: the boundary itself lies within.
@@ -27,22 +27,22 @@ impl Extents<'_> {
     /// Finishes all media.
     pub fn finish(&self, media: Vec<Blueprint>, treatment: &Treatment) -> Result<Vec<Medium>> {
         let finish = |(index, blueprint): (usize, Blueprint)| {
-            let [low, high] = self.of(MediumIndex(index as u32));
-            blueprint.finish(low, high, treatment)
+            let (is_bound, [low, high]) = self.of(MediumIndex(index as u32));
+            blueprint.finish(Around { low, high, is_bound }, treatment)
         };
         media.into_iter().enumerate().map(finish).collect()
     }
 
-    /// The box around the shapes that hold `medium`; around the whole scene where it also lies outside of some.
-    fn of(&self, medium: MediumIndex) -> [Vec3; 2] {
+    /// The box around the shapes that hold `medium`; around the whole scene where it also lies outside of some: false.
+    fn of(&self, medium: MediumIndex) -> (bool, [Vec3; 2]) {
         let boundaries = || self.surfaces.iter().zip(self.geometry.shapes());
         let holds = |surface: &Surface| surface.boundary.is_some_and(|b| b.interior == medium);
         let leaks = |surface: &Surface| surface.boundary.is_some_and(|b| b.exterior == medium);
         let inside = boundaries().filter(|(surface, _)| holds(surface)).map(|(_, shape)| shape.bounds());
         let everywhere = medium == self.outside || boundaries().any(|(surface, _)| leaks(surface));
         match inside.reduce(union) {
-            Some(bounds) if !everywhere => widened(bounds),
-            _ => self.scene(),
+            Some(bounds) if !everywhere => (true, widened(bounds)),
+            _ => (false, self.scene()),
         }
     }
 

@@ -1,19 +1,23 @@
-//! Which media the camera and the emitters of a scene lie in.
+//! Which media the camera and the emitters of a scene lie in, and which are emitters themselves.
 
 use super::{
     Surface,
     accel::Geometry,
     boundary::{self, Found},
+    lights::Light,
 };
 use crate::{
     description::{Library, Location},
-    math::{Vec3, offset},
-    medium::MediumIndex,
+    emitter::{Emitter, Glow},
+    math::{SpectrumExt, Vec3, offset, warp},
+    medium::{Blueprint, Emission, Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
 };
 
 /// Points of an emitting shape that are asked whether they lie in one medium.
 const POINTS_ASKED: u32 = 256;
+/// Points of a medium that shines that are asked whether they lie in it.
+const POINTS_OF_LIGHT: u32 = 1024;
 
 /// Finds the media of points, with a warning where the shapes contradict each other.
 pub struct Finder<'a> {
@@ -68,6 +72,45 @@ impl Finder<'_> {
         });
         let first = media.next();
         media.any(|medium| Some(medium) != first)
+    }
+
+    /// The media that shine, as emitters; `outside` is where no boundary is met.
+    pub fn shining<'a>(
+        &'a self,
+        media: &'a [Medium],
+        outside: MediumIndex,
+    ) -> impl Iterator<Item = Light> + use<'a> {
+        (0..).zip(media).filter_map(move |(index, medium)| {
+            let (emission, medium) = (medium.emission.clone()?, MediumIndex(index));
+            let filled = self.filled(&emission, medium, outside);
+            let emitter = Emitter::of_medium(Glow { emission, filled });
+            Some(Light { emitter, position: Vec3::ZERO, shape: None, medium, straddles: false })
+        })
+    }
+
+    /// The part of the power of `emission` that is emitted in `medium`, above 0.
+    fn filled(&self, emission: &Emission, medium: MediumIndex, outside: MediumIndex) -> f64 {
+        let mut stream = Stream::new(2, u64::from(medium.0), 0, Purpose::Pilot);
+        let mut sum = [0.0, 0.0];
+        for _ in 0..POINTS_OF_LIGHT {
+            let point = emission.sample(&mut stream);
+            let direction = warp::to_sphere(stream.square());
+            let density = emission.density(point);
+            // Rounding may have put it just outside.
+            let share = if density > 0.0 { f64::from(emission.at(point).luminance() / density) } else { 0.0 };
+            let found = boundary::ask(self.geometry, self.surfaces, point, direction).unwrap_or(outside);
+            sum[0] += share;
+            sum[1] += if found == medium { share } else { 0.0 };
+        }
+        (sum[1] / sum[0]).max(1.0 / f64::from(POINTS_OF_LIGHT))
+    }
+
+    /// Of the medium around everything, light has to end somewhere.
+    pub fn warn_of_endless_light(&self, outside: &Blueprint) {
+        if let Some(location) = outside.endless_emission() {
+            let text = "this medium lies around the whole scene and emits without end; it is taken to emit in the box                         around all shapes and the camera only. Put it into a shape to say where it ends";
+            self.library.warn(location, text);
+        }
     }
 
     /// The medium far from everything: in front of the first boundary on the way in from outside.

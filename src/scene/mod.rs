@@ -124,6 +124,11 @@ impl Scene {
         if light.straddles { asked().unwrap_or(light.medium) } else { light.medium }
     }
 
+    /// True if `position` lies in `medium`, as far as a ray from there towards `direction` can tell.
+    pub fn is_within(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> bool {
+        boundary::ask(&self.geometry, &self.surfaces, position, direction).unwrap_or(self.outside) == medium
+    }
+
     /// The part of light that passes `point` undeflected along `direction`.
     #[inline]
     pub fn null_transmission(&self, point: &SurfacePoint, direction: Vec3) -> Spectrum {

@@ -1,7 +1,7 @@
 //! A scene at another time: what drifts in a wind is moved, all else stays as it was read and built.
 
-use super::{Scene, lights::Lights};
-use crate::error::Result;
+use super::{Scene, finder::Finder, lights::Lights};
+use crate::{description::Library, emitter::Kind, error::Result};
 
 impl Scene {
     /// Moves the scene to `time` [s]; false where nothing in it depends on time. Media that change are looked at
@@ -15,8 +15,13 @@ impl Scene {
             }
         }
         if changed {
-            let lights = std::mem::take(&mut self.lights);
-            self.lights = Lights::new(lights.all, &self.geometry, &self.media[self.outside.0 as usize]);
+            let steady = std::mem::take(&mut self.lights).all.into_iter();
+            let library = Library::default();
+            let finder = Finder { geometry: &self.geometry, surfaces: &self.surfaces, library: &library };
+            let shining = finder.shining(&self.media, self.outside);
+            let lights = steady.filter(|light| !matches!(light.emitter.kind, Kind::Medium(_))).chain(shining);
+            let outside = &self.media[self.outside.0 as usize];
+            self.lights = Lights::new(lights.collect(), &self.geometry, outside);
         }
         Ok(changed)
     }

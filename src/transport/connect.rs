@@ -34,6 +34,7 @@ pub fn vertex_end<L: Lanes>(
         origin,
         lift: vertex.lift(towards),
         medium,
+        within: false,
         value,
         forward: scattering.forward,
         cosine: vertex.cosine(towards),
@@ -47,18 +48,35 @@ pub fn vertex_end<L: Lanes>(
 /// The end at an emitter point picked by next-event estimation, for a join of strategy s = 1; `hits` is n of
 /// s = 0. In units of the density of s = 1, a light walk starts here `start / connect` times as densely.
 #[inline]
-pub fn link_end<L: Lanes>(link: &Link, medium: MediumIndex, towards: Vec3, hits: f32) -> End<L> {
+pub fn link_end<P: Profile>(
+    scene: &Scene,
+    link: &Link,
+    medium: MediumIndex,
+    towards: Vec3,
+    hits: f32,
+) -> End<P::Lanes> {
+    let shines = P::EMISSIVE && link.rate.is_some();
     End {
         origin: link_origin(link, towards),
         lift: link.point.map_or(Vec3::ZERO, |point| offset::side_of(point.normal, towards)),
-        medium,
+        medium: if shines { scene.lights.all[link.light as usize].medium } else { medium },
+        within: shines,
         value: link.value / link.connect,
         forward: link.forward * link.start / link.connect,
         cosine: link.cosine,
         inverse: 1.0 / link.connect,
-        sigma_t: L::splat(1.0),
-        reach: L::splat(1.0),
-        tail: L::splat(if link.hittable { hits } else { 0.0 }),
+        sigma_t: rate_of::<P>(link.rate),
+        reach: P::Lanes::splat(1.0),
+        tail: P::Lanes::splat(if link.hittable { hits } else { 0.0 }),
+    }
+}
+
+/// What stands for sigma_t at an emitter's point: `rate` in a medium, 1 elsewhere.
+#[inline]
+pub fn rate_of<P: Profile>(rate: Option<Spectrum>) -> P::Lanes {
+    match rate {
+        Some(rate) if P::EMISSIVE => P::Lanes::from_spectrum(rate),
+        _ => P::Lanes::splat(1.0),
     }
 }
 
@@ -124,6 +142,9 @@ pub fn join_along<P: Profile>(
 ) -> Option<Joined> {
     let Span { ray, cut, distance_squared, hidden } = *span;
     let passage = segment::pass::<P>(scene, ray, cut, a.medium, hidden, stream)?;
+    if P::EMISSIVE && b.within && passage.medium != b.medium {
+        return None;
+    }
     let geometry = 1.0 / distance_squared;
     let weight = weight::join(a, b, passage.density, geometry, count);
     let value = a.value * b.value * passage.transmittance * (geometry * weight);

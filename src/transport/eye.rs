@@ -1,17 +1,19 @@
-//! The eye walk's side: emitters met (s = 0), next-event estimation (s = 1), joins with light walks (s >= 2).
+//! The eye walk's side: emitters met and media passed that shine (s = 0), next-event estimation (s = 1), joins with light walks (s >= 2).
 
 use super::{
     Estimator,
     cache::LightCache,
     connect::{self, Joined, Span},
     profile::Profile,
+    segment::Flown,
     vertex::{Site, Vertex},
-    walk::{Departure, Kind, Visitor, walk},
+    walk::{Departure, Kind, Visitor, land, walk},
     weight,
 };
 use crate::{
     bsdf::Transport,
     math::{Lanes, Spectrum, Vec2, Vec3, measure},
+    medium::Matter,
     sampling::Stream,
     scene::lights::Link,
     sensor::SensorRay,
@@ -90,6 +92,21 @@ impl<P: Profile> Visitor<P> for Eye<'_, P> {
         self.previous = vertex.position;
     }
 
+    /// s = 0 in a medium: of all points of a flight one is taken, by where it may shine most. That a flight comes as far
+    /// as a point as often as radiance does is what makes up for the transmittance up to there.
+    #[inline]
+    fn pass(&mut self, departure: &Departure<P::Lanes>, flown: &Flown<P::Lanes>, stream: &mut Stream) {
+        let Some((light, emission)) = self.estimator.scene.lights.of_medium(flown.medium) else { return };
+        if self.estimator.counts.hit <= 0.0 {
+            return;
+        }
+        let Some((t, density)) = emission.sample_along(&flown.section, stream) else { return };
+        if let Some((vertex, link)) = self.meet(departure, flown, light, t, stream) {
+            let hit = self.hit(&vertex, &link);
+            self.radiance += hit.map_or(Spectrum::ZERO, |hit| hit.value / density);
+        }
+    }
+
     fn escape(&mut self, vertex: &Vertex<P::Lanes>) {
         if let Some(link) = self.estimator.scene.lights.met_at_infinity(-vertex.incoming) {
             self.radiance += self.hit(vertex, &link).map_or(Spectrum::ZERO, |hit| hit.value);
@@ -108,11 +125,29 @@ impl<'a, P: Profile> Eye<'a, P> {
         Self { estimator, cache, hero, previous: start, radiance: Spectrum::ZERO }
     }
 
+    /// The end of a walk at a point of a medium that shines, as the emitter `light`; none where it is dark there.
+    pub fn meet(
+        &self,
+        departure: &Departure<P::Lanes>,
+        flown: &Flown<P::Lanes>,
+        light: u32,
+        t: f32,
+        stream: &mut Stream,
+    ) -> Option<(Vertex<P::Lanes>, Link)> {
+        let scene = self.estimator.scene;
+        let link = scene.lights.link_within(light, flown.section.at(t))?;
+        let matter = Matter { sigma_t: link.rate?, albedo: Spectrum::ZERO };
+        let flight = flown.until(scene, t, matter, self.hero, stream);
+        Some((land::<P>(departure, &flight, self.hero, self)?, link))
+    }
+
     /// s = 0: the walk has met an emitter.
     #[inline]
     pub fn hit(&self, vertex: &Vertex<P::Lanes>, link: &Link) -> Option<Joined> {
         let counts = &self.estimator.counts;
-        if counts.hit <= 0.0 || (vertex.edges == 1 && self.estimator.hide_emitters) {
+        // Media are no emitters that can be hidden: what is behind them is seen through them.
+        let hidden = self.estimator.hide_emitters && !(P::EMISSIVE && link.rate.is_some());
+        if counts.hit <= 0.0 || (vertex.edges == 1 && hidden) {
             return None;
         }
         // Both ends of the segment before must be able to join; across it joins s = 1, which from the sensor is
@@ -128,7 +163,8 @@ impl<'a, P: Profile> Eye<'a, P> {
         let unit = vertex.inverse / counts.hit;
         let by_light = vertex.partial.scaled(link.forward * link.start * unit);
         let others = vertex.reach_before.scaled(joins * unit) + by_light;
-        // `value` is radiance x cosine on shapes: the walk's density already contains that cosine.
+        // `value` is radiance x cosine on shapes: the walk's density already contains that cosine. The rate of media is
+        // for weights alone.
         let radiance = link.value / link.cosine;
         let weight = weight::hit(vertex.reach, others);
         Some(Joined { value: vertex.throughput * radiance * (weight / counts.hit), weight })
@@ -153,7 +189,7 @@ impl<'a, P: Profile> Eye<'a, P> {
             (direction, d2)
         };
         let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
-        let light = connect::link_end(link, eye.medium, -direction, counts.hit);
+        let light = connect::link_end::<P>(scene, link, eye.medium, -direction, counts.hit);
         if P::INFINITE && link.infinite {
             let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
             let span = Span { ray, cut: 0.0, distance_squared: 1.0, hidden: false };

@@ -13,7 +13,7 @@ use crate::{
     bsdf::Transport,
     math::{Lanes, Spectrum, Vec2, Vec3, offset},
     sampling::Stream,
-    scene::lights::Start,
+    scene::{Scene, lights::Start},
     sensor::Projection,
     shape::Ray,
 };
@@ -45,7 +45,7 @@ pub fn trace<P: Profile>(
 ) {
     cache.add_walk(hero, estimator.keep);
     let scene = estimator.scene;
-    let Some(start) = scene.lights.sample_start(&scene.geometry, stream) else { return };
+    let Some(start) = begin::<P>(scene, stream) else { return };
     let departure = depart(estimator, &start);
     let kind =
         Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
@@ -53,6 +53,17 @@ pub fn trace<P: Profile>(
     let aperture = scene.sensor.sample_aperture(stream);
     light.splat(light.join_start_to_lens(aperture, stream));
     walk(scene, kind, departure, &mut light, stream);
+}
+
+/// Where a light walk starts; none where nothing leaves.
+pub fn begin<P: Profile>(scene: &Scene, stream: &mut Stream) -> Option<Start> {
+    let start = scene.lights.sample_start(&scene.geometry, stream)?;
+    // Points are sampled in the box around a medium that shines: not all lie in it.
+    let astray = P::EMISSIVE && start.rate.is_some() && {
+        let medium = scene.lights.all[start.light as usize].medium;
+        !scene.is_within(medium, start.position, start.direction)
+    };
+    (!astray).then_some(start)
 }
 
 /// Leaves the emitter. Before it only an eye walk that meets it can join.
@@ -68,7 +79,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Depart
         dirac: start.dirac,
         throughput: start.throughput,
         forward: start.forward,
-        carried: P::Lanes::splat(hits * start.cosine / start.start),
+        carried: connect::rate_of::<P>(start.rate).scaled(hits * start.cosine / start.start),
         reach: P::Lanes::splat(1.0),
     }
 }
@@ -143,7 +154,8 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
     /// s = 1, t = 1: the emitter itself as the sensor sees it, where an eye walk could have met it.
     pub fn join_start_to_lens(&self, aperture: Vec2, stream: &mut Stream) -> Option<(Vec2, Joined)> {
         let (estimator, start) = (self.estimator, &self.start);
-        let seen_directly = estimator.max_edges > 0 && !estimator.hide_emitters;
+        let hidden = estimator.hide_emitters && !(P::EMISSIVE && start.rate.is_some());
+        let seen_directly = estimator.max_edges > 0 && !hidden;
         if estimator.counts.lens <= 0.0 || !start.hittable || !seen_directly {
             return None;
         }
@@ -174,6 +186,7 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
             origin: ray.origin,
             lift: Vec3::ZERO,
             medium: scene.sensor_medium,
+            within: false,
             value: Spectrum::splat(density),
             forward: density,
             cosine: 1.0,
@@ -208,11 +221,12 @@ fn start_end<P: Profile>(
         // Never the far end of a join: the lens is.
         lift: Vec3::ZERO,
         medium: estimator.scene.emission_medium(start.light, origin, towards),
+        within: false,
         value: emission.value / start.start,
         forward: emission.forward,
         cosine: emission.cosine,
         inverse: 1.0 / start.start,
-        sigma_t: P::Lanes::splat(1.0),
+        sigma_t: connect::rate_of::<P>(start.rate),
         reach: P::Lanes::splat(1.0),
         tail: P::Lanes::splat(estimator.counts.hit),
     })

@@ -16,13 +16,15 @@ pub trait Profile: Copy + Send + Sync + 'static {
     const HETEROGENEOUS: bool;
     /// Some emitter is at infinity, or the sensor is: its rays are parallel.
     const INFINITE: bool;
+    /// Some medium shines.
+    const EMISSIVE: bool;
     /// As printed and as typed.
     const NAME: &'static str;
 }
 
 macro_rules! profile {
     ($(#[$doc:meta])* $name:ident, $text:literal, lanes: $lanes:ty, media: $media:literal, nulls: $nulls:literal,
-     heterogeneous: $heterogeneous:literal, infinite: $infinite:literal) => {
+     heterogeneous: $heterogeneous:literal, infinite: $infinite:literal, emissive: $emissive:literal) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         pub struct $name;
@@ -32,6 +34,7 @@ macro_rules! profile {
             const NULLS: bool = $nulls;
             const HETEROGENEOUS: bool = $heterogeneous;
             const INFINITE: bool = $infinite;
+            const EMISSIVE: bool = $emissive;
             const NAME: &'static str = $text;
         }
     };
@@ -39,27 +42,38 @@ macro_rules! profile {
 
 profile! {
     /// Surfaces only.
-    Vacuum, "vacuum", lanes: f32, media: false, nulls: false, heterogeneous: false, infinite: true
+    Vacuum, "vacuum", lanes: f32, media: false, nulls: false,
+    heterogeneous: false, infinite: true, emissive: false
 }
 profile! {
     /// Grey media behind surfaces that scatter, all light from within the scene: a closed room in fog.
-    Fog, "fog", lanes: f32, media: true, nulls: false, heterogeneous: false, infinite: false
+    Fog, "fog", lanes: f32, media: true, nulls: false,
+    heterogeneous: false, infinite: false, emissive: false
 }
 profile! {
     /// Grey media with index-matched boundaries, under any emitter.
-    Bounded, "bounded", lanes: f32, media: true, nulls: true, heterogeneous: false, infinite: true
+    Bounded, "bounded", lanes: f32, media: true, nulls: true,
+    heterogeneous: false, infinite: true, emissive: false
 }
 profile! {
     /// Grey media, some of which vary in space.
-    Smoke, "smoke", lanes: f32, media: true, nulls: true, heterogeneous: true, infinite: true
+    Smoke, "smoke", lanes: f32, media: true, nulls: true,
+    heterogeneous: true, infinite: true, emissive: false
+}
+profile! {
+    /// Grey media that shine, and may vary in space.
+    Fire, "fire", lanes: f32, media: true, nulls: true,
+    heterogeneous: true, infinite: true, emissive: true
 }
 profile! {
     /// Homogeneous media of any colour under emitters within the scene, no index-matched boundaries.
-    ChromaticFog, "chromatic-fog", lanes: Spectrum, media: true, nulls: false, heterogeneous: false, infinite: false
+    ChromaticFog, "chromatic-fog", lanes: Spectrum, media: true, nulls: false,
+    heterogeneous: false, infinite: false, emissive: false
 }
 profile! {
     /// All there is.
-    Everything, "everything", lanes: Spectrum, media: true, nulls: true, heterogeneous: true, infinite: true
+    Everything, "everything", lanes: Spectrum, media: true, nulls: true,
+    heterogeneous: true, infinite: true, emissive: true
 }
 
 /// What a scene needs of its profile.
@@ -75,6 +89,8 @@ pub struct Needs {
     pub nulls: bool,
     /// Some emitter is at infinity, or the sensor is.
     pub infinite: bool,
+    /// Some medium shines.
+    pub emissive: bool,
 }
 
 impl Needs {
@@ -88,6 +104,7 @@ impl Needs {
             heterogeneous: scene.media.iter().any(|medium| medium.varying.is_some()),
             nulls: nulls || passed,
             infinite: scene.lights.has_infinite() || scene.sensor.is_parallel(),
+            emissive: scene.lights.has_media(),
         }
     }
 }
@@ -103,6 +120,8 @@ pub enum ProfileName {
     Bounded,
     /// [`Smoke`].
     Smoke,
+    /// [`Fire`].
+    Fire,
     /// [`ChromaticFog`].
     ChromaticFog,
     /// [`Everything`].
@@ -113,6 +132,8 @@ impl ProfileName {
     /// The leanest profile that has all a scene needs.
     pub fn leanest(needs: Needs) -> Self {
         match needs {
+            Needs { emissive: true, chromatic: false, .. } => Self::Fire,
+            Needs { emissive: true, .. } => Self::Everything,
             Needs { heterogeneous: true, chromatic: false, .. } => Self::Smoke,
             Needs { heterogeneous: true, .. } => Self::Everything,
             Needs { media: false, nulls: false, .. } => Self::Vacuum,
@@ -130,6 +151,7 @@ impl ProfileName {
             Self::Fog => Fog::NAME,
             Self::Bounded => Bounded::NAME,
             Self::Smoke => Smoke::NAME,
+            Self::Fire => Fire::NAME,
             Self::ChromaticFog => ChromaticFog::NAME,
             Self::Everything => Everything::NAME,
         }
@@ -144,6 +166,7 @@ impl ProfileName {
                 (P::Lanes::COUNT > 1, "chromatic extinction"),
                 (P::NULLS, "index-matched boundaries"),
                 (P::INFINITE, "infinite emitters"),
+                (P::EMISSIVE, "media that shine"),
             ];
             parts.iter().filter(|(present, _)| !present).map(|(_, what)| *what).collect()
         }
@@ -152,6 +175,7 @@ impl ProfileName {
             Self::Fog => of::<Fog>(),
             Self::Bounded => of::<Bounded>(),
             Self::Smoke => of::<Smoke>(),
+            Self::Fire => of::<Fire>(),
             Self::ChromaticFog => of::<ChromaticFog>(),
             Self::Everything => of::<Everything>(),
         }
@@ -164,7 +188,7 @@ mod tests {
 
     #[test]
     fn the_leanest_profile_has_all_that_is_needed() {
-        for bits in 0..32u32 {
+        for bits in 0..64u32 {
             let has = |bit: u32| bits >> bit & 1 == 1;
             let needs = Needs {
                 media: has(0),
@@ -172,6 +196,7 @@ mod tests {
                 heterogeneous: has(4) && has(0),
                 nulls: has(2),
                 infinite: has(3),
+                emissive: has(5),
             };
             let left_out = ProfileName::leanest(needs).left_out();
             for (needed, what) in [
@@ -180,6 +205,7 @@ mod tests {
                 (needs.heterogeneous, "varying media"),
                 (needs.nulls, "index-matched boundaries"),
                 (needs.infinite, "infinite emitters"),
+                (needs.emissive, "media that shine"),
             ] {
                 assert!(!(needed && left_out.contains(&what)), "{needs:?} lacks {what}");
             }

@@ -4,7 +4,7 @@
 pub mod flight;
 pub mod passage;
 
-pub use flight::{Flight, Landing, fly};
+pub use flight::{Flight, Flown, Landing, fly};
 pub use passage::pass;
 
 use crate::{

@@ -3,7 +3,7 @@
 
 use super::{
     profile::Profile,
-    segment::{self, Flight, Landing},
+    segment::{self, Flight, Flown, Landing},
     vertex::{Site, Vertex, shading_correction},
 };
 use crate::{
@@ -52,6 +52,9 @@ pub trait Visitor<P: Profile> {
     /// A vertex was reached; it may scatter on.
     fn arrive(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream);
 
+    /// A part of a flight from `departure` lies behind; only in profiles where media shine.
+    fn pass(&mut self, _departure: &Departure<P::Lanes>, _flown: &Flown<P::Lanes>, _stream: &mut Stream) {}
+
     /// The walk left the scene: `vertex` stands for the direction it left in (its `incoming` reversed), its
     /// density per solid angle.
     fn escape(&mut self, vertex: &Vertex<P::Lanes>);
@@ -79,7 +82,9 @@ pub fn walk<P: Profile>(
 ) {
     while departure.edges < kind.max_edges {
         let Departure { ray, medium, .. } = departure;
-        let flight = segment::fly::<P>(scene, ray, medium, departure.hidden, kind.hero, stream);
+        let mut along =
+            |flown: &Flown<P::Lanes>, stream: &mut Stream| visitor.pass(&departure, flown, stream);
+        let flight = segment::fly::<P>(scene, ray, medium, departure.hidden, kind.hero, stream, &mut along);
         let Some(vertex) = land::<P>(&departure, &flight, kind.hero, visitor) else { return };
         if matches!(flight.landing, Landing::Escape) {
             if P::INFINITE {

@@ -13,6 +13,8 @@ pub struct End<L> {
     pub lift: Vec3,
     /// The medium it starts in.
     pub medium: MediumIndex,
+    /// True if it is a point of that medium only: no segment through another can end here.
+    pub within: bool,
     /// Throughput times scattering towards the other end.
     pub value: Spectrum,
     /// Density of the direction to the other end [1/sr].
@@ -21,7 +23,7 @@ pub struct End<L> {
     pub cosine: f32,
     /// 1/p>^h of this vertex.
     pub inverse: f32,
-    /// sigma_t per lane in a medium, 1 elsewhere.
+    /// sigma_t per lane in a medium, [`crate::medium::Emission::rate`] where that shines, 1 elsewhere.
     pub sigma_t: L,
     /// See [`super::vertex::Vertex::reach`].
     pub reach: L,

@@ -112,6 +112,25 @@ impl Tracker {
         }
     }
 
+    /// Transmittance of every lane over the hero's along `section`, whose [`Self::depth`] is `depth`, or an unbiased
+    /// random estimate of that.
+    #[inline]
+    pub fn ratio<L: Lanes>(
+        &self,
+        medium: &Extinction,
+        section: &Section,
+        depth: L,
+        hero: usize,
+        stream: &mut Stream,
+    ) -> L {
+        match self {
+            Self::NullCollision(coarse) => {
+                null_collision::transmittance_ratio(medium, coarse, section, hero, stream)
+            }
+            _ => depth.flight_ratio(L::splat(1.0), hero),
+        }
+    }
+
     /// Flies along `section` until the `hero` lane's optical depth is `remaining` (an exponential variate; random
     /// methods draw their own).
     #[inline]

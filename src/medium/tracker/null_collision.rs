@@ -108,7 +108,7 @@ pub fn fly<L: Lanes>(
 /// An unbiased estimate of every lane's transmittance over the hero's: exp of the integral of the difference, which
 /// may have either sign.
 #[inline]
-fn transmittance_ratio<L: Lanes>(
+pub fn transmittance_ratio<L: Lanes>(
     medium: &Extinction,
     coarse: &Coarse,
     flown: &Section,

@@ -2,7 +2,7 @@
 
 use super::{Geometry, Lights, front};
 use crate::{
-    emitter::{Kind, PointKind},
+    emitter::{Glow, Kind, PointKind},
     math::{Spectrum, Vec3, measure},
     sampling::Stream,
     shape::SurfacePoint,
@@ -17,7 +17,8 @@ pub struct Link {
     pub point: Option<SurfacePoint>,
     /// Emitter point; for emitters at infinity the unit direction towards the emitter.
     pub position: Vec3,
-    /// Radiance x cosine, intensity, or irradiance x (delta): what arrives per 1/d^2 [d = 1 at infinity].
+    /// Radiance x cosine, intensity, irradiance x (delta), or radiance gained per metre: what arrives per 1/d^2 [d = 1
+    /// at infinity].
     pub value: Spectrum,
     /// |cos| at the emitter; 1 where it is not a shape.
     pub cosine: f32,
@@ -31,6 +32,8 @@ pub struct Link {
     pub infinite: bool,
     /// True if an eye walk could have met it.
     pub hittable: bool,
+    /// Of a point in a medium that shines, see [`crate::medium::Emission::rate`] [1/m].
+    pub rate: Option<Spectrum>,
 }
 
 impl Lights {
@@ -66,6 +69,7 @@ impl Lights {
                 let connect = chosen * sky.density(towards);
                 (connect > 0.0).then(|| self.infinite_link(index, towards, connect, sky.radiance(towards)))
             }
+            Kind::Medium(glow) => self.link_within(index as u32, glow.emission.sample(stream)),
         }
     }
 
@@ -92,6 +96,7 @@ impl Lights {
             forward: area.density(cosine),
             infinite: false,
             hittable: true,
+            rate: None,
         })
     }
 
@@ -110,6 +115,7 @@ impl Lights {
             forward: point.density(direction),
             infinite: false,
             hittable: false,
+            rate: None,
         })
     }
 
@@ -125,7 +131,28 @@ impl Lights {
             forward: self.disk_density(),
             infinite: true,
             hittable: self.all[index].emitter.is_hittable(),
+            rate: None,
         }
+    }
+
+    /// The link to a point of a medium that shines, by whatever way it was found; none where it is dark there.
+    pub fn link_within(&self, light: u32, position: Vec3) -> Option<Link> {
+        let index = light as usize;
+        let Kind::Medium(Glow { emission, .. }) = &self.all[index].emitter.kind else { return None };
+        let (value, density) = (emission.at(position), emission.density(position));
+        (value.max_element() > 0.0 && density > 0.0).then(|| Link {
+            light,
+            point: None,
+            position,
+            value,
+            cosine: 1.0,
+            connect: self.connections.probability(index) * density,
+            start: self.starts.probability(index) * density,
+            forward: Glow::DENSITY,
+            infinite: false,
+            hittable: true,
+            rate: Some(emission.rate(position)),
+        })
     }
 
     /// The link that an eye walk at `reference` made by meeting `point` of an emitting shape; none where it

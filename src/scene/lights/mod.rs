@@ -3,19 +3,20 @@
 //! Two densities stand for the same emitter point: `start` by which light walks begin there, and `connect` by
 //! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
 //! emitter and are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle
-//! [1/sr] for emitters at infinity, whose "point" is a direction.
+//! [1/sr] for emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for media that shine. What
+//! eye walks make of a point of those, and so the density of s = 0, see [`Emission::rate`].
 
 mod link;
 mod start;
 
 pub use link::Link;
-pub use start::{Emission, Start};
+pub use start::{Leaving, Start};
 
 use super::accel::Geometry;
 use crate::{
-    emitter::Emitter,
+    emitter::{Emitter, Kind},
     math::{Spectrum, Vec3},
-    medium::{Medium, MediumIndex},
+    medium::{Emission, Medium, MediumIndex},
     sampling::Discrete,
     shape::SurfacePoint,
 };
@@ -46,6 +47,8 @@ pub struct Lights {
     /// Half by power, half uniform: which emitter a point is joined to. A distant strong emitter cannot keep
     /// a near weak one from being found.
     connections: Discrete,
+    /// The emitter that each medium is.
+    of_media: Vec<Option<u32>>,
     /// Index of what surrounds the scene.
     pub environment: Option<u32>,
     /// Centre of a sphere around the scene.
@@ -84,6 +87,7 @@ impl Lights {
         Self {
             starts: Discrete::new(powers.iter().copied()),
             connections: Discrete::new(connectible.iter().map(mixed)),
+            of_media: of_media(&all),
             environment: environment.map(|index| index as u32),
             all,
             centre,
@@ -102,11 +106,37 @@ impl Lights {
         self.all.iter().any(|light| light.emitter.is_infinite())
     }
 
+    /// True if some medium shines.
+    pub fn has_media(&self) -> bool {
+        !self.of_media.is_empty()
+    }
+
+    /// The emitter that `medium` is, and what it emits; none where it is dark.
+    #[inline]
+    pub fn of_medium(&self, medium: MediumIndex) -> Option<(u32, &Emission)> {
+        let index = self.of_media.get(medium.0 as usize).copied().flatten()?;
+        let Kind::Medium(glow) = &self.all[index as usize].emitter.kind else { return None };
+        Some((index, &glow.emission))
+    }
+
     /// Density of starts on the disk that faces an emitter at infinity [1/m^2].
     #[inline]
     fn disk_density(&self) -> f32 {
         1.0 / (PI * self.radius * self.radius)
     }
+}
+
+/// The emitter of each medium, up to the last that shines.
+fn of_media(all: &[Light]) -> Vec<Option<u32>> {
+    let mut found = Vec::new();
+    for (index, light) in all.iter().enumerate() {
+        if matches!(light.emitter.kind, Kind::Medium(_)) {
+            let medium = light.medium.0 as usize;
+            found.resize(found.len().max(medium + 1), None);
+            found[medium] = Some(index as u32);
+        }
+    }
+    found
 }
 
 /// What remains of light along an infinite way through a medium: 1 where it varies, for then it ends somewhere.

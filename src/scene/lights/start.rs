@@ -2,7 +2,7 @@
 
 use super::{Geometry, Lights, front};
 use crate::{
-    emitter::{Area, DirectionalArea, Kind, PointKind},
+    emitter::{Area, DirectionalArea, Glow, Kind, PointKind},
     math::{Frame, Spectrum, Vec3, offset, warp},
     sampling::Stream,
     shape::SurfacePoint,
@@ -35,12 +35,14 @@ pub struct Start {
     pub hittable: bool,
     /// True where light leaves in one direction only: nothing can be joined to the emitter.
     pub dirac: bool,
+    /// Of a point in a medium that shines, see [`crate::medium::Emission::rate`] [1/m].
+    pub rate: Option<Spectrum>,
 }
 
 /// What leaves an emitter point in a given direction.
 #[derive(Clone, Copy, Debug)]
-pub struct Emission {
-    /// Radiance x cosine [W/(m^2 sr)].
+pub struct Leaving {
+    /// Radiance x cosine [W/(m^2 sr)], or radiance gained per metre [W/(m^3 sr)].
     pub value: Spectrum,
     /// Density of the direction by a light walk [1/sr] ([1/m^2] at infinity).
     pub forward: f32,
@@ -68,6 +70,7 @@ impl Lights {
                 let density = chosen * sky.density(towards);
                 self.start_at_infinity(index, towards, density, sky.radiance(towards), stream)
             }
+            Kind::Medium(glow) => self.start_within(index, glow, chosen, stream),
         };
         (start.throughput.is_finite() && start.throughput.max_element() > 0.0).then_some(start)
     }
@@ -131,6 +134,17 @@ impl Lights {
         Start { infinite: true, origin, forward, throughput, ..begun }
     }
 
+    /// In the medium's box; whether it is in the medium, who knows its boundaries has to ask.
+    fn start_within(&self, index: usize, glow: &Glow, chosen: f32, stream: &mut Stream) -> Start {
+        let emission = &glow.emission;
+        let position = emission.sample(stream);
+        let direction = warp::to_sphere(stream.square());
+        let start = chosen * emission.density(position);
+        let throughput = emission.at(position) / (start * Glow::DENSITY);
+        let begun = self.start_at(index, position, direction, start);
+        Start { forward: Glow::DENSITY, throughput, rate: Some(emission.rate(position)), ..begun }
+    }
+
     fn start_on(&self, index: usize, point: &SurfacePoint, direction: Vec3, start: f32) -> Start {
         let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
         Start { point: Some(*point), origin, ..self.start_at(index, point.position, direction, start) }
@@ -150,23 +164,28 @@ impl Lights {
             infinite: false,
             hittable: self.all[index].emitter.is_hittable(),
             dirac: false,
+            rate: None,
         }
     }
 
     /// What the emitter point of a light walk sends towards unit `towards`: a link without a reference; none
     /// where it does not emit that way or cannot be met.
-    pub fn emission(&self, start: &Start, towards: Vec3) -> Option<Emission> {
+    pub fn emission(&self, start: &Start, towards: Vec3) -> Option<Leaving> {
         match (&self.all[start.light as usize].emitter.kind, &start.point) {
             (Kind::Area(area), Some(point)) => {
                 let cosine = front(point).dot(towards);
                 let (value, forward) = (area.radiance(point.uv, cosine) * cosine, area.density(cosine));
-                (value.max_element() > 0.0).then_some(Emission { value, forward, cosine })
+                (value.max_element() > 0.0).then_some(Leaving { value, forward, cosine })
             }
-            (Kind::Environment(sky), _) => Some(Emission {
+            (Kind::Environment(sky), _) => Some(Leaving {
                 value: sky.radiance(start.position) * self.from_infinity,
                 forward: self.disk_density(),
                 cosine: 1.0,
             }),
+            (Kind::Medium(glow), _) => {
+                let (value, forward) = (glow.emission.at(start.position), Glow::DENSITY);
+                Some(Leaving { value, forward, cosine: 1.0 })
+            }
             _ => None,
         }
     }

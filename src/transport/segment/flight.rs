@@ -38,8 +38,56 @@ pub struct Flight<L> {
     pub tint: Spectrum,
 }
 
+/// A part of a flight that lies in one medium.
+#[derive(Clone, Copy, Debug)]
+pub struct Flown<L> {
+    /// The medium.
+    pub medium: MediumIndex,
+    /// The part, as long as it was really flown; infinite where it was never left.
+    pub section: Section,
+    /// As of [`Flight`], before it.
+    pub depth: L,
+    /// As of [`Flight`], before it.
+    pub ratio: L,
+    /// As of [`Flight`], before it.
+    pub tint: Spectrum,
+}
+
+impl<L: Lanes> Flown<L> {
+    /// The flight that would have ended `t` metres into this part, at a point made of `matter`.
+    pub fn until(
+        &self,
+        scene: &Scene,
+        t: f32,
+        matter: Matter,
+        hero: usize,
+        stream: &mut Stream,
+    ) -> Flight<L> {
+        let section = Section { length: t, ..self.section };
+        let medium = &scene.media[self.medium.0 as usize];
+        let (depth, ratio) = match &medium.varying {
+            Some(varying) => {
+                let depth = varying.depth::<L>(&section);
+                (depth, varying.ratio::<L>(&section, depth, hero, stream))
+            }
+            None => {
+                let depth = depth_of(L::from_spectrum(medium.sigma_t), t);
+                (depth, depth.flight_ratio(L::splat(1.0), hero))
+            }
+        };
+        Flight {
+            landing: Landing::Medium(section.at(t), matter),
+            medium: self.medium,
+            depth: self.depth + depth,
+            ratio: self.ratio * ratio,
+            tint: self.tint,
+        }
+    }
+}
+
 /// Samples a segment along `ray`, starting in `medium`: an exponential optical depth by the `hero` channel, until a
 /// surface, a collision, or infinity. Where emitters are `hidden`, the ray passes them; only profiles with nulls can.
+/// In profiles where media shine, `along` is shown every part of it.
 #[inline(always)]
 pub fn fly<P: Profile>(
     scene: &Scene,
@@ -48,10 +96,11 @@ pub fn fly<P: Profile>(
     hidden: bool,
     hero: usize,
     stream: &mut Stream,
+    along: &mut impl FnMut(&Flown<P::Lanes>, &mut Stream),
 ) -> Flight<P::Lanes> {
     let remaining = if P::MEDIA { stream.exponential() } else { 0.0 };
     if P::NULLS {
-        fly_through::<P>(scene, ray, medium, hidden, hero, remaining, stream)
+        fly_through::<P>(scene, ray, medium, hidden, hero, remaining, stream, along)
     } else {
         let Leg { landing, depth, ratio, .. } = fly_leg::<P>(scene, ray, medium, hero, remaining, stream);
         Flight { landing, medium, depth, ratio, tint: Spectrum::ONE }
@@ -65,6 +114,8 @@ struct Leg<L> {
     ratio: L,
     /// What it used up of the optical depth to go.
     spent: f32,
+    /// How far it went [m].
+    length: f32,
 }
 
 /// A flight to the next surface, in one medium.
@@ -113,7 +164,7 @@ fn fly_straight<P: Profile>(
         Landing::Medium(..) => depth.flight_ratio(sigma_t, hero),
         _ => depth.flight_ratio(one, hero),
     };
-    Leg { landing, depth, ratio, spent: depth.hero(hero) }
+    Leg { landing, depth, ratio, spent: depth.hero(hero), length: distance }
 }
 
 /// In a varying medium: the ray first, for its tracker need not look beyond the surface.
@@ -138,9 +189,11 @@ fn fly_varying<P: Profile>(
         (None, Some(hit)) => (Landing::Surface(scene.geometry.surface(&ray, &hit)), leg.ratio),
         (None, None) => (Landing::Escape, leg.ratio),
     };
-    Leg { landing, depth: leg.depth, ratio, spent: leg.spent }
+    let length = leg.collision.unwrap_or(length);
+    Leg { landing, depth: leg.depth, ratio, spent: leg.spent, length }
 }
 
+#[expect(clippy::too_many_arguments, reason = "what a flight is made of")]
 /// A flight that may pass surfaces: each crossing switches the medium, and takes its toll where the surface
 /// lets only a part through.
 fn fly_through<P: Profile>(
@@ -151,12 +204,17 @@ fn fly_through<P: Profile>(
     hero: usize,
     mut remaining: f32,
     stream: &mut Stream,
+    along: &mut impl FnMut(&Flown<P::Lanes>, &mut Stream),
 ) -> Flight<P::Lanes> {
     let mut depth = P::Lanes::splat(0.0);
     let mut ratio = P::Lanes::splat(1.0);
     let mut tint = Spectrum::ONE;
     loop {
         let leg = fly_leg::<P>(scene, ray, medium, hero, remaining, stream);
+        if P::EMISSIVE {
+            let section = Section { origin: ray.origin, direction: ray.direction, length: leg.length };
+            along(&Flown { medium, section, depth, ratio, tint }, stream);
+        }
         depth = depth + leg.depth;
         ratio = ratio * leg.ratio;
         let Landing::Surface(point) = leg.landing else {

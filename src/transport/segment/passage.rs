@@ -18,6 +18,8 @@ pub struct Passage<L> {
     pub density: L,
     /// The fraction of radiance that arrives; where a medium's tracker is random, an unbiased estimate of it.
     pub transmittance: Spectrum,
+    /// The medium at its end.
+    pub medium: MediumIndex,
 }
 
 /// What remains of radiance along `ray` (its `t_max` is the segment's length, infinite for an emitter at
@@ -40,7 +42,7 @@ pub fn pass<P: Profile>(
     }
     let mut way = Way::<P>::new();
     way.add(scene, medium, &ray, ray.t_max + cut, stream);
-    Some(way.passage())
+    Some(way.passage(medium))
 }
 
 fn pass_through<P: Profile>(
@@ -56,7 +58,7 @@ fn pass_through<P: Profile>(
     loop {
         let Some(hit) = scene.geometry.closest(&ray) else {
             way.add(scene, medium, &ray, ray.t_max + cut, stream);
-            return Some(way.passage());
+            return Some(way.passage(medium));
         };
         let point = scene.geometry.surface(&ray, &hit);
         let through = passed(scene, &point, ray.direction, hidden);
@@ -120,12 +122,13 @@ impl<P: Profile> Way<P> {
     }
 
     #[inline(always)]
-    fn passage(&self) -> Passage<P::Lanes> {
+    fn passage(&self, medium: MediumIndex) -> Passage<P::Lanes> {
         let density = if P::MEDIA { self.depth.exp_neg() } else { P::Lanes::splat(1.0) };
         let transmittance = if P::HETEROGENEOUS { self.estimate } else { density };
         Passage {
             density: density.scaled(self.passing),
             transmittance: transmittance.to_spectrum() * self.tint,
+            medium,
         }
     }
 }

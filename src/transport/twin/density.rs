@@ -21,7 +21,8 @@ pub struct Twin<'a> {
     pub scene: &'a Scene,
     pub counts: Counts,
     pub channels: usize,
-    /// A sampled start on every emitter: those of one emitter have equal densities, but for environments.
+    /// A sampled start on every emitter: those of one emitter have equal densities, but for environments
+    /// and media.
     pub starts: Vec<Option<Start>>,
 }
 
@@ -99,6 +100,9 @@ impl<'a> Twin<'a> {
         {
             return self.scene.lights.met_at_infinity(direction).map_or(0.0, |link| f64::from(link.start));
         }
+        if let Place::Glow(position, light) = path.nodes[0].place {
+            return self.scene.lights.link_within(light, position).map_or(0.0, |link| f64::from(link.start));
+        }
         self.starts[path.light as usize].as_ref().map_or(0.0, |start| f64::from(start.start))
     }
 
@@ -151,6 +155,7 @@ impl<'a> Twin<'a> {
             Kind::Area(area) => f64::from(area.density(node.cosine(direction) as f32)),
             Kind::DirectionalArea(_) => 1.0,
             Kind::Point(point) => f64::from(point.density(direction.as_vec3())),
+            Kind::Medium(_) => 0.25 / std::f64::consts::PI,
             Kind::Directional(_) | Kind::Environment(_) => {
                 self.starts[light as usize].as_ref().map_or(0.0, |start| f64::from(start.forward))
             }
@@ -179,6 +184,7 @@ impl<'a> Twin<'a> {
         match (&self.emitter(path).kind, path.nodes[0].place) {
             (Kind::Area(_), Place::Surface(point)) => lights.met(geometry, path.light, &point, reference),
             (Kind::Environment(_), Place::Sky(direction)) => lights.met_at_infinity(direction),
+            (Kind::Medium(_), Place::Glow(position, light)) => lights.link_within(light, position),
             (_, place) => {
                 // Single points and directions come up as often as their emitter is chosen.
                 let mut stream = Stream::new(11, 0, 0, Purpose::Study);

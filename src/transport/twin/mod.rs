@@ -14,7 +14,7 @@ mod scenes;
 
 use super::{
     Estimator, LightCache, Nowhere, Options, Strategies,
-    profile::{Bounded, ChromaticFog, Everything, Fog, Profile, Vacuum},
+    profile::{Bounded, ChromaticFog, Everything, Fire, Fog, Profile, Vacuum},
 };
 use crate::{
     math::{Lanes, vec2, vec3},
@@ -127,6 +127,49 @@ fn an_image_of_the_sky() {
 #[test]
 fn normals_that_are_not_the_surface_s() {
     examine_all::<Fog>("smooth mesh", &build(&[FOG, INSIDE, ROOM, BULB, SMOOTH]), 400);
+}
+
+/// Media that shine: as far as the camera is in them, beside lamps, in smoke that is dark itself.
+#[test]
+fn media_that_shine() {
+    examine_all::<Fire>("glowing fog", &build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, BALL]), 300);
+    examine_all::<Fire>("fire ball", &build(&[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP, POINT]), 600);
+    examine_all::<Fire>("fire in a box", &build(&[OUTSIDE, FIRE_BOX, GROUND, SKY]), 600);
+    examine_all::<Fire>("no matter", &build(&[OUTSIDE, NEON, GROUND, MIRROR]), 600);
+    examine_all::<Everything>("colours", &build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]), 600);
+    examine_all::<Everything>(
+        "colours, glass, pane",
+        &build(&[GLOWING_CHROMATIC_FOG, INSIDE, SHELL, GLASS_BALL, PANE]),
+        300,
+    );
+}
+
+#[test]
+fn media_that_shine_by_any_subset_of_strategies() {
+    let setup = build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, GLASS_BALL]);
+    for bits in 1..16 {
+        let on = |bit: u32| bits >> bit & 1 == 1;
+        let strategies = Strategies { hit: on(0), next_event: on(1), join: on(2), lens: on(3) };
+        let report = examine::<Fire>("shining subset", &setup, Options { strategies, ..ALL }, 60);
+        for (bit, count) in report.strategies.iter().enumerate() {
+            assert_eq!(*count > 0, on(bit as u32), "{strategies:?}");
+        }
+    }
+}
+
+#[test]
+fn media_that_shine_within_a_limited_depth() {
+    let setup = build(&[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP]);
+    for (depth, name) in
+        [(0, "fire, depth 0"), (1, "fire, depth 1"), (2, "fire, depth 2"), (3, "fire, depth 3")]
+    {
+        for hide_emitters in [false, true] {
+            let options = Options { max_depth: Some(depth), hide_emitters, ..ALL };
+            let report = examine::<Fire>(name, &setup, options, 300);
+            assert_eq!(report.longest, depth as usize);
+            assert_eq!(report.paths > 0, depth > 0, "a medium is never hidden");
+        }
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! An explicit path: its vertices from emitter to lens, and the optical depths between them.
 
 use crate::{
+    emitter::Kind,
     math::{DVec3, Section, Spectrum, Vec2, Vec3, offset, vec2},
     medium::{Choice, Heterogeneous, Matter, MediumIndex},
     scene::Scene,
@@ -16,6 +17,8 @@ pub enum Place {
     Surface(SurfacePoint),
     /// A point in a medium.
     Volume(Vec3),
+    /// A point of this emitter, a medium that shines.
+    Glow(Vec3, u32),
     /// An emitter at infinity in this unit direction.
     Sky(Vec3),
     /// The pinhole, or the point [`APERTURE`] of a lens.
@@ -51,7 +54,7 @@ impl Node {
     /// World position, or the direction to an emitter at infinity.
     pub fn position(&self) -> Vec3 {
         match self.place {
-            Place::Point(p) | Place::Volume(p) | Place::Sky(p) | Place::Lens(p) => p,
+            Place::Point(p) | Place::Volume(p) | Place::Sky(p) | Place::Lens(p) | Place::Glow(p, _) => p,
             Place::Surface(point) => point.position,
         }
     }
@@ -81,10 +84,11 @@ impl Node {
         }
     }
 
-    /// sigma_t of `channel` in a medium; 1 elsewhere.
+    /// sigma_t of `channel` in a medium, what stands for it where that shines; 1 elsewhere.
     pub fn sigma_t(&self, scene: &Scene, channel: usize) -> f64 {
         match self.place {
             Place::Volume(p) => f64::from(matter(scene, self.medium, p).sigma_t[channel]),
+            Place::Glow(p, light) => f64::from(rate(scene, light, p)[channel]),
             _ => 1.0,
         }
     }
@@ -243,6 +247,14 @@ const POINTS: u32 = 4_000;
 pub fn matter(scene: &Scene, medium: MediumIndex, position: Vec3) -> Matter {
     let medium = &scene.media[medium.0 as usize];
     medium.varying.as_ref().map_or(medium.matter(), |varying| varying.at::<Spectrum>(position))
+}
+
+/// How often an eye walk that passes `position` meets what the emitter `light` emits there [1/m].
+pub fn rate(scene: &Scene, light: u32, position: Vec3) -> Spectrum {
+    match &scene.lights.all[light as usize].emitter.kind {
+        Kind::Medium(glow) => glow.emission.rate(position),
+        _ => Spectrum::ZERO,
+    }
 }
 
 const ULP: f64 = f32::EPSILON as f64;

@@ -15,8 +15,9 @@ use crate::{
         eye::{self, Eye},
         light::{self, Light},
         profile::Profile,
+        segment::Flown,
         vertex::{Site, Vertex},
-        walk::{Kind, Visitor, walk},
+        walk::{Departure, Kind, Visitor, walk},
     },
 };
 
@@ -44,11 +45,13 @@ pub struct Trail<V, L> {
     visitor: V,
     pub vertices: Vec<Vertex<L>>,
     pub escaped: Option<Vertex<L>>,
+    /// What media were flown through, after how many vertices.
+    flown: Vec<(usize, Departure<L>, Flown<L>)>,
 }
 
 impl<V, L> Trail<V, L> {
     fn new(visitor: V) -> Self {
-        Self { visitor, vertices: Vec::new(), escaped: None }
+        Self { visitor, vertices: Vec::new(), escaped: None, flown: Vec::new() }
     }
 }
 
@@ -58,6 +61,9 @@ impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::Lanes> {
     }
     fn arrive(&mut self, vertex: &Vertex<P::Lanes>, _: &mut Stream) {
         self.vertices.push(*vertex);
+    }
+    fn pass(&mut self, departure: &Departure<P::Lanes>, flown: &Flown<P::Lanes>, _: &mut Stream) {
+        self.flown.push((self.vertices.len(), *departure, *flown));
     }
     fn escape(&mut self, vertex: &Vertex<P::Lanes>) {
         self.escaped = Some(*vertex);
@@ -105,9 +111,7 @@ pub fn cases<P: Profile>(
     let eye = eye_walk(estimator, &cache, film, hero, stream);
     let mut cases = Cases { scene: estimator.scene, hidden: estimator.hide_emitters, hero, all: Vec::new() };
     of_eye(estimator, &eye, &mut cases, stream);
-    let Some(start) = estimator.scene.lights.sample_start(&estimator.scene.geometry, stream) else {
-        return cases.all;
-    };
+    let Some(start) = light::begin::<P>(estimator.scene, stream) else { return cases.all };
     let (mut kept, mut film) = (LightCache::new(P::Lanes::COUNT), WideFilm);
     let visitor = Light::new(estimator, &mut kept, &mut film, start, hero);
     let trail = light_walk(visitor, estimator, &start, hero, stream);
@@ -208,11 +212,30 @@ fn of_eye<P: Profile>(
         }
         previous = vertex.position;
     }
+    of_flights(estimator, eye, cases, stream);
     if let Some(vertex) = &eye.escaped
         && let Some(link) = scene.lights.met_at_infinity(-vertex.incoming)
     {
         let before = chain(&eye.vertices, vertex.after_dirac);
         cases.add_hit(emitter_of(&link), before, eye.visitor.hit(vertex, &link));
+    }
+}
+
+/// Points of media that shine, met on the flights of the eye walk.
+fn of_flights<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    cases: &mut Cases<'_>,
+    stream: &mut Stream,
+) {
+    for (count, departure, flown) in &eye.flown {
+        if let Some((light, emission)) = estimator.scene.lights.of_medium(flown.medium)
+            && let Some((t, _)) = emission.sample_along(&flown.section, stream)
+            && let Some((vertex, link)) = eye.visitor.meet(departure, flown, light, t, stream)
+        {
+            let before = chain(&eye.vertices[..*count], departure.dirac);
+            cases.add_hit(emitter_of(&link), before, eye.visitor.hit(&vertex, &link));
+        }
     }
 }
 
@@ -266,6 +289,7 @@ fn start_of(start: &Start) -> (u32, Place) {
     let place = match start.point {
         Some(point) => Place::Surface(point),
         None if start.infinite => Place::Sky(start.position),
+        None if start.rate.is_some() => Place::Glow(start.position, start.light),
         None => Place::Point(start.position),
     };
     (start.light, place)
@@ -276,6 +300,7 @@ fn emitter_of(link: &Link) -> (u32, Place) {
     let place = match link.point {
         Some(point) => Place::Surface(point),
         None if link.infinite => Place::Sky(link.position),
+        None if link.rate.is_some() => Place::Glow(link.position, link.light),
         None => Place::Point(link.position),
     };
     (link.light, place)

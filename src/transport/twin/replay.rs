@@ -3,12 +3,13 @@
 
 use super::{
     density::{Twin, reflect},
-    path::{APERTURE, Node, Path, Place, matter},
+    path::{APERTURE, Node, Path, Place, matter, rate},
     record::WideFilm,
 };
 use crate::{
     bsdf::Transport,
     math::{Lanes, Spectrum, vec3},
+    medium::Matter,
     sampling::{Stream, stream::Purpose},
     scene::lights::Start,
     transport::{
@@ -132,6 +133,10 @@ fn start(twin: &Twin<'_>, path: &Path) -> Start {
         start: twin.start(path) as f32,
         forward: twin.emission(path.light, node, direction) as f32,
         throughput: Spectrum::ONE,
+        rate: match node.place {
+            Place::Glow(position, light) => Some(rate(twin.scene, light, position)),
+            _ => None,
+        },
         ..twin.starts[path.light as usize].unwrap()
     }
 }
@@ -163,6 +168,10 @@ impl Lead<'_> {
         let landing = match node.place {
             Place::Surface(point) => Landing::Surface(point),
             Place::Sky(_) => Landing::Escape,
+            Place::Glow(position, light) => {
+                let sigma_t = rate(self.twin.scene, light, position);
+                Landing::Medium(position, Matter { sigma_t, albedo: Spectrum::ZERO })
+            }
             _ => Landing::Medium(node.position(), matter(self.twin.scene, node.medium, node.position())),
         };
         let depth = L::from_spectrum(vec3(depth[0], depth[1], depth[2]));

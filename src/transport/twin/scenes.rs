@@ -33,6 +33,46 @@ pub const YELLOW_FOG: &str = r#""fog": {"type": "homogeneous",
 
 pub const CLEAR: &str = r#""fog": {"type": "homogeneous", "sigma_t": 0.0}"#;
 
+/// Fog that shines where it absorbs, and little elsewhere.
+pub const GLOWING_FOG: &str = r#""fog": {"type": "homogeneous", "sigma_t": 0.6, "albedo": 0.9,
+    "radiance": {"type": "rgb", "value": [3, 2, 1]}, "phase": {"type": "hg", "g": 0.5}}"#;
+
+pub const GLOWING_CHROMATIC_FOG: &str = r#""fog": {"type": "homogeneous",
+    "sigma_t": {"type": "rgb", "value": [0.2, 1.0, 5.0]}, "albedo": {"type": "rgb", "value": [0.9, 0.8, 0.6]},
+    "emission": {"type": "rgb", "value": [1, 2, 0.5]}}"#;
+
+/// A room whose walls bound the fog in it.
+pub const SHELL: &str = r#""room": {"type": "cube", "flip_normals": true, "exterior": {"type": "ref", "id": "fog"},
+    "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.7, 0.6, 0.5]}}}"#;
+
+/// Smoke of a medium that has a name.
+pub const HAZE: &str = r#""haze": {"type": "homogeneous", "sigma_t": 1.2, "albedo": 0.95,
+    "phase": {"type": "hg", "g": -0.3}},
+    "smoke": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "ref", "id": "haze"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}]}"#;
+
+/// Fire in that.
+pub const FIRE_BALL: &str = r#""kernel": {"type": "sphere", "radius": 0.5, "bsdf": {"type": "null"},
+    "interior": {"type": "homogeneous", "sigma_t": 2, "albedo": 0.4, "temperature": 1500, "emission_scale": 2},
+    "exterior": {"type": "ref", "id": "haze"}}"#;
+
+/// Fire that varies, of smoke that varies, in a box that it does not fill.
+pub const FIRE_BOX: &str = r#""fire": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "heterogeneous", "albedo": 0.7, "scale": 2,
+    "sigma_t": {"type": "exponential", "scale_height": 0.7},
+    "emission": {"type": "exponential", "scale_height": 0.3, "max": [2, 0.2, 2]}}}"#;
+
+/// Light without matter.
+pub const NEON: &str = r#""neon": {"type": "sphere", "radius": 0.7, "bsdf": {"type": "null"},
+    "interior": {"type": "homogeneous", "sigma_t": 0, "emission": {"type": "rgb", "value": [3, 0.5, 0.2]}}}"#;
+
+pub const CHROMATIC_FIRE: &str = r#""fire": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "heterogeneous", "albedo": {"type": "constvolume", "value": 0.8}, "scale": 1.5,
+    "sigma_t": {"type": "constvolume", "value": {"type": "rgb", "value": [0.2, 1, 4]}},
+    "radiance": {"type": "exponential", "scale_height": 0.5}}}"#;
+
 /// A camera in the fog, in the room.
 pub const INSIDE: &str = r#""camera": {"type": "perspective", "fov": 80,
     "to_world": [{"type": "lookat", "origin": [0.1, 0, -0.9], "target": [0, 0.05, 0], "up": [0, 1, 0]}],

@@ -1,0 +1,329 @@
+//! Emission of a medium: radiance gained per metre (P03 eq. 11), where it is, and how points of it are sampled.
+//!
+//! It is given as that gain itself, which needs no matter; or as the radiance that a thick layer would have (P03's
+//! L_e), times the absorption, with the sign that eq. 11 ought to have; or as the temperature of a black body, whose
+//! radiance that is by Kirchhoff's law.
+
+use super::{Around, Extinction, Matter};
+use crate::{
+    density::{self, Coarse, Place, Volume, VolumeModel, check_non_negative},
+    description::{Location, Params, Value},
+    error::{Error, Result},
+    math::{Affine3A, DVec3, Section, Spectrum, SpectrumExt, Vec3, black_body, vec3},
+    sampling::{Discrete, Stream},
+};
+use std::f64::consts::PI;
+
+/// What the volume of an emission tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Quantity {
+    /// Radiance gained per metre [W/(m^3 sr)].
+    Gain,
+    /// Radiance of a layer that nothing shines through [W/(m^2 sr)].
+    Radiance,
+    /// Temperature of a black body [K].
+    Temperature,
+}
+
+const QUANTITIES: [(&str, Quantity); 3] =
+    [("emission", Quantity::Gain), ("radiance", Quantity::Radiance), ("temperature", Quantity::Temperature)];
+
+/// Emission as the description gives it.
+#[derive(Clone, Debug)]
+pub struct Given {
+    name: &'static str,
+    quantity: Quantity,
+    volume: Volume,
+    scale: f32,
+    place: Place,
+    /// Where it stands in the file.
+    pub(super) location: Location,
+}
+
+impl Given {
+    /// Reads `emission`, `radiance` or `temperature`, one of them at most, and `emission_scale`.
+    pub fn read(params: &Params<'_>, place: &Place) -> Result<Option<Self>> {
+        let scale = params.float_within("emission_scale", 1.0, 0.0, f64::from(f32::MAX))? as f32;
+        let mut given = None;
+        for (name, quantity) in QUANTITIES {
+            let Some(volume) = volume(params, name, place)? else { continue };
+            let location = params.property(name).map_or(params.location(), |p| &p.location).clone();
+            let this = Self { name, quantity, volume, scale, place: *place, location };
+            if let Some(Self { name: other, .. }) = given.replace(this) {
+                let expected = "one of emission, radiance and temperature";
+                return Err(params.complain(name, expected, format!("\"{other}\" as well")));
+            }
+        }
+        if given.is_none() && params.has("emission_scale") {
+            let found = "a factor on nothing";
+            let remedy =
+                "give \"emission\", \"radiance\" or \"temperature\" too, or remove \"emission_scale\"";
+            return Err(Error::new(params.location(), "an emission to scale", found, remedy));
+        }
+        Ok(given.filter(|given| given.scale > 0.0))
+    }
+
+    /// True if neither its volume ends somewhere nor the matter that it takes, which `varies` or not.
+    pub fn has_no_end(&self, varies: bool) -> bool {
+        self.volume.domain().is_none() && (self.quantity == Quantity::Gain || !varies)
+    }
+
+    /// The same at `time` [s]; none where it is the same at all times.
+    pub(super) fn at_time(&self, time: f64) -> Option<Self> {
+        let volume = self.volume.at_time(time)?;
+        Some(Self { volume, ..self.clone() })
+    }
+
+    fn complain(&self, expected: &str, found: &str, remedy: &str) -> Error {
+        Error::new(&self.location, format!("{expected} for \"{}\"", self.name), found, remedy)
+    }
+}
+
+/// The parameter `name` as a volume of light: spectra are light's own.
+fn volume(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Option<Volume>> {
+    let Some(property) = params.property(name) else { return Ok(None) };
+    if matches!(property.value, Value::Object(_) | Value::Reference(_))
+        && let Some(child) = params.child(name)?
+        && density::is_volume(child.object)
+    {
+        return density::build(child.object, params.library, place).map(Some);
+    }
+    params.emission(name, 0.0).map(|colour| {
+        Some(Volume::Constant(density::Constant::new(colour, [Vec3::NEG_INFINITY, Vec3::INFINITY])))
+    })
+}
+
+/// What absorbs where the emission is.
+#[derive(Clone, Debug)]
+pub enum Within {
+    /// A homogeneous medium.
+    Uniform(Matter),
+    /// One that varies: its extinction and albedo.
+    Varying(Extinction, Volume),
+}
+
+impl Within {
+    #[inline]
+    fn at(&self, position: Vec3) -> Matter {
+        match self {
+            Self::Uniform(matter) => *matter,
+            Self::Varying(extinction, albedo) => {
+                Matter { sigma_t: extinction.at(position), albedo: albedo.eval(position) }
+            }
+        }
+    }
+
+    /// The most extinction and the least albedo within a box.
+    fn bounds(&self, low: Vec3, high: Vec3) -> Matter {
+        match self {
+            Self::Uniform(matter) => *matter,
+            Self::Varying(extinction, albedo) => Matter {
+                sigma_t: extinction.volume.range(low, high)[1] * extinction.scale,
+                albedo: albedo.range(low, high)[0],
+            },
+        }
+    }
+}
+
+/// How much of what arrives a medium absorbs per metre [1/m].
+fn absorption(matter: Matter) -> Spectrum {
+    matter.sigma_t * (Spectrum::ONE - matter.albedo).max(Spectrum::ZERO)
+}
+
+/// Radiance gained per metre, at every point.
+#[derive(Clone, Debug)]
+struct Field {
+    quantity: Quantity,
+    volume: Volume,
+    scale: f32,
+    within: Within,
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Field {
+    #[inline]
+    fn at(&self, position: Vec3) -> Spectrum {
+        let inside = position.cmpge(self.low).all() && position.cmple(self.high).all();
+        if !(inside && self.volume.contains(position)) {
+            return Spectrum::ZERO;
+        }
+        let absorbed = || absorption(self.within.at(position));
+        let gain = match self.quantity {
+            Quantity::Gain => self.volume.eval(position),
+            Quantity::Radiance => absorbed() * self.volume.eval::<Spectrum>(position),
+            Quantity::Temperature => absorbed() * black_body::radiance(self.volume.eval(position)),
+        };
+        // What should be 0 may be rounded to below it.
+        gain.max(Spectrum::ZERO) * self.scale
+    }
+
+    /// A bound of the gain's channels within a box.
+    fn most(&self, low: Vec3, high: Vec3) -> f32 {
+        let [_, most] = self.volume.range(low, high);
+        let absorbed = || absorption(self.within.bounds(low, high));
+        let gain = match self.quantity {
+            Quantity::Gain => most,
+            Quantity::Radiance => absorbed() * most,
+            // Hotter is brighter, in every channel.
+            Quantity::Temperature => absorbed() * black_body::radiance(most.x),
+        };
+        gain.max_element().max(0.0) * self.scale
+    }
+
+    fn is_uniform(&self) -> bool {
+        matches!((&self.within, &self.volume), (Within::Uniform(_), Volume::Constant(_)))
+    }
+
+    /// What it is like from afar: one cell where it is the same everywhere.
+    fn coarse(&self) -> Coarse {
+        if !self.is_uniform() {
+            return Coarse::of(self.low, self.high, |p| self.at(p), |low, high| self.most(low, high));
+        }
+        let (size, gain) = (self.high - self.low, self.at(0.5 * (self.low + self.high)));
+        let to_cells = Affine3A::from_scale(1.0 / size) * Affine3A::from_translation(-self.low);
+        Coarse::from_cells([1; 3], to_cells, vec![gain.max_element()], vec![gain])
+    }
+}
+
+/// The most radiance gained per metre: products with volumes and lengths of any scene stay finite.
+const BRIGHTEST: f32 = 1e30;
+
+/// The box that holds all that shines.
+fn extent(given: &Given, within: &Within, around: &Around) -> [Vec3; 2] {
+    let of_matter = match within {
+        Within::Varying(extinction, _) if given.quantity != Quantity::Gain => {
+            Some([extinction.low, extinction.high])
+        }
+        _ => None,
+    };
+    let common = |[low, high]: [Vec3; 2], [a, b]: [Vec3; 2]| [low.max(a), high.min(b)];
+    let known = given.volume.domain().into_iter().chain(of_matter);
+    let known = known.fold([Vec3::NEG_INFINITY, Vec3::INFINITY], common);
+    let ends = !around.is_bound && known.iter().all(|corner| corner.is_finite());
+    if ends { known } else { common(known, [around.low, around.high]) }
+}
+
+/// A cell is chosen as if it shone by this part of its maximum more than it does on average: so that what its few
+/// looked-at points missed is found.
+const FLOOR: f32 = 0.1;
+
+/// The emission of a medium.
+#[derive(Clone, Debug)]
+pub struct Emission {
+    field: Field,
+    coarse: Coarse,
+    /// By power.
+    cells: Discrete,
+    /// 1 over the integral of the cells' maxima along a line, in the mean over lines through the box.
+    per_line: f32,
+    power: DVec3,
+}
+
+impl Emission {
+    /// Looks at what is `given` where it is and matter is as `within`, `around` where neither says where that is; none
+    /// where nothing shines.
+    pub fn new(given: Given, within: Within, around: &Around) -> Result<Option<Self>> {
+        let [low, high] = extent(&given, &within, around);
+        if !low.cmplt(high).all() {
+            return Ok(None);
+        }
+        check_non_negative(&given.volume, low, high)
+            .map_err(|negative| negative.error(&given.location, &given.place))?;
+        if given.quantity == Quantity::Temperature && !given.volume.is_grey() {
+            return Err(given.complain("one number a point", "a colour", "give a temperature in Kelvin"));
+        }
+        let most = given.volume.range(low, high)[1];
+        let Given { quantity, volume, scale, .. } = given.clone();
+        let field = Field { quantity, volume, scale, within, low, high };
+        if !(most.is_finite() && field.most(low, high) <= BRIGHTEST) {
+            let found = "more light than can be held";
+            return Err(given.complain("an emission below 1e30", found, "make it, or emission_scale, less"));
+        }
+        let coarse = field.coarse();
+        Ok(Self::of(field, coarse))
+    }
+
+    fn of(field: Field, coarse: Coarse) -> Option<Self> {
+        let cells = || 0..coarse.len() as u32;
+        let weight = |cell| f64::from(coarse.mean(cell).luminance() + FLOOR * coarse.most(cell));
+        let chosen = Discrete::new(cells().map(weight));
+        let size = (field.high - field.low).as_dvec3();
+        // A box's mean chord is 4 V / S (Cauchy).
+        let surface = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
+        let most: f64 = cells().map(|cell| f64::from(coarse.most(cell))).sum();
+        let per_line = surface / (4.0 * most * coarse.cell_volume());
+        let mean: DVec3 = cells().map(|cell| coarse.mean(cell).as_dvec3()).sum();
+        let power = mean * (coarse.cell_volume() * 4.0 * PI);
+        (!chosen.is_empty()).then(|| Self { field, coarse, cells: chosen, per_line: per_line as f32, power })
+    }
+
+    /// Power emitted in the whole box [W].
+    pub fn power(&self) -> DVec3 {
+        self.power
+    }
+
+    /// The box that holds it.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        [self.field.low, self.field.high]
+    }
+
+    /// Radiance gained per metre at `position` [W/(m^3 sr)].
+    #[inline]
+    pub fn at(&self, position: Vec3) -> Spectrum {
+        self.field.at(position)
+    }
+
+    /// A point, in proportion to the power around it.
+    #[inline]
+    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+        let (cell, _) = self.cells.sample_precisely(stream.uniform_precisely());
+        let u = vec3(stream.uniform(), stream.uniform(), stream.uniform());
+        self.coarse.position(cell as u32, u)
+    }
+
+    /// Density of `sample` [1/m^3].
+    #[inline]
+    pub fn density(&self, position: Vec3) -> f32 {
+        let chosen = |cell| self.cells.probability_precisely(cell as usize) / self.coarse.cell_volume();
+        self.coarse.cell_at(position).map_or(0.0, |cell| chosen(cell) as f32)
+    }
+
+    /// How often an eye walk that passes `position` is taken to meet emission there [1/m]: what weights know, per
+    /// channel of extinction.
+    ///
+    /// A walk really meets one point on each of its flights, which are as long as chance makes them. In thin matter
+    /// that is the density of `sample_along` on a whole line, here that of a mean line; in thick matter the flights
+    /// are of a mean free path.
+    #[inline]
+    pub fn rate(&self, position: Vec3) -> Spectrum {
+        let most = self.coarse.cell_at(position).map_or(0.0, |cell| self.coarse.most(cell));
+        self.field.within.at(position).sigma_t + self.per_line * most
+    }
+
+    /// A point of `section`, in proportion to the maxima of the cells it crosses: t [m] and the density [1/m]; none
+    /// where nothing shines.
+    #[inline]
+    pub fn sample_along(&self, section: &Section, stream: &mut Stream) -> Option<(f32, f32)> {
+        let most = |piece: &density::Piece| self.coarse.most(piece.cell);
+        let total: f32 =
+            self.coarse.pieces(section).map(|piece| most(&piece) * (piece.last - piece.first)).sum();
+        if !(total > 0.0 && total < f32::INFINITY) {
+            return None;
+        }
+        let mut remaining = stream.uniform() * total;
+        let mut met = None;
+        for piece in self.coarse.pieces(section).filter(|piece| most(piece) > 0.0) {
+            let (length, most) = (piece.last - piece.first, most(&piece));
+            met = Some((piece.first + (remaining / most).min(length), most / total));
+            if remaining < most * length {
+                break;
+            }
+            remaining -= most * length;
+        }
+        met
+    }
+}
+
+#[cfg(test)]
+mod tests;
