@@ -51,7 +51,8 @@ impl Given {
             let this = Self { name, quantity, volume, scale, place: *place, location };
             if let Some(Self { name: other, .. }) = given.replace(this) {
                 let expected = "one of emission, radiance and temperature";
-                return Err(params.complain(name, expected, format!("\"{other}\" as well")));
+                let found = format!("\"{other}\" and \"{name}\"");
+                return Err(Error::new(params.location(), expected, found, "remove one of them"));
             }
         }
         if given.is_none() && params.has("emission_scale") {
@@ -237,8 +238,9 @@ impl Emission {
         let Given { quantity, volume, scale, .. } = given.clone();
         let field = Field { quantity, volume, scale, within, low, high };
         if !(most.is_finite() && field.most(low, high) <= BRIGHTEST) {
-            let found = "more light than can be held";
-            return Err(given.complain("an emission below 1e30", found, "make it, or emission_scale, less"));
+            let found = format!("up to {:e}", field.most(low, high).max(most.max_element()));
+            let expected = "less than 1e30 W/(m^3 sr) of emission";
+            return Err(given.complain(expected, &found, "make it less, or emission_scale"));
         }
         let coarse = field.coarse();
         Ok(Self::of(field, coarse))

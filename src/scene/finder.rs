@@ -108,7 +108,8 @@ impl Finder<'_> {
     /// Of the medium around everything, light has to end somewhere.
     pub fn warn_of_endless_light(&self, outside: &Blueprint) {
         if let Some(location) = outside.endless_emission() {
-            let text = "this medium lies around the whole scene and emits without end; it is taken to emit in the box                         around all shapes and the camera only. Put it into a shape to say where it ends";
+            let text = "this medium lies around the whole scene and emits without end; it is taken to emit only in the box \
+                        around all shapes and the camera. Put it into a shape to say where it ends";
             self.library.warn(location, text);
         }
     }

@@ -29,7 +29,8 @@ fn shining(parameters: &[(&str, Value)], within: Within) -> Emission {
 
 /// exp(-y / 0.2) below y = 0.8.
 fn layered() -> Value {
-    let properties = [("scale_height", Value::Float(0.2)), ("max", Value::Vector([9.0, 0.8, 9.0]))];
+    let bounds = [("min", Value::Vector([-9.0; 3])), ("max", Value::Vector([9.0, 0.8, 9.0]))];
+    let properties = [&[("scale_height", Value::Float(0.2))], &bounds[..]].concat();
     Value::Object(object("exponential", &properties))
 }
 
@@ -104,7 +105,8 @@ fn points_come_as_their_density_says() {
         sum / steps as f64 * 0.8 / bins as f64 * 6.0 * f64::from(n)
     };
     let expected: Vec<f64> = (0..bins).map(expected).collect();
-    assert!((expected.iter().sum::<f64>() / f64::from(n) - 1.0).abs() < 1e-3);
+    let total = expected.iter().sum::<f64>() / f64::from(n);
+    assert!((total - 1.0).abs() < 1e-3, "{total}");
     assert!(chi_square(&counts, &expected) > 1e-3);
     let truth = 6.0 * 0.2 * (1.0 - (-4f64).exp());
     assert!((mean / truth - 1.0).abs() < 0.005, "{mean} {truth}");
@@ -164,6 +166,6 @@ fn temperatures_have_no_colour_and_light_has_a_limit() {
         assert!(error.expected.contains("1e30"), "{error}");
     }
     let both = [("emission", Value::Float(1.0)), ("radiance", Value::Float(1.0))];
-    assert!(emission(&both, matter(1.0, 0.0)).unwrap_err().found.contains("\"emission\" as well"));
+    assert!(emission(&both, matter(1.0, 0.0)).unwrap_err().remedy.contains("remove one"));
     assert!(emission(&[("emission_scale", Value::Float(2.0))], matter(1.0, 0.0)).is_err());
 }
