@@ -131,10 +131,10 @@ def parts(tree: dict) -> dict:
 def rods() -> list[Case]:
     """Blocks whose rows along z are uneven, even, or as stiff as can be."""
     random = uneven((SIZE, SIZE, SIZE), CONTRAST)
-    thick = np.broadcast_to(np.where(np.indices((SIZE, SIZE)).sum(axis=0) % 2, 1e4, 1e-2), (3, SIZE, SIZE))
+    thick = np.broadcast_to(np.where(np.indices((SIZE, SIZE)).sum(axis=0) % 2, 1e4, 0.7), (3, SIZE, SIZE))
     return [
         Case(block("uneven", random), image_of(random), GRID),
-        Case(block("thickness 1e4", thick), image_of(thick), GRID, effort=0.02),
+        Case(block("thickness 1e4", thick), image_of(thick), GRID, effort=0.05),
     ]
 
 
