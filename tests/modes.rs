@@ -143,6 +143,22 @@ fn lamps_and_skies_fade_too_and_are_hidden_where_asked() {
     shows(&own, Spectrum::new(1.0, 2.0, 3.0), 1e-4);
 }
 
+/// A small cube of glow, three metres before the wall, lights it as its power does from a point; so does the other lamp.
+#[test]
+fn every_lamp_counts_once_whatever_its_kind() {
+    let glow = json!({"type": "homogeneous", "sigma_t": 0, "emission": 62500});
+    let ember = null_box([-0.01, -0.01, 0.99], [0.01, 0.01, 1.01], Some(glow));
+    let parts = [
+        ("ember", ember),
+        ("lamp", point([0.0, 0.0, 1.0], 0.5)),
+        ("wall", wall(&[("bsdf", diffuse(0.6))])),
+        ("i", fog(&[("ambient", json!(0)), ("threshold", json!(50))])),
+    ];
+    // Intensities add up: gain times volume, [W/sr]; the ember itself is no surface.
+    let expected = 0.6 / PI * (0.5 + 62500.0 * 0.02f64.powi(3)) / 9.0;
+    shows(&parts, Spectrum::splat(expected as f32), 2e-2);
+}
+
 #[test]
 fn beyond_the_threshold_there_is_fog_alone() {
     let lamp = wall(&[("emitter", json!({"type": "area", "radiance": 5}))]);
