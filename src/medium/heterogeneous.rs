@@ -132,12 +132,9 @@ impl Heterogeneous {
     }
 
     /// Optical depth for a picture that need not be exact but must not be noisy: in closed form where there is one,
-    /// by coarse marching where the tracker is random.
+    /// the deterministic stand-in where there is none and the tracker is random.
     pub fn quick_depth<L: Lanes>(&self, section: &Section) -> L {
-        match &self.tracker {
-            Tracker::NullCollision(_) => tracker::quick_depth(&self.extinction, section),
-            tracker => tracker.depth(&self.extinction, section),
-        }
+        tracker::quick_depth(&self.tracker, &self.extinction, section)
     }
 
     /// How its flights are sampled.

@@ -175,15 +175,12 @@ impl<L: Lanes> Leg<L> {
     }
 }
 
-/// Intervals of a quick look along the diagonal of the medium's box.
-const QUICK_INTERVALS: f32 = 128.0;
-
-/// Optical depth along `section`, to be seen and not to be measured.
-pub fn quick_depth<L: Lanes>(medium: &Extinction, section: &Section) -> L {
-    if medium.volume.has_integral() {
-        return closed_form::depth(medium, section);
+/// Optical depth along `section`, to be seen and not to be measured: never random.
+pub fn quick_depth<L: Lanes>(tracker: &Tracker, medium: &Extinction, section: &Section) -> L {
+    match tracker {
+        Tracker::NullCollision(_) if medium.volume.has_integral() => closed_form::depth(medium, section),
+        tracker => tracker.depth(medium, section),
     }
-    March { step: (medium.high - medium.low).length() / QUICK_INTERVALS }.depth(medium, section)
 }
 
 /// sigma_t of every lane over the hero's, where a collision of the hero happened: its own is not 0.

@@ -69,7 +69,11 @@ impl Lights {
                 let connect = chosen * sky.density(towards);
                 (connect > 0.0).then(|| self.infinite_link(index, towards, connect, sky.radiance(towards)))
             }
-            Kind::Medium(glow) => self.link_within(index as u32, glow.emission.sample(stream)),
+            Kind::Medium(glow) => {
+                let link = self.link_within(index as u32, glow.emission.sample(stream))?;
+                let by_chance = self.connections.probability(index);
+                Some(Link { connect: link.connect * (chosen / by_chance), ..link })
+            }
         }
     }
 
