@@ -5,6 +5,8 @@ use crate::math::{Affine3A, Lanes, Section, Spectrum, Vec3, cells::Cells, vec3};
 
 /// Cells along the longest side of a box.
 const CELLS: f32 = 32.0;
+/// Cells along any side: what is thin may vary across it.
+const FEWEST: f32 = 8.0;
 /// Points along each side of a cell whose average is taken for its mean.
 const POINTS: u32 = 3;
 
@@ -49,7 +51,7 @@ impl Coarse {
         most: impl Fn(Vec3, Vec3) -> f32,
     ) -> Self {
         let extent = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
-        let counts = (extent * (CELLS / extent.max_element())).ceil().max(Vec3::ONE);
+        let counts = (extent * (CELLS / extent.max_element())).ceil().max(Vec3::splat(FEWEST));
         let size = counts.to_array().map(|count| count as u32);
         let to_world = Affine3A::from_scale_rotation_translation(extent / counts, glam::Quat::IDENTITY, low);
         let to_cells = Affine3A::from_scale(counts / extent) * Affine3A::from_translation(-low);

@@ -26,6 +26,8 @@ pub trait Lanes:
     /// extinction coefficients `sigma_t` at the end of the flight: exp(-(tau_c - tau_h)) sigma_c / sigma_h.
     /// From the difference of depths, so that it exists where the transmittances underflow.
     fn flight_ratio(self, sigma_t: Self, hero: usize) -> Self;
+    /// Every lane, but no more than `most`.
+    fn at_most(self, most: f32) -> Self;
     /// Sum over lanes.
     fn sum(self) -> f32;
 }
@@ -59,6 +61,10 @@ impl Lanes for f32 {
     #[inline]
     fn flight_ratio(self, _: Self, _: usize) -> Self {
         1.0
+    }
+    #[inline]
+    fn at_most(self, most: f32) -> Self {
+        self.min(most)
     }
     #[inline]
     fn sum(self) -> f32 {
@@ -98,6 +104,10 @@ impl Lanes for Spectrum {
             if c == hero { 1.0 } else { (self[hero] - self[c]).exp() * (sigma_t[c] / sigma_t[hero]) }
         };
         vec3(lane(0), lane(1), lane(2))
+    }
+    #[inline]
+    fn at_most(self, most: f32) -> Self {
+        self.min(Self::splat(most))
     }
     #[inline]
     fn sum(self) -> f32 {

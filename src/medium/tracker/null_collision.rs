@@ -14,10 +14,14 @@ use crate::{
 /// Estimates that fall below this go on with a probability of their own size over it.
 const ROULETTE: f32 = 0.05;
 
+/// The stand-in is no deeper than this: flights that find a gap between dense voxels come through where the mean says
+/// that none do, and a density of 0 in their weights would lose them.
+const DEEPEST: f32 = 30.0;
+
 /// The deterministic depth that stands in for the medium's own.
 #[inline]
 pub fn stand_in<L: Lanes>(medium: &Extinction, coarse: &Coarse, section: &Section) -> L {
-    coarse.integral::<L>(section).scaled(medium.scale)
+    coarse.integral::<L>(section).scaled(medium.scale).at_most(DEEPEST)
 }
 
 /// Tentative collisions along `section`, at the rate of the local majorants: `visit` is given t and the majorant

@@ -4,14 +4,16 @@
 use super::{Choice, Extinction, March, Tracker, null_collision};
 use crate::{
     density::{Coarse, VolumeModel},
-    math::{Lanes, Section, Spectrum, Vec3, vec3},
+    math::{Lanes, Section, Spectrum, Vec3, vec3, warp},
     sampling::{Stream, stream::Purpose},
 };
 
 /// Sections that are tried.
-const SECTIONS: u64 = 128;
+const SECTIONS: u64 = 256;
 /// Estimates of the transmittance of each, whose variance counts as cost.
 const ESTIMATES: u64 = 8;
+/// The shortest sections, over the box's diagonal.
+const SHORTEST: f32 = 1e-3;
 /// Marching steps are at least the box's diagonal over this.
 const FINEST: f32 = 16_384.0;
 
@@ -107,17 +109,22 @@ fn mean(medium: &Extinction, of: impl Fn(&Section, &mut Stream) -> f64) -> f64 {
     sum / SECTIONS as f64
 }
 
-/// Sections between random points of the medium's box, each with random numbers of its own.
+/// Sections from random points of the medium's box, each with random numbers of its own: half of them to other such
+/// points, half of them as long as chance has it, in all orders of magnitude and directions, for a flat box is crossed
+/// steeply too, and where extinction is strong only what is near is seen.
 fn sections(medium: &Extinction) -> impl Iterator<Item = (Section, Stream)> + use<'_> {
     (0..SECTIONS).map(|index| {
         let mut stream = Stream::new(0, index, 0, Purpose::Pilot);
-        let mut point = || -> Vec3 {
-            let u = vec3(stream.uniform(), stream.uniform(), stream.uniform());
-            medium.low + u * (medium.high - medium.low)
-        };
+        let size = medium.high - medium.low;
+        let mut point = || medium.low + vec3(stream.uniform(), stream.uniform(), stream.uniform()) * size;
         let (a, b) = (point(), point());
-        let length = a.distance(b);
-        let direction = if length > 0.0 { (b - a) / length } else { Vec3::X };
+        let (direction, length) = if index % 2 == 0 {
+            let length = a.distance(b);
+            (if length > 0.0 { (b - a) / length } else { Vec3::X }, length)
+        } else {
+            let shortening = SHORTEST.powf(stream.uniform());
+            (warp::to_sphere(stream.square()), size.length() * shortening)
+        };
         (Section { origin: a, direction, length }, stream)
     })
 }
