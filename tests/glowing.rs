@@ -124,7 +124,7 @@ fn rooms_of_one_temperature() {
     ] {
         let scene = isothermal(fog, reflectance);
         assert_eq!(Stage::new(&scene).profile, profile, "{name}");
-        shows(&mut claims, name, &scene, 1.0, &sets, 200);
+        shows(&mut claims, name, &scene, 1.0, &sets, 500);
     }
     claims.settle();
 }

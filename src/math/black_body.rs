@@ -20,8 +20,7 @@ const HOTTEST: f64 = 1e-12;
 pub fn radiance(temperature: f32) -> Spectrum {
     static TABLE: OnceLock<Vec<Entry>> = OnceLock::new();
     let temperature = f64::from(temperature);
-    // Not a number is no temperature either.
-    if !(temperature >= COLDEST) {
+    if temperature.is_nan() || temperature < COLDEST {
         return Spectrum::ZERO;
     }
     let table = TABLE.get_or_init(|| (0..=INTERVALS).map(Entry::new).collect());

@@ -100,7 +100,7 @@ pub enum Within {
     /// A homogeneous medium.
     Uniform(Matter),
     /// One that varies: its extinction and albedo.
-    Varying(Extinction, Volume),
+    Varying(Box<(Extinction, Volume)>),
 }
 
 impl Within {
@@ -108,7 +108,8 @@ impl Within {
     fn at(&self, position: Vec3) -> Matter {
         match self {
             Self::Uniform(matter) => *matter,
-            Self::Varying(extinction, albedo) => {
+            Self::Varying(varying) => {
+                let (extinction, albedo) = &**varying;
                 Matter { sigma_t: extinction.at(position), albedo: albedo.eval(position) }
             }
         }
@@ -118,10 +119,11 @@ impl Within {
     fn bounds(&self, low: Vec3, high: Vec3) -> Matter {
         match self {
             Self::Uniform(matter) => *matter,
-            Self::Varying(extinction, albedo) => Matter {
-                sigma_t: extinction.volume.range(low, high)[1] * extinction.scale,
-                albedo: albedo.range(low, high)[0],
-            },
+            Self::Varying(varying) => {
+                let (extinction, albedo) = &**varying;
+                let sigma_t = extinction.volume.range(low, high)[1] * extinction.scale;
+                Matter { sigma_t, albedo: albedo.range(low, high)[0] }
+            }
         }
     }
 }
@@ -193,9 +195,7 @@ const BRIGHTEST: f32 = 1e30;
 /// The box that holds all that shines.
 fn extent(given: &Given, within: &Within, around: &Around) -> [Vec3; 2] {
     let of_matter = match within {
-        Within::Varying(extinction, _) if given.quantity != Quantity::Gain => {
-            Some([extinction.low, extinction.high])
-        }
+        Within::Varying(varying) if given.quantity != Quantity::Gain => Some([varying.0.low, varying.0.high]),
         _ => None,
     };
     let common = |[low, high]: [Vec3; 2], [a, b]: [Vec3; 2]| [low.max(a), high.min(b)];
@@ -257,7 +257,13 @@ impl Emission {
         let per_line = surface / (4.0 * most * coarse.cell_volume());
         let mean: DVec3 = cells().map(|cell| coarse.mean(cell).as_dvec3()).sum();
         let power = mean * (coarse.cell_volume() * 4.0 * PI);
-        (!chosen.is_empty()).then(|| Self { field, coarse, cells: chosen, per_line: per_line as f32, power })
+        (!chosen.is_empty()).then_some(Self {
+            field,
+            coarse,
+            cells: chosen,
+            per_line: per_line as f32,
+            power,
+        })
     }
 
     /// Power emitted in the whole box [W].

@@ -151,7 +151,7 @@ impl Heterogeneous {
 
     /// What absorbs, for what shines there.
     pub(super) fn within(&self) -> Within {
-        Within::Varying(self.extinction.clone(), self.albedo.clone())
+        Within::Varying(Box::new((self.extinction.clone(), self.albedo.clone())))
     }
 
     /// See [`Tracker::depth`].

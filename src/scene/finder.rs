@@ -17,7 +17,7 @@ use crate::{
 /// Points of an emitting shape that are asked whether they lie in one medium.
 const POINTS_ASKED: u32 = 256;
 /// Points of a medium that shines that are asked whether they lie in it.
-const POINTS_OF_LIGHT: u32 = 1024;
+const POINTS_OF_LIGHT: u32 = 4096;
 
 /// Finds the media of points, with a warning where the shapes contradict each other.
 pub struct Finder<'a> {

@@ -193,9 +193,9 @@ fn fly_varying<P: Profile>(
     Leg { landing, depth: leg.depth, ratio, spent: leg.spent, length }
 }
 
-#[expect(clippy::too_many_arguments, reason = "what a flight is made of")]
 /// A flight that may pass surfaces: each crossing switches the medium, and takes its toll where the surface
 /// lets only a part through.
+#[expect(clippy::too_many_arguments, reason = "what a flight is made of")]
 fn fly_through<P: Profile>(
     scene: &Scene,
     mut ray: Ray,

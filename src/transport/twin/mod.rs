@@ -137,6 +137,7 @@ fn media_that_shine() {
     examine_all::<Fire>("fire in a box", &build(&[OUTSIDE, FIRE_BOX, GROUND, SKY]), 600);
     examine_all::<Fire>("no matter", &build(&[OUTSIDE, NEON, GROUND, MIRROR, BALL]), 1500);
     examine_all::<Everything>("colours", &build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]), 600);
+    examine_all::<Everything>("tracked", &build(&[OUTSIDE, TRACKED_FIRE, GROUND, LAMP]), 600);
     examine_all::<Everything>(
         "colours, glass, pane",
         &build(&[GLOWING_CHROMATIC_FOG, INSIDE, SHELL, GLASS_BALL, PANE]),

@@ -73,6 +73,14 @@ pub const CHROMATIC_FIRE: &str = r#""fire": {"type": "cube", "bsdf": {"type": "n
     "sigma_t": {"type": "constvolume", "value": {"type": "rgb", "value": [0.2, 1, 4]}},
     "radiance": {"type": "exponential", "scale_height": 0.5}}}"#;
 
+/// The same by a tracker whose transmittance is random.
+pub const TRACKED_FIRE: &str = r#""fire": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "heterogeneous", "tracker": "null_collision", "albedo": 0.8, "sigma_t": {"type": "product",
+    "colour": {"type": "constvolume", "value": {"type": "rgb", "value": [0.2, 1, 4]}},
+    "layers": {"type": "exponential", "scale_height": 0.8}},
+    "temperature": {"type": "exponential", "scale_height": 3, "value": 1500}}}"#;
+
 /// A camera in the fog, in the room.
 pub const INSIDE: &str = r#""camera": {"type": "perspective", "fov": 80,
     "to_world": [{"type": "lookat", "origin": [0.1, 0, -0.9], "target": [0, 0.05, 0], "up": [0, 1, 0]}],
