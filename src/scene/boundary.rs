@@ -40,16 +40,44 @@ pub fn medium_at(geometry: &Geometry, surfaces: &[Surface], point: Vec3) -> Foun
     }
 }
 
+/// What the first boundary along a ray says of the medium before it.
+struct Claim {
+    medium: MediumIndex,
+    /// The boundary is seen from its inside.
+    inside: bool,
+    /// Its faces may be another's too (see [`touching`]).
+    touching: bool,
+}
+
 /// The medium in front of the first boundary along a ray. Surfaces that do not separate media do not matter.
+///
+/// Where two shapes share a face, a ray meets one of the two, and which one is chance: seen from within one shape, the
+/// other's face says that one is outside of it, which is true and not the question. Other directions are asked then,
+/// for a boundary that is seen from its inside: no ray meets one that starts outside.
 pub fn ask(geometry: &Geometry, surfaces: &[Surface], origin: Vec3, direction: Vec3) -> Option<MediumIndex> {
+    let first = claim(geometry, surfaces, origin, direction)?;
+    if first.inside || !first.touching {
+        return Some(first.medium);
+    }
+    let others = (0..DIRECTIONS).step_by(4).map(self::direction);
+    let inside = others
+        .filter_map(|other| claim(geometry, surfaces, origin, other))
+        .find(|claim| claim.inside)
+        .map(|claim| claim.medium);
+    inside.or(Some(first.medium))
+}
+
+fn claim(geometry: &Geometry, surfaces: &[Surface], origin: Vec3, direction: Vec3) -> Option<Claim> {
     let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
     // A ray cannot meet more surfaces than there are, but a sphere twice; the bound ends even a faulty one.
     for _ in 0..10_000 {
         let hit = geometry.closest(&ray)?;
         let point = geometry.surface(&ray, &hit);
-        if let Some(boundary) = surfaces[point.shape as usize].boundary {
-            let outside = point.normal.dot(direction) < 0.0;
-            return Some(if outside { boundary.exterior } else { boundary.interior });
+        let Surface { boundary, touching, .. } = surfaces[point.shape as usize];
+        if let Some(boundary) = boundary {
+            let inside = point.normal.dot(direction) >= 0.0;
+            let medium = if inside { boundary.interior } else { boundary.exterior };
+            return Some(Claim { medium, inside, touching });
         }
         ray.origin = offset::leave_surface(point.position, point.error, point.normal, direction);
     }
