@@ -312,6 +312,71 @@ fn under_lights_of_special_kinds() {
     all_agree("profiles, projector", &scene(&parts), Kind { points: true, ..LAMP_IN_VIEW }, 128);
 }
 
+/// Smoke that varies, in a box with a ball inside, seen from outside or (`inside`) from within.
+fn smoky(sigma_t: Value, albedo: Value, tracker: &str, inside: bool) -> Value {
+    let smoke = json!({"type": "heterogeneous", "tracker": tracker, "scale": 2, "sigma_t": sigma_t,
+                       "albedo": albedo, "phase": {"type": "hg", "g": 0.3}});
+    let eye = if inside { [0.3, 0.1, 0.6] } else { [0.0, 0.6, 3.2] };
+    let ball = lamp_ball([0.2, -0.1, 0.1], 0.2, rgb(0.5, 0.3, 0.1));
+    scene(&[
+        ("sensor", camera(eye, [0.0, 0.0, -0.3], 8)),
+        ("floor", floor(-0.9, 2.0, 0.5)),
+        ("smoke", null_box([-0.8, -0.8, -0.8], [0.8, 0.8, 0.8], Some(smoke))),
+        ("ball", ball),
+        ("lamp", lamp_panel([-1.0, 1.6, 0.5], 0.6, 4.0)),
+        ("sky", sky(rgb(0.3, 0.4, 0.6))),
+    ])
+}
+
+/// A density with an integral in closed form, and one without.
+fn fogs() -> [(&'static str, Value); 2] {
+    let waves = json!({"type": "cosine", "constant": 1, "a": {"type": "wave", "amplitude": 0.9, "vector": [4, 2, 1]}});
+    let height = json!({"type": "exponential", "height": -0.8, "scale_height": 0.8, "value": 1.5});
+    [("waves", waves.clone()), ("waves below", json!({"type": "product", "a": waves, "b": height}))]
+}
+
+#[test]
+fn in_smoke_that_varies_by_every_tracker() {
+    for (name, fog) in fogs() {
+        for tracker in ["closed_form", "march", "null_collision"] {
+            if tracker == "closed_form" && name != "waves" {
+                continue;
+            }
+            let scene = smoky(fog.clone(), json!(0.8), tracker, false);
+            all_agree(&format!("{name} by {tracker}"), &scene, LAMP_IN_VIEW, 48);
+        }
+    }
+}
+
+#[test]
+fn within_chromatic_smoke_that_varies() {
+    let [(_, waves), _] = fogs();
+    let colours =
+        json!({"type": "product", "a": {"type": "constvolume", "value": rgb(0.3, 1.0, 2.5)}, "b": waves});
+    let albedo = json!({"type": "cosine", "constant": 0.6, "a": {"type": "wave", "amplitude": 0.3, "vector": [0, 5, 3]}});
+    for tracker in ["closed_form", "null_collision"] {
+        for inside in [false, true] {
+            let scene = smoky(colours.clone(), albedo.clone(), tracker, inside);
+            all_agree(&format!("colours by {tracker}, inside {inside}"), &scene, LAMP_IN_VIEW, 64);
+        }
+    }
+}
+
+/// The fog is all there is around the scene, as far as its box reaches.
+#[test]
+fn in_fog_around_everything_under_a_sky() {
+    let mist = json!({"type": "heterogeneous", "albedo": 0.9, "scale": 0.5, "id": "mist",
+        "sigma_t": {"type": "exponential", "scale_height": 0.7, "min": [-2, -1, -2], "max": [2, 3, 2]}});
+    let parts = [
+        ("sensor", with(camera([0.0, 0.2, 1.5], [0.0, 0.0, 0.0], 8), &[("medium", named("mist"))])),
+        ("mist", mist),
+        ("floor", floor(-0.6, 1.0, 0.5)),
+        ("sky", sky(rgb(0.3, 0.4, 0.6))),
+        ("sun", sun([0.3, -1.0, 0.2], 2.0)),
+    ];
+    all_agree("mist", &scene(&parts), Kind { points: true, ..LAMP_IN_VIEW }, 96);
+}
+
 /// A medium that also shines.
 fn glowing(medium: Value, radiance: Value) -> Value {
     with(medium, &[("radiance", radiance)])

@@ -472,6 +472,22 @@ fn touching_boxes_leave_no_gap_and_no_overlap() {
     );
 }
 
+/// From within a box, a face that it shares with another says only that one is outside of the other: to take that for
+/// vacuum lost the fog on the way to a lamp beyond both.
+#[test]
+fn an_empty_neighbour_takes_no_fog_away() {
+    let fog = null_box([0.0, -0.5, -0.5], [0.9, 0.5, 0.5], Some(medium(2.0, 0.5, 0.0)));
+    let empty = null_box([-0.9, -0.5, -0.5], [0.0, 0.5, 0.5], Some(medium(0.0, 0.0, 0.0)));
+    let parts = [
+        ("sensor", camera([0.0, 0.7, 2.5], [0.0, -0.2, 0.0], 8)),
+        ("floor", floor(-0.6, 2.0, 0.5)),
+        ("lamp", lamp_panel([-1.2, 1.2, 0.6], 0.5, 4.0)),
+        ("fog", fog),
+    ];
+    let both = scene(&[&parts[..], &[("empty", empty)]].concat());
+    same_image("with an empty neighbour", &both, &scene(&parts), 256);
+}
+
 #[test]
 fn touching_slabs_dim_exactly() {
     for order in [[0, 1], [1, 0]] {

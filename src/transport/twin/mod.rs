@@ -14,7 +14,7 @@ mod scenes;
 
 use super::{
     Estimator, LightCache, Nowhere, Options, Strategies,
-    profile::{Bounded, ChromaticFog, Everything, Fire, Fog, Profile, Vacuum},
+    profile::{Bounded, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum},
 };
 use crate::{
     math::{Lanes, vec2, vec3},
@@ -127,6 +127,20 @@ fn an_image_of_the_sky() {
 #[test]
 fn normals_that_are_not_the_surface_s() {
     examine_all::<Fog>("smooth mesh", &build(&[FOG, INSIDE, ROOM, BULB, SMOOTH]), 400);
+}
+
+/// Media whose extinction and albedo vary, by exact depths and by what stands in for random ones.
+#[test]
+fn media_that_vary() {
+    examine_all::<Smoke>("waves", &build(&[OUTSIDE, WAVES, GROUND, LAMP, BULB]), 600);
+    examine_all::<Smoke>("voxels", &build(&[OUTSIDE, VOXELS, GROUND, SKY, SUN]), 1000);
+    examine_all::<Everything>("waves by everything", &build(&[OUTSIDE, WAVES, GROUND, LAMP]), 600);
+    examine_all::<Everything>(
+        "coloured waves",
+        &build(&[OUTSIDE, CHROMATIC_WAVES, GROUND, LAMP, POINT]),
+        600,
+    );
+    examine_all::<Everything>("tracked waves", &build(&[OUTSIDE, TRACKED_WAVES, GROUND, LAMP, SKY]), 600);
 }
 
 /// Media that shine: as far as the camera is in them, beside lamps, in smoke that is dark itself.

@@ -206,6 +206,10 @@ impl Way {
         let sigma_t = medium.sigma_t;
         self.rounding += ULP * reach * f64::from(sigma_t.max_element());
         if let Some(varying) = &medium.varying {
+            // Ends that are rounded sideways shift the whole leg to where extinction differs.
+            let extent = f64::from((varying.extinction().high - varying.extinction().low).length());
+            let shifted = STEEPNESS * distance.clamp(0.0, extent);
+            self.rounding += ULP * reach * f64::from(sigma_t.max_element()) * shifted;
             let depth = depth_of(varying, left, direction, distance);
             self.depth = std::array::from_fn(|channel| self.depth[channel] + depth[channel]);
             return;
@@ -239,6 +243,9 @@ fn depth_of(varying: &Heterogeneous, left: DVec3, direction: DVec3, distance: f6
     let point = |i: u32| left + direction * (f64::from(first) + (f64::from(i) + 0.5) * step);
     (0..POINTS).map(|i| medium.at::<Spectrum>(point(i).as_vec3()).as_dvec3()).sum::<DVec3>() * step
 }
+
+/// How fast the media of the scenes vary, relative to their maximum [1/m].
+const STEEPNESS: f64 = 6.0;
 
 /// Points of the quadrature of an optical depth.
 const POINTS: u32 = 4_000;

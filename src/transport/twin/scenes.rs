@@ -12,10 +12,20 @@ pub fn build(parts: &[&str]) -> Setup {
     let file = folder.path().join("scene.json");
     std::fs::write(&file, text).unwrap();
     std::fs::write(folder.path().join("octahedron.obj"), OCTAHEDRON).unwrap();
+    std::fs::write(folder.path().join("voxels.vol"), voxels()).unwrap();
     let sky = |x: u32, y: u32| image::Rgb([x as f32 + 0.1, 3.0 - y as f32, if x == 2 { 40.0 } else { 0.5 }]);
     image::Rgb32FImage::from_fn(6, 4, sky).save(folder.path().join("sky.exr")).unwrap();
     let description = scene::read(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
     scene::build::build(&description, Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A grid of 5 x 4 x 3 voxels between 0 and 1 in Mitsuba's format.
+fn voxels() -> Vec<u8> {
+    let mut bytes = b"VOL\x03".to_vec();
+    [1i32, 5, 4, 3, 1].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+    [0f32, 0.0, 0.0, 1.0, 1.0, 1.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    (0..60u32).for_each(|i| bytes.extend(((i * 37 % 60) as f32 / 59.0).to_le_bytes()));
+    bytes
 }
 
 pub const FOG: &str = r#""fog": {"type": "homogeneous", "sigma_t": 0.6, "albedo": 0.9,
@@ -70,7 +80,8 @@ pub const NEON: &str = r#""neon": {"type": "sphere", "radius": 0.7, "bsdf": {"ty
 pub const CHROMATIC_FIRE: &str = r#""fire": {"type": "cube", "bsdf": {"type": "null"},
     "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
     "interior": {"type": "heterogeneous", "albedo": {"type": "constvolume", "value": 0.8}, "scale": 1.5,
-    "sigma_t": {"type": "constvolume", "value": {"type": "rgb", "value": [0.2, 1, 4]}},
+    "sigma_t": {"type": "constvolume", "value": {"type": "rgb", "value": [0.2, 1, 4]},
+        "to_world": [{"type": "scale", "value": 4}, {"type": "translate", "value": [-2, -2, -2]}]},
     "radiance": {"type": "exponential", "scale_height": 0.5}}}"#;
 
 /// The same by a tracker whose transmittance is random.
@@ -80,6 +91,33 @@ pub const TRACKED_FIRE: &str = r#""fire": {"type": "cube", "bsdf": {"type": "nul
     "colour": {"type": "constvolume", "value": {"type": "rgb", "value": [0.2, 1, 4]}},
     "layers": {"type": "exponential", "scale_height": 0.8}},
     "temperature": {"type": "exponential", "scale_height": 3, "value": 1500}}}"#;
+
+/// Smoke in waves, its albedo in others.
+pub const WAVES: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "heterogeneous", "scale": 1.5,
+    "sigma_t": {"type": "cosine", "constant": 1, "a": {"type": "wave", "amplitude": 0.9, "vector": [3, 5, 1]}},
+    "albedo": {"type": "cosine", "constant": 0.6, "a": {"type": "wave", "amplitude": 0.3, "vector": [0, 5, 3]}},
+    "phase": {"type": "hg", "g": 0.4}}}"#;
+
+/// The same in three colours.
+pub const CHROMATIC_WAVES: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "heterogeneous", "albedo": 0.9,
+    "sigma_t": {"type": "product", "a": {"type": "constvolume", "value": {"type": "rgb", "value": [0.1, 1, 6]}},
+    "b": {"type": "cosine", "constant": 1, "a": {"type": "wave", "amplitude": 0.9, "vector": [3, 5, 1]}}}}}"#;
+
+/// The same by null collisions, whose weights know a stand-in.
+pub const TRACKED_WAVES: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
+    "interior": {"type": "heterogeneous", "albedo": 0.9, "tracker": "null_collision",
+    "sigma_t": {"type": "product", "a": {"type": "constvolume", "value": {"type": "rgb", "value": [0.1, 1, 6]}},
+    "b": {"type": "cosine", "constant": 1, "a": {"type": "wave", "amplitude": 0.9, "vector": [3, 5, 1]}}}}}"#;
+
+/// Random voxels, read from a file that [`build`] writes.
+pub const VOXELS: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "heterogeneous", "albedo": 0.9, "scale": 3, "sigma_t": {"type": "gridvolume",
+    "filename": "voxels.vol", "to_world": [{"type": "scale", "value": 1.8}, {"type": "translate", "value": [-0.9, -0.8, -0.9]}]}}}"#;
 
 /// A camera in the fog, in the room.
 pub const INSIDE: &str = r#""camera": {"type": "perspective", "fov": 80,
