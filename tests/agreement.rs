@@ -357,7 +357,10 @@ fn within_chromatic_smoke_that_varies() {
     for tracker in ["closed_form", "null_collision"] {
         for inside in [false, true] {
             let scene = smoky(colours.clone(), albedo.clone(), tracker, inside);
-            all_agree(&format!("colours by {tracker}, inside {inside}"), &scene, LAMP_IN_VIEW, 64);
+            // From within, a vertex next to the lens counts 1/d^2: without the eye walks that meet the same light, a
+            // dozen images do not show their own error.
+            let kind = Kind { smooth: inside, ..LAMP_IN_VIEW };
+            all_agree(&format!("colours by {tracker}, inside {inside}"), &scene, kind, 64);
         }
     }
 }
