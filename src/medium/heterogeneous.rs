@@ -185,17 +185,22 @@ impl Heterogeneous {
     }
 }
 
+/// A bound may lie this far above what it bounds, relative to it: volumes widen theirs by their rounding.
+const ROUNDING: f32 = 1e-6;
+
 /// Extinction and albedo must be possible ones everywhere in the box from `low` to `high`.
 fn check(fields: &Fields, [low, high]: [Vec3; 2]) -> Result<()> {
     let Fields { sigma_t, scale, albedo, location, .. } = fields;
     let most = |volume: &Volume| volume.range(low, high)[1].max_element();
+    let (extinction, white) = (most(sigma_t) * scale, most(albedo));
     let checks = [
-        (most(sigma_t) * scale < f32::INFINITY, "sigma_t", "a finite product with scale"),
-        (most(albedo) <= 1.0, "albedo", "values from 0 to 1"),
+        (extinction < f32::INFINITY, extinction, "sigma_t", "a finite product with scale"),
+        (white <= 1.0 + ROUNDING, white, "albedo", "values from 0 to 1"),
     ];
-    if let Some((_, name, expected)) = checks.iter().find(|(fine, ..)| !fine) {
-        let remedy = format!("change \"{name}\" of the medium");
-        return Err(Error::new(location, format!("{expected} for \"{name}\""), "larger ones", remedy));
+    if let Some((_, most, name, expected)) = checks.iter().find(|(fine, ..)| !fine) {
+        let found = format!("a volume whose parts allow up to {most}");
+        let remedy = format!("make \"{name}\" of the medium less");
+        return Err(Error::new(location, format!("{expected} for \"{name}\""), found, remedy));
     }
     let place = Place { recentre: fields.recentre, time: 0.0 };
     for volume in [sigma_t, albedo] {
@@ -213,4 +218,37 @@ fn inapplicable(choice: Choice, volume: &Volume, location: &Location) -> Error {
     };
     let remedy = format!("choose a tracker that works here: {}", fitting.join(", "));
     Error::new(location, expected, format!("the tracker \"{}\"", choice.name()), remedy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        description::Value,
+        testing::{nowhere, object},
+    };
+
+    /// Noise from 0 to `amplitude` as albedo.
+    fn with_albedo(amplitude: f64) -> Result<Heterogeneous> {
+        let place = Place { recentre: DVec3::ZERO, time: 0.0 };
+        let noise = object("noise", &[("amplitude", Value::Float(amplitude))]);
+        let fields = Fields {
+            sigma_t: Volume::constant(1.0, &place),
+            scale: 1.0,
+            albedo: crate::density::build(&noise, &crate::description::Library::default(), &place)?,
+            tracker: Choice::Auto,
+            step: None,
+            march_error: 1e-3,
+            recentre: place.recentre,
+            location: nowhere(),
+        };
+        Heterogeneous::new(fields, [Vec3::ZERO, Vec3::ONE], Treatment::default())
+    }
+
+    #[test]
+    fn an_albedo_that_reaches_1_is_no_error_and_one_that_exceeds_it_is() {
+        assert!(with_albedo(1.0).is_ok());
+        let error = with_albedo(1.1).unwrap_err();
+        assert!(error.found.contains("1.1"), "{error}");
+    }
 }

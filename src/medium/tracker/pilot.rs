@@ -31,7 +31,9 @@ pub fn choose(medium: &Extinction, choice: Choice, step: Option<f64>, march_erro
         Choice::Auto if Choice::Exact.applies_to(&medium.volume) => {
             let coarse = coarse();
             let exact = COST_OF_CELL * mean(medium, |section, _| cells(medium, section));
-            if exact <= cost_of_tracking(medium, &coarse) {
+            let work = work_of_tracking(medium, &coarse);
+            // Noise only makes tracking dearer; and where it costs a lot, so would measuring it.
+            if exact <= work || exact <= work * (1.0 + noise_of_tracking(medium, &coarse)) {
                 Tracker::Exact
             } else {
                 Tracker::NullCollision(coarse)
@@ -52,17 +54,20 @@ fn cells(medium: &Extinction, section: &Section) -> f64 {
     medium.volume.grid().map_or(0.0, |grid| grid.cells_crossed(section))
 }
 
-/// Cost of a transmittance by null collisions, times by how much its noise adds to that of the light it attenuates
-/// (taken to vary by its own mean).
-fn cost_of_tracking(medium: &Extinction, coarse: &Coarse) -> f64 {
-    let work = mean(medium, |section, _| {
+/// Cost of an estimate of transmittance by null collisions.
+fn work_of_tracking(medium: &Extinction, coarse: &Coarse) -> f64 {
+    mean(medium, |section, _| {
         let pieces = coarse.pieces(section).count() as f64;
         let lookups: f64 = coarse
             .pieces(section)
             .map(|piece| f64::from(coarse.most(piece.cell) * medium.scale * (piece.last - piece.first)))
             .sum();
         COST_OF_PIECE * pieces + COST_OF_LOOKUP * lookups
-    });
+    })
+}
+
+/// The relative variance that such estimates add to that of the light they attenuate (taken to vary by its own mean).
+fn noise_of_tracking(medium: &Extinction, coarse: &Coarse) -> f64 {
     let estimate = |section: &Section, stream: &mut Stream| {
         f64::from(null_collision::transmittance::<Spectrum>(medium, coarse, section, stream).max_element())
     };
@@ -73,8 +78,7 @@ fn cost_of_tracking(medium: &Extinction, coarse: &Coarse) -> f64 {
     let second = mean(medium, |section, stream| {
         (0..ESTIMATES).map(|_| estimate(section, stream).powi(2)).sum::<f64>() / ESTIMATES as f64
     });
-    let variance = if first > 0.0 { (second / first - 1.0).max(0.0) } else { 0.0 };
-    work * (1.0 + variance)
+    if first > 0.0 { (second / first - 1.0).max(0.0) } else { 0.0 }
 }
 
 /// The longest step by which no section's transmittance errs by more than `error`, in steps of a factor of 2.

@@ -169,3 +169,36 @@ fn nothing_is_met_where_there_is_nothing() {
         assert_eq!(tracker.transmittance::<f32>(&medium, &beside, 0.0, &mut stream), 1.0);
     }
 }
+
+/// Voxels of which one in seven is `contrast` times as dense as the least of the others; some are empty.
+struct Contrast(f32);
+
+impl density::Samples<f32> for Contrast {
+    fn size(&self) -> [usize; 3] {
+        [4; 3]
+    }
+    fn at(&self, [x, y, z]: [usize; 3]) -> f32 {
+        let index = x + 4 * (y + 4 * z);
+        if index % 7 == 0 { self.0 } else { (index % 3) as f32 }
+    }
+    fn uniform(&self, _: [usize; 3], _: [usize; 3]) -> Option<f32> {
+        None
+    }
+}
+
+/// A choice must not take as long as what it advises against: tracking through the light parts of a cell whose bound
+/// is 1e12 / m.
+#[test]
+fn the_choice_is_quick_where_tracking_is_slow() {
+    use crate::density::grid::{Filter, Grid, Values, Wrap};
+    for contrast in [1e6, 1e12] {
+        let path = std::path::Path::new("contrast");
+        let values = Values::Grey(Box::new(Contrast(contrast)));
+        let grid = Grid::new(path, values, Filter::Trilinear, Wrap::Clamp, crate::math::DAffine3::IDENTITY);
+        let volume = Volume::Grid(grid.unwrap());
+        let medium = Extinction { volume, scale: 1.0, low: Vec3::ZERO, high: Vec3::ONE };
+        let start = std::time::Instant::now();
+        assert_eq!(choose(&medium, Choice::Auto, None, 1e-3).choice(), Choice::Exact);
+        assert!(start.elapsed().as_secs_f64() < 2.0, "{contrast:e}: {:?}", start.elapsed());
+    }
+}
