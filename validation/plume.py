@@ -4,10 +4,16 @@ The experiment: a wall beside a plume is lit by a point on the other side, and a
 Paths have two edges, so that every sample makes one query: the connection of a point of the wall with the light,
 through the plume. Mitsuba's time for it is the difference between this render and the same one with next to no smoke. Its own
 loop over the medium, compiled alone, is timed on the same connections besides; that is what a query costs without rays
-against boundaries. The connections, cut to the plume's box, are written to a file for others to be timed on.
+against boundaries. The connections, cut to the plume's box, are written to a file, and Tyndall's trackers are timed on
+them by a test of theirs (src/medium/tracker/tests/plume.rs).
+
+Times differ, and so does what is got for them: a random query's standard deviation is told too, and the time that it
+takes until the mean of queries is as good as one whose variance is that of Mitsuba's.
 """
 
 import json
+import os
+import subprocess
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,7 +25,8 @@ import numpy as np
 from scipy import ndimage
 
 from validation import assets, mitsuba
-from validation.places import OUTPUT
+from validation.failure import Failure
+from validation.places import OUTPUT, ROOT, TARGET
 from validation.scene import Scene
 
 FOLDER = OUTPUT / "plume"
@@ -36,26 +43,47 @@ CHORDS = 1 << 18
 
 @dataclass(frozen=True)
 class Timing:
-    """Nanoseconds of one query, one number for each repetition."""
+    """A renderer's nanoseconds, and how far from the truth one query of it is."""
 
     name: str
-    nanoseconds: np.ndarray
+    query: list[float]
+    """The least and the middle of the repetitions [ns]."""
+    off: float | None = None
+    """Standard deviation of one query over the mean transmittance."""
+    flight: list[float] | None = None
+    """The same for a sampled flight [ns]."""
+    told: str = ""
 
-    def row(self) -> str:
-        middle, error = self.nanoseconds.mean(), self.nanoseconds.std(ddof=1) / np.sqrt(len(self.nanoseconds))
-        return f"{self.name:44} {middle:10.1f} +- {error:.1f} ns per query"
+    def row(self, rival: "Timing") -> str:
+        """A line of the table; `rival` has the time that others are compared with."""
+        least, middle = self.query
+        flight = f"{self.flight[1]:10.0f}" if self.flight else " " * 10
+        off = f"{self.off:8.3f}" if self.off is not None else " " * 8
+        return f"{self.name:44} {least:10.0f} {middle:10.0f} {rival.query[1] / middle:8.1f} {off} {flight}  {self.told}"
+
+
+HEADER = f"{'':44} {'ns, least':>10} {'middle':>10} {'faster':>8} {'off':>8} {'flight':>10}"
 
 
 def run(rounds: int, spp: int) -> bool:
-    """Prints Mitsuba's times; one thread."""
+    """Prints all times; one thread."""
     dr.set_thread_count(1)
     files = write(FOLDER)
     print(f"{VOXELS}^3 voxels, {files.told}; scene {files.scene}, connections {files.chords}")
-    for variant in ("scalar_rgb", "llvm_ad_rgb"):
-        print(rendered(files, variant, rounds, spp).row(), flush=True)
-    timing, mean, error = looped(files, rounds)
-    print(timing.row())
-    print(f"mean transmittance {mean:.3f}; one query of Mitsuba's is off by {error:.2f} of it (root mean square)")
+    print(f"load of the machine's {os.cpu_count()} processors before: {os.getloadavg()[0]:.1f}", flush=True)
+    renders = [rendered(files, variant, rounds, spp) for variant in ("scalar_rgb", "llvm_ad_rgb")]
+    loop, mean = looped(files, rounds)
+    told, ours = tyndalls(FOLDER)
+    print(HEADER)
+    for timing in (*renders, loop, *ours):
+        print(timing.row(loop))
+    print(f"faster: than Mitsuba's medium alone; off: standard deviation of one query over the mean transmittance,")
+    print(f"which is {mean:.5f} by Mitsuba (all connections), {told['truth']:.5f} by quadrature ({told['sought']} of them)")
+    for timing in ours:
+        if timing.off:
+            ratio = loop.query[1] * loop.off**2 / (timing.query[1] * timing.off**2)
+            print(f"{timing.name}: time x variance is {ratio:.1f} times smaller than of Mitsuba's medium alone")
+    print(f"load of the machine afterwards: {os.getloadavg()[0]:.1f}")
     return True
 
 
@@ -164,7 +192,12 @@ def rendered(files: Files, variant: str, rounds: int, spp: int) -> Timing:
     full, empty = (timed_render(Scene(tree(grid, scale), "plume"), variant, spp) for scale in (SCALE, NEXT_TO_NOTHING))
     full(0), empty(0)
     differences = [full(seed) - empty(seed) for seed in range(1, rounds + 1)]
-    return Timing(f"mitsuba {variant}, volpath's shadow rays", np.array(differences) / (SIZE * SIZE * spp) * 1e9)
+    return Timing(f"mitsuba {variant}, volpath's shadow rays", middle(np.array(differences) / (SIZE * SIZE * spp)))
+
+
+def middle(seconds: np.ndarray) -> list[float]:
+    """The least and the middle, in ns."""
+    return [1e9 * float(of(seconds)) for of in (np.min, np.median)]
 
 
 def timed_render(scene: Scene, variant: str, spp: int) -> Callable[[int], float]:
@@ -181,9 +214,9 @@ def timed_render(scene: Scene, variant: str, spp: int) -> Callable[[int], float]
     return render
 
 
-def looped(files: Files, rounds: int) -> tuple[Timing, float, float]:
-    """Ratio tracking by Mitsuba's own medium in one compiled loop, all connections at once; the mean transmittance, and
-    how far from the truth one query is, relative to that mean."""
+def looped(files: Files, rounds: int) -> tuple[Timing, float]:
+    """Ratio tracking by Mitsuba's own medium in one compiled loop, all connections at once; and the mean
+    transmittance."""
     loaded = mitsuba.load(Scene(json.loads(files.scene.read_text()), "plume"), "llvm_ad_rgb")
     [medium] = [shape.interior_medium() for shape in loaded.shapes() if shape.interior_medium() is not None]
     ends = np.fromfile(files.chords, "<f4").reshape(-1, 2, 3)
@@ -197,10 +230,10 @@ def looped(files: Files, rounds: int) -> tuple[Timing, float, float]:
         dr.sync_thread()
         seconds.append(time.perf_counter() - start)
         results.append(np.array(transmittance))
-    off = np.std(results, axis=0, ddof=1)
+    deviation = np.sqrt((np.std(results, axis=0, ddof=1) ** 2).mean())
     mean = float(np.mean(results))
-    timing = Timing("mitsuba llvm_ad_rgb, its medium alone", np.array(seconds[1:]) / len(ends) * 1e9)
-    return timing, mean, float(np.sqrt((off**2).mean())) / mean
+    times = middle(np.array(seconds[1:]) / len(ends))
+    return Timing("mitsuba llvm_ad_rgb, its medium alone", times, float(deviation) / mean), mean
 
 
 @dr.syntax
@@ -222,3 +255,34 @@ def ratio_tracked(medium, origin, target, seed: int):
         left[hit] = left - collision.t
         active &= hit & (weight > 0)
     return weight
+
+
+# Tyndall's times
+
+TEST = "medium::tracker::tests::plume"
+COMMAND = ["cargo", "test", "--release", "--lib", TEST, "--", "--ignored", "--nocapture"]
+MARK = "plume {"
+"""What the test has to tell stands on lines that begin with this."""
+
+
+def tyndalls(folder: Path) -> tuple[dict, list[Timing]]:
+    """All trackers on the connections; what the test tells of these, and the times."""
+    variables = {**os.environ, "TYNDALL_PLUME": str(folder), "CARGO_TARGET_DIR": str(TARGET)}
+    done = subprocess.run(COMMAND, cwd=ROOT, env=variables, capture_output=True, text=True)
+    told = [json.loads(line.removeprefix("plume ")) for line in done.stdout.splitlines() if line.startswith(MARK)]
+    if done.returncode != 0 or not told:
+        raise Failure(f"{' '.join(COMMAND)}\n  {done.stderr.strip()[-4000:]}", "run the command by hand")
+    [facts, overhead, *trackers] = told
+    return facts, [timing(tracker, overhead["overhead"][0]) for tracker in trackers]
+
+
+def timing(tracker: dict, overhead: float) -> Timing:
+    """A tracker's times without what it costs to ask."""
+    name, less = tracker["tracker"], lambda times: [time - overhead for time in times]
+    bias = f"mean off by {100 * tracker['bias']:+.4f} +- {100 * tracker['error']:.4f} %"
+    if name == "march":
+        bias += f"; step {tracker['step']:.2g} m, largest error {tracker['worst']:.1e}"
+    if name == "null_collision":
+        bias += f"; {less(tracker['alone'])[1]:.0f} ns without the stand-in for weights"
+    off = tracker["off"] if name == "null_collision" else None
+    return Timing(f"tyndall {name}, with what weights need", less(tracker["query"]), off, less(tracker["flight"]), bias)

@@ -1,6 +1,8 @@
 //! Trackers against quadrature and against each other: the density of their collisions, their transmittances, and that
 //! both directions of a section are worth the same.
 
+mod plume;
+
 use super::*;
 use crate::{
     density::{self, Place},
