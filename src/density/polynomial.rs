@@ -271,7 +271,8 @@ fn magnitude(coefficients: &[f64], x: f64) -> f64 {
 /// Bounds of a power on an interval.
 fn power([low, high]: [f64; 2], power: u32) -> [f64; 2] {
     let (a, b) = (low.powi(power as i32), high.powi(power as i32));
-    let least = if power > 0 && power % 2 == 0 && low <= 0.0 && high >= 0.0 { 0.0 } else { a.min(b) };
+    let least =
+        if power > 0 && power.is_multiple_of(2) && low <= 0.0 && high >= 0.0 { 0.0 } else { a.min(b) };
     [least, a.max(b)]
 }
 

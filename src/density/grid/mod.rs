@@ -123,6 +123,7 @@ impl Grid {
     /// are negative or not finite, and more of them than memory holds, are errors.
     pub fn new(path: &Path, values: Values, filter: Filter, wrap: Wrap, to_world: DAffine3) -> Result<Self> {
         let to_local = to_world.inverse();
+        check_place(path, &to_world, &to_local)?;
         let domain = image(&to_world, [DVec3::ZERO, DVec3::ONE]);
         let size = match &values {
             Values::Grey(samples) => samples.size(),
@@ -415,6 +416,24 @@ fn collapse(lattice: Lattice<Spectrum>) -> Bricks {
     } else {
         Bricks::Chromatic(Arc::new(lattice))
     }
+}
+
+/// A grid may lie so many times its size away from the middle of the scene, for its voxels to be told apart.
+const FARTHEST: f64 = 1e12;
+
+fn check_place(path: &Path, to_world: &DAffine3, to_local: &DAffine3) -> Result<()> {
+    let away = to_local.transform_vector3(to_world.translation).abs().max_element();
+    if away <= FARTHEST {
+        return Ok(());
+    }
+    let found = format!("one {away:e} times its size away");
+    let remedy = "place it nearer with \"to_world\" (a wind moves it too), or make it larger";
+    Err(Error::new(
+        path.display(),
+        "a grid within 1e12 times its size of the middle of the scene",
+        found,
+        remedy,
+    ))
 }
 
 fn check_box(path: &Path, to_file: &DAffine3) -> Result<()> {

@@ -584,3 +584,17 @@ fn vdb_files_are_placed_by_their_own_map() {
     }
     assert!(seen > 10);
 }
+
+/// Rounding would spread the box of a far grid over endlessly many cells.
+#[test]
+fn a_grid_farther_away_than_numbers_tell_apart_is_an_error() {
+    let at = |x: f64| DAffine3::from_translation(DVec3::new(x, 0.0, 0.0));
+    let place = |x| {
+        let table = Values::Grey(Box::new(numbers([2; 3], 0)));
+        Grid::new(Path::new("test"), table, Filter::Trilinear, Wrap::Clamp, at(x))
+    };
+    assert!(place(1e11).is_ok());
+    for x in [1e13, -1e30, 1e300, f64::INFINITY] {
+        assert!(place(x).unwrap_err().found.contains("times its size"), "{x:e}");
+    }
+}

@@ -181,7 +181,7 @@ impl density::Samples<f32> for Contrast {
     }
     fn at(&self, [x, y, z]: [usize; 3]) -> f32 {
         let index = x + 4 * (y + 4 * z);
-        if index % 7 == 0 { self.0 } else { (index % 3) as f32 }
+        if index.is_multiple_of(7) { self.0 } else { (index % 3) as f32 }
     }
     fn uniform(&self, _: [usize; 3], _: [usize; 3]) -> Option<f32> {
         None
