@@ -26,7 +26,7 @@ from scipy import ndimage
 
 from validation import assets, mitsuba
 from validation.failure import Failure
-from validation.places import OUTPUT, ROOT, TARGET
+from validation.places import OUTPUT, ROOT
 from validation.scene import Scene
 
 FOLDER = OUTPUT / "plume"
@@ -269,7 +269,7 @@ MARK = "plume {"
 
 def tyndalls(folder: Path) -> tuple[dict, list[Timing]]:
     """All trackers on the connections; what the test tells of these, and the times."""
-    variables = {**os.environ, "TYNDALL_PLUME": str(folder), "CARGO_TARGET_DIR": str(TARGET)}
+    variables = {**os.environ, "TYNDALL_PLUME": str(folder)}
     done = subprocess.run(COMMAND, cwd=ROOT, env=variables, capture_output=True, text=True)
     told = [json.loads(line.removeprefix("plume ")) for line in done.stdout.splitlines() if line.startswith(MARK)]
     if done.returncode != 0 or not told:
