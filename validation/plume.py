@@ -7,8 +7,8 @@ loop over the medium, compiled alone, is timed on the same connections besides; 
 against boundaries. The connections, cut to the plume's box, are written to a file, and Tyndall's trackers are timed on
 them by a test of theirs (src/medium/tracker/tests/plume.rs).
 
-Times differ, and so does what is got for them: a random query's standard deviation is told too, and the time that it
-takes until the mean of queries is as good as one whose variance is that of Mitsuba's.
+Times differ, and so does what is got for them: a random query's standard deviation is told too, and its variance times
+its time.
 """
 
 import json
@@ -26,7 +26,7 @@ from scipy import ndimage
 
 from validation import assets, mitsuba
 from validation.failure import Failure
-from validation.places import OUTPUT, ROOT, TARGET
+from validation.places import OUTPUT, ROOT
 from validation.scene import Scene
 
 FOLDER = OUTPUT / "plume"
@@ -71,18 +71,20 @@ def run(rounds: int, spp: int) -> bool:
     files = write(FOLDER)
     print(f"{VOXELS}^3 voxels, {files.told}; scene {files.scene}, connections {files.chords}")
     print(f"load of the machine's {os.cpu_count()} processors before: {os.getloadavg()[0]:.1f}", flush=True)
-    renders = [rendered(files, variant, rounds, spp) for variant in ("scalar_rgb", "llvm_ad_rgb")]
     loop, mean = looped(files, rounds)
-    told, ours = tyndalls(FOLDER)
     print(HEADER)
-    for timing in (*renders, loop, *ours):
-        print(timing.row(loop))
-    print(f"faster: than Mitsuba's medium alone; off: standard deviation of one query over the mean transmittance,")
+    for variant in ("scalar_rgb", "llvm_ad_rgb"):
+        print(rendered(files, variant, rounds, spp).row(loop), flush=True)
+    print(loop.row(loop), flush=True)
+    told, ours = tyndalls(FOLDER)
+    for one in ours:
+        print(one.row(loop))
+    print("faster: than Mitsuba's medium alone; off: standard deviation of one query over the mean transmittance,")
     print(f"which is {mean:.5f} by Mitsuba (all connections), {told['truth']:.5f} by quadrature ({told['sought']} of them)")
-    for timing in ours:
-        if timing.off:
-            ratio = loop.query[1] * loop.off**2 / (timing.query[1] * timing.off**2)
-            print(f"{timing.name}: time x variance is {ratio:.1f} times smaller than of Mitsuba's medium alone")
+    for one in ours:
+        if one.off:
+            ratio = loop.query[1] * loop.off**2 / (one.query[1] * one.off**2)
+            print(f"{one.name}: time x variance is {ratio:.1f} times smaller than of Mitsuba's medium alone")
     print(f"load of the machine afterwards: {os.getloadavg()[0]:.1f}")
     return True
 
@@ -267,7 +269,7 @@ MARK = "plume {"
 
 def tyndalls(folder: Path) -> tuple[dict, list[Timing]]:
     """All trackers on the connections; what the test tells of these, and the times."""
-    variables = {**os.environ, "TYNDALL_PLUME": str(folder), "CARGO_TARGET_DIR": str(TARGET)}
+    variables = {**os.environ, "TYNDALL_PLUME": str(folder)}
     done = subprocess.run(COMMAND, cwd=ROOT, env=variables, capture_output=True, text=True)
     told = [json.loads(line.removeprefix("plume ")) for line in done.stdout.splitlines() if line.startswith(MARK)]
     if done.returncode != 0 or not told:
