@@ -129,11 +129,11 @@ impl Grid {
             Values::Grey(samples) => samples.size(),
             Values::Chromatic(samples) => samples.size(),
         };
+        // Before anything looks at all of its border.
+        check_bricks(path, size, &extent(size, filter, [DVec3::ZERO, DVec3::ONE]).0)?;
         let reach = reach(&values, wrap, image(&to_local, domain));
         let (extent, shift) = extent(size, filter, reach);
-        let count = extent.size().iter().try_fold(1u64, |count, n| count.checked_mul(*n as u64));
-        let bytes = count.and_then(|count| count.checked_mul(size_of::<Brick<Spectrum>>() as u64));
-        memory::check(path, size, bytes)?;
+        check_bricks(path, size, &extent)?;
         let scale = DVec3::from(size.map(|n| n as f64));
         let to_lattice = DAffine3::from_translation(shift) * DAffine3::from_scale(scale) * to_local;
         let to_world = to_lattice.inverse();
@@ -369,12 +369,20 @@ fn image(map: &DAffine3, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
 fn reach(values: &Values, wrap: Wrap, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
     let cube = [DVec3::ZERO, DVec3::ONE];
     let is_cube = (low.abs() + (high - 1.0).abs()).max_element() < 1e-6;
-    let is_empty_beyond = wrap == Wrap::Clamp
-        && match values {
-            Values::Grey(samples) => is_empty_border(&**samples),
-            Values::Chromatic(samples) => is_empty_border(&**samples),
-        };
-    if is_cube || is_empty_beyond { cube } else { [low.min(cube[0]), high.max(cube[1])] }
+    let is_empty_beyond = || {
+        wrap == Wrap::Clamp
+            && match values {
+                Values::Grey(samples) => is_empty_border(&**samples),
+                Values::Chromatic(samples) => is_empty_border(&**samples),
+            }
+    };
+    if is_cube || is_empty_beyond() { cube } else { [low.min(cube[0]), high.max(cube[1])] }
+}
+
+/// The list of bricks, empty ones included, must fit in memory.
+fn check_bricks(path: &Path, size: [usize; 3], extent: &Extent) -> Result<()> {
+    let count = extent.size().iter().try_fold(1u64, |count, n| count.checked_mul(*n as u64));
+    memory::check(path, size, count.and_then(|count| count.checked_mul(size_of::<Brick<Spectrum>>() as u64)))
 }
 
 /// True if all samples on the border are 0.
