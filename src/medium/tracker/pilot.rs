@@ -16,6 +16,8 @@ const ESTIMATES: u64 = 8;
 const SHORTEST: f32 = 1e-3;
 /// Marching steps are at least the box's diagonal over this.
 const FINEST: f32 = 16_384.0;
+/// The same of its shortest side.
+const THINNEST: f32 = 4_096.0;
 
 /// The method `choice`, ready for work.
 pub fn choose(medium: &Extinction, choice: Choice, step: Option<f64>, march_error: f64) -> Tracker {
@@ -84,7 +86,7 @@ fn noise_of_tracking(medium: &Extinction, coarse: &Coarse) -> f64 {
 /// The longest step by which no section's transmittance errs by more than `error`, in steps of a factor of 2.
 fn longest_step(medium: &Extinction, error: f64) -> f32 {
     let diagonal = (medium.high - medium.low).length();
-    let finest = diagonal / FINEST;
+    let finest = finest(medium, diagonal);
     let transmittance = |section: &Section, step: f32| -> Spectrum {
         March { step }.depth::<Spectrum>(medium, section).exp_neg()
     };
@@ -105,6 +107,14 @@ fn longest_step(medium: &Extinction, error: f64) -> f32 {
         step *= 0.5;
     }
     step
+}
+
+/// The least step that is thought of [m]: a flat box is looked at as finely as it is thin, where that costs little, for
+/// there is an integral to compare with.
+fn finest(medium: &Extinction, diagonal: f32) -> f32 {
+    let shortest = (medium.high - medium.low).min_element();
+    let least = diagonal / FINEST;
+    if medium.volume.has_integral() { (shortest / THINNEST).clamp(least / 64.0, least) } else { least }
 }
 
 /// The mean over the sections that are tried.
