@@ -43,8 +43,12 @@ fn a_slab_that_emits_and_absorbs() {
         let name = format!("slab of {tau}");
         shows(&mut claims, &name, &slab(absorbing("homogeneous", tau)), expected, &ALONE, samples);
     }
+    // A number would fill the unit cube alone.
+    let around = json!([{"type": "scale", "value": 2}, {"type": "translate", "value": [-1, -1, -1]}]);
+    let even = json!({"type": "constvolume", "value": 2, "to_world": around});
     for tracker in ["auto", "march", "null_collision"] {
-        let medium = with(absorbing("heterogeneous", 2.0), &[("tracker", json!(tracker))]);
+        let more = [("sigma_t", even.clone()), ("tracker", json!(tracker))];
+        let medium = with(absorbing("heterogeneous", 2.0), &more);
         shows(&mut claims, tracker, &slab(medium), -f64::exp_m1(-2.0), &ALONE, 400);
     }
     claims.settle();
