@@ -5,7 +5,7 @@ use super::{Place, VolumeModel};
 use crate::{
     description::Params,
     error::Result,
-    math::{DVec3, Lanes, Section, Spectrum, SpectrumExt, Vec3},
+    math::{DVec3, Lanes, Section, Spectrum, SpectrumExt, Vec3, boxes},
 };
 
 /// One value.
@@ -19,10 +19,7 @@ impl Constant {
     /// Reads `value` and `to_world`.
     pub fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         let to_world = place.to_world(params)?;
-        let corner = |i: u32| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);
-        let corners = || (0..8).map(|i| to_world.transform_point3(corner(i)).as_vec3());
-        let low = corners().fold(Vec3::INFINITY, Vec3::min);
-        let high = corners().fold(Vec3::NEG_INFINITY, Vec3::max);
+        let [low, high] = boxes::image(&to_world, [DVec3::ZERO, DVec3::ONE]).map(|corner| corner.as_vec3());
         Ok(Self::new(params.color("value", 1.0)?, [low, high]))
     }
 

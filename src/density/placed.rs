@@ -11,7 +11,7 @@ use super::{Place, VolumeModel};
 use crate::{
     description::Params,
     error::Result,
-    math::{DAffine3, DVec3, Lanes, Section, Spectrum, SpectrumExt, Vec3},
+    math::{DAffine3, DVec3, Lanes, Section, Spectrum, SpectrumExt, Vec3, boxes},
 };
 use std::fmt::Debug;
 
@@ -29,23 +29,6 @@ impl Line {
     #[inline]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + self.direction * t
-    }
-
-    /// The part of the range from `first` to `last` within the box from `low` to `high`; none where that is empty.
-    fn within(&self, [low, high]: [DVec3; 2], mut first: f64, mut last: f64) -> Option<[f64; 2]> {
-        for axis in 0..3 {
-            let (origin, direction) = (self.origin[axis], self.direction[axis]);
-            if direction == 0.0 {
-                if !(low[axis] <= origin && origin <= high[axis]) {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = ((low[axis] - origin) / direction, (high[axis] - origin) / direction);
-            first = first.max(a.min(b));
-            last = last.min(a.max(b));
-        }
-        (first < last).then_some([first, last])
     }
 }
 
@@ -85,14 +68,12 @@ pub(super) fn common(a: [DVec3; 2], b: [DVec3; 2]) -> [DVec3; 2] {
     [a[0].max(b[0]), a[1].min(b[1])]
 }
 
-/// The box around an affine map's image of a finite box.
-fn image(map: &DAffine3, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
-    let (center, half) = (map.transform_point3(0.5 * (low + high)), 0.5 * (high - low));
-    let columns = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
-    let reach: DVec3 = (0..3).map(|axis| columns[axis].abs() * half[axis]).sum();
+/// The box around an affine map's image of a finite box, wide enough for rounding.
+fn image(map: &DAffine3, finite: [DVec3; 2]) -> [DVec3; 2] {
+    let [low, high] = boxes::image(map, finite);
     // Far more than rounding can move a point by, far less than f32 tells apart.
-    let slack = (center.abs() + reach + map.translation.abs()) * 1e-12;
-    [center - reach - slack, center + reach + slack]
+    let slack = (low.abs().max(high.abs()) + map.translation.abs()) * 1e-12;
+    [low - slack, high + slack]
 }
 
 /// A density function where it stands in the world.
@@ -132,7 +113,8 @@ impl<F: Function> Placed<F> {
             direction: self.to_own.transform_vector3(section.direction.as_dvec3()),
         };
         let last = f64::from(section.length.min(f32::MAX));
-        Some((line, line.within(self.bounds, 0.0, last)?))
+        let [first, last] = boxes::narrowed(line.origin, line.direction, self.bounds, [0.0, last]);
+        (first < last).then_some((line, [first, last]))
     }
 
     /// Every function plain, and moved, bounded and coloured.

@@ -1,6 +1,6 @@
 //! A straight piece of a ray, as media see it.
 
-use super::{Affine3A, Vec3};
+use super::{Affine3A, Vec3, boxes};
 
 /// From `origin` along `direction` for `length`. The parameter t along it is in metres of the world whatever affine
 /// map it was seen through: `direction` is a unit vector in the world only.
@@ -34,19 +34,10 @@ impl Section {
     /// The range of t within the box from `low` to `high`; none where that is empty.
     #[inline]
     pub fn within(&self, low: Vec3, high: Vec3) -> Option<[f32; 2]> {
-        let (mut first, mut last) = (0.0f32, self.length);
-        for axis in 0..3 {
-            let (origin, direction) = (self.origin[axis], self.direction[axis]);
-            if direction == 0.0 {
-                if !(low[axis] <= origin && origin <= high[axis]) {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = ((low[axis] - origin) / direction, (high[axis] - origin) / direction);
-            first = first.max(a.min(b));
-            last = last.min(a.max(b));
-        }
+        let bounds = [low.as_dvec3(), high.as_dvec3()];
+        let (origin, direction) = (self.origin.as_dvec3(), self.direction.as_dvec3());
+        let [first, last] = boxes::narrowed(origin, direction, bounds, [0.0, f64::from(self.length)]);
+        let (first, last) = (first as f32, last as f32);
         (first < last).then_some([first, last])
     }
 }

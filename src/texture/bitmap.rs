@@ -6,7 +6,7 @@ use super::{
 };
 use crate::description::Params;
 use crate::error::{Error, Result};
-use crate::math::{DVec3, Spectrum, Vec2, vec2};
+use crate::math::{DVec3, Spectrum, Vec2, Wrap, vec2};
 use std::sync::Arc;
 
 /// How colours between pixel centres come about.
@@ -14,14 +14,6 @@ use std::sync::Arc;
 enum Filter {
     Bilinear,
     Nearest,
-}
-
-/// What lies beyond the unit square.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wrap {
-    Repeat,
-    Mirror,
-    Clamp,
 }
 
 /// An image over the unit square. As in Mitsuba, v runs down the rows: v = 0 is the top edge.
@@ -41,14 +33,13 @@ impl Bitmap {
         }
         let path = params.file("filename")?;
         let filters = [("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)];
-        let wraps = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let raw = params.boolean("raw", false)?;
         params.choice("format", (), &[("auto", ()), ("variant", ()), ("fp16", ())])?;
         params.boolean("accel", true)?;
         params.accept_unused(&["format", "accel"], "images are kept in single precision");
         Ok(Self {
             filter: params.choice("filter_type", Filter::Bilinear, &filters)?,
-            wrap: params.choice("wrap_mode", Wrap::Repeat, &wraps)?,
+            wrap: params.choice("wrap_mode", Wrap::Repeat, &Wrap::NAMES)?,
             to_uv: ToUv::build(params)?,
             image: Arc::new(image::read(&path, raw)?),
         })
@@ -57,7 +48,7 @@ impl Bitmap {
     #[inline]
     fn pixel(&self, x: i64, y: i64) -> Spectrum {
         let Image { width, height, pixels } = &*self.image;
-        pixels[wrap(self.wrap, y, *height) * width + wrap(self.wrap, x, *width)]
+        pixels[self.wrap.index(y, *height) * width + self.wrap.index(x, *width)]
     }
 
     #[cfg(test)]
@@ -108,19 +99,4 @@ impl TextureModel for Bitmap {
         let sum: DVec3 = self.image.pixels.iter().map(|color| color.as_dvec3()).sum();
         (sum / self.image.pixels.len() as f64).as_vec3()
     }
-}
-
-/// The index in 0..`size` that stands for `index` beyond it.
-#[inline]
-fn wrap(mode: Wrap, index: i64, size: usize) -> usize {
-    let n = size as i64;
-    let wrapped = match mode {
-        Wrap::Repeat => index.rem_euclid(n),
-        Wrap::Clamp => index.clamp(0, n - 1),
-        Wrap::Mirror => {
-            let twice = index.rem_euclid(2 * n);
-            twice.min(2 * n - 1 - twice)
-        }
-    };
-    wrapped as usize
 }

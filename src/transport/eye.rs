@@ -1,4 +1,5 @@
-//! The eye walk's side: emitters met and media passed that shine (s = 0), next-event estimation (s = 1), joins with light walks (s >= 2).
+//! The eye walk's side: emitters met and media passed that shine (s = 0), next-event estimation (s = 1), joins with
+//! light walks (s >= 2).
 
 use super::{
     Estimator,

@@ -3,7 +3,7 @@
 
 use super::super::Samples;
 use super::voxel::{SIDE, VALUES, Voxel, corners, weights};
-use super::wrap::Wrap;
+use crate::math::Wrap;
 
 /// Cells along a side of a brick.
 pub const BRICK: usize = 8;

@@ -21,6 +21,7 @@ use crate::{
     error::{Error, Result},
     math::{
         Affine3A, DAffine3, DVec3, Lanes, Section, Spectrum, SpectrumExt, Vec3,
+        boxes::{image, narrowed},
         cells::{Cells, Crossing},
     },
 };
@@ -29,9 +30,9 @@ use std::{path::Path, sync::Arc};
 use voxel::Voxel;
 use walk::{Line, Target, Walk};
 
+pub use crate::math::Wrap;
 pub use file::{Source, Values};
 pub use lattice::Filter;
-pub use wrap::Wrap;
 
 /// Where an optical depth, summed along a section, reaches a given value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,9 +105,8 @@ impl Grid {
         }
         let grid = params.optional_string("grid")?;
         let filters = [("trilinear", Filter::Trilinear), ("nearest", Filter::Nearest)];
-        let wraps = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let filter = params.choice("filter_type", Filter::Trilinear, &filters)?;
-        let wrap = params.choice("wrap_mode", Wrap::Clamp, &wraps)?;
+        let wrap = params.choice("wrap_mode", Wrap::Clamp, &Wrap::NAMES)?;
         params.boolean("raw", false)?;
         params.accept_unused(&["accel", "max_value"], "the maximum is known, and no texture unit runs");
         let mut to_world = place.to_world(params)?;
@@ -226,11 +226,10 @@ impl Grid {
     #[inline]
     fn clip(&self, section: &Section, cells: [usize; 3]) -> Option<(Line, [f64; 2])> {
         let (origin, direction) = (section.origin.as_dvec3(), section.direction.as_dvec3());
-        let mut range = [0.0, f64::from(section.length)];
-        clip(&mut range, origin, direction, self.frame.domain);
+        let range = narrowed(origin, direction, self.frame.domain, [0.0, f64::from(section.length)]);
         let map = &self.frame.to_lattice;
         let (origin, direction) = (map.transform_point3(origin), map.transform_vector3(direction));
-        clip(&mut range, origin, direction, [DVec3::ZERO, DVec3::from(cells.map(|n| n as f64))]);
+        let range = narrowed(origin, direction, [DVec3::ZERO, DVec3::from(cells.map(|n| n as f64))], range);
         let line = Line { origin: origin.to_array(), direction: direction.to_array() };
         (range[0] < range[1]).then_some((line, range))
     }
@@ -338,31 +337,6 @@ fn reached<V: Voxel, L: Lanes>(walk: &Walk<V>, scale: L) -> Reached<L> {
         None => Reached::Beyond { depth },
         Some((t, value)) => Reached::Within { t: t as f32, depth, value: lanes::<L>(value) * scale },
     }
-}
-
-/// Narrows `range` to where the line lies between two corners of a box.
-#[inline]
-fn clip(range: &mut [f64; 2], origin: DVec3, direction: DVec3, [low, high]: [DVec3; 2]) {
-    for axis in 0..3 {
-        let (origin, direction) = (origin[axis], direction[axis]);
-        let (a, b) = if direction == 0.0 {
-            let is_inside = low[axis] <= origin && origin <= high[axis];
-            if is_inside { continue } else { (f64::INFINITY, f64::INFINITY) }
-        } else {
-            let inverse = 1.0 / direction;
-            ((low[axis] - origin) * inverse, (high[axis] - origin) * inverse)
-        };
-        range[0] = range[0].max(a.min(b));
-        range[1] = range[1].min(a.max(b));
-    }
-}
-
-/// The box around the image of a box.
-fn image(map: &DAffine3, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
-    let (centre, half) = (map.transform_point3(0.5 * (low + high)), 0.5 * (high - low));
-    let m = &map.matrix3;
-    let extent = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z;
-    [centre - extent, centre + extent]
 }
 
 /// How far the values reach in the coordinates of the unit cube, of which the box counts from `low` to `high`.

@@ -1,31 +1,8 @@
-//! What lies beyond a grid's unit cube: Mitsuba's `wrap_mode`.
+//! What a grid asks of its wrap mode besides single samples: ranges of them, and coordinates.
 
-/// How samples beyond the first and the last of an axis are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wrap {
-    /// The grid is a tile of an endless pattern.
-    Repeat,
-    /// So, but every other tile is mirrored.
-    Mirror,
-    /// The outermost sample goes on for ever.
-    Clamp,
-}
+use crate::math::Wrap;
 
 impl Wrap {
-    /// The index below `size` of the sample that stands for `index`.
-    pub fn index(self, index: i64, size: usize) -> usize {
-        let n = size as i64;
-        let wrapped = match self {
-            Self::Repeat => index.rem_euclid(n),
-            Self::Clamp => index.clamp(0, n - 1),
-            Self::Mirror => {
-                let twice = index.rem_euclid(2 * n);
-                twice.min(2 * n - 1 - twice)
-            }
-        };
-        wrapped as usize
-    }
-
     /// The least and the greatest index that stand for those from `low` to `high`; all in between are taken for
     /// hit, which may be too many.
     pub fn indices(self, [low, high]: [i64; 2], size: usize) -> [usize; 2] {

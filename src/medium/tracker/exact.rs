@@ -2,9 +2,15 @@
 
 use super::{Extinction, Leg, closed_form};
 use crate::{
-    density::grid::Reached,
+    density::{VolumeModel, grid::Reached},
     math::{Lanes, Section},
 };
+
+/// Optical depth along `section`: the grid knows where it ends.
+#[inline]
+pub fn depth<L: Lanes>(medium: &Extinction, section: &Section) -> L {
+    medium.volume.integral::<L>(section).scaled(medium.scale)
+}
 
 /// A flight to where the `hero` lane's depth is `remaining`.
 #[inline]

@@ -6,7 +6,7 @@
 //! coefficients.
 
 use super::{Extinction, Leg};
-use crate::math::{Lanes, Section, Vec3};
+use crate::math::{Lanes, Section, Vec3, boxes};
 
 /// Intervals of at most this length [m].
 #[derive(Clone, Copy, Debug)]
@@ -118,14 +118,8 @@ fn landed<L: Lanes>(
 /// The range of t, before 0 and beyond the section's end too, in which its line is in the box; at least `within`.
 #[inline]
 fn chord(section: &Section, low: Vec3, high: Vec3, within: [f32; 2]) -> [f32; 2] {
-    let (mut start, mut end) = (f32::NEG_INFINITY, f32::INFINITY);
-    for axis in 0..3 {
-        if section.direction[axis] != 0.0 {
-            let t = |plane: f32| (plane - section.origin[axis]) / section.direction[axis];
-            let (a, b) = (t(low[axis]), t(high[axis]));
-            start = start.max(a.min(b));
-            end = end.min(a.max(b));
-        }
-    }
-    [start.min(within[0]), end.max(within[1])]
+    let (origin, direction) = (section.origin.as_dvec3(), section.direction.as_dvec3());
+    let everywhere = [f64::NEG_INFINITY, f64::INFINITY];
+    let [start, end] = boxes::narrowed(origin, direction, [low.as_dvec3(), high.as_dvec3()], everywhere);
+    [(start as f32).min(within[0]), (end as f32).max(within[1])]
 }

@@ -90,7 +90,8 @@ impl Tracker {
     #[inline]
     pub fn depth<L: Lanes>(&self, medium: &Extinction, section: &Section) -> L {
         match self {
-            Self::ClosedForm | Self::Exact => closed_form::depth(medium, section),
+            Self::ClosedForm => closed_form::depth(medium, section),
+            Self::Exact => exact::depth(medium, section),
             Self::March(march) => march.depth(medium, section),
             Self::NullCollision(coarse) => null_collision::stand_in(medium, coarse, section),
         }
