@@ -25,6 +25,8 @@ pub mod transport;
 
 pub mod render;
 
+pub mod study;
+
 pub mod cli;
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ const LAYERS: &[&[&str]] = &[
     &["film", "scene"],
     &["transport"],
     &["render"],
+    &["study"],
     &["cli"],
 ];
 

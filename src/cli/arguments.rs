@@ -83,6 +83,18 @@ pub struct Render {
     #[arg(long, value_name = "FPS", value_parser = fps, requires = "frames", allow_negative_numbers = true)]
     pub fps: Option<f64>,
 
+    /// How paths are made.
+    #[command(flatten)]
+    pub estimator: Estimator,
+
+    /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
+    pub size: Option<Size>,
+}
+
+/// How paths are made and weighed.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Estimator {
     /// How flights through media that vary are sampled [default: as each medium says]
     #[arg(long, value_enum, value_name = "NAME")]
     pub tracker: Option<Tracker>,
@@ -101,10 +113,6 @@ pub struct Render {
     /// [default: the scene's]
     #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
     pub max_depth: Option<MaxDepth>,
-
-    /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
-    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
-    pub size: Option<Size>,
 
     /// Which code renders; the image is the same within noise, only the time differs
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]
@@ -357,12 +365,18 @@ mod tests {
         );
         assert_eq!(r.output, Some("a.exr".into()));
         assert_eq!((r.spp, r.seed, r.time_limit), (Some(8), 3, Some(Duration::from_secs(300))));
-        assert_eq!((r.threads.map(NonZeroUsize::get), r.integrator), (Some(2), Some(Integrator::Lt)));
+        assert_eq!(
+            (r.threads.map(NonZeroUsize::get), r.estimator.integrator),
+            (Some(2), Some(Integrator::Lt))
+        );
         let definitions = [("res".to_owned(), "48".to_owned()), ("t".to_owned(), "a=b".to_owned())];
         assert_eq!(r.scene.definitions, definitions);
         assert_eq!(r.size, Some(Size { width: 64, height: 32 }));
-        assert_eq!((r.profile, r.max_depth), (Profile::Everything, Some(MaxDepth::Unbounded)));
-        assert_eq!(r.strategies, [Strategy::Hit, Strategy::NextEvent]);
+        assert_eq!(
+            (r.estimator.profile, r.estimator.max_depth),
+            (Profile::Everything, Some(MaxDepth::Unbounded))
+        );
+        assert_eq!(r.estimator.strategies, [Strategy::Hit, Strategy::NextEvent]);
     }
 
     #[test]
@@ -375,8 +389,8 @@ mod tests {
     #[test]
     fn the_default_is_what_the_scene_says() {
         let r = render("");
-        assert_eq!((r.spp, r.output, r.max_depth, r.seed), (None, None, None, 0));
-        assert!(r.strategies.is_empty() && r.scene.definitions.is_empty());
+        assert_eq!((r.spp, r.output, r.estimator.max_depth, r.seed), (None, None, None, 0));
+        assert!(r.estimator.strategies.is_empty() && r.scene.definitions.is_empty());
     }
 
     #[test]
@@ -396,9 +410,12 @@ mod tests {
         assert_eq!(render("--frames 7").frames, frames(7, 7));
         assert_eq!(render("--frames 3..3").frames, frames(3, 3));
         assert_eq!((render("--frames 1").fps, render("--frames 1 --fps 29.97").fps), (None, Some(29.97)));
-        assert_eq!((render("").frames, render("").tracker), (None, None));
+        assert_eq!((render("").frames, render("").estimator.tracker), (None, None));
         for (name, choice) in Choice::NAMES {
-            assert_eq!(render(&format!("--tracker {name}")).tracker.map(Tracker::choice), Some(choice));
+            assert_eq!(
+                render(&format!("--tracker {name}")).estimator.tracker.map(Tracker::choice),
+                Some(choice)
+            );
         }
     }
 

@@ -2,11 +2,12 @@
 
 pub mod arguments;
 mod convert;
+mod estimator;
 mod info;
 mod render;
 
 use crate::{
-    error::Result,
+    error::{Error, Result},
     scene::{
         self,
         build::{Overrides, Setup},
@@ -14,7 +15,7 @@ use crate::{
 };
 use arguments::{Arguments, Command};
 use clap::Parser;
-use std::process::ExitCode;
+use std::{num::NonZeroUsize, process::ExitCode};
 
 /// Runs the program; bad input ends it with code 2 and a message that says what to mend.
 pub fn run() -> ExitCode {
@@ -52,6 +53,19 @@ fn load(
         complain("warning: --tracker has no effect: no medium of this scene varies");
     }
     Ok(setup)
+}
+
+/// The threads that render.
+fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
+    let threads = wanted.map_or(0, usize::from);
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
+        Error::new(
+            "--threads",
+            "a number of threads this machine can start",
+            error.to_string(),
+            "ask for fewer",
+        )
+    })
 }
 
 /// To standard output. A reader that has gone away is no reason to fail.

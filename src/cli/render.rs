@@ -1,6 +1,6 @@
 //! `tyndall render`: a scene file in, an image and its PNG preview out.
 
-use super::{arguments, load};
+use super::{arguments, estimator, load, threads};
 use crate::{
     error::{Error, Result},
     film::{
@@ -8,14 +8,8 @@ use crate::{
         format::{FileKind, Format},
     },
     render::{self, Image, Progress, Settings, budget::Budget},
-    scene::{
-        build::Setup,
-        integrator::{Method, Restriction},
-    },
-    transport::{
-        Options, Strategies,
-        profile::{Needs, ProfileName},
-    },
+    scene::build::Setup,
+    transport::Strategies,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
@@ -27,11 +21,11 @@ use std::{
 /// Runs the command.
 pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
-    let mut setup = load(&arguments.scene, arguments.size, arguments.tracker)?;
+    let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let settings = settings(arguments, &setup)?;
     let goal = Goal::new(arguments, &setup)?;
     let load_time = started.elapsed().as_secs_f64();
-    let pool = threads(arguments)?;
+    let pool = threads(arguments.threads)?;
     let figures = match arguments.frames {
         None => vec![pool.install(|| shoot(&setup, &settings, &goal, None))?],
         Some(frames) => pool.install(|| animate(arguments, &mut setup, &settings, &goal, frames))?,
@@ -103,41 +97,10 @@ fn shoot(setup: &Setup, settings: &Settings, goal: &Goal, label: Option<&str>) -
 }
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
-    let needed = ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.hide_emitters));
-    let profile = match arguments.profile {
-        arguments::Profile::Everything => ProfileName::Everything,
-        arguments::Profile::Fitted => needed,
-    };
-    let strategies = strategies(arguments, setup.integrator.method)?;
-    if strategies == Strategies::NONE && arguments.max_depth.is_some() {
-        super::complain("warning: --max-depth has no effect: the integrator fog makes no paths");
-    }
-    let options = Options {
-        strategies,
-        max_depth: max_depth(arguments, setup)?,
-        hide_emitters: setup.integrator.hide_emitters,
-        seed: arguments.seed,
-    };
-    let budget = budget(arguments, setup, strategies == Strategies::NONE);
+    let options = estimator::options(&arguments.estimator, setup, arguments.seed)?;
+    let profile = estimator::profile(&arguments.estimator, setup);
+    let budget = budget(arguments, setup, options.strategies == Strategies::NONE);
     Ok(Settings { options, budget, seed: arguments.seed, profile })
-}
-
-fn max_depth(arguments: &arguments::Render, setup: &Setup) -> Result<Option<u32>> {
-    let asked = match arguments.max_depth {
-        Some(arguments::MaxDepth::Edges(edges)) => Some(edges),
-        Some(arguments::MaxDepth::Unbounded) => None,
-        None => setup.integrator.max_depth,
-    };
-    let single = matches!(setup.integrator.restriction, Restriction::SingleScattering { .. });
-    if single && asked.is_none_or(|edges| edges > Restriction::SINGLE) {
-        return Err(Error::new(
-            "--max-depth",
-            "0, 1 or 2, for the scene's integrator single_scattering",
-            asked.map_or("-1".to_owned(), |edges| edges.to_string()),
-            "replace the integrator in the scene, by volpath for example",
-        ));
-    }
-    Ok(asked)
 }
 
 /// Samples per pixel of a preview are no more than these, unless they are asked for.
@@ -151,40 +114,6 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
         (None, None) => Some(setup.samples_per_pixel),
     };
     Budget { samples_per_pixel, time: arguments.time_limit }
-}
-
-fn strategies(arguments: &arguments::Render, scene_method: Method) -> Result<Strategies> {
-    let all = match (arguments.integrator, scene_method) {
-        (Some(arguments::Integrator::Bdpt), _) | (None, Method::Bdpt) => Strategies::BDPT,
-        (Some(arguments::Integrator::Pt), _) | (None, Method::Pt) => Strategies::PT,
-        (Some(arguments::Integrator::Lt), _) | (None, Method::Lt) => Strategies::LT,
-        (Some(arguments::Integrator::Fog), _) | (None, Method::Fog) => Strategies::NONE,
-    };
-    if arguments.strategies.is_empty() {
-        return Ok(all);
-    }
-    let asked = |strategy| arguments.strategies.contains(&strategy);
-    let chosen = Strategies {
-        hit: asked(arguments::Strategy::Hit),
-        next_event: asked(arguments::Strategy::NextEvent),
-        join: asked(arguments::Strategy::Join),
-        lens: asked(arguments::Strategy::Lens),
-    };
-    let kept = Strategies {
-        hit: chosen.hit && all.hit,
-        next_event: chosen.next_event && all.next_event,
-        join: chosen.join && all.join,
-        lens: chosen.lens && all.lens,
-    };
-    if kept == chosen {
-        return Ok(kept);
-    }
-    Err(Error::new(
-        "--strategies",
-        "strategies that the integrator has",
-        "one that it leaves out",
-        "choose among those of --integrator bdpt: hit, next-event, join, lens",
-    ))
 }
 
 /// The image file: where, and what is in it. The PNG stands beside it.
@@ -241,19 +170,6 @@ impl Goal {
             FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
         }
     }
-}
-
-/// The threads that render.
-fn threads(arguments: &arguments::Render) -> Result<rayon::ThreadPool> {
-    let threads = arguments.threads.map_or(0, usize::from);
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
-        Error::new(
-            "--threads",
-            "a number of threads this machine can start",
-            error.to_string(),
-            "ask for fewer",
-        )
-    })
 }
 
 /// A progress bar over pixel samples, or over time where only time ends the render.

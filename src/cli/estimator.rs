@@ -1,0 +1,86 @@
+//! How paths are made, as the command line asks for it of a scene.
+
+use super::arguments;
+use crate::{
+    error::{Error, Result},
+    scene::{
+        build::Setup,
+        integrator::{Method, Restriction},
+    },
+    transport::{
+        Options, Strategies,
+        profile::{Needs, ProfileName},
+    },
+};
+
+/// The compiled estimator.
+pub fn profile(asked: &arguments::Estimator, setup: &Setup) -> ProfileName {
+    match asked.profile {
+        arguments::Profile::Everything => ProfileName::Everything,
+        arguments::Profile::Fitted => {
+            ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.hide_emitters))
+        }
+    }
+}
+
+/// What the estimator does; where nothing is asked for, as the scene says.
+pub fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result<Options> {
+    let strategies = strategies(asked, setup.integrator.method)?;
+    if strategies == Strategies::NONE && asked.max_depth.is_some() {
+        super::complain("warning: --max-depth has no effect: the integrator fog makes no paths");
+    }
+    let (max_depth, hide_emitters) = (max_depth(asked, setup)?, setup.integrator.hide_emitters);
+    Ok(Options { strategies, max_depth, hide_emitters, seed })
+}
+
+fn max_depth(asked: &arguments::Estimator, setup: &Setup) -> Result<Option<u32>> {
+    let edges = match asked.max_depth {
+        Some(arguments::MaxDepth::Edges(edges)) => Some(edges),
+        Some(arguments::MaxDepth::Unbounded) => None,
+        None => setup.integrator.max_depth,
+    };
+    let single = matches!(setup.integrator.restriction, Restriction::SingleScattering { .. });
+    if single && edges.is_none_or(|edges| edges > Restriction::SINGLE) {
+        return Err(Error::new(
+            "--max-depth",
+            "0, 1 or 2, for the scene's integrator single_scattering",
+            edges.map_or("-1".to_owned(), |edges| edges.to_string()),
+            "replace the integrator in the scene, by volpath for example",
+        ));
+    }
+    Ok(edges)
+}
+
+fn strategies(asked: &arguments::Estimator, scene_method: Method) -> Result<Strategies> {
+    let all = match (asked.integrator, scene_method) {
+        (Some(arguments::Integrator::Bdpt), _) | (None, Method::Bdpt) => Strategies::BDPT,
+        (Some(arguments::Integrator::Pt), _) | (None, Method::Pt) => Strategies::PT,
+        (Some(arguments::Integrator::Lt), _) | (None, Method::Lt) => Strategies::LT,
+        (Some(arguments::Integrator::Fog), _) | (None, Method::Fog) => Strategies::NONE,
+    };
+    if asked.strategies.is_empty() {
+        return Ok(all);
+    }
+    let named = |strategy| asked.strategies.contains(&strategy);
+    let chosen = Strategies {
+        hit: named(arguments::Strategy::Hit),
+        next_event: named(arguments::Strategy::NextEvent),
+        join: named(arguments::Strategy::Join),
+        lens: named(arguments::Strategy::Lens),
+    };
+    let kept = Strategies {
+        hit: chosen.hit && all.hit,
+        next_event: chosen.next_event && all.next_event,
+        join: chosen.join && all.join,
+        lens: chosen.lens && all.lens,
+    };
+    if kept == chosen {
+        return Ok(kept);
+    }
+    Err(Error::new(
+        "--strategies",
+        "strategies that the integrator has",
+        "one that it leaves out",
+        "choose among those of --integrator bdpt: hit, next-event, join, lens",
+    ))
+}

@@ -1,0 +1,3 @@
+//! Instruments: what is measured about renders, and how it is told.
+
+pub mod outcome;

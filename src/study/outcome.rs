@@ -1,0 +1,96 @@
+//! What a study found, as it stands in `study.json`: numbers only. The images lie beside it, named here.
+
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// A whole study.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Which program made it, with its version.
+    pub made_by: String,
+    /// The command that makes it again.
+    pub command: String,
+    /// Processor and threads that all contenders had.
+    pub machine: String,
+    /// Confidence of every interval, such as 0.95.
+    pub confidence: f64,
+    /// One entry a scene.
+    pub scenes: Vec<SceneOutcome>,
+}
+
+/// What was found for one scene.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct SceneOutcome {
+    /// As in file names.
+    pub name: String,
+    /// Pixels across.
+    pub width: usize,
+    /// Pixels down.
+    pub height: usize,
+    /// What errors are measured against.
+    pub reference: Reference,
+    /// Everybody who rendered it.
+    pub contenders: Vec<ContenderOutcome>,
+}
+
+/// The image that stands for the truth.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Reference {
+    /// Where it lies, beside `study.json`.
+    pub image: PathBuf,
+    /// How it was made: renderer, integrator, samples per pixel; or the file it was read from.
+    pub how: String,
+    /// Its own relMSE: the expected value of the measure between it and the truth; none if nobody knows.
+    pub own_relmse: Option<f64>,
+}
+
+/// One way of rendering a scene, at growing budgets.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct ContenderOutcome {
+    /// As shown: renderer, integrator, what is special about it.
+    pub name: String,
+    /// Seconds of reading and compiling that are in no point; none if not known.
+    pub load_seconds: Option<f64>,
+    /// Budgets in growing order.
+    pub points: Vec<Point>,
+    /// Of log relMSE over log seconds: -1 without bias; none from fewer than three points.
+    pub slope: Option<Interval>,
+    /// 1 / (relMSE x seconds) at the last budget [1/s].
+    pub efficiency: Interval,
+    /// Variance per pixel and channel of one render at the last budget, where it lies beside `study.json`.
+    pub variance: PathBuf,
+}
+
+/// What one budget gave, over all seeds.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Point {
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Time of rendering [s], loading and compiling left out.
+    pub seconds: Interval,
+    /// Mean squared error [radiance^2].
+    pub mse: Interval,
+    /// mean((x - r)^2 / (r^2 + 0.01)).
+    pub relmse: Interval,
+    /// The same without the worst 0.1 % of values.
+    pub trimmed_relmse: Interval,
+    /// mean(|x - r| / (|r| + 0.01)).
+    pub mape: Interval,
+    /// mean(2 |x - r| / (|x| + |r| + 0.01)).
+    pub smape: Interval,
+    /// Mean of the image over that of the reference, less 1: what is left of it where seeds grow many is bias.
+    pub difference: Interval,
+    /// The image of the first seed, where it lies beside `study.json`.
+    pub image: PathBuf,
+}
+
+/// A mean over seeds and the ends of its confidence interval.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Interval {
+    /// The estimate.
+    pub mean: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
