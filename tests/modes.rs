@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use tyndall::{
     math::{Section, Spectrum, Vec3},
     render::{self, Settings, budget::Budget},
-    transport::{Options, Strategies},
+    transport::{Heuristic, Options, Strategies},
 };
 
 /// The near clip distance of `view`.
@@ -74,7 +74,13 @@ const FOG: Spectrum = Spectrum::new(0.1, 0.4, 0.9);
 fn preview(scene: &Value) -> Vec<Spectrum> {
     let Stage { setup, profile } = Stage::new(scene);
     let hide_emitters = setup.integrator.hide_emitters;
-    let options = Options { strategies: Strategies::NONE, max_depth: None, hide_emitters, seed: 0 };
+    let options = Options {
+        strategies: Strategies::NONE,
+        heuristic: Heuristic::Balance,
+        max_depth: None,
+        hide_emitters,
+        seed: 0,
+    };
     let budget = Budget { samples_per_pixel: Some(2), time: None };
     let settings = Settings { options, budget, seed: 1, profile };
     render::preview(&setup.scene, &setup.film, &settings, &setup.integrator.look, &[], &mut |_| {}).pixels

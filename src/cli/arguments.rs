@@ -1,6 +1,6 @@
 //! What can be asked on the command line.
 
-use crate::medium::Choice;
+use crate::{medium::Choice, scene::heuristic::Heuristic};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 
@@ -108,6 +108,13 @@ pub struct Estimator {
     /// Ways of making paths that may be used, separated by commas [default: all that the integrator has]
     #[arg(long, value_enum, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub strategies: Vec<Strategy>,
+
+    /// How strategies that can make the same path share it: balance, power, maximum, cutoff (or cutoff:ALPHA, 0.1 unless
+    /// given; it needs a --max-depth of at most 32) or uniform [default: the scene's, else balance]
+    ///
+    /// The image is the same within noise; the noise differs. All but balance run on the profile everything.
+    #[arg(long, value_name = "NAME", value_parser = heuristic)]
+    pub heuristic: Option<Heuristic>,
 
     /// Most edges of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 is without limit
     /// [default: the scene's]
@@ -297,6 +304,10 @@ fn max_depth(text: &str) -> Result<MaxDepth, String> {
     }
 }
 
+fn heuristic(text: &str) -> Result<Heuristic, String> {
+    Heuristic::parse(text).map_err(|expected| format!("expected {expected}"))
+}
+
 fn size(text: &str) -> Result<Size, String> {
     let expected = || format!("expected WIDTHxHEIGHT in pixels from 1 to {LARGEST_SIDE}, such as 640x480");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
@@ -447,6 +458,8 @@ mod tests {
             ("render a.xml -o a.jpg", ".hdr or .png"),
             ("render a.xml --integrator bdp", "bdpt"),
             ("render a.xml --strategies hit,jion", "join"),
+            ("render a.xml --heuristic balanec", "\"balance\""),
+            ("render a.xml --heuristic cutoff:1", "below 1"),
             ("convert a.xml", "OUT"),
             ("convert a.xml b.json -D res", "name=value"),
             ("convert --help", "Comments and layout are not kept"),

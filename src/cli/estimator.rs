@@ -5,6 +5,7 @@ use crate::{
     error::{Error, Result},
     scene::{
         build::Setup,
+        heuristic::Heuristic,
         integrator::{Method, Restriction},
     },
     transport::{
@@ -15,12 +16,17 @@ use crate::{
 
 /// The compiled estimator.
 pub fn profile(asked: &arguments::Estimator, setup: &Setup) -> ProfileName {
-    match asked.profile {
+    let profile = match asked.profile {
         arguments::Profile::Everything => ProfileName::Everything,
         arguments::Profile::Fitted => {
             ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.hide_emitters))
         }
-    }
+    };
+    profile.weighing(heuristic(asked, setup))
+}
+
+fn heuristic(asked: &arguments::Estimator, setup: &Setup) -> Heuristic {
+    asked.heuristic.unwrap_or(setup.integrator.heuristic)
 }
 
 /// What the estimator does; where nothing is asked for, as the scene says.
@@ -29,8 +35,27 @@ pub fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result
     if strategies == Strategies::NONE && asked.max_depth.is_some() {
         super::complain("warning: --max-depth has no effect: the integrator fog makes no paths");
     }
+    if strategies == Strategies::NONE && asked.heuristic.is_some() {
+        super::complain("warning: --heuristic has no effect: the integrator fog makes no paths");
+    }
     let (max_depth, hide_emitters) = (max_depth(asked, setup)?, setup.integrator.hide_emitters);
-    Ok(Options { strategies, max_depth, hide_emitters, seed })
+    let heuristic = heuristic(asked, setup);
+    check_depth(asked, heuristic, max_depth)?;
+    Ok(Options { strategies, heuristic, max_depth, hide_emitters, seed })
+}
+
+/// Some heuristics need a bound on the length of paths.
+fn check_depth(asked: &arguments::Estimator, heuristic: Heuristic, edges: Option<u32>) -> Result<()> {
+    let Some(most) = heuristic.most_edges().filter(|most| edges.is_none_or(|edges| edges > *most)) else {
+        return Ok(());
+    };
+    let place = if asked.max_depth.is_some() { "--max-depth" } else { "the scene's max_depth" };
+    Err(Error::new(
+        place,
+        format!("a number from 0 to {most}, for the heuristic {heuristic}"),
+        edges.map_or("-1 (no limit)".to_owned(), |edges| edges.to_string()),
+        format!("give --max-depth {most}, or choose another --heuristic: balance, power, maximum or uniform"),
+    ))
 }
 
 fn max_depth(asked: &arguments::Estimator, setup: &Setup) -> Result<Option<u32>> {

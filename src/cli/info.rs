@@ -30,7 +30,8 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
 
 fn describe(setup: &Setup) -> String {
     let Setup { scene, film, integrator, samples_per_pixel, .. } = setup;
-    let profile = ProfileName::leanest(Needs::of(scene, integrator.hide_emitters));
+    let profile =
+        ProfileName::leanest(Needs::of(scene, integrator.hide_emitters)).weighing(integrator.heuristic);
     let left_out = profile.left_out();
     let mut lines = vec![
         format!("image       {}", describe_film(film)),
@@ -95,10 +96,11 @@ fn describe_integrator(integrator: &Integrator) -> String {
         Restriction::SingleScattering { .. } => ", single scattering",
         Restriction::NonScattering => ", media that absorb and emit only",
     };
-    match integrator.max_depth {
-        Some(depth) => format!("{method}, paths of at most {depth} segments{media}"),
-        None => format!("{method}, paths of any length{media}"),
-    }
+    let length = match integrator.max_depth {
+        Some(depth) => format!("at most {depth} segments"),
+        None => "any length".to_owned(),
+    };
+    format!("{method}, paths of {length}{media}, weighed by the {} heuristic", integrator.heuristic)
 }
 
 fn describe_shapes(scene: &Scene) -> String {

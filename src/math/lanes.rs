@@ -14,6 +14,8 @@ pub trait Lanes:
     fn splat(value: f32) -> Self;
     /// The channels of a colour (the first one where there is one lane).
     fn from_spectrum(spectrum: Spectrum) -> Self;
+    /// What `lane` gives for the index of every lane.
+    fn from_fn(lane: impl Fn(usize) -> f32) -> Self;
     /// Back to a colour.
     fn to_spectrum(self) -> Spectrum;
     /// The lane by which distances are sampled.
@@ -41,6 +43,10 @@ impl Lanes for f32 {
     #[inline]
     fn from_spectrum(spectrum: Spectrum) -> Self {
         spectrum.x
+    }
+    #[inline]
+    fn from_fn(lane: impl Fn(usize) -> f32) -> Self {
+        lane(0)
     }
     #[inline]
     fn to_spectrum(self) -> Spectrum {
@@ -81,6 +87,10 @@ impl Lanes for Spectrum {
     #[inline]
     fn from_spectrum(spectrum: Spectrum) -> Self {
         spectrum
+    }
+    #[inline]
+    fn from_fn(lane: impl Fn(usize) -> f32) -> Self {
+        vec3(lane(0), lane(1), lane(2))
     }
     #[inline]
     fn to_spectrum(self) -> Spectrum {

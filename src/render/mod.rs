@@ -18,8 +18,11 @@ use crate::{
     math::{Spectrum, Vec3},
     scene::{Scene, integrator::Look},
     transport::{
-        Estimator, Options, Strategies,
-        profile::{Bounded, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName, Smoke, Vacuum},
+        Estimator, Heuristic, Options, Strategies,
+        profile::{
+            Bounded, ByCutoff, ByMaximum, ByPower, ByUniform, ChromaticFog, Everything, Fire, Fog, Profile,
+            ProfileName, Smoke, Vacuum,
+        },
     },
 };
 use block::{Blocks, Outcome};
@@ -37,7 +40,8 @@ pub struct Settings {
     pub budget: Budget,
     /// The same seed gives the same image, bit for bit.
     pub seed: u64,
-    /// The compiled estimator to use; must have all the scene needs.
+    /// The compiled estimator to use; must have all the scene needs. Heuristics other than the balance heuristic run
+    /// on what [`ProfileName::weighing`] makes of it.
     pub profile: ProfileName,
 }
 
@@ -102,7 +106,7 @@ pub fn preview(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    let options = Options { strategies: Strategies::NONE, ..settings.options };
+    let options = Options { strategies: Strategies::NONE, heuristic: Heuristic::Balance, ..settings.options };
     dispatch(scene, film, &Settings { options, ..*settings }, Some(look), layers, progress)
 }
 
@@ -114,6 +118,15 @@ fn dispatch(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
+    match settings.options.heuristic {
+        Heuristic::Balance => {}
+        Heuristic::Power => return render_as::<ByPower>(scene, film, settings, look, layers, progress),
+        Heuristic::Maximum => return render_as::<ByMaximum>(scene, film, settings, look, layers, progress),
+        Heuristic::Cutoff { .. } => {
+            return render_as::<ByCutoff>(scene, film, settings, look, layers, progress);
+        }
+        Heuristic::Uniform => return render_as::<ByUniform>(scene, film, settings, look, layers, progress),
+    }
     match settings.profile {
         ProfileName::Vacuum => render_as::<Vacuum>(scene, film, settings, look, layers, progress),
         ProfileName::Fog => render_as::<Fog>(scene, film, settings, look, layers, progress),

@@ -8,6 +8,7 @@ use crate::{
     film::layer::{Content, Layer, QUANTITIES},
     math::Spectrum,
     medium::{Choice, Treatment},
+    scene::heuristic::Heuristic,
 };
 
 /// How paths are made.
@@ -78,6 +79,8 @@ pub struct Integrator {
     pub max_depth: Option<u32>,
     /// The camera does not see emitters, but what is behind them.
     pub hide_emitters: bool,
+    /// By which strategies share paths.
+    pub heuristic: Heuristic,
     /// What light does in media.
     pub restriction: Restriction,
     /// How a preview looks.
@@ -92,6 +95,7 @@ impl Default for Integrator {
             method: Method::Bdpt,
             max_depth: None,
             hide_emitters: false,
+            heuristic: Heuristic::default(),
             restriction: Restriction::None,
             look: Look::default(),
             layers: Vec::new(),
@@ -153,7 +157,14 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
     params.accept_unused(&["rr_depth"], "walks end by absorption, which is exact at any depth");
     accept_division(params);
     let hide_emitters = params.boolean("hide_emitters", false)?;
-    Ok(Integrator { method, max_depth, hide_emitters, ..Integrator::default() })
+    let heuristic = heuristic(params)?;
+    Ok(Integrator { method, max_depth, hide_emitters, heuristic, ..Integrator::default() })
+}
+
+/// `heuristic`: as [`Heuristic::parse`] reads it.
+fn heuristic(params: &Params<'_>) -> Result<Heuristic> {
+    let Some(text) = params.optional_string("heuristic")? else { return Ok(Heuristic::default()) };
+    Heuristic::parse(text).map_err(|expected| params.complain("heuristic", expected, format!("\"{text}\"")))
 }
 
 /// `fog`: `fog_color`, `ambient`, `threshold` [m] (BMA02 sec. 3.1 and 4.2).

@@ -6,6 +6,7 @@ pub mod build;
 mod extents;
 mod film;
 mod finder;
+pub mod heuristic;
 pub mod integrator;
 mod json;
 pub mod lights;

@@ -5,7 +5,7 @@ use super::{
     profile::Profile,
     segment,
     vertex::Vertex,
-    weight::{self, End},
+    weight::{self, End, Strategy, Sums},
 };
 use crate::{
     bsdf::Transport,
@@ -18,12 +18,12 @@ use crate::{
 
 /// The end of a walk at `vertex`, looking in unit direction `towards`; none where nothing scatters that way.
 #[inline]
-pub fn vertex_end<L: Lanes>(
+pub fn vertex_end<S: Sums>(
     scene: &Scene,
-    vertex: &Vertex<L>,
+    vertex: &Vertex<S>,
     towards: Vec3,
     transport: Transport,
-) -> Option<End<L>> {
+) -> Option<End<S>> {
     let scattering = vertex.scatter_towards(scene, towards, transport);
     let value = vertex.throughput * scattering.value;
     if value.max_element() <= 0.0 {
@@ -54,7 +54,7 @@ pub fn link_end<P: Profile>(
     medium: MediumIndex,
     towards: Vec3,
     hits: f32,
-) -> End<P::Lanes> {
+) -> End<P::Sums> {
     let shines = P::EMISSIVE && link.rate.is_some();
     End {
         origin: link_origin(link, towards),
@@ -67,7 +67,7 @@ pub fn link_end<P: Profile>(
         inverse: 1.0 / link.connect,
         sigma_t: rate_of::<P>(link.rate),
         reach: P::Lanes::splat(1.0),
-        tail: P::Lanes::splat(if link.hittable { hits } else { 0.0 }),
+        tail: P::Sums::of(P::Lanes::splat(if link.hittable { hits } else { 0.0 })),
     }
 }
 
@@ -111,15 +111,15 @@ pub struct Span {
     pub hidden: bool,
 }
 
-/// Joins `a` and `b` by a strategy of `count` expected samples; none where the way is blocked, which emitters
+/// Joins `a` and `b` by `strategy`; none where the way is blocked, which emitters
 /// that are `hidden` do not. The caller divides by the number of samples it took.
 #[inline(always)]
 pub fn join<P: Profile>(
     scene: &Scene,
-    a: &End<P::Lanes>,
-    b: &End<P::Lanes>,
+    a: &End<P::Sums>,
+    b: &End<P::Sums>,
     distance_squared: f32,
-    count: f32,
+    strategy: Strategy,
     hidden: bool,
     stream: &mut Stream,
 ) -> Option<Joined> {
@@ -127,7 +127,7 @@ pub fn join<P: Profile>(
     let (direction, distance, _) = measure::between(a.origin, end)?;
     let ray = Ray { origin: a.origin, direction, t_max: distance };
     let cut = (b.origin - end).dot(direction);
-    join_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, count, stream)
+    join_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, strategy, stream)
 }
 
 /// The same along a given span that starts at `a`: for ends at infinity.
@@ -135,9 +135,9 @@ pub fn join<P: Profile>(
 pub fn join_along<P: Profile>(
     scene: &Scene,
     span: &Span,
-    a: &End<P::Lanes>,
-    b: &End<P::Lanes>,
-    count: f32,
+    a: &End<P::Sums>,
+    b: &End<P::Sums>,
+    strategy: Strategy,
     stream: &mut Stream,
 ) -> Option<Joined> {
     let Span { ray, cut, distance_squared, hidden } = *span;
@@ -146,7 +146,7 @@ pub fn join_along<P: Profile>(
         return None;
     }
     let geometry = 1.0 / distance_squared;
-    let weight = weight::join(a, b, passage.density, geometry, count);
+    let weight = weight::join(a, b, passage.density, geometry, strategy);
     let value = a.value * b.value * passage.transmittance * (geometry * weight);
     Some(Joined { value, weight })
 }

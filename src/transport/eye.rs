@@ -9,7 +9,7 @@ use super::{
     segment::Flown,
     vertex::{Site, Vertex},
     walk::{Departure, Kind, Visitor, land, walk},
-    weight,
+    weight::{self, Sums},
 };
 use crate::{
     bsdf::Transport,
@@ -24,7 +24,7 @@ use crate::{
 /// Gathers the radiance of one pixel sample.
 pub struct Eye<'a, P: Profile> {
     estimator: &'a Estimator<'a, P>,
-    cache: &'a LightCache<P::Lanes>,
+    cache: &'a LightCache<P::Sums>,
     hero: usize,
     /// The vertex before the current one: where next-event estimation would have been made from.
     previous: Vec3,
@@ -35,7 +35,7 @@ pub struct Eye<'a, P: Profile> {
 /// walks of `cache`.
 pub fn sample<P: Profile>(
     estimator: &Estimator<'_, P>,
-    cache: &LightCache<P::Lanes>,
+    cache: &LightCache<P::Sums>,
     film: Vec2,
     aperture: Vec2,
     hero: usize,
@@ -50,7 +50,7 @@ pub fn sample<P: Profile>(
 
 /// Leaves the sensor through a film position and a point of its aperture. Nothing can join before the sensor:
 /// its sums are zero.
-pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Vec2) -> Departure<P::Lanes> {
+pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Vec2) -> Departure<P::Sums> {
     let sensor = &estimator.scene.sensor;
     let SensorRay { position, ray, density } = sensor.ray(film, aperture);
     Departure {
@@ -63,7 +63,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Ve
         dirac: false,
         throughput: Spectrum::ONE,
         forward: density,
-        carried: P::Lanes::splat(0.0),
+        carried: P::Sums::none(),
         reach: P::Lanes::splat(1.0),
     }
 }
@@ -75,7 +75,7 @@ impl<P: Profile> Visitor<P> for Eye<'_, P> {
     }
 
     #[inline]
-    fn arrive(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
+    fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
         if let Site::Surface(point) = &vertex.site
             && let Some(light) = self.estimator.scene.surface(point.shape).emitter
         {
@@ -96,7 +96,7 @@ impl<P: Profile> Visitor<P> for Eye<'_, P> {
     /// s = 0 in a medium: of all points of a flight one is taken, by where it may shine most. That a flight comes as far
     /// as a point as often as radiance does is what makes up for the transmittance up to there.
     #[inline]
-    fn pass(&mut self, departure: &Departure<P::Lanes>, flown: &Flown<P::Lanes>, stream: &mut Stream) {
+    fn pass(&mut self, departure: &Departure<P::Sums>, flown: &Flown<P::Lanes>, stream: &mut Stream) {
         let Some((light, emission)) = self.estimator.scene.lights.of_medium(flown.medium) else { return };
         if self.estimator.counts.hit <= 0.0 {
             return;
@@ -108,7 +108,7 @@ impl<P: Profile> Visitor<P> for Eye<'_, P> {
         }
     }
 
-    fn escape(&mut self, vertex: &Vertex<P::Lanes>) {
+    fn escape(&mut self, vertex: &Vertex<P::Sums>) {
         if let Some(link) = self.estimator.scene.lights.met_at_infinity(-vertex.incoming) {
             self.radiance += self.hit(vertex, &link).map_or(Spectrum::ZERO, |hit| hit.value);
         }
@@ -119,7 +119,7 @@ impl<'a, P: Profile> Eye<'a, P> {
     /// Nothing gathered yet; the walk begins at the point `start` of the sensor.
     pub fn new(
         estimator: &'a Estimator<'a, P>,
-        cache: &'a LightCache<P::Lanes>,
+        cache: &'a LightCache<P::Sums>,
         hero: usize,
         start: Vec3,
     ) -> Self {
@@ -129,12 +129,12 @@ impl<'a, P: Profile> Eye<'a, P> {
     /// The end of a walk at a point of a medium that shines, as the emitter `light`; none where it is dark there.
     pub fn meet(
         &self,
-        departure: &Departure<P::Lanes>,
+        departure: &Departure<P::Sums>,
         flown: &Flown<P::Lanes>,
         light: u32,
         t: f32,
         stream: &mut Stream,
-    ) -> Option<(Vertex<P::Lanes>, Link)> {
+    ) -> Option<(Vertex<P::Sums>, Link)> {
         let scene = self.estimator.scene;
         let link = scene.lights.link_within(light, flown.section.at(t))?;
         let matter = Matter { sigma_t: link.rate?, albedo: Spectrum::ZERO };
@@ -144,7 +144,7 @@ impl<'a, P: Profile> Eye<'a, P> {
 
     /// s = 0: the walk has met an emitter.
     #[inline]
-    pub fn hit(&self, vertex: &Vertex<P::Lanes>, link: &Link) -> Option<Joined> {
+    pub fn hit(&self, vertex: &Vertex<P::Sums>, link: &Link) -> Option<Joined> {
         let counts = &self.estimator.counts;
         // Media are no emitters that can be hidden: what is behind them is seen through them.
         let hidden = self.estimator.hide_emitters && !(P::EMISSIVE && link.rate.is_some());
@@ -163,17 +163,17 @@ impl<'a, P: Profile> Eye<'a, P> {
         };
         let unit = vertex.inverse / counts.hit;
         let by_light = vertex.partial.scaled(link.forward * link.start * unit);
-        let others = vertex.reach_before.scaled(joins * unit) + by_light;
+        let others = P::Sums::of(vertex.reach_before.scaled(joins * unit)).and(by_light);
         // `value` is radiance x cosine on shapes: the walk's density already contains that cosine. The rate of media is
         // for weights alone.
         let radiance = link.value / link.cosine;
-        let weight = weight::hit(vertex.reach, others);
+        let weight = weight::hit(vertex.reach, others, self.estimator.heuristic);
         Some(Joined { value: vertex.throughput * radiance * (weight / counts.hit), weight })
     }
 
     /// s = 1: a freshly sampled emitter point.
     #[inline]
-    fn next_event(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
+    fn next_event(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
         let scene = self.estimator.scene;
         let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream) else { return };
         self.radiance += self.link(vertex, &link, stream).map_or(Spectrum::ZERO, |joined| joined.value);
@@ -181,7 +181,7 @@ impl<'a, P: Profile> Eye<'a, P> {
 
     /// The join with an emitter point picked by next-event estimation.
     #[inline]
-    pub fn link(&self, vertex: &Vertex<P::Lanes>, link: &Link, stream: &mut Stream) -> Option<Joined> {
+    pub fn link(&self, vertex: &Vertex<P::Sums>, link: &Link, stream: &mut Stream) -> Option<Joined> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let (direction, distance_squared) = if P::INFINITE && link.infinite {
             (link.position, 1.0)
@@ -191,18 +191,19 @@ impl<'a, P: Profile> Eye<'a, P> {
         };
         let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
         let light = connect::link_end::<P>(scene, link, eye.medium, -direction, counts.hit);
+        let strategy = self.estimator.strategy(1.0);
         if P::INFINITE && link.infinite {
             let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
             let span = Span { ray, cut: 0.0, distance_squared: 1.0, hidden: false };
-            connect::join_along::<P>(scene, &span, &eye, &light, 1.0, stream)
+            connect::join_along::<P>(scene, &span, &eye, &light, strategy, stream)
         } else {
-            connect::join::<P>(scene, &eye, &light, distance_squared, 1.0, false, stream)
+            connect::join::<P>(scene, &eye, &light, distance_squared, strategy, false, stream)
         }
     }
 
     /// s >= 2: vertices drawn from the cache of light walks.
     #[inline]
-    fn join(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
+    fn join(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
         let estimator = self.estimator;
         let Some((pool, scale)) = self.cache.pool(self.hero, estimator.joins_per_vertex) else { return };
         for _ in 0..estimator.joins_per_vertex {
@@ -218,14 +219,15 @@ impl<'a, P: Profile> Eye<'a, P> {
     #[inline]
     pub fn join_with(
         &self,
-        vertex: &Vertex<P::Lanes>,
-        other: &Vertex<P::Lanes>,
+        vertex: &Vertex<P::Sums>,
+        other: &Vertex<P::Sums>,
         stream: &mut Stream,
     ) -> Option<Joined> {
         let scene = self.estimator.scene;
         let (direction, _, distance_squared) = measure::between(vertex.position, other.position)?;
         let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
         let light = connect::vertex_end(scene, other, -direction, Transport::Importance)?;
-        connect::join::<P>(scene, &eye, &light, distance_squared, self.estimator.counts.join, false, stream)
+        let strategy = self.estimator.strategy(self.estimator.counts.join);
+        connect::join::<P>(scene, &eye, &light, distance_squared, strategy, false, stream)
     }
 }

@@ -7,7 +7,7 @@ use super::{
     profile::Profile,
     vertex::Vertex,
     walk::{Departure, Kind, Visitor, walk},
-    weight::End,
+    weight::{End, Sums},
 };
 use crate::{
     bsdf::Transport,
@@ -29,7 +29,7 @@ pub trait Splats {
 /// One light walk on its way.
 pub struct Light<'a, P: Profile, S> {
     estimator: &'a Estimator<'a, P>,
-    cache: &'a mut LightCache<P::Lanes>,
+    cache: &'a mut LightCache<P::Sums>,
     splats: &'a mut S,
     start: Start,
     hero: usize,
@@ -38,7 +38,7 @@ pub struct Light<'a, P: Profile, S> {
 /// One light walk: its vertices go to `cache`, its joins with the lens to `splats`.
 pub fn trace<P: Profile>(
     estimator: &Estimator<'_, P>,
-    cache: &mut LightCache<P::Lanes>,
+    cache: &mut LightCache<P::Sums>,
     splats: &mut impl Splats,
     hero: usize,
     stream: &mut Stream,
@@ -67,7 +67,7 @@ pub fn begin<P: Profile>(scene: &Scene, stream: &mut Stream) -> Option<Start> {
 }
 
 /// Leaves the emitter. Before it only an eye walk that meets it can join.
-pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Departure<P::Lanes> {
+pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Departure<P::Sums> {
     let hits = if start.hittable { estimator.counts.hit } else { 0.0 };
     Departure {
         position: start.position,
@@ -79,7 +79,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Depart
         dirac: start.dirac,
         throughput: start.throughput,
         forward: start.forward,
-        carried: connect::rate_of::<P>(start.rate).scaled(hits * start.cosine / start.start),
+        carried: P::Sums::of(connect::rate_of::<P>(start.rate).scaled(hits * start.cosine / start.start)),
         reach: P::Lanes::splat(1.0),
     }
 }
@@ -96,7 +96,7 @@ impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
     }
 
     #[inline]
-    fn arrive(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream) {
+    fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
         if !vertex.is_connectible(self.estimator.scene) {
             return;
         }
@@ -110,14 +110,14 @@ impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
         }
     }
 
-    fn escape(&mut self, _: &Vertex<P::Lanes>) {}
+    fn escape(&mut self, _: &Vertex<P::Sums>) {}
 }
 
 impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
     /// The walk that begins with `start`.
     pub fn new(
         estimator: &'a Estimator<'a, P>,
-        cache: &'a mut LightCache<P::Lanes>,
+        cache: &'a mut LightCache<P::Sums>,
         splats: &'a mut S,
         start: Start,
         hero: usize,
@@ -136,7 +136,7 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
     #[inline]
     pub fn join_to_lens(
         &self,
-        vertex: &Vertex<P::Lanes>,
+        vertex: &Vertex<P::Sums>,
         aperture: Vec2,
         stream: &mut Stream,
     ) -> Option<(Vec2, Joined)> {
@@ -174,7 +174,7 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
     #[inline]
     fn join_end(
         &self,
-        end: &End<P::Lanes>,
+        end: &End<P::Sums>,
         seen: &Projection,
         infinite: bool,
         stream: &mut Stream,
@@ -193,24 +193,21 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
             inverse: 1.0,
             sigma_t: P::Lanes::splat(1.0),
             reach: P::Lanes::splat(1.0),
-            tail: P::Lanes::splat(0.0),
+            tail: P::Sums::none(),
         };
+        let strategy = self.estimator.strategy(counts.lens);
         if P::INFINITE && infinite {
             let span = Span { ray, cut: 0.0, distance_squared, hidden };
-            connect::join_along::<P>(scene, &span, &lens, end, counts.lens, stream)
+            connect::join_along::<P>(scene, &span, &lens, end, strategy, stream)
         } else {
-            connect::join::<P>(scene, end, &lens, distance_squared, counts.lens, hidden, stream)
+            connect::join::<P>(scene, end, &lens, distance_squared, strategy, hidden, stream)
         }
     }
 }
 
 /// The emitter point of a light walk as the end of a join in unit direction `towards`; none where it does not
 /// emit that way.
-fn start_end<P: Profile>(
-    estimator: &Estimator<'_, P>,
-    start: &Start,
-    towards: Vec3,
-) -> Option<End<P::Lanes>> {
+fn start_end<P: Profile>(estimator: &Estimator<'_, P>, start: &Start, towards: Vec3) -> Option<End<P::Sums>> {
     let emission = estimator.scene.lights.emission(start, towards)?;
     let origin = match &start.point {
         Some(point) => offset::leave_surface(point.position, point.error, point.normal, towards),
@@ -228,6 +225,6 @@ fn start_end<P: Profile>(
         inverse: 1.0 / start.start,
         sigma_t: connect::rate_of::<P>(start.rate),
         reach: P::Lanes::splat(1.0),
-        tail: P::Lanes::splat(estimator.counts.hit),
+        tail: P::Sums::of(P::Lanes::splat(estimator.counts.hit)),
     })
 }

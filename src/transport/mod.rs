@@ -2,8 +2,9 @@
 //!
 //! A pixel sample is one eye walk. At each of its vertices: emitters met (s = 0), next-event estimation
 //! (s = 1), and joins with a fixed number of vertices drawn from a cache of light walks (s >= 2). Light walks
-//! also join the lens (t = 1). Every contribution is weighted by the balance heuristic over all strategies that
-//! could have made its path, flight densities included. `pt` and `lt` are the same with strategies left out.
+//! also join the lens (t = 1). Every contribution is weighted by a heuristic, the balance heuristic unless another is
+//! asked for, over all strategies that could have made its path, flight densities included. `pt` and `lt` are the same
+//! with strategies left out.
 
 mod cache;
 mod connect;
@@ -21,6 +22,8 @@ pub use cache::LightCache;
 
 pub use light::Splats;
 
+pub use crate::scene::heuristic::Heuristic;
+
 use crate::{
     math::{Lanes, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
@@ -28,6 +31,7 @@ use crate::{
     shape::Ray,
 };
 use profile::Profile;
+use weight::{Strategy, Sums};
 
 /// Which strategies run. Their weights sum to one over those that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +62,11 @@ impl Strategies {
 pub struct Options {
     /// Which strategies run.
     pub strategies: Strategies,
-    /// Most segments of a path, null boundaries not counted; none for no limit.
+    /// By which they share the paths that several of them can make. All but [`Heuristic::Balance`] run on the profile
+    /// that [`profile::ProfileName::weighing`] names.
+    pub heuristic: Heuristic,
+    /// Most segments of a path, null boundaries not counted; none for no limit. Paths beyond
+    /// [`Heuristic::most_edges`] are never made.
     pub max_depth: Option<u32>,
     /// The camera does not see emitters, but what is behind them.
     pub hide_emitters: bool,
@@ -86,6 +94,7 @@ const PILOT_WALKS: u64 = 2_048;
 pub struct Estimator<'a, P: Profile> {
     scene: &'a Scene,
     counts: Counts,
+    heuristic: Heuristic,
     joins_per_vertex: u32,
     /// Probability that a light vertex is kept for joins.
     keep: f32,
@@ -98,7 +107,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// Prepares to render `scene` with `walks_per_pass` light walks for each sample of all pixels together and
     /// `walks_per_block` of them behind one cache.
     pub fn new(scene: &'a Scene, options: Options, walks_per_pass: u64, walks_per_block: u64) -> Self {
-        let Options { strategies, max_depth, hide_emitters, seed } = options;
+        let Options { strategies, heuristic, max_depth, hide_emitters, seed } = options;
         let lit = !scene.lights.is_empty();
         let count = |on: bool, n: f32| if on && lit { n } else { 0.0 };
         let mut estimator = Self {
@@ -109,9 +118,10 @@ impl<'a, P: Profile> Estimator<'a, P> {
                 join: 0.0,
                 lens: count(strategies.lens, walks_per_pass as f32),
             },
+            heuristic,
             joins_per_vertex: 0,
             keep: 0.0,
-            max_edges: max_depth.unwrap_or(u32::MAX),
+            max_edges: max_depth.unwrap_or(u32::MAX).min(P::Sums::MOST_EDGES),
             hide_emitters,
             profile: std::marker::PhantomData,
         };
@@ -138,6 +148,12 @@ impl<'a, P: Profile> Estimator<'a, P> {
         self.counts.join = JOINS_PER_VERTEX as f32 / per_walk;
     }
 
+    /// The strategy of `count` expected samples.
+    #[inline]
+    fn strategy(&self, count: f32) -> Strategy {
+        Strategy { count, heuristic: self.heuristic }
+    }
+
     /// True if light walks have something to do.
     pub fn needs_light_walks(&self) -> bool {
         self.joins_per_vertex > 0 || self.counts.lens > 0.0
@@ -146,7 +162,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// Traces one light walk of channel `hero` into `cache` and `splats`.
     pub fn trace_light(
         &self,
-        cache: &mut LightCache<P::Lanes>,
+        cache: &mut LightCache<P::Sums>,
         splats: &mut impl Splats,
         hero: usize,
         stream: &mut Stream,
@@ -180,7 +196,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// Radiance estimate of one eye walk of channel `hero` through `film` [pixels] and a point of the aperture.
     pub fn sample_pixel(
         &self,
-        cache: &LightCache<P::Lanes>,
+        cache: &LightCache<P::Sums>,
         film: Vec2,
         aperture: Vec2,
         hero: usize,

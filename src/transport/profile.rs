@@ -1,13 +1,20 @@
 //! Profiles: what a compiled estimator contains. Chosen once per render; what a scene does not have is not
 //! tested for, it is not there.
 
+use super::{
+    Heuristic,
+    weight::{Balance, Cutoff, Maximum, Power, Sums, Uniform},
+};
 use crate::math::Lanes;
 use crate::{bsdf::BsdfModel, math::Spectrum, medium::Medium, scene::Scene};
+use std::marker::PhantomData;
 
 /// Compile-time constants that remove code.
 pub trait Profile: Copy + Send + Sync + 'static {
     /// Extinction per lane.
     type Lanes: Lanes;
+    /// What walks carry for the weights of strategies.
+    type Sums: Sums<Lanes = Self::Lanes>;
     /// Some medium has extinction.
     const MEDIA: bool;
     /// Rays can pass surfaces undeflected, so segments cross boundaries.
@@ -30,6 +37,7 @@ macro_rules! profile {
         pub struct $name;
         impl Profile for $name {
             type Lanes = $lanes;
+            type Sums = Balance<$lanes>;
             const MEDIA: bool = $media;
             const NULLS: bool = $nulls;
             const HETEROGENEOUS: bool = $heterogeneous;
@@ -70,11 +78,30 @@ profile! {
     ChromaticFog, "chromatic-fog", lanes: Spectrum, media: true, nulls: false,
     heterogeneous: false, infinite: false, emissive: false
 }
-profile! {
-    /// All there is.
-    Everything, "everything", lanes: Spectrum, media: true, nulls: true,
-    heterogeneous: true, infinite: true, emissive: true
+
+/// All there is, weighed by the heuristic that `S` sums for.
+#[derive(Clone, Copy, Debug)]
+pub struct Everything<S = Balance<Spectrum>>(PhantomData<S>);
+
+impl<S: Sums<Lanes = Spectrum>> Profile for Everything<S> {
+    type Lanes = Spectrum;
+    type Sums = S;
+    const MEDIA: bool = true;
+    const NULLS: bool = true;
+    const HETEROGENEOUS: bool = true;
+    const INFINITE: bool = true;
+    const EMISSIVE: bool = true;
+    const NAME: &'static str = "everything";
 }
+
+/// [`Everything`] by the power heuristic.
+pub type ByPower = Everything<Power<Spectrum>>;
+/// [`Everything`] by the maximum heuristic.
+pub type ByMaximum = Everything<Maximum<Spectrum>>;
+/// [`Everything`] by the cutoff heuristic.
+pub type ByCutoff = Everything<Cutoff<Spectrum>>;
+/// [`Everything`] by the uniform heuristic.
+pub type ByUniform = Everything<Uniform<Spectrum>>;
 
 /// What a scene needs of its profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -144,6 +171,12 @@ impl ProfileName {
         }
     }
 
+    /// The profile that runs where this one and `heuristic` are asked for: only the balance heuristic is compiled for
+    /// all of them. Who compares run times of heuristics runs the balance heuristic on the others' profile too.
+    pub fn weighing(self, heuristic: Heuristic) -> Self {
+        if heuristic == Heuristic::Balance { self } else { Self::Everything }
+    }
+
     /// As printed and as typed.
     pub fn name(self) -> &'static str {
         match self {
@@ -153,7 +186,7 @@ impl ProfileName {
             Self::Smoke => Smoke::NAME,
             Self::Fire => Fire::NAME,
             Self::ChromaticFog => ChromaticFog::NAME,
-            Self::Everything => Everything::NAME,
+            Self::Everything => <Everything>::NAME,
         }
     }
 

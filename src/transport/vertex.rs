@@ -1,5 +1,6 @@
 //! A path vertex: where it is, how it scatters, and what the balance heuristic needs of the walk behind it.
 
+use super::weight::Sums;
 use crate::math::Lanes;
 use crate::{
     bsdf::{BsdfModel, Transport},
@@ -33,16 +34,17 @@ pub struct Scattering {
 
 /// A vertex of an eye or light walk, i segments after its start.
 ///
-/// The last three fields are the running sums of the balance heuristic. With p>_i the density by which this
+/// The last three fields are the running sums of the weights. With p>_i the density by which this
 /// walk makes vertex i (flight, direction and geometry, LW96 eq. 13) and p<_i that of the opposite walk, for
 /// lane c and hero h:
 ///   reach_i   = product over j <= i of p>^c_j / p>^h_j
 ///   D_i       = (p<^c_i / p>^h_i) (reach_{i-1} n_i + D_{i-1})
-/// sums n_j p_j over all strategies that join before vertex i, in units of this walk's own density. What p<_i
+/// sums n_j p_j (as [`Sums`] do for the heuristic at hand) over all strategies that join before vertex i, in units
+/// of this walk's own density. What p<_i
 /// needs of the vertices beyond i is not known yet, so `partial` is D_{i-1} without the direction density at
 /// vertex i, and `inverse` is 1/p>^h_i.
 #[derive(Clone, Copy, Debug)]
-pub struct Vertex<L> {
+pub struct Vertex<S: Sums> {
     /// World position.
     pub position: Vec3,
     /// Surface or medium.
@@ -62,20 +64,20 @@ pub struct Vertex<L> {
     /// 1/p>^h_i.
     pub inverse: f32,
     /// reach_{i-1}.
-    pub reach_before: L,
+    pub reach_before: S::Lanes,
     /// reach_i.
-    pub reach: L,
+    pub reach: S::Lanes,
     /// D_{i-1} over the direction density at this vertex towards the one before.
-    pub partial: L,
+    pub partial: S,
 }
 
-impl<L: Lanes> Vertex<L> {
+impl<S: Sums> Vertex<S> {
     /// sigma_t per lane in a medium, 1 on a surface.
     #[inline]
-    pub fn sigma_t(&self) -> L {
+    pub fn sigma_t(&self) -> S::Lanes {
         match self.site {
-            Site::Surface(_) => L::splat(1.0),
-            Site::Medium(matter) => L::from_spectrum(matter.sigma_t),
+            Site::Surface(_) => S::Lanes::splat(1.0),
+            Site::Medium(matter) => S::Lanes::from_spectrum(matter.sigma_t),
         }
     }
 
@@ -112,8 +114,8 @@ impl<L: Lanes> Vertex<L> {
     /// The sum over the strategies that join before this vertex, once the direction density back to the
     /// vertex before is known: reach_{i-1} n_i + D_{i-1}.
     #[inline]
-    pub fn tail(&self, backward: f32) -> L {
-        self.reach_before.scaled(self.joins) + self.partial.scaled(backward)
+    pub fn tail(&self, backward: f32) -> S {
+        S::of(self.reach_before.scaled(self.joins)).and(self.partial.scaled(backward))
     }
 
     /// True on a shape that emits.

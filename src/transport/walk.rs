@@ -1,10 +1,11 @@
 //! The random walk (LW96 sec. 3), one for eye and light: flights, collisions, reflections, absorption, and the
-//! running sums of the balance heuristic.
+//! running sums of the weights.
 
 use super::{
     profile::Profile,
     segment::{self, Flight, Flown, Landing},
     vertex::{Site, Vertex, shading_correction},
+    weight::Sums,
 };
 use crate::{
     bsdf::{BsdfModel, Transport},
@@ -18,7 +19,7 @@ use crate::{
 
 /// A walk about to fly: everything known before the next vertex is.
 #[derive(Clone, Copy, Debug)]
-pub struct Departure<L> {
+pub struct Departure<S: Sums> {
     /// The vertex left behind.
     pub position: Vec3,
     /// The ray out of it.
@@ -38,9 +39,9 @@ pub struct Departure<L> {
     /// Density of the direction, survival included [1/sr] (or of the start on the disk [1/m^2]).
     pub forward: f32,
     /// This vertex's D without what the next segment completes: tail x sigma_t x |cos| / p>^h.
-    pub carried: L,
+    pub carried: S,
     /// reach of this vertex.
-    pub reach: L,
+    pub reach: S::Lanes,
 }
 
 /// What happens at the vertices of a walk.
@@ -50,14 +51,14 @@ pub trait Visitor<P: Profile> {
     fn joins(&self, edges: u32, position: Vec3) -> f32;
 
     /// A vertex was reached; it may scatter on.
-    fn arrive(&mut self, vertex: &Vertex<P::Lanes>, stream: &mut Stream);
+    fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream);
 
     /// A part of a flight from `departure` lies behind; only in profiles where media shine.
-    fn pass(&mut self, _departure: &Departure<P::Lanes>, _flown: &Flown<P::Lanes>, _stream: &mut Stream) {}
+    fn pass(&mut self, _departure: &Departure<P::Sums>, _flown: &Flown<P::Lanes>, _stream: &mut Stream) {}
 
     /// The walk left the scene: `vertex` stands for the direction it left in (its `incoming` reversed), its
     /// density per solid angle.
-    fn escape(&mut self, vertex: &Vertex<P::Lanes>);
+    fn escape(&mut self, vertex: &Vertex<P::Sums>);
 }
 
 /// Which walk this is and how far it may go.
@@ -76,7 +77,7 @@ pub struct Kind {
 pub fn walk<P: Profile>(
     scene: &Scene,
     kind: Kind,
-    mut departure: Departure<P::Lanes>,
+    mut departure: Departure<P::Sums>,
     visitor: &mut impl Visitor<P>,
     stream: &mut Stream,
 ) {
@@ -104,11 +105,11 @@ pub fn walk<P: Profile>(
 /// The vertex at the end of a flight; none if it coincides with the one before.
 #[inline]
 pub fn land<P: Profile>(
-    departure: &Departure<P::Lanes>,
+    departure: &Departure<P::Sums>,
     flight: &Flight<P::Lanes>,
     hero: usize,
     visitor: &impl Visitor<P>,
-) -> Option<Vertex<P::Lanes>> {
+) -> Option<Vertex<P::Sums>> {
     let direction = departure.ray.direction;
     let (position, site) = match flight.landing {
         Landing::Surface(point) => (point.position, Site::Surface(point)),
@@ -147,7 +148,7 @@ pub fn land<P: Profile>(
     if !(vertex.inverse > 0.0 && vertex.inverse < f32::INFINITY) {
         return None;
     }
-    vertex.partial = (departure.carried * transmitted).scaled(1.0 / distance_squared);
+    vertex.partial = departure.carried.times(transmitted).scaled(1.0 / distance_squared);
     vertex.reach = departure.reach * ratio;
     let sampled = if P::HETEROGENEOUS { flight.ratio } else { ratio };
     vertex.throughput *= sampled.to_spectrum();
@@ -174,12 +175,12 @@ pub struct Turn {
 
 /// Scatters at `vertex`; none if the walk is absorbed there (LW96 eq. 8 and 9).
 #[inline]
-fn scatter<L: Lanes>(
+fn scatter<S: Sums>(
     scene: &Scene,
-    vertex: &Vertex<L>,
+    vertex: &Vertex<S>,
     transport: Transport,
     stream: &mut Stream,
-) -> Option<Departure<L>> {
+) -> Option<Departure<S>> {
     let turn = match &vertex.site {
         Site::Medium(matter) => collide(scene, vertex, matter, stream)?,
         Site::Surface(point) => reflect(scene, vertex, point, transport, stream)?,
@@ -189,7 +190,7 @@ fn scatter<L: Lanes>(
 
 /// Leaves `vertex` in the direction of `turn`.
 #[inline]
-pub fn set_out<L: Lanes>(scene: &Scene, vertex: &Vertex<L>, turn: &Turn) -> Departure<L> {
+pub fn set_out<S: Sums>(scene: &Scene, vertex: &Vertex<S>, turn: &Turn) -> Departure<S> {
     let (origin, medium) = vertex.depart(scene, turn.direction);
     let tail = if turn.dirac { vertex.partial.scaled(turn.backward) } else { vertex.tail(turn.backward) };
     Departure {
@@ -202,18 +203,13 @@ pub fn set_out<L: Lanes>(scene: &Scene, vertex: &Vertex<L>, turn: &Turn) -> Depa
         dirac: turn.dirac,
         throughput: vertex.throughput * turn.weight,
         forward: turn.forward,
-        carried: (tail * vertex.sigma_t()).scaled(vertex.cosine(turn.direction) * vertex.inverse),
+        carried: tail.times(vertex.sigma_t()).scaled(vertex.cosine(turn.direction) * vertex.inverse),
         reach: vertex.reach,
     }
 }
 
 #[inline]
-fn collide<L: Lanes>(
-    scene: &Scene,
-    vertex: &Vertex<L>,
-    matter: &Matter,
-    stream: &mut Stream,
-) -> Option<Turn> {
+fn collide<S: Sums>(scene: &Scene, vertex: &Vertex<S>, matter: &Matter, stream: &mut Stream) -> Option<Turn> {
     let medium = &scene.media[vertex.medium.0 as usize];
     let survival = matter.survival();
     if stream.uniform() >= survival {
@@ -226,9 +222,9 @@ fn collide<L: Lanes>(
 }
 
 #[inline]
-fn reflect<L: Lanes>(
+fn reflect<S: Sums>(
     scene: &Scene,
-    vertex: &Vertex<L>,
+    vertex: &Vertex<S>,
     point: &SurfacePoint,
     transport: Transport,
     stream: &mut Stream,

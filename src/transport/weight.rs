@@ -1,12 +1,29 @@
-//! The balance heuristic (LW96 eq. 14), O(1) per connection.
+//! Weights of strategies (LW96 eq. 14), O(1) per connection. The folders' files are the heuristics; `sums` is what they
+//! have in common.
 
-use crate::math::Lanes;
+mod balance;
+mod cutoff;
+mod maximum;
+mod power;
+mod sums;
+mod uniform;
+
+pub use balance::Balance;
+pub use cutoff::Cutoff;
+pub use maximum::Maximum;
+#[cfg(test)]
+pub use maximum::TIE;
+pub use power::Power;
+pub use sums::Sums;
+pub use uniform::Uniform;
+
 use crate::math::{Spectrum, Vec3};
 use crate::medium::MediumIndex;
+use crate::scene::heuristic::Heuristic;
 
 /// One end of a join: a vertex with its scattering towards the other end evaluated.
 #[derive(Clone, Copy, Debug)]
-pub struct End<L> {
+pub struct End<S: Sums> {
     /// Where the joining ray starts.
     pub origin: Vec3,
     /// Unit normal on the side of `origin`; zero where it lies on no surface.
@@ -24,36 +41,51 @@ pub struct End<L> {
     /// 1/p>^h of this vertex.
     pub inverse: f32,
     /// sigma_t per lane in a medium, [`crate::medium::Emission::rate`] where that shines, 1 elsewhere.
-    pub sigma_t: L,
+    pub sigma_t: S::Lanes,
     /// See [`super::vertex::Vertex::reach`].
-    pub reach: L,
+    pub reach: S::Lanes,
     /// See [`super::vertex::Vertex::tail`].
-    pub tail: L,
+    pub tail: S,
 }
 
-impl<L: Lanes> End<L> {
+impl<S: Sums> End<S> {
     /// D of this end: the strategies that join on its own side, relative to the one at hand. `other_forward` is
     /// the density of the direction from the other end to this one.
     #[inline]
-    fn before(&self, other_forward: f32, density: L, inverse_distance_squared: f32) -> L {
+    fn before(&self, other_forward: f32, density: S::Lanes, inverse_distance_squared: f32) -> S {
         let geometry = other_forward * self.cosine * inverse_distance_squared * self.inverse;
-        (self.tail * self.sigma_t * density).scaled(geometry)
+        self.tail.times(self.sigma_t).times(density).scaled(geometry)
     }
 }
 
-/// Weight of the join of `a` and `b` by a strategy of `count` expected samples, times the number of lanes:
-/// n p^h / ((1/C) sum_c sum_j n_j p_j^c). `density` is the surface flight density of the joining segment.
-#[inline]
-pub fn join<L: Lanes>(a: &End<L>, b: &End<L>, density: L, inverse_distance_squared: f32, count: f32) -> f32 {
-    let before_a = a.before(b.forward, density, inverse_distance_squared);
-    let before_b = b.before(a.forward, density, inverse_distance_squared);
-    let others = before_a * b.reach + before_b * a.reach;
-    L::COUNT as f32 / (a.reach * b.reach + others.scaled(1.0 / count)).sum()
+/// A strategy as its weights see it.
+#[derive(Clone, Copy, Debug)]
+pub struct Strategy {
+    /// Expected samples.
+    pub count: f32,
+    /// By which it shares paths with the others.
+    pub heuristic: Heuristic,
 }
 
-/// The same where an eye walk has met the emitter itself (s = 0): `others` sums n_j p_j over all other
-/// strategies in units of the walk's own density, whose lanes are `reach`.
+/// Weight of the join of `a` and `b` by `strategy`, times the number of lanes; for the balance heuristic
+/// n p^h / ((1/C) sum_c sum_j n_j p_j^c). `density` is the surface flight density of the joining segment.
 #[inline]
-pub fn hit<L: Lanes>(reach: L, others: L) -> f32 {
-    L::COUNT as f32 / (reach + others).sum()
+pub fn join<S: Sums>(
+    a: &End<S>,
+    b: &End<S>,
+    density: S::Lanes,
+    inverse_distance_squared: f32,
+    strategy: Strategy,
+) -> f32 {
+    let before_a = a.before(b.forward, density, inverse_distance_squared);
+    let before_b = b.before(a.forward, density, inverse_distance_squared);
+    let others = before_a.times(b.reach).and(before_b.times(a.reach));
+    others.scaled(1.0 / strategy.count).weight(strategy.heuristic, a.reach * b.reach)
+}
+
+/// The same where an eye walk has met the emitter itself (s = 0): `others` are all other strategies in units of
+/// the walk's own density, whose lanes are `reach`.
+#[inline]
+pub fn hit<S: Sums>(reach: S::Lanes, others: S, heuristic: Heuristic) -> f32 {
+    others.weight(heuristic, reach)
 }

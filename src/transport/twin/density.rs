@@ -1,11 +1,14 @@
-//! The densities of all strategies of a path, each written out vertex by vertex (LW96 eq. 11-13), and the balance
-//! heuristic over them (eq. 14). Logarithms in f64: no path is too long or too dense for them.
+//! The densities of all strategies of a path, each written out vertex by vertex (LW96 eq. 11-13), and the weights by
+//! a heuristic over them (eq. 14). Logarithms in f64: no path is too long or too dense for them.
 
-use super::path::{APERTURE, Node, Path, Place, matter};
+use super::{
+    path::{APERTURE, Node, Path, Place, matter},
+    sharing,
+};
 use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{Emitter, Kind},
-    math::DVec3,
+    math::{DVec3, Lanes},
     phase::{Deflection, PhaseModel},
     sampling::{Stream, stream::Purpose},
     scene::{
@@ -13,13 +16,14 @@ use crate::{
         lights::{Link, Start},
     },
     shape::SurfacePoint,
-    transport::Counts,
+    transport::{Counts, Estimator, Heuristic, profile::Profile},
 };
 
 /// What the twin knows of an estimator.
 pub struct Twin<'a> {
     pub scene: &'a Scene,
     pub counts: Counts,
+    pub heuristic: Heuristic,
     pub channels: usize,
     /// A sampled start on every emitter: those of one emitter have equal densities, but for environments
     /// and media.
@@ -34,7 +38,8 @@ struct Written {
 
 impl<'a> Twin<'a> {
     /// Gathers what is needed of the emitters.
-    pub fn new(scene: &'a Scene, counts: Counts, channels: usize) -> Self {
+    pub fn new<P: Profile>(estimator: &Estimator<'a, P>) -> Self {
+        let Estimator { scene, counts, heuristic, .. } = *estimator;
         let mut starts = vec![None; scene.lights.all.len()];
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
         for _ in 0..10_000 {
@@ -42,16 +47,17 @@ impl<'a> Twin<'a> {
                 starts[start.light as usize].get_or_insert(start);
             }
         }
-        Self { scene, counts, channels, starts }
+        Self { scene, counts, heuristic, channels: P::Lanes::COUNT, starts }
     }
 
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
     pub fn weights(&self, path: &Path) -> Vec<Vec<f64>> {
-        let logs = self.counted(path);
-        let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
-        let total: f64 = logs.iter().flatten().map(|log| (log - most).exp()).sum();
-        let weight = |log: &f64| (log - most).exp() / total;
-        logs.iter().map(|strategy| strategy.iter().map(weight).collect()).collect()
+        sharing::weights(self.heuristic, &self.counted(path))
+    }
+
+    /// True if densities that are off by `slack`, relative, could make all the difference to the weights.
+    pub fn is_close(&self, path: &Path, slack: f64) -> bool {
+        sharing::is_close(self.heuristic, &self.counted(path), slack)
     }
 
     /// ln(n_s p_s^c) by strategy and channel.

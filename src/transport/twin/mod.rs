@@ -1,7 +1,7 @@
-//! The slow twin of the balance heuristic: the judge of the fast one.
+//! The slow twin of the weights: the judge of the fast ones.
 //!
 //! `density` writes the density of every strategy of an explicit `path` out, vertex by vertex, in f64 logarithms,
-//! without any of the running sums of `walk`, `vertex` and `weight`. `record` takes real walks and the weights
+//! without any of the running sums of `walk`, `vertex` and `weight`, and `sharing` the heuristics by definition. `record` takes real walks and the weights
 //! that the fast code gives the paths they make; `replay` leads the fast code along a given path from both ends,
 //! so that it weighs all strategies of one path. All three must agree, and each set of weights must sum to one.
 
@@ -11,10 +11,14 @@ mod record;
 mod replay;
 mod report;
 mod scenes;
+mod sharing;
 
 use super::{
-    Estimator, LightCache, Nowhere, Options, Strategies,
-    profile::{Bounded, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum},
+    Estimator, Heuristic, LightCache, Nowhere, Options, Strategies,
+    profile::{
+        Bounded, ByCutoff, ByMaximum, ByPower, ByUniform, ChromaticFog, Everything, Fire, Fog, Profile,
+        Smoke, Vacuum,
+    },
 };
 use crate::{
     math::{Lanes, vec2, vec3},
@@ -26,13 +30,19 @@ use path::{Node, Path, Place};
 use report::Report;
 use scenes::*;
 
-const ALL: Options = Options { strategies: Strategies::BDPT, max_depth: None, hide_emitters: false, seed: 1 };
+const ALL: Options = Options {
+    strategies: Strategies::BDPT,
+    heuristic: Heuristic::Balance,
+    max_depth: None,
+    hide_emitters: false,
+    seed: 1,
+};
 const PIXELS: u64 = 16 * 12;
 
 /// Compares all paths that `pairs` eye and light walks make.
 fn examine<P: Profile>(name: &'static str, setup: &Setup, options: Options, pairs: u64) -> Report {
     let estimator = Estimator::<P>::new(&setup.scene, options, PIXELS, PIXELS);
-    let twin = Twin::new(&setup.scene, estimator.counts, P::Lanes::COUNT);
+    let twin = Twin::new(&estimator);
     let mut report = Report::new(name);
     for pair in 0..pairs {
         let mut stream = Stream::new(5, pair, 0, Purpose::Study);
@@ -187,6 +197,60 @@ fn media_that_shine_within_a_limited_depth() {
     }
 }
 
+/// All heuristics but the balance heuristic, in `setup`.
+fn examine_heuristics(name: &'static str, setup: &Setup, options: Options, pairs: u64) {
+    let by = |heuristic, max_depth| Options { heuristic, max_depth, ..options };
+    let open = options.max_depth;
+    let bound = Some(open.unwrap_or(Heuristic::CUTOFF_EDGES));
+    let reports = [
+        examine::<ByPower>(name, setup, by(Heuristic::Power, open), pairs),
+        examine::<ByMaximum>(name, setup, by(Heuristic::Maximum, open), pairs),
+        examine::<ByCutoff>(name, setup, by(Heuristic::Cutoff { alpha: 0.1 }, bound), pairs),
+        examine::<ByCutoff>(name, setup, by(Heuristic::Cutoff { alpha: 0.9 }, bound), pairs),
+        examine::<ByUniform>(name, setup, by(Heuristic::Uniform, open), pairs),
+    ];
+    for report in reports {
+        assert!(report.compared >= 100, "{name}: {} paths", report.compared);
+    }
+}
+
+#[test]
+fn every_heuristic_in_fog() {
+    examine_heuristics("fog", &build(&[FOG, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+    examine_heuristics("vacuum", &build(&[CLEAR, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+    examine_heuristics("chromatic", &build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+    examine_heuristics("1e-3, 1, 1e3", &build(&[EXTREME_FOG, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+    examine_heuristics("one clear", &build(&[YELLOW_FOG, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+}
+
+#[test]
+fn every_heuristic_with_dirac_vertices() {
+    let setup = build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, GLASS_BALL, MIRROR]);
+    examine_heuristics("glass, mirror", &setup, ALL, 60);
+    let setup = build(&[FOG, INSIDE, ROOM, LAMP, POINT, PLASTIC_BALL, PANE]);
+    examine_heuristics("plastic, pane", &setup, ALL, 60);
+}
+
+#[test]
+fn every_heuristic_under_the_sky_and_in_fire() {
+    examine_heuristics("sky", &build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]), ALL, 200);
+    examine_heuristics("waves", &build(&[OUTSIDE, CHROMATIC_WAVES, GROUND, LAMP, POINT]), ALL, 100);
+    let setup = build(&[GLOWING_CHROMATIC_FOG, INSIDE, SHELL, GLASS_BALL, PANE]);
+    examine_heuristics("fire", &setup, ALL, 60);
+}
+
+#[test]
+fn every_heuristic_by_some_strategies_within_a_limited_depth() {
+    let setup = build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BULB, GLASS_BALL]);
+    for strategies in [
+        Strategies::PT,
+        Strategies { next_event: false, ..Strategies::BDPT },
+        Strategies { hit: false, ..Strategies::BDPT },
+    ] {
+        examine_heuristics("subset", &setup, Options { strategies, max_depth: Some(4), ..ALL }, 100);
+    }
+}
+
 #[test]
 fn limited_depth() {
     let setup = build(&[FOG, INSIDE, ROOM, LAMP, BULB, BALL, POINT]);
@@ -230,7 +294,7 @@ fn joins_across_a_hundred_mean_free_paths() {
 fn paths_through_the_dark() {
     let setup = build(&[TUNNEL]);
     let estimator = Estimator::<Fog>::new(&setup.scene, ALL, PIXELS, PIXELS);
-    let (twin, mut report) = (Twin::new(&setup.scene, estimator.counts, 1), Report::new("dark"));
+    let (twin, mut report) = (Twin::new(&estimator), Report::new("dark"));
     for index in 0..300 {
         let mut stream = Stream::new(5, index, 0, Purpose::Study);
         let start = setup.scene.lights.sample_start(&setup.scene.geometry, &mut stream).unwrap();
@@ -255,7 +319,7 @@ fn walks_of_ten_thousand_vertices() {
     let setup = build(&[FURNACE, INSIDE, POINT]);
     let options = Options { max_depth: Some(10_001), ..ALL };
     let estimator = Estimator::<Fog>::new(&setup.scene, options, PIXELS, PIXELS);
-    let twin = Twin::new(&setup.scene, estimator.counts, 1);
+    let twin = Twin::new(&estimator);
     let mut stream = Stream::new(5, 0, 0, Purpose::Study);
     let mut weighed = 0;
     for case in record::long_cases(&estimator, 10_000, &mut stream) {

@@ -18,6 +18,7 @@ use crate::{
         segment::Flown,
         vertex::{Site, Vertex},
         walk::{Departure, Kind, Visitor, walk},
+        weight::Sums,
     },
 };
 
@@ -41,31 +42,31 @@ impl Splats for WideFilm {
 }
 
 /// Remembers where a walk went.
-pub struct Trail<V, L> {
+pub struct Trail<V, S: Sums> {
     visitor: V,
-    pub vertices: Vec<Vertex<L>>,
-    pub escaped: Option<Vertex<L>>,
+    pub vertices: Vec<Vertex<S>>,
+    pub escaped: Option<Vertex<S>>,
     /// What media were flown through, after how many vertices.
-    flown: Vec<(usize, Departure<L>, Flown<L>)>,
+    flown: Vec<(usize, Departure<S>, Flown<S::Lanes>)>,
 }
 
-impl<V, L> Trail<V, L> {
+impl<V, S: Sums> Trail<V, S> {
     fn new(visitor: V) -> Self {
         Self { visitor, vertices: Vec::new(), escaped: None, flown: Vec::new() }
     }
 }
 
-impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::Lanes> {
+impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::Sums> {
     fn joins(&self, edges: u32, position: Vec3) -> f32 {
         self.visitor.joins(edges, position)
     }
-    fn arrive(&mut self, vertex: &Vertex<P::Lanes>, _: &mut Stream) {
+    fn arrive(&mut self, vertex: &Vertex<P::Sums>, _: &mut Stream) {
         self.vertices.push(*vertex);
     }
-    fn pass(&mut self, departure: &Departure<P::Lanes>, flown: &Flown<P::Lanes>, _: &mut Stream) {
+    fn pass(&mut self, departure: &Departure<P::Sums>, flown: &Flown<P::Lanes>, _: &mut Stream) {
         self.flown.push((self.vertices.len(), *departure, *flown));
     }
-    fn escape(&mut self, vertex: &Vertex<P::Lanes>) {
+    fn escape(&mut self, vertex: &Vertex<P::Sums>) {
         self.escaped = Some(*vertex);
     }
 }
@@ -73,11 +74,11 @@ impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::Lanes> {
 /// An eye walk through `film`.
 pub fn eye_walk<'a, P: Profile>(
     estimator: &'a Estimator<'a, P>,
-    cache: &'a LightCache<P::Lanes>,
+    cache: &'a LightCache<P::Sums>,
     film: Vec2,
     hero: usize,
     stream: &mut Stream,
-) -> Trail<Eye<'a, P>, P::Lanes> {
+) -> Trail<Eye<'a, P>, P::Sums> {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
     let departure = eye::depart(estimator, film, APERTURE);
     let mut trail = Trail::new(Eye::new(estimator, cache, hero, departure.position));
@@ -92,7 +93,7 @@ fn light_walk<'a, P: Profile>(
     start: &Start,
     hero: usize,
     stream: &mut Stream,
-) -> Trail<Light<'a, P, WideFilm>, P::Lanes> {
+) -> Trail<Light<'a, P, WideFilm>, P::Sums> {
     let max_edges = estimator.max_edges.saturating_sub(1);
     let kind = Kind { transport: Transport::Importance, hero, max_edges };
     let mut trail = Trail::new(visitor);
@@ -175,8 +176,8 @@ impl Cases<'_> {
 }
 
 /// The vertices of a walk; `dirac` tells of the last one how it scatters.
-fn chain<L: Lanes>(vertices: &[Vertex<L>], dirac: bool) -> Vec<Node> {
-    let node = |(index, vertex): (usize, &Vertex<L>)| Node {
+fn chain<S: Sums>(vertices: &[Vertex<S>], dirac: bool) -> Vec<Node> {
+    let node = |(index, vertex): (usize, &Vertex<S>)| Node {
         place: match vertex.site {
             Site::Surface(point) => Place::Surface(point),
             Site::Medium(_) => Place::Volume(vertex.position),
@@ -189,7 +190,7 @@ fn chain<L: Lanes>(vertices: &[Vertex<L>], dirac: bool) -> Vec<Node> {
 
 fn of_eye<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    eye: &Trail<Eye<'_, P>, P::Sums>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
@@ -224,7 +225,7 @@ fn of_eye<P: Profile>(
 /// Points of media that shine, met on the flights of the eye walk.
 fn of_flights<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    eye: &Trail<Eye<'_, P>, P::Sums>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
@@ -239,14 +240,14 @@ fn of_flights<P: Profile>(
     }
 }
 
-fn can_join<P: Profile>(estimator: &Estimator<'_, P>, vertex: &Vertex<P::Lanes>) -> bool {
+fn can_join<P: Profile>(estimator: &Estimator<'_, P>, vertex: &Vertex<P::Sums>) -> bool {
     vertex.edges < estimator.max_edges && vertex.is_connectible(estimator.scene)
 }
 
 fn of_light<P: Profile>(
     estimator: &Estimator<'_, P>,
     start: &Start,
-    light: &Trail<Light<'_, P, WideFilm>, P::Lanes>,
+    light: &Trail<Light<'_, P, WideFilm>, P::Sums>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
@@ -265,9 +266,9 @@ fn of_light<P: Profile>(
 
 fn of_both<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    eye: &Trail<Eye<'_, P>, P::Sums>,
     start: &Start,
-    light: &[Vertex<P::Lanes>],
+    light: &[Vertex<P::Sums>],
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {

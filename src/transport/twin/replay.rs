@@ -20,6 +20,7 @@ use crate::{
         segment::{Flight, Landing},
         vertex::Vertex,
         walk::{Departure, Turn, Visitor, land, set_out},
+        weight::Sums,
     },
 };
 
@@ -85,7 +86,7 @@ fn by_light<P: Profile>(
     start: &Start,
     hero: usize,
     visitor: &impl Visitor<P>,
-) -> Vec<Vertex<P::Lanes>> {
+) -> Vec<Vertex<P::Sums>> {
     let last = path.nodes.len() - 1;
     let lead = Lead {
         twin,
@@ -103,7 +104,7 @@ fn by_eye<P: Profile>(
     path: &Path,
     hero: usize,
     visitor: &impl Visitor<P>,
-) -> Vec<Vertex<P::Lanes>> {
+) -> Vec<Vertex<P::Sums>> {
     let hittable = estimator.scene.lights.all[path.light as usize].emitter.is_hittable();
     let lead = Lead {
         twin,
@@ -144,9 +145,9 @@ fn start(twin: &Twin<'_>, path: &Path) -> Start {
 impl Lead<'_> {
     fn along<P: Profile>(
         &self,
-        mut departure: Departure<P::Lanes>,
+        mut departure: Departure<P::Sums>,
         visitor: &impl Visitor<P>,
-    ) -> Vec<Vertex<P::Lanes>> {
+    ) -> Vec<Vertex<P::Sums>> {
         let scene = self.twin.scene;
         let mut made = Vec::new();
         if let [first, second, ..] = self.nodes.as_slice() {
@@ -178,7 +179,7 @@ impl Lead<'_> {
         Flight { landing, medium: node.medium, depth, ratio: L::splat(1.0), tint: Spectrum::ONE }
     }
 
-    fn turn<L: Lanes>(&self, i: usize, vertex: &Vertex<L>) -> Turn {
+    fn turn<S: Sums>(&self, i: usize, vertex: &Vertex<S>) -> Turn {
         let (scene, here) = (self.twin.scene, &self.nodes[i]);
         let (back, on) = (here.towards(&self.nodes[i - 1]), here.towards(&self.nodes[i + 1]));
         let (direction, weight, dirac) = (on.as_vec3(), Spectrum::ONE, here.dirac);
