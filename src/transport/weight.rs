@@ -51,6 +51,13 @@ pub fn join<L: Lanes>(a: &End<L>, b: &End<L>, density: L, inverse_distance_squar
     L::COUNT as f32 / (a.reach * b.reach + others.scaled(1.0 / count)).sum()
 }
 
+/// The same of a strategy that runs alone: only the channels share the path. `reach` is the product of both ends'.
+/// The weight among all strategies is that of [`join`] or [`hit`] over this one.
+#[inline]
+pub fn alone<L: Lanes>(reach: L) -> f32 {
+    L::COUNT as f32 / reach.sum()
+}
+
 /// The same where an eye walk has met the emitter itself (s = 0): `others` sums n_j p_j over all other
 /// strategies in units of the walk's own density, whose lanes are `reach`.
 #[inline]

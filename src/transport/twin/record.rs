@@ -3,18 +3,19 @@
 use super::path::{APERTURE, Node, Path, Place};
 use crate::{
     bsdf::Transport,
-    math::{Lanes, Spectrum, Vec2, Vec3, vec2},
+    math::{Lanes, Vec2, Vec3, vec2},
     sampling::Stream,
     scene::{
         Scene,
         lights::{Link, Start},
     },
     transport::{
-        Estimator, LightCache, Splats,
+        Estimator, LightCache,
         connect::Joined,
         eye::{self, Eye},
         light::{self, Light},
         profile::Profile,
+        record::{Meeting, Recorder, Sum},
         segment::Flown,
         vertex::{Site, Vertex},
         walk::{Departure, Kind, Visitor, walk},
@@ -33,11 +34,11 @@ pub struct Case {
 /// A film that reaches a little further than the image.
 pub struct WideFilm;
 
-impl Splats for WideFilm {
+impl<L: Lanes> Recorder<L> for WideFilm {
     fn covers(&self, film: Vec2) -> bool {
         (film - vec2(8.0, 6.0)).abs().max_element() < 12.0
     }
-    fn splat(&mut self, _: Vec2, _: Spectrum) {}
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, L>, _: Option<&Joined>) {}
 }
 
 /// Remembers where a walk went.
@@ -77,10 +78,10 @@ pub fn eye_walk<'a, P: Profile>(
     film: Vec2,
     hero: usize,
     stream: &mut Stream,
-) -> Trail<Eye<'a, P>, P::Lanes> {
+) -> Trail<Eye<'a, P, Sum>, P::Lanes> {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
     let departure = eye::depart(estimator, film, APERTURE);
-    let mut trail = Trail::new(Eye::new(estimator, cache, hero, departure.position));
+    let mut trail = Trail::new(Eye::new(estimator, cache, hero, departure.position, Sum::default()));
     walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
     trail
 }
@@ -189,7 +190,7 @@ fn chain<L: Lanes>(vertices: &[Vertex<L>], dirac: bool) -> Vec<Node> {
 
 fn of_eye<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    eye: &Trail<Eye<'_, P, Sum>, P::Lanes>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
@@ -224,7 +225,7 @@ fn of_eye<P: Profile>(
 /// Points of media that shine, met on the flights of the eye walk.
 fn of_flights<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    eye: &Trail<Eye<'_, P, Sum>, P::Lanes>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
@@ -265,7 +266,7 @@ fn of_light<P: Profile>(
 
 fn of_both<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Lanes>,
+    eye: &Trail<Eye<'_, P, Sum>, P::Lanes>,
     start: &Start,
     light: &[Vertex<P::Lanes>],
     cases: &mut Cases<'_>,
