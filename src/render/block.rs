@@ -12,6 +12,7 @@ use crate::{
         record::{Meeting, Recorder, Sum},
     },
 };
+use std::ops::Range;
 
 /// Pixels (and light walks) of a block: a cache of this many walks still fits near the processor, and its
 /// noise is shared by few enough pixels.
@@ -137,14 +138,23 @@ impl Blocks {
     ) -> LightCache<P::Lanes> {
         let mut cache = LightCache::new(P::Lanes::COUNT);
         if estimator.needs_light_walks() {
-            for walk in 0..self.walks_per_block {
-                let index = block as u64 * self.walks_per_block + walk;
-                let mut stream = Stream::new(seed, index, pass as u64, Purpose::Light);
-                let hero = (walk % self.heroes) as usize;
-                estimator.trace_light(&mut cache, recorder, hero, &mut stream);
+            for walk in self.light_walks(block) {
+                let mut stream = Stream::new(seed, walk, pass as u64, Purpose::Light);
+                estimator.trace_light(&mut cache, recorder, self.hero(walk), &mut stream);
             }
         }
         cache
+    }
+
+    /// Numbers of the light walks of `block` in a pass.
+    pub fn light_walks(&self, block: usize) -> Range<u64> {
+        let first = block as u64 * self.walks_per_block;
+        first..first + self.walks_per_block
+    }
+
+    /// The channel that samples the distances of a light walk: all equally often in every block.
+    pub fn hero(&self, walk: u64) -> usize {
+        (walk % self.walks_per_block % self.heroes) as usize
     }
 }
 

@@ -2,7 +2,7 @@
 //! made with, and instruments look at the walks with. The estimator is compiled for its recorder: what a recorder
 //! does not want to know costs nothing.
 
-use super::{connect::Joined, vertex::Vertex, walk::Departure};
+use super::{Strategies, connect::Joined, vertex::Vertex, walk::Departure};
 use crate::{
     math::{Lanes, Spectrum, Vec2},
     scene::lights::{Link, Start},
@@ -44,6 +44,29 @@ impl StrategyKind {
             Self::Join => "join",
             Self::Lens => "lens",
         }
+    }
+}
+
+impl Strategies {
+    /// True if those of `kind` run.
+    pub fn has(self, kind: StrategyKind) -> bool {
+        match kind {
+            StrategyKind::Hit => self.hit,
+            StrategyKind::NextEvent => self.next_event,
+            StrategyKind::Join => self.join,
+            StrategyKind::Lens => self.lens,
+        }
+    }
+
+    /// The same without those of `kind`.
+    pub fn without(mut self, kind: StrategyKind) -> Self {
+        match kind {
+            StrategyKind::Hit => self.hit = false,
+            StrategyKind::NextEvent => self.next_event = false,
+            StrategyKind::Join => self.join = false,
+            StrategyKind::Lens => self.lens = false,
+        }
+        self
     }
 }
 
@@ -99,6 +122,37 @@ pub trait Recorder<L: Lanes> {
     /// The last vertex of the light walk at hand was added to the cache.
     #[inline]
     fn keep(&mut self) {}
+}
+
+/// One that is chosen at run time: instruments need not be fast, and share one compiled estimator.
+impl<L: Lanes> Recorder<L> for &mut (dyn Recorder<L> + '_) {
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, L>, joined: Option<&Joined>) {
+        (**self).contribute(s, t, meeting, joined);
+    }
+    fn covers(&self, film: Vec2) -> bool {
+        (**self).covers(film)
+    }
+    fn start(&mut self) {
+        (**self).start();
+    }
+    fn stop(&mut self, s: u32, t: u32) {
+        (**self).stop(s, t);
+    }
+    fn emit(&mut self, start: &Start) {
+        (**self).emit(start);
+    }
+    fn depart(&mut self, departure: &Departure<L>) {
+        (**self).depart(departure);
+    }
+    fn arrive(&mut self, vertex: &Vertex<L>) {
+        (**self).arrive(vertex);
+    }
+    fn escape(&mut self, vertex: &Vertex<L>) {
+        (**self).escape(vertex);
+    }
+    fn keep(&mut self) {
+        (**self).keep();
+    }
 }
 
 /// The recorder of ordinary eye walks: it adds up.
