@@ -18,6 +18,17 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene to an image
     Render(Render),
+    /// Show what every strategy of bidirectional path tracing is worth in a scene
+    ///
+    /// Writes into a folder the image that each strategy makes, weighted and alone, as EXR layers and as pyramids on
+    /// contact sheets (Veach 1997, fig. 10.2 and 10.3), and a table of shares of energy, variance and time as JSON and
+    /// CSV. Then short renders taking turns tell which kinds of strategies the scene could do without.
+    Strategies(super::strategies::Arguments),
+    /// Write the paths of one pixel's samples as JSON, for debugging
+    ///
+    /// The samples are those of a render with the same seed, size and options: same walks, same light vertices. Every
+    /// vertex comes with its densities, every contribution with its weight; they sum up to what the pixel got.
+    Pixel(super::pixel::Arguments),
     /// Say what a scene holds, without rendering it
     Info(Info),
     /// Spell a scene anew: Mitsuba 3 XML as JSON, or JSON as XML
@@ -265,7 +276,7 @@ pub struct Size {
 /// No film needs more pixels on a side; a size beyond is a slip of the finger.
 const LARGEST_SIDE: u32 = 65_536;
 
-fn positive_u32(text: &str) -> Result<u32, String> {
+pub(super) fn positive_u32(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(0) => Err("it must be at least 1".into()),
         Ok(number) => Ok(number),
@@ -289,7 +300,7 @@ fn fps(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected frames per second from 1e-6 to 1e9, such as 24 or 29.97".to_owned())
 }
 
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
+pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let threads = positive_u32(text)?;
     NonZeroUsize::new(threads as usize)
         .filter(|threads| threads.get() <= 4096)
@@ -308,7 +319,7 @@ fn heuristic(text: &str) -> Result<Heuristic, String> {
     Heuristic::parse(text).map_err(|expected| format!("expected {expected}"))
 }
 
-fn size(text: &str) -> Result<Size, String> {
+pub(super) fn size(text: &str) -> Result<Size, String> {
     let expected = || format!("expected WIDTHxHEIGHT in pixels from 1 to {LARGEST_SIDE}, such as 640x480");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
     let side =

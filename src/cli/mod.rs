@@ -4,7 +4,9 @@ pub mod arguments;
 mod convert;
 mod estimator;
 mod info;
+mod pixel;
 mod render;
+mod strategies;
 
 use crate::{
     error::{Error, Result},
@@ -22,6 +24,8 @@ pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     let outcome = match &arguments.command {
         Command::Render(render) => render::run(render),
+        Command::Strategies(strategies) => strategies::run(strategies),
+        Command::Pixel(pixel) => pixel::run(pixel),
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
     };

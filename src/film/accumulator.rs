@@ -1,6 +1,6 @@
 //! Sums and square sums of the passes over an image: its mean, and how far the mean may be off.
 
-use crate::math::{Spectrum, SpectrumExt, Vec3};
+use crate::math::{Spectrum, SpectrumExt, Vec3, spectrum::LUMINANCE};
 
 /// Adds up passes; each pass is one independent estimate of the whole image.
 #[derive(Clone, Debug)]
@@ -68,6 +68,27 @@ impl Accumulator {
         (self.passes > 1).then(|| self.sums.iter().zip(&self.products).map(of_pixel).collect())
     }
 
+    /// Number of pixels.
+    pub fn len(&self) -> usize {
+        self.sums.len()
+    }
+
+    /// True for an image without pixels.
+    pub fn is_empty(&self) -> bool {
+        self.sums.is_empty()
+    }
+
+    /// Estimated variance of the luminance of one pass, summed over pixels; none before the second pass.
+    pub fn luminance_variance(&self) -> Option<f64> {
+        let n = self.passes as f64;
+        let [r, g, b] = LUMINANCE.to_array().map(f64::from);
+        let of_pixel = |(sum, square): (&[f64; 3], &f64)| {
+            let sum = r * sum[0] + g * sum[1] + b * sum[2];
+            ((square - sum * sum / n) / (n - 1.0)).max(0.0)
+        };
+        (self.passes > 1).then(|| self.sums.iter().zip(&self.luminance_squares).map(of_pixel).sum())
+    }
+
     /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01), by
     /// luminance; none before the second pass.
     pub fn noise(&self) -> Option<f64> {
@@ -121,5 +142,6 @@ mod tests {
         // Variance of the mean of {1, 3} is 1; relative to 2^2 + 0.01.
         let expected = (1.0f64 / 4.01).sqrt();
         assert!((film.noise().unwrap() - expected).abs() < 1e-5);
+        assert!((film.luminance_variance().unwrap() - 2.0).abs() < 1e-5);
     }
 }

@@ -6,8 +6,13 @@ use crate::{
     math::{Lanes, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
     shape::Ray,
-    transport::{Estimator, LightCache, Splats, profile::Profile},
+    transport::{
+        Estimator, Joined, LightCache, Sums,
+        profile::Profile,
+        record::{Meeting, Recorder, Sum},
+    },
 };
+use std::ops::Range;
 
 /// Pixels (and light walks) of a block: a cache of this many walks still fits near the processor, and its
 /// noise is shared by few enough pixels.
@@ -28,7 +33,8 @@ pub struct Blocks {
 pub struct EyeStart {
     /// Its random numbers.
     pub stream: Stream,
-    hero: usize,
+    /// The channel that samples distances.
+    pub hero: usize,
     /// Where on the film [pixels].
     pub position: Vec2,
     /// Through which point of the aperture [m].
@@ -79,7 +85,7 @@ impl Blocks {
     }
 
     /// The pixels of `block`.
-    fn pixels(&self, block: usize) -> impl Iterator<Item = usize> + '_ {
+    pub fn pixels(&self, block: usize) -> impl Iterator<Item = usize> + '_ {
         let (low, high) = (block * self.pixels / self.count, (block + 1) * self.pixels / self.count);
         (low..high).map(|i| (i as u128 * self.stride as u128 % self.pixels as u128) as usize)
     }
@@ -110,23 +116,59 @@ impl Blocks {
         pass: usize,
         block: usize,
     ) -> Outcome {
-        let mut cache = LightCache::new(P::Lanes::COUNT);
         let mut light = Splatted { film, values: Vec::new() };
-        if estimator.needs_light_walks() {
-            for walk in 0..self.walks_per_block {
-                let index = block as u64 * self.walks_per_block + walk;
-                let mut stream = Stream::new(seed, index, pass as u64, Purpose::Light);
-                let hero = (walk % self.heroes) as usize;
-                estimator.trace_light(&mut cache, &mut light, hero, &mut stream);
-            }
-        }
+        let cache = self.trace_light(estimator, seed, pass, block, &mut light);
         let eye = self.pixels(block).map(|pixel| {
-            let mut start = self.eye_start(estimator, film, seed, pass, pixel);
-            let EyeStart { position, aperture, hero, weight, .. } = start;
-            let radiance = estimator.sample_pixel(&cache, position, aperture, hero, &mut start.stream);
-            (pixel as u32, radiance * weight)
+            let start = self.eye_start(estimator, film, seed, pass, pixel);
+            let (weight, sum) = (start.weight, start.trace(estimator, &cache, Sum::default()));
+            (pixel as u32, sum.radiance * weight)
         });
         Outcome { eye: eye.collect(), light: light.values }
+    }
+
+    /// Traces the light walks of `block`, which `recorder` sees; their cache.
+    #[inline]
+    pub fn trace_light<P: Profile>(
+        &self,
+        estimator: &Estimator<'_, P>,
+        seed: u64,
+        pass: usize,
+        block: usize,
+        recorder: &mut impl Recorder<P::Sums>,
+    ) -> LightCache<P::Sums> {
+        let mut cache = LightCache::new(P::Lanes::COUNT);
+        if estimator.needs_light_walks() {
+            for walk in self.light_walks(block) {
+                let mut stream = Stream::new(seed, walk, pass as u64, Purpose::Light);
+                estimator.trace_light(&mut cache, recorder, self.hero(walk), &mut stream);
+            }
+        }
+        cache
+    }
+
+    /// Numbers of the light walks of `block` in a pass.
+    pub fn light_walks(&self, block: usize) -> Range<u64> {
+        let first = block as u64 * self.walks_per_block;
+        first..first + self.walks_per_block
+    }
+
+    /// The channel that samples the distances of a light walk: all equally often in every block.
+    pub fn hero(&self, walk: u64) -> usize {
+        (walk % self.walks_per_block % self.heroes) as usize
+    }
+}
+
+impl EyeStart {
+    /// The eye walk from here, which `recorder` sees, joined with the light walks of `cache`.
+    #[inline]
+    pub fn trace<P: Profile, R: Recorder<P::Sums>>(
+        mut self,
+        estimator: &Estimator<'_, P>,
+        cache: &LightCache<P::Sums>,
+        recorder: R,
+    ) -> R {
+        let Self { position, aperture, hero, .. } = self;
+        estimator.sample_pixel(cache, position, aperture, hero, recorder, &mut self.stream)
     }
 }
 
@@ -172,16 +214,18 @@ struct Splatted<'a> {
     values: Vec<(u32, Spectrum)>,
 }
 
-impl Splats for Splatted<'_> {
+impl<S: Sums> Recorder<S> for Splatted<'_> {
     #[inline]
     fn covers(&self, film: Vec2) -> bool {
         self.film.covers(film)
     }
 
     #[inline]
-    fn splat(&mut self, film: Vec2, value: Spectrum) {
+    fn contribute(&mut self, _: u32, _: u32, meeting: Meeting<'_, S>, joined: Option<&Joined>) {
         let values = &mut self.values;
-        self.film.spread(film, value, |pixel, value| values.push((pixel as u32, value)));
+        if let (Meeting::Lens(film), Some(joined)) = (meeting, joined) {
+            self.film.spread(film, joined.value, |pixel, value| values.push((pixel as u32, value)));
+        }
     }
 }
 

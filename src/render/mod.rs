@@ -3,10 +3,14 @@
 //! Results depend on the seed alone: every walk draws from its own stream, blocks are fixed sets of pixels, and
 //! their results are added up in block order whatever thread made them.
 
+pub mod bench;
 mod block;
 pub mod budget;
+pub mod clock;
 mod fog;
+pub mod parts;
 mod primary;
+pub mod sample;
 
 use crate::{
     film::{

@@ -41,6 +41,10 @@ pub struct Setup {
     pub warnings: Vec<String>,
     /// Id (or plugin name) of each medium after vacuum, for listings.
     pub medium_names: Vec<String>,
+    /// The same of each shape.
+    pub shape_names: Vec<String>,
+    /// The same of each BSDF.
+    pub bsdf_names: Vec<String>,
     /// When the scene is seen [s].
     pub time: f64,
 }
@@ -73,6 +77,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         None => Integrator::default(),
     };
     let medium_names = builder.medium_names.clone();
+    let (shape_names, bsdf_names) = (builder.shape_names.clone(), builder.bsdf_names.clone());
     let treatment = integrator.restriction.treatment();
     let treatment = Treatment { tracker: overrides.tracker.or(treatment.tracker), ..treatment };
     let time = builder.place.time;
@@ -87,6 +92,8 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         samples_per_pixel: view.samples_per_pixel,
         warnings: library.take_warnings(),
         medium_names,
+        shape_names,
+        bsdf_names,
         time,
     })
 }
@@ -115,6 +122,11 @@ struct View {
     medium: Option<MediumIndex>,
 }
 
+/// Its id, or the name of its plugin.
+fn name_of(object: &Object) -> String {
+    object.id.clone().unwrap_or_else(|| object.plugin.clone())
+}
+
 /// An emitter as the file places it.
 struct Placed<'a> {
     emitter: Emitter,
@@ -128,8 +140,10 @@ struct Builder<'a> {
     library: &'a Library,
     recentre: DVec3,
     shapes: Vec<Shape>,
+    shape_names: Vec<String>,
     surfaces: Vec<Surface>,
     bsdfs: Vec<Bsdf>,
+    bsdf_names: Vec<String>,
     bsdf_index: HashMap<*const Object, u32>,
     place: Place,
     media: Vec<Blueprint>,
@@ -146,8 +160,10 @@ impl<'a> Builder<'a> {
             library,
             recentre: place.recentre,
             shapes: Vec::new(),
+            shape_names: Vec::new(),
             surfaces: Vec::new(),
             bsdfs: Vec::new(),
+            bsdf_names: Vec::new(),
             bsdf_index: HashMap::new(),
             place,
             media: vec![Blueprint::vacuum()],
@@ -172,6 +188,7 @@ impl<'a> Builder<'a> {
         };
         params.finish()?;
         self.shapes.push(shape);
+        self.shape_names.push(name_of(child.object));
         let connectible = self.bsdfs[bsdf as usize].is_connectible();
         self.surfaces.push(Surface { bsdf, emitter, boundary, touching: false, connectible });
         Ok(())
@@ -224,13 +241,14 @@ impl<'a> Builder<'a> {
         if let Some(index) = self.bsdf_index.get(&std::ptr::from_ref(object)) {
             return Ok(*index);
         }
-        let index = self.add_bsdf(bsdf::build(object, self.library)?);
+        let index = self.add_bsdf(bsdf::build(object, self.library)?, name_of(object));
         self.bsdf_index.insert(std::ptr::from_ref(object), index);
         Ok(index)
     }
 
-    fn add_bsdf(&mut self, bsdf: Bsdf) -> u32 {
+    fn add_bsdf(&mut self, bsdf: Bsdf, name: String) -> u32 {
         self.bsdfs.push(bsdf);
+        self.bsdf_names.push(name);
         self.bsdfs.len() as u32 - 1
     }
 
@@ -243,7 +261,7 @@ impl<'a> Builder<'a> {
         let value = Value::Float(if emits { 0.0 } else { 0.5 });
         let properties = vec![Property { name: "reflectance".into(), value, location: location.clone() }];
         let object = Object { tag: None, plugin: "diffuse".into(), id: None, properties, location };
-        let index = self.add_bsdf(bsdf::build(&object, self.library)?);
+        let index = self.add_bsdf(bsdf::build(&object, self.library)?, "default".to_owned());
         self.default_bsdf[usize::from(emits)] = Some(index);
         Ok(index)
     }
@@ -254,7 +272,7 @@ impl<'a> Builder<'a> {
         }
         let index = MediumIndex(self.media.len() as u32);
         self.media.push(medium::build(object, self.library, &self.place)?);
-        self.medium_names.push(object.id.clone().unwrap_or_else(|| object.plugin.clone()));
+        self.medium_names.push(name_of(object));
         self.medium_index.insert(std::ptr::from_ref(object), index);
         Ok(index)
     }

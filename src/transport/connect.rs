@@ -15,6 +15,7 @@ use crate::{
     scene::{Scene, lights::Link},
     shape::Ray,
 };
+use std::ops::{Div, Mul};
 
 /// The end of a walk at `vertex`, looking in unit direction `towards`; none where nothing scatters that way.
 #[inline]
@@ -94,8 +95,37 @@ pub struct Joined {
     /// The weighted contribution, of which the caller takes as many samples as it has.
     pub value: Spectrum,
     /// The weight in it, times the number of lanes.
-    #[cfg_attr(not(test), expect(dead_code, reason = "only the slow twin, a test, looks at it"))]
     pub weight: f32,
+    /// What the strategy would bring if it ran alone: [`Self::share`] of it is `value`.
+    pub alone: Spectrum,
+    /// The weight that it would then have.
+    pub weight_alone: f32,
+    /// What remains of radiance along the joining segment; 1 where there is none.
+    pub transmittance: Spectrum,
+}
+
+impl Joined {
+    /// The weight among all strategies, in [0, 1]: over those that run the weights of one path sum to 1.
+    #[inline]
+    pub fn share(&self) -> f32 {
+        self.weight / self.weight_alone
+    }
+}
+
+impl Mul<f32> for Joined {
+    type Output = Self;
+    #[inline]
+    fn mul(self, factor: f32) -> Self {
+        Self { value: self.value * factor, alone: self.alone * factor, ..self }
+    }
+}
+
+impl Div<f32> for Joined {
+    type Output = Self;
+    #[inline]
+    fn div(self, divisor: f32) -> Self {
+        Self { value: self.value / divisor, alone: self.alone / divisor, ..self }
+    }
 }
 
 /// The segment of a join.
@@ -148,5 +178,7 @@ pub fn join_along<P: Profile>(
     let geometry = 1.0 / distance_squared;
     let weight = weight::join(a, b, passage.density, geometry, strategy);
     let value = a.value * b.value * passage.transmittance * (geometry * weight);
-    Some(Joined { value, weight })
+    let weight_alone = weight::alone(a.reach * b.reach);
+    let alone = a.value * b.value * passage.transmittance * (geometry * weight_alone);
+    Some(Joined { value, weight, alone, weight_alone, transmittance: passage.transmittance })
 }

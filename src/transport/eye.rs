@@ -6,6 +6,7 @@ use super::{
     cache::LightCache,
     connect::{self, Joined, Span},
     profile::Profile,
+    record::{Meeting, Recorder},
     segment::Flown,
     vertex::{Site, Vertex},
     walk::{Departure, Kind, Visitor, land, walk},
@@ -22,30 +23,31 @@ use crate::{
 };
 
 /// Gathers the radiance of one pixel sample.
-pub struct Eye<'a, P: Profile> {
+pub struct Eye<'a, P: Profile, R> {
     estimator: &'a Estimator<'a, P>,
     cache: &'a LightCache<P::Sums>,
     hero: usize,
     /// The vertex before the current one: where next-event estimation would have been made from.
     previous: Vec3,
-    radiance: Spectrum,
+    recorder: R,
 }
 
-/// Radiance estimate of one eye walk through `film` [pixels] and a point of the aperture, joined with the light
-/// walks of `cache`.
-pub fn sample<P: Profile>(
+/// One eye walk through `film` [pixels] and a point of the aperture, joined with the light walks of `cache`; its
+/// radiance goes to `recorder`.
+pub fn sample<P: Profile, R: Recorder<P::Sums>>(
     estimator: &Estimator<'_, P>,
     cache: &LightCache<P::Sums>,
     film: Vec2,
     aperture: Vec2,
     hero: usize,
+    recorder: R,
     stream: &mut Stream,
-) -> Spectrum {
+) -> R {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
     let departure = depart(estimator, film, aperture);
-    let mut eye = Eye::new(estimator, cache, hero, departure.position);
+    let mut eye = Eye::new(estimator, cache, hero, departure.position, recorder);
     walk(estimator.scene, kind, departure, &mut eye, stream);
-    eye.radiance
+    eye.recorder
 }
 
 /// Leaves the sensor through a film position and a point of its aperture. Nothing can join before the sensor:
@@ -68,21 +70,30 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Ve
     }
 }
 
-impl<P: Profile> Visitor<P> for Eye<'_, P> {
+impl<P: Profile, R: Recorder<P::Sums>> Visitor<P> for Eye<'_, P, R> {
     #[inline]
     fn joins(&self, edges: u32, _: Vec3) -> f32 {
         if edges == 1 { self.estimator.counts.lens } else { self.estimator.counts.join }
     }
 
     #[inline]
+    fn depart(&mut self, departure: &Departure<P::Sums>) {
+        self.recorder.depart(departure);
+    }
+
+    #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
+        self.recorder.arrive(vertex);
         if let Site::Surface(point) = &vertex.site
             && let Some(light) = self.estimator.scene.surface(point.shape).emitter
         {
             let scene = self.estimator.scene;
+            self.recorder.start();
             if let Some(link) = scene.lights.met(&scene.geometry, light, point, self.previous) {
-                self.radiance += self.hit(vertex, &link).map_or(Spectrum::ZERO, |hit| hit.value);
+                let hit = self.hit(vertex, &link);
+                self.recorder.contribute(0, vertex.edges + 1, Meeting::Met(vertex, &link), hit.as_ref());
             }
+            self.recorder.stop(0, vertex.edges + 1);
         }
         if vertex.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
             if self.estimator.counts.next_event > 0.0 {
@@ -101,29 +112,37 @@ impl<P: Profile> Visitor<P> for Eye<'_, P> {
         if self.estimator.counts.hit <= 0.0 {
             return;
         }
-        let Some((t, density)) = emission.sample_along(&flown.section, stream) else { return };
-        if let Some((vertex, link)) = self.meet(departure, flown, light, t, stream) {
-            let hit = self.hit(&vertex, &link);
-            self.radiance += hit.map_or(Spectrum::ZERO, |hit| hit.value / density);
+        self.recorder.start();
+        if let Some((t, density)) = emission.sample_along(&flown.section, stream)
+            && let Some((vertex, link)) = self.meet(departure, flown, light, t, stream)
+        {
+            let hit = self.hit(&vertex, &link).map(|hit| hit / density);
+            self.recorder.contribute(0, vertex.edges + 1, Meeting::Met(&vertex, &link), hit.as_ref());
         }
+        self.recorder.stop(0, departure.edges + 2);
     }
 
     fn escape(&mut self, vertex: &Vertex<P::Sums>) {
+        self.recorder.escape(vertex);
+        self.recorder.start();
         if let Some(link) = self.estimator.scene.lights.met_at_infinity(-vertex.incoming) {
-            self.radiance += self.hit(vertex, &link).map_or(Spectrum::ZERO, |hit| hit.value);
+            let hit = self.hit(vertex, &link);
+            self.recorder.contribute(0, vertex.edges + 1, Meeting::Met(vertex, &link), hit.as_ref());
         }
+        self.recorder.stop(0, vertex.edges + 1);
     }
 }
 
-impl<'a, P: Profile> Eye<'a, P> {
-    /// Nothing gathered yet; the walk begins at the point `start` of the sensor.
+impl<'a, P: Profile, R: Recorder<P::Sums>> Eye<'a, P, R> {
+    /// What it gathers goes to `recorder`; the walk begins at the point `start` of the sensor.
     pub fn new(
         estimator: &'a Estimator<'a, P>,
         cache: &'a LightCache<P::Sums>,
         hero: usize,
         start: Vec3,
+        recorder: R,
     ) -> Self {
-        Self { estimator, cache, hero, previous: start, radiance: Spectrum::ZERO }
+        Self { estimator, cache, hero, previous: start, recorder }
     }
 
     /// The end of a walk at a point of a medium that shines, as the emitter `light`; none where it is dark there.
@@ -168,15 +187,26 @@ impl<'a, P: Profile> Eye<'a, P> {
         // for weights alone.
         let radiance = link.value / link.cosine;
         let weight = weight::hit(vertex.reach, others, self.estimator.heuristic);
-        Some(Joined { value: vertex.throughput * radiance * (weight / counts.hit), weight })
+        let weight_alone = weight::alone(vertex.reach);
+        Some(Joined {
+            value: vertex.throughput * radiance * (weight / counts.hit),
+            weight,
+            alone: vertex.throughput * radiance * (weight_alone / counts.hit),
+            weight_alone,
+            transmittance: Spectrum::ONE,
+        })
     }
 
     /// s = 1: a freshly sampled emitter point.
     #[inline]
     fn next_event(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
         let scene = self.estimator.scene;
-        let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream) else { return };
-        self.radiance += self.link(vertex, &link, stream).map_or(Spectrum::ZERO, |joined| joined.value);
+        self.recorder.start();
+        if let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream) {
+            let joined = self.link(vertex, &link, stream);
+            self.recorder.contribute(1, vertex.edges + 1, Meeting::Emitter(&link), joined.as_ref());
+        }
+        self.recorder.stop(1, vertex.edges + 1);
     }
 
     /// The join with an emitter point picked by next-event estimation.
@@ -207,10 +237,14 @@ impl<'a, P: Profile> Eye<'a, P> {
         let estimator = self.estimator;
         let Some((pool, scale)) = self.cache.pool(self.hero, estimator.joins_per_vertex) else { return };
         for _ in 0..estimator.joins_per_vertex {
-            let other = &pool[stream.below(pool.len())];
+            let index = stream.below(pool.len());
+            let other = &pool[index];
             if vertex.edges + other.edges < estimator.max_edges {
-                let joined = self.join_with(vertex, other, stream);
-                self.radiance += joined.map_or(Spectrum::ZERO, |joined| joined.value) * scale;
+                let (s, t) = (other.edges + 1, vertex.edges + 1);
+                self.recorder.start();
+                let joined = self.join_with(vertex, other, stream).map(|joined| joined * scale);
+                self.recorder.contribute(s, t, Meeting::Light(index, other), joined.as_ref());
+                self.recorder.stop(s, t);
             }
         }
     }

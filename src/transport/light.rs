@@ -5,6 +5,7 @@ use super::{
     cache::LightCache,
     connect::{self, Joined, Span},
     profile::Profile,
+    record::{Meeting, Recorder},
     vertex::Vertex,
     walk::{Departure, Kind, Visitor, walk},
     weight::{End, Sums},
@@ -18,40 +19,35 @@ use crate::{
     shape::Ray,
 };
 
-/// Takes what light walks bring to the film: position [pixels] and contribution to a pixel there.
-pub trait Splats {
-    /// True if a contribution at `film` can count.
-    fn covers(&self, film: Vec2) -> bool;
-    /// Adds it.
-    fn splat(&mut self, film: Vec2, value: Spectrum);
-}
-
 /// One light walk on its way.
-pub struct Light<'a, P: Profile, S> {
+pub struct Light<'a, P: Profile, R> {
     estimator: &'a Estimator<'a, P>,
     cache: &'a mut LightCache<P::Sums>,
-    splats: &'a mut S,
+    recorder: &'a mut R,
     start: Start,
     hero: usize,
 }
 
-/// One light walk: its vertices go to `cache`, its joins with the lens to `splats`.
+/// One light walk: its vertices go to `cache`, its joins with the lens to `recorder`.
 pub fn trace<P: Profile>(
     estimator: &Estimator<'_, P>,
     cache: &mut LightCache<P::Sums>,
-    splats: &mut impl Splats,
+    recorder: &mut impl Recorder<P::Sums>,
     hero: usize,
     stream: &mut Stream,
 ) {
     cache.add_walk(hero, estimator.keep);
     let scene = estimator.scene;
     let Some(start) = begin::<P>(scene, stream) else { return };
+    recorder.emit(&start);
     let departure = depart(estimator, &start);
     let kind =
         Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
-    let mut light = Light::new(estimator, cache, splats, start, hero);
+    let mut light = Light::new(estimator, cache, recorder, start, hero);
     let aperture = scene.sensor.sample_aperture(stream);
-    light.splat(light.join_start_to_lens(aperture, stream));
+    light.recorder.start();
+    let joined = light.join_start_to_lens(aperture, stream);
+    light.splat(1, joined);
     walk(scene, kind, departure, &mut light, stream);
 }
 
@@ -84,7 +80,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Depart
     }
 }
 
-impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
+impl<P: Profile, R: Recorder<P::Sums>> Visitor<P> for Light<'_, P, R> {
     #[inline]
     fn joins(&self, edges: u32, position: Vec3) -> f32 {
         if edges > 1 {
@@ -96,40 +92,51 @@ impl<P: Profile, S: Splats> Visitor<P> for Light<'_, P, S> {
     }
 
     #[inline]
+    fn depart(&mut self, departure: &Departure<P::Sums>) {
+        self.recorder.depart(departure);
+    }
+
+    #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
+        self.recorder.arrive(vertex);
         if !vertex.is_connectible(self.estimator.scene) {
             return;
         }
         if self.estimator.counts.lens > 0.0 {
             let aperture = self.estimator.scene.sensor.sample_aperture(stream);
-            self.splat(self.join_to_lens(vertex, aperture, stream));
+            self.recorder.start();
+            let joined = self.join_to_lens(vertex, aperture, stream);
+            self.splat(vertex.edges + 1, joined);
         }
         let keep = self.estimator.keep;
         if keep > 0.0 && (keep >= 1.0 || stream.uniform() < keep) {
             self.cache.push(self.hero, *vertex);
+            self.recorder.keep();
         }
     }
 
     fn escape(&mut self, _: &Vertex<P::Sums>) {}
 }
 
-impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
+impl<'a, P: Profile, R: Recorder<P::Sums>> Light<'a, P, R> {
     /// The walk that begins with `start`.
     pub fn new(
         estimator: &'a Estimator<'a, P>,
         cache: &'a mut LightCache<P::Sums>,
-        splats: &'a mut S,
+        recorder: &'a mut R,
         start: Start,
         hero: usize,
     ) -> Self {
-        Self { estimator, cache, splats, start, hero }
+        Self { estimator, cache, recorder, start, hero }
     }
 
     #[inline]
-    fn splat(&mut self, joined: Option<(Vec2, Joined)>) {
+    fn splat(&mut self, s: u32, joined: Option<(Vec2, Joined)>) {
         if let Some((film, joined)) = joined {
-            self.splats.splat(film, joined.value / self.estimator.counts.lens);
+            let joined = joined / self.estimator.counts.lens;
+            self.recorder.contribute(s, 1, Meeting::Lens(film), Some(&joined));
         }
+        self.recorder.stop(s, 1);
     }
 
     /// t = 1: a vertex as the sensor sees it through a point of its aperture, and where on the film [pixels].
@@ -143,7 +150,7 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
         let scene = self.estimator.scene;
         let seen = scene.sensor.project(vertex.position, aperture)?;
         let hidden = self.estimator.hide_emitters && vertex.is_on_emitter(scene);
-        if hidden || !self.splats.covers(seen.film) {
+        if hidden || !self.recorder.covers(seen.film) {
             return None;
         }
         let end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
@@ -165,7 +172,7 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
         } else {
             scene.sensor.project(start.position, aperture)
         };
-        let seen = seen.filter(|seen| self.splats.covers(seen.film))?;
+        let seen = seen.filter(|seen| self.recorder.covers(seen.film))?;
         let end = start_end::<P>(estimator, start, -seen.ray.direction)?;
         let joined = self.join_end(&end, &seen, start.infinite, stream)?;
         Some((seen.film, joined))

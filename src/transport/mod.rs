@@ -11,6 +11,7 @@ mod connect;
 mod eye;
 mod light;
 pub mod profile;
+pub mod record;
 mod segment;
 #[cfg(test)]
 mod twin;
@@ -19,8 +20,10 @@ mod walk;
 mod weight;
 
 pub use cache::LightCache;
-
-pub use light::Splats;
+pub use connect::Joined;
+pub use vertex::{Site, Vertex};
+pub use walk::Departure;
+pub use weight::Sums;
 
 pub use crate::scene::heuristic::Heuristic;
 
@@ -31,7 +34,8 @@ use crate::{
     shape::Ray,
 };
 use profile::Profile;
-use weight::{Strategy, Sums};
+use record::{Meeting, Recorder};
+use weight::Strategy;
 
 /// Which strategies run. Their weights sum to one over those that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,15 +163,15 @@ impl<'a, P: Profile> Estimator<'a, P> {
         self.joins_per_vertex > 0 || self.counts.lens > 0.0
     }
 
-    /// Traces one light walk of channel `hero` into `cache` and `splats`.
+    /// Traces one light walk of channel `hero` into `cache`; what it brings goes to `recorder`.
     pub fn trace_light(
         &self,
         cache: &mut LightCache<P::Sums>,
-        splats: &mut impl Splats,
+        recorder: &mut impl Recorder<P::Sums>,
         hero: usize,
         stream: &mut Stream,
     ) {
-        light::trace(self, cache, splats, hero, stream);
+        light::trace(self, cache, recorder, hero, stream);
     }
 
     /// The ray of an eye walk through `film` [pixels] and a point of the aperture.
@@ -193,25 +197,27 @@ impl<'a, P: Profile> Estimator<'a, P> {
         self.scene.sensor.sample_aperture(stream)
     }
 
-    /// Radiance estimate of one eye walk of channel `hero` through `film` [pixels] and a point of the aperture.
-    pub fn sample_pixel(
+    /// One eye walk of channel `hero` through `film` [pixels] and a point of the aperture; what it brings goes to
+    /// `recorder`.
+    pub fn sample_pixel<R: Recorder<P::Sums>>(
         &self,
         cache: &LightCache<P::Sums>,
         film: Vec2,
         aperture: Vec2,
         hero: usize,
+        recorder: R,
         stream: &mut Stream,
-    ) -> Spectrum {
-        eye::sample(self, cache, film, aperture, hero, stream)
+    ) -> R {
+        eye::sample(self, cache, film, aperture, hero, recorder, stream)
     }
 }
 
 /// A film that nothing reaches, for pilot walks.
 struct Nowhere;
 
-impl Splats for Nowhere {
+impl<S: Sums> Recorder<S> for Nowhere {
     fn covers(&self, _: Vec2) -> bool {
         false
     }
-    fn splat(&mut self, _: Vec2, _: Spectrum) {}
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Joined>) {}
 }

@@ -50,6 +50,10 @@ pub trait Visitor<P: Profile> {
     /// start.
     fn joins(&self, edges: u32, position: Vec3) -> f32;
 
+    /// The walk sets out for the next vertex.
+    #[inline]
+    fn depart(&mut self, _departure: &Departure<P::Sums>) {}
+
     /// A vertex was reached; it may scatter on.
     fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream);
 
@@ -82,6 +86,7 @@ pub fn walk<P: Profile>(
     stream: &mut Stream,
 ) {
     while departure.edges < kind.max_edges {
+        visitor.depart(&departure);
         let Departure { ray, medium, .. } = departure;
         let mut along =
             |flown: &Flown<P::Lanes>, stream: &mut Stream| visitor.pass(&departure, flown, stream);

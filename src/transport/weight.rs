@@ -17,7 +17,7 @@ pub use power::Power;
 pub use sums::Sums;
 pub use uniform::Uniform;
 
-use crate::math::{Spectrum, Vec3};
+use crate::math::{Lanes, Spectrum, Vec3};
 use crate::medium::MediumIndex;
 use crate::scene::heuristic::Heuristic;
 
@@ -88,4 +88,11 @@ pub fn join<S: Sums>(
 #[inline]
 pub fn hit<S: Sums>(reach: S::Lanes, others: S, heuristic: Heuristic) -> f32 {
     others.weight(heuristic, reach)
+}
+
+/// The weight of a strategy that runs alone, times the number of lanes: only the channels share the path. `reach` is the product of both ends'.
+/// The weight among all strategies is that of [`join`] or [`hit`] over this one.
+#[inline]
+pub fn alone<L: Lanes>(reach: L) -> f32 {
+    L::COUNT as f32 / reach.sum()
 }

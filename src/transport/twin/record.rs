@@ -3,18 +3,19 @@
 use super::path::{APERTURE, Node, Path, Place};
 use crate::{
     bsdf::Transport,
-    math::{Lanes, Spectrum, Vec2, Vec3, vec2},
+    math::{Lanes, Vec2, Vec3, vec2},
     sampling::Stream,
     scene::{
         Scene,
         lights::{Link, Start},
     },
     transport::{
-        Estimator, LightCache, Splats,
+        Estimator, LightCache,
         connect::Joined,
         eye::{self, Eye},
         light::{self, Light},
         profile::Profile,
+        record::{Meeting, Recorder, Sum},
         segment::Flown,
         vertex::{Site, Vertex},
         walk::{Departure, Kind, Visitor, walk},
@@ -34,11 +35,11 @@ pub struct Case {
 /// A film that reaches a little further than the image.
 pub struct WideFilm;
 
-impl Splats for WideFilm {
+impl<S: Sums> Recorder<S> for WideFilm {
     fn covers(&self, film: Vec2) -> bool {
         (film - vec2(8.0, 6.0)).abs().max_element() < 12.0
     }
-    fn splat(&mut self, _: Vec2, _: Spectrum) {}
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Joined>) {}
 }
 
 /// Remembers where a walk went.
@@ -78,10 +79,10 @@ pub fn eye_walk<'a, P: Profile>(
     film: Vec2,
     hero: usize,
     stream: &mut Stream,
-) -> Trail<Eye<'a, P>, P::Sums> {
+) -> Trail<Eye<'a, P, Sum>, P::Sums> {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
     let departure = eye::depart(estimator, film, APERTURE);
-    let mut trail = Trail::new(Eye::new(estimator, cache, hero, departure.position));
+    let mut trail = Trail::new(Eye::new(estimator, cache, hero, departure.position, Sum::default()));
     walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
     trail
 }
@@ -190,7 +191,7 @@ fn chain<S: Sums>(vertices: &[Vertex<S>], dirac: bool) -> Vec<Node> {
 
 fn of_eye<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Sums>,
+    eye: &Trail<Eye<'_, P, Sum>, P::Sums>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
@@ -225,7 +226,7 @@ fn of_eye<P: Profile>(
 /// Points of media that shine, met on the flights of the eye walk.
 fn of_flights<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Sums>,
+    eye: &Trail<Eye<'_, P, Sum>, P::Sums>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
@@ -266,7 +267,7 @@ fn of_light<P: Profile>(
 
 fn of_both<P: Profile>(
     estimator: &Estimator<'_, P>,
-    eye: &Trail<Eye<'_, P>, P::Sums>,
+    eye: &Trail<Eye<'_, P, Sum>, P::Sums>,
     start: &Start,
     light: &[Vertex<P::Sums>],
     cases: &mut Cases<'_>,

@@ -17,6 +17,7 @@ use crate::{
         eye::{self, Eye},
         light::{self, Light},
         profile::Profile,
+        record::Sum,
         segment::{Flight, Landing},
         vertex::Vertex,
         walk::{Departure, Turn, Visitor, land, set_out},
@@ -46,7 +47,7 @@ pub fn weights<P: Profile>(
     let (mut kept, mut film) = (LightCache::new(P::Lanes::COUNT), WideFilm);
     let start = start(twin, path);
     let light = Light::new(estimator, &mut kept, &mut film, start, hero);
-    let eye = Eye::new(estimator, &cache, hero, Node::lens(estimator.scene).position());
+    let eye = Eye::new(estimator, &cache, hero, Node::lens(estimator.scene).position(), Sum::default());
     let by_light = by_light(estimator, twin, path, &start, hero, &light);
     let by_eye = by_eye(estimator, twin, path, hero, &eye);
     let last = path.nodes.len() - 1;

@@ -1,0 +1,99 @@
+//! `tyndall strategies`: what every strategy is worth in a scene.
+
+use super::{
+    arguments::{Estimator, Scene, Size, positive_u32, size, threads},
+    estimator, load, say,
+};
+use crate::{
+    error::{Error, Result},
+    render::{Settings, budget::Budget},
+    study::strategies::{self, Plan},
+};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::{num::NonZeroUsize, path::PathBuf};
+
+/// Show what every strategy is worth.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Arguments {
+    /// Which scene.
+    #[command(flatten)]
+    pub scene: Scene,
+
+    /// Folder to write to, made if it is not there [default: the scene's name with -strategies, in the current folder]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+
+    /// Passes, each of one sample per pixel, that make the images [default: the scene's sample_count]
+    #[arg(long, value_name = "N", value_parser = positive_u32, allow_negative_numbers = true)]
+    pub spp: Option<u32>,
+
+    /// Passes of every set of strategies in the comparison, rounded up to ten turns of at least two; 0 for no
+    /// comparison [default: as --spp]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub pilots: Option<u32>,
+
+    /// Paths of up to so many segments are told apart strategy by strategy; longer ones by kind
+    #[arg(long, value_name = "D", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub depth: u32,
+
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    pub seed: u64,
+
+    /// Threads to render with [default: one per processor]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
+    pub size: Option<Size>,
+
+    /// How paths are made.
+    #[command(flatten)]
+    pub estimator: Estimator,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
+    let settings = Settings {
+        options: estimator::options(&arguments.estimator, &setup, arguments.seed)?,
+        budget: Budget { samples_per_pixel: None, time: None },
+        seed: arguments.seed,
+        profile: estimator::profile(&arguments.estimator, &setup),
+    };
+    let passes = arguments.spp.map_or(setup.samples_per_pixel, u64::from) as usize;
+    let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);
+    let plan = Plan { depth: arguments.depth, passes, pilots };
+    let folder = folder(arguments)?;
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left") {
+        bar.set_style(style);
+    }
+    let mut tell = |done: usize, total: usize| {
+        bar.set_length(total as u64);
+        bar.set_position(done as u64);
+    };
+    let pool = super::threads(arguments.threads)?;
+    let findings = pool.install(|| strategies::examine(&setup, &settings, &plan, &mut tell))?;
+    bar.finish_and_clear();
+    let files = findings.write(&folder)?;
+    say(&strategies::table(&findings.report));
+    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
+    say(&format!("in {}: {}", folder.display(), names.collect::<Vec<_>>().join(", ")));
+    Ok(())
+}
+
+/// The folder, which then exists.
+fn folder(arguments: &Arguments) -> Result<PathBuf> {
+    let folder = arguments.output.clone().unwrap_or_else(|| {
+        let stem = arguments.scene.file.file_stem().unwrap_or_default().to_string_lossy();
+        PathBuf::from(format!("{stem}-strategies"))
+    });
+    std::fs::create_dir_all(&folder).map_err(|error| {
+        let remedy = "choose another place, or allow yourself to make a folder there";
+        Error::new(folder.display(), "a folder to write to", error.to_string(), remedy)
+    })?;
+    Ok(folder)
+}

@@ -1,0 +1,356 @@
+//! One pixel sample made again, with all that its walks met: what one pass adds to one pixel.
+
+use super::bench::{Bench, Ready};
+use crate::{
+    film::Film,
+    math::{Lanes, Spectrum, Vec2, Vec3},
+    medium::MediumIndex,
+    sampling::{Stream, stream::Purpose},
+    scene::lights::{Link, Start},
+    transport::{
+        Departure, Joined, LightCache, Site, Sums, Vertex,
+        profile::Profile,
+        record::{Meeting, Recorder},
+    },
+};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// What one pass adds to one pixel, and how.
+#[derive(Clone, Debug)]
+pub struct PixelSample {
+    /// Where on the film the eye walk starts [pixels].
+    pub film: Vec2,
+    /// Through which point of the aperture, as the sensor samples it.
+    pub aperture: Vec2,
+    /// What the filter makes of a sample there: 1, but for filters with negative lobes.
+    pub factor: f32,
+    /// The channel that samples distances, where extinction differs between channels.
+    pub hero: Option<usize>,
+    /// The eye walk.
+    pub eye: Walk,
+    /// What the strategies tried from its vertices brought, in order; values before `factor`.
+    pub tries: Vec<Try>,
+    /// What light walks brought to the pixel, in order.
+    pub splats: Vec<Splat>,
+    /// The light walks that the others name by number.
+    pub light: BTreeMap<u64, Walk>,
+    /// The sum: what the pass adds to the pixel.
+    pub value: Spectrum,
+}
+
+/// A walk of either kind.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    /// The emitter that a light walk starts at.
+    pub emitter: Option<Start>,
+    /// Where it sets out from; none where nothing left the emitter.
+    pub start: Option<Leg>,
+    /// Its vertices after the start.
+    pub stops: Vec<Stop>,
+    /// The direction in which an eye walk left the scene.
+    pub escaped: Option<Vec3>,
+}
+
+/// How a walk goes on from its start or a vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg {
+    /// Where it was.
+    pub position: Vec3,
+    /// Where it goes to, unit.
+    pub direction: Vec3,
+    /// The medium that it is then in.
+    pub medium: MediumIndex,
+    /// See [`Departure::forward`].
+    pub density: f32,
+    /// The direction is that of a Dirac lobe.
+    pub dirac: bool,
+    /// Contribution over density so far.
+    pub throughput: Spectrum,
+}
+
+/// A vertex of a walk.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop {
+    /// Where it is.
+    pub position: Vec3,
+    /// On what or in what.
+    pub site: Site,
+    /// The medium of the segment that ended here.
+    pub medium: MediumIndex,
+    /// Unit direction towards the vertex before.
+    pub incoming: Vec3,
+    /// Its density by the hero channel: per volume in media [1/m^3], per area on surfaces [1/m^2].
+    pub density: f32,
+    /// Contribution over density of all before its own scattering.
+    pub throughput: Spectrum,
+    /// How the walk went on; none where it ended here.
+    pub onward: Option<Leg>,
+}
+
+/// A strategy tried from the eye walk.
+#[derive(Clone, Debug)]
+pub struct Try {
+    /// Light vertices.
+    pub s: u32,
+    /// Eye vertices, the lens among them.
+    pub t: u32,
+    /// What the last of the eye vertices was joined with.
+    pub partner: Partner,
+    /// What it brought; none where the way was blocked or nothing scatters along it.
+    pub joined: Option<Joined>,
+}
+
+/// What an eye vertex was joined with.
+#[derive(Clone, Debug)]
+pub enum Partner {
+    /// The eye walk met an emitter here.
+    Met(Stop, Link),
+    /// A point of an emitter.
+    Emitter(Link),
+    /// A vertex of light walk `walk`, `edges` segments from its start.
+    Light {
+        /// Number of the walk in its pass.
+        walk: u64,
+        /// Segments from the emitter.
+        edges: u32,
+        /// Where the vertex is.
+        position: Vec3,
+    },
+}
+
+/// A contribution of a light walk to the pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Splat {
+    /// Number of the walk in its pass.
+    pub walk: u64,
+    /// Light vertices; t = 1.
+    pub s: u32,
+    /// Where on the film it came down [pixels].
+    pub film: Vec2,
+    /// The share of it that the filter gives the pixel.
+    pub share: f32,
+    /// All of it.
+    pub joined: Joined,
+}
+
+impl Splat {
+    /// What the pixel gets.
+    pub fn value(&self) -> Spectrum {
+        self.joined.value * self.share
+    }
+}
+
+impl Bench<'_> {
+    /// What `pass` adds to `pixel` (row-major index), and how.
+    pub fn sample(&self, pass: usize, pixel: usize) -> PixelSample {
+        self.compiled.sample(pass, pixel)
+    }
+}
+
+/// Makes the sample of `pixel` in `pass` again: all light walks of the pass, for any of them may land on the pixel,
+/// the eye walk, and once more the light walks that brought something.
+pub(super) fn pixel<P: Profile>(ready: &Ready<'_, P>, pass: usize, pixel: usize) -> PixelSample {
+    let Ready { estimator, blocks, film, seed } = ready;
+    let own = (0..blocks.count()).find(|block| blocks.pixels(*block).any(|p| p == pixel)).unwrap_or(0);
+    let lit: Vec<Lit<P::Sums>> =
+        (0..blocks.count()).into_par_iter().map(|block| light(ready, pass, block, pixel)).collect();
+    let start = blocks.eye_start(estimator, film, *seed, pass, pixel);
+    let (position, aperture, factor, hero) = (start.position, start.aperture, start.weight, start.hero);
+    let mut eye = OfEye { trail: Trail::new(), kept: &lit[own].kept[hero], tries: Vec::new() };
+    let recorder: &mut dyn Recorder<P::Sums> = &mut eye;
+    start.trace(estimator, &lit[own].cache, recorder);
+    let OfEye { trail: Trail { walk: eye, .. }, tries, .. } = eye;
+    let radiance = sum(tries.iter().filter_map(|one| one.joined.map(|joined| joined.value)));
+    let mut value = Spectrum::ZERO;
+    for (block, lit) in lit.iter().enumerate() {
+        // The order in which a pass adds up.
+        if block == own {
+            value += radiance * factor;
+        }
+        lit.splats.iter().for_each(|splat| value += splat.value());
+    }
+    let splats: Vec<Splat> = lit.into_iter().flat_map(|lit| lit.splats).collect();
+    let joined = tries.iter().filter_map(|one| match one.partner {
+        Partner::Light { walk, .. } => Some(walk),
+        _ => None,
+    });
+    let light = splats.iter().map(|splat| splat.walk).chain(joined);
+    let light = light.map(|walk| (walk, again(ready, pass, walk))).collect();
+    let hero = (P::Lanes::COUNT > 1).then_some(hero);
+    PixelSample { film: position, aperture, factor, hero, eye, tries, splats, light, value }
+}
+
+fn sum(values: impl Iterator<Item = Spectrum>) -> Spectrum {
+    values.fold(Spectrum::ZERO, |sum, value| sum + value)
+}
+
+/// The light walks of a block.
+struct Lit<S: Sums> {
+    cache: LightCache<S>,
+    /// Walk and segments from its start of every vertex in the cache, per hero channel in the cache's order.
+    kept: Vec<Vec<(u64, u32)>>,
+    splats: Vec<Splat>,
+}
+
+fn light<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize, pixel: usize) -> Lit<P::Sums> {
+    let Ready { estimator, blocks, film, .. } = ready;
+    let mut cache = LightCache::new(P::Lanes::COUNT);
+    let mut kept = vec![Vec::new(); P::Lanes::COUNT];
+    let mut splats = Vec::new();
+    if estimator.needs_light_walks() {
+        for walk in blocks.light_walks(block) {
+            let mut seen = OfLight::new(film, pixel, walk);
+            let hero = trace(ready, pass, walk, &mut cache, &mut seen);
+            kept[hero].extend(seen.kept.iter().map(|edges| (walk, *edges)));
+            splats.append(&mut seen.splats);
+        }
+    }
+    Lit { cache, kept, splats }
+}
+
+/// Light walk number `walk` of `pass`, seen by `recorder`; its hero channel.
+fn trace<P: Profile>(
+    ready: &Ready<'_, P>,
+    pass: usize,
+    walk: u64,
+    cache: &mut LightCache<P::Sums>,
+    recorder: &mut dyn Recorder<P::Sums>,
+) -> usize {
+    let Ready { estimator, blocks, seed, .. } = ready;
+    let mut stream = Stream::new(*seed, walk, pass as u64, Purpose::Light);
+    let hero = blocks.hero(walk);
+    let mut recorder = recorder;
+    estimator.trace_light(cache, &mut recorder, hero, &mut stream);
+    hero
+}
+
+/// All vertices of a light walk.
+fn again<P: Profile>(ready: &Ready<'_, P>, pass: usize, walk: u64) -> Walk {
+    let mut trail = Trail::of_light(ready.film);
+    trace(ready, pass, walk, &mut LightCache::new(P::Lanes::COUNT), &mut trail);
+    trail.walk
+}
+
+/// Remembers where a walk went.
+struct Trail<'a> {
+    /// Of light walks: they must do as they did.
+    film: Option<&'a Film>,
+    walk: Walk,
+}
+
+impl<'a> Trail<'a> {
+    fn new() -> Self {
+        let walk = Walk { emitter: None, start: None, stops: Vec::new(), escaped: None };
+        Self { film: None, walk }
+    }
+
+    fn of_light(film: &'a Film) -> Self {
+        Self { film: Some(film), ..Self::new() }
+    }
+}
+
+impl<S: Sums> Recorder<S> for Trail<'_> {
+    fn covers(&self, film: Vec2) -> bool {
+        self.film.is_none_or(|all| all.covers(film))
+    }
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Joined>) {}
+    fn emit(&mut self, start: &Start) {
+        self.walk.emitter = Some(*start);
+    }
+    fn depart(&mut self, departure: &Departure<S>) {
+        let leg = Some(Leg {
+            position: departure.position,
+            direction: departure.ray.direction,
+            medium: departure.medium,
+            density: departure.forward,
+            dirac: departure.dirac,
+            throughput: departure.throughput,
+        });
+        match self.walk.stops.last_mut() {
+            Some(stop) => stop.onward = leg,
+            None => self.walk.start = leg,
+        }
+    }
+    fn arrive(&mut self, vertex: &Vertex<S>) {
+        self.walk.stops.push(stop(vertex));
+    }
+    fn escape(&mut self, vertex: &Vertex<S>) {
+        self.walk.escaped = Some(-vertex.incoming);
+    }
+}
+
+fn stop<S: Sums>(vertex: &Vertex<S>) -> Stop {
+    let Vertex { position, site, medium, incoming, throughput, inverse, .. } = *vertex;
+    Stop { position, site, medium, incoming, density: 1.0 / inverse, throughput, onward: None }
+}
+
+/// Sees the eye walk.
+struct OfEye<'a> {
+    trail: Trail<'a>,
+    kept: &'a [(u64, u32)],
+    tries: Vec<Try>,
+}
+
+impl<S: Sums> Recorder<S> for OfEye<'_> {
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, joined: Option<&Joined>) {
+        let partner = match meeting {
+            Meeting::Met(vertex, link) => Partner::Met(stop(vertex), *link),
+            Meeting::Emitter(link) => Partner::Emitter(*link),
+            Meeting::Light(index, vertex) => {
+                let (walk, edges) = self.kept[index];
+                Partner::Light { walk, edges, position: vertex.position }
+            }
+            Meeting::Lens(_) => return,
+        };
+        self.tries.push(Try { s, t, partner, joined: joined.copied() });
+    }
+    fn depart(&mut self, departure: &Departure<S>) {
+        self.trail.depart(departure);
+    }
+    fn arrive(&mut self, vertex: &Vertex<S>) {
+        self.trail.arrive(vertex);
+    }
+    fn escape(&mut self, vertex: &Vertex<S>) {
+        self.trail.escape(vertex);
+    }
+}
+
+/// Sees one light walk.
+struct OfLight<'a> {
+    film: &'a Film,
+    pixel: usize,
+    walk: u64,
+    /// Segments from the start to the last vertex.
+    edges: u32,
+    /// The same of all vertices that the cache keeps.
+    kept: Vec<u32>,
+    splats: Vec<Splat>,
+}
+
+impl<'a> OfLight<'a> {
+    fn new(film: &'a Film, pixel: usize, walk: u64) -> Self {
+        Self { film, pixel, walk, edges: 0, kept: Vec::new(), splats: Vec::new() }
+    }
+}
+
+impl<S: Sums> Recorder<S> for OfLight<'_> {
+    fn covers(&self, film: Vec2) -> bool {
+        self.film.covers(film)
+    }
+    fn contribute(&mut self, s: u32, _: u32, meeting: Meeting<'_, S>, joined: Option<&Joined>) {
+        let (Meeting::Lens(film), Some(joined)) = (meeting, joined) else { return };
+        let (walk, joined) = (self.walk, *joined);
+        self.film.spread(film, Spectrum::ONE, |pixel, share| {
+            if pixel == self.pixel {
+                self.splats.push(Splat { walk, s, film, share: share.x, joined });
+            }
+        });
+    }
+    fn arrive(&mut self, vertex: &Vertex<S>) {
+        self.edges = vertex.edges;
+    }
+    fn keep(&mut self) {
+        self.kept.push(self.edges);
+    }
+}

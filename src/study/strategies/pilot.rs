@@ -1,0 +1,120 @@
+//! Sets of strategies against each other: short renders that take turns, so that whatever else the machine does falls
+//! upon all of them, and what their passes say of error and time.
+
+use crate::{math::Spectrum, render::bench::Bench, study::outcome::Interval};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Confidence of every interval.
+pub const CONFIDENCE: f64 = 0.95;
+/// Turns of every contender: enough for an interval.
+const ROUNDS: usize = 10;
+/// Passes of a turn, at least: below, there is no variance between them.
+const PASSES: usize = 2;
+
+/// What one turn of one contender told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// relMSE of one pass: mean over pixels and channels of the variance between passes over (r^2 + 0.01), as
+    /// [`crate::study::outcome::Point::relmse`].
+    pub relmse: f64,
+    /// Time of one pass [s].
+    pub seconds: f64,
+}
+
+/// Passes that every contender makes if `wanted` are asked for.
+pub fn passes(wanted: usize) -> usize {
+    turn(wanted) * ROUNDS
+}
+
+fn turn(wanted: usize) -> usize {
+    wanted.div_ceil(ROUNDS).max(PASSES)
+}
+
+/// Lets all of `contenders` make `wanted` passes or a few more, in turns; what each turn told, by contender. Errors
+/// are relative to `reference`. Tells of every turn.
+pub fn take_turns(
+    contenders: &[Bench<'_>],
+    reference: &[Spectrum],
+    wanted: usize,
+    tell: &mut dyn FnMut(usize),
+) -> Vec<Vec<Turn>> {
+    let mut turns = vec![Vec::with_capacity(ROUNDS); contenders.len()];
+    let count = turn(wanted);
+    for round in 0..ROUNDS {
+        for (contender, turns) in contenders.iter().zip(&mut turns) {
+            turns.push(take_turn(contender, reference, round * count..(round + 1) * count));
+            tell(count);
+        }
+    }
+    turns
+}
+
+fn take_turn(contender: &Bench<'_>, reference: &[Spectrum], passes: std::ops::Range<usize>) -> Turn {
+    let count = passes.len() as f64;
+    let mut moments = vec![[[0.0; 2]; 3]; reference.len()];
+    let time = contender.passes(passes, &mut |image| {
+        for (moments, value) in moments.iter_mut().zip(image) {
+            for (channel, v) in moments.iter_mut().zip(value.to_array().map(f64::from)) {
+                channel[0] += v;
+                channel[1] += v * v;
+            }
+        }
+    });
+    let relative = moments.iter().zip(reference).flat_map(|(moments, r)| {
+        moments.iter().zip(r.to_array()).map(move |([sum, square], r)| {
+            let variance = ((square - sum * sum / count) / (count - 1.0)).max(0.0);
+            variance / (f64::from(r).powi(2) + 0.01)
+        })
+    });
+    let relmse = relative.sum::<f64>() / (3 * reference.len()) as f64;
+    Turn { relmse, seconds: time.as_secs_f64() / count }
+}
+
+/// relMSE x seconds of `full` over that of `other`, turn by turn: how many times less error `other` makes in the same
+/// time. The interval is the jackknife's, of the logarithm. None where nothing is noisy or nothing took any time.
+pub fn gain(full: &[Turn], other: &[Turn]) -> Option<Interval> {
+    let product = |turns: &[Turn], without: Option<usize>| {
+        let kept = || turns.iter().enumerate().filter(|(i, _)| Some(*i) != without).map(|(_, turn)| turn);
+        kept().map(|turn| turn.relmse).sum::<f64>() * kept().map(|turn| turn.seconds).sum::<f64>()
+    };
+    let log = |without| (product(full, without) / product(other, without)).ln();
+    let (n, all) = (full.len() as f64, log(None));
+    let values: Vec<f64> = (0..full.len()).map(|turn| n * all - (n - 1.0) * log(Some(turn))).collect();
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n;
+    let quantile = StudentsT::new(0.0, 1.0, n - 1.0).ok()?.inverse_cdf(0.5 + 0.5 * CONFIDENCE);
+    let half = quantile * variance.sqrt();
+    let found = all.is_finite() && half.is_finite();
+    found.then(|| Interval { mean: all.exp(), low: (all - half).exp(), high: (all + half).exp() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{Stream, stream::Purpose};
+
+    fn turns(error: f64, time: f64, seed: u64) -> Vec<Turn> {
+        let mut stream = Stream::new(9, seed, 0, Purpose::Study);
+        let mut noisy = |mean: f64| mean * f64::from(1.0 + 0.1 * stream.normal());
+        (0..ROUNDS).map(|_| Turn { relmse: noisy(error), seconds: noisy(time) }).collect()
+    }
+
+    /// Of many intervals about as many hold the truth as they say.
+    #[test]
+    fn the_interval_holds_the_ratio() {
+        let trials = 400;
+        let held = (0..trials).filter(|trial| {
+            let gain = gain(&turns(3.0, 2.0, 2 * trial), &turns(1.0, 4.0, 2 * trial + 1)).unwrap();
+            gain.low < 1.5 && 1.5 < gain.high
+        });
+        let held = held.count() as f64 / trials as f64;
+        assert!((held - CONFIDENCE).abs() < 4.0 * (0.95 * 0.05 / trials as f64).sqrt(), "{held}");
+    }
+
+    #[test]
+    fn without_noise_nothing_is_gained() {
+        let still = vec![Turn { relmse: 0.0, seconds: 1.0 }; ROUNDS];
+        assert_eq!(gain(&still, &still), None);
+        assert!(passes(1) == 20 && passes(64) == 70);
+    }
+}
