@@ -3,7 +3,7 @@
 use super::fog::{PILOT_RAYS, Preview};
 use crate::{
     film::Film,
-    math::{Lanes, Spectrum, Vec2},
+    math::{DVec3, Lanes, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
     shape::Ray,
     transport::{Estimator, LightCache, Splats, profile::Profile},
@@ -44,6 +44,16 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Adds what eye walks brought.
+    pub fn add_eye_to(&self, pass: &mut [DVec3]) {
+        self.eye.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
+    }
+
+    /// Adds what light walks brought, in a fixed order.
+    pub fn add_light_to(&self, pass: &mut [DVec3]) {
+        self.light.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
+    }
+
     /// Adds it, in a fixed order.
     pub fn add_to(&self, pass: &mut [Spectrum]) {
         for (pixel, value) in self.eye.iter().chain(&self.light) {
@@ -101,7 +111,7 @@ impl Blocks {
         EyeStart { stream, hero, position, aperture, weight }
     }
 
-    /// Renders one sample of every pixel of `block`.
+    /// Renders one sample of every pixel of `block` that `wants` one.
     pub fn render<P: Profile>(
         &self,
         estimator: &Estimator<'_, P>,
@@ -109,6 +119,7 @@ impl Blocks {
         seed: u64,
         pass: usize,
         block: usize,
+        wants: impl Fn(usize) -> bool,
     ) -> Outcome {
         let mut cache = LightCache::new(P::Lanes::COUNT);
         let mut light = Splatted { film, values: Vec::new() };
@@ -120,7 +131,7 @@ impl Blocks {
                 estimator.trace_light(&mut cache, &mut light, hero, &mut stream);
             }
         }
-        let eye = self.pixels(block).map(|pixel| {
+        let eye = self.pixels(block).filter(|pixel| wants(*pixel)).map(|pixel| {
             let mut start = self.eye_start(estimator, film, seed, pass, pixel);
             let EyeStart { position, aperture, hero, weight, .. } = start;
             let radiance = estimator.sample_pixel(&cache, position, aperture, hero, &mut start.stream);
