@@ -73,6 +73,20 @@ pub struct Render {
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
     pub time_limit: Option<Duration>,
 
+    /// Sample every pixel until its value is off by less than this part of it, such as 0.02
+    ///
+    /// In every channel, with the probability that --confidence names for each pixel by itself, as far as its samples
+    /// tell. Pixels darker than a hundredth of the image's mean luminance are known relative to that hundredth. Pixels
+    /// that are harder get more samples, those that are black so far as many as the hardest; the image stays unbiased.
+    /// With --spp or --time-limit as well, whichever is reached first ends the render; without, there is no other end.
+    /// Where the file is an EXR, its channel samples.N tells how many samples each pixel took.
+    #[arg(long, value_name = "E", value_parser = relative_error, allow_negative_numbers = true)]
+    pub error: Option<f64>,
+
+    /// Probability with which a pixel is within --error [default: 0.95]
+    #[arg(long, value_name = "C", value_parser = confidence, requires = "error", allow_negative_numbers = true)]
+    pub confidence: Option<f64>,
+
     /// Seed of all random numbers; the same seed gives the same image
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
@@ -298,6 +312,16 @@ fn frames(text: &str) -> Result<Frames, String> {
 fn fps(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|fps: &f64| (1e-6..=1e9).contains(fps));
     number.ok_or_else(|| "expected frames per second from 1e-6 to 1e9, such as 24 or 29.97".to_owned())
+}
+
+fn relative_error(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|error: &f64| (1e-5..=1.0).contains(error));
+    number.ok_or_else(|| "expected a relative error from 1e-5 to 1, such as 0.02".to_owned())
+}
+
+fn confidence(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|confidence: &f64| (0.5..=0.9999).contains(confidence));
+    number.ok_or_else(|| "expected a probability from 0.5 to 0.9999, such as 0.95".to_owned())
 }
 
 pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {

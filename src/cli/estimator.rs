@@ -76,7 +76,8 @@ fn max_depth(asked: &arguments::Estimator, setup: &Setup) -> Result<Option<u32>>
     Ok(edges)
 }
 
-fn strategies(asked: &arguments::Estimator, scene_method: Method) -> Result<Strategies> {
+/// The strategies that are used.
+pub fn strategies(asked: &arguments::Estimator, scene_method: Method) -> Result<Strategies> {
     let all = match (asked.integrator, scene_method) {
         (Some(arguments::Integrator::Bdpt), _) | (None, Method::Bdpt) => Strategies::BDPT,
         (Some(arguments::Integrator::Pt), _) | (None, Method::Pt) => Strategies::PT,

@@ -6,8 +6,9 @@ use crate::{
     film::{
         self, Film,
         format::{FileKind, Format},
+        layer::Content,
     },
-    render::{self, Image, Progress, Settings, budget::Budget},
+    render::{self, Image, Progress, Settings, adaptive::Precision, budget::Budget},
     scene::build::Setup,
     transport::Strategies,
 };
@@ -22,13 +23,13 @@ use std::{
 pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
     let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
-    let settings = settings(arguments, &setup)?;
+    let task = Task { settings: settings(arguments, &setup)?, precision: precision(arguments, &setup)? };
     let goal = Goal::new(arguments, &setup)?;
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
     let figures = match arguments.frames {
-        None => vec![pool.install(|| shoot(&setup, &settings, &goal, None))?],
-        Some(frames) => pool.install(|| animate(arguments, &mut setup, &settings, &goal, frames))?,
+        None => vec![pool.install(|| shoot(&setup, &task, &goal, None))?],
+        Some(frames) => pool.install(|| animate(arguments, &mut setup, &task, &goal, frames))?,
     };
     match &arguments.report {
         Some(path) => write_report(path, figures, load_time, arguments.frames.is_some()),
@@ -43,7 +44,7 @@ const FPS: f64 = 24.0;
 fn animate(
     arguments: &arguments::Render,
     setup: &mut Setup,
-    settings: &Settings,
+    task: &Task,
     goal: &Goal,
     frames: arguments::Frames,
 ) -> Result<Vec<serde_json::Value>> {
@@ -59,9 +60,10 @@ fn animate(
         if !moved && frame == first && first < last {
             super::complain("warning: nothing in this scene moves (no wind): frames differ by noise alone");
         }
-        let settings = Settings { seed: seed_of(settings.seed, frame), ..*settings };
+        let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };
+        let task = Task { settings, ..*task };
         let label = format!("frame {frame} of {first}..{last}");
-        let mut told = shoot(setup, &settings, &goal.numbered(frame, digits), Some(&label))?;
+        let mut told = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
         told["frame"] = frame.into();
         told["time"] = time.into();
         figures.push(told);
@@ -74,26 +76,69 @@ fn seed_of(seed: u64, frame: u32) -> u64 {
     seed ^ (u64::from(frame) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
-/// Renders one image and writes it; its figures.
-fn shoot(setup: &Setup, settings: &Settings, goal: &Goal, label: Option<&str>) -> Result<serde_json::Value> {
-    let bar = Bar::new(settings, setup.film.len(), label);
-    let Setup { scene, film, integrator, .. } = setup;
-    let tell = &mut |progress| bar.tell(&progress);
-    let mut image = match settings.options.strategies == Strategies::NONE {
-        true => render::preview(scene, film, settings, &integrator.look, &integrator.layers, tell),
-        false => render::render_layers(scene, film, settings, &integrator.layers, tell),
+/// What is to be rendered.
+struct Task {
+    settings: Settings,
+    precision: Option<Precision>,
+}
+
+/// What every pixel is to be known with.
+fn precision(arguments: &arguments::Render, setup: &Setup) -> Result<Option<Precision>> {
+    let Some(error) = arguments.error else { return Ok(None) };
+    let refuse = |found: &str, remedy: &str| {
+        Err(Error::new("--error", "an image whose samples vary, without layers of moments", found, remedy))
     };
+    if estimator::strategies(&arguments.estimator, setup.integrator.method)? == Strategies::NONE {
+        return refuse("the preview fog", "leave --error out, or choose another --integrator");
+    }
+    if setup.integrator.layers.iter().any(|layer| layer.needs_squares() || layer.content == Content::Mean) {
+        return refuse("the integrator moment", "leave --error out, or take moment out of the scene");
+    }
+    Ok(Some(Precision { error, confidence: arguments.confidence.unwrap_or(CONFIDENCE) }))
+}
+
+/// With which pixels are within the error, where nobody says.
+const CONFIDENCE: f64 = 0.95;
+
+/// Renders one image and writes it; its figures.
+fn shoot(setup: &Setup, task: &Task, goal: &Goal, label: Option<&str>) -> Result<serde_json::Value> {
+    let bar = Bar::new(task, setup.film.len(), label);
+    let mut image = render(setup, task, &mut |progress| bar.tell(&progress));
     bar.bar.finish_and_clear();
-    goal.write(film, &mut image)?;
+    goal.write(&setup.film, &mut image)?;
     let preview = goal.path.with_extension("png");
-    film::png::write(&preview, film.width as usize, film.height as usize, &image.pixels)?;
-    print_summary(&image, &goal.path, &preview, label);
-    Ok(serde_json::json!({
+    let (width, height) = (setup.film.width as usize, setup.film.height as usize);
+    film::png::write(&preview, width, height, &image.pixels)?;
+    print_summary(&image, task, &goal.path, &preview, label);
+    Ok(figures(&image, task))
+}
+
+fn render(setup: &Setup, task: &Task, tell: &mut dyn FnMut(Progress)) -> Image {
+    let Setup { scene, film, integrator, .. } = setup;
+    let (layers, settings) = (&integrator.layers, &task.settings);
+    match task.precision {
+        _ if settings.options.strategies == Strategies::NONE => {
+            render::preview(scene, film, settings, &integrator.look, layers, tell)
+        }
+        Some(precision) => render::render_to_precision(scene, film, settings, precision, layers, tell),
+        None => render::render_layers(scene, film, settings, layers, tell),
+    }
+}
+
+/// Figures of an image, for scripts.
+fn figures(image: &Image, task: &Task) -> serde_json::Value {
+    let mut figures = serde_json::json!({
         "samples_per_pixel": image.samples_per_pixel,
         "render_seconds": image.elapsed.as_secs_f64(),
         "relative_error": image.noise,
-        "profile": settings.profile.name(),
-    }))
+        "profile": task.settings.profile.name(),
+    });
+    if let Some(reached) = &image.reached {
+        figures["pixels_within_error"] = reached.share.into();
+        figures["least_samples"] = reached.samples.iter().min().copied().into();
+        figures["most_samples"] = reached.samples.iter().max().copied().into();
+    }
+    figures
 }
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
@@ -110,6 +155,7 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
     let samples_per_pixel = match (arguments.spp, arguments.time_limit) {
         (Some(spp), _) => Some(u64::from(spp)),
         (None, Some(_)) => None,
+        (None, None) if arguments.error.is_some() => None,
         (None, None) if is_preview => Some(setup.samples_per_pixel.min(PREVIEW_SAMPLES)),
         (None, None) => Some(setup.samples_per_pixel),
     };
@@ -175,33 +221,48 @@ impl Goal {
 /// A progress bar over pixel samples, or over time where only time ends the render.
 struct Bar {
     bar: ProgressBar,
-    by_time: bool,
+    by: By,
+}
+
+/// What fills the bar.
+enum By {
+    Samples,
+    Time,
+    Pixels { within: f64, all: usize },
 }
 
 impl Bar {
-    fn new(settings: &Settings, pixels: usize, label: Option<&str>) -> Self {
-        let (length, template) = match settings.budget {
-            Budget { samples_per_pixel: Some(spp), .. } => {
-                (spp.saturating_mul(pixels as u64), "{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
+    fn new(task: &Task, pixels: usize, label: Option<&str>) -> Self {
+        let (length, by) = match (task.precision, task.settings.budget) {
+            (Some(Precision { error, .. }), _) => (pixels as u64, By::Pixels { within: error, all: pixels }),
+            (None, Budget { samples_per_pixel: Some(spp), .. }) => {
+                (spp.saturating_mul(pixels as u64), By::Samples)
             }
-            Budget { time, .. } => (
-                milliseconds(time.unwrap_or(Duration::MAX)),
-                "{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left",
-            ),
+            (None, Budget { time, .. }) => (milliseconds(time.unwrap_or(Duration::MAX)), By::Time),
         };
         let bar = ProgressBar::new(length);
-        if let Ok(style) = ProgressStyle::with_template(template) {
+        if let Ok(style) = ProgressStyle::with_template("{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
+        {
             bar.set_style(style);
         }
         bar.set_prefix(label.map_or(String::new(), |label| format!("{label}  ")));
-        Self { bar, by_time: settings.budget.samples_per_pixel.is_none() }
+        Self { bar, by }
     }
 
     fn tell(&self, progress: &Progress) {
-        let noise =
-            progress.noise.map_or("noise not known yet".to_owned(), |n| format!("noise {}", percent(n)));
-        self.bar.set_message(format!("{} samples/pixel  {noise}", progress.passes));
-        self.bar.set_position(if self.by_time { milliseconds(progress.elapsed) } else { progress.samples });
+        let state = match self.by {
+            By::Pixels { within, .. } => {
+                let share = 100.0 * progress.within.unwrap_or(0.0);
+                format!("{share:.1} % of the pixels within {}", percent(within))
+            }
+            _ => progress.noise.map_or("noise not known yet".to_owned(), |n| format!("noise {}", percent(n))),
+        };
+        self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
+        self.bar.set_position(match self.by {
+            By::Time => milliseconds(progress.elapsed),
+            By::Samples => progress.samples,
+            By::Pixels { all, .. } => (progress.within.unwrap_or(0.0) * all as f64) as u64,
+        });
     }
 }
 
@@ -221,8 +282,15 @@ fn percent(relative: f64) -> String {
     format!("{:.digits$} %", 100.0 * relative)
 }
 
-fn print_summary(image: &Image, output: &Path, preview: &Path, label: Option<&str>) {
+fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, label: Option<&str>) {
     let noise = image.noise.map_or(String::new(), |n| format!(", noise {}", percent(n)));
+    let noise = match (&image.reached, task.precision) {
+        (Some(reached), Some(Precision { error, .. })) => {
+            let share = 100.0 * reached.share;
+            format!("{noise}, {share:.1} % of the pixels within {}", percent(error))
+        }
+        _ => noise,
+    };
     let label = label.map_or(String::new(), |label| format!("{label}: "));
     super::say(&format!(
         "{label}{} samples/pixel in {:.1} s{noise}: {} and {}",

@@ -5,6 +5,7 @@ use super::{
     BLOCKS_AT_ONCE, Settings,
     block::{Blocks, Outcome},
     clock::{self, Times},
+    compiled::{self, Work},
     parts::{self, Cells, Part},
     sample::{self, PixelSample},
 };
@@ -12,10 +13,7 @@ use crate::{
     film::Film,
     math::Spectrum,
     scene::Scene,
-    transport::{
-        Estimator, Strategies,
-        profile::{Bounded, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName, Smoke, Vacuum},
-    },
+    transport::{Estimator, Strategies, profile::Profile},
 };
 use rayon::prelude::*;
 use std::{
@@ -52,12 +50,22 @@ pub(super) struct Ready<'a, P: Profile> {
     pub seed: u64,
 }
 
-impl<'a, P: Profile> Ready<'a, P> {
-    fn boxed(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
+/// A bench that waits for its profile.
+struct Preparation<'a, 'b> {
+    scene: &'a Scene,
+    film: &'a Film,
+    settings: &'b Settings,
+}
+
+impl<'a> Work for Preparation<'a, '_> {
+    type Output = Box<dyn Compiled + 'a>;
+
+    fn by<P: Profile>(self) -> Self::Output {
+        let Self { scene, film, settings } = self;
         let blocks = Blocks::new::<P>(film.len());
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
-        Box::new(Self { estimator, blocks, film, seed: settings.seed })
+        Box::new(Ready { estimator, blocks, film, seed: settings.seed })
     }
 }
 
@@ -66,7 +74,7 @@ impl<P: Profile> Compiled for Ready<'_, P> {
         self.blocks.count()
     }
     fn render(&self, pass: usize, block: usize) -> Outcome {
-        self.blocks.render(&self.estimator, self.film, self.seed, pass, block)
+        self.blocks.render(&self.estimator, self.film, self.seed, pass, block, |_| true)
     }
     fn parts(&self, cells: Cells, pass: usize, block: usize) -> Vec<Part> {
         parts::block(self, cells, pass, block)
@@ -82,15 +90,7 @@ impl<P: Profile> Compiled for Ready<'_, P> {
 impl<'a> Bench<'a> {
     /// Prepares to render `scene` onto `film`. The budget of `settings` does not count.
     pub fn new(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
-        let compiled = match settings.profile {
-            ProfileName::Vacuum => Ready::<Vacuum>::boxed(scene, film, settings),
-            ProfileName::Fog => Ready::<Fog>::boxed(scene, film, settings),
-            ProfileName::Bounded => Ready::<Bounded>::boxed(scene, film, settings),
-            ProfileName::Smoke => Ready::<Smoke>::boxed(scene, film, settings),
-            ProfileName::Fire => Ready::<Fire>::boxed(scene, film, settings),
-            ProfileName::ChromaticFog => Ready::<ChromaticFog>::boxed(scene, film, settings),
-            ProfileName::Everything => Ready::<Everything>::boxed(scene, film, settings),
-        };
+        let compiled = compiled::choose(settings, Preparation { scene, film, settings });
         Self { film, strategies: settings.options.strategies, compiled }
     }
 

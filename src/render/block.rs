@@ -3,7 +3,7 @@
 use super::fog::{PILOT_RAYS, Preview};
 use crate::{
     film::Film,
-    math::{Lanes, Spectrum, Vec2},
+    math::{DVec3, Lanes, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
     shape::Ray,
     transport::{
@@ -50,6 +50,16 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Adds what eye walks brought.
+    pub fn add_eye_to(&self, pass: &mut [DVec3]) {
+        self.eye.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
+    }
+
+    /// Adds what light walks brought, in a fixed order.
+    pub fn add_light_to(&self, pass: &mut [DVec3]) {
+        self.light.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
+    }
+
     /// Adds it, in a fixed order.
     pub fn add_to(&self, pass: &mut [Spectrum]) {
         for (pixel, value) in self.eye.iter().chain(&self.light) {
@@ -107,7 +117,7 @@ impl Blocks {
         EyeStart { stream, hero, position, aperture, weight }
     }
 
-    /// Renders one sample of every pixel of `block`.
+    /// Renders one sample of every pixel of `block` that `wants` one.
     pub fn render<P: Profile>(
         &self,
         estimator: &Estimator<'_, P>,
@@ -115,10 +125,11 @@ impl Blocks {
         seed: u64,
         pass: usize,
         block: usize,
+        wants: impl Fn(usize) -> bool,
     ) -> Outcome {
         let mut light = Splatted { film, values: Vec::new() };
         let cache = self.trace_light(estimator, seed, pass, block, &mut light);
-        let eye = self.pixels(block).map(|pixel| {
+        let eye = self.pixels(block).filter(|pixel| wants(*pixel)).map(|pixel| {
             let start = self.eye_start(estimator, film, seed, pass, pixel);
             let (weight, sum) = (start.weight, start.trace(estimator, &cache, Sum::default()));
             (pixel as u32, sum.radiance * weight)

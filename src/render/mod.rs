@@ -3,10 +3,12 @@
 //! Results depend on the seed alone: every walk draws from its own stream, blocks are fixed sets of pixels, and
 //! their results are added up in block order whatever thread made them.
 
+pub mod adaptive;
 pub mod bench;
 mod block;
 pub mod budget;
 pub mod clock;
+mod compiled;
 mod fog;
 pub mod parts;
 mod primary;
@@ -23,14 +25,13 @@ use crate::{
     scene::{Scene, integrator::Look},
     transport::{
         Estimator, Heuristic, Options, Strategies,
-        profile::{
-            Bounded, ByCutoff, ByMaximum, ByPower, ByUniform, ChromaticFog, Everything, Fire, Fog, Profile,
-            ProfileName, Smoke, Vacuum,
-        },
+        profile::{Profile, ProfileName},
     },
 };
+use adaptive::{Adaptive, Developed, Precision, Reached};
 use block::{Blocks, Outcome};
 use budget::Budget;
+use compiled::Work;
 use fog::Preview;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -60,6 +61,8 @@ pub struct Progress {
     pub elapsed: Duration,
     /// See [`Accumulator::noise`].
     pub noise: Option<f64>,
+    /// The part of the pixels that have the precision asked for, if one was.
+    pub within: Option<f64>,
 }
 
 /// A finished render.
@@ -78,6 +81,8 @@ pub struct Image {
     pub alpha: Vec<f32>,
     /// The channels of all layers, in their order.
     pub layers: Vec<Channel>,
+    /// How far a wanted precision was reached, if one was wanted.
+    pub reached: Option<Reached>,
 }
 
 /// Blocks that are worked on between two looks at the clock: enough to keep any machine's threads busy, and
@@ -97,7 +102,20 @@ pub fn render_layers(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    dispatch(scene, film, settings, None, layers, progress)
+    dispatch(scene, film, settings, Mode::Budget, layers, progress)
+}
+
+/// Renders `scene` onto `film`, and `layers` with it, until every pixel is known with `precision` or the budget of
+/// `settings` is spent. Layers of moments need passes over all pixels and are left out.
+pub fn render_to_precision(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    precision: Precision,
+    layers: &[Layer],
+    progress: &mut dyn FnMut(Progress),
+) -> Image {
+    dispatch(scene, film, settings, Mode::Precision(precision), layers, progress)
 }
 
 /// Shows `scene` on `film` as a preview that looks like `look`, and `layers` with it. Of the options only the
@@ -111,63 +129,85 @@ pub fn preview(
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
     let options = Options { strategies: Strategies::NONE, heuristic: Heuristic::Balance, ..settings.options };
-    dispatch(scene, film, &Settings { options, ..*settings }, Some(look), layers, progress)
+    dispatch(scene, film, &Settings { options, ..*settings }, Mode::Preview(look), layers, progress)
+}
+
+/// What is made of samples.
+#[derive(Clone, Copy)]
+enum Mode<'a> {
+    /// An image, as good as the budget allows.
+    Budget,
+    /// An image that is good enough everywhere.
+    Precision(Precision),
+    /// A preview.
+    Preview(&'a Look),
 }
 
 fn dispatch(
     scene: &Scene,
     film: &Film,
     settings: &Settings,
-    look: Option<&Look>,
+    mode: Mode<'_>,
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    match settings.options.heuristic {
-        Heuristic::Balance => {}
-        Heuristic::Power => return render_as::<ByPower>(scene, film, settings, look, layers, progress),
-        Heuristic::Maximum => return render_as::<ByMaximum>(scene, film, settings, look, layers, progress),
-        Heuristic::Cutoff { .. } => {
-            return render_as::<ByCutoff>(scene, film, settings, look, layers, progress);
+    compiled::choose(settings, Render { scene, film, settings, mode, layers, progress })
+}
+
+/// A render that waits for its profile.
+struct Render<'a, 'b> {
+    scene: &'a Scene,
+    film: &'a Film,
+    settings: &'a Settings,
+    mode: Mode<'a>,
+    layers: &'a [Layer],
+    progress: &'a mut (dyn FnMut(Progress) + 'b),
+}
+
+impl Work for Render<'_, '_> {
+    type Output = Image;
+
+    fn by<P: Profile>(self) -> Image {
+        let Self { scene, film, settings, mode, layers, progress } = self;
+        let started = Instant::now();
+        let blocks = Blocks::new::<P>(film.len());
+        let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
+        let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
+        let squares = layers.iter().any(Layer::needs_squares);
+        let accumulator = if squares { Accumulator::with_products } else { Accumulator::new }(film.len());
+        let Options { hide_emitters, seed, .. } = settings.options;
+        let rays = || blocks.pilot_rays(&estimator, film, seed);
+        let preview = match mode {
+            Mode::Preview(look) => Some(Preview::new(scene, look, hide_emitters, rays())),
+            _ => None,
+        };
+        let preview = preview.as_ref();
+        let job = Job { estimator: &estimator, preview, film, blocks: &blocks, settings, started };
+        if let Mode::Precision(precision) = mode {
+            return finish(&job, scene, Adaptive::new(&job, precision).run(progress), layers);
         }
-        Heuristic::Uniform => return render_as::<ByUniform>(scene, film, settings, look, layers, progress),
-    }
-    match settings.profile {
-        ProfileName::Vacuum => render_as::<Vacuum>(scene, film, settings, look, layers, progress),
-        ProfileName::Fog => render_as::<Fog>(scene, film, settings, look, layers, progress),
-        ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, look, layers, progress),
-        ProfileName::Smoke => render_as::<Smoke>(scene, film, settings, look, layers, progress),
-        ProfileName::Fire => render_as::<Fire>(scene, film, settings, look, layers, progress),
-        ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, look, layers, progress),
-        ProfileName::Everything => render_as::<Everything>(scene, film, settings, look, layers, progress),
+        let (accumulator, noise) = job.accumulate(accumulator, progress);
+        let passes = accumulator.passes();
+        let seen = primary::Pass::new(film, layers).run(scene, &job, passes);
+        let pixels = accumulator.mean();
+        let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
+        let elapsed = started.elapsed();
+        Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers, reached: None }
     }
 }
 
-fn render_as<P: Profile>(
-    scene: &Scene,
-    film: &Film,
-    settings: &Settings,
-    look: Option<&Look>,
-    layers: &[Layer],
-    progress: &mut dyn FnMut(Progress),
-) -> Image {
-    let started = Instant::now();
-    let blocks = Blocks::new::<P>(film.len());
-    let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
-    let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
-    let squares = layers.iter().any(Layer::needs_squares);
-    let accumulator = if squares { Accumulator::with_products } else { Accumulator::new }(film.len());
-    let Options { hide_emitters, seed, .. } = settings.options;
-    let rays = || blocks.pilot_rays(&estimator, film, seed);
-    let preview = look.map(|look| Preview::new(scene, look, hide_emitters, rays()));
-    let preview = preview.as_ref();
-    let job = Job { estimator: &estimator, preview, film, blocks: &blocks, settings, started };
-    let (accumulator, noise) = job.accumulate(accumulator, progress);
-    let passes = accumulator.passes();
-    let seen = primary::Pass::new(film, layers).run(scene, &job, passes);
-    let pixels = accumulator.mean();
-    let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
-    let elapsed = started.elapsed();
-    Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers }
+/// The image of an adaptive render, with a layer that tells how many samples its pixels took.
+fn finish<P: Profile>(job: &Job<'_, P>, scene: &Scene, found: Developed, layers: &[Layer]) -> Image {
+    let Developed { pixels, passes, noise, reached } = found;
+    let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
+    let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes);
+    let seen = primary::Pass::new(job.film, layers).run(scene, job, mean);
+    let none = Accumulator::new(0);
+    let mut layers: Vec<_> = layers.iter().flat_map(|layer| develop(layer, &pixels, &none, &seen)).collect();
+    let values = reached.samples.iter().map(|n| *n as f32).collect();
+    layers.push(Channel { name: "samples.N".to_owned(), values });
+    let (elapsed, reached) = (job.started.elapsed(), Some(reached));
+    Image { pixels, samples_per_pixel: mean, elapsed, noise, alpha: seen.alpha, layers, reached }
 }
 
 /// What does not change during a render.
@@ -199,7 +239,7 @@ impl<P: Profile> Job<'_, P> {
                 .map(|task| {
                     let (pass, block) = (task / blocks.count(), task % blocks.count());
                     match preview {
-                        None => blocks.render(estimator, film, settings.seed, pass, block),
+                        None => blocks.render(estimator, film, settings.seed, pass, block, |_| true),
                         Some(preview) => blocks.show(estimator, preview, film, settings.seed, pass, block),
                     }
                 })
@@ -217,7 +257,7 @@ impl<P: Profile> Job<'_, P> {
             next = tasks.end;
             let (elapsed, passes) = (started.elapsed(), accumulator.passes());
             let samples = (next as u64 * film.len() as u64) / blocks.count() as u64;
-            progress(Progress { samples, passes, elapsed, noise });
+            progress(Progress { samples, passes, elapsed, noise, within: None });
             if settings.budget.is_spent(next, blocks.count(), elapsed) {
                 return (accumulator, noise);
             }

@@ -1,0 +1,352 @@
+//! Stopping where every pixel's error is small enough (P03T A.2.3), without bias.
+//!
+//! A pixel that stops because its own samples look calm stops too soon where they happened to be low, and its mean is
+//! biased for it. Hence two halves of independent passes: a pixel's mean over one half ends where the *other* half's
+//! samples say that the error is small enough, so that what ends it knows nothing of what it is the mean of.
+//!
+//! What light walks bring to the film is a mean over passes too, of every pixel at once: it ends for a half where the
+//! last pixel of the other half is content.
+
+use super::{BLOCKS_AT_ONCE, Job, Progress, block::Outcome, budget::Budget};
+use crate::{
+    math::{DVec3, Spectrum},
+    transport::profile::Profile,
+};
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// What is asked of every pixel: that its value is off by less than `error`, relative to it or to a hundredth of the
+/// image's mean luminance, whichever is greater; in every channel, with probability `confidence`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Precision {
+    /// In (0, 1].
+    pub error: f64,
+    /// In (0, 1).
+    pub confidence: f64,
+}
+
+/// How a render with a wanted precision ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reached {
+    /// The part of the pixels that are within the error, by what their samples say.
+    pub share: f64,
+    /// Samples taken of each pixel by eye walks.
+    pub samples: Vec<u32>,
+}
+
+/// What came out of an adaptive render.
+pub(super) struct Developed {
+    /// The image.
+    pub pixels: Vec<Spectrum>,
+    /// Passes over the image, both halves together.
+    pub passes: u64,
+    /// See [`crate::film::accumulator::Accumulator::noise`].
+    pub noise: Option<f64>,
+    /// Where and how far.
+    pub reached: Reached,
+}
+
+/// Passes of a half before it is first looked at: variances of fewer are too uncertain.
+const FIRST_LOOK: u64 = 16;
+/// Passes up to the next look over those up to the last: few looks, so that luck has few chances.
+const GROWTH: f64 = 1.25;
+/// Pixels darker than this part of the mean luminance need not be known relative to themselves.
+const FLOOR: f64 = 0.01;
+
+/// An image is black if light does not come in more than this part of the samples.
+const RAREST: f64 = 1e-3;
+
+/// The passes of one half.
+struct Half {
+    passes: u64,
+    /// Sums over passes while a pixel is active.
+    eye: Vec<DVec3>,
+    /// Of squares of what a pass brings, light walks included.
+    squares: Vec<DVec3>,
+    /// Sums over all passes.
+    light: Vec<DVec3>,
+    /// Squared relative error as this half's samples tell it, kept once it is small enough.
+    errors: Vec<f64>,
+    /// The half is content with the pixel.
+    content: Vec<bool>,
+    /// What errors are relative to at least.
+    floor: f64,
+    /// Means of eye walks, where the other half has ended them.
+    ended: Vec<Option<DVec3>>,
+    /// The same of light walks.
+    ended_light: Option<Vec<DVec3>>,
+}
+
+impl Half {
+    fn new(pixels: usize) -> Self {
+        let zeros = || vec![DVec3::ZERO; pixels];
+        Self {
+            passes: 0,
+            eye: zeros(),
+            squares: zeros(),
+            light: zeros(),
+            errors: vec![f64::INFINITY; pixels],
+            content: vec![false; pixels],
+            floor: 0.0,
+            ended: vec![None; pixels],
+            ended_light: None,
+        }
+    }
+
+    fn add(&mut self, eye: &[DVec3], light: &[DVec3], active: &[bool]) {
+        self.passes += 1;
+        for (pixel, (eye, light)) in eye.iter().zip(light).enumerate() {
+            self.light[pixel] += *light;
+            if active[pixel] {
+                let both = *eye + *light;
+                self.eye[pixel] += *eye;
+                self.squares[pixel] += both * both;
+            }
+        }
+    }
+
+    /// Mean and variance of a pass at a pixel that is active.
+    fn moments(&self, pixel: usize) -> (DVec3, DVec3) {
+        let n = self.passes as f64;
+        let mean = (self.eye[pixel] + self.light[pixel]) / n;
+        let variance = (self.squares[pixel] / n - mean * mean) * (n / (n - 1.0));
+        (mean, variance.max(DVec3::ZERO))
+    }
+
+    /// Looks at the samples of the active pixels.
+    fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
+        if self.floor == 0.0 {
+            let luminances = (0..self.eye.len()).map(|pixel| luminance(self.moments(pixel).0));
+            self.floor = FLOOR * luminances.sum::<f64>() / self.eye.len() as f64;
+        }
+        for pixel in (0..active.len()).filter(|pixel| active[*pixel]) {
+            if !self.content[pixel] {
+                self.errors[pixel] = self.error(pixel);
+            }
+        }
+        let newly: Vec<usize> = (0..active.len())
+            .into_par_iter()
+            .filter(|pixel| active[*pixel] && !self.content[*pixel] && self.is_calm(*pixel, width, limits))
+            .collect();
+        newly.into_iter().for_each(|pixel| self.content[pixel] = true);
+        self.judge_black(limits);
+    }
+
+    /// Pixels without any light yet have no variance to judge by. They end with the last of the others, or in an image
+    /// that is all black, after samples enough.
+    fn judge_black(&mut self, limits: &Limits) {
+        let is_black = |pixel: usize| self.squares[pixel] == DVec3::ZERO;
+        let mut lit = (0..self.content.len()).filter(|pixel| !is_black(*pixel)).peekable();
+        let waited = lit.peek().is_some() || self.passes >= limits.passes_without_light;
+        if waited && lit.all(|pixel| self.content[pixel]) {
+            self.content.fill(true);
+        }
+    }
+
+    /// Squared relative error that the mean over both halves has at a pixel, the greatest of its channels.
+    fn error(&self, pixel: usize) -> f64 {
+        let (mean, variance) = self.moments(pixel);
+        let scale = mean.abs().max(DVec3::splat(self.floor));
+        let relative = variance / (2.0 * self.passes as f64);
+        // A black image has no floor: no variance, no error.
+        let of = |c: usize| if relative[c] > 0.0 { relative[c] / (scale[c] * scale[c]) } else { 0.0 };
+        of(0).max(of(1)).max(of(2))
+    }
+
+    /// Neighbours are asked as well: a few samples may all have missed what makes a pixel's variance.
+    fn is_calm(&self, pixel: usize, width: usize, limits: &Limits) -> bool {
+        self.squares[pixel] != DVec3::ZERO
+            && self.errors[pixel].max(self.around(pixel, width)) <= limits.squared_error
+    }
+
+    /// The mean over a pixel and its up to eight neighbours.
+    fn around(&self, pixel: usize, width: usize) -> f64 {
+        let height = self.errors.len() / width;
+        let (x, y) = (pixel % width, pixel / width);
+        let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
+        let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for row in rows {
+            for column in columns.clone() {
+                sum += self.errors[row * width + column];
+                count += 1.0;
+            }
+        }
+        sum / count
+    }
+
+    /// Ends the means of this half where `other` is content.
+    fn end(&mut self, other: &Self) {
+        let n = self.passes as f64;
+        for (pixel, ended) in self.ended.iter_mut().enumerate() {
+            if ended.is_none() && other.content[pixel] {
+                *ended = Some(self.eye[pixel] / n);
+            }
+        }
+        if self.ended_light.is_none() && other.content.iter().all(|content| *content) {
+            self.ended_light = Some(self.light.iter().map(|sum| *sum / n).collect());
+        }
+    }
+
+    /// The half's estimate of a pixel.
+    fn value(&self, pixel: usize) -> DVec3 {
+        let n = self.passes as f64;
+        let light = self.ended_light.as_ref().map_or(self.light[pixel] / n, |light| light[pixel]);
+        self.ended[pixel].unwrap_or(self.eye[pixel] / n) + light
+    }
+}
+
+/// What ends a pixel, after some number of passes.
+struct Limits {
+    /// Of the relative error's standard deviation.
+    squared_error: f64,
+    /// Passes of a half without any light that make an image black.
+    passes_without_light: u64,
+}
+
+impl Limits {
+    /// Student's t makes up for variances that are estimates themselves (P03T A.2.3).
+    fn after(passes: u64, precision: Precision) -> Self {
+        let Precision { error, confidence } = precision;
+        let tail = 0.5 * (1.0 - confidence);
+        let t = StudentsT::new(0.0, 1.0, (passes - 1) as f64).map_or(f64::INFINITY, |t| -t.inverse_cdf(tail));
+        // With this many passes, light that comes in more than a thousandth of all samples of every pixel alike has shown
+        // itself somewhere with probability `confidence`, were there but one pixel.
+        let unseen = (1.0 - confidence).ln() / (-RAREST).ln_1p();
+        Self { squared_error: (error / t).powi(2), passes_without_light: unseen.ceil() as u64 }
+    }
+}
+
+/// The two halves at work.
+pub(super) struct Adaptive<'a, P: Profile> {
+    job: &'a Job<'a, P>,
+    precision: Precision,
+    halves: [Half; 2],
+    active: Vec<bool>,
+    /// Passes that a pixel has been active in.
+    samples: Vec<u32>,
+}
+
+impl<'a, P: Profile> Adaptive<'a, P> {
+    /// Nothing done yet.
+    pub fn new(job: &'a Job<'a, P>, precision: Precision) -> Self {
+        let pixels = job.film.len();
+        let halves = [Half::new(pixels), Half::new(pixels)];
+        Self { job, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
+    }
+
+    /// Renders until every pixel is content or the budget is spent.
+    pub fn run(mut self, progress: &mut dyn FnMut(Progress)) -> Developed {
+        let mut goal = FIRST_LOOK;
+        while self.active.iter().any(|active| *active) {
+            let is_spent = !self.advance(goal, progress);
+            self.look();
+            if is_spent {
+                break;
+            }
+            goal = (goal + 1).max((goal as f64 * GROWTH) as u64);
+        }
+        self.develop()
+    }
+
+    /// Renders until both halves have `goal` passes; false if the budget ends before.
+    fn advance(&mut self, goal: u64, progress: &mut dyn FnMut(Progress)) -> bool {
+        let count = self.job.blocks.count();
+        let Budget { samples_per_pixel, time } = self.job.settings.budget;
+        let end = samples_per_pixel.unwrap_or(u64::MAX).min(2 * goal);
+        let mut eye = vec![DVec3::ZERO; self.active.len()];
+        let mut light = eye.clone();
+        let (mut next, end_task) = (self.passes() as usize * count, end as usize * count);
+        while next < end_task {
+            let tasks = next..end_task.min(next + BLOCKS_AT_ONCE);
+            for (task, outcome) in tasks.clone().zip(self.work(tasks.clone())) {
+                outcome.add_eye_to(&mut eye);
+                outcome.add_light_to(&mut light);
+                if (task + 1) % count == 0 {
+                    self.take(&eye, &light);
+                    eye.fill(DVec3::ZERO);
+                    light.fill(DVec3::ZERO);
+                }
+            }
+            next = tasks.end;
+            progress(self.progress(next));
+            if time.is_some_and(|limit| self.job.started.elapsed() >= limit) && self.passes() >= 2 {
+                return false;
+            }
+        }
+        end == 2 * goal
+    }
+
+    /// Renders the active pixels of blocks, and their light walks.
+    fn work(&self, tasks: std::ops::Range<usize>) -> Vec<Outcome> {
+        let Job { estimator, film, blocks, settings, .. } = *self.job;
+        let (count, active) = (blocks.count(), &self.active);
+        tasks
+            .into_par_iter()
+            .map(|task| {
+                let (pass, block) = (task / count, task % count);
+                blocks.render(estimator, film, settings.seed, pass, block, |pixel| active[pixel])
+            })
+            .collect()
+    }
+
+    fn passes(&self) -> u64 {
+        self.halves.iter().map(|half| half.passes).sum()
+    }
+
+    /// Passes take turns: even ones belong to the first half.
+    fn take(&mut self, eye: &[DVec3], light: &[DVec3]) {
+        let half = (self.passes() % 2) as usize;
+        self.halves[half].add(eye, light, &self.active);
+        self.samples.iter_mut().zip(&self.active).for_each(|(n, active)| *n += u32::from(*active));
+    }
+
+    /// Ends what can be ended. Where time ran out between the halves they are not alike, and nothing is.
+    fn look(&mut self) {
+        let [first, second] = self.halves.each_ref().map(|half| half.passes);
+        if first != second || first < 2 {
+            return;
+        }
+        let width = self.job.film.width as usize;
+        let limits = Limits::after(self.halves[0].passes, self.precision);
+        self.halves.iter_mut().for_each(|half| half.judge(&self.active, width, &limits));
+        let [first, second] = &mut self.halves;
+        first.end(second);
+        second.end(first);
+        for (pixel, active) in self.active.iter_mut().enumerate() {
+            *active = first.ended[pixel].is_none() || second.ended[pixel].is_none();
+        }
+    }
+
+    /// The part of the pixels that are at rest.
+    fn share(&self) -> f64 {
+        self.active.iter().filter(|active| !**active).count() as f64 / self.active.len().max(1) as f64
+    }
+
+    fn progress(&self, tasks: usize) -> Progress {
+        let samples = (tasks as u64 * self.active.len() as u64) / self.job.blocks.count() as u64;
+        let (passes, elapsed) = (self.passes(), self.job.started.elapsed());
+        Progress { samples, passes, elapsed, noise: None, within: Some(self.share()) }
+    }
+
+    /// The mean of the halves.
+    fn develop(self) -> Developed {
+        let halves: Vec<&Half> = self.halves.iter().filter(|half| half.passes > 0).collect();
+        let value = |pixel| halves.iter().map(|half| half.value(pixel)).sum::<DVec3>() / halves.len() as f64;
+        let pixels = (0..self.active.len()).map(|pixel| value(pixel).as_vec3()).collect();
+        let noise = (halves.iter().all(|half| half.errors[0].is_finite())).then(|| rms(&halves));
+        let (passes, share) = (self.passes(), self.share());
+        Developed { pixels, passes, noise, reached: Reached { share, samples: self.samples } }
+    }
+}
+
+/// Root of the mean squared relative error, of what the halves said last.
+fn rms(halves: &[&Half]) -> f64 {
+    let errors = halves.iter().flat_map(|half| &half.errors);
+    let count = halves.iter().map(|half| half.errors.len()).sum::<usize>().max(1);
+    (errors.sum::<f64>() / count as f64).sqrt()
+}
+
+fn luminance(rgb: DVec3) -> f64 {
+    rgb.dot(DVec3::new(0.212_671, 0.715_160, 0.072_169))
+}
