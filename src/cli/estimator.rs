@@ -3,6 +3,7 @@
 use super::arguments;
 use crate::{
     error::{Error, Result},
+    sampling::Sampler,
     scene::{
         build::Setup,
         integrator::{Method, Restriction},
@@ -30,7 +31,15 @@ pub fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result
         super::complain("warning: --max-depth has no effect: the integrator fog makes no paths");
     }
     let (max_depth, hide_emitters) = (max_depth(asked, setup)?, setup.integrator.hide_emitters);
-    Ok(Options { strategies, max_depth, hide_emitters, seed })
+    Ok(Options { strategies, max_depth, hide_emitters, seed, sampler: sampler(asked, setup) })
+}
+
+fn sampler(asked: &arguments::Estimator, setup: &Setup) -> Sampler {
+    match asked.sampler {
+        Some(arguments::Sampler::Independent) => Sampler::Independent,
+        Some(arguments::Sampler::Sobol) => Sampler::Sobol,
+        None => setup.sampler,
+    }
 }
 
 fn max_depth(asked: &arguments::Estimator, setup: &Setup) -> Result<Option<u32>> {

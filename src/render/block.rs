@@ -4,7 +4,7 @@ use super::fog::{PILOT_RAYS, Preview};
 use crate::{
     film::Film,
     math::{Lanes, Spectrum, Vec2},
-    sampling::{Stream, stream::Purpose},
+    sampling::{Sampler, Stream, stream::Purpose},
     shape::Ray,
     transport::{Estimator, LightCache, Splats, profile::Profile},
 };
@@ -22,6 +22,7 @@ pub struct Blocks {
     stride: usize,
     walks_per_block: u64,
     heroes: u64,
+    sampler: Sampler,
 }
 
 /// How an eye walk starts.
@@ -53,14 +54,14 @@ impl Outcome {
 }
 
 impl Blocks {
-    /// Divides `pixels` for estimators of profile `P`.
-    pub fn new<P: Profile>(pixels: usize) -> Self {
+    /// Divides `pixels` for estimators of profile `P`, whose walks draw from streams of `sampler`.
+    pub fn new<P: Profile>(pixels: usize, sampler: Sampler) -> Self {
         let count = pixels.div_ceil(PIXELS_PER_BLOCK).max(1);
         let golden = (pixels as f64 * 0.618_033_988_75) as usize;
         let stride = (golden.max(1)..).find(|s| gcd(*s, pixels) == 1).unwrap_or(1);
         let heroes = P::Lanes::COUNT as u64;
         let walks_per_block = (pixels.div_ceil(count) as u64).div_ceil(heroes) * heroes;
-        Self { pixels, count, stride, walks_per_block, heroes }
+        Self { pixels, count, stride, walks_per_block, heroes, sampler }
     }
 
     /// Number of blocks.
@@ -94,11 +95,23 @@ impl Blocks {
         pass: usize,
         pixel: usize,
     ) -> EyeStart {
-        let mut stream = Stream::new(seed, pixel as u64, pass as u64, Purpose::Eye);
+        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, Purpose::Eye);
         let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
         let (position, weight) = film.sample(pixel, &mut stream);
         let aperture = estimator.sample_aperture(&mut stream);
         EyeStart { stream, hero, position, aperture, weight }
+    }
+
+    /// The random numbers of a light walk of `block`. All walks of a block bring light to the same pixels: where they
+    /// are spread evenly, it is all of them together, pass after pass.
+    #[inline]
+    fn light_stream(&self, seed: u64, pass: usize, block: usize, walk: u64) -> Stream {
+        let (pass, block) = (pass as u64, block as u64);
+        let (index, sample) = match self.sampler {
+            Sampler::Independent => (block * self.walks_per_block + walk, pass),
+            Sampler::Sobol => (block, pass * self.walks_per_block + walk),
+        };
+        self.sampler.stream(seed, index, sample, Purpose::Light)
     }
 
     /// Renders one sample of every pixel of `block`.
@@ -114,8 +127,7 @@ impl Blocks {
         let mut light = Splatted { film, values: Vec::new() };
         if estimator.needs_light_walks() {
             for walk in 0..self.walks_per_block {
-                let index = block as u64 * self.walks_per_block + walk;
-                let mut stream = Stream::new(seed, index, pass as u64, Purpose::Light);
+                let mut stream = self.light_stream(seed, pass, block, walk);
                 let hero = (walk % self.heroes) as usize;
                 estimator.trace_light(&mut cache, &mut light, hero, &mut stream);
             }
@@ -197,11 +209,11 @@ mod tests {
     #[test]
     fn blocks_hold_every_pixel_once() {
         for pixels in [1, 2, 7, 1024, 1025, 48 * 48, 640 * 480] {
-            let blocks = Blocks::new::<Vacuum>(pixels);
+            let blocks = Blocks::new::<Vacuum>(pixels, Sampler::Independent);
             let mut seen = vec![0; pixels];
             (0..blocks.count()).flat_map(|b| blocks.pixels(b)).for_each(|p| seen[p] += 1);
             assert!(seen.iter().all(|n| *n == 1), "{pixels}");
-            assert_eq!(Blocks::new::<Everything>(pixels).walks_per_block() % 3, 0);
+            assert_eq!(Blocks::new::<Everything>(pixels, Sampler::Sobol).walks_per_block() % 3, 0);
         }
     }
 }

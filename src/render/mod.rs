@@ -134,7 +134,7 @@ fn render_as<P: Profile>(
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
     let started = Instant::now();
-    let blocks = Blocks::new::<P>(film.len());
+    let blocks = Blocks::new::<P>(film.len(), settings.options.sampler);
     let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
     let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
     let squares = layers.iter().any(Layer::needs_squares);

@@ -14,6 +14,7 @@ mod parameters;
 mod plugins;
 mod read;
 mod references;
+mod sampler;
 mod sections;
 mod steps;
 mod tags;

@@ -23,7 +23,7 @@ pub use light::Splats;
 
 use crate::{
     math::{Lanes, Spectrum, Vec2},
-    sampling::{Stream, stream::Purpose},
+    sampling::{Sampler, Stream, stream::Purpose},
     scene::Scene,
     shape::Ray,
 };
@@ -64,6 +64,8 @@ pub struct Options {
     pub hide_emitters: bool,
     /// Seed of the pilot walks.
     pub seed: u64,
+    /// Where the random numbers of walks come from.
+    pub sampler: Sampler,
 }
 
 /// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
@@ -98,7 +100,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// Prepares to render `scene` with `walks_per_pass` light walks for each sample of all pixels together and
     /// `walks_per_block` of them behind one cache.
     pub fn new(scene: &'a Scene, options: Options, walks_per_pass: u64, walks_per_block: u64) -> Self {
-        let Options { strategies, max_depth, hide_emitters, seed } = options;
+        let Options { strategies, max_depth, hide_emitters, seed, .. } = options;
         let lit = !scene.lights.is_empty();
         let count = |on: bool, n: f32| if on && lit { n } else { 0.0 };
         let mut estimator = Self {

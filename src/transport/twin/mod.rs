@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     math::{Lanes, vec2, vec3},
-    sampling::{Stream, stream::Purpose},
+    sampling::{Sampler, Stream, stream::Purpose},
     scene::build::Setup,
 };
 use density::Twin;
@@ -26,7 +26,13 @@ use path::{Node, Path, Place};
 use report::Report;
 use scenes::*;
 
-const ALL: Options = Options { strategies: Strategies::BDPT, max_depth: None, hide_emitters: false, seed: 1 };
+const ALL: Options = Options {
+    strategies: Strategies::BDPT,
+    max_depth: None,
+    hide_emitters: false,
+    seed: 1,
+    sampler: Sampler::Independent,
+};
 const PIXELS: u64 = 16 * 12;
 
 /// Compares all paths that `pairs` eye and light walks make.
