@@ -75,7 +75,8 @@ fn preview(scene: &Value) -> Vec<Spectrum> {
     let Stage { setup, profile } = Stage::new(scene);
     let hide_emitters = setup.integrator.hide_emitters;
     let (strategies, sampler) = (Strategies::NONE, setup.sampler);
-    let options = Options { strategies, max_depth: None, hide_emitters, seed: 0, sampler };
+    let options =
+        Options { strategies, max_depth: None, hide_emitters, seed: 0, sampler, forced_interaction: false };
     let budget = Budget { samples_per_pixel: Some(2), time: None };
     let settings = Settings { options, budget, seed: 1, profile };
     render::preview(&setup.scene, &setup.film, &settings, &setup.integrator.look, &[], &mut |_| {}).pixels

@@ -31,7 +31,17 @@ pub fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result
         super::complain("warning: --max-depth has no effect: the integrator fog makes no paths");
     }
     let (max_depth, hide_emitters) = (max_depth(asked, setup)?, setup.integrator.hide_emitters);
-    Ok(Options { strategies, max_depth, hide_emitters, seed, sampler: sampler(asked, setup) })
+    let (sampler, forced_interaction) = (sampler(asked, setup), forced_interaction(asked, setup, strategies));
+    Ok(Options { strategies, max_depth, hide_emitters, seed, sampler, forced_interaction })
+}
+
+fn forced_interaction(asked: &arguments::Estimator, setup: &Setup, strategies: Strategies) -> bool {
+    let by_eye = strategies.hit || strategies.next_event || strategies.join;
+    if asked.forced_interaction && !(by_eye && Needs::of(&setup.scene, false).media) {
+        let why = if by_eye { "the scene has no media" } else { "no strategy in use walks from the eye" };
+        super::complain(&format!("warning: --forced-interaction has no effect: {why}"));
+    }
+    by_eye && (asked.forced_interaction || setup.integrator.forced_interaction)
 }
 
 fn sampler(asked: &arguments::Estimator, setup: &Setup) -> Sampler {

@@ -78,6 +78,8 @@ pub struct Integrator {
     pub max_depth: Option<u32>,
     /// The camera does not see emitters, but what is behind them.
     pub hide_emitters: bool,
+    /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
+    pub forced_interaction: bool,
     /// What light does in media.
     pub restriction: Restriction,
     /// How a preview looks.
@@ -92,6 +94,7 @@ impl Default for Integrator {
             method: Method::Bdpt,
             max_depth: None,
             hide_emitters: false,
+            forced_interaction: false,
             restriction: Restriction::None,
             look: Look::default(),
             layers: Vec::new(),
@@ -153,7 +156,11 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
     params.accept_unused(&["rr_depth"], "walks end by absorption, which is exact at any depth");
     accept_division(params);
     let hide_emitters = params.boolean("hide_emitters", false)?;
-    Ok(Integrator { method, max_depth, hide_emitters, ..Integrator::default() })
+    if method == Method::Lt {
+        params.accept_unused(&["forced_interaction"], "light walks have no primary rays");
+    }
+    let forced_interaction = params.boolean("forced_interaction", false)?;
+    Ok(Integrator { method, max_depth, hide_emitters, forced_interaction, ..Integrator::default() })
 }
 
 /// `fog`: `fog_color`, `ambient`, `threshold` [m] (BMA02 sec. 3.1 and 4.2).

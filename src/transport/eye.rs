@@ -126,6 +126,16 @@ impl<'a, P: Profile> Eye<'a, P> {
         Self { estimator, cache, hero, previous: start, radiance: Spectrum::ZERO }
     }
 
+    /// Another walk from the point `start` of the sensor.
+    pub fn restart(&mut self, start: Vec3) {
+        self.previous = start;
+    }
+
+    /// What was gathered.
+    pub fn radiance(&self) -> Spectrum {
+        self.radiance
+    }
+
     /// The end of a walk at a point of a medium that shines, as the emitter `light`; none where it is dark there.
     pub fn meet(
         &self,

@@ -8,6 +8,7 @@
 mod cache;
 mod connect;
 mod eye;
+mod forced;
 mod light;
 pub mod profile;
 mod segment;
@@ -66,6 +67,8 @@ pub struct Options {
     pub seed: u64,
     /// Where the random numbers of walks come from.
     pub sampler: Sampler,
+    /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
+    pub forced_interaction: bool,
 }
 
 /// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
@@ -93,6 +96,7 @@ pub struct Estimator<'a, P: Profile> {
     keep: f32,
     max_edges: u32,
     hide_emitters: bool,
+    forced_interaction: bool,
     profile: std::marker::PhantomData<P>,
 }
 
@@ -100,7 +104,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// Prepares to render `scene` with `walks_per_pass` light walks for each sample of all pixels together and
     /// `walks_per_block` of them behind one cache.
     pub fn new(scene: &'a Scene, options: Options, walks_per_pass: u64, walks_per_block: u64) -> Self {
-        let Options { strategies, max_depth, hide_emitters, seed, .. } = options;
+        let Options { strategies, max_depth, hide_emitters, seed, forced_interaction, .. } = options;
         let lit = !scene.lights.is_empty();
         let count = |on: bool, n: f32| if on && lit { n } else { 0.0 };
         let mut estimator = Self {
@@ -115,6 +119,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             keep: 0.0,
             max_edges: max_depth.unwrap_or(u32::MAX),
             hide_emitters,
+            forced_interaction: P::MEDIA && forced_interaction,
             profile: std::marker::PhantomData,
         };
         if strategies.join && lit {
@@ -188,6 +193,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
         hero: usize,
         stream: &mut Stream,
     ) -> Spectrum {
+        if P::MEDIA && self.forced_interaction {
+            return forced::sample(self, cache, film, aperture, hero, stream);
+        }
         eye::sample(self, cache, film, aperture, hero, stream)
     }
 }

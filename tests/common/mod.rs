@@ -62,7 +62,8 @@ impl Stage {
     pub fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
         let Setup { scene, film, integrator, .. } = &self.setup;
         let (max_depth, hide_emitters) = (integrator.max_depth, integrator.hide_emitters);
-        let options = Options { strategies, max_depth, hide_emitters, seed, sampler: self.setup.sampler };
+        let (sampler, forced_interaction) = (self.setup.sampler, integrator.forced_interaction);
+        let options = Options { strategies, max_depth, hide_emitters, seed, sampler, forced_interaction };
         let budget = Budget { samples_per_pixel: Some(samples_per_pixel), time: None };
         let settings = Settings { options, budget, seed, profile: self.profile };
         render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {})

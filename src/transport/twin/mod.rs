@@ -32,6 +32,7 @@ const ALL: Options = Options {
     hide_emitters: false,
     seed: 1,
     sampler: Sampler::Independent,
+    forced_interaction: false,
 };
 const PIXELS: u64 = 16 * 12;
 
