@@ -19,7 +19,7 @@ use tyndall::{
 /// Renders to a relative error, and to no more than some samples.
 fn to_precision(stage: &Stage, strategies: Strategies, error: f64, most: Option<u64>, seed: u64) -> Image {
     let Setup { scene, film, integrator, .. } = &stage.setup;
-    let options = Options { strategies, max_depth: integrator.max_depth, hide_emitters: false, seed };
+    let options = Options { strategies, max_depth: integrator.max_depth, seed, ..Options::default() };
     let budget = Budget { samples_per_pixel: most, time: most.map(|_| Duration::from_secs(600)) };
     let settings = Settings { options, budget, seed, profile: stage.profile };
     let precision = Precision { error, confidence: 0.95 };

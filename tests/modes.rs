@@ -80,6 +80,8 @@ fn preview(scene: &Value) -> Vec<Spectrum> {
         max_depth: None,
         hide_emitters,
         seed: 0,
+        sampler: setup.sampler,
+        forced_interaction: false,
     };
     let budget = Budget { samples_per_pixel: Some(2), time: None };
     let settings = Settings { options, budget, seed: 1, profile };

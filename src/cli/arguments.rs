@@ -146,6 +146,19 @@ pub struct Estimator {
     #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
     pub max_depth: Option<MaxDepth>,
 
+    /// How random numbers are spread over the samples of a pixel and over light walks [default: the scene's sampler]
+    ///
+    /// With sobol, noise is shown as if samples were independent: it is less.
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub sampler: Option<Sampler>,
+
+    /// Follow every primary ray that crosses media twice: from a collision forced in them, and from what lies behind
+    /// [default: the scene's forced_interaction]
+    ///
+    /// Less noise in thin media, where few rays collide by chance; the image is the same within noise.
+    #[arg(long)]
+    pub forced_interaction: bool,
+
     /// Which code renders; the image is the same within noise, only the time differs
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]
     pub profile: Profile,
@@ -258,6 +271,15 @@ pub enum Strategy {
     Join,
     /// The light path connects to the lens
     Lens,
+}
+
+/// How random numbers are spread.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Sampler {
+    /// All independent
+    Independent,
+    /// Evenly: the first numbers of every walk are points of an Owen-scrambled Sobol sequence
+    Sobol,
 }
 
 /// How far the rendering code is specialised.
@@ -407,7 +429,8 @@ mod tests {
     fn everything_can_be_given_at_once() {
         let r = render(
             "-o a.exr --spp 8 --time-limit 5m --seed 3 --threads 2 --integrator lt -D res=48 -D t=a=b \
-             --size 64x32 --profile everything --strategies hit,next-event --max-depth -1",
+             --size 64x32 --profile everything --strategies hit,next-event --max-depth -1 --sampler sobol \
+             --forced-interaction",
         );
         assert_eq!(r.output, Some("a.exr".into()));
         assert_eq!((r.spp, r.seed, r.time_limit), (Some(8), 3, Some(Duration::from_secs(300))));
@@ -423,6 +446,7 @@ mod tests {
             (Profile::Everything, Some(MaxDepth::Unbounded))
         );
         assert_eq!(r.estimator.strategies, [Strategy::Hit, Strategy::NextEvent]);
+        assert_eq!((r.estimator.sampler, r.estimator.forced_interaction), (Some(Sampler::Sobol), true));
     }
 
     #[test]
@@ -495,6 +519,7 @@ mod tests {
             ("render a.xml --strategies hit,jion", "join"),
             ("render a.xml --heuristic balanec", "\"balance\""),
             ("render a.xml --heuristic cutoff:1", "below 1"),
+            ("render a.xml --sampler sobl", "sobol"),
             ("convert a.xml", "OUT"),
             ("convert a.xml b.json -D res", "name=value"),
             ("convert --help", "Comments and layout are not kept"),

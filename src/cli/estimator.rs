@@ -3,6 +3,7 @@
 use super::arguments;
 use crate::{
     error::{Error, Result},
+    sampling::Sampler,
     scene::{
         build::Setup,
         heuristic::Heuristic,
@@ -41,7 +42,8 @@ pub fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result
     let (max_depth, hide_emitters) = (max_depth(asked, setup)?, setup.integrator.hide_emitters);
     let heuristic = heuristic(asked, setup);
     check_depth(asked, heuristic, max_depth)?;
-    Ok(Options { strategies, heuristic, max_depth, hide_emitters, seed })
+    let (sampler, forced_interaction) = (sampler(asked, setup), forced_interaction(asked, setup, strategies));
+    Ok(Options { strategies, heuristic, max_depth, hide_emitters, seed, sampler, forced_interaction })
 }
 
 /// Some heuristics need a bound on the length of paths.
@@ -56,6 +58,23 @@ fn check_depth(asked: &arguments::Estimator, heuristic: Heuristic, edges: Option
         edges.map_or("-1 (no limit)".to_owned(), |edges| edges.to_string()),
         format!("give --max-depth {most}, or choose another --heuristic: balance, power, maximum or uniform"),
     ))
+}
+
+fn forced_interaction(asked: &arguments::Estimator, setup: &Setup, strategies: Strategies) -> bool {
+    let by_eye = strategies.hit || strategies.next_event || strategies.join;
+    if asked.forced_interaction && !(by_eye && Needs::of(&setup.scene, false).media) {
+        let why = if by_eye { "the scene has no media" } else { "no strategy in use walks from the eye" };
+        super::complain(&format!("warning: --forced-interaction has no effect: {why}"));
+    }
+    by_eye && (asked.forced_interaction || setup.integrator.forced_interaction)
+}
+
+fn sampler(asked: &arguments::Estimator, setup: &Setup) -> Sampler {
+    match asked.sampler {
+        Some(arguments::Sampler::Independent) => Sampler::Independent,
+        Some(arguments::Sampler::Sobol) => Sampler::Sobol,
+        None => setup.sampler,
+    }
 }
 
 fn max_depth(asked: &arguments::Estimator, setup: &Setup) -> Result<Option<u32>> {
@@ -76,8 +95,7 @@ fn max_depth(asked: &arguments::Estimator, setup: &Setup) -> Result<Option<u32>>
     Ok(edges)
 }
 
-/// The strategies that are used.
-pub fn strategies(asked: &arguments::Estimator, scene_method: Method) -> Result<Strategies> {
+fn strategies(asked: &arguments::Estimator, scene_method: Method) -> Result<Strategies> {
     let all = match (asked.integrator, scene_method) {
         (Some(arguments::Integrator::Bdpt), _) | (None, Method::Bdpt) => Strategies::BDPT,
         (Some(arguments::Integrator::Pt), _) | (None, Method::Pt) => Strategies::PT,

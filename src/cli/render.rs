@@ -9,8 +9,9 @@ use crate::{
         layer::Content,
     },
     render::{self, Image, Progress, Settings, adaptive::Precision, budget::Budget},
+    sampling::Sampler,
     scene::build::Setup,
-    transport::Strategies,
+    transport::{Options, Strategies},
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
@@ -23,7 +24,8 @@ use std::{
 pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
     let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
-    let task = Task { settings: settings(arguments, &setup)?, precision: precision(arguments, &setup)? };
+    let settings = settings(arguments, &setup)?;
+    let task = Task { settings, precision: precision(arguments, &setup, &settings.options)? };
     let goal = Goal::new(arguments, &setup)?;
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
@@ -83,12 +85,20 @@ struct Task {
 }
 
 /// What every pixel is to be known with.
-fn precision(arguments: &arguments::Render, setup: &Setup) -> Result<Option<Precision>> {
+fn precision(
+    arguments: &arguments::Render,
+    setup: &Setup,
+    options: &Options,
+) -> Result<Option<Precision>> {
     let Some(error) = arguments.error else { return Ok(None) };
     let refuse = |found: &str, remedy: &str| {
-        Err(Error::new("--error", "an image whose samples vary, without layers of moments", found, remedy))
+        let expected = "an image of independent samples, without layers of moments";
+        Err(Error::new("--error", expected, found, remedy))
     };
-    if estimator::strategies(&arguments.estimator, setup.integrator.method)? == Strategies::NONE {
+    if options.sampler == Sampler::Sobol {
+        return refuse("the sampler sobol", "leave --error out, or give --sampler independent");
+    }
+    if options.strategies == Strategies::NONE {
         return refuse("the preview fog", "leave --error out, or choose another --integrator");
     }
     if setup.integrator.layers.iter().any(|layer| layer.needs_squares() || layer.content == Content::Mean) {

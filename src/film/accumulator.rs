@@ -90,7 +90,8 @@ impl Accumulator {
     }
 
     /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01), by
-    /// luminance; none before the second pass.
+    /// luminance; none before the second pass. Passes are taken for independent: where a sampler spreads their random
+    /// numbers evenly, the error is less than this.
     pub fn noise(&self) -> Option<f64> {
         if self.passes < 2 {
             return None;

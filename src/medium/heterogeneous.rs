@@ -183,6 +183,22 @@ impl Heterogeneous {
     ) -> Leg<L> {
         self.tracker.fly(&self.extinction, section, hero, remaining, stream)
     }
+
+    /// See [`Tracker::forced_depth`].
+    pub fn forced_depth<L: Lanes>(&self, section: &Section, depth: L, hero: usize) -> f32 {
+        self.tracker.forced_depth(&self.extinction, section, depth, hero)
+    }
+
+    /// See [`Tracker::force`].
+    pub fn force<L: Lanes>(
+        &self,
+        section: &Section,
+        hero: usize,
+        remaining: f32,
+        stream: &mut Stream,
+    ) -> Option<Leg<L>> {
+        self.tracker.force(&self.extinction, section, hero, remaining, stream)
+    }
 }
 
 /// A bound may lie this far above what it bounds, relative to it: volumes widen theirs by their rounding.

@@ -62,7 +62,7 @@ impl<'a> Work for Preparation<'a, '_> {
 
     fn by<P: Profile>(self) -> Self::Output {
         let Self { scene, film, settings } = self;
-        let blocks = Blocks::new::<P>(film.len());
+        let blocks = Blocks::new::<P>(film.len(), settings.options.sampler);
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
         Box::new(Ready { estimator, blocks, film, seed: settings.seed })

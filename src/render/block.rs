@@ -4,7 +4,7 @@ use super::fog::{PILOT_RAYS, Preview};
 use crate::{
     film::Film,
     math::{DVec3, Lanes, Spectrum, Vec2},
-    sampling::{Stream, stream::Purpose},
+    sampling::{Sampler, Stream, stream::Purpose},
     shape::Ray,
     transport::{
         Estimator, Joined, LightCache, Sums,
@@ -27,6 +27,7 @@ pub struct Blocks {
     stride: usize,
     walks_per_block: u64,
     heroes: u64,
+    sampler: Sampler,
 }
 
 /// How an eye walk starts.
@@ -69,14 +70,14 @@ impl Outcome {
 }
 
 impl Blocks {
-    /// Divides `pixels` for estimators of profile `P`.
-    pub fn new<P: Profile>(pixels: usize) -> Self {
+    /// Divides `pixels` for estimators of profile `P`, whose walks draw from streams of `sampler`.
+    pub fn new<P: Profile>(pixels: usize, sampler: Sampler) -> Self {
         let count = pixels.div_ceil(PIXELS_PER_BLOCK).max(1);
         let golden = (pixels as f64 * 0.618_033_988_75) as usize;
         let stride = (golden.max(1)..).find(|s| gcd(*s, pixels) == 1).unwrap_or(1);
         let heroes = P::Lanes::COUNT as u64;
         let walks_per_block = (pixels.div_ceil(count) as u64).div_ceil(heroes) * heroes;
-        Self { pixels, count, stride, walks_per_block, heroes }
+        Self { pixels, count, stride, walks_per_block, heroes, sampler }
     }
 
     /// Number of blocks.
@@ -110,11 +111,23 @@ impl Blocks {
         pass: usize,
         pixel: usize,
     ) -> EyeStart {
-        let mut stream = Stream::new(seed, pixel as u64, pass as u64, Purpose::Eye);
+        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, Purpose::Eye);
         let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
         let (position, weight) = film.sample(pixel, &mut stream);
         let aperture = estimator.sample_aperture(&mut stream);
         EyeStart { stream, hero, position, aperture, weight }
+    }
+
+    /// The random numbers of light walk `walk` of a pass. All walks of a block bring light to the same pixels: where they
+    /// are spread evenly, it is all of them together, pass after pass.
+    #[inline]
+    pub fn light_stream(&self, seed: u64, pass: usize, walk: u64) -> Stream {
+        let (pass, per_block) = (pass as u64, self.walks_per_block);
+        let (index, sample) = match self.sampler {
+            Sampler::Independent => (walk, pass),
+            Sampler::Sobol => (walk / per_block, pass * per_block + walk % per_block),
+        };
+        self.sampler.stream(seed, index, sample, Purpose::Light)
     }
 
     /// Renders one sample of every pixel of `block` that `wants` one.
@@ -150,7 +163,7 @@ impl Blocks {
         let mut cache = LightCache::new(P::Lanes::COUNT);
         if estimator.needs_light_walks() {
             for walk in self.light_walks(block) {
-                let mut stream = Stream::new(seed, walk, pass as u64, Purpose::Light);
+                let mut stream = self.light_stream(seed, pass, walk);
                 estimator.trace_light(&mut cache, recorder, self.hero(walk), &mut stream);
             }
         }
@@ -252,11 +265,11 @@ mod tests {
     #[test]
     fn blocks_hold_every_pixel_once() {
         for pixels in [1, 2, 7, 1024, 1025, 48 * 48, 640 * 480] {
-            let blocks = Blocks::new::<Vacuum>(pixels);
+            let blocks = Blocks::new::<Vacuum>(pixels, Sampler::Independent);
             let mut seen = vec![0; pixels];
             (0..blocks.count()).flat_map(|b| blocks.pixels(b)).for_each(|p| seen[p] += 1);
             assert!(seen.iter().all(|n| *n == 1), "{pixels}");
-            assert_eq!(Blocks::new::<Everything>(pixels).walks_per_block() % 3, 0);
+            assert_eq!(Blocks::new::<Everything>(pixels, Sampler::Sobol).walks_per_block() % 3, 0);
         }
     }
 }

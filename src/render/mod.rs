@@ -170,7 +170,7 @@ impl Work for Render<'_, '_> {
     fn by<P: Profile>(self) -> Image {
         let Self { scene, film, settings, mode, layers, progress } = self;
         let started = Instant::now();
-        let blocks = Blocks::new::<P>(film.len());
+        let blocks = Blocks::new::<P>(film.len(), settings.options.sampler);
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
         let squares = layers.iter().any(Layer::needs_squares);

@@ -5,7 +5,6 @@ use crate::{
     film::Film,
     math::{Lanes, Spectrum, Vec2, Vec3},
     medium::MediumIndex,
-    sampling::{Stream, stream::Purpose},
     scene::lights::{Link, Start},
     transport::{
         Departure, Joined, LightCache, Site, Sums, Vertex,
@@ -218,7 +217,7 @@ fn trace<P: Profile>(
     recorder: &mut dyn Recorder<P::Sums>,
 ) -> usize {
     let Ready { estimator, blocks, seed, .. } = ready;
-    let mut stream = Stream::new(*seed, walk, pass as u64, Purpose::Light);
+    let mut stream = blocks.light_stream(*seed, pass, walk);
     let hero = blocks.hero(walk);
     let mut recorder = recorder;
     estimator.trace_light(cache, &mut recorder, hero, &mut stream);

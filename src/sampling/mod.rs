@@ -2,8 +2,12 @@
 
 pub mod discrete;
 pub mod grid;
+mod inverse;
+mod points;
+pub mod sampler;
 pub mod stream;
 
 pub use discrete::Discrete;
 pub use grid::{Cell, Grid};
+pub use sampler::Sampler;
 pub use stream::Stream;

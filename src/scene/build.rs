@@ -11,6 +11,7 @@ use super::{
     integrator::{self, Integrator},
     lights::{Light, Lights},
     plugins,
+    sampler::{self, Sampling},
     sections::Sections,
 };
 use crate::{
@@ -22,6 +23,7 @@ use crate::{
     film::Film,
     math::{DVec3, Vec3},
     medium::{self, Blueprint, Choice, MediumIndex, Treatment},
+    sampling::Sampler,
     sensor::{self, Crop, Sensor},
     shape::{self, Shape},
 };
@@ -37,6 +39,8 @@ pub struct Setup {
     pub integrator: Integrator,
     /// Samples per pixel asked for by the sampler.
     pub samples_per_pixel: u64,
+    /// How the sampler spreads random numbers.
+    pub sampler: Sampler,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Id (or plugin name) of each medium after vacuum, for listings.
@@ -89,7 +93,8 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         scene,
         film: view.film,
         integrator,
-        samples_per_pixel: view.samples_per_pixel,
+        samples_per_pixel: view.sampling.samples_per_pixel,
+        sampler: view.sampling.sampler,
         warnings: library.take_warnings(),
         medium_names,
         shape_names,
@@ -118,7 +123,7 @@ pub(super) fn only_one(second: &Child<'_>, what: &str) -> Error {
 struct View {
     sensor: Sensor,
     film: Film,
-    samples_per_pixel: u64,
+    sampling: Sampling,
     medium: Option<MediumIndex>,
 }
 
@@ -293,16 +298,16 @@ impl<'a> Builder<'a> {
             [one] => film::build(one.object, self.library, overrides)?,
             [_, second, ..] => return Err(only_one(second, "film")),
         };
-        let samples_per_pixel = match params.children(|child| is_sampler(child.object))?.as_slice() {
-            [] => 4,
-            [one] => sampler(one.object, self.library)?,
+        let sampling = match params.children(|child| sampler::is_sampler(child.object))?.as_slice() {
+            [] => Sampling::default(),
+            [one] => sampler::build(one.object, self.library)?,
             [_, second, ..] => return Err(only_one(second, "sampler")),
         };
         let medium = self.stated_medium(&params)?;
         let crop = Crop { film: film.window.full_size, offset: film.window.offset };
         let sensor = sensor::build(&params, self.recentre, crop)?;
         params.finish()?;
-        Ok(View { sensor, film, samples_per_pixel, medium })
+        Ok(View { sensor, film, sampling, medium })
     }
 
     /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
@@ -356,21 +361,4 @@ impl<'a> Builder<'a> {
             recentre,
         })
     }
-}
-
-const SAMPLERS: [&str; 5] = ["independent", "stratified", "multijitter", "orthogonal", "ldsampler"];
-
-fn is_sampler(object: &Object) -> bool {
-    SAMPLERS.contains(&object.plugin.as_str())
-}
-
-fn sampler(object: &Object, library: &Library) -> Result<u64> {
-    let params = Params::new(object, library);
-    let count = params.integer("sample_count", 4)?;
-    params.accept_unused(&["seed", "jitter", "strength"], "the sequence of random numbers is Tyndall's own");
-    params.finish()?;
-    if count >= 1 {
-        return Ok(count as u64);
-    }
-    Err(params.complain("sample_count", "an integer >= 1", count.to_string()))
 }

@@ -81,6 +81,8 @@ pub struct Integrator {
     pub hide_emitters: bool,
     /// By which strategies share paths.
     pub heuristic: Heuristic,
+    /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
+    pub forced_interaction: bool,
     /// What light does in media.
     pub restriction: Restriction,
     /// How a preview looks.
@@ -96,6 +98,7 @@ impl Default for Integrator {
             max_depth: None,
             hide_emitters: false,
             heuristic: Heuristic::default(),
+            forced_interaction: false,
             restriction: Restriction::None,
             look: Look::default(),
             layers: Vec::new(),
@@ -157,8 +160,19 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
     params.accept_unused(&["rr_depth"], "walks end by absorption, which is exact at any depth");
     accept_division(params);
     let hide_emitters = params.boolean("hide_emitters", false)?;
+    if method == Method::Lt {
+        params.accept_unused(&["forced_interaction"], "light walks have no primary rays");
+    }
+    let forced_interaction = params.boolean("forced_interaction", false)?;
     let heuristic = heuristic(params)?;
-    Ok(Integrator { method, max_depth, hide_emitters, heuristic, ..Integrator::default() })
+    Ok(Integrator {
+        method,
+        max_depth,
+        hide_emitters,
+        heuristic,
+        forced_interaction,
+        ..Integrator::default()
+    })
 }
 
 /// `heuristic`: as [`Heuristic::parse`] reads it.

@@ -15,6 +15,7 @@ mod parameters;
 mod plugins;
 mod read;
 mod references;
+mod sampler;
 mod sections;
 mod steps;
 mod tags;

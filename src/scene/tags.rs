@@ -1,6 +1,6 @@
 //! Which XML tag a plugin goes with. XML always says; JSON leaves it to the plugin's name and place.
 
-use super::integrator;
+use super::{integrator, sampler};
 use crate::{bsdf, density, description::Row, emitter, film::filter, medium, phase, sensor, shape, texture};
 
 /// Tags of plugins.
@@ -145,6 +145,7 @@ pub(super) fn ours(tag: &str) -> Vec<&'static str> {
     match tag {
         "sensor" => sensor::names().collect(),
         "integrator" => names(integrator::ROWS),
+        "sampler" => sampler::NAMES.iter().map(|(name, _)| *name).collect(),
         "rfilter" => names(filter::ROWS),
         "shape" => shape::ROWS.iter().map(|row| row.name).collect(),
         "bsdf" => names(bsdf::ROWS),

@@ -145,6 +145,16 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Eye<'a, P, R> {
         Self { estimator, cache, hero, previous: start, recorder }
     }
 
+    /// Another walk from the point `start` of the sensor.
+    pub fn restart(&mut self, start: Vec3) {
+        self.previous = start;
+    }
+
+    /// What was gathered.
+    pub fn into_recorder(self) -> R {
+        self.recorder
+    }
+
     /// The end of a walk at a point of a medium that shines, as the emitter `light`; none where it is dark there.
     pub fn meet(
         &self,

@@ -9,6 +9,7 @@
 mod cache;
 mod connect;
 mod eye;
+mod forced;
 mod light;
 pub mod profile;
 pub mod record;
@@ -29,7 +30,7 @@ pub use crate::scene::heuristic::Heuristic;
 
 use crate::{
     math::{Lanes, Spectrum, Vec2},
-    sampling::{Stream, stream::Purpose},
+    sampling::{Sampler, Stream, stream::Purpose},
     scene::Scene,
     shape::Ray,
 };
@@ -76,6 +77,24 @@ pub struct Options {
     pub hide_emitters: bool,
     /// Seed of the pilot walks.
     pub seed: u64,
+    /// Where the random numbers of walks come from.
+    pub sampler: Sampler,
+    /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
+    pub forced_interaction: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            strategies: Strategies::BDPT,
+            heuristic: Heuristic::default(),
+            max_depth: None,
+            hide_emitters: false,
+            seed: 0,
+            sampler: Sampler::default(),
+            forced_interaction: false,
+        }
+    }
 }
 
 /// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
@@ -104,6 +123,7 @@ pub struct Estimator<'a, P: Profile> {
     keep: f32,
     max_edges: u32,
     hide_emitters: bool,
+    forced_interaction: bool,
     profile: std::marker::PhantomData<P>,
 }
 
@@ -111,7 +131,8 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// Prepares to render `scene` with `walks_per_pass` light walks for each sample of all pixels together and
     /// `walks_per_block` of them behind one cache.
     pub fn new(scene: &'a Scene, options: Options, walks_per_pass: u64, walks_per_block: u64) -> Self {
-        let Options { strategies, heuristic, max_depth, hide_emitters, seed } = options;
+        let Options { strategies, heuristic, max_depth, hide_emitters, seed, forced_interaction, .. } =
+            options;
         let lit = !scene.lights.is_empty();
         let count = |on: bool, n: f32| if on && lit { n } else { 0.0 };
         let mut estimator = Self {
@@ -127,6 +148,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             keep: 0.0,
             max_edges: max_depth.unwrap_or(u32::MAX).min(P::Sums::MOST_EDGES),
             hide_emitters,
+            forced_interaction: P::MEDIA && forced_interaction,
             profile: std::marker::PhantomData,
         };
         if strategies.join && lit {
@@ -208,6 +230,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
         recorder: R,
         stream: &mut Stream,
     ) -> R {
+        if P::MEDIA && self.forced_interaction {
+            return forced::sample(self, cache, film, aperture, hero, recorder, stream);
+        }
         eye::sample(self, cache, film, aperture, hero, recorder, stream)
     }
 }

@@ -2,9 +2,11 @@
 //! depths and boundary crossings; media enter transport here and nowhere else.
 
 pub mod flight;
+pub mod forced;
 pub mod passage;
 
 pub use flight::{Flight, Flown, Landing, fly};
+pub use forced::force;
 pub use passage::pass;
 
 use crate::{

@@ -92,19 +92,32 @@ pub fn walk<P: Profile>(
             |flown: &Flown<P::Lanes>, stream: &mut Stream| visitor.pass(&departure, flown, stream);
         let flight = segment::fly::<P>(scene, ray, medium, departure.hidden, kind.hero, stream, &mut along);
         let Some(vertex) = land::<P>(&departure, &flight, kind.hero, visitor) else { return };
-        if matches!(flight.landing, Landing::Escape) {
-            if P::INFINITE {
-                visitor.escape(&vertex);
-            }
-            return;
-        }
-        visitor.arrive(&vertex, stream);
-        if vertex.edges == kind.max_edges {
-            return;
-        }
-        let Some(next) = scatter(scene, &vertex, kind.transport, stream) else { return };
+        let Some(next) = visit(scene, kind, &flight.landing, &vertex, visitor, stream) else { return };
         departure = next;
     }
+}
+
+/// Shows the end of a flight to `visitor`; how the walk goes on from there, if it does.
+#[inline(always)]
+pub fn visit<P: Profile>(
+    scene: &Scene,
+    kind: Kind,
+    landing: &Landing,
+    vertex: &Vertex<P::Sums>,
+    visitor: &mut impl Visitor<P>,
+    stream: &mut Stream,
+) -> Option<Departure<P::Sums>> {
+    if matches!(landing, Landing::Escape) {
+        if P::INFINITE {
+            visitor.escape(vertex);
+        }
+        return None;
+    }
+    visitor.arrive(vertex, stream);
+    if vertex.edges == kind.max_edges {
+        return None;
+    }
+    scatter(scene, vertex, kind.transport, stream)
 }
 
 /// The vertex at the end of a flight; none if it coincides with the one before.

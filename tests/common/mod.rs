@@ -62,8 +62,10 @@ impl Stage {
     /// The same with all layers that the scene's integrator asks for.
     pub fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
         let Setup { scene, film, integrator, .. } = &self.setup;
-        let &Integrator { heuristic, max_depth, hide_emitters, .. } = integrator;
-        let options = Options { strategies, heuristic, max_depth, hide_emitters, seed };
+        let &Integrator { heuristic, max_depth, hide_emitters, forced_interaction, .. } = integrator;
+        let sampler = self.setup.sampler;
+        let options =
+            Options { strategies, heuristic, max_depth, hide_emitters, seed, sampler, forced_interaction };
         let budget = Budget { samples_per_pixel: Some(samples_per_pixel), time: None };
         let settings = Settings { options, budget, seed, profile: self.profile };
         render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {})

@@ -151,6 +151,41 @@ impl Tracker {
         }
     }
 
+    /// The optical depth along `section`, whose [`Self::depth`] is `depth`, by which forced collisions are drawn: the
+    /// `hero` lane's, or what stands in for it where it is not known.
+    pub fn forced_depth<L: Lanes>(
+        &self,
+        medium: &Extinction,
+        section: &Section,
+        depth: L,
+        hero: usize,
+    ) -> f32 {
+        match self {
+            Self::NullCollision(coarse) => null_collision::forced_depth::<L>(medium, coarse, section, hero),
+            _ => depth.hero(hero),
+        }
+    }
+
+    /// A collision of the `hero` lane in `section` where its [`Self::forced_depth`] is `remaining`; none where there is
+    /// nothing to collide with. Leg's ratio is that of the contribution to a density of exp(-`remaining`) times the
+    /// hero's sigma_t.
+    pub fn force<L: Lanes>(
+        &self,
+        medium: &Extinction,
+        section: &Section,
+        hero: usize,
+        remaining: f32,
+        stream: &mut Stream,
+    ) -> Option<Leg<L>> {
+        match self {
+            Self::NullCollision(coarse) => {
+                null_collision::force(medium, coarse, section, hero, remaining, stream)
+            }
+            _ => Some(self.fly(medium, section, hero, remaining, stream)),
+        }
+        .filter(|leg| leg.collision.is_some())
+    }
+
     /// Which method it is.
     pub fn choice(&self) -> Choice {
         match self {

@@ -109,6 +109,50 @@ pub fn fly<L: Lanes>(
     Leg { collision, depth, ratio, spent: 0.0 }
 }
 
+/// Forced collisions come at no less than this part of the majorant: what the means of cells miss is found too.
+const LEAST: f32 = 0.05;
+
+/// The rate at which forced collisions are drawn in `cell` [1/m]: the mean, as in the stand-in.
+#[inline]
+fn forced_rate<L: Lanes>(medium: &Extinction, coarse: &Coarse, cell: u32, hero: usize) -> f32 {
+    let mean = L::from_spectrum(coarse.mean(cell)).hero(hero);
+    mean.max(LEAST * coarse.most(cell)) * medium.scale
+}
+
+/// Its integral along `section`.
+pub fn forced_depth<L: Lanes>(medium: &Extinction, coarse: &Coarse, section: &Section, hero: usize) -> f32 {
+    let rate = |cell| forced_rate::<L>(medium, coarse, cell, hero);
+    coarse.pieces(section).map(|piece| rate(piece.cell) * (piece.last - piece.first)).sum()
+}
+
+/// A collision where [`forced_depth`] is `remaining`; what comes as far as that, and what collides there, is estimated.
+pub fn force<L: Lanes>(
+    medium: &Extinction,
+    coarse: &Coarse,
+    section: &Section,
+    hero: usize,
+    remaining: f32,
+    stream: &mut Stream,
+) -> Option<Leg<L>> {
+    let mut left = remaining;
+    let (t, rate) = coarse.pieces(section).find_map(|piece| {
+        let rate = forced_rate::<L>(medium, coarse, piece.cell, hero);
+        let depth = rate * (piece.last - piece.first);
+        let here = left < depth;
+        let t = piece.first + left / rate;
+        left -= depth;
+        here.then_some((t, rate))
+    })?;
+    let own = medium.at::<L>(section.at(t)).hero(hero);
+    if own <= 0.0 {
+        return None;
+    }
+    let flown = Section { length: t, ..*section };
+    let transmittance: L = transmittance(medium, coarse, &flown, stream);
+    let ratio = transmittance.scaled(remaining.exp() * own / rate);
+    Some(Leg { collision: Some(t), depth: stand_in(medium, coarse, &flown), ratio, spent: remaining })
+}
+
 /// An unbiased estimate of every lane's transmittance over the hero's: exp of the integral of the difference, which
 /// may have either sign.
 #[inline]

@@ -51,6 +51,8 @@ pub struct Flown<L> {
     pub ratio: L,
     /// As of [`Flight`], before it.
     pub tint: Spectrum,
+    /// True where it is not left to chance whether a flight comes as far as this: `ratio` is transmittance.
+    pub certain: bool,
 }
 
 impl<L: Lanes> Flown<L> {
@@ -68,11 +70,17 @@ impl<L: Lanes> Flown<L> {
         let (depth, ratio) = match &medium.varying {
             Some(varying) => {
                 let depth = varying.depth::<L>(&section);
-                (depth, varying.ratio::<L>(&section, depth, hero, stream))
+                let ratio = match self.certain {
+                    false => varying.ratio::<L>(&section, depth, hero, stream),
+                    true => varying.transmittance::<L>(&section, depth, stream),
+                };
+                (depth, ratio)
             }
             None => {
                 let depth = depth_of(L::from_spectrum(medium.sigma_t), t);
-                (depth, depth.flight_ratio(L::splat(1.0), hero))
+                let ratio =
+                    if self.certain { depth.exp_neg() } else { depth.flight_ratio(L::splat(1.0), hero) };
+                (depth, ratio)
             }
         };
         Flight {
@@ -213,25 +221,45 @@ fn fly_through<P: Profile>(
         let leg = fly_leg::<P>(scene, ray, medium, hero, remaining, stream);
         if P::EMISSIVE {
             let section = Section { origin: ray.origin, direction: ray.direction, length: leg.length };
-            along(&Flown { medium, section, depth, ratio, tint }, stream);
+            along(&Flown { medium, section, depth, ratio, tint, certain: false }, stream);
         }
         depth = depth + leg.depth;
         ratio = ratio * leg.ratio;
         let Landing::Surface(point) = leg.landing else {
             return Flight { landing: leg.landing, medium, depth, ratio, tint };
         };
-        let through = passed(scene, &point, ray.direction, hidden);
-        let passing = through.max_element();
-        if passing <= 0.0 || (passing < 1.0 && stream.uniform() >= passing) {
-            // Stopping where a part passes has probability 1 - passing, from either side: it takes the place
-            // of sigma_t at a collision, cancels in every ratio of densities, and divides the throughput.
-            tint /= 1.0 - passing.max(0.0);
-            return Flight { landing: leg.landing, medium, depth, ratio, tint };
+        match toll(scene, &point, ray.direction, hidden, stream) {
+            Toll::Stopped(probability) => {
+                tint /= probability;
+                return Flight { landing: leg.landing, medium, depth, ratio, tint };
+            }
+            Toll::Passed(through, probability) => {
+                tint *= through / probability;
+                depth = depth + P::Lanes::splat(-probability.ln());
+            }
         }
-        tint *= through / passing;
-        depth = depth + P::Lanes::splat(-passing.ln());
         remaining = (remaining - leg.spent).max(0.0);
         ray = past(&ray, &point);
         medium = scene.medium_beyond(&point, &ray, medium);
     }
+}
+
+/// What became of a flight at a surface.
+pub enum Toll {
+    /// It ends there, which had this probability from either side: it takes the place of sigma_t at a collision, cancels
+    /// in every ratio of densities, and divides the throughput.
+    Stopped(f32),
+    /// It went on, tinted by the first, which had the probability of the second.
+    Passed(Spectrum, f32),
+}
+
+/// A flight that meets a surface passes or stops.
+#[inline]
+pub fn toll(scene: &Scene, point: &SurfacePoint, direction: Vec3, hidden: bool, stream: &mut Stream) -> Toll {
+    let through = passed(scene, point, direction, hidden);
+    let passing = through.max_element();
+    if passing <= 0.0 || (passing < 1.0 && stream.uniform() >= passing) {
+        return Toll::Stopped(1.0 - passing.max(0.0));
+    }
+    Toll::Passed(through, passing)
 }

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     math::{Lanes, vec2, vec3},
-    sampling::{Stream, stream::Purpose},
+    sampling::{Sampler, Stream, stream::Purpose},
     scene::build::Setup,
 };
 use density::Twin;
@@ -36,6 +36,8 @@ const ALL: Options = Options {
     max_depth: None,
     hide_emitters: false,
     seed: 1,
+    sampler: Sampler::Independent,
+    forced_interaction: false,
 };
 const PIXELS: u64 = 16 * 12;
 
