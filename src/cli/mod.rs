@@ -5,6 +5,7 @@ mod convert;
 mod estimator;
 mod info;
 mod render;
+mod report;
 
 use crate::{
     error::{Error, Result},
@@ -24,6 +25,7 @@ pub fn run() -> ExitCode {
         Command::Render(render) => render::run(render),
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
+        Command::Report(report) => report::run(report),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,3 +1,4 @@
 //! Instruments: what is measured about renders, and how it is told.
 
 pub mod outcome;
+pub mod page;
