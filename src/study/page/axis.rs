@@ -50,32 +50,35 @@ impl Span {
 
     /// For plotters.
     pub fn coordinate(&self) -> WithKeyPoints<LogCoord<f64>> {
-        let [bold, light] = self.ticks();
-        (self.low..self.high).log_scale().with_key_points(bold).with_light_points(light)
+        (self.low..self.high).log_scale().with_key_points(self.ticks())
     }
 
-    /// Those with numbers, and those without.
-    fn ticks(&self) -> [Vec<f64>; 2] {
+    /// Where lines and numbers stand.
+    fn ticks(&self) -> Vec<f64> {
         let first = self.low.log10().floor() as i32;
         let last = self.high.log10().ceil() as i32;
-        let holds = |value: &f64| (self.low..=self.high).contains(value);
         let of = |digits: &[f64], step: i32| -> Vec<f64> {
             let decades = (first..=last).filter(|k| k.rem_euclid(step) == 0);
             let values = decades.flat_map(|k| digits.iter().map(move |d| d * 10f64.powi(k)));
-            values.filter(holds).collect()
+            values.filter(|value| (self.low..=self.high).contains(value)).collect()
         };
         let decades = of(&[1.0], 1).len() as i32;
-        match decades {
-            0 | 1 => [of(&[1.0, 2.0, 5.0], 1), of(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], 1)],
-            2..=4 => [of(&[1.0], 1), of(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], 1)],
-            5..=MOST_LABELS => [of(&[1.0], 1), Vec::new()],
-            more => [of(&[1.0], (more + MOST_LABELS - 1) / MOST_LABELS), Vec::new()],
+        // Short numbers leave room for more.
+        let few = if self.is_plain() { 2 } else { 1 };
+        if decades <= few {
+            return of(&[1.0, 2.0, 5.0], 1);
         }
+        of(&[1.0], (decades + MOST_LABELS - 1) / MOST_LABELS)
+    }
+
+    /// True where numbers need no powers of ten.
+    fn is_plain(&self) -> bool {
+        self.low >= 1e-3 && self.high <= 1e5
     }
 
     /// A tick's number. Far from 1 the whole scale has powers of ten.
     pub fn label(&self, value: f64) -> String {
-        if self.low >= 1e-3 && self.high <= 1e5 {
+        if self.is_plain() {
             return format!("{}", (value * 1e6).round() / 1e6);
         }
         let exponent = value.log10().floor() as i32;
@@ -117,22 +120,22 @@ mod tests {
         for values in cases {
             let span = Span::around(values.iter().copied());
             assert!(0.0 < span.low && span.low < span.high && span.high.is_finite(), "{values:?}: {span:?}");
-            let [bold, _] = span.ticks();
-            assert!(bold.len() <= 9 && !bold.is_empty(), "{values:?}: {bold:?}");
-            assert!(bold.iter().all(|tick| !span.label(*tick).is_empty()));
+            let ticks = span.ticks();
+            assert!(ticks.len() <= 9 && !ticks.is_empty(), "{values:?}: {ticks:?}");
+            assert!(ticks.iter().all(|tick| !span.label(*tick).is_empty()));
         }
     }
 
     #[test]
     fn labels_are_short() {
         let seconds = Span { low: 0.05, high: 300.0 };
-        let labels: Vec<String> = seconds.ticks()[0].iter().map(|tick| seconds.label(*tick)).collect();
+        let labels: Vec<String> = seconds.ticks().iter().map(|tick| seconds.label(*tick)).collect();
         assert_eq!(labels, ["0.1", "1", "10", "100"]);
         let errors = Span { low: 2e-6, high: 3e-4 };
-        let labels: Vec<String> = errors.ticks()[0].iter().map(|tick| errors.label(*tick)).collect();
+        let labels: Vec<String> = errors.ticks().iter().map(|tick| errors.label(*tick)).collect();
         assert_eq!(labels, ["10⁻⁵", "10⁻⁴"]);
         let narrow = Span { low: 2e-6, high: 8e-6 };
-        let labels: Vec<String> = narrow.ticks()[0].iter().map(|tick| narrow.label(*tick)).collect();
+        let labels: Vec<String> = narrow.ticks().iter().map(|tick| narrow.label(*tick)).collect();
         assert_eq!(labels, ["2·10⁻⁶", "5·10⁻⁶"]);
     }
 

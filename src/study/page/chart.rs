@@ -19,7 +19,7 @@ pub const WIDTH: u32 = 1600;
 /// Height of the drawing.
 pub const HEIGHT: u32 = 1000;
 /// Room for the numbers at the left and at the bottom.
-const LABELS: [u32; 2] = [150, 90];
+const LABELS: [u32; 2] = [130, 64];
 /// Room at the other sides.
 const MARGIN: u32 = 24;
 /// Half the size of a mark.
@@ -84,6 +84,7 @@ impl<'a> Chart<'a> {
             let area = SVGBackend::with_string(&mut text, (WIDTH, HEIGHT)).into_drawing_area();
             ChartBuilder::on(&area)
                 .margin(MARGIN)
+                .margin_bottom(0)
                 .set_label_area_size(LabelAreaPosition::Left, LABELS[0])
                 .set_label_area_size(LabelAreaPosition::Bottom, LABELS[1])
                 .build_cartesian_2d(self.across.coordinate(), self.up.coordinate())
@@ -101,7 +102,6 @@ impl<'a> Chart<'a> {
         plane
             .configure_mesh()
             .bold_line_style(BLACK)
-            .light_line_style(BLACK.mix(0.4))
             .axis_style(BLACK)
             .label_style(("sans-serif", 32))
             .x_label_formatter(&|value| self.across.label(*value))

@@ -75,11 +75,17 @@ impl Scale {
         colours().concat()
     }
 
-    /// What stands beside the bar: a text for every decade, and where [%].
+    /// What stands beside the bar: texts for some decades, both ends among them, and where [%].
     pub fn ticks(self) -> Vec<(String, f64)> {
         let decades = f64::from(self.high - self.low);
         let place = |k: i32| 100.0 * f64::from(k - self.low) / decades;
-        (self.low..=self.high).map(|k| (power_of_ten(k), place(k))).collect()
+        // More texts than three or four do not fit.
+        let step = match self.high - self.low {
+            decades if decades <= 3 => 1,
+            decades if decades % 2 == 0 => decades / 2,
+            decades => decades,
+        };
+        (self.low..=self.high).step_by(step as usize).map(|k| (power_of_ten(k), place(k))).collect()
     }
 }
 

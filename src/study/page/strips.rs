@@ -116,6 +116,13 @@ impl Strips {
     }
 }
 
+impl Strips {
+    /// How many images stand side by side, the reference among them.
+    pub fn count(&self) -> usize {
+        1 + self.levels.first().map_or(0, |strip| strip.shots.len())
+    }
+}
+
 fn shown(
     folder: &Path,
     scene: &SceneOutcome,

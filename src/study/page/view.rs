@@ -111,7 +111,7 @@ fn names(outcome: &Outcome) -> Vec<&str> {
 
 /// How much better than the first.
 struct Share {
-    ratio: Interval,
+    ratio: Option<Interval>,
     best: bool,
 }
 
@@ -119,16 +119,18 @@ impl Share {
     fn of(scene: &SceneOutcome, contender: &ContenderOutcome) -> Self {
         let efficiency = |contender: &ContenderOutcome| contender.efficiency.mean;
         let best = scene.contenders.iter().map(efficiency).fold(f64::MIN, f64::max);
-        let ratio = figures::ratio(contender.efficiency, scene.contenders[0].efficiency);
+        let first = &scene.contenders[0];
+        let other = !std::ptr::eq(first, contender);
+        let ratio = other.then(|| figures::ratio(contender.efficiency, first.efficiency));
         Self { ratio, best: efficiency(contender) >= best }
     }
 
     fn text(&self) -> String {
-        format!("{}×", figures::number(self.ratio.mean))
+        self.ratio.map_or("1".into(), |ratio| format!("{}×", figures::number(ratio.mean)))
     }
 
-    fn ends(&self) -> String {
-        figures::ends(self.ratio)
+    fn ends(&self) -> Option<String> {
+        self.ratio.map(figures::ends)
     }
 }
 

@@ -3,8 +3,10 @@ function compare(section) {
     const stage = one(section, ".stage");
     const cut = one(section, ".cut");
     const sources = all(section, "img.source");
-    const last = (title) => sources.findLastIndex(title);
-    const first = { left: last((image) => image.closest(".strip") && !image.dataset.kind), right: 0 };
+    // At first the first contender's last image, and the second's or the reference.
+    const images = all([...all(section, ".strip")].pop(), "img.source:not([data-kind])");
+    const latest = images.filter((image) => image.dataset.title !== "Reference").map((image) => sources.indexOf(image));
+    const first = { left: latest[0], right: latest[1] ?? 0 };
 
     function show(side, index) {
         const source = sources[index];
