@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from validation import assets, cells, compare, contenders, coverage, matrix, pane, plume, race, references, selftest, truths
+from validation import assets, cells, compare, contenders, coverage, matrix, page, pane, plume, race, references, selftest, truths
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, SCENES
@@ -33,6 +33,7 @@ def parser() -> argparse.ArgumentParser:
     add_race(commands)
     add_pane(commands)
     add_plume(commands)
+    add_page(commands)
     add_selftest(commands)
     return top
 
@@ -185,3 +186,14 @@ def add_plume(commands) -> None:
 
 def run_plume(options) -> bool:
     return plume.run(options.rounds, options.spp)
+
+
+def add_page(commands) -> None:
+    command = add(commands, "page", run_page, "A study's page in a headless Chromium: it loads, and its controls control.")
+    command.add_argument("file", type=Path, help="study.html")
+    command.add_argument("--output", type=Path, default=OUTPUT / "page", help="folder for pictures of it")
+    command.add_argument("--if-possible", action="store_true", help="no failure where no Chromium is found")
+
+
+def run_page(options) -> bool:
+    return page.run(options.file, options.output, options.if_possible)

@@ -40,6 +40,8 @@ pub enum Command {
     /// which stay where they are. Where a parameter stands in a place that the other spelling has no words for, its
     /// value is written instead, and a note on standard error says where.
     Convert(Convert),
+    /// Make the page of a study, study.html, anew from its numbers and images
+    Report(Report),
 }
 
 /// Render a scene to an image.
@@ -194,6 +196,14 @@ pub struct Convert {
     /// Write the values of parameters in place of their names (mitsuba.load_dict knows no parameters)
     #[arg(long)]
     pub fill: bool,
+}
+
+/// Make the page of a study.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Folder of the study: study.json and the images that it names
+    #[arg(value_name = "FOLDER")]
+    pub folder: PathBuf,
 }
 
 /// A scene file and what to set in it.

@@ -6,6 +6,7 @@ mod estimator;
 mod info;
 mod pixel;
 mod render;
+mod report;
 mod strategies;
 
 use crate::{
@@ -28,6 +29,7 @@ pub fn run() -> ExitCode {
         Command::Pixel(pixel) => pixel::run(pixel),
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
+        Command::Report(report) => report::run(report),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -85,11 +85,7 @@ struct Task {
 }
 
 /// What every pixel is to be known with.
-fn precision(
-    arguments: &arguments::Render,
-    setup: &Setup,
-    options: &Options,
-) -> Result<Option<Precision>> {
+fn precision(arguments: &arguments::Render, setup: &Setup, options: &Options) -> Result<Option<Precision>> {
     let Some(error) = arguments.error else { return Ok(None) };
     let refuse = |found: &str, remedy: &str| {
         let expected = "an image of independent samples, without layers of moments";

@@ -4,6 +4,7 @@
 
 pub mod claims;
 pub mod pieces;
+pub mod studies;
 
 use serde_json::Value;
 use tempfile::TempDir;

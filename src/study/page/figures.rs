@@ -1,0 +1,104 @@
+//! Numbers as people read them.
+
+use crate::study::outcome::Interval;
+
+/// Three significant digits: 0.00123, 45.6, 1.23×10⁻⁵. What is no number is a dash.
+pub fn number(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !value.is_finite() {
+        return "–".into();
+    }
+    let rounded = format!("{:.2e}", value.abs());
+    let sign = if value < 0.0 { "−" } else { "" };
+    match rounded.split_once('e').and_then(|(digits, exponent)| Some((digits, exponent.parse().ok()?))) {
+        Some((_, exponent @ -3..=3)) => {
+            let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+            format!("{sign}{:.decimals$}", value.abs())
+        }
+        Some((digits, exponent)) => format!("{sign}{digits}×{}", power_of_ten(exponent)),
+        None => rounded,
+    }
+}
+
+/// 10 with its exponent raised.
+pub fn power_of_ten(exponent: i32) -> String {
+    let raised = |digit| match digit {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '0' | '4'..='9' => char::from_u32(0x2070 + u32::from(digit) - u32::from('0')).unwrap_or(digit),
+        other => other,
+    };
+    format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
+}
+
+/// A time with its unit.
+pub fn seconds(value: f64) -> String {
+    format!("{} s", number(value))
+}
+
+/// The ends of an interval.
+pub fn ends(interval: Interval) -> String {
+    format!("[{}, {}]", number(interval.low), number(interval.high))
+}
+
+/// A count with its thousands apart.
+pub fn count(value: u64) -> String {
+    let digits = value.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();
+    groups.join("\u{202f}")
+}
+
+/// `a` over `b`, of independent estimates: the half widths of their logarithms add up as squares. Where an interval
+/// reaches 0 its logarithm has no end, and neither has the ratio's.
+pub fn ratio(a: Interval, b: Interval) -> Interval {
+    let mean = a.mean / b.mean;
+    let spread = |up: f64, down: f64| up.ln().hypot(down.ln()).exp();
+    let low = mean / spread(a.mean / a.low.max(0.0), b.high / b.mean);
+    let high = mean * spread(a.high / a.mean, b.mean / b.low.max(0.0));
+    Interval { mean, low, high }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_three_digits_at_any_size() {
+        let cases = [
+            (0.0, "0"),
+            (1.0, "1.00"),
+            (9.996, "10.0"),
+            (0.001_234, "0.00123"),
+            (0.000_999_9, "0.00100"),
+            (1234.5, "1234"),
+            (99_999.0, "1.00×10⁵"),
+            (-0.5, "−0.500"),
+            (1e-30, "1.00×10⁻³⁰"),
+            (1.5e300, "1.50×10³⁰⁰"),
+            (f64::MIN_POSITIVE, "2.23×10⁻³⁰⁸"),
+            (f64::INFINITY, "–"),
+            (f64::NAN, "–"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(number(value), text, "{value:e}");
+        }
+        assert_eq!((count(7), count(1_234_567)), ("7".into(), "1\u{202f}234\u{202f}567".into()));
+    }
+
+    #[test]
+    fn a_ratio_is_sure_where_both_are() {
+        let sure = |mean| Interval { mean, low: mean, high: mean };
+        assert_eq!(ratio(sure(6.0), sure(2.0)), sure(3.0));
+        let wide = Interval { mean: 2.0, low: 1.0, high: 4.0 };
+        let found = ratio(sure(4.0), wide);
+        assert!((found.low - 1.0).abs() < 1e-12 && (found.high - 4.0).abs() < 1e-12, "{found:?}");
+        let twice = ratio(wide, wide);
+        assert!((twice.high - 2f64.powf(2f64.sqrt())).abs() < 1e-12, "{twice:?}");
+        assert_eq!(ratio(Interval { low: -1.0, ..wide }, sure(1.0)).low, 0.0);
+    }
+}

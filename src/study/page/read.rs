@@ -1,0 +1,69 @@
+//! What a page is made of, from a study's folder.
+
+use crate::{
+    error::{Error, Result},
+    math::{Spectrum, vec3},
+    study::outcome::{Outcome, SceneOutcome},
+};
+use image::{ImageReader, Limits};
+use std::path::Path;
+
+/// What a decoder may allocate [bytes]: a few bytes of header must not ask for all memory.
+const MOST_BYTES: u64 = 1 << 31;
+
+/// The study in the file at `path`: at least one scene, in each at least one contender with at least one budget.
+pub fn outcome(path: &Path) -> Result<Outcome> {
+    let remedy =
+        "give the folder of a study, as tyndall study or python3 -m validation convergence leaves it";
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| Error::new(path.display(), "the numbers of a study", error.to_string(), remedy))?;
+    let outcome: Outcome = serde_json::from_str(&text).map_err(|error| {
+        let place = format!("{}:{}:{}", path.display(), error.line(), error.column());
+        let remedy = "run the study anew; every number of it is finite";
+        Error::new(place, "a study as JSON", error.to_string(), remedy)
+    })?;
+    match gap(&outcome) {
+        None => Ok(outcome),
+        Some((expected, found)) => {
+            Err(Error::new(path.display(), expected, found, "run the study anew, to its end"))
+        }
+    }
+}
+
+/// What must be there and is not: what was expected, what was found.
+fn gap(outcome: &Outcome) -> Option<(&'static str, String)> {
+    if outcome.scenes.is_empty() {
+        return Some(("at least one scene", "none".into()));
+    }
+    outcome.scenes.iter().find_map(gap_in_scene)
+}
+
+fn gap_in_scene(scene: &SceneOutcome) -> Option<(&'static str, String)> {
+    let name = &scene.name;
+    if scene.width == 0 || scene.height == 0 {
+        return Some(("images with pixels", format!("{} x {} in {name}", scene.width, scene.height)));
+    }
+    if scene.contenders.is_empty() {
+        return Some(("at least one contender in every scene", format!("none in {name}")));
+    }
+    let idle = scene.contenders.iter().find(|contender| contender.points.is_empty())?;
+    Some(("at least one budget for every contender", format!("none for {} in {name}", idle.name)))
+}
+
+/// The pixels of an image that has the size of `scene`, of any values.
+pub fn image(path: &Path, scene: &SceneOutcome) -> Result<Vec<Spectrum>> {
+    let unreadable = |found: String| {
+        let expected = format!("an image of {} x {} pixels", scene.width, scene.height);
+        Error::new(path.display(), expected, found, "run the study anew, or bring its images back")
+    };
+    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
+    let mut reader = reader.map_err(|error| unreadable(error.to_string()))?;
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(MOST_BYTES);
+    reader.limits(limits);
+    let image = reader.decode().map_err(|error| unreadable(error.to_string()))?.into_rgb32f();
+    if (image.width() as usize, image.height() as usize) != (scene.width, scene.height) {
+        return Err(unreadable(format!("{} x {}", image.width(), image.height())));
+    }
+    Ok(image.pixels().map(|p| vec3(p[0], p[1], p[2])).collect())
+}
