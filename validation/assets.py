@@ -9,6 +9,7 @@ import numpy as np
 
 from validation import mitsuba
 from validation.places import CROSSCHECK
+from validation.volume_file import UNIT, vol
 
 SERIALIZED_FORMAT, SERIALIZED_VERSION = 0x041C, 4
 NORMALS, TEXTURE_COORDINATES, SINGLE_PRECISION = 0x0001, 0x0002, 0x1000
@@ -120,10 +121,6 @@ def serialized(solids: list[tuple]) -> bytes:
     return b"".join(parts) + struct.pack(f"<{len(places)}QI", *places, len(places))
 
 
-UNIT = (0, 0, 0, 1, 1, 1)
-"""The box of grids whose scenes do not look at it."""
-
-
 def grids() -> dict[str, tuple[np.ndarray, tuple]]:
     """Volumes, (z, y, x) or (z, y, x, channel), and the boxes that their files name."""
     random = np.random.default_rng(4)
@@ -142,13 +139,6 @@ def puffs() -> np.ndarray:
     centres = ((3.5, 3, 3, 3.2), (16, 6, 8.5, 3.5), (9, 15.2, 5, 2.6))
     distances = [np.sqrt((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / r for a, b, c, r in centres]
     return sum(np.maximum(0, 1 - d) for d in distances)
-
-
-def vol(samples: np.ndarray, box: tuple = UNIT) -> bytes:
-    """Mitsuba's grid file, version 3, single precision: (z, y, x) or (z, y, x, channel)."""
-    data = np.asarray(samples, dtype="<f4")
-    z, y, x, channels = data.shape if data.ndim == 4 else (*data.shape, 1)
-    return b"VOL" + struct.pack("<B5i6f", 3, 1, x, y, z, channels, *box) + data.tobytes()
 
 
 TENT = """# a closed roof of two slopes and two gables: polygons of four and of three corners, no normals

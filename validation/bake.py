@@ -7,9 +7,10 @@ import json
 import mitsuba as mi
 import numpy as np
 
-from validation import assets, densities, mitsuba
+from validation import densities, mitsuba
 from validation.failure import Failure
 from validation.places import TARGET
+from validation.volume_file import vol
 
 FOLDER = TARGET / "validation-baked"
 RESOLUTION = 64
@@ -71,6 +72,6 @@ def grid(function: dict, box: np.ndarray, time: float) -> dict:
     values = densities.value(function, box[0] + np.stack([x, y, z], axis=-1) * (box[1] - box[0]), time)
     if values.min() < 0:
         raise Failure(f"the density {function['type']} is negative at some places", "raise its constant")
-    path.write_bytes(assets.vol(values))
+    path.write_bytes(vol(values))
     to_world = [{"type": "scale", "value": (box[1] - box[0]).tolist()}, {"type": "translate", "value": box[0].tolist()}]
     return {"type": "gridvolume", "filename": str(path), "to_world": to_world}

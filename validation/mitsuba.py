@@ -120,17 +120,6 @@ def step(s: dict):
             return mi.ScalarTransform4f(np.reshape(s["value"], (4, 4)))
 
 
-def read_exr(path: Path) -> np.ndarray:
-    """An image file as linear RGB, without the layers that may stand beside it."""
-    if mi.variant() is None:
-        use("scalar_rgb")
-    bitmap = mi.Bitmap(str(path))
-    if bitmap.pixel_format() == mi.Bitmap.PixelFormat.MultiChannel:
-        bitmap = dict(bitmap.split())["<root>"]
-    bitmap = bitmap.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
-    return np.array(bitmap, dtype=np.float64)
-
-
 def write_png(path: Path, pixels: np.ndarray) -> None:
     """Writes 8-bit pixels, (height, width, 3)."""
     if mi.variant() is None:

@@ -24,10 +24,11 @@ import mitsuba as mi
 import numpy as np
 from scipy import ndimage
 
-from validation import assets, mitsuba
+from validation import mitsuba
 from validation.failure import Failure
 from validation.places import OUTPUT, ROOT
 from validation.scene import Scene
+from validation.volume_file import vol
 
 FOLDER = OUTPUT / "plume"
 VOXELS = 256
@@ -126,7 +127,7 @@ def write(folder: Path) -> Files:
     """The grid, the scene and the connections."""
     folder.mkdir(parents=True, exist_ok=True)
     samples = smoke()
-    (folder / "plume.vol").write_bytes(assets.vol(samples))
+    (folder / "plume.vol").write_bytes(vol(samples))
     (folder / "plume.json").write_text(json.dumps(tree(folder / "plume.vol"), indent=1))
     ends = chords(CHORDS)
     (folder / "chords.f32").write_bytes(ends.astype("<f4").tobytes())

@@ -15,10 +15,11 @@ from functools import cache
 
 import numpy as np
 
-from validation import assets, densities
+from validation import densities
 from validation.closed_forms.case import SIZE, SKY, Case, camera, scene
 from validation.closed_forms.slab import HALF_WIDTH, Slab, lit_slab
 from validation.places import TARGET
+from validation.volume_file import vol
 
 FOLDER = TARGET / "validation-volumes"
 CONTRAST = 1e6
@@ -35,7 +36,7 @@ def cases() -> list[Case]:
 
 def grid(samples: np.ndarray, to_world: list, **more) -> dict:
     """A gridvolume of these samples, (z, y, x)."""
-    content = assets.vol(samples)
+    content = vol(samples)
     FOLDER.mkdir(parents=True, exist_ok=True)
     path = FOLDER / f"{hashlib.sha256(content).hexdigest()[:20]}.vol"
     path.write_bytes(content)
