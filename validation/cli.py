@@ -8,6 +8,7 @@ from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, SCENES
 from validation.scene import open_scene
+from validation.study import command as convergence
 
 QUICK = Effort(batches=16, spp=48)
 FULL = Effort(batches=32, spp=256)
@@ -15,6 +16,9 @@ FULL_CELL = Effort(batches=16, spp=80)
 """Of the generated cells, nearly two thousand: about two hours of two cores."""
 SAMPLE = 24
 """Generated cells that the quick matrix takes."""
+
+
+Commands = argparse._SubParsersAction  # argparse gives it no public name
 
 
 def main(arguments: list[str]) -> int:
@@ -34,6 +38,7 @@ def parser() -> argparse.ArgumentParser:
     add_pane(commands)
     add_plume(commands)
     add_selftest(commands)
+    add_convergence(commands)
     return top
 
 
@@ -185,3 +190,14 @@ def add_plume(commands) -> None:
 
 def run_plume(options) -> bool:
     return plume.run(options.rounds, options.spp)
+
+
+def add_convergence(commands: Commands) -> None:
+    command = add(commands, "convergence", run_convergence, convergence.TEXT)
+    convergence.options(command)
+    command.add_argument("--size", type=size, help="WxH instead of the scene's own")
+    add_parameters(command)
+
+
+def run_convergence(options: argparse.Namespace) -> bool:
+    return convergence.run(options, options.size, parameters_of(options))

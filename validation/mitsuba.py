@@ -4,6 +4,7 @@ import os
 from functools import cache
 from glob import glob
 from pathlib import Path
+from typing import Any
 
 import mitsuba as mi
 import numpy as np
@@ -60,9 +61,9 @@ def render(scene: Scene, spp: int, seed: int = 0, variant: str = "scalar_rgb", s
     return image(load(scene, variant, size), spp, seed)
 
 
-def image(loaded, spp: int, seed: int) -> np.ndarray:
-    """One image of a loaded scene."""
-    return np.array(mi.render(loaded, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
+def image(loaded: Any, spp: int, seed: int, integrator: Any = None) -> np.ndarray:
+    """One image of a loaded scene, by its own integrator or another one that is loaded."""
+    return np.array(mi.render(loaded, integrator=integrator, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
 
 
 def with_size(loaded, size: tuple[int, int]):
