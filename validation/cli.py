@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from validation import assets, cells, compare, contenders, coverage, matrix, pane, plume, race, references, selftest, truths
+from validation import assets, cells, compare, comparison_page, contenders, coverage, matrix, pane, plume, race, references, selftest, truths
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, SCENES
@@ -99,9 +99,11 @@ def run_compare(options) -> bool:
     reference = references.cached(scene, options.size)
     print(compare.HEADER, flush=True)
     methods, effort, size = options.integrators.split(","), effort_of(options), options.size
-    passed = [compare.tested(scene, method, effort, reference, options.output, size) for method in methods]
-    print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}")
-    return all(passed)
+    found = {method: compare.attempted(scene, method, effort, reference, options.output, size) for method in methods}
+    page = options.output / f"{scene.name}.html"
+    comparison_page.write(comparison_page.page(scene, effort, found), page)
+    print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}, and all there is to see in {page}")
+    return all(isinstance(verdict, compare.Verdict) and verdict.passed for verdict in found.values())
 
 
 def add_matrix(commands) -> None:
