@@ -6,6 +6,7 @@ from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
+import numpy.typing as npt
 
 from validation import mitsuba
 from validation.places import CROSSCHECK
@@ -43,7 +44,7 @@ def grid(width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
     return (x + 0.5) / width, (y + 0.5) / height
 
 
-def colours(*channels) -> np.ndarray:
+def colours(*channels: npt.ArrayLike) -> np.ndarray:
     """One RGB image of three."""
     return np.stack(np.broadcast_arrays(*channels), axis=-1).astype(np.float32)
 
@@ -58,7 +59,7 @@ def dusk() -> np.ndarray:
     x, y = grid(32, 16)
     sky = colours(0.15 + 0.5 * y, 0.25 + 0.15 * y, 0.6 - 0.3 * y) * (y < 0.55)[..., None]
     sun = np.exp(-((x - 0.3) ** 2 + 0.25 * (y - 0.35) ** 2) / 0.0015)
-    return sky + colours(0.06, 0.05, 0.03 + 0.05 * x) + sun[..., None] * np.float32([30, 18, 8])
+    return sky + colours(0.06, 0.05, 0.03 + 0.05 * x) + sun[..., None] * np.array([30, 18, 8], np.float32)
 
 
 def slide() -> np.ndarray:
@@ -82,13 +83,13 @@ def poster() -> np.ndarray:
 def holes() -> np.ndarray:
     """Grey: nothing, half and all."""
     rows = ["#..#-.", ".##.--", "#.-#.#", "-#..##", "..#-#."]
-    return np.float32([[{"#": 1, "-": 0.5, ".": 0}[c] for c in row] for row in rows])[..., None]
+    return np.array([[{"#": 1, "-": 0.5, ".": 0}[c] for c in row] for row in rows], np.float32)[..., None]
 
 
 def pyramid() -> tuple[np.ndarray, ...]:
     """A closed four-sided pyramid: corners and triangles."""
-    corners = np.float32([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1], [0.2, 1.6, -0.1]])
-    triangles = np.uint32([[0, 1, 2], [0, 2, 3], [1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]])
+    corners = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1], [0.2, 1.6, -0.1]], np.float32)
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]], np.uint32)
     empty = np.zeros((5, 0), np.float32)
     return corners, empty, empty, triangles
 
@@ -110,7 +111,8 @@ def lantern(around: int = 12, up: int = 6) -> tuple[np.ndarray, ...]:
 
 def serialized(solids: list[tuple]) -> bytes:
     """Mitsuba's container as its documentation of the plugin describes it: compressed meshes, then their places."""
-    parts, places = [], []
+    parts: list[bytes] = []
+    places: list[int] = []
     for number, (corners, normals, uvs, triangles, kind) in enumerate(solids):
         places.append(sum(map(len, parts)))
         name = f"solid {number}".encode() + b"\0"

@@ -3,6 +3,7 @@ fine enough that what it smooths away is far below what a comparison resolves.""
 
 import hashlib
 import json
+from typing import Any
 
 import mitsuba as mi
 import numpy as np
@@ -24,17 +25,17 @@ def baked(tree: dict) -> dict:
     return {name: replaced(child, grids) for name, child in tree.items()} if grids else tree
 
 
-def interior(o):
+def interior(o: Any) -> Any:
     """What a shape holds."""
     return o.get("interior") if isinstance(o, dict) else None
 
 
-def varies(o) -> bool:
+def varies(o: Any) -> bool:
     """True for a medium with a density function in it."""
     return isinstance(o, dict) and o.get("type") == "heterogeneous" and any(map(densities.is_function, o.values()))
 
 
-def replaced(child, grids: dict):
+def replaced(child: Any, grids: dict) -> Any:
     """A child of the scene with its medium, or itself, as grids."""
     if id(child) in grids:
         return grids[id(child)]

@@ -142,8 +142,9 @@ def text(value: object) -> str:
     """A value as the program reads it: several are separated by commas."""
     if isinstance(value, bool):
         return str(value).lower()
-    several = isinstance(value, Iterable) and not isinstance(value, (str, bytes))
-    return ",".join(map(text, value)) if several else str(value)  # type: ignore[arg-type, call-overload]
+    if isinstance(value, Iterable) and not isinstance(value, (str, bytes)):
+        return ",".join(map(text, value))
+    return str(value)
 
 
 def definitions(parameters: Mapping[str, str]) -> list[str]:

@@ -17,7 +17,7 @@ from validation.study.scenes import Subject
 from validation.study.store import Run, Store
 from validation.study.truth import Truth
 
-LEAST_SEEDS = 3
+LEAST_SEEDS = 2
 """Rounds that are rendered even where time is up."""
 PILOTS_PART = 0.08
 """Of the time there is."""

@@ -40,7 +40,7 @@ class Store:
     def run(self, contender: str, budget: int, seed: int) -> Run | None:
         """A finished render."""
         told = self.read(self.path(contender, budget, seed).with_suffix(".json"))
-        return told and Run(told["samples"], told["seconds"], Measures(**told["measures"]))
+        return Run(told["samples"], told["seconds"], Measures(**told["measures"])) if told else None
 
     def keep_run(self, contender: str, budget: int, seed: int, run: Run, image: np.ndarray | None) -> None:
         """Keeps a render, and its image where it is wanted later."""

@@ -36,9 +36,9 @@ def objects(whole: Any) -> Iterator[dict[str, Any]]:
 def path_integrator(whole: dict[str, Any], kind: str) -> dict[str, Any]:
     """Mitsuba's integrator `kind` with the depths that the scene's own has. Where that is one of ours, which has no
     Russian roulette, Mitsuba's begins late, which makes it less noisy than by its default."""
-    own = next((o for o in objects(whole) if o["type"] in INTEGRATORS), {"type": "path"})
-    kept = {key: own[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in own}
-    ours = {"rr_depth": ROULETTE[own.get("max_depth", -1) < 0]} if own["type"] in INTEGRATORS[:4] else {}
+    own: dict[str, Any] = next((o for o in objects(whole) if o["type"] in INTEGRATORS), {"type": "path"})
+    kept: dict[str, Any] = {key: own[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in own}
+    ours: dict[str, Any] = {"rr_depth": ROULETTE[own.get("max_depth", -1) < 0]} if own["type"] in INTEGRATORS[:4] else {}
     return {"type": kind, **ours, **kept}
 
 
