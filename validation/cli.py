@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from validation import assets, cells, compare, contenders, coverage, matrix, pane, plume, race, references, selftest, truths
-from validation import comparison_page
+from validation import comparison_page, package_tests
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, SCENES
@@ -41,6 +41,7 @@ def parser() -> argparse.ArgumentParser:
     add_plume(commands)
     add_selftest(commands)
     add_convergence(commands)
+    add(commands, "test", lambda _: package_tests.run(), "The tests of this package itself.")
     return top
 
 
