@@ -10,6 +10,9 @@ try:
     from validation import cli  # only importable inside the environment
 
     sys.exit(cli.main(sys.argv[1:]))
+except KeyboardInterrupt:
+    print("interrupted", file=sys.stderr)
+    sys.exit(130)
 except Failure as failure:
     print(failure, file=sys.stderr)
     sys.exit(2)

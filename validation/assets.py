@@ -6,9 +6,11 @@ from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
+import numpy.typing as npt
 
 from validation import mitsuba
 from validation.places import CROSSCHECK
+from validation.volume_file import UNIT, vol
 
 SERIALIZED_FORMAT, SERIALIZED_VERSION = 0x041C, 4
 NORMALS, TEXTURE_COORDINATES, SINGLE_PRECISION = 0x0001, 0x0002, 0x1000
@@ -42,7 +44,7 @@ def grid(width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
     return (x + 0.5) / width, (y + 0.5) / height
 
 
-def colours(*channels) -> np.ndarray:
+def colours(*channels: npt.ArrayLike) -> np.ndarray:
     """One RGB image of three."""
     return np.stack(np.broadcast_arrays(*channels), axis=-1).astype(np.float32)
 
@@ -57,7 +59,7 @@ def dusk() -> np.ndarray:
     x, y = grid(32, 16)
     sky = colours(0.15 + 0.5 * y, 0.25 + 0.15 * y, 0.6 - 0.3 * y) * (y < 0.55)[..., None]
     sun = np.exp(-((x - 0.3) ** 2 + 0.25 * (y - 0.35) ** 2) / 0.0015)
-    return sky + colours(0.06, 0.05, 0.03 + 0.05 * x) + sun[..., None] * np.float32([30, 18, 8])
+    return sky + colours(0.06, 0.05, 0.03 + 0.05 * x) + sun[..., None] * np.array([30, 18, 8], np.float32)
 
 
 def slide() -> np.ndarray:
@@ -81,13 +83,13 @@ def poster() -> np.ndarray:
 def holes() -> np.ndarray:
     """Grey: nothing, half and all."""
     rows = ["#..#-.", ".##.--", "#.-#.#", "-#..##", "..#-#."]
-    return np.float32([[{"#": 1, "-": 0.5, ".": 0}[c] for c in row] for row in rows])[..., None]
+    return np.array([[{"#": 1, "-": 0.5, ".": 0}[c] for c in row] for row in rows], np.float32)[..., None]
 
 
 def pyramid() -> tuple[np.ndarray, ...]:
     """A closed four-sided pyramid: corners and triangles."""
-    corners = np.float32([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1], [0.2, 1.6, -0.1]])
-    triangles = np.uint32([[0, 1, 2], [0, 2, 3], [1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]])
+    corners = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1], [0.2, 1.6, -0.1]], np.float32)
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [1, 0, 4], [2, 1, 4], [3, 2, 4], [0, 3, 4]], np.uint32)
     empty = np.zeros((5, 0), np.float32)
     return corners, empty, empty, triangles
 
@@ -109,7 +111,8 @@ def lantern(around: int = 12, up: int = 6) -> tuple[np.ndarray, ...]:
 
 def serialized(solids: list[tuple]) -> bytes:
     """Mitsuba's container as its documentation of the plugin describes it: compressed meshes, then their places."""
-    parts, places = [], []
+    parts: list[bytes] = []
+    places: list[int] = []
     for number, (corners, normals, uvs, triangles, kind) in enumerate(solids):
         places.append(sum(map(len, parts)))
         name = f"solid {number}".encode() + b"\0"
@@ -118,10 +121,6 @@ def serialized(solids: list[tuple]) -> bytes:
         header = struct.pack("<HH", SERIALIZED_FORMAT, SERIALIZED_VERSION)
         parts.append(header + zlib.compress(struct.pack("<I", kind | SINGLE_PRECISION) + name + sizes + arrays))
     return b"".join(parts) + struct.pack(f"<{len(places)}QI", *places, len(places))
-
-
-UNIT = (0, 0, 0, 1, 1, 1)
-"""The box of grids whose scenes do not look at it."""
 
 
 def grids() -> dict[str, tuple[np.ndarray, tuple]]:
@@ -142,13 +141,6 @@ def puffs() -> np.ndarray:
     centres = ((3.5, 3, 3, 3.2), (16, 6, 8.5, 3.5), (9, 15.2, 5, 2.6))
     distances = [np.sqrt((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / r for a, b, c, r in centres]
     return sum(np.maximum(0, 1 - d) for d in distances)
-
-
-def vol(samples: np.ndarray, box: tuple = UNIT) -> bytes:
-    """Mitsuba's grid file, version 3, single precision: (z, y, x) or (z, y, x, channel)."""
-    data = np.asarray(samples, dtype="<f4")
-    z, y, x, channels = data.shape if data.ndim == 4 else (*data.shape, 1)
-    return b"VOL" + struct.pack("<B5i6f", 3, 1, x, y, z, channels, *box) + data.tobytes()
 
 
 TENT = """# a closed roof of two slopes and two gables: polygons of four and of three corners, no normals

@@ -3,13 +3,15 @@ fine enough that what it smooths away is far below what a comparison resolves.""
 
 import hashlib
 import json
+from typing import Any
 
 import mitsuba as mi
 import numpy as np
 
-from validation import assets, densities, mitsuba
+from validation import densities, mitsuba
 from validation.failure import Failure
 from validation.places import TARGET
+from validation.volume_file import vol
 
 FOLDER = TARGET / "validation-baked"
 RESOLUTION = 64
@@ -23,17 +25,17 @@ def baked(tree: dict) -> dict:
     return {name: replaced(child, grids) for name, child in tree.items()} if grids else tree
 
 
-def interior(o):
+def interior(o: Any) -> Any:
     """What a shape holds."""
     return o.get("interior") if isinstance(o, dict) else None
 
 
-def varies(o) -> bool:
+def varies(o: Any) -> bool:
     """True for a medium with a density function in it."""
     return isinstance(o, dict) and o.get("type") == "heterogeneous" and any(map(densities.is_function, o.values()))
 
 
-def replaced(child, grids: dict):
+def replaced(child: Any, grids: dict) -> Any:
     """A child of the scene with its medium, or itself, as grids."""
     if id(child) in grids:
         return grids[id(child)]
@@ -71,6 +73,6 @@ def grid(function: dict, box: np.ndarray, time: float) -> dict:
     values = densities.value(function, box[0] + np.stack([x, y, z], axis=-1) * (box[1] - box[0]), time)
     if values.min() < 0:
         raise Failure(f"the density {function['type']} is negative at some places", "raise its constant")
-    path.write_bytes(assets.vol(values))
+    path.write_bytes(vol(values))
     to_world = [{"type": "scale", "value": (box[1] - box[0]).tolist()}, {"type": "translate", "value": box[0].tolist()}]
     return {"type": "gridvolume", "filename": str(path), "to_world": to_world}

@@ -7,6 +7,7 @@ from dataclasses import astuple, dataclass
 from functools import cache
 from itertools import combinations, product
 from random import Random
+from typing import Any
 
 from validation.cases import ALL, EYE
 from validation.places import CROSSCHECK
@@ -14,7 +15,7 @@ from validation.scene import Scene
 
 SEED = 1
 
-MEDIA = {
+MEDIA: dict[str, dict[str, Any] | None] = {
     "none": None,
     "grey": {"sigma_t": 1.5, "albedo": 0.8},
     "chromatic": {"sigma_t": (0.2, 0.5, 1.0), "albedo": (0.95, 0.9, 0.7), "scale": 3.0},
@@ -127,7 +128,7 @@ class Cell:
         chosen = MEDIA[self.medium]
         if chosen is None:
             return {}
-        values = {key: rgb(*value) if isinstance(value, tuple) else value for key, value in chosen.items()}
+        values: dict[str, Any] = {key: rgb(*value) if isinstance(value, tuple) else value for key, value in chosen.items()}
         scale = values.get("scale", 1.0) * (ROOM_SCALE if self.boundary == "room" else 1.0)
         return {"stuff": {"type": "homogeneous", **values, "scale": scale, "phase": PHASES[self.phase]}}
 
@@ -195,7 +196,7 @@ class Cell:
                 return {"type": "directional", "direction": [0.4, -1, -0.5], "irradiance": rgb(3, 2.5, 2)}
             case "constant":
                 return {"type": "constant", "radiance": rgb(0.5, 0.7, 1)}
-            case "envmap":
+            case _:
                 turn = [{"type": "rotate", "axis": [0, 1, 0], "angle": 70}]
                 return {"type": "envmap", "filename": "assets/dusk.exr", "to_world": turn}
 
@@ -227,7 +228,7 @@ def cells() -> tuple[Cell, ...]:
 def sample(count: int, seed: int = SEED) -> list[Cell]:
     """Some cells, always the same for a seed: each next one is that, of a shuffled list, which brings the most pairs
     of values not seen before."""
-    left, seen, chosen = list(cells()), set(), []
+    left, seen, chosen = list(cells()), set[Any](), list[Cell]()
     Random(seed).shuffle(left)
     while left and len(chosen) < count:
         best = max(left, key=lambda cell: len(pairs(cell) - seen))

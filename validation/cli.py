@@ -1,13 +1,16 @@
 """The commands of `python3 -m validation`."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 
 from validation import assets, cells, compare, contenders, coverage, matrix, page, pane, plume, race, references, selftest, truths
+from validation import comparison_page, package_tests
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, SCENES
 from validation.scene import open_scene
+from validation.study import command as convergence
 
 QUICK = Effort(batches=16, spp=48)
 FULL = Effort(batches=32, spp=256)
@@ -15,6 +18,9 @@ FULL_CELL = Effort(batches=16, spp=80)
 """Of the generated cells, nearly two thousand: about two hours of two cores."""
 SAMPLE = 24
 """Generated cells that the quick matrix takes."""
+
+
+Commands = argparse._SubParsersAction  # argparse gives it no public name
 
 
 def main(arguments: list[str]) -> int:
@@ -35,10 +41,12 @@ def parser() -> argparse.ArgumentParser:
     add_plume(commands)
     add_page(commands)
     add_selftest(commands)
+    add_convergence(commands)
+    add(commands, "test", lambda _: package_tests.run(), "The tests of this package itself.")
     return top
 
 
-def add(commands, name: str, run, text: str) -> argparse.ArgumentParser:
+def add(commands: Commands, name: str, run: Callable[[argparse.Namespace], bool], text: str) -> argparse.ArgumentParser:
     """A command without options."""
     command = commands.add_parser(name, help=text, description=text)
     command.set_defaults(command=run)
@@ -52,7 +60,7 @@ def add_effort(command: argparse.ArgumentParser, default: Effort) -> None:
     command.add_argument("--seed", type=int, default=default.seed, help="first seed (default %(default)s)")
 
 
-def effort_of(options) -> Effort:
+def effort_of(options: argparse.Namespace) -> Effort:
     """What was asked for."""
     if options.batches < 2:
         raise Failure("--batches is below 2: no variance can be known", "give at least 8")
@@ -64,7 +72,7 @@ def add_parameters(command: argparse.ArgumentParser) -> None:
     command.add_argument("-D", metavar="NAME=VALUE", action="append", default=[], help="a parameter of an XML scene")
 
 
-def parameters_of(options) -> dict[str, str]:
+def parameters_of(options: argparse.Namespace) -> dict[str, str]:
     """What -D gave."""
     wrong = next((pair for pair in options.D if "=" not in pair), None)
     if wrong:
@@ -78,7 +86,7 @@ def size(text: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
-def add_compare(commands) -> None:
+def add_compare(commands: Commands) -> None:
     command = add(commands, "compare", run_compare, "One scene through Mitsuba and Tyndall, pixel by pixel.")
     command.add_argument("scene")
     command.add_argument(
@@ -90,17 +98,19 @@ def add_compare(commands) -> None:
     add_effort(command, Effort())
 
 
-def run_compare(options) -> bool:
+def run_compare(options: argparse.Namespace) -> bool:
     scene = open_scene(options.scene, parameters_of(options))
     reference = references.cached(scene, options.size)
     print(compare.HEADER, flush=True)
     methods, effort, size = options.integrators.split(","), effort_of(options), options.size
-    passed = [compare.tested(scene, method, effort, reference, options.output, size) for method in methods]
-    print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}")
-    return all(passed)
+    found = {method: compare.attempted(scene, method, effort, reference, options.output, size) for method in methods}
+    page = options.output / f"{scene.name}.html"
+    comparison_page.write(comparison_page.page(scene, effort, found), page)
+    print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}, and all there is to see in {page}")
+    return all(isinstance(verdict, compare.Verdict) and verdict.passed for verdict in found.values())
 
 
-def add_matrix(commands) -> None:
+def add_matrix(commands: Commands) -> None:
     command = add(commands, "matrix", run_matrix, "Every cross-check scene through all integrators that can render it.")
     effort = command.add_mutually_exclusive_group()
     effort.add_argument("--quick", dest="effort", action="store_const", const=QUICK, default=QUICK, help="minutes (default)")
@@ -113,29 +123,29 @@ def add_matrix(commands) -> None:
     add(commands, "assets", lambda _: assets.run(), "Makes the cross-check scenes' images and meshes anew.")
 
 
-def run_matrix(options) -> bool:
+def run_matrix(options: argparse.Namespace) -> bool:
     quick = options.effort == QUICK
     chosen = cells.sample(SAMPLE, options.matrix_seed) if quick else cells.cells()
     return matrix.run(options.effort, chosen, QUICK if quick else FULL_CELL, options.only)
 
 
-def add_selftest(commands) -> None:
+def add_selftest(commands: Commands) -> None:
     command = add(commands, "selftest", run_selftest, "The test of the test: Mitsuba against itself, and against 5 %% off.")
     add_effort(command, Effort())
 
 
-def run_selftest(options) -> bool:
+def run_selftest(options: argparse.Namespace) -> bool:
     return selftest.run(effort_of(options))
 
 
-def add_closed_forms(commands) -> None:
+def add_closed_forms(commands: Commands) -> None:
     command = add(commands, "closed-forms", run_closed_forms, "Furnaces, slabs and single scattering against theory.")
     command.add_argument("--integrators", default="", help="instead of all that apply: any of pt, lt, bdpt, mitsuba")
     command.add_argument("--only", default="", help="only cases whose name contains this")
     add_effort(command, Effort(batches=16, spp=256))
 
 
-def run_closed_forms(options) -> bool:
+def run_closed_forms(options: argparse.Namespace) -> bool:
     methods = tuple(filter(None, options.integrators.split(",")))
     return truths.run(effort_of(options), methods, options.only)
 
@@ -147,7 +157,7 @@ def add_timing(command: argparse.ArgumentParser, rounds: int, seconds: float) ->
     command.add_argument("--threads", type=int, default=2, help="of all contenders alike (default %(default)s)")
 
 
-def add_race(commands) -> None:
+def add_race(commands: Commands) -> None:
     command = add(commands, "race", run_race, "Error against run time, side by side with Mitsuba.")
     lampboxes = [SCENES / "lampbox_down.xml", SCENES / "lampbox_up.xml"]
     command.add_argument("scenes", nargs="*", type=Path, default=lampboxes, help="default: both lamp boxes at -D res=256")
@@ -158,7 +168,7 @@ def add_race(commands) -> None:
     add_timing(command, rounds=8, seconds=5)
 
 
-def run_race(options) -> bool:
+def run_race(options: argparse.Namespace) -> bool:
     reference = race.read_reference(options.reference) if options.reference else None
     for path in options.scenes:
         size = {"res": "256"} if path.name.startswith("lampbox") else {}
@@ -168,32 +178,43 @@ def run_race(options) -> bool:
     return True
 
 
-def add_pane(commands) -> None:
+def add_pane(commands: Commands) -> None:
     command = add(commands, "pane", run_pane, "Light through frosted glass only (LW96 fig. 6): bdpt against pt.")
     command.add_argument("scene", nargs="?", type=Path, default=SCENES / "church.json")
     add_timing(command, rounds=8, seconds=10)
 
 
-def run_pane(options) -> bool:
+def run_pane(options: argparse.Namespace) -> bool:
     return pane.run(open_scene(options.scene), options.rounds, options.seconds, options.threads)
 
 
-def add_plume(commands) -> None:
+def add_plume(commands: Commands) -> None:
     command = add(commands, "plume", run_plume, "Nanoseconds per transmittance query on 256^3 voxels of smoke.")
     command.add_argument("--rounds", type=int, default=8, help="repetitions (default %(default)s)")
     command.add_argument("--spp", type=int, default=16, help="samples a pixel in each (default %(default)s)")
 
 
-def run_plume(options) -> bool:
+def run_plume(options: argparse.Namespace) -> bool:
     return plume.run(options.rounds, options.spp)
 
 
-def add_page(commands) -> None:
+def add_page(commands: Commands) -> None:
     command = add(commands, "page", run_page, "A study's page in a headless Chromium: it loads, and its controls control.")
     command.add_argument("file", type=Path, help="study.html")
     command.add_argument("--output", type=Path, default=OUTPUT / "page", help="folder for pictures of it")
     command.add_argument("--if-possible", action="store_true", help="no failure where no Chromium is found")
 
 
-def run_page(options) -> bool:
+def run_page(options: argparse.Namespace) -> bool:
     return page.run(options.file, options.output, options.if_possible)
+
+
+def add_convergence(commands: Commands) -> None:
+    command = add(commands, "convergence", run_convergence, convergence.TEXT)
+    convergence.options(command)
+    command.add_argument("--size", type=size, help="WxH instead of the scene's own")
+    add_parameters(command)
+
+
+def run_convergence(options: argparse.Namespace) -> bool:
+    return convergence.run(options, options.size, parameters_of(options))

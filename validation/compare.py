@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,8 @@ RETRY = 4
 
 MEDIA = ("homogeneous", "heterogeneous")
 
+Size = tuple[int, int] | None
+"""Width and height, or the scene's own."""
 Renderer = Callable[[int, int], np.ndarray]
 """spp, seed -> image."""
 
@@ -67,6 +69,12 @@ class Verdict:
     seconds: float
     trials: int = 1
     map: np.ndarray | None = None
+    """z of each value."""
+    reference: np.ndarray | None = None
+    """The mean of Mitsuba's batches."""
+    found: np.ndarray | None = None
+    """The mean of the candidate's."""
+    reference_seconds: float | None = None
 
     @property
     def passed(self) -> bool:
@@ -92,13 +100,13 @@ def render_batches(renderer: Renderer, effort: Effort) -> np.ndarray:
     return np.stack([renderer(effort.spp, effort.seed + i) for i in range(effort.batches)])
 
 
-def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size=None) -> Renderer:
+def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size: Size = None) -> Renderer:
     """Mitsuba on this scene, loaded once."""
     loaded = mitsuba.load(scene, variant, size)
     return lambda spp, seed: mitsuba.image(loaded, spp, seed)
 
 
-def tyndall_renderer(scene: Scene, method: str, size=None) -> Renderer:
+def tyndall_renderer(scene: Scene, method: str, size: Size = None) -> Renderer:
     """Tyndall on this scene. The method is an integrator and, after a colon, a tracker that all media shall use."""
     integrator, _, tracker = method.partition(":")
     return lambda spp, seed: tyndall.render(
@@ -106,7 +114,7 @@ def tyndall_renderer(scene: Scene, method: str, size=None) -> Renderer:
     )
 
 
-def candidate_renderer(scene: Scene, method: str, size=None) -> Renderer:
+def candidate_renderer(scene: Scene, method: str, size: Size = None) -> Renderer:
     """One of Tyndall's methods, or `mitsuba`: Mitsuba itself with other seeds, to test the test."""
     if method != "mitsuba":
         return tyndall_renderer(scene, method, size)
@@ -133,6 +141,8 @@ def judge(scene: str, method: str, ours: np.ndarray, theirs: np.ndarray, seconds
         worst=(int(x), int(y)),
         seconds=seconds,
         map=z,
+        reference=theirs.mean(axis=0),
+        found=ours.mean(axis=0),
     )
 
 
@@ -175,22 +185,50 @@ def compare(
             break
         effort = effort.harder()
     if output:
-        save_picture(output / f"{scene.name}-{method.replace(':', '-')}.png", theirs, ours, verdict.map)
-    return Verdict(**{**vars(verdict), "trials": trials})
+        save_picture(output / f"{scene.name}-{slug(method)}.png", theirs, ours, z_of(verdict))
+    return replace(verdict, trials=trials, reference_seconds=getattr(reference, "seconds", None))
+
+
+def z_of(verdict: Verdict) -> np.ndarray:
+    """The map of a verdict that `judge` gave."""
+    return np.zeros((1, 1, 3)) if verdict.map is None else verdict.map
+
+
+def slug(method: str) -> str:
+    """A method as in file names."""
+    return method.replace(":", "-")
 
 
 def tested(
-    scene: Scene, method: str, effort: Effort, reference: Callable[[Effort], np.ndarray], output: Path, size=None
+    scene: Scene,
+    method: str,
+    effort: Effort,
+    reference: Callable[[Effort], np.ndarray],
+    output: Path,
+    size: Size = None,
 ) -> bool:
     """Compares, prints the row, and tells whether both agree. What cannot be rendered is a disagreement too."""
+    found = attempted(scene, method, effort, reference, output, size)
+    return isinstance(found, Verdict) and found.passed
+
+
+def attempted(
+    scene: Scene,
+    method: str,
+    effort: Effort,
+    reference: Callable[[Effort], np.ndarray],
+    output: Path,
+    size: Size = None,
+) -> Verdict | Failure:
+    """Compares and prints the row: the verdict, or why there is none."""
     try:
         candidate = candidate_renderer(scene, method, size)
         verdict = compare(scene, method, effort, reference, candidate, output)
     except Failure as failure:
         print(f"{scene.name:{NAME_WIDTH}} {method:{METHOD_WIDTH}} CANNOT: {failure}", flush=True)
-        return False
+        return failure
     print(verdict.row(), flush=True)
-    return verdict.passed
+    return verdict
 
 
 def save_picture(path: Path, theirs: np.ndarray, ours: np.ndarray, z: np.ndarray) -> None:

@@ -69,7 +69,8 @@ def mitsuba_contender(scene: Scene, variant: str) -> Contender:
         mitsuba.use(variant)
         start = time.perf_counter()
         passes = [min(most, spp - done) for done in range(0, spp, most)]
-        total = sum(n * mitsuba.image(loaded, n, 100_000 * seed + i) for i, n in enumerate(passes))
+        images = (n * mitsuba.image(loaded, n, 100_000 * seed + i) for i, n in enumerate(passes))
+        total = sum(images, np.zeros((int(height), int(width), 3)))
         dr.sync_thread()
         return total / spp, time.perf_counter() - start
 

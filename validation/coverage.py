@@ -4,8 +4,9 @@ import json
 import subprocess
 import tempfile
 import xml.etree.ElementTree as xml
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import mitsuba as mi
 
@@ -38,7 +39,7 @@ def shared() -> set[str]:
     return {name for name in theirs if any(known(name, place) for place in PLACES)}
 
 
-def known(name: str, place) -> bool:
+def known(name: str, place: Callable[[dict[str, Any]], dict[str, Any]]) -> bool:
     """True unless Tyndall complains to have found this very name, or that plugin out of place: whatever else it says of
     so poor a scene, it knows the plugin."""
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
@@ -56,10 +57,12 @@ def covered() -> set[str]:
 def plugins(case: Case) -> Iterator[str]:
     """The types that one scene names."""
     scene = case.scene()
-    return xml_types(scene.source, case.parameters) if scene.is_xml else json_types(scene.dictionary())
+    if isinstance(scene.source, Path) and scene.is_xml:
+        return xml_types(scene.source, case.parameters)
+    return json_types(scene.dictionary())
 
 
-def json_types(tree) -> Iterator[str]:
+def json_types(tree: Any) -> Iterator[str]:
     """Every `type` in a JSON tree."""
     children = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ()
     if isinstance(tree, dict) and "type" in tree:
@@ -72,6 +75,6 @@ def xml_types(path: Path, parameters: dict[str, str]) -> Iterator[str]:
     """Every `type` in an XML file and in the files it includes."""
     for element in xml.parse(path).iter():
         if element.tag == "include":
-            yield from xml_types(path.parent / element.get("filename"), parameters)
+            yield from xml_types(path.parent / element.get("filename", ""), parameters)
         named = element.get("type", "")
         yield parameters.get(named[1:], named) if named.startswith("$") else named

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import reduce
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ FAR_BELOW = 60.0
 """Scale heights below which `exponential` grows no further."""
 
 
-def is_function(o) -> bool:
+def is_function(o: Any) -> bool:
     """True for an object that `value` knows."""
     return isinstance(o, dict) and o.get("type") in {**FUNCTIONS, **COMBINATIONS}
 
@@ -29,11 +30,11 @@ def placed(o: dict, points: np.ndarray) -> np.ndarray:
     own = to_own(o, points)
     shape = FUNCTIONS[o["type"]](o, own)
     bounds = [np.asarray(o.get(name, [limit] * 3)) for name, limit in (("min", -np.inf), ("max", np.inf))]
-    inside = ((own >= bounds[0]) & (own <= bounds[1])).all(axis=-1)
-    return factor(o.get("value", 1.0)) * np.where(inside[..., None], shape, 0.0)
+    inside = np.all((own >= bounds[0]) & (own <= bounds[1]), axis=-1, keepdims=True)
+    return factor(o.get("value", 1.0)) * np.where(inside, shape, 0.0)
 
 
-def factor(given) -> np.ndarray:
+def factor(given: Any) -> np.ndarray:
     """A number or a colour."""
     return np.atleast_1d(np.asarray(given["value"] if isinstance(given, dict) else given, dtype=float))
 
@@ -72,7 +73,7 @@ def polynomial(o: dict, x: np.ndarray) -> np.ndarray:
     total = sum(np.polynomial.polynomial.polyval(local[..., i], coefficients) for i, coefficients in enumerate(lists))
     terms = [(t.get("coefficient", 1.0), np.asarray(t["powers"])) for t in children(o)]
     total = total + sum(c * np.prod(local**powers, axis=-1) for c, powers in terms)
-    mixes = np.any([[False] * 3, *(powers > 0 for _, powers in terms)], axis=0)
+    mixes = np.any(np.array([[False] * 3, *(powers > 0 for _, powers in terms)]), axis=0)
     depends = mixes | [len(one) > 1 for one in lists]
     within = repeats | (np.abs(x) <= half) | ~depends
     return np.where(within.all(axis=-1), total, 0.0)[..., None]
@@ -104,7 +105,7 @@ def outside(o: dict, x: np.ndarray) -> np.ndarray:
 
 def added(o: dict, x: np.ndarray, time: float) -> np.ndarray:
     """The sum of the nested volumes."""
-    return sum(value(child, x, time) for child in children(o))
+    return sum((value(child, x, time) for child in children(o)), np.zeros(1))
 
 
 def multiplied(o: dict, x: np.ndarray, time: float) -> np.ndarray:

@@ -10,7 +10,7 @@ import venv
 from pathlib import Path
 
 from validation.failure import Failure
-from validation.places import ENVIRONMENT, REQUIREMENTS, ROOT
+from validation.places import ENVIRONMENT, REQUIREMENTS, REQUIREMENTS_DEV, ROOT
 
 PYTHON = ENVIRONMENT / "bin" / "python"
 STAMP = ENVIRONMENT / "stamp"
@@ -39,7 +39,7 @@ def make_once() -> None:
 
 def wanted_stamp() -> str:
     """Changes whenever the requirements or the interpreter do."""
-    return hashlib.sha256(REQUIREMENTS.read_bytes() + sys.version.encode()).hexdigest()
+    return hashlib.sha256(REQUIREMENTS.read_bytes() + REQUIREMENTS_DEV.read_bytes() + sys.version.encode()).hexdigest()
 
 
 def make() -> None:
@@ -50,7 +50,7 @@ def make() -> None:
         venv.create(ENVIRONMENT, with_pip=True)
     except (subprocess.CalledProcessError, OSError) as error:
         raise Failure(f"no virtual environment could be made: {error}", "install Python's venv module (Debian: python3-venv)")
-    install = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS]
+    install: list[str | Path] = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS_DEV]
     # pip's messages go to stderr: stdout belongs to the command's table
     if subprocess.run(install, stdout=sys.stderr).returncode != 0:
-        raise Failure("pip could not install the requirements", f"see its message above; then run again ({REQUIREMENTS})")
+        raise Failure("pip could not install the requirements", f"see its message above; then run again ({REQUIREMENTS_DEV})")

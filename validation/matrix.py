@@ -1,12 +1,17 @@
 """Every cross-check scene through Mitsuba and through each of Tyndall's integrators that can render it."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+
+import numpy as np
 
 from validation import cells, compare, coverage, references
 from validation.cases import CASES, Case
 from validation.compare import Effort
 from validation.places import OUTPUT
 from validation.scene import Scene
+
+Batches = Callable[[Effort], np.ndarray]
+"""A reference's, by effort."""
 
 
 def run(effort: Effort, chosen: Iterable[cells.Cell], cell_effort: Effort, only: str = "") -> bool:
@@ -25,7 +30,7 @@ def run_case(case: Case, effort: Effort) -> list[bool]:
     return agreements(case.scene(), tuple(case.all_methods()), effort.times(case.effort), reference)
 
 
-def own(case: Case):
+def own(case: Case) -> Batches:
     """Batches of Tyndall's by another method, with other seeds."""
     render = compare.candidate_renderer(case.scene(), case.own)
     return lambda effort: compare.render_batches(lambda spp, seed: render(spp, seed + 500), effort)
@@ -36,6 +41,6 @@ def run_cell(cell: cells.Cell, effort: Effort) -> list[bool]:
     return agreements(cell.scene(), cell.methods(), effort.times(cell.effort()), references.cached(cell.scene()))
 
 
-def agreements(scene: Scene, methods: tuple[str, ...], effort: Effort, reference) -> list[bool]:
+def agreements(scene: Scene, methods: tuple[str, ...], effort: Effort, reference: Batches) -> list[bool]:
     """One scene by several methods."""
     return [compare.tested(scene, method, effort, reference, OUTPUT) for method in methods]

@@ -4,6 +4,7 @@ import os
 from functools import cache
 from glob import glob
 from pathlib import Path
+from typing import Any
 
 import mitsuba as mi
 import numpy as np
@@ -36,36 +37,43 @@ def libllvm() -> str | None:
 def use(variant: str) -> None:
     """Chooses `scalar_rgb` or `llvm_ad_rgb` (which needs LLVM 19)."""
     if variant.startswith("llvm"):
-        if libllvm() is None:
+        path = libllvm()
+        if path is None:
             raise Failure("LLVM 19 was not found", "install it (Debian: libllvm19) or set DRJIT_LIBLLVM_PATH to its library")
-        os.environ["DRJIT_LIBLLVM_PATH"] = libllvm()
+        os.environ["DRJIT_LIBLLVM_PATH"] = path
     mi.set_variant(variant)
     mi.set_log_level(mi.LogLevel.Error)  # what it rounds and clamps is not what the table is about
 
 
-def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None = None):
+def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None = None) -> Any:
     """The scene as a Mitsuba object, its variant made the current one."""
     from validation import bake  # it needs this module
 
     use(variant)
     if scene.is_xml:
-        loaded = mi.load_file(str(scene.source), **scene.parameters)
+        loaded = load_file(scene)
         return loaded if size is None else with_size(loaded, size)
     tree = changed(bake.baked(scene.dictionary()), lambda o: translate_object(o, scene.folder, size))
     return mi.load_dict(tree)
 
 
-def render(scene: Scene, spp: int, seed: int = 0, variant: str = "scalar_rgb", size=None) -> np.ndarray:
+def render(scene: Scene, spp: int, seed: int = 0, variant: str = "scalar_rgb", size: tuple[int, int] | None = None) -> np.ndarray:
     """One image. To render several, `load` once and call `image`."""
     return image(load(scene, variant, size), spp, seed)
 
 
-def image(loaded, spp: int, seed: int) -> np.ndarray:
-    """One image of a loaded scene."""
-    return np.array(mi.render(loaded, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
+def image(loaded: Any, spp: int, seed: int, integrator: Any = None) -> np.ndarray:
+    """One image of a loaded scene, by its own integrator or another one that is loaded."""
+    return np.array(mi.render(loaded, integrator=integrator, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
 
 
-def with_size(loaded, size: tuple[int, int]):
+def load_file(scene: Scene) -> Any:
+    """An XML scene with its parameters."""
+    parameters: dict[str, Any] = dict(scene.parameters)
+    return mi.load_file(str(scene.source), **parameters)
+
+
+def with_size(loaded: Any, size: tuple[int, int]) -> Any:
     """Changes the film of a loaded scene."""
     parameters = mi.traverse(loaded.sensors()[0])
     parameters["film.size"] = list(size)
@@ -91,12 +99,12 @@ def translate_object(o: dict, folder: Path, size: tuple[int, int] | None) -> dic
     return out
 
 
-def is_transform(value) -> bool:
+def is_transform(value: Any) -> bool:
     """A transform is a list of steps."""
     return isinstance(value, list) and all(isinstance(s, dict) and s.get("type") in TRANSFORM_STEPS for s in value)
 
 
-def transform(steps: list[dict]):
+def transform(steps: list[dict]) -> Any:
     """The product of all steps, the first applied first."""
     product = mi.ScalarTransform4f()
     for s in steps:
@@ -104,7 +112,7 @@ def transform(steps: list[dict]):
     return product
 
 
-def step(s: dict):
+def step(s: dict) -> Any:
     """One step of a transform."""
     identity = mi.ScalarTransform4f()
     match s["type"]:
@@ -118,17 +126,6 @@ def step(s: dict):
             return identity.look_at(s["origin"], s["target"], s["up"])
         case "matrix":
             return mi.ScalarTransform4f(np.reshape(s["value"], (4, 4)))
-
-
-def read_exr(path: Path) -> np.ndarray:
-    """An image file as linear RGB, without the layers that may stand beside it."""
-    if mi.variant() is None:
-        use("scalar_rgb")
-    bitmap = mi.Bitmap(str(path))
-    if bitmap.pixel_format() == mi.Bitmap.PixelFormat.MultiChannel:
-        bitmap = dict(bitmap.split())["<root>"]
-    bitmap = bitmap.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
-    return np.array(bitmap, dtype=np.float64)
 
 
 def write_png(path: Path, pixels: np.ndarray) -> None:

@@ -10,7 +10,7 @@ from validation.errors import FLOOR
 from validation.places import OUTPUT
 from validation.race import Runs
 from validation.scene import Scene
-from validation.statistics import Estimate, estimate
+from validation.statistics import Estimate, bootstrap_median, estimate
 
 CLAIM = 100
 REFERENCE_TIMES = 8
@@ -25,7 +25,7 @@ def run(scene: Scene, rounds: int, seconds: float, threads: int) -> bool:
     reference = estimate(long_run.images)
     all_runs = race.take_turns(both, rounds, seconds)
     bdpt, pt = race.report(scene.name, all_runs, reference, OUTPUT / "pane")
-    ratio, low, high = race.bootstrap_median(pt.cost / bdpt.cost)
+    ratio, low, high = bootstrap_median(pt.cost / bdpt.cost)
     print(f"bdpt against pt, relMSE in equal time: x{ratio:.0f} [{low:.0f}, {high:.0f}]; claimed: at least x{CLAIM}")
     print(f"pt shows {100 * shown(all_runs[1], reference):.1f} % of the light that there is")
     return low >= CLAIM

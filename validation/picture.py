@@ -31,6 +31,6 @@ def enlarged(pixels: np.ndarray, least: int = 240) -> np.ndarray:
 
 def side_by_side(*pictures: np.ndarray, gap: int = 4) -> np.ndarray:
     """Pictures of one height in a row."""
-    pictures = [enlarged(p) for p in pictures]
-    rule = np.full((pictures[0].shape[0], gap, 3), 255, dtype=np.uint8)
-    return np.concatenate([part for p in pictures for part in (p, rule)][:-1], axis=1)
+    large = [enlarged(p) for p in pictures]
+    rule = np.full((large[0].shape[0], gap, 3), 255, dtype=np.uint8)
+    return np.concatenate([part for p in large for part in (p, rule)][:-1], axis=1)

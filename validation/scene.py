@@ -3,10 +3,15 @@
 import hashlib
 import json
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from validation.failure import Failure
+
+Change = Callable[[dict[str, Any]], dict[str, Any]]
+"""What is done to an object of a scene."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +33,12 @@ class Scene:
     def folder(self) -> Path:
         """Where the file names in the scene start."""
         return self.source.resolve().parent if isinstance(self.source, Path) else self.base or Path.cwd()
+
+    def tree(self) -> dict[str, Any]:
+        """The dictionary that the scene is; of scenes that are no files."""
+        if isinstance(self.source, Path):
+            raise Failure(f"{self.source}: a dictionary is wanted here, not a file", "read the file first")
+        return self.source
 
     def dictionary(self) -> dict:
         """The scene as a tree, parameters filled in; only of scenes in JSON."""
@@ -60,16 +71,16 @@ def open_scene(path: str | Path, parameters: dict[str, str] | None = None) -> Sc
     return Scene(path, path.stem, parameters or {})
 
 
-def derived(scene: Scene, change) -> Scene:
+def derived(scene: Scene, change: Change) -> Scene:
     """The scene with `change` applied to each of its objects; of scenes in JSON."""
     if scene.is_xml:
         raise Failure(f"{scene.name}: an XML scene cannot be changed", "name a JSON scene")
     return Scene(changed(scene.dictionary(), change), scene.name, {}, scene.folder)
 
 
-def filled(tree: dict, parameters: dict[str, str]) -> dict:
+def filled(tree: dict[str, Any], parameters: dict[str, str]) -> dict:
     """A JSON scene with its $parameters replaced by `parameters` or else by the defaults it gives."""
-    values = {}
+    values: dict[str, Any] = {}
     for name, default in tree.get("$defaults", {}).items():
         given = parameters.get(name)
         typed = given if given is None or isinstance(default, str) else json.loads(given)
@@ -77,7 +88,7 @@ def filled(tree: dict, parameters: dict[str, str]) -> dict:
     return {key: fill(value, values) for key, value in tree.items() if key != "$defaults"}
 
 
-def fill(value, values: dict):
+def fill(value: Any, values: dict[str, Any]) -> Any:
     """A part of a JSON scene with `values` in place of their $names."""
     if isinstance(value, dict):
         return {key: fill(inner, values) for key, inner in value.items() if key != "$tag"}
@@ -93,7 +104,7 @@ def fill(value, values: dict):
     return re.sub(rf"\\\$|\$({names})", replace, value)
 
 
-def changed(tree, change):
+def changed(tree: Any, change: Change) -> Any:
     """A copy of a JSON tree in which `change` has been applied to every object (a dictionary with a type)."""
     if isinstance(tree, dict):
         copy = {key: changed(value, change) for key, value in tree.items()}

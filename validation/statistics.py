@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy import stats
 
 SIGNIFICANCE = 0.01
@@ -31,7 +32,7 @@ def estimate(batches: np.ndarray) -> Estimate:
     return Estimate(batches.mean(axis=0), batches.var(axis=0, ddof=1) / count, count - 1)
 
 
-def exact(value) -> Estimate:
+def exact(value: npt.ArrayLike) -> Estimate:
     """A value known without error."""
     value = np.asarray(value, dtype=float)
     return Estimate(value, np.zeros_like(value), np.inf)

@@ -1,8 +1,11 @@
 """One scene with its truth, and the parts that these scenes share."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from validation.scene import Scene
 
@@ -24,14 +27,14 @@ class Case:
         return np.broadcast_to(np.asarray(self.truth, dtype=float), (SIZE, SIZE, 3))
 
 
-def scene(name: str, max_depth: int = -1, **objects) -> Scene:
+def scene(name: str, max_depth: int = -1, **objects: Any) -> Scene:
     """A scene from its parts."""
     # Where Mitsuba stands in as the renderer, a late roulette keeps the noise low.
     integrator = {"type": "volpath", "max_depth": max_depth, "rr_depth": 200}
     return Scene({"type": "scene", "integrator": integrator, **objects}, name)
 
 
-def camera(origin, target, fov: float, up=(0, 1, 0), **more) -> dict:
+def camera(origin: Sequence[float], target: Sequence[float], fov: float, up: Sequence[float] = (0, 1, 0), **more: Any) -> dict[str, Any]:
     """A small square image, box filter."""
     return {
         "type": "perspective",
@@ -49,7 +52,7 @@ def camera(origin, target, fov: float, up=(0, 1, 0), **more) -> dict:
     }
 
 
-def medium(sigma_t, albedo, phase: dict) -> dict:
+def medium(sigma_t: npt.ArrayLike, albedo: Any, phase: dict) -> dict:
     """A homogeneous medium; its extinction as a colour within Mitsuba's range, times a scale."""
     colour = np.broadcast_to(np.asarray(sigma_t, dtype=float), 3)
     scale = float(colour.max())

@@ -1,6 +1,9 @@
 """Furnaces: whatever absorbs nothing, under radiance 1 from everywhere, shows radiance 1 everywhere."""
 
+from typing import Any
+
 from validation.closed_forms.case import SKY, Case, camera, medium, scene
+from validation.scene import Scene
 
 ISOTROPIC = {"type": "isotropic"}
 FORWARD = {"type": "hg", "g": 0.8}
@@ -31,22 +34,22 @@ def view() -> dict:
     return camera((0, 0, 5), (0, 0, 0), 25)
 
 
-def ball(name: str, bsdf: dict, **more):
+def ball(name: str, bsdf: dict, **more: Any) -> Scene:
     """A unit sphere under the sky."""
     return scene(f"furnace {name}", sensor=view(), sky=SKY, ball={"type": "sphere", "bsdf": bsdf, **more})
 
 
-def ball_of_medium(thickness: float, phase: dict, bsdf: dict, name: str = ""):
+def ball_of_medium(thickness: float, phase: dict, bsdf: dict, name: str = "") -> Scene:
     """A ball of medium that absorbs nothing, of this optical diameter."""
     return ball(f"b {thickness:g} {name}".strip(), bsdf, interior=medium(thickness / 2, 1, phase))
 
 
-def white_pit():
+def white_pit() -> Scene:
     """Deep interreflection: the inside of a box that is open towards the camera."""
     towards = [{"type": "translate", "value": [0, 0, -1]}]
     turned = {"back": ([0, 1, 0], 0), "left": ([0, 1, 0], 90), "right": ([0, 1, 0], -90)}
     turned |= {"below": ([1, 0, 0], -90), "above": ([1, 0, 0], 90)}
-    sides = {
+    sides: dict[str, Any] = {
         name: {
             "type": "rectangle",
             "to_world": [*towards, {"type": "rotate", "axis": axis, "angle": angle}],

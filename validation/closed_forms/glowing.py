@@ -12,6 +12,7 @@ from validation.closed_forms import varying
 from validation.closed_forms.case import SKY, Case, camera, scene
 from validation.closed_forms.case import medium as homogeneous
 from validation.closed_forms.slab import Slab, lit_slab
+from validation.scene import Scene
 
 ALL = ("pt", "lt", "bdpt")
 RADIANCE = np.array([1.0, 0.5, 0.2])
@@ -41,9 +42,9 @@ def slabs() -> list[Case]:
     return found
 
 
-def slab(name: str, inside: dict):
+def slab(name: str, inside: dict) -> Scene:
     """The slab of `slab.py` without a sky."""
-    flat = lit_slab(Slab(0, 1, 0), "", -1.5).source
+    flat = lit_slab(Slab(0, 1, 0), "", -1.5).tree()
     return scene(f"glowing slab {name}", sensor=flat["sensor"], slab={**flat["slab"], "interior": inside})
 
 
@@ -54,7 +55,7 @@ def clouds() -> list[Case]:
 
 def cloud(name: str, density: dict) -> Case:
     """One of them."""
-    dark = varying.cloud(name, density).source
+    dark = varying.cloud(name, density).tree()
     glowing = {**dark["cloud"], "interior": {**dark["cloud"]["interior"], "radiance": COLOUR}}
     truth = RADIANCE * (1 - varying.seen(name))
     return Case(scene(f"glowing {name}", sensor=dark["sensor"], cloud=glowing), truth, ALL, effort=0.5)

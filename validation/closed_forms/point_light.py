@@ -1,9 +1,13 @@
 """Single scattering from a point light in an infinite homogeneous medium: one integral along each camera ray."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 from scipy.integrate import quad
 
 from validation.closed_forms.case import SIZE, Case, camera, medium, scene
+from validation.scene import Scene
 
 SIGMA_T = (0.2, 0.5, 1.0)
 ALBEDO = 0.8
@@ -15,7 +19,9 @@ LIGHT = np.array([0.0, 1.6, -3.0])
 """Outside of the view, so that the image has no peak; the camera stands at the origin and looks along -z."""
 SUBPIXELS = np.polynomial.legendre.leggauss(3)
 
-PHASES = {
+Phase = Callable[[float], float]
+"""Per steradian, by the cosine; 1 is forward."""
+PHASES: dict[str, tuple[dict[str, Any], Phase]] = {
     "isotropic": ({"type": "isotropic"}, lambda c: 1 / (4 * np.pi)),
     "hg 0.7": ({"type": "hg", "g": 0.7}, lambda c: henyey_greenstein(c, 0.7)),
     "rayleigh": ({"type": "rayleigh"}, lambda c: 3 / (16 * np.pi) * (1 + c * c)),
@@ -27,7 +33,7 @@ def cases() -> list[Case]:
     return [Case(lit(name, plugin), image(phase)) for name, (plugin, phase) in PHASES.items()]
 
 
-def lit(name: str, phase: dict):
+def lit(name: str, phase: dict) -> Scene:
     """Fog everywhere, a point light, and behind the camera a speck that gives the scene a size."""
     fog = {"type": "ref", "id": "fog"}
     black = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0, 0, 0]}}
@@ -51,7 +57,7 @@ def henyey_greenstein(cosine: float, g: float) -> float:
     return (1 - g * g) / (4 * np.pi * (1 + g * g - 2 * g * cosine) ** 1.5)
 
 
-def image(phase) -> np.ndarray:
+def image(phase: Phase) -> np.ndarray:
     """Every pixel: the mean over its area, by Gauss-Legendre quadrature."""
     nodes, weights = SUBPIXELS
     pixels = np.zeros((SIZE, SIZE, 3))
@@ -69,14 +75,14 @@ def ray(x: float, y: float) -> np.ndarray:
     return direction / np.linalg.norm(direction)
 
 
-def radiance(direction: np.ndarray, sigma_t: float, phase) -> float:
+def radiance(direction: np.ndarray, sigma_t: float, phase: Phase) -> float:
     """Light scattered once into the camera ray."""
 
     start = NEAR / -direction[2]
 
     def source(t: float) -> float:
         to_point = t * direction - LIGHT
-        distance = np.linalg.norm(to_point)
+        distance = float(np.linalg.norm(to_point))
         cosine = float(-to_point @ direction) / distance
         return np.exp(-sigma_t * (t - start + distance)) * phase(cosine) / distance**2
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import iadpython
 
 from validation.closed_forms.case import SKY, Case, camera, medium, scene
+from validation.scene import Scene
 
 QUADRATURE_POINTS = 16
 HALF_WIDTH = 200
@@ -53,7 +54,7 @@ def cases() -> list[Case]:
     return found
 
 
-def lit_slab(slab: Slab, name: str, blocker_height: float):
+def lit_slab(slab: Slab, name: str, blocker_height: float) -> Scene:
     """The slab from y = -1 to 0, the camera above it at 1; a black sheet shuts out the other half of the sky."""
     wide = {"type": "scale", "value": [HALF_WIDTH, HALF_WIDTH, 1]}
     upright = {"type": "rotate", "axis": [1, 0, 0], "angle": -90}

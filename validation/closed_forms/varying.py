@@ -12,13 +12,17 @@ Stiff rows have neighbouring voxels 1e6 apart, or an optical thickness of 1e4.
 
 import hashlib
 from functools import cache
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from validation import assets, densities
+from validation import densities
 from validation.closed_forms.case import SIZE, SKY, Case, camera, scene
 from validation.closed_forms.slab import HALF_WIDTH, Slab, lit_slab
 from validation.places import TARGET
+from validation.scene import Scene
+from validation.volume_file import vol
 
 FOLDER = TARGET / "validation-volumes"
 CONTRAST = 1e6
@@ -33,9 +37,9 @@ def cases() -> list[Case]:
     return [*furnaces(), *slabs(), *rods(), *clouds(), *sunlit()]
 
 
-def grid(samples: np.ndarray, to_world: list, **more) -> dict:
+def grid(samples: np.ndarray, to_world: list, **more: Any) -> dict:
     """A gridvolume of these samples, (z, y, x)."""
-    content = assets.vol(samples)
+    content = vol(samples)
     FOLDER.mkdir(parents=True, exist_ok=True)
     path = FOLDER / f"{hashlib.sha256(content).hexdigest()[:20]}.vol"
     path.write_bytes(content)
@@ -67,7 +71,7 @@ def furnaces() -> list[Case]:
     ]
 
 
-def furnace(thickness: float, contrast: float, **options):
+def furnace(thickness: float, contrast: float, **options: Any) -> Scene:
     """A unit sphere under the sky, of this mean optical diameter."""
     to_world = [{"type": "translate", "value": [-0.5, -0.5, -0.5]}, {"type": "scale", "value": 2.0}]
     density = grid(uneven((4, 5, 6), contrast), to_world, **options)
@@ -112,12 +116,12 @@ def thinning(scale_height: float) -> dict:
     return {"type": "exponential", "scale_height": scale_height, "value": float(value)}
 
 
-def varying_slab(slab: Slab, name: str, density: dict, blocker: float):
+def varying_slab(slab: Slab, name: str, density: dict, blocker: float) -> Scene:
     """The slab of `slab.py`, its extinction spread over the height by `density`, whose vertical integral is 1."""
     flat = lit_slab(slab, name, blocker)
     inside = medium(density, slab.a, {"type": "hg", "g": slab.g}, slab.b)
-    changed = {**flat.source["slab"], "interior": inside}
-    return scene(f"slab {slab.a:g} {slab.b:g} {slab.g:g} {name}", **{**parts(flat.source), "slab": changed})
+    changed = {**flat.tree()["slab"], "interior": inside}
+    return scene(f"slab {slab.a:g} {slab.b:g} {slab.g:g} {name}", **{**parts(flat.tree()), "slab": changed})
 
 
 def parts(tree: dict) -> dict:
@@ -138,7 +142,7 @@ def rods() -> list[Case]:
     ]
 
 
-def block(name: str, samples: np.ndarray):
+def block(name: str, samples: np.ndarray) -> Scene:
     """A block of nearest voxels from z = 0 to 1 under the sky, seen along z, a pixel for each row."""
     density = grid(samples, [], filter_type="nearest")
     view = camera((0.5, 0.5, 3), (0.5, 0.5, 0), 1)
@@ -180,19 +184,19 @@ def clouds() -> list[Case]:
     return [Case(cloud(name, function), seen(name), FUNCTION, effort=0.5) for name, function in FUNCTIONS.items()]
 
 
-def cloud(name: str, density: dict):
+def cloud(name: str, density: dict) -> Scene:
     """A box of it under the sky."""
     half, middle = (BOX[1] - BOX[0]) / 2, BOX.mean(axis=0)
     to_world = [{"type": "scale", "value": half.tolist()}, {"type": "translate", "value": middle.tolist()}]
     return scene(
         f"absorbing {name}",
-        sensor=camera(EYE, TARGET, FOV),
+        sensor=camera(EYE, MIDDLE, FOV),
         sky=SKY,
         cloud={"type": "cube", "to_world": to_world, "bsdf": NULL, "interior": medium(density, 0)},
     )
 
 
-EYE, TARGET, FOV = (0.4, 1.9, 3.0), (0.0, 0.6, 0.0), 17.0
+EYE, MIDDLE, FOV = (0.4, 1.9, 3.0), (0.0, 0.6, 0.0), 17.0
 """The box fills the view: of a pixel that it only grazes, hardly a sample would know of it."""
 
 
@@ -210,7 +214,7 @@ def seen(name: str) -> np.ndarray:
 
 def rays(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Directions through points of the film, in pixels from its upper left corner."""
-    forward = unit(np.subtract(TARGET, EYE))
+    forward = unit(np.subtract(MIDDLE, EYE))
     left = unit(np.cross([0, 1, 0], forward))
     up = np.cross(forward, left)
     slope = np.tan(np.radians(FOV) / 2)
@@ -218,10 +222,10 @@ def rays(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return unit(forward + across[..., None] * left + upwards[..., None] * up)
 
 
-def unit(v) -> np.ndarray:
+def unit(v: npt.ArrayLike) -> np.ndarray:
     """The vectors at length 1."""
-    v = np.asarray(v, dtype=float)
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+    given = np.asarray(v, dtype=float)
+    return given / np.linalg.norm(given, axis=-1, keepdims=True)
 
 
 def depth(density: dict, directions: np.ndarray) -> np.ndarray:
@@ -246,9 +250,9 @@ def sunlit() -> list[Case]:
     return [Case(sunlit_layer(i, sun), single(sun), FUNCTION) for i, sun in enumerate(SUNS)]
 
 
-def sunlit_layer(number: int, sun: tuple[float, ...]):
+def sunlit_layer(number: int, sun: tuple[float, ...]) -> Scene:
     """The slab of `slab.py`, once more."""
-    flat = lit_slab(Slab(LAYER_ALBEDO, LAYER_DEPTH, 0), "", -1.5).source
+    flat = lit_slab(Slab(LAYER_ALBEDO, LAYER_DEPTH, 0), "", -1.5).tree()
     # What marching gets wrong of so little light must stay below what the picture resolves.
     inside = {**medium(thinning(LAYER_SCALE), LAYER_ALBEDO, scale=LAYER_DEPTH), "march_error": 1e-4}
     irradiance = {"type": "rgb", "value": [IRRADIANCE] * 3}

@@ -1,0 +1,84 @@
+"""What `compare` found as one HTML page that holds its pictures and needs no network."""
+
+import shlex
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from validation import flip, picture, png
+from validation.compare import RETRY, Effort, Verdict
+from validation.failure import Failure
+from validation.scene import Scene
+
+TEMPLATES = Path(__file__).parent / "templates"
+SHARPEST = 4.0
+"""|z| of the map's full colours."""
+
+
+@dataclass(frozen=True)
+class Section:
+    """One method's part of the page."""
+
+    method: str
+    verdict: Verdict
+    """With its images."""
+    pictures: list[tuple[str, str]]
+    """Titles and addresses."""
+    flip: float
+
+
+@dataclass(frozen=True)
+class Page:
+    """Everything on the page; text as it is, the template escapes it."""
+
+    scene: str
+    command: str
+    effort: str
+    sections: list[Section]
+    failures: list[tuple[str, str]]
+    """Methods that cannot render the scene, and why."""
+
+
+def page(scene: Scene, effort: Effort, found: Mapping[str, Verdict | Failure]) -> Page:
+    """The page of one scene's comparisons, by method."""
+    told = f"{effort.batches} independent images on both sides, {effort.spp} samples per pixel in each (a second trial: {RETRY} times as many)."
+    return Page(
+        scene=scene.name,
+        command=shlex.join(["python3", "-m", "validation", *sys.argv[1:]]),
+        effort=told,
+        sections=[section(method, verdict) for method, verdict in found.items() if isinstance(verdict, Verdict)],
+        failures=[(method, str(reason)) for method, reason in found.items() if isinstance(reason, Failure)],
+    )
+
+
+def section(method: str, verdict: Verdict) -> Section:
+    """Draws one method's pictures."""
+    if verdict.reference is None or verdict.found is None or verdict.map is None:
+        raise ValueError("a page is made of verdicts that have their images")
+    white = picture.white_of(verdict.reference)
+    differences, mean = flip.compared(verdict.reference, verdict.found)
+    shown: list[tuple[str, np.ndarray]] = [
+        ("Mitsuba", picture.displayed(verdict.reference, white)),
+        ("Tyndall", picture.displayed(verdict.found, white)),
+        ("z, Tyndall less Mitsuba", picture.diverging(verdict.map, SHARPEST)),
+        ("FLIP", differences),
+    ]
+    return Section(method, verdict, [(title, png.data_url(pixels)) for title, pixels in shown], mean)
+
+
+def write(page: Page, path: Path) -> None:
+    """Writes the page, whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_suffix(".partial")
+    partial.write_text(html(page), encoding="utf-8")
+    partial.replace(path)
+
+
+def html(page: Page) -> str:
+    """The page's text; whatever stands in names and messages is shown, not obeyed."""
+    environment = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined)
+    return environment.get_template("comparison.html").render(page=page, sharpest=SHARPEST)

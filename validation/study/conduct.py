@@ -1,0 +1,197 @@
+"""One scene's study: pilots, budgets, the reference, then all contenders taking turns on the same cores."""
+
+import hashlib
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation import exr
+from validation.failure import Failure
+from validation.study import plan, truth
+from validation.study.measures import Measures, measures
+from validation.study.rivals import Rival, rivals, usual
+from validation.study.scenes import Subject
+from validation.study.store import Run, Store
+from validation.study.truth import Truth
+
+LEAST_SEEDS = 2
+"""Rounds that are rendered even where time is up."""
+PILOTS_PART = 0.08
+"""Of the time there is."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What was asked for."""
+
+    contenders: list[str] | None
+    """None: all that can render the scene."""
+    seeds: int
+    points: int
+    threads: int
+    reference: Path | None
+
+
+@dataclass(frozen=True)
+class Found:
+    """All that a scene's study has in the end."""
+
+    subject: Subject
+    truth: Truth
+    rivals: list[Rival]
+    samples: dict[str, list[int]]
+    """Budgets by contender."""
+    load_seconds: dict[str, float | None]
+    seeds: int
+    """Rounds that are complete."""
+
+
+def study(subject: Subject, settings: Settings, store: Store, seconds: float) -> Found:
+    """Does what is not done yet, in about so many seconds."""
+    started = time.monotonic()
+    names = settings.contenders or usual(subject.scene)
+    contenders = rivals(subject.scene, names, subject.size, settings.threads)
+    planned = made_plan(subject, contenders, settings, store, seconds)
+    reference = made_truth(contenders, planned, settings, store)
+    seeds = take_turns(contenders, planned, reference, settings.seeds, store, started + seconds)
+    tell_of_noise(contenders, planned, reference, store)
+    return Found(subject, reference, contenders, planned["samples"], planned["load_seconds"], seeds)
+
+
+def identity(subject: Subject, contenders: list[Rival], settings: Settings) -> dict[str, Any]:
+    """Kept renders belong to a plan only if all of this is the same."""
+    given = settings.reference and hashlib.sha256(settings.reference.read_bytes()).hexdigest()
+    return {
+        "scene": subject.scene.key(),
+        "size": subject.size and list(subject.size),
+        "contenders": [rival.name for rival in contenders],
+        "points": settings.points,
+        "threads": settings.threads,
+        "reference": given,
+    }
+
+
+def made_plan(
+    subject: Subject, contenders: list[Rival], settings: Settings, store: Store, seconds: float
+) -> dict[str, Any]:
+    """The kept plan, or a new one by pilots."""
+    wanted, kept = identity(subject, contenders, settings), store.plan()
+    if kept and kept["identity"] != wanted:
+        raise Failure(f"{store.folder} holds renders of another study", "name another --output, or delete that folder")
+    if kept:
+        return kept
+    started = time.monotonic()
+    pilots = {rival.name: told_pilot(rival, PILOTS_PART * seconds / len(contenders)) for rival in contenders}
+    left = seconds - (time.monotonic() - started)
+    top = plan.top_seconds(max(left, seconds / 4), len(contenders), settings.seeds, settings.points)
+    made = {
+        "identity": wanted,
+        "samples": {name: plan.budgets(p.rate, top, settings.points) for name, p in pilots.items()},
+        "reference": plan.reference_samples(pilots, max(left, seconds / 4)),
+        "load_seconds": {rival.name: rival.load_seconds for rival in contenders},
+    }
+    store.keep_plan(made)
+    return made
+
+
+def told_pilot(rival: Rival, seconds: float) -> plan.Pilot:
+    """A pilot, with a line about it. Loading and the last two renders take their part of the time too."""
+    found = plan.pilot(rival, seconds / 4)
+    load = f"{rival.load_seconds:.2f} s" if rival.load_seconds is not None else "not told"
+    print(f"  {rival.name:32} loads in {load}, {found.rate:.4g} samples per pixel and second", flush=True)
+    return found
+
+
+def made_truth(contenders: list[Rival], planned: dict[str, Any], settings: Settings, store: Store) -> Truth:
+    """The reference; its finished batches are kept."""
+    if settings.reference:
+        return truth.given(settings.reference)
+    chosen = [rival for rival in contenders if rival.name in planned["reference"]]
+    samples = planned["reference"]
+    found = truth.pooled({rival.name: batches(rival, samples[rival.name], store) for rival in chosen}, samples)
+    if found.warning:
+        print(f"  warning: {found.warning}")
+    print(f"  reference: {found.how}; its own relMSE is {found.own_relmse:.2g}", flush=True)
+    return found
+
+
+def batches(rival: Rival, samples: int, store: Store) -> np.ndarray:
+    """Independent images for the reference, float32 as files keep them."""
+    images = []
+    for number in range(plan.REFERENCE_BATCHES):
+        path = store.path(f"reference-{rival.slug}", 0, number)
+        if not path.is_file():
+            exr.write_image(path, rival.render(samples, plan.REFERENCE_SEED + number)[0])
+        images.append(exr.read_image(path))
+    return np.stack(images)
+
+
+def take_turns(
+    contenders: list[Rival], planned: dict[str, Any], reference: Truth, seeds: int, store: Store, deadline: float
+) -> int:
+    """Every round each contender renders each budget once, with a seed of its own; the number of complete rounds. Where
+    time is up there are fewer than asked for."""
+    longest = 0.0
+    for number in range(seeds):
+        started = time.monotonic()
+        if number >= LEAST_SEEDS and started + longest > deadline and not complete(contenders, planned, number, store):
+            print(f"  time is up after {number} of {seeds} seeds; the same command again goes on", flush=True)
+            return number
+        errors = one_round(contenders, planned, reference, number, store)
+        longest = max(longest, time.monotonic() - started)
+        shown = ", ".join(f"{name} {error:.2g}" for name, error in errors.items())
+        print(f"  seed {number + 1} of {seeds}, {time.monotonic() - started:.1f} s; relMSE: {shown}", flush=True)
+    return seeds
+
+
+NOTICEABLE = 0.1
+"""Part of a relMSE that its reference may have made."""
+
+
+def tell_of_noise(contenders: list[Rival], planned: dict[str, Any], reference: Truth, store: Store) -> None:
+    """Says so if the reference's own error is a good part of the least that was measured."""
+    last = [store.run(rival.slug, len(planned["samples"][rival.name]) - 1, 0) for rival in contenders]
+    least = min(run.measures.relmse for run in last if run)
+    if reference.own_relmse and reference.own_relmse > NOTICEABLE * least:
+        part = 100 * reference.own_relmse / least
+        print(f"  note: about {part:.0f} % of the least relMSE is the reference's own; --minutes or --reference would help")
+
+
+def complete(contenders: list[Rival], planned: dict[str, Any], seed: int, store: Store) -> bool:
+    """True if all renders of a round are kept already."""
+    return all(
+        store.run(rival.slug, budget, seed)
+        for rival in contenders
+        for budget in range(len(planned["samples"][rival.name]))
+    )
+
+
+def one_round(
+    contenders: list[Rival], planned: dict[str, Any], reference: Truth, seed: int, store: Store
+) -> dict[str, float]:
+    """All budgets of all contenders by one seed; the relMSE of each one's last budget."""
+    last: dict[str, float] = {}
+    for budget in range(max(map(len, planned["samples"].values()))):
+        for rival in contenders:
+            samples = planned["samples"][rival.name]
+            if budget < len(samples):
+                is_wanted = seed == 0 or budget == len(samples) - 1
+                last[rival.name] = one_run(rival, budget, samples[budget], seed, reference, store, is_wanted).relmse
+    return last
+
+
+def one_run(
+    rival: Rival, budget: int, samples: int, seed: int, reference: Truth, store: Store, is_wanted: bool
+) -> Measures:
+    """One render, or what is kept of it."""
+    kept = store.run(rival.slug, budget, seed)
+    if kept:
+        return kept.measures
+    # Budgets have seeds of their own, or the images of one would be the beginnings of the next one's.
+    image, seconds = rival.render(samples, plan.FIRST_SEED + seed * 64 + budget)
+    run = Run(samples, seconds, measures(image, reference.image))
+    store.keep_run(rival.slug, budget, seed, run, image if is_wanted else None)
+    return run.measures

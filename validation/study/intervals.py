@@ -1,0 +1,43 @@
+"""Confidence intervals over seeds."""
+
+import math
+
+import numpy as np
+from scipy import stats
+
+from validation.failure import Failure
+from validation.study.outcome import Interval
+
+CONFIDENCE = 0.95
+
+
+def student(count: int, confidence: float = CONFIDENCE) -> float:
+    """How many standard errors the ends of a t-interval lie from the mean of so many values."""
+    return float(stats.t.ppf((1 + confidence) / 2, count - 1))
+
+
+def of_mean(values: np.ndarray, confidence: float = CONFIDENCE) -> Interval:
+    """The t-interval of the mean of independent values."""
+    values = np.asarray(values, dtype=np.float64)
+    half = student(len(values), confidence) * values.std(ddof=1) / math.sqrt(len(values))
+    return Interval(float(values.mean()), float(values.mean() - half), float(values.mean() + half))
+
+
+def of_efficiency(relmse: np.ndarray, seconds: np.ndarray, confidence: float = CONFIDENCE) -> Interval:
+    """1 / (relMSE x seconds): the mean cost's t-interval carried over by the logarithm, so that no end is negative."""
+    cost = np.asarray(relmse) * np.asarray(seconds)
+    mean = float(cost.mean())
+    if mean <= 0:
+        raise Failure("every render equals the reference: nothing here is random", "study a scene whose light scatters")
+    half = student(len(cost), confidence) * cost.std(ddof=1) / math.sqrt(len(cost)) / mean
+    return Interval(1 / mean, math.exp(-half) / mean, math.exp(half) / mean)
+
+
+def of_slope(relmse: np.ndarray, seconds: np.ndarray, confidence: float = CONFIDENCE) -> Interval | None:
+    """Of log relMSE over log seconds, arrays (seeds, budgets): a line is fitted to each seed's own renders, which are
+    independent; none from fewer than three budgets, or where an error is 0."""
+    if relmse.shape[1] < 3 or (relmse <= 0).any():
+        return None
+    x, y = np.log(seconds), np.log(relmse)
+    x = x - x.mean(axis=1, keepdims=True)
+    return of_mean((x * y).sum(axis=1) / (x**2).sum(axis=1), confidence)

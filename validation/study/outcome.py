@@ -1,0 +1,93 @@
+"""What a study found, as it stands in `study.json`; the words are those of `src/study/outcome.rs`, which tells more."""
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+FILE = "study.json"
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A mean over seeds and the ends of its confidence interval."""
+
+    mean: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Reference:
+    """The image that stands for the truth."""
+
+    image: str
+    """Where it lies, beside `study.json`, as all images here."""
+    how: str
+    own_relmse: float | None
+    """None if nobody knows."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """What one budget gave, over all seeds."""
+
+    samples: int
+    """Per pixel."""
+    seconds: Interval
+    """Of rendering, loading and compiling left out."""
+    mse: Interval
+    relmse: Interval
+    trimmed_relmse: Interval
+    mape: Interval
+    smape: Interval
+    difference: Interval
+    """Mean of the image over that of the reference, less 1."""
+    image: str
+    """Of the first seed."""
+
+
+@dataclass(frozen=True)
+class Contender:
+    """One way of rendering a scene, at growing budgets."""
+
+    name: str
+    load_seconds: float | None
+    points: list[Point]
+    slope: Interval | None
+    """Of log relMSE over log seconds; none from fewer than three points."""
+    efficiency: Interval
+    """1 / (relMSE x seconds) at the last budget [1/s]."""
+    variance: str
+    """An image: of each value in one render at the last budget."""
+
+
+@dataclass(frozen=True)
+class SceneOutcome:
+    """What was found for one scene."""
+
+    name: str
+    width: int
+    height: int
+    reference: Reference
+    contenders: list[Contender]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A whole study."""
+
+    made_by: str
+    command: str
+    machine: str
+    """Processor and threads that all contenders had."""
+    confidence: float
+    scenes: list[SceneOutcome]
+
+
+def write(outcome: Outcome, folder: Path) -> Path:
+    """Writes `study.json`, whole or not at all."""
+    path = folder / FILE
+    partial = path.with_suffix(".partial")
+    partial.write_text(json.dumps(asdict(outcome), indent=1, allow_nan=False) + "\n")
+    partial.replace(path)
+    return path

@@ -1,0 +1,75 @@
+"""What a study has finished, kept in `runs/`, so that an interrupted one goes on: each file is whole or not there."""
+
+import json
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation import exr
+from validation.failure import Failure
+from validation.study.measures import Measures
+
+
+@dataclass(frozen=True)
+class Run:
+    """One render of one contender: what is left of it."""
+
+    samples: int
+    seconds: float
+    measures: Measures
+
+
+@dataclass(frozen=True)
+class Store:
+    """The kept work of one scene."""
+
+    folder: Path
+
+    def plan(self) -> dict[str, Any] | None:
+        """What was planned, if anything was."""
+        return self.read(self.folder / "plan.json")
+
+    def keep_plan(self, plan: dict[str, Any]) -> None:
+        """Keeps the plan, and nothing that belongs to another one."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.write(self.folder / "plan.json", plan)
+
+    def run(self, contender: str, budget: int, seed: int) -> Run | None:
+        """A finished render."""
+        told = self.read(self.path(contender, budget, seed).with_suffix(".json"))
+        return Run(told["samples"], told["seconds"], Measures(**told["measures"])) if told else None
+
+    def keep_run(self, contender: str, budget: int, seed: int, run: Run, image: np.ndarray | None) -> None:
+        """Keeps a render, and its image where it is wanted later."""
+        path = self.path(contender, budget, seed)
+        if image is not None:
+            exr.write_image(path, image)
+        told = {"samples": run.samples, "seconds": run.seconds, "measures": vars(run.measures)}
+        self.write(path.with_suffix(".json"), told)
+
+    def image(self, contender: str, budget: int, seed: int) -> np.ndarray:
+        """The image of a finished render."""
+        return exr.read_image(self.path(contender, budget, seed))
+
+    def path(self, contender: str, budget: int, seed: int) -> Path:
+        """Where a render's image lies; its numbers lie beside."""
+        return self.folder / contender / f"{budget}-{seed}.exr"
+
+    @staticmethod
+    def read(path: Path) -> dict[str, Any] | None:
+        """A file's content, None where there is no file."""
+        try:
+            return json.loads(path.read_text()) if path.is_file() else None
+        except ValueError:
+            raise Failure(f"{path}: not what this program wrote", "delete it")
+
+    @staticmethod
+    def write(path: Path, content: dict[str, Any]) -> None:
+        """Writes so that no half file is ever taken for a whole one."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        partial = path.with_suffix(".partial")
+        partial.write_text(json.dumps(content, allow_nan=False))
+        partial.replace(path)

@@ -1,0 +1,47 @@
+"""Intervals against scipy's, against closed forms, and against how often they hold."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from validation.failure import Failure
+from validation.study import intervals
+
+
+def test_the_interval_of_a_mean_is_scipys() -> None:
+    values = np.random.default_rng(2).gamma(2, size=9)
+    found = intervals.of_mean(values, 0.9)
+    truth = stats.ttest_1samp(values, 0).confidence_interval(0.9)
+    assert (found.mean, found.low, found.high) == pytest.approx((values.mean(), truth.low, truth.high))
+
+
+def test_intervals_hold_as_often_as_they_say() -> None:
+    random, trials = np.random.default_rng(3), 4000
+    found = [intervals.of_mean(random.normal(5, 2, 8)) for _ in range(trials)]
+    held = sum(one.low <= 5 <= one.high for one in found)
+    assert stats.binomtest(held, trials, 0.95).pvalue > 1e-4
+
+
+def test_efficiency_is_one_over_error_times_time() -> None:
+    found = intervals.of_efficiency(np.full(8, 0.02), np.full(8, 5.0))
+    assert (found.mean, found.low, found.high) == pytest.approx((10, 10, 10))
+    spread = intervals.of_efficiency(np.array([0.01, 0.03]), np.array([5.0, 5.0]))
+    assert 0 < spread.low < spread.mean < spread.high and spread.mean == pytest.approx(10)
+    half = stats.t.ppf(0.975, 1) * 0.05 / 0.1  # standard error of the costs 0.05 and 0.15, over their mean
+    assert spread.high / spread.mean == pytest.approx(np.exp(half))
+
+
+def test_efficiency_without_error_is_refused() -> None:
+    with pytest.raises(Failure, match="nothing here is random"):
+        intervals.of_efficiency(np.zeros(8), np.ones(8))
+
+
+@pytest.mark.parametrize("power", [-1.0, -0.5, 0.0])
+def test_the_slope_of_a_power_law_is_its_power(power: float) -> None:
+    seconds = np.array([[1.0, 2, 4, 8], [0.5, 1.1, 1.9, 4]])
+    found = intervals.of_slope(np.array([[3.0], [7.0]]) * seconds**power, seconds)
+    assert found and (found.mean, found.low, found.high) == pytest.approx((power, power, power))
+
+
+def test_two_points_have_no_slope() -> None:
+    assert intervals.of_slope(np.ones((8, 2)), np.ones((8, 2))) is None
