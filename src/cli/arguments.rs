@@ -1,5 +1,6 @@
 //! What can be asked on the command line.
 
+use super::study::Study;
 use crate::medium::Choice;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
@@ -29,6 +30,13 @@ pub enum Command {
     /// which stay where they are. Where a parameter stands in a place that the other spelling has no words for, its
     /// value is written instead, and a note on standard error says where.
     Convert(Convert),
+    /// Measure error against run time: contenders render scenes side by side, against a reference
+    ///
+    /// Every contender renders every scene with several seeds. Each render is looked at as its samples double, so that
+    /// the points of one curve share samples: intervals over seeds are right at every budget, and the slope is taken
+    /// seed by seed. FOLDER gets study.json, study.csv, images, and runs/ with all that is needed to go on: a study that
+    /// was stopped, however, goes on where it was when the same command is run again.
+    Study(Study),
 }
 
 /// Render a scene to an image.
@@ -258,7 +266,7 @@ pub struct Size {
 /// No film needs more pixels on a side; a size beyond is a slip of the finger.
 const LARGEST_SIDE: u32 = 65_536;
 
-fn positive_u32(text: &str) -> Result<u32, String> {
+pub(super) fn positive_u32(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(0) => Err("it must be at least 1".into()),
         Ok(number) => Ok(number),
@@ -282,7 +290,7 @@ fn fps(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected frames per second from 1e-6 to 1e9, such as 24 or 29.97".to_owned())
 }
 
-fn threads(text: &str) -> Result<NonZeroUsize, String> {
+pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let threads = positive_u32(text)?;
     NonZeroUsize::new(threads as usize)
         .filter(|threads| threads.get() <= 4096)
@@ -297,7 +305,7 @@ fn max_depth(text: &str) -> Result<MaxDepth, String> {
     }
 }
 
-fn size(text: &str) -> Result<Size, String> {
+pub(super) fn size(text: &str) -> Result<Size, String> {
     let expected = || format!("expected WIDTHxHEIGHT in pixels from 1 to {LARGEST_SIDE}, such as 640x480");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
     let side =
@@ -305,7 +313,7 @@ fn size(text: &str) -> Result<Size, String> {
     Ok(Size { width: side(width)?, height: side(height)? })
 }
 
-fn duration(text: &str) -> Result<Duration, String> {
+pub(super) fn duration(text: &str) -> Result<Duration, String> {
     let expected = || "expected a time above 0, such as 90, 90s, 5m or 1.5h".to_owned();
     let (number, seconds) = match text.char_indices().next_back() {
         Some((at, 's')) => (&text[..at], 1.0),
@@ -318,7 +326,7 @@ fn duration(text: &str) -> Result<Duration, String> {
     if duration.is_zero() { Err(expected()) } else { Ok(duration) }
 }
 
-fn definition(text: &str) -> Result<(String, String), String> {
+pub(super) fn definition(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected name=value, such as -D res=512")?;
     if name.is_empty() || name.contains(char::is_whitespace) {
         return Err("expected a name without spaces before \"=\"".into());

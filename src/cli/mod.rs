@@ -1,10 +1,12 @@
 //! The command line: arguments in, exit code out.
 
 pub mod arguments;
+mod contenders;
 mod convert;
 mod estimator;
 mod info;
 mod render;
+mod study;
 
 use crate::{
     error::{Error, Result},
@@ -24,6 +26,7 @@ pub fn run() -> ExitCode {
         Command::Render(render) => render::run(render),
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
+        Command::Study(study) => study::run(study),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

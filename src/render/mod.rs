@@ -7,6 +7,9 @@ mod block;
 pub mod budget;
 mod fog;
 mod primary;
+mod watch;
+
+pub use watch::Snapshot;
 
 use crate::{
     film::{
@@ -26,7 +29,8 @@ use block::{Blocks, Outcome};
 use budget::Budget;
 use fog::Preview;
 use rayon::prelude::*;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use watch::{Clock, Watch};
 
 /// What to render and for how long.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +93,21 @@ pub fn render_layers(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    dispatch(scene, film, settings, None, layers, progress)
+    let mut watch = Watch { progress, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, settings, None, layers, &mut watch)
+}
+
+/// Renders `scene` onto `film`, and shows the image after each of `marks` (samples per pixel, in growing order, none
+/// beyond the budget).
+pub fn render_in_steps(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    marks: &[u64],
+    progress: &mut dyn FnMut(Progress),
+    show: &mut dyn FnMut(Snapshot),
+) -> Image {
+    dispatch(scene, film, settings, None, &[], &mut Watch { progress, marks, show })
 }
 
 /// Shows `scene` on `film` as a preview that looks like `look`, and `layers` with it. Of the options only the
@@ -103,7 +121,8 @@ pub fn preview(
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
     let options = Options { strategies: Strategies::NONE, ..settings.options };
-    dispatch(scene, film, &Settings { options, ..*settings }, Some(look), layers, progress)
+    let mut watch = Watch { progress, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, &Settings { options, ..*settings }, Some(look), layers, &mut watch)
 }
 
 fn dispatch(
@@ -112,16 +131,16 @@ fn dispatch(
     settings: &Settings,
     look: Option<&Look>,
     layers: &[Layer],
-    progress: &mut dyn FnMut(Progress),
+    watch: &mut Watch<'_>,
 ) -> Image {
     match settings.profile {
-        ProfileName::Vacuum => render_as::<Vacuum>(scene, film, settings, look, layers, progress),
-        ProfileName::Fog => render_as::<Fog>(scene, film, settings, look, layers, progress),
-        ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, look, layers, progress),
-        ProfileName::Smoke => render_as::<Smoke>(scene, film, settings, look, layers, progress),
-        ProfileName::Fire => render_as::<Fire>(scene, film, settings, look, layers, progress),
-        ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, look, layers, progress),
-        ProfileName::Everything => render_as::<Everything>(scene, film, settings, look, layers, progress),
+        ProfileName::Vacuum => render_as::<Vacuum>(scene, film, settings, look, layers, watch),
+        ProfileName::Fog => render_as::<Fog>(scene, film, settings, look, layers, watch),
+        ProfileName::Bounded => render_as::<Bounded>(scene, film, settings, look, layers, watch),
+        ProfileName::Smoke => render_as::<Smoke>(scene, film, settings, look, layers, watch),
+        ProfileName::Fire => render_as::<Fire>(scene, film, settings, look, layers, watch),
+        ProfileName::ChromaticFog => render_as::<ChromaticFog>(scene, film, settings, look, layers, watch),
+        ProfileName::Everything => render_as::<Everything>(scene, film, settings, look, layers, watch),
     }
 }
 
@@ -131,9 +150,9 @@ fn render_as<P: Profile>(
     settings: &Settings,
     look: Option<&Look>,
     layers: &[Layer],
-    progress: &mut dyn FnMut(Progress),
+    watch: &mut Watch<'_>,
 ) -> Image {
-    let started = Instant::now();
+    let clock = Clock::start();
     let blocks = Blocks::new::<P>(film.len());
     let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
     let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
@@ -143,13 +162,13 @@ fn render_as<P: Profile>(
     let rays = || blocks.pilot_rays(&estimator, film, seed);
     let preview = look.map(|look| Preview::new(scene, look, hide_emitters, rays()));
     let preview = preview.as_ref();
-    let job = Job { estimator: &estimator, preview, film, blocks: &blocks, settings, started };
-    let (accumulator, noise) = job.accumulate(accumulator, progress);
+    let job = Job { estimator: &estimator, preview, film, blocks: &blocks, settings };
+    let (accumulator, noise, clock) = job.accumulate(accumulator, clock, watch);
     let passes = accumulator.passes();
     let seen = primary::Pass::new(film, layers).run(scene, &job, passes);
     let pixels = accumulator.mean();
     let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
-    let elapsed = started.elapsed();
+    let elapsed = clock.elapsed();
     Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers }
 }
 
@@ -161,7 +180,6 @@ struct Job<'a, P: Profile> {
     film: &'a Film,
     blocks: &'a Blocks,
     settings: &'a Settings,
-    started: Instant,
 }
 
 impl<P: Profile> Job<'_, P> {
@@ -169,13 +187,15 @@ impl<P: Profile> Job<'_, P> {
     fn accumulate(
         &self,
         mut accumulator: Accumulator,
-        progress: &mut dyn FnMut(Progress),
-    ) -> (Accumulator, Option<f64>) {
-        let Self { estimator, preview, film, blocks, settings, started } = *self;
+        mut clock: Clock,
+        watch: &mut Watch<'_>,
+    ) -> (Accumulator, Option<f64>, Clock) {
+        let Self { estimator, preview, film, blocks, settings } = *self;
         let mut pass = vec![Spectrum::ZERO; film.len()];
         let (mut next, mut noise) = (0, None);
         loop {
-            let tasks = next..settings.budget.limit_tasks(next + BLOCKS_AT_ONCE, blocks.count());
+            let wanted = settings.budget.limit_tasks(next + BLOCKS_AT_ONCE, blocks.count());
+            let tasks = next..watch.limit_tasks(wanted, accumulator.passes(), blocks.count());
             let outcomes: Vec<Outcome> = tasks
                 .clone()
                 .into_par_iter()
@@ -198,11 +218,17 @@ impl<P: Profile> Job<'_, P> {
                 noise = accumulator.noise();
             }
             next = tasks.end;
-            let (elapsed, passes) = (started.elapsed(), accumulator.passes());
+            let (elapsed, passes) = (clock.elapsed(), accumulator.passes());
+            if next.is_multiple_of(blocks.count()) && watch.is_mark(passes) {
+                let show = || {
+                    (watch.show)(Snapshot { pixels: accumulator.mean(), samples_per_pixel: passes, elapsed })
+                };
+                clock.hold(show);
+            }
             let samples = (next as u64 * film.len() as u64) / blocks.count() as u64;
-            progress(Progress { samples, passes, elapsed, noise });
+            (watch.progress)(Progress { samples, passes, elapsed, noise });
             if settings.budget.is_spent(next, blocks.count(), elapsed) {
-                return (accumulator, noise);
+                return (accumulator, noise, clock);
             }
         }
     }

@@ -1,3 +1,16 @@
 //! Instruments: what is measured about renders, and how it is told.
 
+pub mod contender;
+pub mod coverage;
+pub mod interval;
+pub mod metrics;
 pub mod outcome;
+pub mod picture;
+pub mod plan;
+pub mod question;
+pub mod reference;
+pub mod run;
+pub mod store;
+pub mod summary;
+pub mod table;
+pub mod unit;
