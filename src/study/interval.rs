@@ -6,10 +6,10 @@
 
 use super::outcome::Interval;
 use crate::sampling::{Stream, stream::Purpose};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 /// Resamples of a bootstrap.
-const DRAWS: u64 = 2_000;
+const DRAWS: u64 = 4_000;
 
 /// Mean and its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +55,9 @@ pub fn positive(values: &[f64], confidence: f64) -> Interval {
 }
 
 /// Of what `estimate` makes of seeds (their indices, of which there are `count`), by drawing seeds with replacement;
-/// the same seeds give the same interval.
+/// the same seeds give the same interval. Its ends lie further out than the plain percentiles, by as much as Student's t
+/// for so few lies beyond the normal distribution (Hesterberg 2015, "What teachers should know about the bootstrap",
+/// sec. 3.1.2).
 pub fn bootstrap(count: usize, confidence: f64, estimate: impl Fn(&[usize]) -> f64) -> Interval {
     let all: Vec<usize> = (0..count).collect();
     let draw = |index| {
@@ -65,8 +67,10 @@ pub fn bootstrap(count: usize, confidence: f64, estimate: impl Fn(&[usize]) -> f
     };
     let mut found: Vec<f64> = (0..DRAWS).map(draw).collect();
     found.sort_by(f64::total_cmp);
+    let n = count as f64;
+    let beyond = Normal::standard().sf((n / (n - 1.0)).sqrt() * quantile(n - 1.0, confidence));
     let at = |share: f64| found[(share * (found.len() - 1) as f64).round() as usize];
-    Interval { mean: estimate(&all), low: at(0.5 - 0.5 * confidence), high: at(0.5 + 0.5 * confidence) }
+    Interval { mean: estimate(&all), low: at(beyond), high: at(1.0 - beyond) }
 }
 
 /// Slope of the straight line of least squares through points (log x, log y); none where they do not tell: fewer than
