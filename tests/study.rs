@@ -287,8 +287,8 @@ fn an_unbiased_contender_falls_with_slope_minus_one() {
 
 /// A cloud of thin layers, which steps much longer than they are cannot see.
 fn layered() -> Value {
-    let wave = json!({"type": "cosine", "w": {"type": "wave", "amplitude": 1, "vector": [0, 0, 4]}});
-    let cloud = json!({"type": "heterogeneous", "sigma_t": wave, "albedo": 0.5, "scale": 2, "step": 1.9});
+    let wave = json!({"type": "cosine", "w": {"type": "wave", "amplitude": 1, "vector": [0, 0, 2]}});
+    let cloud = json!({"type": "heterogeneous", "sigma_t": wave, "albedo": 0.3, "scale": 2, "step": 1.9});
     scene(&[
         ("sensor", camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 8)),
         ("cloud", null_box([-1.0; 3], [1.0; 3], Some(cloud))),

@@ -192,10 +192,10 @@ mod tests {
         assert_eq!(
             shown(&["--strategies", "hit+next-event,hit+join", "--trackers", "exact,march"]),
             [
-                "hit+next-event exact: --strategies hit,next-event --tracker exact",
-                "hit+next-event march: --strategies hit,next-event --tracker march",
-                "hit+join exact: --strategies hit,join --tracker exact",
-                "hit+join march: --strategies hit,join --tracker march",
+                "hit+next-event exact: --integrator bdpt --strategies hit,next-event --tracker exact",
+                "hit+next-event march: --integrator bdpt --strategies hit,next-event --tracker march",
+                "hit+join exact: --integrator bdpt --strategies hit,join --tracker exact",
+                "hit+join march: --integrator bdpt --strategies hit,join --tracker march",
             ]
         );
         assert_eq!(

@@ -48,7 +48,8 @@ pub struct Study {
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub integrators: Vec<String>,
 
-    /// Sets of strategies that compete, such as hit+next-event,hit+next-event+join
+    /// Sets of strategies that compete, such as hit+next-event,hit+next-event+join; those of bdpt, where --integrators names
+    /// no others
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub strategies: Vec<String>,
 
@@ -303,9 +304,14 @@ impl<'a> Stage<'a> {
         }
         let budget = Budget { samples_per_pixel: Some(1), time: None };
         let settings = Settings { options, budget, seed: 0, profile: estimator::profile(&asked, &setup) };
-        Ok(Entry { setup, settings, load_seconds })
+        let still = setup.scene.media.iter().all(|medium| medium.varying.is_none());
+        let idle = (asked.tracker.is_some() && still).then(|| IDLE_TRACKER.to_owned());
+        Ok(Entry { setup, settings, load_seconds, notes: idle.into_iter().collect() })
     }
 }
+
+/// Said of a contender whose name promises a difference that there is not.
+const IDLE_TRACKER: &str = "its tracker has no effect: no medium of this scene varies";
 
 /// The command as it was typed.
 fn command() -> String {

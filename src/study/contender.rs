@@ -36,6 +36,8 @@ pub struct Entry {
     pub settings: Settings,
     /// Time of reading and building the scene [s].
     pub load_seconds: f64,
+    /// What must be said of it.
+    pub notes: Vec<String>,
 }
 
 /// Makes an entry for a scene (by its index) of a contender's words. An error says why it cannot render that scene.

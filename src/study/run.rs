@@ -151,9 +151,7 @@ impl Study<'_> {
             .contenders
             .iter()
             .zip(&refusals)
-            .filter_map(|(contender, why)| {
-                Some(format!("{} cannot render it: {}", contender.name, why.as_ref()?))
-            })
+            .filter_map(|(c, why)| Some(refused(&c.name, why.as_ref()?)))
             .collect();
         if truth.own_relmse.is_none() {
             notes.push("nobody knows the reference's own error: --reference-error tells it".to_owned());
@@ -201,7 +199,9 @@ impl Study<'_> {
             };
             contenders.push(match (entry, why) {
                 (Some(entry), _) => Part::Budgets(budgets(entry)),
-                (None, why) => Part::Refused(why.as_ref().map_or(String::new(), Error::to_string)),
+                (None, why) => {
+                    Part::Refused(why.as_ref().map_or(String::new(), |why| refused(&contender.name, why)))
+                }
             });
         }
         self.ledger.tell(0.0, 0.0, &format!("{name}: reference, pilot"), true);
@@ -281,7 +281,8 @@ impl Study<'_> {
                 .map(|seed| self.store.read_json(slot(seed).numbers()))
                 .collect::<Result<_>>()?;
             let turns = Turns { name: &contender.name, first: slot(question.first_seed), units: &units };
-            let notes = coverage::notes(&entry.setup.scene, &entry.settings.options);
+            let mut notes = entry.notes.clone();
+            notes.extend(coverage::notes(&entry.setup.scene, &entry.settings.options));
             let (load, confidence) = (Some(entry.load_seconds), self.signature.confidence);
             outcomes.push(summary::contender(&turns, first.as_deref(), truth, load, notes, confidence));
             let images = seeds(question).map(|seed| self.store.read_image(slot(seed).last_image()));
@@ -305,6 +306,11 @@ fn variance(images: &[Picture]) -> Picture {
         reference::moments(images.iter().map(|image| image.pixels[pixel].as_dvec3())).1.as_vec3()
     };
     Picture { pixels: (0..images[0].pixels.len()).map(of).collect(), ..images[0] }
+}
+
+/// Why somebody cannot render a scene, in one line.
+fn refused(name: &str, Error { place, expected, found, .. }: &Error) -> String {
+    format!("{name} cannot render it: {place}: expected {expected}, found {found}")
 }
 
 fn nobody(scene: &str) -> Error {
