@@ -116,17 +116,23 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// The end of a study: numbers without times, and images.
-fn harvest(desk: &Desk) -> (Value, Vec<Vec<String>>, Value, Vec<(PathBuf, Vec<u8>)>) {
-    let csv = fs::read_to_string(desk.path("out/study.csv")).unwrap();
+/// The end of a study, without times.
+struct Harvest {
+    outcome: Value,
+    rows: Vec<Vec<String>>,
+    plan: Value,
+    images: Vec<(PathBuf, Vec<u8>)>,
+}
+
+fn harvest(desk: &Desk) -> Harvest {
     let relative = |path: PathBuf| path.strip_prefix(desk.folder.path()).unwrap().to_owned();
     let images = files(&desk.path("out/images"));
-    (
-        timeless(&desk.json("out/study.json")),
-        timeless_rows(&csv),
-        desk.json("out/runs/plan.json"),
-        images.into_iter().map(|(path, bytes)| (relative(path), bytes)).collect(),
-    )
+    Harvest {
+        outcome: timeless(&desk.json("out/study.json")),
+        rows: timeless_rows(&fs::read_to_string(desk.path("out/study.csv")).unwrap()),
+        plan: desk.json("out/runs/plan.json"),
+        images: images.into_iter().map(|(path, bytes)| (relative(path), bytes)).collect(),
+    }
 }
 
 /// Starts the study and kills it a random while after it has written some more files; false if it ended before.
@@ -176,14 +182,14 @@ fn a_study_killed_at_random_moments_ends_with_the_same_numbers() {
     assert!(killed >= 3, "it ended before it could be killed: {killed}");
     broken.study(&words);
     let (expected, found) = (harvest(&whole), harvest(&broken));
-    assert_eq!(found.0, expected.0);
-    assert_eq!(found.1, expected.1);
-    assert_eq!(found.2, expected.2);
-    assert!(found.3 == expected.3, "images differ");
+    assert_eq!(found.outcome, expected.outcome);
+    assert_eq!(found.rows, expected.rows);
+    assert_eq!(found.plan, expected.plan);
+    assert!(found.images == expected.images, "images differ");
     let left = files(&broken.path("out"));
     assert!(!left.keys().any(|path| path.to_string_lossy().ends_with(".partial")), "{left:?}");
     // 2 contenders, 3 seeds, 4 budgets, and the names of the columns.
-    assert_eq!(found.1.len(), 25);
+    assert_eq!(found.rows.len(), 25);
 }
 
 #[test]

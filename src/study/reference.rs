@@ -49,7 +49,7 @@ pub fn plan(
     question: &Question,
     scene: usize,
     (others, is_given, effort): (&[String], bool, Option<Effort>),
-    contenders: &[Option<Entry>],
+    contenders: &[Result<Entry>],
     enter: &mut Enter<'_>,
 ) -> Result<Batches> {
     let (words, entry) = match is_given {
@@ -57,7 +57,7 @@ pub fn plan(
         false => choose(question, scene, others, contenders, enter)?,
     };
     let same = |other: &Entry| other.settings.options.strategies == entry.settings.options.strategies;
-    let like = contenders.iter().position(|other| other.as_ref().is_some_and(same));
+    let like = contenders.iter().position(|other| other.as_ref().is_ok_and(same));
     let effort = effort.unwrap_or(question.effort.times(EFFORT * question.seeds));
     let all = plan::samples(&entry, each(effort), question.first_seed);
     let (count, samples) = match effort {
@@ -79,7 +79,7 @@ fn choose(
     question: &Question,
     scene: usize,
     others: &[String],
-    contenders: &[Option<Entry>],
+    contenders: &[Result<Entry>],
     enter: &mut Enter<'_>,
 ) -> Result<(String, Entry)> {
     let is_good = |entry: &Entry| coverage::is_trustworthy(&entry.setup.scene, &entry.settings.options);
@@ -87,7 +87,7 @@ fn choose(
         .contenders
         .iter()
         .zip(contenders)
-        .filter_map(|(contender, entry)| Some((contender.words.as_str(), entry.as_ref()?)))
+        .filter_map(|(contender, entry)| Some((contender.words.as_str(), entry.as_ref().ok()?)))
         .collect();
     let good: Vec<_> = own.iter().filter(|(_, entry)| is_good(entry)).collect();
     let variance = |entry: &Entry| plan::variance(entry, question.first_seed);

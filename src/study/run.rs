@@ -126,19 +126,19 @@ impl Study<'_> {
     fn scene(&mut self, index: usize, enter: &mut Enter<'_>) -> Result<SceneOutcome> {
         let question = self.plan.question.clone();
         let name = question.scenes[index].name.as_str();
-        let (entries, refusals) = self.entries(index, &question, enter)?;
-        let plan = self.planned(index, &question, &entries, &refusals, enter)?;
+        let entries = self.entries(index, &question, enter);
+        let plan = self.planned(index, &question, &entries, enter)?;
         let parts = question.contenders.iter().zip(&entries).zip(&plan.contenders);
         let players: Vec<Player<'_>> = parts
             .filter_map(|((contender, entry), part)| match (entry, part) {
-                (Some(entry), Part::Budgets(budgets)) => {
+                (Ok(entry), Part::Budgets(budgets)) => {
                     Some(Player { contender, slug: contender.slug(), entry, budgets })
                 }
                 _ => None,
             })
             .collect();
         let Some(first) = players.first() else {
-            let why = refusals.into_iter().flatten().next();
+            let why = entries.into_iter().find_map(Result::err);
             return Err(why.unwrap_or_else(|| nobody(name)));
         };
         let film = &first.entry.setup.film;
@@ -147,12 +147,9 @@ impl Study<'_> {
         let image = Path::new("images").join(name).join("reference.exr");
         self.store.write_image(&image, &truth.picture)?;
         self.take_turns(name, &question, &players, &truth)?;
-        let mut notes: Vec<String> = question
-            .contenders
-            .iter()
-            .zip(&refusals)
-            .filter_map(|(c, why)| Some(refused(&c.name, why.as_ref()?)))
-            .collect();
+        let named = question.contenders.iter().zip(&entries);
+        let mut notes: Vec<String> =
+            named.filter_map(|(c, entry)| Some(refused(&c.name, entry.as_ref().err()?))).collect();
         if truth.own_relmse.is_none() {
             notes.push("nobody knows the reference's own error: --reference-error tells it".to_owned());
         }
@@ -162,19 +159,9 @@ impl Study<'_> {
     }
 
     /// Everybody who can render the scene, and why others cannot.
-    #[expect(clippy::type_complexity, reason = "one list each for the two halves of an answer")]
-    fn entries(
-        &mut self,
-        scene: usize,
-        question: &Question,
-        enter: &mut Enter<'_>,
-    ) -> Result<(Vec<Option<Entry>>, Vec<Option<Error>>)> {
+    fn entries(&mut self, scene: usize, question: &Question, enter: &mut Enter<'_>) -> Vec<Result<Entry>> {
         self.ledger.tell(0.0, 0.0, &format!("{}: loading", question.scenes[scene].name), true);
-        let entries = question.contenders.iter().map(|contender| match enter(scene, &contender.words) {
-            Ok(entry) => (Some(entry), None),
-            Err(why) => (None, Some(why)),
-        });
-        Ok(entries.unzip())
+        question.contenders.iter().map(|contender| enter(scene, &contender.words)).collect()
     }
 
     /// The scene's plan; made and written down where there is none yet.
@@ -182,8 +169,7 @@ impl Study<'_> {
         &mut self,
         scene: usize,
         question: &Question,
-        entries: &[Option<Entry>],
-        refusals: &[Option<Error>],
+        entries: &[Result<Entry>],
         enter: &mut Enter<'_>,
     ) -> Result<ScenePlan> {
         if let Some(plan) = self.plan.scenes.get(scene) {
@@ -191,16 +177,14 @@ impl Study<'_> {
         }
         let name = &question.scenes[scene].name;
         let mut contenders = Vec::new();
-        for ((contender, entry), why) in question.contenders.iter().zip(entries).zip(refusals) {
+        for (contender, entry) in question.contenders.iter().zip(entries) {
             self.ledger.tell(0.0, 0.0, &format!("{name}: {}, pilot", contender.name), true);
-            let budgets = |entry| {
-                let largest = plan::samples(entry, question.effort, question.first_seed);
-                plan::budgets(largest, question.doublings, matches!(question.effort, Effort::Samples(_)))
-            };
-            contenders.push(match (entry, why) {
-                (Some(entry), _) => Part::Budgets(budgets(entry)),
-                (None, why) => {
-                    Part::Refused(why.as_ref().map_or(String::new(), |why| refused(&contender.name, why)))
+            contenders.push(match entry {
+                Err(why) => Part::Refused(refused(&contender.name, why)),
+                Ok(entry) => {
+                    let largest = plan::samples(entry, question.effort, question.first_seed);
+                    let exact = matches!(question.effort, Effort::Samples(_));
+                    Part::Budgets(plan::budgets(largest, question.doublings, exact))
                 }
             });
         }
