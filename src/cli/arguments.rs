@@ -1,5 +1,6 @@
 //! What can be asked on the command line.
 
+use super::study::Study;
 use crate::{medium::Choice, scene::heuristic::Heuristic};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
@@ -42,6 +43,13 @@ pub enum Command {
     Convert(Convert),
     /// Make the page of a study, study.html, anew from its numbers and images
     Report(Report),
+    /// Measure error against run time: contenders render scenes side by side, against a reference
+    ///
+    /// Every contender renders every scene with several seeds. Each render is looked at as its samples double, so that
+    /// the points of one curve share samples: intervals over seeds are right at every budget, and the slope is taken
+    /// seed by seed. FOLDER gets study.json, study.csv, images, and runs/ with all that is needed to go on: a study that
+    /// was stopped, however, goes on where it was when the same command is run again.
+    Study(Study),
 }
 
 /// Render a scene to an image.
@@ -383,7 +391,7 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     Ok(Size { width: side(width)?, height: side(height)? })
 }
 
-fn duration(text: &str) -> Result<Duration, String> {
+pub(super) fn duration(text: &str) -> Result<Duration, String> {
     let expected = || "expected a time above 0, such as 90, 90s, 5m or 1.5h".to_owned();
     let (number, seconds) = match text.char_indices().next_back() {
         Some((at, 's')) => (&text[..at], 1.0),
@@ -396,7 +404,7 @@ fn duration(text: &str) -> Result<Duration, String> {
     if duration.is_zero() { Err(expected()) } else { Ok(duration) }
 }
 
-fn definition(text: &str) -> Result<(String, String), String> {
+pub(super) fn definition(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected name=value, such as -D res=512")?;
     if name.is_empty() || name.contains(char::is_whitespace) {
         return Err("expected a name without spaces before \"=\"".into());

@@ -2,8 +2,7 @@
 
 use super::{arguments, load, say};
 use crate::{
-    bsdf::BsdfModel,
-    emitter::{Emitter, Kind},
+    emitter::Kind,
     error::Result,
     film::{
         Film, Window,
@@ -18,7 +17,11 @@ use crate::{
         integrator::{Integrator, Method, Restriction},
         lights::Light,
     },
-    transport::profile::{Needs, ProfileName},
+    study::coverage,
+    transport::{
+        Strategies,
+        profile::{Needs, ProfileName},
+    },
 };
 
 /// Runs the command.
@@ -161,27 +164,11 @@ fn describe_tracker(setup: &Setup, varying: &Heterogeneous) -> String {
 
 /// Kinds of paths that no strategy of the integrator can make: they are black, not noisy.
 fn unreachable(scene: &Scene, integrator: &Integrator) -> Vec<String> {
-    if integrator.method == Method::Fog {
-        return Vec::new();
-    }
-    let bsdfs = scene.surfaces.iter().map(|surface| &scene.bsdfs[surface.bsdf as usize]);
-    let smooth = bsdfs
-        .clone()
-        .any(|bsdf| bsdf.has_dirac() && bsdf.survival(crate::math::Vec2::ZERO, crate::math::Vec3::Z) > 0.0);
-    let point_like = |emitter: &Emitter| !emitter.is_hittable();
-    let mut kinds = Vec::new();
-    if smooth && scene.lights.all.iter().any(|light| point_like(&light.emitter)) {
-        kinds.push(match integrator.method {
-            Method::Pt => "light of point, spot and directional emitters over smooth mirrors or lenses",
-            _ => "light of point, spot and directional emitters that smooth mirrors or lenses alone lead to the eye",
-        });
-    }
-    if smooth && integrator.method == Method::Lt {
-        kinds.push("anything seen in or through smooth mirrors or lenses");
-    }
-    if smooth && integrator.method == Method::Bdpt && scene.lights.all.iter().any(|l| point_like(&l.emitter))
-    {
-        kinds.push("caustics of those emitters seen in smooth mirrors or lenses");
-    }
-    kinds.into_iter().map(str::to_owned).collect()
+    let strategies = match integrator.method {
+        Method::Bdpt => Strategies::BDPT,
+        Method::Pt => Strategies::PT,
+        Method::Lt => Strategies::LT,
+        Method::Fog => Strategies::NONE,
+    };
+    coverage::unreachable(scene, strategies, integrator.hide_emitters)
 }

@@ -1,6 +1,7 @@
 //! The command line: arguments in, exit code out.
 
 pub mod arguments;
+mod contenders;
 mod convert;
 mod estimator;
 mod info;
@@ -8,6 +9,7 @@ mod pixel;
 mod render;
 mod report;
 mod strategies;
+mod study;
 
 use crate::{
     error::{Error, Result},
@@ -30,6 +32,7 @@ pub fn run() -> ExitCode {
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
         Command::Report(report) => report::run(report),
+        Command::Study(study) => study::run(study),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -7,7 +7,7 @@
 //! What light walks bring to the film is a mean over passes too, of every pixel at once: it ends for a half where the
 //! last pixel of the other half is content.
 
-use super::{BLOCKS_AT_ONCE, Job, Progress, block::Outcome, budget::Budget};
+use super::{BLOCKS_AT_ONCE, Job, Progress, block::Outcome, budget::Budget, watch::Clock};
 use crate::{
     math::{DVec3, Spectrum},
     transport::profile::Profile,
@@ -220,6 +220,7 @@ impl Limits {
 /// The two halves at work.
 pub(super) struct Adaptive<'a, P: Profile> {
     job: &'a Job<'a, P>,
+    clock: &'a Clock,
     precision: Precision,
     halves: [Half; 2],
     active: Vec<bool>,
@@ -229,10 +230,10 @@ pub(super) struct Adaptive<'a, P: Profile> {
 
 impl<'a, P: Profile> Adaptive<'a, P> {
     /// Nothing done yet.
-    pub fn new(job: &'a Job<'a, P>, precision: Precision) -> Self {
+    pub fn new(job: &'a Job<'a, P>, precision: Precision, clock: &'a Clock) -> Self {
         let pixels = job.film.len();
         let halves = [Half::new(pixels), Half::new(pixels)];
-        Self { job, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
+        Self { job, clock, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
     }
 
     /// Renders until every pixel is content or the budget is spent.
@@ -270,7 +271,7 @@ impl<'a, P: Profile> Adaptive<'a, P> {
             }
             next = tasks.end;
             progress(self.progress(next));
-            if time.is_some_and(|limit| self.job.started.elapsed() >= limit) && self.passes() >= 2 {
+            if time.is_some_and(|limit| self.clock.elapsed() >= limit) && self.passes() >= 2 {
                 return false;
             }
         }
@@ -325,7 +326,7 @@ impl<'a, P: Profile> Adaptive<'a, P> {
 
     fn progress(&self, tasks: usize) -> Progress {
         let samples = (tasks as u64 * self.active.len() as u64) / self.job.blocks.count() as u64;
-        let (passes, elapsed) = (self.passes(), self.job.started.elapsed());
+        let (passes, elapsed) = (self.passes(), self.clock.elapsed());
         Progress { samples, passes, elapsed, noise: None, within: Some(self.share()) }
     }
 

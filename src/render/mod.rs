@@ -13,6 +13,9 @@ mod fog;
 pub mod parts;
 mod primary;
 pub mod sample;
+mod watch;
+
+pub use watch::Snapshot;
 
 use crate::{
     film::{
@@ -34,7 +37,8 @@ use budget::Budget;
 use compiled::Work;
 use fog::Preview;
 use rayon::prelude::*;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use watch::{Clock, Watch};
 
 /// What to render and for how long.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +106,21 @@ pub fn render_layers(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    dispatch(scene, film, settings, Mode::Budget, layers, progress)
+    let mut watch = Watch { progress, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, settings, Mode::Budget, layers, &mut watch)
+}
+
+/// Renders `scene` onto `film`, and shows the image after each of `marks` (samples per pixel, in growing order, none
+/// beyond the budget).
+pub fn render_in_steps(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    marks: &[u64],
+    progress: &mut dyn FnMut(Progress),
+    show: &mut dyn FnMut(Snapshot),
+) -> Image {
+    dispatch(scene, film, settings, Mode::Budget, &[], &mut Watch { progress, marks, show })
 }
 
 /// Renders `scene` onto `film`, and `layers` with it, until every pixel is known with `precision` or the budget of
@@ -115,7 +133,8 @@ pub fn render_to_precision(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    dispatch(scene, film, settings, Mode::Precision(precision), layers, progress)
+    let mut watch = Watch { progress, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, settings, Mode::Precision(precision), layers, &mut watch)
 }
 
 /// Shows `scene` on `film` as a preview that looks like `look`, and `layers` with it. Of the options only the
@@ -129,7 +148,8 @@ pub fn preview(
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
     let options = Options { strategies: Strategies::NONE, heuristic: Heuristic::Balance, ..settings.options };
-    dispatch(scene, film, &Settings { options, ..*settings }, Mode::Preview(look), layers, progress)
+    let mut watch = Watch { progress, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, &Settings { options, ..*settings }, Mode::Preview(look), layers, &mut watch)
 }
 
 /// What is made of samples.
@@ -149,9 +169,9 @@ fn dispatch(
     settings: &Settings,
     mode: Mode<'_>,
     layers: &[Layer],
-    progress: &mut dyn FnMut(Progress),
+    watch: &mut Watch<'_>,
 ) -> Image {
-    compiled::choose(settings, Render { scene, film, settings, mode, layers, progress })
+    compiled::choose(settings, Render { scene, film, settings, mode, layers, watch })
 }
 
 /// A render that waits for its profile.
@@ -161,15 +181,15 @@ struct Render<'a, 'b> {
     settings: &'a Settings,
     mode: Mode<'a>,
     layers: &'a [Layer],
-    progress: &'a mut (dyn FnMut(Progress) + 'b),
+    watch: &'a mut Watch<'b>,
 }
 
 impl Work for Render<'_, '_> {
     type Output = Image;
 
     fn by<P: Profile>(self) -> Image {
-        let Self { scene, film, settings, mode, layers, progress } = self;
-        let started = Instant::now();
+        let Self { scene, film, settings, mode, layers, watch } = self;
+        let clock = Clock::start();
         let blocks = Blocks::new::<P>(film.len(), settings.options.sampler);
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
@@ -182,22 +202,29 @@ impl Work for Render<'_, '_> {
             _ => None,
         };
         let preview = preview.as_ref();
-        let job = Job { estimator: &estimator, preview, film, blocks: &blocks, settings, started };
+        let job = Job { estimator: &estimator, preview, film, blocks: &blocks, settings };
         if let Mode::Precision(precision) = mode {
-            return finish(&job, scene, Adaptive::new(&job, precision).run(progress), layers);
+            let found = Adaptive::new(&job, precision, &clock).run(watch.progress);
+            return finish(&job, scene, &clock, found, layers);
         }
-        let (accumulator, noise) = job.accumulate(accumulator, progress);
+        let (accumulator, noise, clock) = job.accumulate(accumulator, clock, watch);
         let passes = accumulator.passes();
         let seen = primary::Pass::new(film, layers).run(scene, &job, passes);
         let pixels = accumulator.mean();
         let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
-        let elapsed = started.elapsed();
+        let elapsed = clock.elapsed();
         Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers, reached: None }
     }
 }
 
 /// The image of an adaptive render, with a layer that tells how many samples its pixels took.
-fn finish<P: Profile>(job: &Job<'_, P>, scene: &Scene, found: Developed, layers: &[Layer]) -> Image {
+fn finish<P: Profile>(
+    job: &Job<'_, P>,
+    scene: &Scene,
+    clock: &Clock,
+    found: Developed,
+    layers: &[Layer],
+) -> Image {
     let Developed { pixels, passes, noise, reached } = found;
     let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
     let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes);
@@ -206,7 +233,7 @@ fn finish<P: Profile>(job: &Job<'_, P>, scene: &Scene, found: Developed, layers:
     let mut layers: Vec<_> = layers.iter().flat_map(|layer| develop(layer, &pixels, &none, &seen)).collect();
     let values = reached.samples.iter().map(|n| *n as f32).collect();
     layers.push(Channel { name: "samples.N".to_owned(), values });
-    let (elapsed, reached) = (job.started.elapsed(), Some(reached));
+    let (elapsed, reached) = (clock.elapsed(), Some(reached));
     Image { pixels, samples_per_pixel: mean, elapsed, noise, alpha: seen.alpha, layers, reached }
 }
 
@@ -218,7 +245,6 @@ struct Job<'a, P: Profile> {
     film: &'a Film,
     blocks: &'a Blocks,
     settings: &'a Settings,
-    started: Instant,
 }
 
 impl<P: Profile> Job<'_, P> {
@@ -226,13 +252,15 @@ impl<P: Profile> Job<'_, P> {
     fn accumulate(
         &self,
         mut accumulator: Accumulator,
-        progress: &mut dyn FnMut(Progress),
-    ) -> (Accumulator, Option<f64>) {
-        let Self { estimator, preview, film, blocks, settings, started } = *self;
+        mut clock: Clock,
+        watch: &mut Watch<'_>,
+    ) -> (Accumulator, Option<f64>, Clock) {
+        let Self { estimator, preview, film, blocks, settings } = *self;
         let mut pass = vec![Spectrum::ZERO; film.len()];
         let (mut next, mut noise) = (0, None);
         loop {
-            let tasks = next..settings.budget.limit_tasks(next + BLOCKS_AT_ONCE, blocks.count());
+            let wanted = settings.budget.limit_tasks(next + BLOCKS_AT_ONCE, blocks.count());
+            let tasks = next..watch.limit_tasks(wanted, accumulator.passes(), blocks.count());
             let outcomes: Vec<Outcome> = tasks
                 .clone()
                 .into_par_iter()
@@ -255,11 +283,17 @@ impl<P: Profile> Job<'_, P> {
                 noise = accumulator.noise();
             }
             next = tasks.end;
-            let (elapsed, passes) = (started.elapsed(), accumulator.passes());
+            let (elapsed, passes) = (clock.elapsed(), accumulator.passes());
+            if next.is_multiple_of(blocks.count()) && watch.is_mark(passes) {
+                let show = || {
+                    (watch.show)(Snapshot { pixels: accumulator.mean(), samples_per_pixel: passes, elapsed })
+                };
+                clock.hold(show);
+            }
             let samples = (next as u64 * film.len() as u64) / blocks.count() as u64;
-            progress(Progress { samples, passes, elapsed, noise, within: None });
+            (watch.progress)(Progress { samples, passes, elapsed, noise, within: None });
             if settings.budget.is_spent(next, blocks.count(), elapsed) {
-                return (accumulator, noise);
+                return (accumulator, noise, clock);
             }
         }
     }

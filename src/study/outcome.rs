@@ -31,6 +31,9 @@ pub struct SceneOutcome {
     pub reference: Reference,
     /// Everybody who rendered it.
     pub contenders: Vec<ContenderOutcome>,
+    /// What the reader should know: who could not render it and why, what is not known of the reference.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
 }
 
 /// The image that stands for the truth.
@@ -57,8 +60,14 @@ pub struct ContenderOutcome {
     pub slope: Option<Interval>,
     /// 1 / (relMSE x seconds) at the last budget [1/s].
     pub efficiency: Interval,
+    /// Its efficiency over that of the scene's first contender, seeds paired; none for that one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ratio: Option<Interval>,
     /// Variance per pixel and channel of one render at the last budget, where it lies beside `study.json`.
     pub variance: PathBuf,
+    /// What the reader should know: paths it leaves out, signs of bias, an error that is the reference's own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
 }
 
 /// What one budget gave, over all seeds.
@@ -84,13 +93,46 @@ pub struct Point {
     pub image: PathBuf,
 }
 
-/// A mean over seeds and the ends of its confidence interval.
+/// A mean over seeds and the ends of its confidence interval. What is no finite number, because an image held NaN or
+/// infinities, is `null` in JSON.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Interval {
     /// The estimate.
+    #[serde(with = "number")]
     pub mean: f64,
     /// Lower end.
+    #[serde(with = "number")]
     pub low: f64,
     /// Upper end.
+    #[serde(with = "number")]
     pub high: f64,
+}
+
+/// Numbers in JSON, which has no NaN and no infinity: both are `null`, and `null` is NaN.
+pub(super) mod number {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    /// Writes one.
+    pub fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
+        Some(*value).filter(|value| value.is_finite()).serialize(to)
+    }
+
+    /// Reads one.
+    pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_come_back_bit_for_bit_and_nan_as_null() {
+        let interval = Interval { mean: 0.1 + 0.2, low: f64::MIN_POSITIVE, high: f64::NAN };
+        let text = serde_json::to_string(&interval).unwrap();
+        assert!(text.ends_with("\"high\":null}"), "{text}");
+        let read: Interval = serde_json::from_str(&text).unwrap();
+        assert_eq!((read.mean, read.low, read.high.is_nan()), (interval.mean, interval.low, true));
+    }
 }

@@ -100,6 +100,7 @@ fn scene(index: usize, name: &str, contenders: &[&str], budgets: usize) -> Scene
         contenders: contenders
             .map(|(series, name)| contender(&format!("images/{index}/{series}"), series, name, budgets))
             .collect(),
+        notes: Vec::new(),
     }
 }
 
@@ -124,5 +125,7 @@ fn contender(folder: &str, series: usize, name: &str, budgets: usize) -> Contend
         slope: (budgets > 2).then_some(Interval { mean: -1.0, low: -1.1, high: -0.9 }),
         efficiency: about(1.0 / (0.05 * (1.0 + series as f64))),
         variance: format!("{folder}/variance.exr").into(),
+        ratio: None,
+        notes: Vec::new(),
     }
 }

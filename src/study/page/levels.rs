@@ -123,6 +123,8 @@ mod tests {
             slope: None,
             efficiency: flat(1.0),
             variance: "variance.exr".into(),
+            ratio: None,
+            notes: Vec::new(),
         }
     }
 
@@ -133,7 +135,8 @@ mod tests {
     fn study(width: usize, height: usize, contenders: usize, times: &[f64]) -> Outcome {
         let reference = Reference { image: "r.exr".into(), how: String::new(), own_relmse: None };
         let contenders = vec![contender(times); contenders];
-        let scene = SceneOutcome { name: "s".into(), width, height, reference, contenders };
+        let scene =
+            SceneOutcome { name: "s".into(), width, height, reference, contenders, notes: Vec::new() };
         Outcome {
             made_by: String::new(),
             command: String::new(),

@@ -121,7 +121,9 @@ impl Share {
         let best = scene.contenders.iter().map(efficiency).fold(f64::MIN, f64::max);
         let first = &scene.contenders[0];
         let other = !std::ptr::eq(first, contender);
-        let ratio = other.then(|| figures::ratio(contender.efficiency, first.efficiency));
+        // Seeds that are paired tell more than two intervals.
+        let unpaired = || figures::ratio(contender.efficiency, first.efficiency);
+        let ratio = other.then(|| contender.ratio.unwrap_or_else(unpaired));
         Self { ratio, best: efficiency(contender) >= best }
     }
 
@@ -167,6 +169,16 @@ impl SceneView<'_> {
 
 /// What a reader must know to trust the curves.
 fn notes(scene: &SceneOutcome) -> Vec<String> {
+    let told = scene
+        .contenders
+        .iter()
+        .flat_map(|contender| contender.notes.iter().map(|note| format!("{}: {note}.", contender.name)));
+    let told = scene.notes.iter().map(|note| format!("{note}.")).chain(told);
+    own_error(scene).into_iter().chain(told).collect()
+}
+
+/// What the reference's own error means for theirs.
+fn own_error(scene: &SceneOutcome) -> Vec<String> {
     let Some(own) = scene.reference.own_relmse else {
         return vec!["How far the reference itself is from the truth is not known.".into()];
     };

@@ -1,0 +1,243 @@
+//! Contenders of a study out of words: whatever says how `tyndall render` makes paths can be one, and can be an axis.
+
+use super::{
+    arguments::{Estimator, MaxDepth},
+    study::Study,
+};
+use crate::{
+    error::{Error, Result},
+    study::contender::{Contender, slug},
+};
+use clap::{CommandFactory, Parser};
+
+/// The options of `tyndall render` that make a contender, alone.
+#[derive(Debug, Parser)]
+#[command(no_binary_name = true, disable_help_flag = true, disable_version_flag = true)]
+struct Words {
+    #[command(flatten)]
+    estimator: Estimator,
+}
+
+/// What `words` ask for; `place` is where they stand.
+pub fn parse(place: &str, words: &str) -> Result<Estimator> {
+    let parsed = Words::try_parse_from(words.split_whitespace());
+    parsed.map(|words| words.estimator).map_err(|error| {
+        let text = error.to_string();
+        let told = text.split("\n\nUsage").next().unwrap_or_default().trim_start_matches("error: ").trim();
+        let expected = "options of tyndall render that say how paths are made";
+        Error::new(place, expected, told.replace('\n', " "), "see tyndall render --help")
+    })
+}
+
+/// Everybody that the command line asks for: the explicit ones, then the product of the axes.
+pub fn all(arguments: &Study) -> Result<Vec<Contender>> {
+    let mut contenders = Vec::new();
+    for text in &arguments.contenders {
+        contenders.push(explicit(text)?);
+    }
+    let axes = axes(arguments)?;
+    if !axes.is_empty() {
+        contenders.extend(product(&axes));
+    } else if contenders.is_empty() {
+        contenders.extend(product(&[Axis::new("integrator", &["bdpt".to_owned(), "pt".to_owned()])?]));
+    }
+    for contender in &contenders {
+        parse(&contender.name, &contender.words)?;
+    }
+    let mut slugs: Vec<String> = contenders.iter().map(Contender::slug).collect();
+    slugs.sort();
+    match slugs.windows(2).find(|pair| pair[0] == pair[1]) {
+        None => Ok(contenders),
+        Some(pair) => {
+            let found = format!("\"{}\" twice", pair[0]);
+            Err(Error::new("--contender", "names that make different file names", found, "rename one"))
+        }
+    }
+}
+
+/// "NAME: OPTIONS".
+fn explicit(text: &str) -> Result<Contender> {
+    let (name, words) = text.split_once(':').unwrap_or_default();
+    if name.trim().is_empty() {
+        let remedy = "write, for example, --contender \"joins: --integrator bdpt --strategies hit,join\"";
+        return Err(Error::new("--contender", "NAME: OPTIONS", format!("\"{text}\""), remedy));
+    }
+    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+    Ok(Contender { name: name.trim().to_owned(), words })
+}
+
+/// An option and the values that it takes in turn.
+struct Axis {
+    /// Per value: how it is shown, and the words that set it.
+    values: Vec<(String, String)>,
+}
+
+/// Every axis that was asked for. An option of `render` needs a line here only to have a flag of its own.
+fn axes(arguments: &Study) -> Result<Vec<Axis>> {
+    let named = [
+        ("integrator", &arguments.integrators),
+        ("strategies", &arguments.strategies),
+        ("tracker", &arguments.trackers),
+    ];
+    let named = named.into_iter().filter(|(_, values)| !values.is_empty());
+    let mut axes: Vec<Axis> =
+        named.map(|(option, values)| Axis::new(option, values)).collect::<Result<_>>()?;
+    for text in &arguments.vary {
+        let (option, values) = text.split_once('=').unwrap_or((text.as_str(), ""));
+        let values: Vec<String> = values.split(',').map(str::to_owned).collect();
+        axes.push(Axis::new(option.trim_start_matches('-'), &values)?.named(option));
+    }
+    Ok(axes)
+}
+
+impl Axis {
+    /// The axis of `option` (its long name). Where the option is a switch, its values are "on" and "off".
+    fn new(option: &str, values: &[String]) -> Result<Self> {
+        let command = Words::command();
+        let all = || command.get_arguments().filter_map(|argument| argument.get_long());
+        let Some(argument) = command.get_arguments().find(|argument| argument.get_long() == Some(option))
+        else {
+            let names = all().collect::<Vec<_>>().join(", ");
+            let remedy = "write, for example, --vary max-depth=2,4,8";
+            return Err(Error::new("--vary", format!("one of {names}"), format!("\"{option}\""), remedy));
+        };
+        let is_switch = !argument.get_action().takes_values();
+        let words = |value: &String| match (is_switch, value.as_str()) {
+            (false, "") => Err("no value".to_owned()),
+            (false, value) => Ok(format!("--{option} {}", value.replace('+', ","))),
+            (true, "on") => Ok(format!("--{option}")),
+            (true, "off") => Ok(String::new()),
+            (true, value) => Err(format!("\"{value}\"")),
+        };
+        let pair = |value: &String| Ok((value.clone(), words(value)?));
+        let values =
+            values.iter().map(pair).collect::<std::result::Result<_, String>>().map_err(|found| {
+                let expected = if is_switch { "on, off, or both" } else { "values, separated by commas" };
+                Error::new(format!("--vary {option}"), expected, found, "see tyndall study --help")
+            })?;
+        Ok(Self { values })
+    }
+
+    /// Values are shown with the name of their option.
+    fn named(mut self, option: &str) -> Self {
+        self.values.iter_mut().for_each(|(shown, _)| *shown = format!("{option}={shown}"));
+        self
+    }
+}
+
+/// All combinations, the last axis varying fastest.
+fn product(axes: &[Axis]) -> Vec<Contender> {
+    let none = Contender { name: String::new(), words: String::new() };
+    let joined = |a: &str, b: &str| format!("{a} {b}").trim().to_owned();
+    axes.iter().fold(vec![none], |contenders, axis| {
+        let with = |contender: &Contender| {
+            let Contender { name, words } = contender.clone();
+            axis.values.iter().map(move |(shown, more)| Contender {
+                name: joined(&name, shown),
+                words: joined(&words, more),
+            })
+        };
+        contenders.iter().flat_map(with).collect::<Vec<_>>()
+    })
+}
+
+/// Who may make a reference, best first; where all `contenders` bound the depth of paths alike, with that bound, and with
+/// flights that are sampled without bias.
+pub fn referees(contenders: &[Contender]) -> Result<Vec<String>> {
+    let mut depths = Vec::new();
+    for contender in contenders {
+        depths.push(parse(&contender.name, &contender.words)?.max_depth);
+    }
+    let same =
+        depths.first().copied().flatten().filter(|depth| depths.iter().all(|other| *other == Some(*depth)));
+    let depth = match same {
+        None => String::new(),
+        Some(MaxDepth::Unbounded) => " --max-depth -1".to_owned(),
+        Some(MaxDepth::Edges(edges)) => format!(" --max-depth {edges}"),
+    };
+    Ok(["bdpt", "pt", "lt"].map(|name| format!("--integrator {name} --tracker auto{depth}")).into())
+}
+
+/// Names for scenes out of their files' names, each its own.
+pub fn scene_names(files: &[std::path::PathBuf]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for file in files {
+        let stem = slug(&file.file_stem().unwrap_or_default().to_string_lossy());
+        let numbered = |n: usize| if n == 1 { stem.clone() } else { format!("{stem}_{n}") };
+        names.extend((1..).map(numbered).find(|name| !names.contains(name)));
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        super::arguments::{Arguments, Command},
+        *,
+    };
+
+    fn contenders(options: &[&str]) -> Result<Vec<Contender>> {
+        let words = ["tyndall", "study", "a.json", "-o", "out"].iter().chain(options);
+        let Command::Study(study) = Arguments::try_parse_from(words).unwrap().command else { panic!() };
+        all(&study)
+    }
+
+    fn shown(options: &[&str]) -> Vec<String> {
+        contenders(options).unwrap().into_iter().map(|c| format!("{}: {}", c.name, c.words)).collect()
+    }
+
+    #[test]
+    fn axes_multiply() {
+        assert_eq!(shown(&[]), ["bdpt: --integrator bdpt", "pt: --integrator pt"]);
+        assert_eq!(
+            shown(&["--strategies", "hit+next-event,hit+join", "--trackers", "exact,march"]),
+            [
+                "hit+next-event exact: --integrator bdpt --strategies hit,next-event --tracker exact",
+                "hit+next-event march: --integrator bdpt --strategies hit,next-event --tracker march",
+                "hit+join exact: --integrator bdpt --strategies hit,join --tracker exact",
+                "hit+join march: --integrator bdpt --strategies hit,join --tracker march",
+            ]
+        );
+        assert_eq!(
+            shown(&["--contender", "mine:  --integrator lt --max-depth 3", "--vary", "max-depth=2,-1"]),
+            [
+                "mine: --integrator lt --max-depth 3",
+                "max-depth=2: --max-depth 2",
+                "max-depth=-1: --max-depth -1",
+            ]
+        );
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_a_hint() {
+        for (options, hint) in [
+            (["--contender", "--integrator pt"], "NAME: OPTIONS"),
+            (["--contender", ": --integrator pt"], "NAME: OPTIONS"),
+            (["--contender", "a: --integrator ptt"], "bdpt"),
+            (["--contender", "a: --spp 4"], "how paths are made"),
+            (["--integrators", "bdpt,bdpt"], "twice"),
+            (["--integrators", "bdpt,ptt"], "ptt"),
+            (["--strategies", "hit+jion"], "join"),
+            (["--vary", "max-dept=2"], "max-depth"),
+            (["--vary", "max-depth"], "values"),
+            (["--vary", "max-depth=deep"], "number of edges"),
+        ] {
+            let error = contenders(&options).unwrap_err().to_string();
+            assert!(error.contains(hint), "{options:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_reference_is_as_deep_as_all_contenders() {
+        let depths = |options: &[&str]| referees(&contenders(options).unwrap()).unwrap()[0].clone();
+        assert_eq!(depths(&[]), "--integrator bdpt --tracker auto");
+        assert_eq!(depths(&["--vary", "max-depth=2,3"]), "--integrator bdpt --tracker auto");
+        assert_eq!(depths(&["--vary", "max-depth=2"]), "--integrator bdpt --tracker auto --max-depth 2");
+        assert_eq!(depths(&["--vary", "max-depth=-1"]), "--integrator bdpt --tracker auto --max-depth -1");
+    }
+
+    #[test]
+    fn scenes_of_one_name_are_told_apart() {
+        assert_eq!(scene_names(&["a/x.xml".into(), "b/x.json".into(), "y.xml".into()]), ["x", "x_2", "y"]);
+    }
+}

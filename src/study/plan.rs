@@ -1,0 +1,115 @@
+//! How many samples everybody takes. Where budgets are times, pilots turn them into samples once, and what they found is
+//! written down: from then on only the measured times depend on chance of the machine.
+
+use super::{
+    contender::Entry,
+    question::{Effort, Question},
+    unit,
+};
+use crate::render::{self, budget::Budget};
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// A question and what is planned for its scenes so far.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Plan {
+    /// What is asked.
+    pub question: Question,
+    /// One entry a scene, in their order; fewer as long as not all are planned.
+    pub scenes: Vec<ScenePlan>,
+}
+
+/// What is planned for a scene.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct ScenePlan {
+    /// Every contender's part.
+    pub contenders: Vec<Part>,
+    /// How the reference is made; none where it is read from a file.
+    pub reference: Option<Batches>,
+}
+
+/// A contender's part.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    /// Budgets in samples per pixel, in growing order.
+    Budgets(Vec<u64>),
+    /// It cannot render the scene: why.
+    Refused(String),
+}
+
+/// A reference in independent batches.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Batches {
+    /// Who makes it, in options of `tyndall render`.
+    pub words: String,
+    /// The contender that has the same strategies, if any.
+    pub like: Option<String>,
+    /// How many, two at least.
+    pub count: u64,
+    /// Samples per pixel of each.
+    pub samples: u64,
+}
+
+impl Plan {
+    /// Nothing planned yet.
+    pub fn new(question: Question) -> Self {
+        Self { question, scenes: Vec::new() }
+    }
+}
+
+/// At most `count` budgets in samples per pixel, each half of the next, that end near `largest` (exactly there if
+/// `exact`, else so that they double exactly).
+pub fn budgets(largest: u64, count: u32, exact: bool) -> Vec<u64> {
+    let finest = 1u64 << (count - 1).min(63);
+    let largest = match largest.max(1) {
+        largest if exact => largest,
+        largest if largest < finest => 1 << largest.ilog2(),
+        largest => largest / finest * finest,
+    };
+    (0..count.min(64)).rev().map(|k| largest >> k).filter(|samples| *samples > 0).collect()
+}
+
+/// The seed of pilots: none of a render's.
+const PILOT_SEED: u64 = 1 << 62;
+/// No pilot needs more samples per pixel.
+const PILOT_SAMPLES: u64 = 1 << 20;
+
+/// Samples per pixel that `effort` buys `entry`: as many as are asked for, or measured by a pilot of a quarter of the
+/// time.
+pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> u64 {
+    let seconds = match effort {
+        Effort::Samples(samples) => return samples.max(1),
+        Effort::Seconds(seconds) => seconds,
+    };
+    let time = Some(Duration::from_secs_f64((0.25 * seconds).clamp(1e-3, 60.0)));
+    let budget = Budget { samples_per_pixel: Some(PILOT_SAMPLES), time };
+    let settings = unit::settled(entry, first_seed ^ PILOT_SEED, budget);
+    let image = render::render(&entry.setup.scene, &unit::plain_film(entry), &settings, &mut |_| {});
+    let each = image.elapsed.as_secs_f64() / image.samples_per_pixel as f64;
+    (seconds / each).round().max(1.0) as u64
+}
+
+/// Relative variance of few samples of `entry`, the same number for everybody; NaN if unknown.
+pub fn variance(entry: &Entry, first_seed: u64) -> f64 {
+    const SAMPLES: u64 = 8;
+    let budget = Budget { samples_per_pixel: Some(SAMPLES), time: None };
+    let settings = unit::settled(entry, first_seed ^ PILOT_SEED, budget);
+    let image = render::render(&entry.setup.scene, &unit::plain_film(entry), &settings, &mut |_| {});
+    image.noise.map_or(f64::NAN, |noise| noise * noise)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn budgets_double() {
+        assert_eq!(budgets(64, 4, true), [8, 16, 32, 64]);
+        assert_eq!(budgets(100, 3, true), [25, 50, 100]);
+        assert_eq!(budgets(4, 6, true), [1, 2, 4]);
+        assert_eq!(budgets(101, 4, false), [12, 24, 48, 96]);
+        assert_eq!(budgets(7, 6, false), [1, 2, 4]);
+        assert_eq!(budgets(0, 1, false), [1]);
+    }
+}

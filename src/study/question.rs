@@ -1,0 +1,163 @@
+//! What is asked of a study: written down first, so that what goes on later is the same study.
+
+use super::contender::Contender;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// All that decides about the numbers of a study.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Question {
+    /// The program and its version.
+    pub program: String,
+    /// Every scene.
+    pub scenes: Vec<SceneQuestion>,
+    /// `name=value` pairs for all scenes.
+    pub definitions: Vec<(String, String)>,
+    /// Width and height in place of the scenes' own [pixels].
+    pub size: Option<[u32; 2]>,
+    /// Everybody, in the order of their turns.
+    pub contenders: Vec<Contender>,
+    /// Renders of each contender, two at least.
+    pub seeds: u64,
+    /// The first of them.
+    pub first_seed: u64,
+    /// Most budgets, each twice the one before.
+    pub doublings: u32,
+    /// The largest budget.
+    pub effort: Effort,
+    /// Threads that render.
+    pub threads: usize,
+    /// What errors are measured against.
+    pub reference: Wanted,
+}
+
+/// A scene of a study.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct SceneQuestion {
+    /// As in file names.
+    pub name: String,
+    /// Of the scene file's content.
+    pub fingerprint: String,
+}
+
+/// How long to render.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Effort {
+    /// Samples per pixel.
+    Samples(u64),
+    /// Time [s].
+    Seconds(f64),
+}
+
+impl Effort {
+    /// So many times as much.
+    pub fn times(self, factor: u64) -> Self {
+        match self {
+            Self::Samples(samples) => Self::Samples(samples.saturating_mul(factor)),
+            Self::Seconds(seconds) => Self::Seconds(seconds * factor as f64),
+        }
+    }
+}
+
+/// A reference as it is asked for.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Wanted {
+    /// Read from files, one a scene.
+    Files(Vec<ReferenceFile>),
+    /// Made here.
+    Made {
+        /// By the first of these that is not among the contenders and covers the scene.
+        others: Vec<String>,
+        /// True if the first of them is taken whatever it is.
+        is_given: bool,
+        /// For how long, all batches together; none for several times a contender's whole effort.
+        effort: Option<Effort>,
+    },
+}
+
+/// A reference in a file.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct ReferenceFile {
+    /// Where it lies.
+    pub file: String,
+    /// Of its content.
+    pub fingerprint: String,
+    /// Its relMSE, where somebody knows it.
+    pub own_relmse: Option<f64>,
+}
+
+/// A fingerprint of `bytes`: FNV-1a (Fowler, Noll, Vo), 64 bits.
+pub fn fingerprint(bytes: &[u8]) -> String {
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+        (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    format!("{hash:016x}")
+}
+
+/// The first thing that two questions do not share: where, the old and the new.
+pub fn first_difference(old: &Question, new: &Question) -> Option<(String, String, String)> {
+    let value = |question: &Question| serde_json::to_value(question).unwrap_or_default();
+    differ("", &value(old), &value(new))
+}
+
+fn differ(place: &str, old: &Value, new: &Value) -> Option<(String, String, String)> {
+    let inside = |name: &str| if place.is_empty() { name.to_owned() } else { format!("{place}.{name}") };
+    match (old, new) {
+        _ if old == new => None,
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
+            a.iter().find_map(|(name, old)| differ(&inside(name), old, &b[name]))
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            (0..a.len()).find_map(|i| differ(&format!("{place}[{i}]"), &a[i], &b[i]))
+        }
+        _ => Some((place.to_owned(), old.to_string(), new.to_string())),
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    pub fn question() -> Question {
+        let contender = |name: &str| Contender { name: name.into(), words: format!("--integrator {name}") };
+        Question {
+            program: "tyndall".into(),
+            scenes: vec![SceneQuestion { name: "fog".into(), fingerprint: fingerprint(b"fog") }],
+            definitions: Vec::new(),
+            size: None,
+            contenders: vec![contender("bdpt"), contender("pt")],
+            seeds: 2,
+            first_seed: 0,
+            doublings: 3,
+            effort: Effort::Samples(4),
+            threads: 1,
+            reference: Wanted::Made { others: vec!["--integrator lt".into()], is_given: false, effort: None },
+        }
+    }
+
+    #[test]
+    fn the_first_difference_is_named() {
+        let old = question();
+        assert_eq!(first_difference(&old, &old), None);
+        let mut new = question();
+        new.contenders[1].words += " --max-depth 3";
+        let (place, before, after) = first_difference(&old, &new).unwrap();
+        assert_eq!(place, "contenders[1].words");
+        assert!(before.ends_with("pt\"") && after.ends_with("3\""), "{before} {after}");
+        new = Question { effort: Effort::Seconds(4.0), ..question() };
+        assert_eq!(first_difference(&old, &new).unwrap().0, "effort");
+        new.effort = Effort::Samples(4);
+        new.contenders.pop();
+        assert_eq!(first_difference(&old, &new).unwrap().0, "contenders");
+    }
+
+    #[test]
+    fn fingerprints_are_those_of_the_standard() {
+        // From the tables of draft-eastlake-fnv.
+        assert_eq!(fingerprint(b""), "cbf29ce484222325");
+        assert_eq!(fingerprint(b"a"), "af63dc4c8601ec8c");
+        assert_eq!(fingerprint(b"foobar"), "85944171f73967e8");
+    }
+}
