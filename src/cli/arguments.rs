@@ -458,7 +458,7 @@ mod tests {
             ("render a.xml -o a.jpg", ".hdr or .png"),
             ("render a.xml --integrator bdp", "bdpt"),
             ("render a.xml --strategies hit,jion", "join"),
-            ("render a.xml --heuristic balanec", "\"balance\""),
+            ("render a.xml --heuristic balanec", "balance, power"),
             ("render a.xml --heuristic cutoff:1", "below 1"),
             ("convert a.xml", "OUT"),
             ("convert a.xml b.json -D res", "name=value"),

@@ -40,7 +40,9 @@ pub fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result
     }
     let (max_depth, hide_emitters) = (max_depth(asked, setup)?, setup.integrator.hide_emitters);
     let heuristic = heuristic(asked, setup);
-    check_depth(asked, heuristic, max_depth)?;
+    if strategies != Strategies::NONE {
+        check_depth(asked, heuristic, max_depth)?;
+    }
     Ok(Options { strategies, heuristic, max_depth, hide_emitters, seed })
 }
 
