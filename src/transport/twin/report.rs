@@ -194,6 +194,7 @@ impl Report {
         led.check(name, "led walks");
         fast_sum.check(name, "sum of the fast weights");
         assert!(*slow_sum < 1e-12, "{name}: sum of the slow weights {slow_sum:e} off");
+        assert!(close * 4 <= *paths, "{name}: {close} of {paths} too close to tell");
         assert!((blocked + unclear) * 500 <= *paths, "{name}: {blocked} blocked, {unclear} unclear");
     }
 }
