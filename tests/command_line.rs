@@ -147,6 +147,21 @@ fn frames_are_numbered_files_and_the_same_alone() {
 }
 
 #[test]
+fn heuristics_can_be_chosen() {
+    let lamp = lamp_ball([0.0, 0.0, 0.0], 0.3, 1.0);
+    let desk = Desk::new(&scene(&[("sensor", camera([0.0, 0.0, 3.0], [0.0; 3], 4)), ("lamp", lamp)]));
+    for heuristic in ["balance", "power", "maximum", "cutoff:0.3 --max-depth 32", "uniform"] {
+        desk.run(&format!("render scene.json --spp 1 --heuristic {heuristic}")).succeeds();
+    }
+    desk.run("render scene.json --heuristic cutoff").is_refused(&["max_depth", "32", "no limit"]);
+    desk.run("render scene.json --heuristic cutoff --max-depth 33").is_refused(&["--max-depth", "32", "33"]);
+    let told = desk.run("render scene.json --integrator fog --heuristic power").succeeds().err();
+    assert!(told.contains("--heuristic has no effect"), "{told}");
+    let told = desk.run("info scene.json").succeeds().out();
+    assert!(told.contains("weighed by the balance heuristic"), "{told}");
+}
+
+#[test]
 fn trackers_can_be_forced() {
     let desk = Desk::new(&drifting());
     let told = |words: &str| desk.run(&format!("info scene.json {words}")).succeeds().out();

@@ -26,7 +26,7 @@ fn measure(parts: &[(&str, Value)], heuristic: &str, set: Strategies, samples: u
     let integrator = json!({"type": "bdpt", "max_depth": 24, "heuristic": heuristic});
     let parts = [parts, &[("integrator", integrator)]].concat();
     let stage = Stage::new(&scene(&parts));
-    assert_eq!(stage.setup.integrator.heuristic, Heuristic::parse(heuristic).unwrap());
+    assert_eq!(Heuristic::parse(heuristic), Ok(stage.setup.integrator.heuristic));
     Sample::of(&stage.renders(set, samples, first..first + SEEDS), stage.width())
 }
 

@@ -535,7 +535,7 @@ mod tests {
             ("render a.xml -o a.jpg", ".hdr or .png"),
             ("render a.xml --integrator bdp", "bdpt"),
             ("render a.xml --strategies hit,jion", "join"),
-            ("render a.xml --heuristic balanec", "\"balance\""),
+            ("render a.xml --heuristic balanec", "balance, power"),
             ("render a.xml --heuristic cutoff:1", "below 1"),
             ("render a.xml --sampler sobl", "sobol"),
             ("convert a.xml", "OUT"),

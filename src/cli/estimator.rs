@@ -41,7 +41,9 @@ pub fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result
     }
     let (max_depth, hide_emitters) = (max_depth(asked, setup)?, setup.integrator.hide_emitters);
     let heuristic = heuristic(asked, setup);
-    check_depth(asked, heuristic, max_depth)?;
+    if strategies != Strategies::NONE {
+        check_depth(asked, heuristic, max_depth)?;
+    }
     let (sampler, forced_interaction) = (sampler(asked, setup), forced_interaction(asked, setup, strategies));
     Ok(Options { strategies, heuristic, max_depth, hide_emitters, seed, sampler, forced_interaction })
 }

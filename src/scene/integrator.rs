@@ -178,7 +178,11 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
 /// `heuristic`: as [`Heuristic::parse`] reads it.
 fn heuristic(params: &Params<'_>) -> Result<Heuristic> {
     let Some(text) = params.optional_string("heuristic")? else { return Ok(Heuristic::default()) };
-    Heuristic::parse(text).map_err(|expected| params.complain("heuristic", expected, format!("\"{text}\"")))
+    Heuristic::parse(text).map_err(|expected| {
+        let error = params.complain("heuristic", expected, format!("\"{text}\""));
+        let remedy = format!("{}{}", nearest(text, &Heuristic::NAMES.map(|(name, _)| name)), error.remedy);
+        Error { remedy, ..error }
+    })
 }
 
 /// `fog`: `fog_color`, `ambient`, `threshold` [m] (BMA02 sec. 3.1 and 4.2).

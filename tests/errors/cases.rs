@@ -340,6 +340,8 @@ pub fn all() -> Vec<Case> {
         Case::json("single scattering of double depth", r#""integrator": {"type": "single_scattering", "max_depth": 3}"#),
         Case::json("single scattering in no steps", r#""integrator": {"type": "single_scattering", "step": 0}"#),
         Case::json("single scattering beyond all precision", r#""integrator": {"type": "single_scattering", "march_error": 0}"#),
+        Case::json("a heuristic nobody knows", r#""integrator": {"type": "bdpt", "heuristic": "powre"}"#),
+        Case::json("a cutoff of everything", r#""integrator": {"type": "bdpt", "heuristic": "cutoff:1"}"#),
         Case::xml("scattering or not", r#"<integrator type="nonscattering"/>"#),
         Case::json("a cylinder without a length", r#""a": {"type": "cylinder", "p0": [0, 0, 1], "p1": [0, 0, 1]}"#),
         Case::json("a cylinder out of round", r#""a": {"type": "cylinder", "to_world": [{"type": "scale", "value": [1, 2, 1]}]}"#),

@@ -19,6 +19,9 @@ use crate::{
     transport::{Counts, Estimator, Heuristic, profile::Profile},
 };
 
+/// Expected samples, over those of the likeliest strategy, that never come.
+const NEVER: f64 = 1e-30;
+
 /// What the twin knows of an estimator.
 pub struct Twin<'a> {
     pub scene: &'a Scene,
@@ -53,6 +56,14 @@ impl<'a> Twin<'a> {
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
     pub fn weights(&self, path: &Path) -> Vec<Vec<f64>> {
         sharing::weights(self.heuristic, &self.counted(path))
+    }
+
+    /// True by strategy and hero where walks come along the path so rarely, beside other strategies, that f32 need not
+    /// hold how rarely.
+    pub fn never(&self, path: &Path) -> Vec<Vec<bool>> {
+        let logs = self.counted(path);
+        let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+        logs.iter().map(|strategy| strategy.iter().map(|log| *log < most + NEVER.ln()).collect()).collect()
     }
 
     /// True if densities that are off by `slack`, relative, could make all the difference to the weights.

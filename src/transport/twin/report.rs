@@ -148,13 +148,18 @@ impl Report {
             return slow;
         }
         self.compared += 1;
-        let (mut total, mut blocked) = (0.0, false);
+        let never = twin.never(path);
+        let (mut total, mut blocked, mut whole) = (0.0, false, true);
         for hero in 0..P::Lanes::COUNT {
             if slow.iter().map(|strategy| strategy[hero]).sum::<f64>() < NEVER {
                 continue;
             }
             for (s, fast) in replay::weights(estimator, twin, path, hero).into_iter().enumerate() {
                 let slow = slow[s][hero];
+                if never[s][hero] && slow > SMALL * TOLERANCE {
+                    whole = false;
+                    continue;
+                }
                 blocked |= fast.is_none() && slow > SMALL * TOLERANCE;
                 let Some(fast) = fast else { continue };
                 total += fast;
@@ -163,7 +168,7 @@ impl Report {
             }
         }
         self.blocked += usize::from(blocked);
-        if !blocked {
+        if whole && !blocked {
             self.fast_sum.add(path, (total - 1.0).abs(), || format!("{total}"));
         }
         slow
@@ -189,6 +194,7 @@ impl Report {
         led.check(name, "led walks");
         fast_sum.check(name, "sum of the fast weights");
         assert!(*slow_sum < 1e-12, "{name}: sum of the slow weights {slow_sum:e} off");
+        assert!(close * 4 <= *paths, "{name}: {close} of {paths} too close to tell");
         assert!((blocked + unclear) * 500 <= *paths, "{name}: {blocked} blocked, {unclear} unclear");
     }
 }

@@ -23,8 +23,11 @@ pub fn is_close(heuristic: Heuristic, logs: &[Vec<f64>], slack: f64) -> bool {
     let below = || logs.iter().flatten().map(|log| most - log);
     match heuristic {
         Heuristic::Balance | Heuristic::Power | Heuristic::Uniform => false,
-        // Ties of ties are within reach of this: by which of them the fast code goes depends on its order.
-        Heuristic::Maximum => below().any(|gap| gap + slack > 0.5 * tie() && gap - slack < 3.0 * tie()),
+        // Channels of equal extinction are tied exactly. Ties of ties are within three times that: by which of them
+        // the fast code goes depends on its order.
+        Heuristic::Maximum => {
+            below().any(|gap| gap > 0.0 && gap + slack > 0.5 * tie() && gap - slack < 3.0 * tie())
+        }
         Heuristic::Cutoff { alpha } => below().any(|gap| (gap + f64::from(alpha).ln()).abs() < slack),
     }
 }
