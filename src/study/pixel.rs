@@ -395,15 +395,15 @@ impl Text<'_> {
     }
 
     fn walk(&self, walk: &Walk, longest: u32) -> WalkText {
-        let start = walk.start.as_ref().map(|leg| StartText {
-            position: self
-                .position(walk.emitter.map_or(leg.position, |start| {
+        let start =
+            walk.start.as_ref().map(|leg| StartText {
+                position: self.position(walk.emitter.map_or(leg.position, |start| {
                     if start.infinite { start.origin } else { start.position }
                 })),
-            emitter: walk.emitter.map(|start| self.emitter(start.light)),
-            density: walk.emitter.map(|Start { start, .. }| start),
-            onward: self.onward(leg),
-        });
+                emitter: walk.emitter.map(|start| self.emitter(start.light)),
+                density: walk.emitter.map(|Start { start, .. }| start),
+                onward: self.onward(leg),
+            });
         let left = walk.stops.last().map_or(walk.start.is_some(), |stop| stop.onward.is_some());
         let end = match () {
             () if left => "left the scene",
