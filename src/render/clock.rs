@@ -15,7 +15,7 @@ use crate::{
 };
 use std::time::Instant;
 
-/// Processor time of passes, summed over threads.
+/// Time of passes, summed over threads.
 #[derive(Clone, Debug)]
 pub struct Times {
     /// Of the joins of every cell [s].
@@ -52,44 +52,84 @@ pub(super) fn block<P: Profile>(ready: &Ready<'_, P>, cells: Cells, pass: usize,
     let Ready { estimator, blocks, film, seed } = ready;
     let mut watch = Watch::new(film, cells);
     let mut recorder: &mut dyn Recorder<P::Sums> = &mut watch;
-    let started = Instant::now();
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut recorder);
-    watch.times.light_walks = watch.rest_of(started);
-    let started = Instant::now();
+    let light_walks = watch.rest();
     for pixel in blocks.pixels(block) {
         let recorder: &mut dyn Recorder<P::Sums> = &mut watch;
         blocks.eye_start(estimator, film, *seed, pass, pixel).trace(estimator, &cache, recorder);
     }
-    watch.times.eye_walks = watch.rest_of(started);
-    watch.times
+    let eye_walks = watch.rest();
+    let tries = watch.joins.iter().map(|spans| spans.len() as u64).collect();
+    Times {
+        joins: watch.joins.iter().map(|spans| total(spans, watch.look)).collect(),
+        tries,
+        eye_walks,
+        light_walks,
+    }
+}
+
+/// A span longer than this, and than [`OUTLIER`] medians of its kind, held an interruption: other programs take the
+/// processor for milliseconds, joins take it for microseconds [s].
+const INTERRUPTION: f32 = 1e-3;
+/// See [`INTERRUPTION`].
+const OUTLIER: f32 = 50.0;
+
+/// Sum of `spans` [s], a look at the clock taken off each. In place of interrupted ones count as many mean ones.
+fn total(spans: &[f32], look: f64) -> f64 {
+    let mut sorted = spans.to_vec();
+    sorted.sort_by(f32::total_cmp);
+    let Some(median) = sorted.get(sorted.len() / 2) else { return 0.0 };
+    let limit = INTERRUPTION.max(OUTLIER * median);
+    let kept = sorted.partition_point(|span| *span <= limit);
+    let sum: f64 = sorted[..kept].iter().map(|span| (f64::from(*span) - look).max(0.0)).sum();
+    sum * spans.len() as f64 / kept as f64
 }
 
 /// Looks at the clock before and after every join.
 struct Watch<'a> {
     film: &'a Film,
     cells: Cells,
-    times: Times,
-    started: Instant,
-    /// What a look at the clock takes [s].
+    /// The last look.
+    last: Instant,
+    /// What a look takes [s].
     look: f64,
-    /// Time of all joins since the last [`Self::rest_of`], looks at the clock included [s].
-    joining: f64,
+    /// Spans of the joins of every cell [s].
+    joins: Vec<Vec<f32>>,
+    /// Spans between them [s].
+    between: Vec<f32>,
 }
 
 impl<'a> Watch<'a> {
     fn new(film: &'a Film, cells: Cells) -> Self {
-        let started = Instant::now();
-        const LOOKS: u32 = 100;
-        let last = (0..LOOKS).fold(started, |_, _| Instant::now());
-        let look = last.duration_since(started).as_secs_f64() / f64::from(LOOKS);
-        Self { film, cells, times: Times::new(cells), started, look, joining: 0.0 }
+        let (joins, between) = (vec![Vec::new(); cells.count()], Vec::new());
+        Self { film, cells, look: look(), joins, between, last: Instant::now() }
     }
 
-    /// The time since `started` in which nothing was joined.
-    fn rest_of(&mut self, started: Instant) -> f64 {
-        let joining = std::mem::take(&mut self.joining);
-        (started.elapsed().as_secs_f64() - joining).max(0.0)
+    /// The time since the last look.
+    fn span(&mut self) -> f32 {
+        let now = Instant::now();
+        let span = now.duration_since(self.last).as_secs_f32();
+        self.last = now;
+        span
     }
+
+    /// The time between joins so far, which is then forgotten.
+    fn rest(&mut self) -> f64 {
+        let span = self.span();
+        self.between.push(span);
+        total(&std::mem::take(&mut self.between), self.look)
+    }
+}
+
+/// What a look at the clock takes, undisturbed [s].
+fn look() -> f64 {
+    const LOOKS: u32 = 16;
+    let once = |_| {
+        let started = Instant::now();
+        let last = (1..LOOKS).fold(started, |_, _| Instant::now());
+        last.duration_since(started).as_secs_f64() / f64::from(LOOKS - 1)
+    };
+    (0..LOOKS).map(once).fold(f64::INFINITY, f64::min)
 }
 
 impl<S: Sums> Recorder<S> for Watch<'_> {
@@ -100,16 +140,13 @@ impl<S: Sums> Recorder<S> for Watch<'_> {
     fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Joined>) {}
 
     fn start(&mut self) {
-        self.started = Instant::now();
+        let span = self.span();
+        self.between.push(span);
     }
 
     fn stop(&mut self, s: u32, t: u32) {
-        let elapsed = self.started.elapsed().as_secs_f64();
-        let cell = self.cells.index(s, t);
-        // Of the two looks at the clock one lies between start and stop, one outside.
-        self.times.joins[cell] += (elapsed - self.look).max(0.0);
-        self.times.tries[cell] += 1;
-        self.joining += elapsed + self.look;
+        let span = self.span();
+        self.joins[self.cells.index(s, t)].push(span);
     }
 }
 
@@ -126,5 +163,19 @@ impl Bench<'_> {
             }
         });
         times
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn interruptions_count_as_the_mean_and_long_joins_as_they_are() {
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * b;
+        assert!(close(total(&[2e-6, 4e-6, 3e-6, 8e-3], 1e-6), 8e-6));
+        assert!(close(total(&[2e-3, 4e-3, 3e-3, 8e-3], 0.0), 17e-3));
+        assert_eq!((total(&[], 0.0), total(&[1e-7], 1e-6)), (0.0, 0.0));
+        assert!(look() < 1e-3);
     }
 }

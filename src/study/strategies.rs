@@ -56,7 +56,7 @@ pub struct Report {
     pub luminance: f64,
     /// Variance of one pass by luminance, summed over pixels; none of a single pass.
     pub variance: Option<f64>,
-    /// Processor time of one pass [s].
+    /// Time of one pass, summed over threads [s].
     pub seconds: f64,
     /// Share of time of eye walks, without joins.
     pub eye_walks: f64,
@@ -102,7 +102,8 @@ pub struct CellReport {
     /// Share of the image's mean luminance.
     pub energy: f64,
     /// Mean luminance of what it brings alone, over that of all paths of its length: 1 where it can make all of them;
-    /// none where there is no light on paths of its length.
+    /// none where there is no light on paths of its length, or on longer ones, of which several strategies count
+    /// here.
     pub alone: Option<f64>,
     /// Its weighted contribution's variance, by luminance and summed over pixels, over that of the image. Of one pass.
     pub variance: Option<f64>,
@@ -294,7 +295,9 @@ fn report(setup: &Setup, options: &Options, parts: &Parts, times: &Times, timed:
             t,
             kind: cell.kind().name(),
             energy: share(mean_luminance(&images.weighted), whole).unwrap_or(0.0),
-            alone: share(mean_luminance(&images.alone), parts.luminance_of(cell.length())),
+            alone: cell
+                .length()
+                .and_then(|_| share(mean_luminance(&images.alone), parts.luminance_of(cell.length()))),
             variance: relative(&images.weighted),
             variance_alone: relative(&images.alone),
             time: times.joins[index] / total_time,

@@ -63,13 +63,19 @@ impl Stage {
     /// The same with all layers that the scene's integrator asks for.
     pub fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
         let Setup { scene, film, integrator, .. } = &self.setup;
+        let settings = self.settings(strategies, samples_per_pixel, seed);
+        render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {})
+    }
+
+    /// How it is rendered.
+    pub fn settings(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Settings {
+        let integrator = &self.setup.integrator;
         let &Integrator { heuristic, max_depth, hide_emitters, forced_interaction, .. } = integrator;
         let sampler = self.setup.sampler;
         let options =
             Options { strategies, heuristic, max_depth, hide_emitters, seed, sampler, forced_interaction };
         let budget = Budget { samples_per_pixel: Some(samples_per_pixel), time: None };
-        let settings = Settings { options, budget, seed, profile: self.profile };
-        render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {})
+        Settings { options, budget, seed, profile: self.profile }
     }
 
     /// Renders one image per seed.

@@ -8,7 +8,7 @@ pub fn table(report: &Report) -> String {
     let [width, height] = report.size;
     let mut lines = vec![
         format!(
-            "{}: {} passes over {width} x {height} pixels, mean luminance {:.4}, {} of processor time a pass",
+            "{}: {} passes over {width} x {height} pixels, mean luminance {:.4}, {} of all threads a pass",
             report.strategies.join(","),
             report.passes,
             report.luminance,
@@ -55,7 +55,7 @@ pub fn table(report: &Report) -> String {
 const EXPLANATION: [&str; 3] = [
     "energy: share of the mean luminance. alone: what the strategy brings unweighted, over all light on paths of its length.",
     "variance: of its weighted part in one pass, over that of the image (luminance, summed over pixels; covariances apart).",
-    "time: share of processor time of its joins. tries: per pixel and pass.",
+    "time: share of the time of all threads that its joins take. tries: per pixel and pass.",
 ];
 
 fn line(cell: &CellReport) -> String {
