@@ -2,16 +2,19 @@
 
 use crate::study::outcome::Interval;
 
-/// Three significant digits: 0.00123, 45.6, 1.23×10⁻⁵. What is no number is a dash.
+/// Three significant digits: 0.00123, 45.6, 1.23×10⁻⁵. What is no number is a dash, what is beyond all numbers ∞.
 pub fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
-    if !value.is_finite() {
+    if value.is_nan() {
         return "–".into();
     }
-    let rounded = format!("{:.2e}", value.abs());
     let sign = if value < 0.0 { "−" } else { "" };
+    if value.is_infinite() {
+        return format!("{sign}∞");
+    }
+    let rounded = format!("{:.2e}", value.abs());
     match rounded.split_once('e').and_then(|(digits, exponent)| Some((digits, exponent.parse().ok()?))) {
         Some((_, exponent @ -3..=3)) => {
             let decimals = usize::try_from(2 - exponent).unwrap_or(0);
@@ -81,7 +84,7 @@ mod tests {
             (1e-30, "1.00×10⁻³⁰"),
             (1.5e300, "1.50×10³⁰⁰"),
             (f64::MIN_POSITIVE, "2.23×10⁻³⁰⁸"),
-            (f64::INFINITY, "–"),
+            (f64::INFINITY, "∞"),
             (f64::NAN, "–"),
         ];
         for (value, text) in cases {

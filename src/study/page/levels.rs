@@ -80,7 +80,8 @@ fn common_time(contenders: &[ContenderOutcome]) -> [f64; 2] {
 /// Shorter than what clocks tell apart [s]; a logarithm needs more than 0.
 const TICK: f64 = 1e-9;
 
-fn time(seconds: f64) -> f64 {
+/// A time that has a logarithm [s].
+pub fn time(seconds: f64) -> f64 {
     seconds.max(TICK)
 }
 

@@ -111,7 +111,7 @@ impl Strips {
                 .collect::<Result<_>>()?,
             bar: inline::uri(256, 1, &Scale::bar())?,
             ticks: scale.ticks(),
-            left_out: left_out(scene, &plan),
+            left_out: left_out(scene, &plan).into_iter().chain(broken(&shown)).collect(),
         })
     }
 }
@@ -169,6 +169,12 @@ fn left_out(scene: &SceneOutcome, plan: &Plan) -> Vec<String> {
     said
 }
 
+/// A word on pixels that are no light, where there are any.
+fn broken(shown: &[Vec<Shown>]) -> Option<String> {
+    let found = shown.iter().flatten().any(|shown| shown.errors.iter().any(|error| error.is_nan()));
+    found.then(|| "Magenta in images and cyan in errors: pixels that are not numbers.".into())
+}
+
 /// What all images of a scene are shown by.
 struct Brush {
     size: Size,
@@ -205,7 +211,7 @@ impl Brush {
             name,
             series,
             seconds,
-            uneven: uneven(point.seconds.mean / level.seconds),
+            uneven: uneven(levels::time(point.seconds.mean) / level.seconds),
             samples: figures::count(point.samples),
             relmse: figures::number(point.relmse.mean),
         })

@@ -128,11 +128,15 @@ impl Share {
     }
 
     fn text(&self) -> String {
-        self.ratio.map_or("1".into(), |ratio| format!("{}×", figures::number(ratio.mean)))
+        match self.ratio {
+            None => "1".into(),
+            Some(ratio) if ratio.mean.is_nan() => "–".into(),
+            Some(ratio) => format!("{}×", figures::number(ratio.mean)),
+        }
     }
 
     fn ends(&self) -> Option<String> {
-        self.ratio.map(figures::ends)
+        self.ratio.filter(|ratio| !ratio.mean.is_nan()).map(figures::ends)
     }
 }
 
