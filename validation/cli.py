@@ -107,6 +107,7 @@ def run_compare(options: argparse.Namespace) -> bool:
     page = options.output / f"{scene.name}.html"
     comparison_page.write(comparison_page.page(scene, effort, found), page)
     print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}, and all there is to see in {page}")
+    print(f"made by: {comparison_page.made_by_command()}")
     return all(isinstance(verdict, compare.Verdict) and verdict.passed for verdict in found.values())
 
 

@@ -48,11 +48,16 @@ def page(scene: Scene, effort: Effort, found: Mapping[str, Verdict | Failure]) -
     told = f"{effort.batches} independent images on both sides, {effort.spp} samples per pixel in each (a second trial: {RETRY} times as many)."
     return Page(
         scene=scene.name,
-        command=shlex.join(["python3", "-m", "validation", *sys.argv[1:]]),
+        command=made_by_command(),
         effort=told,
         sections=[section(method, verdict) for method, verdict in found.items() if isinstance(verdict, Verdict)],
         failures=[(method, str(reason)) for method, reason in found.items() if isinstance(reason, Failure)],
     )
+
+
+def made_by_command() -> str:
+    """The command that makes it again."""
+    return shlex.join(["python3", "-m", "validation", *sys.argv[1:]])
 
 
 def section(method: str, verdict: Verdict) -> Section:

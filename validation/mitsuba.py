@@ -50,11 +50,15 @@ def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None
     from validation import bake  # it needs this module
 
     use(variant)
-    if scene.is_xml:
-        loaded = load_file(scene)
-        return loaded if size is None else with_size(loaded, size)
-    tree = changed(bake.baked(scene.dictionary()), lambda o: translate_object(o, scene.folder, size))
-    return mi.load_dict(tree)
+    try:
+        if scene.is_xml:
+            loaded = load_file(scene)
+            return loaded if size is None else with_size(loaded, size)
+        tree = changed(bake.baked(scene.dictionary()), lambda o: translate_object(o, scene.folder, size))
+        return mi.load_dict(tree)
+    except (RuntimeError, TypeError, ValueError) as error:
+        problem = f"Mitsuba cannot load {scene.name} ({variant}): {error}"
+        raise Failure(problem, "name a scene that Mitsuba has all plugins of, or contenders without Mitsuba")
 
 
 def render(scene: Scene, spp: int, seed: int = 0, variant: str = "scalar_rgb", size: tuple[int, int] | None = None) -> np.ndarray:

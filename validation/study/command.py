@@ -1,6 +1,7 @@
 """The command `convergence`."""
 
 import argparse
+import math
 import os
 import platform
 import shlex
@@ -66,12 +67,14 @@ def checked(asked: Any) -> Settings:
     if asked.seeds > MOST_SEEDS or asked.points > MOST_POINTS:
         raise Failure("--seeds or --points is too great", f"give at most {MOST_SEEDS} seeds and {MOST_POINTS} points")
     for name in ("points", "threads", "minutes"):
-        if not getattr(asked, name) > 0:
+        if not 0 < getattr(asked, name) < math.inf:
             raise Failure(f"--{name} is {getattr(asked, name)}: nothing could be done", f"give a positive --{name}")
     if asked.reference and len(asked.scenes) != 1:
         raise Failure("--reference belongs to one scene", "name just that scene")
     if asked.reference and not asked.reference.is_file():
         raise Failure(f"{asked.reference}: no such reference", "name an .exr, or an .npz with mean and se")
+    if not asked.scenes and (asked.size or asked.D):
+        raise Failure("--size and -D belong to scenes that are named", "name scenes; the six standing ones are as they are")
     names = [path.stem for path in asked.scenes]
     if len(set(names)) < len(names):
         raise Failure("two scenes have one name, which would be that of their folders too", "study them one at a time")

@@ -3,12 +3,13 @@
 import hashlib
 import time
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from validation import exr
+from validation import exr, tyndall
 from validation.failure import Failure
 from validation.study import plan, truth
 from validation.study.measures import Measures, measures
@@ -63,15 +64,21 @@ def study(subject: Subject, settings: Settings, store: Store, seconds: float) ->
 
 def identity(subject: Subject, contenders: list[Rival], settings: Settings) -> dict[str, Any]:
     """Kept renders belong to a plan only if all of this is the same."""
-    given = settings.reference and hashlib.sha256(settings.reference.read_bytes()).hexdigest()
     return {
+        "tyndall": digest(tyndall.binary()),
+        "mitsuba": version("mitsuba"),
         "scene": subject.scene.key(),
         "size": subject.size and list(subject.size),
         "contenders": [rival.name for rival in contenders],
         "points": settings.points,
         "threads": settings.threads,
-        "reference": given,
+        "reference": settings.reference and digest(settings.reference),
     }
+
+
+def digest(path: Path) -> str:
+    """Changes with a file's content."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def made_plan(
@@ -80,7 +87,8 @@ def made_plan(
     """The kept plan, or a new one by pilots."""
     wanted, kept = identity(subject, contenders, settings), store.plan()
     if kept and kept["identity"] != wanted:
-        raise Failure(f"{store.folder} holds renders of another study", "name another --output, or delete that folder")
+        problem = f"{store.folder} holds renders of another study: other scene, settings, or program"
+        raise Failure(problem, "name another --output, or delete that folder")
     if kept:
         return kept
     started = time.monotonic()

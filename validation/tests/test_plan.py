@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from validation import mitsuba
+from validation import cli, mitsuba
+from validation.failure import Failure
 from validation.places import CROSSCHECK, SCENES
 from validation.scene import Scene, open_scene
 from validation.study import plan, rivals, scenes, tree
@@ -69,6 +70,34 @@ def test_the_standing_scenes_are_six_that_mitsuba_loads() -> None:
     assert len({subject.scene.name for subject in subjects}) == 6
     for subject in subjects:
         assert mitsuba.load(subject.scene, "scalar_rgb", subject.size) is not None
+
+
+def test_what_mitsuba_cannot_load_is_told() -> None:
+    scene = Scene({"type": "scene", "thing": {"type": "unicorn"}}, "fable")
+    with pytest.raises(Failure, match="Mitsuba cannot load fable .*unicorn"):
+        mitsuba.load(scene)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        ("--seeds 1", "--seeds is below 2"),
+        ("--seeds 151", "too great"),
+        ("--points 0", "--points is 0"),
+        ("--minutes nan", "--minutes is nan"),
+        ("--minutes inf", "--minutes is inf"),
+        ("--size 8x8", "belong to scenes"),
+        ("-D res=8", "belong to scenes"),
+        ("--reference a.exr", "belongs to one scene"),
+        ("a.json --reference nowhere.exr", "no such reference"),
+        ("a.json b/a.json", "one name"),
+        ("a.json", "no such scene"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(arguments: str, complaint: str, tmp_path: Path) -> None:
+    with pytest.raises(Failure, match=complaint):
+        cli.main(["convergence", *arguments.split(), "--output", str(tmp_path)])
+    assert not list(tmp_path.iterdir())
 
 
 def test_mitsuba_renders_by_another_integrator_than_the_scenes_own() -> None:

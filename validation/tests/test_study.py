@@ -14,9 +14,9 @@ from validation import exr
 from validation.failure import Failure
 from validation.places import ROOT
 from validation.scene import Scene
-from validation.study import conduct, intervals, outcome, plan, summary
+from validation.study import command, conduct, intervals, outcome, plan, summary
 from validation.study.conduct import Found, Settings
-from validation.study.rivals import Rival, Timed
+from validation.study.rivals import SEEDS_OF_PASSES, Rival, Timed
 from validation.study.scenes import Subject
 from validation.study.store import Store
 from validation.study.truth import Truth
@@ -29,6 +29,7 @@ class Noise(Rival):
     """An image of known variance per sample, in a known time; can be told to stop after some renders."""
 
     left = 1 << 30
+    seeds: list[tuple[str, int]] = []
 
     def __init__(self, name: str, deviation: float, seconds: float, scale: float = 1.0):
         self.name, self.deviation, self.seconds, self.scale = name, deviation, seconds, scale
@@ -39,6 +40,7 @@ class Noise(Rival):
             raise KeyboardInterrupt
         Noise.left -= 1
         self.rendered += 1
+        Noise.seeds.append((self.name, seed))
         self.load_seconds = 0.25
         random = np.random.default_rng([seed, spp, len(self.name)])
         return self.scale * TRUTH + random.normal(0, self.deviation / spp**0.5, TRUTH.shape), self.seconds * spp
@@ -53,6 +55,7 @@ def noises() -> list[Noise]:
 def unlimited() -> None:
     """Nobody stops, unless a test says so."""
     Noise.left = 1 << 30
+    Noise.seeds = []
 
 
 def studied(folder: Path, monkeypatch: pytest.MonkeyPatch, seeds: int = 6, points: int = 4, **more: Any) -> tuple[Found, list[Noise]]:
@@ -99,6 +102,16 @@ def test_an_interrupted_study_goes_on_to_the_same_numbers(tmp_path: Path, monkey
     studied(tmp_path / "parts", monkeypatch)
     assert Noise.left == 0  # nothing was rendered twice
     assert numbers(tmp_path / "parts") == numbers(tmp_path / "whole")
+
+
+def test_no_two_renders_share_random_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    studied(tmp_path, monkeypatch)
+    kept = [pair for pair in Noise.seeds if pair[1] != plan.PILOT_SEED]  # which a pilot renders at growing numbers
+    assert len(set(kept)) == len(kept)
+    # Mitsuba's seeds have 32 bits: so many passes as one render can have, at the last seed there may be.
+    last = max(plan.FIRST_SEED + (command.MOST_SEEDS - 1) * 64 + command.MOST_POINTS, plan.PILOT_SEED + 1)
+    assert (last + 1) * SEEDS_OF_PASSES < 2**32
+    assert plan.FIRST_SEED + (command.MOST_SEEDS - 1) * 64 + command.MOST_POINTS < plan.REFERENCE_SEED
 
 
 def test_a_finished_study_renders_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,6 +1,7 @@
 """The program from Python: the binary renders what is small."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -101,7 +102,20 @@ def test_nothing_but_numpy_and_openexr_is_imported() -> None:
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("path", [Path(__file__)])
-def test_other_files_are_no_scenes(path: Path) -> None:
+def test_other_files_are_no_scenes() -> None:
     with pytest.raises(Failure, match="neither .json nor .xml"):
-        tyndall.render(path)
+        tyndall.render(Path(__file__))
+
+
+def test_the_readmes_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    found = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert found
+    code = found[1]
+    for slow, quick in (("spp=64", "spp=1"), ("time_limit=10", "spp=1")):
+        assert slow in code
+        code = code.replace(slow, quick)
+    names: dict[str, Any] = {}
+    exec(code, names)
+    assert names["image"].shape == (240, 320, 3) and names["image"].dtype == np.float64
+    assert names["done"].image.shape == (120, 160, 3)
