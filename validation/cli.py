@@ -193,7 +193,7 @@ def add_stability(commands) -> None:
     command.add_argument("--only", default="", help="only lines whose row or case contains this")
     command.add_argument("--quick", action="store_true", help="fewer samples; a line too coarse is then no failure")
     command.add_argument("--batches", type=int, default=12, help="independent images of each line (default %(default)s)")
-    command.add_argument("--spp", type=int, help="samples a pixel in each, times the line's own factor (default 256, quick 32)")
+    command.add_argument("--spp", type=int, help="most samples a pixel in each, times the line's own factor (default 2048, quick 128)")
     command.add_argument("--seed", type=int, default=1, help="first seed (default %(default)s)")
     command.add_argument(
         "--perturb", type=float, default=0, metavar="PART", help="make all that is found greater by this part: holds if every line that can see so much refuses it"
@@ -206,5 +206,5 @@ def run_stability(options) -> bool:
 
     if options.batches < 2:
         raise Failure("--batches is below 2: no variance can be known", "give at least 8")
-    effort = stability.Effort(options.batches, options.spp or (32 if options.quick else 256), options.seed)
+    effort = stability.Effort(options.batches, options.spp or (128 if options.quick else 2048), options.seed)
     return stability.run(effort, options.output, options.only, options.perturb, strict=not options.quick)

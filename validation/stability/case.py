@@ -9,8 +9,10 @@ from validation.closed_forms.case import SIZE, camera, medium, scene
 from validation.scene import Scene, derived
 from validation.statistics import Estimate, exact
 
-Truth = float | np.ndarray | Callable[[], Estimate]
-"""Anything that broadcasts to height x width x 3, or what makes it and its own error, for truths that take time."""
+Known = float | np.ndarray | Estimate
+"""Anything that broadcasts to height x width x 3; with its own error where it has one."""
+Truth = Known | Callable[[], Known]
+"""What is known, or what makes it: for truths that take time."""
 
 BLACK = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0, 0, 0]}}
 NULL = {"type": "null"}
@@ -18,6 +20,8 @@ ISOTROPIC = {"type": "isotropic"}
 EYE = {"pt": 1.0, "bdpt": 1.0}
 """Methods for scenes that light tracing sees next to nothing of: a view as narrow as a beam."""
 ALL = {"pt": 1.0, "bdpt": 1.0, "lt": 1.0}
+LIGHT_RESOLVES = 0.06
+"""What light tracing must resolve: its noise is several times that of the others."""
 TRACKERS = ("exact", "march", "null_collision")
 """Of grids."""
 
@@ -32,7 +36,7 @@ class Case:
     scene: Scene
     truth: Truth
     methods: Mapping[str, float]
-    """Integrators, with a tracker after a colon, each with its samples relative to the usual."""
+    """Integrators, with strategies after a slash and a tracker after a colon, each with its samples relative to the usual."""
     source: str
     """Where the truth comes from."""
     resolves: float = 0.02
@@ -40,9 +44,18 @@ class Case:
     coarse: str = ""
     """Why a smaller error cannot be seen in reasonable time."""
 
+    flaw: str = ""
+    """Why the renderer is known to be off here; the line is told as a known flaw as long as it is off by no more than:"""
+    flawed_by: float = 0
+
+    def required(self, method: str) -> float:
+        """The relative error that must not go unseen by a method."""
+        return max(self.resolves, LIGHT_RESOLVES) if method.startswith("lt") else self.resolves
+
     def expected(self) -> Estimate:
         """The truth as an image."""
-        truth = self.truth() if callable(self.truth) else exact(self.truth)
+        known = self.truth() if callable(self.truth) else self.truth
+        truth = known if isinstance(known, Estimate) else exact(known)
         whole = lambda values: np.broadcast_to(values, (SIZE, SIZE, 3))
         return Estimate(whole(truth.mean), whole(truth.variance), truth.freedom)
 

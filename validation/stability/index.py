@@ -58,9 +58,9 @@ def chords() -> np.ndarray:
 
 
 def white_ball(index: float) -> Case:
-    """A ball of white fog in an oven, in a rough interface, which light can be joined through."""
+    """A ball of white fog in an oven, in a rough interface, which is as good as smooth: light tracing cannot see through."""
     source = oven(f"oven {index:.6f}", ball=ball(fog(1, 1), interface("roughdielectric", index)))
-    return Case(ROW, f"white ball in roughdielectric {told(index)}", source, 1, ALL, "furnace")
+    return Case(ROW, f"white ball in roughdielectric {told(index)}", source, 1, EYE, "furnace")
 
 
 def floor(index: float) -> Case:

@@ -46,10 +46,13 @@ class Found:
 
     def resolution(self, rows: int) -> float:
         """The relative difference that is all but surely refused among so many rows; infinite where the truth is 0."""
-        if not self.expected:
-            return np.inf
+        return self.limit(self.freedom, rows) * self.error / abs(self.expected) if self.expected else np.inf
+
+    @staticmethod
+    def limit(freedom: float, rows: int) -> float:
+        """The same in standard errors."""
         each = -np.expm1(np.log1p(-SIGNIFICANCE) / rows) / 2 / 3
-        return float((stats.t.isf(each / 2, self.freedom) + NOTICED) * self.error / abs(self.expected))
+        return float(stats.t.isf(each / 2, freedom)) + NOTICED
 
 
 def judge(batches: np.ndarray, single: np.ndarray, truth: Estimate, seconds: float, factor: float = 1) -> Found:
@@ -63,9 +66,10 @@ def judge(batches: np.ndarray, single: np.ndarray, truth: Estimate, seconds: flo
     z = standard_score(whole, whole_truth)
     channel = int(np.nan_to_num(np.abs(z), nan=np.inf).argmax())
     tiles, tiles_truth = estimate(tiled(batches)[..., channels]), pooled(truth, TILES, channels)
+    # A tile that nothing fell into tells no error of its own: it has the average tile's at least.
+    tiles = Estimate(tiles.mean, np.maximum(tiles.variance, TILES**2 * whole.variance), tiles.freedom)
     z_tiles = standard_score(tiles, tiles_truth)
-    # A tile that nothing fell into tells no error of its own.
-    normal = ~(np.maximum(tiles.error, TILES * whole.error) > FEW * np.abs(whole_truth.mean))
+    normal = ~(tiles.error > FEW * np.abs(whole_truth.mean))
     expected = float(whole_truth.mean[channel])
     mean = truth.mean.mean(axis=(0, 1))
     worst = np.nanmax(np.where(np.isfinite(single), single, np.nan) / np.where(mean, mean, 1), initial=0)
@@ -100,7 +104,9 @@ def freedom_of(ours: Estimate, truth: Estimate, channel: int) -> float:
     a, b = float(ours.variance[channel]), float(truth.variance[channel])
     if not np.isfinite(a) or a + b == 0:
         return ours.freedom
-    return (a + b) ** 2 / (a**2 / ours.freedom + b**2 / truth.freedom)
+    share = a / (a + b)
+    inverse = share**2 / ours.freedom + (1 - share) ** 2 / truth.freedom
+    return 1 / inverse if inverse else np.inf
 
 
 def chance(z: np.ndarray) -> float:

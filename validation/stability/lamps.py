@@ -1,11 +1,14 @@
 """Emitter radius 1e-5, light against a surface, radiance 1e-20 and 1e20."""
 
+from functools import partial
+
 import numpy as np
 
 from validation.closed_forms import point_light
 from validation.closed_forms.case import scene
 from validation.closed_forms.slab import Slab, lit_slab
 from validation.scene import Scene
+from validation.stability.anisotropy import fog_image
 from validation.stability.case import (
     ALL,
     BLACK,
@@ -52,7 +55,7 @@ def tiny() -> list[Case]:
             source = lit_floor(f"{shape} in {name}", tiny_lamp(shape), FLOOR_VIEW, sigma_t)
             truth = lit_image(shape, sigma_t)
             found.append(Case(RADIUS, f"floor lit by a {shape} in {name}", source, truth, ALL, "inverse square, exp(-tau)"))
-    found.append(Case(RADIUS, "fog lit by a sphere, scattered once", lit_fog(), single(), EYE, "quadrature"))
+    found.append(Case(RADIUS, "fog lit by a sphere, scattered once", lit_fog(), partial(fog_image, 0), EYE, "quadrature"))
     return found
 
 
@@ -103,11 +106,6 @@ def lit_fog() -> Scene:
     place = {"center": point_light.LIGHT.tolist(), "radius": TINY}
     bulb = {"type": "sphere", **place, "bsdf": BLACK, "exterior": air, "emitter": lamp(radiance)}
     return Scene({**source.source, "light": bulb}, "tiny lamp in fog", {})
-
-
-def single() -> np.ndarray:
-    """Its image."""
-    return point_light.image(lambda cosine: 1 / (4 * np.pi))
 
 
 # Against a surface

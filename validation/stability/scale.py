@@ -1,6 +1,6 @@
 """Scene scale 1e-6 to 1e6 with extinction scaled inversely, and a scene 1e5 units from the origin: the same image."""
 
-from functools import cache
+from functools import cache, partial
 
 from validation import references
 from validation.closed_forms import point_light
@@ -9,6 +9,7 @@ from validation.closed_forms.slab import Slab, lit_slab
 from validation.compare import Effort
 from validation.scene import Scene
 from validation.stability.case import ALL, EYE, ISOTROPIC, NULL, Case, diffuse, fog, lamp, moved, named, scaled
+from validation.stability.anisotropy import fog_image
 from validation.statistics import Estimate, estimate
 
 SCALE = "scene scale 1e-6 to 1e6"
@@ -22,8 +23,8 @@ SLAB = Slab(0.9, 2, 0.75)
 def cases() -> list[Case]:
     """All of them."""
     found = []
-    for size in SCALES:
-        methods = ALL if size in (1e-6, 1e-3, 1.0, 1e3, 1e6) else EYE
+    for size in SCALES[::2]:
+        methods = ALL if size in (1e-6, 1.0, 1e6) else EYE
         found.append(Case(SCALE, f"room with fog, x {size:g}", scaled(room(), size), reference, methods, "Mitsuba at scale 1"))
     for size in (1e-6, 1e6):
         found += [Case(SCALE, f"{case.name}, x {size:g}", scaled(case.scene, size), case.truth, case.methods, case.source) for case in known()]
@@ -57,5 +58,4 @@ def known() -> list[Case]:
         Case("", f"slab {total}", named(lit_slab(SLAB, total, blocker), f"slab {total}"), truth, EYE, "adding-doubling")
         for total, truth, blocker in zip(("UR1", "UT1"), SLAB.totals(), (-1.5, 1.5))
     ]
-    phase = lambda cosine: point_light.henyey_greenstein(cosine, 0)
-    return [*slabs, Case("", "point light in fog", point_light.lit("fog", ISOTROPIC), point_light.image(phase), EYE, "quadrature")]
+    return [*slabs, Case("", "point light in fog", point_light.lit("fog", ISOTROPIC), partial(fog_image, 0), EYE, "quadrature")]
