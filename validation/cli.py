@@ -40,6 +40,7 @@ def parser() -> argparse.ArgumentParser:
     add_pane(commands)
     add_plume(commands)
     add_page(commands)
+    add_stability(commands)
     add_selftest(commands)
     add_convergence(commands)
     add(commands, "test", lambda _: package_tests.run(), "The tests of this package itself.")
@@ -219,3 +220,25 @@ def add_convergence(commands: Commands) -> None:
 
 def run_convergence(options: argparse.Namespace) -> bool:
     return convergence.run(options, options.size, parameters_of(options))
+
+
+def add_stability(commands: Commands) -> None:
+    command = add(commands, "stability", run_stability, "Extremes of every number that a scene gives, each against truth.")
+    command.add_argument("--only", default="", help="only lines whose row or case contains this")
+    command.add_argument("--quick", action="store_true", help="fewer samples; a line too coarse is then no failure")
+    command.add_argument("--batches", type=int, default=12, help="independent images of each line (default %(default)s)")
+    command.add_argument("--spp", type=int, help="most samples a pixel in each, times the line's own factor (default 2048, quick 128)")
+    command.add_argument("--seed", type=int, default=1, help="first seed (default %(default)s)")
+    command.add_argument(
+        "--perturb", type=float, default=0, metavar="PART", help="make all that is found greater by this part: holds if every line that can see so much refuses it"
+    )
+    command.add_argument("--output", type=Path, default=OUTPUT / "stability", help="folder for the tables (default %(default)s)")
+
+
+def run_stability(options: argparse.Namespace) -> bool:
+    from validation.stability import run as stability  # it makes scenes' volumes, which no other command needs
+
+    if options.batches < 2:
+        raise Failure("--batches is below 2: no variance can be known", "give at least 8")
+    effort = stability.Effort(options.batches, options.spp or (128 if options.quick else 2048), options.seed)
+    return stability.run(effort, options.output, options.only, options.perturb, strict=not options.quick)

@@ -21,7 +21,7 @@ use crate::{
     emitter::{self, Emitter},
     error::{Error, Result},
     film::Film,
-    math::{DVec3, Vec3},
+    math::{DVec3, Vec2, Vec3},
     medium::{self, Blueprint, Choice, MediumIndex, Treatment},
     sampling::Sampler,
     sensor::{self, Crop, Sensor},
@@ -85,7 +85,8 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     let treatment = integrator.restriction.treatment();
     let treatment = Treatment { tracker: overrides.tracker.or(treatment.tracker), ..treatment };
     let time = builder.place.time;
-    let scene = builder.finish(view.sensor, view.medium, &sections.sensor.location, &treatment)?;
+    let scene =
+        builder.finish(view.sensor, view.start, view.medium, &sections.sensor.location, &treatment)?;
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }
@@ -122,6 +123,8 @@ pub(super) fn only_one(second: &Child<'_>, what: &str) -> Error {
 /// The camera with its film.
 struct View {
     sensor: Sensor,
+    /// Where the ray through the middle of the image starts: on the near plane.
+    start: Vec3,
     film: Film,
     sampling: Sampling,
     medium: Option<MediumIndex>,
@@ -307,13 +310,16 @@ impl<'a> Builder<'a> {
         let crop = Crop { film: film.window.full_size, offset: film.window.offset };
         let sensor = sensor::build(&params, self.recentre, crop)?;
         params.finish()?;
-        Ok(View { sensor, film, sampling, medium })
+        let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
+        let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;
+        Ok(View { sensor, start, film, sampling, medium })
     }
 
     /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
     fn finish(
         mut self,
         sensor: Sensor,
+        start: Vec3,
         stated: Option<MediumIndex>,
         sensor_location: &Location,
         treatment: &Treatment,
@@ -325,7 +331,8 @@ impl<'a> Builder<'a> {
         let ambient = stated.unwrap_or(MediumIndex::VACUUM);
         let sensor_medium = match stated {
             Some(medium) => medium,
-            None => finder.around(sensor.position(), ambient, sensor_location, "the camera"),
+            // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
+            None => finder.around(start, ambient, sensor_location, "the camera"),
         };
         let (recentre, outside) = (self.recentre, finder.far_outside(sensor_medium));
         let viewpoint = sensor.position();

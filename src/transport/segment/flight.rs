@@ -110,7 +110,8 @@ pub fn fly<P: Profile>(
     if P::NULLS {
         fly_through::<P>(scene, ray, medium, hidden, hero, remaining, stream, along)
     } else {
-        let Leg { landing, depth, ratio, .. } = fly_leg::<P>(scene, ray, medium, hero, remaining, stream);
+        let Leg { landing, depth, ratio, .. } =
+            fly_leg::<P>(scene, ray, 0.0, medium, hero, remaining, stream);
         Flight { landing, medium, depth, ratio, tint: Spectrum::ONE }
     }
 }
@@ -126,11 +127,12 @@ struct Leg<L> {
     length: f32,
 }
 
-/// A flight to the next surface, in one medium.
+/// A flight to the next surface, in one medium that began `skipped` metres before the ray does.
 #[inline(always)]
 fn fly_leg<P: Profile>(
     scene: &Scene,
     ray: Ray,
+    skipped: f32,
     medium: MediumIndex,
     hero: usize,
     remaining: f32,
@@ -142,7 +144,7 @@ fn fly_leg<P: Profile>(
     {
         return fly_varying::<P>(scene, ray, varying, hero, remaining, stream);
     }
-    fly_straight::<P>(scene, ray, medium, hero, remaining)
+    fly_straight::<P>(scene, ray, skipped, medium, hero, remaining)
 }
 
 /// In a homogeneous medium: one ray, no longer than the sampled distance.
@@ -150,18 +152,21 @@ fn fly_leg<P: Profile>(
 fn fly_straight<P: Profile>(
     scene: &Scene,
     mut ray: Ray,
+    skipped: f32,
     medium: &Medium,
     hero: usize,
     remaining: f32,
 ) -> Leg<P::Lanes> {
     let sigma_t = P::Lanes::from_spectrum(medium.sigma_t);
     let limit = ray.t_max;
-    let collision = if P::MEDIA { remaining / sigma_t.hero(hero) } else { f32::INFINITY };
+    let flown = if P::MEDIA { remaining / sigma_t.hero(hero) } else { f32::INFINITY };
+    // A collision in what was skipped happens where the ray starts: nearer to the surface it might be behind it.
+    let collision = if flown < skipped { 0.0 } else { flown - skipped };
     ray.t_max = collision.min(limit);
     let (landing, distance) = match scene.geometry.closest(&ray) {
-        Some(hit) => (Landing::Surface(scene.geometry.surface(&ray, &hit)), hit.t),
+        Some(hit) => (Landing::Surface(scene.geometry.surface(&ray, &hit)), hit.t + skipped),
         None if collision < limit => {
-            (Landing::Medium(ray.origin + ray.direction * collision, medium.matter()), collision)
+            (Landing::Medium(ray.origin + ray.direction * collision, medium.matter()), flown)
         }
         None => (Landing::Escape, f32::INFINITY),
     };
@@ -217,8 +222,9 @@ fn fly_through<P: Profile>(
     let mut depth = P::Lanes::splat(0.0);
     let mut ratio = P::Lanes::splat(1.0);
     let mut tint = Spectrum::ONE;
+    let mut skipped = 0.0;
     loop {
-        let leg = fly_leg::<P>(scene, ray, medium, hero, remaining, stream);
+        let leg = fly_leg::<P>(scene, ray, skipped, medium, hero, remaining, stream);
         if P::EMISSIVE {
             let section = Section { origin: ray.origin, direction: ray.direction, length: leg.length };
             along(&Flown { medium, section, depth, ratio, tint, certain: false }, stream);
@@ -239,7 +245,7 @@ fn fly_through<P: Profile>(
             }
         }
         remaining = (remaining - leg.spent).max(0.0);
-        ray = past(&ray, &point);
+        (ray, skipped) = past(&ray, &point);
         medium = scene.medium_beyond(&point, &ray, medium);
     }
 }

@@ -43,6 +43,8 @@ struct Way<L> {
 struct Part<L> {
     medium: MediumIndex,
     section: Section,
+    /// How far before the section the medium began [m], see [`past`].
+    skipped: f32,
     before: Way<L>,
     /// What it adds to the depth by which collisions are drawn.
     depth: f32,
@@ -57,12 +59,13 @@ impl<L: Lanes> Way<L> {
         Self { depth: zero, through: one, ratio: one, tint: Spectrum::ONE, spent: 0.0 }
     }
 
-    /// Goes along `section` of `medium`.
+    /// Goes along `section` of `medium`, which began `skipped` metres before it does.
     fn add(
         &mut self,
         scene: &Scene,
         medium: MediumIndex,
         section: &Section,
+        skipped: f32,
         hero: usize,
         stream: &mut Stream,
     ) {
@@ -75,7 +78,7 @@ impl<L: Lanes> Way<L> {
                 (depth, through, spent, through.scaled(spent.min(DEEPEST).exp()))
             }
             None => {
-                let depth = depth_of(L::from_spectrum(medium.sigma_t), section.length);
+                let depth = depth_of(L::from_spectrum(medium.sigma_t), section.length + skipped);
                 let ratio = depth.flight_ratio(L::splat(1.0), hero);
                 (depth, depth.exp_neg(), depth.hero(hero), ratio)
             }
@@ -115,6 +118,7 @@ fn follow<P: Profile>(
 ) -> (Vec<Part<P::Lanes>>, End<P::Lanes>, f32) {
     let mut parts = Vec::new();
     let mut way = Way::new();
+    let mut skipped = 0.0;
     loop {
         let hit = scene.geometry.closest(&ray);
         let length = hit.map_or(ray.t_max, |hit| hit.t);
@@ -124,10 +128,10 @@ fn follow<P: Profile>(
             let Way { depth, through, tint, .. } = before;
             along(&Flown { medium, section, depth, ratio: through, tint, certain: true }, stream);
         }
-        way.add(scene, medium, &section, hero, stream);
+        way.add(scene, medium, &section, skipped, hero, stream);
         let depth = way.spent - before.spent;
         if depth > 0.0 {
-            parts.push(Part { medium, section, before, depth });
+            parts.push(Part { medium, section, skipped, before, depth });
         }
         let surface = hit.map(|hit| scene.geometry.surface(&ray, &hit));
         let landing = match surface {
@@ -141,7 +145,7 @@ fn follow<P: Profile>(
                 Toll::Passed(through, probability) => {
                     way.tint *= through / probability;
                     way.depth = way.depth + P::Lanes::splat(-probability.ln());
-                    ray = past(&ray, &point);
+                    (ray, skipped) = past(&ray, &point);
                     medium = scene.medium_beyond(&point, &ray, medium);
                     continue;
                 }
@@ -165,7 +169,7 @@ fn collide<P: Profile>(
     let caught = -f64::from(-whole).exp_m1();
     let spent = -(-stream.uniform_precisely() * caught).ln_1p() as f32;
     let part = parts.iter().find(|part| spent - part.before.spent < part.depth).unwrap_or(last);
-    let Part { medium, section, before, .. } = part;
+    let Part { medium, section, skipped, before, .. } = part;
     let remaining = (spent - before.spent).clamp(0.0, part.depth);
     let made_of = &scene.media[medium.0 as usize];
     let (t, matter, depth, ratio) = match &made_of.varying {
@@ -176,9 +180,14 @@ fn collide<P: Profile>(
         }
         None => {
             let sigma_t = P::Lanes::from_spectrum(made_of.sigma_t);
-            let t = remaining / sigma_t.hero(hero);
-            let depth = sigma_t.scaled(t);
-            (t, made_of.matter(), depth, depth.flight_ratio(P::Lanes::splat(1.0), hero))
+            let flown = remaining / sigma_t.hero(hero);
+            let depth = sigma_t.scaled(flown);
+            (
+                (flown - skipped).max(0.0),
+                made_of.matter(),
+                depth,
+                depth.flight_ratio(P::Lanes::splat(1.0), hero),
+            )
         }
     };
     // Positions are rounded: a collision at the very edge may come to lie outside.

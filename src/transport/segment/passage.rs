@@ -55,9 +55,10 @@ fn pass_through<P: Profile>(
 ) -> Option<Passage<P::Lanes>> {
     let end = ray.origin + ray.direction * ray.t_max;
     let mut way = Way::<P>::new();
+    let mut skipped = 0.0;
     loop {
         let Some(hit) = scene.geometry.closest(&ray) else {
-            way.add(scene, medium, &ray, ray.t_max + cut, stream);
+            way.add(scene, medium, &ray, ray.t_max + cut + skipped, stream);
             return Some(way.passage(medium));
         };
         let point = scene.geometry.surface(&ray, &hit);
@@ -67,8 +68,8 @@ fn pass_through<P: Profile>(
         }
         way.passing *= through.max_element();
         way.tint *= through;
-        way.add(scene, medium, &ray, hit.t, stream);
-        ray = past(&ray, &point);
+        way.add(scene, medium, &ray, hit.t + skipped, stream);
+        (ray, skipped) = past(&ray, &point);
         medium = scene.medium_beyond(&point, &ray, medium);
         if ray.t_max < f32::INFINITY {
             // Crossings are rounded: aimed anew, the segment ends where it should, not in the surface beyond.

@@ -10,7 +10,7 @@ mod path;
 mod record;
 mod replay;
 mod report;
-mod scenes;
+pub mod scenes;
 mod sharing;
 
 use super::{

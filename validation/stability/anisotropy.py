@@ -1,0 +1,70 @@
+"""g = 0, +-1e-4, +-0.999 (Henyey-Greenstein)."""
+
+from functools import cache, partial
+
+import numpy as np
+
+from validation.closed_forms import point_light
+from validation.closed_forms.slab import Slab, lit_slab
+from validation.stability import photons
+from validation.stability.case import EYE, Case, ball, medium, methods, moved, named, oven
+from validation.stability.thickness import AWAY
+from validation.statistics import Estimate
+
+ROW = "g = 0, +-1e-4, +-0.999"
+VALUES = (0.0, 1e-4, -1e-4, 0.999, -0.999)
+ALBEDO, DEPTH = 0.9, 2.0
+
+
+def cases() -> list[Case]:
+    """All of them."""
+    return [case for g in VALUES for case in (*slabs(g), in_oven(g), single(g))]
+
+
+def slabs(g: float) -> list[Case]:
+    """Reflectance and transmittance; see `photons.py` for the sharp ones."""
+    found = []
+    for i, (total, blocker) in enumerate((("UR1", -1.5), ("UT1", 1.5))):
+        sharp = abs(g) > 0.9
+        truth = partial(traced, g, i) if sharp else Slab(ALBEDO, DEPTH, g).totals()[i]
+        source = named(moved(lit_slab(Slab(ALBEDO, DEPTH, g), total, blocker), AWAY), f"slab g {g:g} {total}")
+        dim = g > 0.9 and total == "UR1"
+        found.append(
+            Case(
+                ROW,
+                f"slab {total}, g {g:g}",
+                source,
+                truth,
+                methods("pt", "bdpt", effort=8 if dim else 2),
+                "photons in double precision" if sharp else "adding-doubling",
+                resolves=0.25 if dim else 0.02,
+                coarse="one photon in 2000 comes back" if dim else "",
+            )
+        )
+    return found
+
+
+def traced(g: float, which: int) -> Estimate:
+    """One of the totals."""
+    return photons.totals(ALBEDO, DEPTH, g)[which]
+
+
+def in_oven(g: float) -> Case:
+    """A white ball in an oven. Light that passes nearly straight on hardly ever points at the lens."""
+    chosen = {"pt": 1.0, "bdpt": 1.0, "lt": 1.0}
+    if abs(g) > 0.9:
+        chosen.pop("lt")
+    inside = medium(1, 1, {"type": "hg", "g": g})
+    return Case(ROW, f"white ball in an oven, g {g:g}", oven(f"oven g {g:g}", ball=ball(inside)), 1, chosen, "furnace")
+
+
+@cache
+def fog_image(g: float) -> np.ndarray:
+    """The fog of the closed forms under a point light."""
+    return point_light.image(partial(point_light.henyey_greenstein, g=g))
+
+
+def single(g: float) -> Case:
+    """A point light in fog, scattered once."""
+    source = point_light.lit(f"g {g:g}", {"type": "hg", "g": g})
+    return Case(ROW, f"point light in fog, scattered once, g {g:g}", source, partial(fog_image, g), EYE, "quadrature")

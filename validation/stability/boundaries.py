@@ -1,0 +1,109 @@
+"""Camera on a boundary, coincident faces of touching media."""
+
+import numpy as np
+
+from validation.closed_forms.case import SKY, camera, scene
+from validation.closed_forms.slab import HALF_WIDTH, Slab, lit_slab
+from validation.scene import Scene
+from validation.stability.case import ALL, BLACK, EYE, NULL, Case, fog, lamp, methods, moved, named, oven, parallel
+from validation.stability.thickness import AWAY
+
+CAMERA = "camera on a boundary"
+TOUCHING = "coincident faces of touching media"
+SLAB = Slab(0.9, 2, 0)
+NEAR = 1e-6
+
+
+def cases() -> list[Case]:
+    """All of them."""
+    return [*on_boundary(), *touching()]
+
+
+# Camera on a boundary
+
+
+def on_boundary() -> list[Case]:
+    """Cameras exactly in the top face of a slab, looking in and out."""
+    ur1, ut1 = SLAB.totals()
+    return [
+        Case(CAMERA, "in the slab, looking in, UR1", seen("in", -1.5, inside=True), ur1, EYE, "adding-doubling"),
+        Case(CAMERA, "in the slab, looking in, UT1", seen("in lit", 1.5, inside=True), ut1, EYE, "adding-doubling"),
+        Case(CAMERA, "no medium given, looking in, UR1", seen("above", -1.5, inside=False), ur1, EYE, "adding-doubling"),
+        Case(CAMERA, "above the slab, looking out at the sky", seen("out", -1.5, inside=False, outwards=True), 1, EYE, "nothing in between"),
+        glowing(),
+    ]
+
+
+def seen(name: str, blocker: float, inside: bool, outwards: bool = False) -> Scene:
+    """The slab of the closed forms with its camera in its top face."""
+    tree = lit_slab(SLAB, name, blocker).source
+    view = camera((0, 0, 0), (0, 1 if outwards else -1, 0), 0.1, up=(0, 0, 1), near_clip=NEAR)
+    medium = {"medium": {"type": "ref", "id": "matter"}} if inside else {}
+    slab = {**tree["slab"], "interior": {"type": "ref", "id": "matter"}}
+    # "matter" first: references look back
+    return Scene({"type": "scene", "matter": tree["slab"]["interior"], **tree, "sensor": {**view, **medium}, "slab": slab}, f"camera {name}", {})
+
+
+def glowing() -> Case:
+    """The same of a cube that glows, under a wider view, for all integrators."""
+    matter = {"type": "ref", "id": "matter"}
+    view = camera((0, 0, 1), (0, 0, 0), 0.5, near_clip=NEAR, medium=matter)
+    source = scene("camera on a glowing cube", matter={**fog(1, 0), "radiance": 1.0}, sensor=view, cube={"type": "cube", "bsdf": NULL, "interior": matter})
+    return Case(CAMERA, "in a glowing cube, looking in", source, -np.expm1(-2.0), EYE, "1 - exp(-b)")
+
+
+# Coincident faces
+
+
+def touching() -> list[Case]:
+    """Slabs cut in two, absorbers one on the other, white cubes side by side in an oven."""
+    found = []
+    for total, truth, blocker in zip(("UR1", "UT1"), SLAB.totals(), (-1.5, 1.5)):
+        source = moved(halves(total, blocker), AWAY)
+        found.append(Case(TOUCHING, f"slab cut in two, {total}", source, truth, methods("pt", "bdpt", effort=2), "adding-doubling"))
+    return [*found, absorbers(), pair()]
+
+
+CUT = 0.3
+"""Depth of the cut; no number that single precision holds exactly."""
+
+
+def halves(total: str, blocker: float) -> Scene:
+    """The slab as two cubes that share a face."""
+    tree = lit_slab(SLAB, total, blocker).source
+    matter = {"type": "ref", "id": "matter"}
+    parts = {
+        name: {"type": "cube", "to_world": layer(low, high), "bsdf": NULL, "interior": matter}
+        for name, low, high in (("upper", -CUT, 0.0), ("lower", -1.0, -CUT))
+    }
+    rest = {k: v for k, v in tree.items() if k not in ("type", "slab")}
+    return Scene({"type": "scene", "matter": tree["slab"]["interior"], **rest, **parts}, f"halves {total}", {})
+
+
+def layer(low: float, high: float) -> list[dict]:
+    """From the cube to a wide layer between two heights."""
+    return [{"type": "scale", "value": [HALF_WIDTH, (high - low) / 2, HALF_WIDTH]}, {"type": "translate", "value": [0, (high + low) / 2, 0]}]
+
+
+DEPTHS = (0.3, 1.1, 0.7)
+
+
+def absorbers() -> Case:
+    """Three absorbers, one on the other, before a lamp."""
+    edges = np.array([-1, -0.37, 0.21, 1])
+    parts = {}
+    for i, (low, high, depth) in enumerate(zip(edges, edges[1:], DEPTHS)):
+        to_world = [{"type": "scale", "value": [1, 1, (high - low) / 2]}, {"type": "translate", "value": [0, 0, (high + low) / 2]}]
+        parts[f"part{i}"] = {"type": "cube", "to_world": to_world, "bsdf": NULL, "interior": fog(depth / (high - low), 0)}
+    disk = {"type": "disk", "to_world": [{"type": "translate", "value": [0, 0, -1.5]}], "bsdf": BLACK, "emitter": lamp(1)}
+    source = scene("three absorbers", sensor=parallel(0.4), lamp=disk, **parts)
+    return Case(TOUCHING, "three absorbers before a lamp", source, float(np.exp(-sum(DEPTHS))), ALL, "exp(-tau)")
+
+
+def pair() -> Case:
+    """Two white cubes of different media side by side."""
+    parts = {
+        name: {"type": "cube", "to_world": [{"type": "scale", "value": 0.6}, {"type": "translate", "value": [x, 0.1, 0]}], "bsdf": NULL, "interior": fog(s, 1, g)}
+        for name, x, s, g in (("left", -0.6, 1, 0.0), ("right", 0.6, 5, 0.5))
+    }
+    return Case(TOUCHING, "two white cubes in an oven", oven("pair", **parts), 1, ALL, "furnace")

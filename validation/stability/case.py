@@ -1,0 +1,161 @@
+"""One line of the stability table, and the scenes that its groups share."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.closed_forms.case import SIZE, camera, medium, scene
+from validation.scene import Scene, derived
+from validation.statistics import Estimate, exact
+
+Known = float | np.ndarray | Estimate
+"""Anything that broadcasts to height x width x 3; with its own error where it has one."""
+Truth = Known | Callable[[], Known]
+"""What is known, or what makes it: for truths that take time."""
+
+BLACK = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0, 0, 0]}}
+NULL = {"type": "null"}
+ISOTROPIC = {"type": "isotropic"}
+EYE = {"pt": 1.0, "bdpt": 1.0}
+"""Methods for scenes that light tracing sees next to nothing of: a view as narrow as a beam."""
+ALL = {"pt": 1.0, "bdpt": 1.0, "lt": 1.0}
+LIGHT_RESOLVES = 0.06
+"""What light tracing must resolve: its noise is several times that of the others."""
+TRACKERS = ("exact", "march", "null_collision")
+"""Of grids."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, its truth and how it is rendered."""
+
+    row: str
+    """The row of the table, in validation.md's words."""
+    name: str
+    scene: Scene
+    truth: Truth
+    methods: Mapping[str, float]
+    """Integrators, with strategies after a slash and a tracker after a colon, each with its samples relative to the usual."""
+    source: str
+    """Where the truth comes from."""
+    resolves: float = 0.02
+    """The relative error that must not go unseen at full effort; above 0.02 only with a reason in `coarse`."""
+    coarse: str = ""
+    """Why a smaller error cannot be seen in reasonable time."""
+
+    flaw: str = ""
+    """Why the renderer is known to be off here; the line is told as a known flaw as long as it is off by no more than:"""
+    flawed_by: float = 0
+
+    def required(self, method: str) -> float:
+        """The relative error that must not go unseen by a method."""
+        return max(self.resolves, LIGHT_RESOLVES) if method.startswith("lt") else self.resolves
+
+    def expected(self) -> Estimate:
+        """The truth as an image."""
+        known = self.truth() if callable(self.truth) else self.truth
+        truth = known if isinstance(known, Estimate) else exact(known)
+        whole = lambda values: np.broadcast_to(values, (SIZE, SIZE, 3))
+        return Estimate(whole(truth.mean), whole(truth.variance), truth.freedom)
+
+
+def named(source: Scene, name: str) -> Scene:
+    """The scene under a name that can be a file's."""
+    return Scene(source.source, "".join(c if c.isalnum() or c in "-+." else " " for c in name), {}, source.base)
+
+
+def methods(*names: str, effort: float = 1) -> dict[str, float]:
+    """These, all with the same effort."""
+    return dict.fromkeys(names, effort)
+
+
+def rgb(*value: float) -> dict:
+    """A colour, grey if one number is given."""
+    return {"type": "rgb", "value": [float(v) for v in (value if len(value) == 3 else 3 * value)]}
+
+
+def diffuse(reflectance: float) -> dict:
+    """A matt surface."""
+    return {"type": "diffuse", "reflectance": rgb(reflectance)}
+
+
+def lamp(radiance: float) -> dict:
+    """An area light."""
+    return {"type": "area", "radiance": rgb(radiance)}
+
+
+OVEN_RADIUS = 3.0
+
+
+def oven(name: str, radiance: float = 1, sides: dict = BLACK, **inside: dict) -> Scene:
+    """A hollow sphere that shines inwards, seen from within: whatever absorbs nothing inside shows the radiance of the
+    wall. Unlike the sky's, this furnace is one that light tracing can heat."""
+    wall = {"type": "sphere", "radius": OVEN_RADIUS, "flip_normals": True, "bsdf": sides, "emitter": lamp(radiance)}
+    return scene(name, sensor=camera((0, 0, 2.5), (0, 0, 0), 50), wall=wall, **inside)
+
+
+def ball(interior: dict, bsdf: dict = NULL) -> dict:
+    """A unit sphere of medium."""
+    return {"type": "sphere", "bsdf": bsdf, "interior": interior}
+
+
+def fog(sigma_t: float | tuple[float, ...], albedo: float, g: float = 0) -> dict:
+    """A homogeneous medium."""
+    return medium(sigma_t, albedo, {"type": "hg", "g": g} if g else ISOTROPIC)
+
+
+def parallel(half_width: float) -> dict:
+    """An orthographic view from z = 3 along -z."""
+    view = camera((0, 0, 3), (0, 0, 0), 1)
+    step = {"type": "scale", "value": [half_width, half_width, 1]}
+    straight = {k: v for k, v in view.items() if k != "fov"}
+    return {**straight, "type": "orthographic", "to_world": [step, *view["to_world"]]}
+
+
+SHAPES = ("sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply")
+VOLUMES = ("gridvolume", "constvolume")
+MEDIA = ("homogeneous", "heterogeneous")
+
+
+def scaled(source: Scene, size: float) -> Scene:
+    """The scene so many times as large, extinctions as many times smaller: the same image."""
+
+    def larger(o: dict) -> dict:
+        kind = o["type"]
+        if kind in SHAPES or kind in VOLUMES:
+            return {**o, "to_world": [*o.get("to_world", []), {"type": "scale", "value": size}]}
+        if kind == "perspective":
+            return {**o, "near_clip": size * o.get("near_clip", 0.01), "far_clip": size * o.get("far_clip", 1e4)}
+        if kind == "lookat":
+            return {**o, "origin": times(o["origin"], size), "target": times(o["target"], size)}
+        if kind == "point":
+            return {**o, "position": times(o["position"], size), "intensity": rgb(*times(o["intensity"]["value"], size**2))}
+        return {**o, "scale": o.get("scale", 1) / size} if kind in MEDIA else o
+
+    return named(derived(source, larger), f"{source.name} x {size:g}")
+
+
+def moved(source: Scene, by: tuple[float, ...]) -> Scene:
+    """The scene elsewhere."""
+    step = {"type": "translate", "value": list(by)}
+
+    def elsewhere(o: dict) -> dict:
+        if o["type"] in (*SHAPES, *VOLUMES, "perspective", "orthographic"):
+            return {**o, "to_world": [*o.get("to_world", []), step]}
+        if o["type"] == "point":
+            return {**o, "position": [a + b for a, b in zip(o["position"], by)]}
+        return o
+
+    return named(derived(source, elsewhere), f"{source.name} moved")
+
+
+def times(values: list[float], factor: float) -> list[float]:
+    """Each of them times the factor."""
+    return [factor * v for v in values]
+
+
+def with_object(source: Scene, name: str, **changes: object) -> Scene:
+    """The scene with one of its objects changed."""
+    tree = source.dictionary()
+    return Scene({**tree, name: {**tree[name], **changes}}, source.name, {}, source.base)

@@ -1,0 +1,160 @@
+"""Renders every line of the table and judges all of them together."""
+
+import os
+import subprocess
+import tempfile
+import time
+import zlib
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from validation import mitsuba, tyndall
+from validation.closed_forms.case import SIZE
+from validation.failure import Failure
+from validation.scene import Scene, changed
+from validation.stability import (
+    albedo,
+    anisotropy,
+    boundaries,
+    contrast,
+    grazing,
+    index,
+    lamps,
+    report,
+    scale,
+    thickness,
+    voids,
+    walks,
+)
+from validation.stability.case import Case
+from validation.stability.judge import Found, judge
+from validation.stability.report import Line
+from validation.statistics import Estimate
+
+GROUPS = (thickness, albedo, anisotropy, contrast, scale, lamps, boundaries, grazing, walks, index, voids)
+"""In the order of the table."""
+PATIENCE = 300
+"""Seconds after which one image counts as never finished."""
+SINGLE = 64
+"""Pixels a side of the images of one sample per pixel."""
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is rendered: independent images of each line; at most so many samples a pixel in each, times the line's own
+    factor; the first seed."""
+
+    batches: int = 12
+    spp: int = 2048
+    seed: int = 1
+
+FEWEST = 16
+"""Samples a pixel, however little noise there is."""
+AIM = 0.6
+"""Lines are rendered to this part of what they must resolve: the noise itself is an estimate."""
+
+
+def cases(only: str = "") -> list[Case]:
+    """The lines whose row or name contains `only`."""
+    return [case for group in GROUPS for case in group.cases() if only in f"{case.row}: {case.name}"]
+
+
+def run(effort: Effort, output: Path, only: str = "", perturbation: float = 0, strict: bool = True) -> bool:
+    """Makes the table; true if all of it holds or, of a perturbed one, if every line refuses what it claims to see.
+    Where it is not `strict`, too coarse a line is no failure."""
+    chosen = cases(only)
+    if not chosen:
+        raise Failure(f"no line of the stability table contains {only!r}", "name a part of a row or of a case, or leave --only out")
+    lines = []
+    print(report.HEADER, flush=True)
+    for line in found_lines(chosen, effort, 1 + perturbation):
+        lines.append(line)
+        print(report.short(line), flush=True)
+    table = report.Table(lines, perturbation, strict)
+    table.write(output)
+    print(table.summary())
+    return table.holds()
+
+
+def found_lines(chosen: list[Case], effort: Effort, factor: float) -> Iterator[Line]:
+    """Every case by every method, in order; all processors render."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        pairs = [(case, method) for case in chosen for method in case.methods]
+        yield from pool.map(lambda pair: line(*pair, effort, factor), pairs)
+
+
+def line(case: Case, method: str, effort: Effort, factor: float) -> Line:
+    """One line."""
+    start = time.perf_counter()
+    # Lines have seeds of their own, whichever of them are rendered: what chance does to one it does not do to others.
+    first = effort.seed + 1000 * (zlib.crc32(f"{case.row} {case.name}".encode()) % 100_000)
+    try:
+        truth = case.expected()
+        single = raw(case.scene, method, 1, first, SINGLE if case.methods[method] >= 0.1 else None)
+        spp = samples(case, method, single, truth, effort)
+        batches = np.stack([raw(case.scene, method, spp, first + 1 + i) for i in range(effort.batches)])
+    except Failure as failure:
+        return Line(case, method, None, str(failure))
+    return Line(case, method, judge(batches, single, truth, time.perf_counter() - start, factor))
+
+
+def samples(case: Case, method: str, single: np.ndarray, truth: Estimate, effort: Effort) -> int:
+    """Samples a pixel for the line to resolve what it must, as far as one sample of each pixel tells."""
+    most = max(1, round(case.methods[method] * effort.spp))
+    mean = truth.mean.mean(axis=(0, 1))
+    if not np.isfinite(single).all() or not mean.any():
+        return min(most, FEWEST)
+    lit = mean > 0
+    noise = float((spread(single)[lit] / mean[lit] ** 2).max())
+    if noise == 0 and not np.allclose(single.mean(axis=(0, 1)), mean, rtol=1e-3):
+        return most  # one sample has seen nothing of it
+    limit = Found.limit(effort.batches - 1, TYPICAL_LINES)
+    wanted = noise * (limit / (AIM * case.required(method))) ** 2 / (SIZE**2 * effort.batches)
+    return int(np.clip(wanted, min(most, FEWEST), most))
+
+
+TYPICAL_LINES = 300
+
+
+def spread(single: np.ndarray) -> np.ndarray:
+    """The variance of a channel's pixels, as far as it is not the picture's own: within squares that are one pixel of the
+    truth."""
+    height, width, channels = single.shape
+    if height == SIZE:
+        return single.astype(float).var(axis=(0, 1))
+    squares = single.astype(float).reshape(SIZE, height // SIZE, SIZE, width // SIZE, channels)
+    return squares.var(axis=(1, 3)).mean(axis=(0, 1))
+
+
+def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None) -> np.ndarray:
+    """An image as it is in the file, NaN and infinities included."""
+    integrator, _, tracker = method.partition(":")
+    integrator, _, strategies = integrator.partition("/")
+    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
+        output = Path(folder, "image.exr")
+        path = tyndall.scene_file(Scene(changed(scene.source, single_precision), scene.name, {}, scene.base), Path(folder))
+        options = {"-o": output, "--integrator": integrator, "--strategies": strategies, "--tracker": tracker, "--spp": spp, "--seed": seed, "--threads": 1}
+        options["--size"] = f"{size}x{size}" if size else ""
+        arguments = [str(part) for option, value in options.items() if value != "" for part in (option, value)]
+        call([str(tyndall.binary()), "render", str(path), *arguments])
+        return mitsuba.read_exr(output)
+
+
+def call(command: list[str]) -> None:
+    """Runs the program, but not for ever."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        raise Failure(f"{' '.join(command)}: not done after {PATIENCE} s", "see what does not end") from None
+    if done.returncode != 0:
+        said = (done.stderr or done.stdout).strip()[-2000:]
+        raise Failure(f"{' '.join(command)}\n  exit code {done.returncode}: {said}", "run the command by hand")
+
+
+def single_precision(o: dict) -> dict:
+    """Films that can hold 1e20; Mitsuba's default is half precision."""
+    return {**o, "component_format": "float32"} if o["type"] == "hdrfilm" else o

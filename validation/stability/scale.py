@@ -1,0 +1,61 @@
+"""Scene scale 1e-6 to 1e6 with extinction scaled inversely, and a scene 1e5 units from the origin: the same image."""
+
+from functools import cache, partial
+
+from validation import references
+from validation.closed_forms import point_light
+from validation.closed_forms.case import camera, scene
+from validation.closed_forms.slab import Slab, lit_slab
+from validation.compare import Effort
+from validation.scene import Scene
+from validation.stability.case import ALL, EYE, ISOTROPIC, NULL, Case, diffuse, fog, lamp, moved, named, scaled
+from validation.stability.anisotropy import fog_image
+from validation.statistics import Estimate, estimate
+
+SCALE = "scene scale 1e-6 to 1e6"
+ORIGIN = "a scene 1e5 units from the origin"
+SCALES = tuple(10.0**k for k in range(-6, 7))
+FAR = (1e5, -1e5, 1e5)
+REFERENCE = Effort(batches=16, spp=1024, seed=77)
+SLAB = Slab(0.9, 2, 0.75)
+
+
+def cases() -> list[Case]:
+    """All of them."""
+    found = []
+    for size in SCALES[::2]:
+        methods = ALL if size in (1e-6, 1.0, 1e6) else EYE
+        found.append(Case(SCALE, f"room with fog, x {size:g}", scaled(room(), size), reference, methods, "Mitsuba at scale 1"))
+    for size in (1e-6, 1e6):
+        found += [Case(SCALE, f"{case.name}, x {size:g}", scaled(case.scene, size), case.truth, case.methods, case.source) for case in known()]
+    far = Case(ORIGIN, "room with fog", moved(room(), FAR), reference, ALL, "Mitsuba at the origin")
+    return [*found, far, *(Case(ORIGIN, case.name, moved(case.scene, FAR), case.truth, case.methods, case.source) for case in known())]
+
+
+def room() -> Scene:
+    """A floor, a matt ball, a ball of fog and a lamp."""
+    flat = [{"type": "rotate", "axis": [1, 0, 0], "angle": -90}]
+    over = [{"type": "scale", "value": 0.6}, {"type": "rotate", "axis": [1, 0, 0], "angle": 90}, {"type": "translate", "value": [0.2, 2, 0.3]}]
+    return scene(
+        "room",
+        sensor=camera((0.3, 1.6, 4), (0, 0.5, 0), 32),
+        floor={"type": "rectangle", "to_world": [{"type": "scale", "value": 2}, *flat], "bsdf": diffuse(0.6)},
+        stone={"type": "sphere", "center": [0.7, 0.4, -0.4], "radius": 0.4, "bsdf": diffuse(0.8)},
+        cloud={"type": "sphere", "center": [-0.5, 0.7, 0.1], "radius": 0.6, "bsdf": NULL, "interior": fog((1, 2, 4), 0.9, 0.5)},
+        lamp={"type": "rectangle", "to_world": over, "bsdf": diffuse(0), "emitter": lamp(5)},
+    )
+
+
+@cache
+def reference() -> Estimate:
+    """The room by Mitsuba."""
+    return estimate(references.cached(room())(REFERENCE).astype(float))
+
+
+def known() -> list[Case]:
+    """Scenes of known image: a slab, and a point light in fog."""
+    slabs = [
+        Case("", f"slab {total}", named(lit_slab(SLAB, total, blocker), f"slab {total}"), truth, EYE, "adding-doubling")
+        for total, truth, blocker in zip(("UR1", "UT1"), SLAB.totals(), (-1.5, 1.5))
+    ]
+    return [*slabs, Case("", "point light in fog", point_light.lit("fog", ISOTROPIC), partial(fog_image, 0), EYE, "quadrature")]

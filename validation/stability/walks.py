@@ -1,0 +1,28 @@
+"""Walks of 10 000 vertices."""
+
+from validation.closed_forms.case import camera, scene
+from validation.closed_forms.furnace import ball_of_medium
+from validation.scene import Scene
+from validation.stability.case import NULL, Case, lamp, diffuse, named
+
+ROW = "walks of 10 000 vertices"
+LOSS = 1e-4
+"""Of light at each reflection: walks have 10 000 vertices in the mean."""
+THICK = 1.5e4
+"""A ball of this optical diameter: light that crosses it anyhow collides 2/3 so often in the mean."""
+
+
+def cases() -> list[Case]:
+    """A ball that loses nothing, and rooms that all but lose nothing."""
+    furnace = named(ball_of_medium(THICK, {"type": "isotropic"}, NULL), "long walks in a medium")
+    told = "a walk brings as much as it is long, and lengths vary by their mean"
+    return [
+        Case(ROW, f"white ball under the sky, b {THICK:g}", furnace, 1, {"pt/hit": 0.003, "pt": 0.005, "bdpt": 0.003}, "furnace", 0.2, "a walk has 10 000 vertices"),
+        Case(ROW, "hollow sphere that shines and reflects 0.9999", hollow(), 1, {"pt": 0.004, "lt": 0.004}, "E / (1 - albedo)", 0.2, told),
+    ]
+
+
+def hollow() -> Scene:
+    """Every point emits what it absorbs of radiance 1, and is seen from inside."""
+    wall = {"type": "sphere", "flip_normals": True, "bsdf": diffuse(1 - LOSS), "emitter": lamp(LOSS)}
+    return scene("hollow sphere", sensor=camera((0.2, 0.1, 0.5), (0, 0, 0), 60), wall=wall)
