@@ -1,3 +1,5 @@
 //! Instruments: what is measured about renders, and how it is told.
 
+pub mod metrics;
 pub mod outcome;
+pub mod picture;
