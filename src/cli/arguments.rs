@@ -29,6 +29,11 @@ pub enum Command {
     /// which stay where they are. Where a parameter stands in a place that the other spelling has no words for, its
     /// value is written instead, and a note on standard error says where.
     Convert(Convert),
+    /// Say how far an image is from a reference: MSE, relMSE, MAPE, SMAPE, FLIP and more
+    ///
+    /// In radiance and in display units (both images tone-mapped alike). Exit code: 0, or 1 if a measure is above its
+    /// --fail-above, or 2 for a mistake.
+    Diff(super::diff::Diff),
 }
 
 /// Render a scene to an image.

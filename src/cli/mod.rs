@@ -2,6 +2,7 @@
 
 pub mod arguments;
 mod convert;
+pub mod diff;
 mod estimator;
 mod info;
 mod render;
@@ -24,9 +25,16 @@ pub fn run() -> ExitCode {
         Command::Render(render) => render::run(render),
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
+        Command::Diff(diff) => return judged(diff::run(diff)),
     };
+    judged(outcome.map(|()| true))
+}
+
+/// 0 for what holds, 1 for what does not, 2 for a mistake, which is told.
+fn judged(outcome: Result<bool>) -> ExitCode {
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
         Err(error) => {
             complain(&format!("error: {error}"));
             ExitCode::from(2)

@@ -1,5 +1,6 @@
 //! Instruments: what is measured about renders, and how it is told.
 
+pub mod difference;
 pub mod metrics;
 pub mod outcome;
 pub mod picture;

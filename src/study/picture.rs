@@ -28,6 +28,21 @@ pub struct Picture {
     pub pixels: Vec<Spectrum>,
     /// How many channels the file has for a pixel: 1, 2 or 3. Opacity is left out.
     pub channels: usize,
+    /// True for light that a screen can show; false for layers of anything else, such as normals.
+    pub is_colour: bool,
+}
+
+impl Picture {
+    /// An error that tells the first value that is not finite, where there is one.
+    pub fn check_finite(&self, path: &Path) -> Result<()> {
+        let values = || (0..self.channels).flat_map(|channel| self.pixels.iter().map(move |p| p[channel]));
+        let broken = values().filter(|value| !value.is_finite()).count();
+        let Some(at) = self.pixels.iter().position(|pixel| !pixel.is_finite()) else { return Ok(()) };
+        let (x, y) = (at % self.width, at / self.width);
+        let found = format!("{} in column {x}, row {y} ({broken} such values in all)", self.pixels[at]);
+        let remedy = "no measure holds for such an image: find what made these values, or render it again";
+        Err(Error::new(path.display(), "finite values in all pixels", found, remedy))
+    }
 }
 
 /// Reads an OpenEXR file (the channels without a layer), a float map, a Radiance file, or a PNG or any other image
@@ -51,7 +66,7 @@ pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Picture> {
         return pfm::read(path);
     }
     let image::Image { width, height, pixels } = image::read_unchecked(path, false)?;
-    Ok(Picture { width, height, pixels, channels: 3 })
+    Ok(Picture { width, height, pixels, channels: 3, is_colour: true })
 }
 
 /// The first bytes of every OpenEXR file.

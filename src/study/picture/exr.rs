@@ -106,10 +106,20 @@ impl Layer<'_> {
             values.iter_mut().zip(&planes).for_each(|(value, plane)| *value = plane[at]);
             pixel(&values[..planes.len()])
         };
-        let is_xyz = self.name.is_empty() && order.len() == 3 && self.channels[order[0]].0 == "X";
+        let is_colour = self.is_colour(order);
+        let is_xyz = is_colour && self.channels[order[0]].0 == "X";
         let colour = |raw: Spectrum| if is_xyz { xyz_to_rgb(raw.as_dvec3()).as_vec3() } else { raw };
         let pixels = (0..self.width * self.height).map(|at| colour(values(at))).collect();
-        Picture { width: self.width, height: self.height, pixels, channels: planes.len() }
+        Picture { width: self.width, height: self.height, pixels, channels: planes.len(), is_colour }
+    }
+
+    /// True if these channels are light: R G B anywhere, X Y Z and Y where no layer is named.
+    fn is_colour(&self, order: &[usize]) -> bool {
+        match (order.len(), self.channels[order[0]].0.as_str()) {
+            (3, "R") => true,
+            (3, "X") | (1, "Y") => self.name.is_empty(),
+            _ => false,
+        }
     }
 
     /// Its name with its channels, as `depth (T)`.

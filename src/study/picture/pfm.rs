@@ -33,7 +33,7 @@ pub(super) fn read(path: &Path) -> Result<Picture> {
     let values: Vec<f32> = data.chunks_exact(4).map(number).collect();
     let rows = values.chunks_exact(channels * width).rev();
     let pixels = rows.flat_map(|row| row.chunks_exact(channels)).map(pixel).collect();
-    Ok(Picture { width, height, pixels, channels })
+    Ok(Picture { width, height, pixels, channels, is_colour: true })
 }
 
 /// The header, and what comes after the one white space that ends it.
