@@ -34,6 +34,10 @@ pub enum Command {
     /// In radiance and in display units (both images tone-mapped alike). Exit code: 0, or 1 if a measure is above its
     /// --fail-above, or 2 for a mistake.
     Diff(super::diff::Diff),
+    /// Look at a phase function: do its samples fit its density? With a polar plot (SVG) and a mesh (PLY)
+    ///
+    /// Exit code: 0, or 1 if they do not, or 2 for a mistake.
+    Phase(super::phase::Phase),
 }
 
 /// Render a scene to an image.

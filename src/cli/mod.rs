@@ -5,6 +5,7 @@ mod convert;
 pub mod diff;
 mod estimator;
 mod info;
+pub mod phase;
 mod render;
 
 use crate::{
@@ -26,6 +27,7 @@ pub fn run() -> ExitCode {
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
         Command::Diff(diff) => return judged(diff::run(diff)),
+        Command::Phase(phase) => return judged(phase::run(phase)),
     };
     judged(outcome.map(|()| true))
 }
