@@ -38,6 +38,12 @@ pub enum Command {
     ///
     /// Exit code: 0, or 1 if they do not, or 2 for a mistake.
     Phase(super::phase::Phase),
+    /// Compare ways of sampling flights through a slab or a cube: bias, variance, time
+    ///
+    /// Photons enter at one point in one direction. Flights are by constant steps (CDS), exponential by sigma_t
+    /// (RDS_t) or by sigma_s (RDS_s), or have their first collision forced. Exit code: 0, or 1 if an unbiased method is
+    /// off the truth, or 2 for a mistake.
+    Flights(super::flights::Flights),
 }
 
 /// Render a scene to an image.

@@ -4,6 +4,7 @@ pub mod arguments;
 mod convert;
 pub mod diff;
 mod estimator;
+pub mod flights;
 mod info;
 pub mod phase;
 mod render;
@@ -28,6 +29,7 @@ pub fn run() -> ExitCode {
         Command::Convert(convert) => convert::run(convert),
         Command::Diff(diff) => return judged(diff::run(diff)),
         Command::Phase(phase) => return judged(phase::run(phase)),
+        Command::Flights(flights) => return judged(flights::run(flights)),
     };
     judged(outcome.map(|()| true))
 }

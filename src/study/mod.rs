@@ -2,6 +2,7 @@
 
 pub mod chi_square;
 pub mod difference;
+pub mod flights;
 pub mod metrics;
 pub mod outcome;
 pub mod picture;
