@@ -7,8 +7,8 @@ use crate::{
     study::{
         flights::{
             self, Effort, Experiment, Found, Study, drawing,
-            law::Law,
-            tally::{ABSORBED, DIRECT, QUANTITIES, REFLECTED, SCATTERED, SCATTERINGS, TRANSMITTED},
+            law::{FreePath, Law},
+            tally::{ABSORBED, DIRECT, Estimate, QUANTITIES, REFLECTED, SCATTERED, SCATTERINGS, TRANSMITTED},
         },
         scatter::described,
     },
@@ -187,13 +187,9 @@ fn describe(arguments: &Flights, study: &Study, truth_photons: u64) -> String {
     ];
     lines.extend(study.methods.iter().map(method));
     lines.push(String::new());
-    if !study.laws.is_empty() {
-        lines.push(format!(
-            "mean flight by steps without a border; mean free path for scattering {:.6} m",
-            1.0 / sigma_s
-        ));
-        lines.extend(study.laws.iter().map(law));
-    }
+    lines.push("mean flights without a border".into());
+    lines.extend(study.free_paths.iter().map(free_path));
+    lines.extend(study.laws.iter().map(law));
     lines.join("\n").trim_end().to_owned()
 }
 
@@ -221,9 +217,17 @@ fn method(found: &Found) -> String {
     row(&found.method, cells, &rest)
 }
 
+fn free_path(path: &FreePath) -> String {
+    let FreePath { method, measured, expected, z } = path;
+    let Estimate { mean, standard_error } = measured;
+    format!(
+        "{method:<15} measured {mean:.6} +- {standard_error:.1e} m, mean free path {expected:.6} (z {z:+.2})"
+    )
+}
+
 fn law(law: &Law) -> String {
     format!(
-        "step {:<10.4} measured {:.6} +- {:.1e} m, law {:.6} (z {:+.2}), {:+.3} % off the mean free path (z {:+.1})",
+        "step {:<10.4} measured {:.6} +- {:.1e} m, law {:.6} (z {:+.2}), {:+.3} % off that of RDS_s (z {:+.1})",
         law.step,
         law.measured.mean,
         law.measured.standard_error,
@@ -256,5 +260,6 @@ fn figures(arguments: &Flights, study: &Study, truth_photons: u64) -> serde_json
         "most_z": study.most_z,
         "methods": study.methods,
         "mean_flights": study.laws,
+        "mean_free_paths": study.free_paths,
     })
 }

@@ -11,7 +11,7 @@ mod tests;
 mod walk;
 
 use crate::phase::Phase;
-use law::Law;
+use law::{FreePath, Law};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::time::Instant;
@@ -127,6 +127,8 @@ pub struct Study {
     pub methods: Vec<Found>,
     /// Mean lengths of flights by constant steps without end of the medium; none where nothing scatters.
     pub laws: Vec<Law>,
+    /// The same of exponential flights by sigma_t and by sigma_s, each where it is above 0.
+    pub free_paths: Vec<FreePath>,
     /// Above this |z| is no chance.
     pub most_z: f64,
 }
@@ -149,7 +151,16 @@ pub fn study(experiment: &Experiment, steps: &[f64], effort: Effort) -> Study {
     let laws = steps.iter().enumerate().filter_map(|(index, step)| {
         Law::measure(*step, experiment.sigma_s, effort.photons, effort.seed, index as u64)
     });
-    Study { truth, methods, laws: laws.collect(), most_z }
+    Study { truth, methods, laws: laws.collect(), free_paths: free_paths(experiment, effort), most_z }
+}
+
+fn free_paths(experiment: &Experiment, effort: Effort) -> Vec<FreePath> {
+    let Experiment { sigma_a, sigma_s, .. } = *experiment;
+    let by = [("RDS_t", sigma_a + sigma_s), ("RDS_s", sigma_s)];
+    let measure = |(index, (method, sigma))| {
+        FreePath::measure(method, sigma, effort.photons, effort.seed, index as u64)
+    };
+    by.into_iter().enumerate().filter_map(measure).collect()
 }
 
 /// The |z| that one of `tests` exceeds by chance with probability 0.01 (Sidak).

@@ -4,7 +4,11 @@ use super::law::{self, Law};
 use crate::error::{Error, Result};
 use plotters::{
     chart::ChartContext,
-    coord::{Shift, cartesian::Cartesian2d, ranged1d::Ranged},
+    coord::{
+        Shift,
+        cartesian::Cartesian2d,
+        ranged1d::{Ranged, ValueFormatter},
+    },
     prelude::{
         ChartBuilder, Circle, Color, DrawingArea, ErrorBar, IntoDrawingArea, IntoLogRange, LineSeries,
         PathElement, RGBColor, SVGBackend, SeriesLabelPosition, WHITE,
@@ -74,7 +78,7 @@ fn lengths(area: &Area<'_>, laws: &[Law], sigma_s: f64) -> Drawn {
         .y_label_area_size(64)
         .build_cartesian_2d((steps.0..steps.1).log_scale(), (heights.0..heights.1).log_scale())
         .map_err(told)?;
-    chart.configure_mesh().x_desc("step [m]").y_desc("mean flight [m]").draw().map_err(told)?;
+    mesh(&mut chart, ["step [m]", "mean flight [m]"])?;
     let curve = between(steps).map(|step| (step, law::mean_length(step, sigma_s)));
     let drawn = chart.draw_series(LineSeries::new(curve, LAW.stroke_width(2))).map_err(told)?;
     drawn.label("step / (1 - exp(-sigma_s step))").legend(|at| key(at, LAW));
@@ -107,22 +111,36 @@ fn errors(area: &Area<'_>, laws: &[Law], sigma_s: f64) -> Drawn {
         .y_label_area_size(64)
         .build_cartesian_2d((paths.0..paths.1).log_scale(), (heights.0..heights.1).log_scale())
         .map_err(told)?;
-    chart
-        .configure_mesh()
-        .x_desc("mean free path for scattering [m]")
-        .y_desc("error [m]")
-        .draw()
-        .map_err(told)?;
+    mesh(&mut chart, ["mean free path for scattering [m]", "error [m]"])?;
     for (law, colour) in laws.iter().zip(COLOURS.into_iter().cycle()) {
         let curve = between(paths).map(|path| (path, law::error(law.step, 1.0 / path)));
         let drawn = chart.draw_series(LineSeries::new(curve, colour.stroke_width(2))).map_err(told)?;
-        drawn.label(format!("step {:.3e} m", law.step)).legend(move |at| key(at, colour));
+        drawn.label(format!("step {} m", round(law.step))).legend(move |at| key(at, colour));
         let measured = law.measured.mean - here;
         if measured > 0.0 {
             chart.draw_series([Circle::new((here, measured), 4, colour.filled())]).map_err(told)?;
         }
     }
     labels(&mut chart)
+}
+
+/// Lines at round numbers, which the axes of logarithms name in all their digits if they are let.
+fn mesh<'a, 'b: 'a, X, Y>(
+    chart: &mut ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>,
+    [x, y]: [&str; 2],
+) -> Drawn
+where
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    let mut mesh = chart.configure_mesh();
+    mesh.x_desc(x).y_desc(y).x_labels(5).y_labels(8).max_light_lines(1);
+    mesh.x_label_formatter(&|x| round(*x)).y_label_formatter(&|y| round(*y)).draw().map_err(told)
+}
+
+/// Three digits, without those that say nothing.
+fn round(x: f64) -> String {
+    format!("{x:.2e}").parse().map_or_else(|_| x.to_string(), |rounded: f64| rounded.to_string())
 }
 
 fn key((x, y): (i32, i32), colour: RGBColor) -> PathElement<(i32, i32)> {

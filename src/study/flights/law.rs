@@ -24,6 +24,45 @@ pub struct Law {
     pub z_of_mean_free_path: f64,
 }
 
+/// The mean length of exponential flights, by closed form and measured.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FreePath {
+    /// The method that flies so.
+    pub method: &'static str,
+    /// Mean length [m].
+    pub measured: Estimate,
+    /// 1 / sigma [m].
+    pub expected: f64,
+    /// How many standard errors the measured length is above that.
+    pub z: f64,
+}
+
+impl FreePath {
+    /// Flies `flights` times by `sigma` [1/m] without a border; none in nothing.
+    pub fn measure(method: &'static str, sigma: f64, flights: u64, seed: u64, index: u64) -> Option<Self> {
+        if sigma <= 0.0 {
+            return None;
+        }
+        let mut stream = Stream::new(seed, index, u64::MAX - 1, Purpose::Study);
+        let measured = mean((0..flights).map(|_| f64::from(stream.exponential()) / sigma));
+        let expected = 1.0 / sigma;
+        Some(Self { method, measured, expected, z: measured.z(&Estimate::exact(expected)) })
+    }
+}
+
+/// Mean of at least two values, and its standard error.
+fn mean(values: impl Iterator<Item = f64>) -> Estimate {
+    let (mut n, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for value in values {
+        n += 1.0;
+        sum += value;
+        squares += value * value;
+    }
+    let mean: f64 = sum / n;
+    let variance = (squares / n - mean * mean).max(0.0);
+    Estimate { mean, standard_error: (variance / (n - 1.0)).sqrt() }
+}
+
 /// Steps that one measurement may take.
 const MOST_STEPS: f64 = 5e7;
 
@@ -49,19 +88,14 @@ impl Law {
             return None;
         }
         let mut stream = Stream::new(seed, index, u64::MAX, Purpose::Study);
-        let (mut sum, mut squares) = (0.0, 0.0);
-        for _ in 0..flights {
+        let mut flight = || {
             let mut steps = 1.0;
             while stream.uniform_precisely() >= probability {
                 steps += 1.0;
             }
-            sum += steps;
-            squares += steps * steps;
-        }
-        let n = flights as f64;
-        let mean = sum / n;
-        let variance = (squares / n - mean * mean).max(0.0);
-        let measured = Estimate { mean: step * mean, standard_error: step * (variance / (n - 1.0)).sqrt() };
+            step * steps
+        };
+        let measured = mean((0..flights).map(|_| flight()));
         let expected = mean_length(step, sigma_s);
         let [z, z_of_mean_free_path] = [expected, 1.0 / sigma_s].map(|x| measured.z(&Estimate::exact(x)));
         let error = error(step, sigma_s);

@@ -46,7 +46,7 @@ fn printed_slabs_are_met_by_unbiased_methods_and_missed_by_constant_steps() {
 #[test]
 fn all_unbiased_methods_agree_in_a_cube() {
     let phase = HenyeyGreenstein::new(-0.3).into();
-    let cube = Experiment { shape: Shape::Cube, size: 1.5, sigma_a: 0.3, sigma_s: 1.7, phase, angle: 0.7 };
+    let cube = Experiment { shape: Shape::Cube, size: 1.5, sigma_a: 0.3, sigma_s: 1.7, phase, angle: 0.3 };
     let study = study(&cube, &[0.5], effort(60_000));
     assert_eq!(study.methods.iter().map(|found| found.agrees).collect::<Vec<_>>(), [true, true, true, false]);
     for found in &study.methods {
@@ -55,7 +55,7 @@ fn all_unbiased_methods_agree_in_a_cube() {
         assert!((all - 1.0).abs() < 1e-4, "{found:?}");
         assert!(found.estimates[2].estimate.mean > 0.05 && found.estimates[5].estimate.mean == 0.0);
     }
-    // Straight through the side there is at 45 degrees: nothing unscattered reaches the far face.
+    // At 46 degrees the beam meets a side: nothing unscattered reaches the far face.
     let steep = Experiment { angle: 0.8, ..cube };
     assert_eq!(steep.closed_forms()[DIRECT], Some(0.0));
     assert!((steep.closed_forms()[DIRECT + 1].unwrap() - (-2.0 * 0.75 / 0.8f64.sin()).exp()).abs() < 1e-6);
@@ -81,6 +81,10 @@ fn the_law_of_constant_steps_is_reproduced() {
         assert!(law.z_of_mean_free_path > if law.step < 0.1 { 2.0 } else { 10.0 }, "{law:?}");
     }
     assert!(Law::measure(1.0, 0.0, 1000, 0, 0).is_none());
+    let path = FreePath::measure("RDS_s", 1.3, 200_000, 5, 0).unwrap();
+    assert!(path.z.abs() < most_z(4) && (path.expected - 1.0 / 1.3).abs() < 1e-12, "{path:?}");
+    // The variance of an exponential flight is the square of its mean.
+    assert!((path.measured.standard_error * 1.3 * 200_000f64.sqrt() - 1.0).abs() < 0.02, "{path:?}");
 }
 
 /// delta / (1 - exp(-sigma_s delta)) - 1 / sigma_s: of 1 and 1 it is 1 / (e - 1); of nearly nothing half a step.

@@ -154,7 +154,7 @@ fn polar(
     for density in radius.circles() {
         let r = radius.of(density);
         root.draw(&Circle::new(centre, (full * r) as i32, GRID)).map_err(told)?;
-        write(root, &format!("{density:.3e}"), at(0.5 * PI, r), 11)?;
+        write(root, &format!("{density:.2e}"), at(0.5 * PI, r), 11)?;
     }
     for angle in 0..12 {
         let angle = f64::from(angle) * PI / 6.0;
