@@ -36,7 +36,7 @@ def among_themselves(images: np.ndarray, reference: np.ndarray) -> Errors:
 def measured(squared: np.ndarray, reference: np.ndarray) -> Errors:
     """Both measures from squared errors, (renders, height, width, channels)."""
     relative = (squared / (reference**2 + FLOOR)).reshape(len(squared), -1)
-    kept = int((1 - TRIM) * relative.shape[1])
+    kept = relative.shape[1] - int(TRIM * relative.shape[1])
     return Errors(relative.mean(axis=1), np.partition(relative, kept - 1, axis=1)[:, :kept].mean(axis=1))
 
 

@@ -50,6 +50,21 @@ pub enum Command {
     /// seed by seed. FOLDER gets study.json, study.csv, images, and runs/ with all that is needed to go on: a study that
     /// was stopped, however, goes on where it was when the same command is run again.
     Study(Study),
+    /// Say how far an image is from a reference: MSE, relMSE, MAPE, SMAPE, FLIP and more
+    ///
+    /// In radiance and in display units (both images tone-mapped alike). Exit code: 0, or 1 if a measure is above its
+    /// --fail-above, or 2 for a mistake.
+    Diff(super::diff::Diff),
+    /// Look at a phase function: do its samples fit its density? With a polar plot (SVG) and a mesh (PLY)
+    ///
+    /// Exit code: 0, or 1 if they do not, or 2 for a mistake.
+    Phase(super::phase::Phase),
+    /// Compare ways of sampling flights through a slab or a cube: bias, variance, time
+    ///
+    /// Photons enter at one point in one direction. Flights are by constant steps (CDS), exponential by sigma_t
+    /// (RDS_t) or by sigma_s (RDS_s), or have their first collision forced. Exit code: 0, or 1 if an unbiased method is
+    /// off the truth, or 2 for a mistake.
+    Flights(super::flights::Flights),
 }
 
 /// Render a scene to an image.

@@ -3,8 +3,11 @@
 pub mod arguments;
 mod contenders;
 mod convert;
+pub mod diff;
 mod estimator;
+pub mod flights;
 mod info;
+pub mod phase;
 mod pixel;
 mod render;
 mod report;
@@ -33,9 +36,18 @@ pub fn run() -> ExitCode {
         Command::Convert(convert) => convert::run(convert),
         Command::Report(report) => report::run(report),
         Command::Study(study) => study::run(study),
+        Command::Diff(diff) => return judged(diff::run(diff)),
+        Command::Phase(phase) => return judged(phase::run(phase)),
+        Command::Flights(flights) => return judged(flights::run(flights)),
     };
+    judged(outcome.map(|()| true))
+}
+
+/// 0 for what holds, 1 for what does not, 2 for a mistake, which is told.
+fn judged(outcome: Result<bool>) -> ExitCode {
     match outcome {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
         Err(error) => {
             complain(&format!("error: {error}"));
             ExitCode::from(2)

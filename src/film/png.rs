@@ -21,11 +21,16 @@ const BELOW_WHITE: f64 = 0.995;
 /// Writes `pixels` (row-major, top row first; linear sRGB) to `path`, tone-mapped.
 pub fn write(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> Result<()> {
     output::check_size(path, width, height, pixels.len())?;
-    let bytes = tone_mapped(pixels);
+    write_bytes(path, width, height, &tone_mapped(pixels))
+}
+
+/// Writes `bytes`, 8-bit sRGB, three a pixel, as they are.
+pub fn write_bytes(path: &Path, width: usize, height: usize, bytes: &[u8]) -> Result<()> {
+    output::check_size(path, width, height, bytes.len() / 3)?;
     output::write(path, |file| {
         let size = |n: usize| u32::try_from(n).map_err(io::Error::other);
         let encoder = PngEncoder::new(file);
-        let written = encoder.write_image(&bytes, size(width)?, size(height)?, ExtendedColorType::Rgb8);
+        let written = encoder.write_image(bytes, size(width)?, size(height)?, ExtendedColorType::Rgb8);
         written.map_err(|error| match error {
             ImageError::IoError(error) => error,
             other => io::Error::other(other),
@@ -33,9 +38,34 @@ pub fn write(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> R
     })
 }
 
+/// How radiance becomes what a screen shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ToneCurve {
+    /// The curve of this page, with its white point [luminance].
+    White(f32),
+    /// This many times the radiance, cut off at 1.
+    Scale(f32),
+}
+
+impl ToneCurve {
+    /// That with which `pixels` are written.
+    pub fn of(pixels: &[Spectrum]) -> Self {
+        Self::White(white_point(pixels))
+    }
+
+    /// A pixel as shown: sRGB-encoded channels in [0, 1].
+    pub fn show(self, pixel: Spectrum) -> Spectrum {
+        let shown = match self {
+            Self::White(white) => displayed(shown(pixel), white),
+            Self::Scale(scale) => (shown(pixel) * scale).min(Spectrum::ONE),
+        };
+        Spectrum::from_array(shown.to_array().map(srgb))
+    }
+}
+
 fn tone_mapped(pixels: &[Spectrum]) -> Vec<u8> {
-    let white = white_point(pixels);
-    pixels.iter().flat_map(|pixel| displayed(shown(*pixel), white).to_array().map(encoded)).collect()
+    let curve = ToneCurve::of(pixels);
+    pixels.iter().flat_map(|pixel| curve.show(*pixel).to_array().map(byte)).collect()
 }
 
 /// A pixel as if nothing had gone wrong with it. The bound keeps products of two finite.
@@ -70,10 +100,14 @@ fn displayed(pixel: Spectrum, white: f32) -> Spectrum {
     grey + (scaled - grey) * ((1.0 - mapped) / (most - mapped))
 }
 
-/// The sRGB transfer function (IEC 61966-2-1), from linear to an encoded byte.
-fn encoded(linear: f32) -> u8 {
+/// The sRGB transfer function (IEC 61966-2-1), from linear to encoded.
+fn srgb(linear: f32) -> f32 {
     let c = linear.clamp(0.0, 1.0);
-    let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The nearest byte for an encoded channel in [0, 1].
+pub fn byte(encoded: f32) -> u8 {
     (255.0 * encoded).round() as u8
 }
 

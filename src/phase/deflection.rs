@@ -1,6 +1,6 @@
 //! The angle of a scattering, with all its digits at both ends.
 
-use crate::math::Vec3;
+use crate::math::{Vec3, vec3};
 
 /// The turn from one direction of flight to another.
 ///
@@ -39,10 +39,9 @@ impl Deflection {
     }
 
     /// The turn with the given 1 - cos in [0, 2] as seen from straight on (`sign` 1) or straight back (-1).
-    #[cfg(test)]
     pub fn of(one_minus_cos: f64, sign: f32) -> Self {
         let sine = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
         let along = (1.0 - one_minus_cos) as f32 * sign;
-        Self { before: Vec3::Z, after: crate::math::vec3(sine as f32, 0.0, along) }
+        Self { before: Vec3::Z, after: vec3(sine as f32, 0.0, along) }
     }
 }

@@ -1,112 +1,139 @@
-//! Images read back as they were written, and written for a study.
+//! Pictures to compare: read from every format that renders are kept in, and shown in false colours.
+//!
+//! Nothing of a file is mended or refused for its values: what is negative, infinite or NaN is what an
+//! instrument is there to see.
+
+mod exr;
+mod pfm;
+#[cfg(test)]
+mod tests;
 
 use crate::{
     error::{Error, Result},
-    film::{exr, format::Format},
+    film::{self, format::Format},
     math::{Spectrum, vec3},
+    texture::image,
 };
-use ::exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
-use std::path::Path;
+use colorgrad::Gradient;
+use std::{fs::File, io::Read as _, path::Path};
 
-/// An image of radiance, whatever numbers it holds.
+/// An image in the linear numbers of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Pixels across.
+    /// Columns, at least 1.
     pub width: usize,
-    /// Pixels down.
+    /// Rows, at least 1.
     pub height: usize,
-    /// Row by row from the top.
+    /// Row by row from the top: linear sRGB, or what else the channels of a layer are. One channel stands in all
+    /// three places, two leave the third 0.
     pub pixels: Vec<Spectrum>,
+    /// How many channels the file has for a pixel: 1, 2 or 3. Opacity is left out.
+    pub channels: usize,
+    /// True for light that a screen can show; false for layers of anything else, such as normals.
+    pub is_colour: bool,
 }
 
-/// Reads an OpenEXR file or a Portable Float Map.
+impl Picture {
+    /// An image of radiance.
+    pub fn new(width: usize, height: usize, pixels: Vec<Spectrum>) -> Self {
+        Self { width, height, pixels, channels: 3, is_colour: true }
+    }
+
+    /// Writes it as an OpenEXR file of single precision, which [`read`] reads bit for bit.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let format = Format::default();
+        film::exr::write(path, self.width, self.height, format.channels(&self.pixels, &[]), format)
+    }
+
+    /// An error that tells the first value that is not finite, where there is one.
+    pub fn check_finite(&self, path: &Path) -> Result<()> {
+        let values = || (0..self.channels).flat_map(|channel| self.pixels.iter().map(move |p| p[channel]));
+        let broken = values().filter(|value| !value.is_finite()).count();
+        let Some(at) = self.pixels.iter().position(|pixel| !pixel.is_finite()) else { return Ok(()) };
+        let (x, y) = (at % self.width, at / self.width);
+        let found = format!("{} in column {x}, row {y} ({broken} such values in all)", self.pixels[at]);
+        let remedy = "no measure holds for such an image: find what made these values, or render it again";
+        Err(Error::new(path.display(), "finite values in all pixels", found, remedy))
+    }
+}
+
+/// Reads an OpenEXR file (the channels without a layer), a float map, a Radiance file, or a PNG or any other image
+/// of whole numbers, which are taken as sRGB and made linear.
 pub fn read(path: &Path) -> Result<Picture> {
-    match path.extension().is_some_and(|end| end.eq_ignore_ascii_case("pfm")) {
-        true => read_pfm(path),
-        false => read_exr(path),
+    read_layer(path, None)
+}
+
+/// The same for one layer of an OpenEXR file, by its name, or one channel by its full name.
+pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Picture> {
+    let start = start_of(path)?;
+    if start == EXR_MARK {
+        return exr::read(path, layer);
     }
-}
-
-fn refuse(path: &Path, found: impl Into<String>) -> Error {
-    let expected = "an OpenEXR file with channels R, G, B, or a float map (.pfm)";
-    Error::new(path.display(), expected, found, "give an image that tyndall render wrote, for example")
-}
-
-fn read_exr(path: &Path) -> Result<Picture> {
-    let image = read_first_flat_layer_from_file(path).map_err(|error| refuse(path, error.to_string()))?;
-    let (width, height) = (image.layer_data.size.width(), image.layer_data.size.height());
-    let channels = &image.layer_data.channel_data.list;
-    let named = |name: &str| channels.iter().find(|c| c.name.to_string() == name).map(|c| &c.sample_data);
-    let values = |samples: &FlatSamples| -> Vec<f32> { samples.values_as_f32().collect() };
-    let missing = || {
-        let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
-        refuse(path, format!("the channels {}", names.join(", ")))
-    };
-    let [r, g, b] = match (named("R"), named("G"), named("B")) {
-        (Some(r), Some(g), Some(b)) => [r, g, b].map(values),
-        _ => {
-            let grey = named("Y").ok_or_else(missing)?;
-            std::array::from_fn(|_| values(grey))
-        }
-    };
-    let pixels = r.iter().zip(&g).zip(&b).map(|((r, g), b)| vec3(*r, *g, *b)).collect();
-    Ok(Picture { width, height, pixels })
-}
-
-fn read_pfm(path: &Path) -> Result<Picture> {
-    let bytes = std::fs::read(path).map_err(|error| Error::io(path, "read", &error))?;
-    parse_pfm(&bytes).ok_or_else(|| refuse(path, "a float map that is none, or not whole"))
-}
-
-/// A line of text each for kind, size and byte order (negative: little-endian), then rows from the bottom up.
-fn parse_pfm(bytes: &[u8]) -> Option<Picture> {
-    let mut lines = bytes.splitn(4, |byte| *byte == b'\n');
-    let mut line = || std::str::from_utf8(lines.next()?).ok().map(str::trim);
-    let channels = match line()? {
-        "PF" => 3,
-        "Pf" => 1,
-        _ => return None,
-    };
-    let (width, height) = line()?.split_once(' ')?;
-    let (width, height): (usize, usize) = (width.parse().ok()?, height.trim().parse().ok()?);
-    let little = line()?.parse::<f64>().ok()? < 0.0;
-    let numbers = lines.next()?.as_chunks::<4>().0;
-    let row = width.checked_mul(channels)?;
-    if row == 0 || height == 0 || numbers.len() != row.checked_mul(height)? {
-        return None;
+    if let Some(name) = layer {
+        let expected = format!("an OpenEXR file, to have a layer \"{name}\"");
+        let remedy = "name an .exr file, or leave the layer out";
+        return Err(Error::new(path.display(), expected, "a file of another format, without layers", remedy));
     }
-    let value =
-        |bytes: &[u8; 4]| if little { f32::from_le_bytes(*bytes) } else { f32::from_be_bytes(*bytes) };
-    let pixel =
-        |pixel: &[[u8; 4]]| vec3(value(&pixel[0]), value(&pixel[channels / 2]), value(&pixel[channels - 1]));
-    let pixels = numbers.chunks(row).rev().flat_map(|row| row.chunks(channels).map(pixel)).collect();
-    Some(Picture { width, height, pixels })
+    if start.starts_with(b"PF") || start.starts_with(b"Pf") {
+        return pfm::read(path);
+    }
+    let image::Image { width, height, pixels } = image::read_unchecked(path, false)?;
+    Ok(Picture { width, height, pixels, channels: 3, is_colour: true })
 }
 
-/// Writes an OpenEXR file of single precision, which [`read`] reads bit for bit.
-pub fn write(path: &Path, picture: &Picture) -> Result<()> {
-    let format = Format::default();
-    exr::write(path, picture.width, picture.height, format.channels(&picture.pixels, &[]), format)
+/// The first bytes of every OpenEXR file.
+const EXR_MARK: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// The first four bytes of a file, or as many as it has.
+fn start_of(path: &Path) -> Result<Vec<u8>> {
+    let mut start = Vec::new();
+    let file = File::open(path).map_err(|error| Error::io(path, "read", &error))?;
+    file.take(4).read_to_end(&mut start).map_err(|error| Error::io(path, "read", &error))?;
+    Ok(start)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::film::raster;
+/// What stands for values that are not finite: no colour of either scale.
+const BROKEN: [u8; 3] = [0, 255, 0];
 
-    #[test]
-    fn what_is_written_is_read() {
-        let folder = tempfile::tempdir().unwrap();
-        let pixels = (0..6).map(|i| vec3(i as f32, -0.5, f32::INFINITY)).collect();
-        let picture = Picture { width: 3, height: 2, pixels };
-        write(&folder.path().join("a.exr"), &picture).unwrap();
-        assert_eq!(read(&folder.path().join("a.exr")).unwrap(), picture);
-        let channels = Format::default().channels(&picture.pixels, &[]);
-        raster::write_pfm(&folder.path().join("a.pfm"), 3, 2, &channels).unwrap();
-        assert_eq!(read(&folder.path().join("a.pfm")).unwrap(), picture);
-        std::fs::write(folder.path().join("b.pfm"), b"PF\n3 2\n-1\nfew").unwrap();
-        for name in ["b.pfm", "c.pfm", "c.exr"] {
-            assert!(read(&folder.path().join(name)).is_err(), "{name}");
-        }
+/// Colours (8-bit sRGB, three bytes a value) of `values`, which lie in `range` = (low, high) or are cut to it.
+///
+/// From low = 0 or above: black for low over red to bright yellow for high (inferno). With low < 0: blue for low,
+/// nearly white for the middle, red for high; a range from -m to m shows 0 so. Infinite values are cut off as well,
+/// NaN is bright green.
+pub fn false_colour(values: &[f32], range: (f32, f32)) -> Vec<u8> {
+    let (low, high) = range;
+    let table = if low < 0.0 { colours(|t| colorgrad::preset::rd_bu().at(1.0 - t)) } else { inferno() };
+    let place = |value: f32| {
+        let t = (f64::from(value) - f64::from(low)) / (f64::from(high) - f64::from(low));
+        // Of an empty range all that is not above it is low.
+        let t = if t.is_nan() { f64::from(u8::from(value > high)) } else { t.clamp(0.0, 1.0) };
+        (t * (TABLE - 1) as f64).round() as usize
+    };
+    values.iter().flat_map(|value| if value.is_nan() { BROKEN } else { table[place(*value)] }).collect()
+}
+
+/// Colours of a scale that are told apart: four times as many as 8 bits show.
+const TABLE: usize = 1024;
+
+fn inferno() -> Vec<[u8; 3]> {
+    let gradient = colorgrad::preset::inferno();
+    colours(|t| gradient.at(t))
+}
+
+fn colours(at: impl Fn(f32) -> colorgrad::Color) -> Vec<[u8; 3]> {
+    let colour = |i: usize| {
+        let [r, g, b, _] = at(i as f32 / (TABLE - 1) as f32).to_rgba8();
+        [r, g, b]
+    };
+    (0..TABLE).map(colour).collect()
+}
+
+/// A pixel of `channels` values.
+fn pixel(values: &[f32]) -> Spectrum {
+    match *values {
+        [a] => Spectrum::splat(a),
+        [a, b] => vec3(a, b, 0.0),
+        [a, b, c, ..] => vec3(a, b, c),
+        [] => Spectrum::ZERO,
     }
 }

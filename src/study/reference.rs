@@ -130,8 +130,7 @@ pub fn make(
         unit::shoot(maker, seed, &[batches.samples], share, &mut |snapshot| image = Some(snapshot.pixels));
         let film = &maker.setup.film;
         let (width, height) = (film.width as usize, film.height as usize);
-        store
-            .write_image(file(name, batch), &Picture { width, height, pixels: image.unwrap_or_default() })?;
+        store.write_image(file(name, batch), &Picture::new(width, height, image.unwrap_or_default()))?;
     }
     let images = (0..batches.count).map(|batch| store.read_image(file(name, batch)));
     Ok(together(&images.collect::<Result<Vec<_>>>()?, describe(batches)))
@@ -201,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_reference_knows_its_error() {
-        let image = |value: f32| Picture { width: 1, height: 1, pixels: vec![Spectrum::splat(value)] };
+        let image = |value: f32| Picture::new(1, 1, vec![Spectrum::splat(value)]);
         let truth = together(&[image(1.0), image(2.0), image(3.0)], String::new());
         assert_eq!(truth.picture, image(2.0));
         // The mean's variance is 1/3; relative to 2^2 + 0.01, and to the mean.
@@ -215,7 +214,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         let pixels = vec![Spectrum::ONE, Spectrum::splat(f32::NAN)];
-        picture::write(&path, &Picture { width: 2, height: 1, pixels }).unwrap();
+        Picture::new(2, 1, pixels).write(&path).unwrap();
         let file = path.display().to_string();
         let wanted = ReferenceFile { file, fingerprint: String::new(), own_relmse: None };
         assert!(read(&wanted, 1, 2).unwrap_err().remedy.contains("--size 2x1"));

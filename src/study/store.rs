@@ -143,7 +143,7 @@ impl Store {
 
     /// Writes an image to `name`.
     pub fn write_image(&self, name: impl AsRef<Path>, image: &Picture) -> Result<()> {
-        picture::write(&self.ready(name)?, image)
+        image.write(&self.ready(name)?)
     }
 
     /// Reads one.

@@ -149,7 +149,7 @@ mod tests {
     }
 
     fn truth(own: f64) -> Truth {
-        let picture = Picture { width: 1, height: 1, pixels: vec![Spectrum::ONE] };
+        let picture = Picture::new(1, 1, vec![Spectrum::ONE]);
         Truth { picture, how: String::new(), own_relmse: Some(own), mean_error: Some(0.0) }
     }
 

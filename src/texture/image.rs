@@ -4,6 +4,8 @@ mod exr;
 #[cfg(test)]
 mod tests;
 
+pub use exr::check as check_exr;
+
 use crate::error::{Error, Result};
 use crate::math::{Spectrum, vec3};
 use ::image::{
@@ -23,10 +25,10 @@ pub struct Image {
 }
 
 /// The longest side of an image [pixels].
-const LONGEST_SIDE: u32 = 1 << 16;
+pub const LONGEST_SIDE: u32 = 1 << 16;
 
 /// An image has at most this many pixels (16384 x 8192): a few bytes of header must not ask for all memory.
-const MOST_PIXELS: usize = 1 << 27;
+pub const MOST_PIXELS: usize = 1 << 27;
 
 /// What a decoder may allocate [bytes]: the most pixels, in four channels of 32 bits.
 const MOST_BYTES: u64 = 16 * MOST_PIXELS as u64;
@@ -34,13 +36,17 @@ const MOST_BYTES: u64 = 16 * MOST_PIXELS as u64;
 /// Reads an image file of any known format. Integer formats hold sRGB and are made linear unless `raw`; float
 /// formats hold linear colours. Grey becomes three equal channels; opacity is dropped, as in Mitsuba.
 pub fn read(path: &Path, raw: bool) -> Result<Image> {
+    checked(path, read_unchecked(path, raw)?)
+}
+
+/// The same without a look at the pixels, which may be negative or not finite.
+pub fn read_unchecked(path: &Path, raw: bool) -> Result<Image> {
     let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
     let reader = reader.map_err(|error| Error::io(path, "read", &error))?;
-    let image = match reader.format() {
-        Some(ImageFormat::OpenExr) => exr::read(path)?,
-        _ => linear(decode(path, reader)?, raw),
-    };
-    checked(path, image)
+    match reader.format() {
+        Some(ImageFormat::OpenExr) => exr::read(path),
+        _ => Ok(linear(decode(path, reader)?, raw)),
+    }
 }
 
 type FileReader = ImageReader<BufReader<File>>;
@@ -68,7 +74,8 @@ fn decode_hdr(reader: FileReader, mut limits: Limits) -> ImageResult<DynamicImag
     DynamicImage::from_decoder(decoder)
 }
 
-fn undecodable(path: &Path, error: impl std::fmt::Display) -> Error {
+/// The error for a file that is no image, or one of more pixels than are taken.
+pub fn undecodable(path: &Path, error: impl std::fmt::Display) -> Error {
     let expected = format!("an image file, of at most {MOST_PIXELS} pixels and {LONGEST_SIDE} a side");
     let remedy = "give a png, jpeg, hdr, exr, bmp, tga or ppm file, or a smaller image";
     Error::new(path.display(), expected, format!("something that does not decode: {error}"), remedy)

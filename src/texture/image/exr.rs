@@ -12,8 +12,7 @@ use std::path::Path;
 
 /// Reads the data window, as Mitsuba does; the display window is not asked.
 pub(super) fn read(path: &Path) -> Result<Image> {
-    let meta = MetaData::read_from_file(path, false).map_err(|error| undecodable(path, error))?;
-    meta.headers.iter().try_for_each(|header| check_size(path, header))?;
+    check(path)?;
     let layer = reader()
         .no_deep_data()
         .largest_resolution_level()
@@ -39,6 +38,12 @@ pub(super) fn read(path: &Path) -> Result<Image> {
         return Err(Error::new(path.display(), "R G B, X Y Z or Y", found, remedy));
     };
     Ok(Image { width: layer.size.width(), height: layer.size.height(), pixels })
+}
+
+/// No part of the file is larger than images may be: asked before memory is taken for them.
+pub fn check(path: &Path) -> Result<()> {
+    let meta = MetaData::read_from_file(path, false).map_err(|error| undecodable(path, error))?;
+    meta.headers.iter().try_for_each(|header| check_size(path, header))
 }
 
 /// The samples of all channels together must not be more than those of the largest image in R G B A.

@@ -1,0 +1,328 @@
+//! `tyndall diff`: how far an image is from another.
+
+use super::{complain, say};
+use crate::{
+    error::{Error, Result},
+    film::{self, png::ToneCurve},
+    study::{
+        difference::{self, Comparison, Difference, MEASURES, MapOf, Mapped, Tolerance, View},
+        picture::{self, Picture},
+    },
+};
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+use std::{io::Write as _, path::PathBuf};
+
+/// Say how far an image is from a reference.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Diff {
+    /// Image to judge: OpenEXR (.exr), float map (.pfm), Radiance (.hdr, .rgbe), PNG or another known format
+    #[arg(value_name = "IMAGE")]
+    pub image: PathBuf,
+
+    /// Image that stands for the truth: relative measures are relative to this one
+    #[arg(value_name = "REFERENCE")]
+    pub reference: PathBuf,
+
+    /// Compare this layer of both OpenEXR files, or the one channel of this full name
+    /// [default: the channels without a layer]
+    #[arg(long, value_name = "NAME")]
+    pub layer: Option<String>,
+
+    /// From where on a pixel counts as different: a number is a difference in some channel, with % it is
+    /// relative to the reference
+    #[arg(long, value_name = "T", default_value = "1%", value_parser = tolerance, allow_negative_numbers = true)]
+    pub tolerance: Tolerance,
+
+    /// For display units show both images at 2^STOPS times their values, cut off at white
+    /// [default: by the tone curve of the reference's own PNG]
+    #[arg(long, value_name = "STOPS", value_parser = stops, allow_negative_numbers = true)]
+    pub exposure: Option<f32>,
+
+    /// Pixels in a degree of the eye's field of view, for FLIP (67: a 4K screen 0.7 m wide seen from 0.7 m)
+    #[arg(long, value_name = "N", default_value_t = 67.0, value_parser = per_degree, allow_negative_numbers = true)]
+    pub pixels_per_degree: f32,
+
+    /// Also write all figures to this JSON file (what is infinite or not a number becomes null)
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+
+    /// Also write a picture of the differences in false colours to this PNG file
+    #[arg(long, value_name = "FILE", value_parser = png_file)]
+    pub map: Option<PathBuf>,
+
+    /// What the picture of --map shows of each pixel, averaged over its channels
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = Shows::Relative, requires = "map")]
+    pub map_of: Shows,
+
+    /// The difference that has the last colour of the map [default: 99 % of the pixels are below; of FLIP 1]
+    #[arg(long, value_name = "VALUE", value_parser = positive, requires = "map", allow_negative_numbers = true)]
+    pub map_to: Option<f32>,
+
+    /// Exit with code 1 if a measure is above a value, such as relmse=0.01; may be repeated
+    ///
+    /// Measures: mse, rmse, relmse, trimmed_relmse, mape, smape, difference (of means, relative, either way),
+    /// largest, beyond (pixels beyond the tolerance, in percent), each also as display.NAME, and flip (mean).
+    #[arg(long, value_name = "MEASURE=VALUE", value_parser = limit, allow_negative_numbers = true)]
+    pub fail_above: Vec<Limit>,
+}
+
+/// A measure and what it may be at most.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    measure: String,
+    most: f64,
+}
+
+/// What a map shows of every pixel.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Shows {
+    /// (x - r)^2 / (r^2 + 0.01)
+    Relative,
+    /// |x - r|
+    Absolute,
+    /// x - r: blue where the image is darker, red where it is brighter
+    Signed,
+    /// FLIP
+    Flip,
+}
+
+impl Shows {
+    fn of(self) -> MapOf {
+        match self {
+            Self::Relative => MapOf::Relative,
+            Self::Absolute => MapOf::Absolute,
+            Self::Signed => MapOf::Signed,
+            Self::Flip => MapOf::Flip,
+        }
+    }
+}
+
+fn number<T: std::str::FromStr>(text: &str) -> Option<T> {
+    text.trim().parse().ok()
+}
+
+fn tolerance(text: &str) -> std::result::Result<Tolerance, String> {
+    let known = |x: &f64| x.is_finite() && *x >= 0.0;
+    let value = match text.strip_suffix('%') {
+        Some(percent) => number(percent).filter(known).map(|percent| Tolerance::Relative(percent / 100.0)),
+        None => number(text).filter(known).map(Tolerance::Absolute),
+    };
+    value.ok_or_else(|| "expected a number >= 0, with % if it is relative, such as 0.01 or 1%".into())
+}
+
+fn stops(text: &str) -> std::result::Result<f32, String> {
+    let value = number(text).filter(|x: &f32| x.abs() <= 60.0);
+    value.ok_or_else(|| "expected a number from -60 to 60, such as -1.5".into())
+}
+
+fn per_degree(text: &str) -> std::result::Result<f32, String> {
+    let value = number(text).filter(|x| (1.0..=1000.0).contains(x));
+    value.ok_or_else(|| "expected a number from 1 to 1000, such as 67".into())
+}
+
+fn positive(text: &str) -> std::result::Result<f32, String> {
+    let value = number(text).filter(|x: &f32| x.is_finite() && *x > 0.0);
+    value.ok_or_else(|| "expected a number above 0, such as 0.1".into())
+}
+
+fn png_file(text: &str) -> std::result::Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_png = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("png"));
+    if is_png { Ok(path) } else { Err("expected a file name that ends in .png".into()) }
+}
+
+fn limit(text: &str) -> std::result::Result<Limit, String> {
+    let names = || format!("flip, {}, or display. before one of them", MEASURES.join(", "));
+    let (measure, most) = text.split_once('=').ok_or("expected MEASURE=VALUE, such as relmse=0.01")?;
+    if measure != "flip" && !MEASURES.contains(&measure.strip_prefix("display.").unwrap_or(measure)) {
+        return Err(format!("\"{measure}\" is no measure: expected {}", names()));
+    }
+    let most = number(most).filter(|x: &f64| x.is_finite() && *x >= 0.0);
+    let most = most.ok_or("expected a finite value >= 0 after \"=\"")?;
+    Ok(Limit { measure: measure.into(), most })
+}
+
+/// Runs the command; true if no measure is above its limit.
+pub fn run(arguments: &Diff) -> Result<bool> {
+    let files = [arguments.image.as_path(), arguments.reference.as_path()];
+    let image = picture::read_layer(files[0], arguments.layer.as_deref())?;
+    let reference = picture::read_layer(files[1], arguments.layer.as_deref())?;
+    let view = View {
+        tolerance: arguments.tolerance,
+        curve: arguments.exposure.map(|stops| ToneCurve::Scale(stops.exp2())),
+        pixels_per_degree: arguments.pixels_per_degree,
+    };
+    let difference = difference::compare(&image, &reference, files, &view)?;
+    let values = measured(arguments, &difference)?;
+    say(&table(arguments, &image, &difference));
+    if let Some(path) = &arguments.map {
+        let mapped = mapped(arguments, &image, &reference, &difference)?;
+        let colours = picture::false_colour(&mapped.values, mapped.range);
+        film::png::write_bytes(path, image.width, image.height, &colours)?;
+        say(&format!("{}: {}", path.display(), legend(arguments.map_of, &mapped)));
+    }
+    if let Some(path) = &arguments.json {
+        let figures = figures(arguments, &image, &difference);
+        film::output::write(path, |file| writeln!(file, "{figures:#}"))?;
+    }
+    Ok(judge(&arguments.fail_above, &values))
+}
+
+/// The measures that have limits.
+fn measured(arguments: &Diff, difference: &Difference) -> Result<Vec<f64>> {
+    let value = |limit: &Limit| {
+        difference.measure(&limit.measure).ok_or_else(|| unknown("--fail-above", &limit.measure, difference))
+    };
+    arguments.fail_above.iter().map(value).collect()
+}
+
+/// Why there is no such measure of these images.
+fn unknown(place: &str, measure: &str, difference: &Difference) -> Error {
+    let (found, remedy) = match difference.display {
+        None => ("a layer that is no colours", "leave it out, or compare layers of R G B"),
+        Some(_) => ("a program built without FLIP", "build with the feature flip, which is on by default"),
+    };
+    Error::new(place, format!("images of which {measure} is known"), found, remedy)
+}
+
+fn judge(limits: &[Limit], values: &[f64]) -> bool {
+    let mut holds = true;
+    for (Limit { measure, most }, value) in limits.iter().zip(values) {
+        if value > most {
+            complain(&format!("{measure} is {value:.6}, above {most}"));
+            holds = false;
+        }
+    }
+    holds
+}
+
+fn mapped(arguments: &Diff, image: &Picture, reference: &Picture, difference: &Difference) -> Result<Mapped> {
+    let mapped = difference::map(arguments.map_of.of(), image, reference, difference, arguments.map_to);
+    mapped.ok_or_else(|| unknown("--map-of", "FLIP", difference))
+}
+
+fn legend(shows: Shows, mapped: &Mapped) -> String {
+    let (low, high) = (short(mapped.range.0.into()), short(mapped.range.1.into()));
+    match shows {
+        Shows::Relative => format!("relative squared error, black {low} to yellow {high} and above"),
+        Shows::Absolute => format!("absolute difference, black {low} to yellow {high} and above"),
+        Shows::Signed => format!("image less reference, blue {low} over white 0 to red {high}"),
+        Shows::Flip => format!("FLIP, black {low} to yellow {high}"),
+    }
+}
+
+/// Four digits, in the shorter of the two ways of writing them.
+fn short(x: f64) -> String {
+    let size = x.abs();
+    if size == 0.0 || (1e-3..1e5).contains(&size) || !size.is_finite() {
+        format!("{x:.4}")
+    } else {
+        format!("{x:.3e}")
+    }
+}
+
+fn table(arguments: &Diff, image: &Picture, difference: &Difference) -> String {
+    let display = difference.display.as_ref();
+    let columns: Vec<&Comparison> =
+        std::iter::once(&difference.radiance).chain(display.map(|shown| &shown.comparison)).collect();
+    let mut lines =
+        vec![heading(arguments, image), row("", &["radiance".into(), "display".into()][..columns.len()])];
+    for (title, cell) in ROWS {
+        lines.push(row(title, &columns.iter().map(|column| cell(column)).collect::<Vec<_>>()));
+    }
+    let beyond = format!("beyond {}", describe_tolerance(arguments.tolerance));
+    lines.push(row(
+        &beyond,
+        &columns.iter().map(|c| format!("{:.3} % of pixels", c.beyond)).collect::<Vec<_>>(),
+    ));
+    lines.push(describe_flip(arguments, difference));
+    lines.push(match display.map(|shown| shown.curve) {
+        Some(ToneCurve::White(white)) => {
+            format!(
+                "display: both by the reference's tone curve (white {}), sRGB-encoded, 0 to 1",
+                short(white.into())
+            )
+        }
+        Some(ToneCurve::Scale(scale)) => {
+            format!("display: both times {}, cut off at 1, sRGB-encoded", short(scale.into()))
+        }
+        None => "display: none, the layer is no colours".into(),
+    });
+    lines.join("\n")
+}
+
+type Cell = fn(&Comparison) -> String;
+
+/// Titles, and what stands behind them.
+const ROWS: &[(&str, Cell)] = &[
+    ("MSE", |c| short(c.measures.mse)),
+    ("RMSE", |c| short(c.measures.rmse)),
+    ("relMSE", |c| short(c.measures.relmse)),
+    ("relMSE, worst 0.1 % left out", |c| short(c.measures.trimmed_relmse)),
+    ("MAPE", |c| short(c.measures.mape)),
+    ("SMAPE", |c| short(c.measures.smape)),
+    ("mean of the image", |c| each(&c.mean_image)),
+    ("mean of the reference", |c| each(&c.mean_reference)),
+    ("ratio of the two", |c| each(&c.ratio)),
+    ("difference of all means, relative", |c| short(c.measures.difference)),
+    ("largest difference", |c| short(c.largest.difference)),
+    ("  at column, row, channel", |c| {
+        format!("{}, {}, {}", c.largest.column, c.largest.row, c.largest.channel)
+    }),
+    ("  image, reference", |c| each(&[c.largest.image, c.largest.reference])),
+];
+
+fn each(values: &[f64]) -> String {
+    values.iter().map(|x| short(*x)).collect::<Vec<_>>().join(" ")
+}
+
+fn row(title: &str, cells: &[String]) -> String {
+    let cells: String = cells.iter().map(|cell| format!("  {cell:<30}")).collect();
+    format!("{title:<34}{cells}").trim_end().to_owned()
+}
+
+fn heading(arguments: &Diff, image: &Picture) -> String {
+    let layer = arguments.layer.as_ref().map_or(String::new(), |layer| format!(", {layer}"));
+    let (a, b) = (arguments.image.display(), arguments.reference.display());
+    format!("{a} against {b} (reference), {} x {} pixels{layer}", image.width, image.height)
+}
+
+fn describe_tolerance(tolerance: Tolerance) -> String {
+    match tolerance {
+        Tolerance::Absolute(most) => format!("{most}"),
+        Tolerance::Relative(most) => format!("{} % of the reference", 100.0 * most),
+    }
+}
+
+fn describe_flip(arguments: &Diff, difference: &Difference) -> String {
+    let per_degree = arguments.pixels_per_degree;
+    match (difference.measure("flip"), &difference.display) {
+        (Some(mean), _) => {
+            row("FLIP, mean", &[String::new(), format!("{mean:.4} ({per_degree} pixels/degree)")])
+        }
+        (None, Some(_)) => "FLIP: not known, this program was built without the feature flip".into(),
+        (None, None) => "FLIP: none, the layer is no colours".into(),
+    }
+}
+
+fn figures(arguments: &Diff, image: &Picture, difference: &Difference) -> Value {
+    let shown = difference.display.as_ref();
+    json!({
+        "image": arguments.image,
+        "reference": arguments.reference,
+        "layer": arguments.layer,
+        "width": image.width,
+        "height": image.height,
+        "channels": difference.channels,
+        "tolerance": describe_tolerance(arguments.tolerance),
+        "radiance": difference.radiance,
+        "display": shown.map(|shown| &shown.comparison),
+        "curve": shown.map(|shown| match shown.curve {
+            ToneCurve::White(white) => json!({ "white": white }),
+            ToneCurve::Scale(scale) => json!({ "scale": scale }),
+        }),
+        "flip": shown.and_then(|shown| shown.mean_flip()),
+        "pixels_per_degree": arguments.pixels_per_degree,
+    })
+}

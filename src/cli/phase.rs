@@ -1,0 +1,96 @@
+//! `tyndall phase`: a phase function by itself.
+
+use super::say;
+use crate::{
+    error::Result,
+    film::output,
+    study::scatter::{self, Check, Division, described, drawing, mesh::Lobe},
+};
+use clap::Args;
+use std::{io::Write as _, path::PathBuf};
+
+/// Look at a phase function.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Phase {
+    /// Its plugin name, such as hg
+    #[arg(value_name = "NAME")]
+    pub name: String,
+
+    /// Its parameters: numbers, text (values=0.5,1,3), or @FILE for the text of a file
+    ///
+    /// The name of a phase function as a value makes a nested one, whose own parameters have its name before them:
+    /// blendphase weight=0.3 a=hg a.g=0.9 b=isotropic
+    #[arg(value_name = "name=value")]
+    pub parameters: Vec<String>,
+
+    /// Directions to sample
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(2..=1_000_000_000_000))]
+    pub samples: u64,
+
+    /// Seed of all random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+
+    /// Circles that divide the sphere, both poles included: finer towards the poles
+    #[arg(long, value_name = "P", default_value_t = 65, value_parser = clap::value_parser!(u16).range(3..=1025))]
+    pub parallels: u16,
+
+    /// Half circles from pole to pole
+    #[arg(long, value_name = "M", default_value_t = 32, value_parser = clap::value_parser!(u16).range(3..=1024))]
+    pub meridians: u16,
+
+    /// The p-value below which samples do not fit
+    #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = significance)]
+    pub significance: f64,
+
+    /// Folder for NAME.svg, a polar plot, and NAME.ply, a mesh
+    #[arg(short, long, value_name = "FOLDER", default_value = ".")]
+    pub output: PathBuf,
+}
+
+fn significance(text: &str) -> std::result::Result<f64, String> {
+    let value = text.parse().ok().filter(|p: &f64| *p > 0.0 && *p < 1.0);
+    value.ok_or_else(|| "expected a number between 0 and 1, such as 0.001".into())
+}
+
+/// Runs the command; true if the samples are as the density says.
+pub fn run(arguments: &Phase) -> Result<bool> {
+    let phase = described::build(&arguments.name, &arguments.parameters)?;
+    let division = Division { parallels: arguments.parallels.into(), meridians: arguments.meridians.into() };
+    let check = scatter::check(&phase, &phase, division, arguments.samples, arguments.seed);
+    let failures = check.failures(arguments.significance);
+    say(&describe(arguments, &check, &failures));
+    let title = std::iter::once(&arguments.name).chain(&arguments.parameters).cloned().collect::<Vec<_>>();
+    let [svg, ply] = ["svg", "ply"].map(|end| arguments.output.join(format!("{}.{end}", arguments.name)));
+    let drawing = drawing::svg(&title.join(" "), &phase, &check)?;
+    output::write(&svg, |file| file.write_all(drawing.as_bytes()))?;
+    output::write(&ply, |file| Lobe::new(&phase, division).write(file))?;
+    say(&format!("{} and {}", svg.display(), ply.display()));
+    Ok(failures.is_empty())
+}
+
+fn describe(arguments: &Phase, check: &Check, failures: &[&str]) -> String {
+    let fit = &check.fit;
+    let verdict = match failures {
+        [] => "the samples are distributed as the density says".to_owned(),
+        some => format!("FAILS: {}", some.join("; ")),
+    };
+    [
+        format!("normalisation      {:.6} (integral of the density over the sphere)", check.normalisation),
+        format!(
+            "mean cosine        {:.6} of the density, {:.6} told by the phase function",
+            check.mean_cosine, check.told_mean_cosine
+        ),
+        format!(
+            "                   {:.6} +- {:.6} of {} samples, {:+.2} standard errors off",
+            check.sampled_mean_cosine, check.standard_error, arguments.samples, check.z()
+        ),
+        format!(
+            "chi-square         {:.1} with {} degrees of freedom ({} parallels x {} meridians, cells of fewer than 5 pooled)",
+            fit.statistic, fit.freedom, arguments.parallels, arguments.meridians
+        ),
+        format!("p-value            {:.4}", fit.p_value),
+        format!("verdict            {verdict}"),
+    ]
+    .join("\n")
+}

@@ -1,0 +1,87 @@
+//! The instruments as a user runs them: a folder, the program in it, and what came of it.
+#![allow(dead_code, reason = "every test program uses its own part of this")]
+
+use std::{
+    path::PathBuf,
+    process::{Command, Output},
+};
+use tempfile::TempDir;
+
+/// A folder in which the program runs.
+pub struct Bench(TempDir);
+
+impl Bench {
+    /// An empty one.
+    pub fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    /// Where a file of this name lies.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Runs the program with `words` as its arguments.
+    pub fn run(&self, words: &str) -> Run {
+        let words: Vec<&str> = words.split_whitespace().collect();
+        self.run_words(&words)
+    }
+
+    /// The same with arguments that may hold spaces.
+    pub fn run_words(&self, words: &[&str]) -> Run {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+        let output = program.current_dir(self.0.path()).args(words).output().unwrap();
+        Run { words: words.join(" "), output }
+    }
+
+    /// A text file.
+    pub fn text(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// A JSON file.
+    pub fn json(&self, name: &str) -> serde_json::Value {
+        serde_json::from_str(&self.text(name)).unwrap()
+    }
+
+    /// Names of all files.
+    pub fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+/// What came of it.
+pub struct Run {
+    words: String,
+    output: Output,
+}
+
+impl Run {
+    /// Standard output.
+    pub fn out(&self) -> String {
+        String::from_utf8(self.output.stdout.clone()).unwrap()
+    }
+
+    /// Standard error.
+    pub fn err(&self) -> String {
+        String::from_utf8(self.output.stderr.clone()).unwrap()
+    }
+
+    /// It ends with this code, without a panic.
+    pub fn ends(self, code: i32) -> Self {
+        assert_eq!(self.output.status.code(), Some(code), "{}: {}{}", self.words, self.out(), self.err());
+        assert!(!self.err().contains("panicked"), "{}: {}", self.words, self.err());
+        self
+    }
+
+    /// It ends with code 2, having said all of `hints`.
+    pub fn is_refused(self, hints: &[&str]) {
+        let run = self.ends(2);
+        for hint in hints {
+            assert!(run.err().contains(hint), "{}: no \"{hint}\" in: {}", run.words, run.err());
+        }
+    }
+}

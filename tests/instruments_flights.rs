@@ -1,0 +1,57 @@
+//! `tyndall flights` as a user runs it.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
+
+#[path = "common/instrument.rs"]
+mod instrument;
+
+use instrument::Bench;
+
+#[test]
+fn methods_are_compared_in_a_table_a_file_and_a_drawing() {
+    let bench = Bench::new();
+    let words = "flights hg g=0.75 --sigma-a 0.1 --sigma-s 0.9 --size 2 --photons 20000 --steps 1,0.1 \
+                 --json f.json --svg f.svg";
+    let run = bench.run(words).ends(0);
+    for hint in ["truth ", "RDS_t ", "RDS_s ", "forced ", "CDS 1 ", "CDS 0.1 ", "is biased", "mean free path"]
+    {
+        assert!(run.out().contains(hint), "no {hint} in {}", run.out());
+    }
+    assert_eq!(bench.files(), ["f.json", "f.svg"]);
+    let figures = bench.json("f.json");
+    let methods = figures["methods"].as_array().unwrap();
+    let agrees: Vec<bool> = methods.iter().map(|method| method["agrees"].as_bool().unwrap()).collect();
+    assert_eq!(agrees[..4], [true, true, true, false], "{}", run.out());
+    // van de Hulst's slab of albedo 0.9 and optical thickness 2: 0.09739 is reflected.
+    let reflected = &figures["truth"][0];
+    let [mean, error] = ["mean", "standard_error"].map(|name| reflected[name].as_f64().unwrap());
+    assert!((mean - 0.09739).abs() < 4.0 * error && error < 2e-3, "{reflected}");
+    let laws = figures["mean_flights"].as_array().unwrap();
+    assert!(laws.len() == 2 && laws.iter().all(|law| law["z"].as_f64().unwrap().abs() < 4.0), "{laws:?}");
+    assert!(bench.text("f.svg").contains("mean free path for scattering"));
+}
+
+#[test]
+fn a_cube_has_sides_and_the_defaults_do() {
+    let bench = Bench::new();
+    let run = bench
+        .run("flights --sigma-a 0 --sigma-s 3 --shape cube --angle 30 --photons 5000 --json f.json")
+        .ends(0);
+    assert!(run.out().contains("cube of 1 m") && run.out().contains("isotropic"), "{}", run.out());
+    let figures = bench.json("f.json");
+    assert!(figures["truth"][2]["mean"].as_f64().unwrap() > 0.1);
+    assert_eq!(figures["methods"].as_array().unwrap().len(), 7);
+}
+
+#[test]
+fn mistakes_are_explained() {
+    let bench = Bench::new();
+    bench.run("flights --sigma-a 0 --sigma-s 0").is_refused(&["both are 0", "remedy"]);
+    bench.run("flights --sigma-a -1 --sigma-s 1").is_refused(&["from 0 to"]);
+    bench.run("flights --sigma-s 1").is_refused(&["--sigma-a"]);
+    bench.run("flights --sigma-a 1 --sigma-s 1 --steps 1e-6 --size 10").is_refused(&["--steps", "at least"]);
+    bench.run("flights --sigma-a 1 --sigma-s 1 --steps 0").is_refused(&["1e-6"]);
+    bench.run("flights --sigma-a 1 --sigma-s 1 --angle 90").is_refused(&["89.9"]);
+    bench.run("flights hg g=2 --sigma-a 1 --sigma-s 1").is_refused(&["phase g=2"]);
+    bench.run("flights --sigma-a 1 --sigma-s 0 --svg f.svg --photons 10").is_refused(&["--svg", "none"]);
+    assert_eq!(bench.files(), [""; 0]);
+}

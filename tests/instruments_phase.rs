@@ -1,0 +1,69 @@
+//! `tyndall phase` as a user runs it.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
+
+#[path = "common/instrument.rs"]
+mod instrument;
+
+use instrument::Bench;
+
+#[test]
+fn a_phase_function_is_judged_and_drawn() {
+    let bench = Bench::new();
+    let run = bench.run("phase hg g=0.6 --samples 200000 --seed 3").ends(0);
+    for hint in [
+        "normalisation      1.000000",
+        "mean cosine        0.6000",
+        "degrees of freedom",
+        "as the density says",
+    ] {
+        assert!(run.out().contains(hint), "no {hint} in {}", run.out());
+    }
+    assert_eq!(bench.files(), ["hg.ply", "hg.svg"]);
+    assert!(bench.text("hg.svg").contains("hg g=0.6") && bench.text("hg.svg").contains("<polyline"));
+    let ply = bench.text("hg.ply");
+    assert!(ply.starts_with("ply\nformat ascii") && ply.contains("element vertex 2018"), "{}", &ply[..300]);
+    let again = bench.run("phase hg g=0.6 --samples 200000 --seed 3").ends(0);
+    assert_eq!(run.out(), again.out());
+}
+
+/// The mesh is a shape that the renderer itself can read: the lobe of the isotropic function is a ball.
+#[test]
+fn the_mesh_is_a_shape() {
+    let bench = Bench::new();
+    bench.run("phase isotropic --samples 1000").ends(0);
+    let scene = serde_json::json!({
+        "type": "scene",
+        "sensor": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 4},
+                   "sampler": {"type": "independent", "sample_count": 1}},
+        "light": {"type": "constant"},
+        "lobe": {"type": "ply", "filename": "isotropic.ply"},
+    });
+    std::fs::write(bench.path("scene.json"), scene.to_string()).unwrap();
+    assert!(bench.run("info scene.json").ends(0).out().contains("4032 primitives"));
+}
+
+#[test]
+fn nested_functions_tables_and_files_are_understood() {
+    let bench = Bench::new();
+    std::fs::write(bench.path("table.txt"), "0.5 1\n2\n").unwrap();
+    for words in [
+        "phase blendphase weight=0.3 a=hg a.g=0.9 b=two_term_hg b.r=0.5 b.g1=0.2 b.g2=-0.4 --samples 50000",
+        "phase tabphase values=@table.txt --samples 50000",
+        "phase tabphase values=1,2,0.5 --samples 50000 --parallels 9 --meridians 4",
+        "phase mie_murky form=blasi --samples 50000",
+    ] {
+        bench.run(words).ends(0);
+    }
+}
+
+#[test]
+fn mistakes_are_explained() {
+    let bench = Bench::new();
+    bench.run("phase henyey").is_refused(&["phase function", "isotropic", "tabphase"]);
+    bench.run("phase hg k=1").is_refused(&["\"k\"", "known here: g"]);
+    bench.run("phase hg g=1").is_refused(&["phase g=1", "between -1 and 1", "remedy"]);
+    bench.run("phase hg -o nowhere --samples 100").is_refused(&["create the folder nowhere"]);
+    bench.run("phase hg --parallels 2").is_refused(&["3..=1025"]);
+    bench.run("phase hg --significance 1").is_refused(&["between 0 and 1"]);
+    assert_eq!(bench.files(), [""; 0]);
+}
