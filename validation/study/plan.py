@@ -14,6 +14,8 @@ these takes 100 000 numbers: below 42 000."""
 REFERENCE_PART, CONTENDERS_PART = 0.25, 0.65
 """Of the time there is; what is left is for starting programs and writing files."""
 REFERENCE_BATCHES = 8
+ROBUST = {"bdpt", "volpathmis"}
+"""The last to have rare bright paths, of light that is hard to find and of colours whose extinctions differ."""
 
 
 @dataclass(frozen=True)
@@ -56,10 +58,10 @@ def top_seconds(seconds: float, contenders: int, seeds: int, points: int) -> flo
 
 
 def best(pilots: dict[str, Pilot], prefix: str) -> str | None:
-    """Who makes the reference for this renderer: bdpt, if it is there, for it is the last to miss light; else whoever
-    needs the least time for an error. A short pilot flatters whoever has rare bright paths and found none."""
+    """Who makes the reference for this renderer: one of its most robust integrators, if there is one; among equals
+    whoever needs the least time for an error. A short pilot flatters whoever has rare bright paths and found none."""
     own = [name for name in pilots if name.startswith(prefix)]
-    return min(own, key=lambda name: (not name.endswith(" bdpt"), pilots[name].cost), default=None)
+    return min(own, key=lambda name: (ROBUST.isdisjoint(name.split()), pilots[name].cost), default=None)
 
 
 def reference_samples(pilots: dict[str, Pilot], seconds: float) -> dict[str, int]:

@@ -79,8 +79,9 @@ class MitsubaRival(Rival):
         self.integrator = mi.load_dict(tree.path_integrator(tree.tree(self.scene), self.kind))
         taken = time.perf_counter() - start
         for spp in (2, 3) if self.variant.startswith("llvm") else ():
-            taken += self.timed(spp, 0)[1] - self.timed(spp, 0)[1]
-        self.load_seconds = max(taken, 0.0)
+            first, second = self.timed(spp, 0)[1], self.timed(spp, 0)[1]
+            taken += max(first - second, 0.0)  # the first compiles, if no earlier run has
+        self.load_seconds = taken
 
     def timed(self, spp: int, seed: int) -> Timed:
         """An image; compiled variants hold all samples of a pass at once, so that long ones are rendered in parts."""

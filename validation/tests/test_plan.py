@@ -28,16 +28,17 @@ def test_all_renders_together_take_the_contenders_part_of_the_time() -> None:
     assert 3 * 8 * top * (1 + 1 / 2 + 1 / 4 + 1 / 8) == pytest.approx(plan.CONTENDERS_PART * 100)
 
 
-def test_the_reference_is_made_by_bdpt_and_the_best_of_mitsuba() -> None:
+def test_the_reference_is_made_by_the_most_robust() -> None:
     pilots = {
         "tyndall pt": Pilot(10, 0.001),
         "tyndall bdpt": Pilot(4, 0.5),
-        "mitsuba a": Pilot(20, 0.2),
-        "mitsuba b": Pilot(5, 0.1),
+        "mitsuba volpathmis a": Pilot(20, 0.3),
+        "mitsuba volpathmis b": Pilot(5, 0.2),
+        "mitsuba volpath b": Pilot(9, 0.1),
     }
     found = plan.reference_samples(pilots, 640)
     each = plan.REFERENCE_PART * 640 / (2 * plan.REFERENCE_BATCHES)
-    assert found == {"tyndall bdpt": round(4 * each), "mitsuba b": round(5 * each)}
+    assert found == {"tyndall bdpt": round(4 * each), "mitsuba volpathmis b": round(5 * each)}
     assert plan.reference_samples({"tyndall lt": Pilot(1, 1)}, 1e-6) == {"tyndall lt": 1}
 
 

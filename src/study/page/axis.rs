@@ -35,7 +35,7 @@ impl Span {
         let Some(Self { low, high }) = shown.fold(None, ends) else { return Self { low: 0.1, high: 1.0 } };
         // Not narrower than half a decade, lest noise looks like change.
         let padding = if high / low < 2.0 { 2.0 } else { PADDING };
-        Self { low: (low / padding).max(1e-300), high: (high * padding).clamp(1e-299, 1e300) }
+        Self { low: (low / padding).clamp(1e-300, 1e299), high: (high * padding).clamp(1e-299, 1e300) }
     }
 
     /// True for what the scale may be stretched to hold.
@@ -115,8 +115,17 @@ mod tests {
 
     #[test]
     fn every_span_is_a_scale() {
-        let cases: &[&[f64]] =
-            &[&[], &[0.0], &[1.0], &[1e-320], &[1e308], &[1e-300, 1e300], &[f64::INFINITY], &[0.3, 0.30001]];
+        let cases: &[&[f64]] = &[
+            &[],
+            &[0.0],
+            &[1.0],
+            &[1e-320],
+            &[1e308],
+            &[f64::MAX],
+            &[1e-300, 1e300],
+            &[f64::INFINITY],
+            &[0.3, 0.30001],
+        ];
         for values in cases {
             let span = Span::around(values.iter().copied());
             assert!(0.0 < span.low && span.low < span.high && span.high.is_finite(), "{values:?}: {span:?}");

@@ -70,7 +70,7 @@ mod tests {
             let error = 0.6 / 255.0 / (light / HEADROOM).cbrt().max(0.02);
             assert!((displayed(byte) - srgb(light)).abs() < error, "{light}: {}", displayed(byte));
         }
-        assert_eq!((displayed(0), displayed(255)), (0.0, 1.0));
+        assert!(displayed(0) == 0.0 && displayed(255) > 0.999_999);
         assert_eq!(table().split(' ').count(), 256);
     }
 
