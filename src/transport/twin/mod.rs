@@ -241,6 +241,15 @@ fn every_heuristic_under_the_sky_and_in_fire() {
     examine_heuristics("fire", &setup, ALL, 60);
 }
 
+/// In a hollow diffuse ball all joins of a path have the same density, but for rounding: they share it.
+#[test]
+fn strategies_that_are_tied() {
+    let setup = build(&[CLEAR, INSIDE, HOLLOW]);
+    let options = Options { heuristic: Heuristic::Maximum, ..ALL };
+    let report = examine::<ByMaximum>("hollow ball", &setup, options, 300);
+    assert!(report.divided >= 50, "{} of {} paths", report.divided, report.compared);
+}
+
 #[test]
 fn every_heuristic_by_some_strategies_within_a_limited_depth() {
     let setup = build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BULB, GLASS_BALL]);

@@ -84,6 +84,8 @@ pub struct Report {
     close: usize,
     /// Paths compared.
     pub compared: usize,
+    /// Those that no strategy has more than half of.
+    pub divided: usize,
     /// Weights of real walks.
     real: Worst,
     /// Weights of walks led along paths.
@@ -148,6 +150,7 @@ impl Report {
             return slow;
         }
         self.compared += 1;
+        self.divided += usize::from(slow.iter().all(|strategy| strategy.iter().sum::<f64>() <= 0.5 + 1e-9));
         let never = twin.never(path);
         let (mut total, mut blocked, mut whole) = (0.0, false, true);
         for hero in 0..P::Lanes::COUNT {

@@ -233,6 +233,10 @@ pub const POINT: &str = r#""point": {"type": "point", "position": [-0.3, 0.8, -0
 pub const SPOT: &str = r#""spot": {"type": "spot", "cutoff_angle": 35, "intensity": 6,
     "to_world": [{"type": "lookat", "origin": [0.6, 0.9, -0.4], "target": [0, -0.5, 0], "up": [0, 0, 1]}]}"#;
 
+/// A ball that shines inwards and reflects little.
+pub const HOLLOW: &str = r#""shell": {"type": "sphere", "flip_normals": true,
+    "bsdf": {"type": "diffuse", "reflectance": 0.3}, "emitter": {"type": "area", "radiance": 1}}"#;
+
 /// White walls far apart, in fog that absorbs nothing.
 pub const FURNACE: &str = r#""fog": {"type": "homogeneous", "sigma_t": 20, "albedo": 1},
     "room": {"type": "cube", "flip_normals": true, "bsdf": {"type": "diffuse", "reflectance": 1}}"#;
