@@ -222,10 +222,11 @@ fn the_program_writes_tables_layers_and_sheets() {
     assert!(csv.lines().all(|line| line.split(',').count() == 11), "{csv}");
     let layers = channels(&desk.path("deep/er/weighted.exr"));
     assert_eq!(layers.len(), 3 * (1 + cells.len()));
-    for pixel in 0..64 {
-        let parts: f32 =
-            cells.iter().map(|c| layers[&format!("{}.G", c["name"].as_str().unwrap())][pixel]).sum();
-        assert!((parts - layers["G"][pixel]).abs() <= 1e-5 * layers["G"][pixel]);
+    let greens: Vec<&Vec<f32>> =
+        cells.iter().map(|c| &layers[&format!("{}.G", c["name"].as_str().unwrap())]).collect();
+    for (pixel, whole) in layers["G"].iter().enumerate() {
+        let parts: f32 = greens.iter().map(|green| green[pixel]).sum();
+        assert!((parts - whole).abs() <= 1e-5 * whole);
     }
     assert_eq!(channels(&desk.path("deep/er/unweighted.exr")).len(), layers.len());
     for sheet in ["weighted.png", "unweighted.png"] {
@@ -252,7 +253,7 @@ fn what_a_scene_needs_is_not_left_out() {
     }
     let (code, out, err) = desk.run("strategies scene.json --spp 1 --pilots 0 --integrator pt --size 4x4");
     assert_eq!(code, Some(0), "{err}");
-    assert!(!out.contains("advice") && !out.contains(" join") && out.contains("next-event"), "{out}");
+    assert!(!out.contains("advice") && !out.contains("  join ") && out.contains("next-event"), "{out}");
     assert!(desk.json("scene-strategies/strategies.json")["variance"].is_null(), "one pass has none");
 }
 
@@ -263,7 +264,7 @@ fn what_cannot_be_done_is_refused() {
         ("strategies scene.json --depth 0", vec!["--depth", "1"]),
         ("strategies scene.json --integrator fog", vec!["paths", "--integrator bdpt"]),
         ("strategies scene.json -o scene.json/x", vec!["a folder to write to"]),
-        ("strategies scene.json --size 20000x20000", vec!["GiB", "--size", "--depth"]),
+        ("strategies scene.json --size 12000x12000", vec!["GiB", "--size", "--depth"]),
         ("strategies none.json", vec!["none.json"]),
     ] {
         let (code, _, err) = desk.run(words);

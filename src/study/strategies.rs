@@ -151,8 +151,10 @@ pub fn examine(
     check(&setup.film, cells, &options)?;
     let subsets = subsets(options.strategies);
     let timed = plan.passes.div_ceil(4);
-    let pilots = if plan.pilots > 0 { pilot::passes(plan.pilots) * (subsets.len() + 1) } else { 0 };
-    let total = plan.passes + timed + pilots;
+    let pilots = if plan.pilots > 0 { pilot::passes(plan.pilots) } else { 0 };
+    let before = plan.passes + timed;
+    // As many contenders as there can be: which of them can make all paths is not known yet.
+    let total = before + pilots * (subsets.len() + 1);
     let bench = Bench::new(&setup.scene, &setup.film, settings);
     let parts = bench.parts(cells, plan.passes, &mut |done| tell(done, total));
     let times = bench.times(cells, timed, &mut |done| tell(plan.passes + done, total));
@@ -165,7 +167,7 @@ pub fn examine(
         .partition(|(_, lacks)| lacks.is_some());
     if plan.pilots > 0 {
         let able: Vec<Strategies> = able.into_iter().map(|(set, _)| set).collect();
-        let before = plan.passes + timed;
+        let total = before + pilots * (able.len() + 1);
         report.subsets = compare(setup, settings, &able, &parts.whole.mean(), plan.pilots, &mut |done| {
             tell(before + done, total)
         });
@@ -265,7 +267,7 @@ fn advice(subsets: &[SubsetReport]) -> String {
         None if subsets.is_empty() => {
             "keep all strategies: without any of them paths would be missing".to_owned()
         }
-        None => "keep all strategies: without none that could be missed is there surely less error x time"
+        None => "keep all strategies: no set without one of them has less error x time that could be told from chance"
             .to_owned(),
     }
 }

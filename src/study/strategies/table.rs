@@ -40,17 +40,17 @@ pub fn table(report: &Report) -> String {
     lines.extend(EXPLANATION.iter().map(|text| (*text).to_owned()));
     let rows = report.rows.iter().map(|row| format!("{} {:.3}", length(row.length), row.exposure));
     lines.push(format!("exposure of the rows of both sheets: {}", rows.collect::<Vec<_>>().join(", ")));
-    if report.subsets.iter().any(|subset| subset.gain.is_some()) {
+    if !report.subsets.is_empty() {
         lines.push(String::new());
-        lines.push(
-            "sets of strategies, by relMSE x seconds of all strategies over theirs (more than 1 is better):"
-                .to_owned(),
-        );
+        lines.push(SUBSETS.to_owned());
     }
     lines.extend(report.subsets.iter().map(subset));
     lines.extend(report.advice.iter().map(|advice| format!("advice: {advice}")));
     lines.join("\n")
 }
+
+const SUBSETS: &str = "with less: relMSE x seconds of all strategies over that of fewer; more than 1 is better (rare bright \
+     paths that the short renders did not meet are not in it)";
 
 const EXPLANATION: [&str; 3] = [
     "energy: share of the mean luminance. alone: what the strategy brings unweighted, over all light on paths of its length.",
@@ -92,7 +92,12 @@ fn subset(subset: &SubsetReport) -> String {
         (None, Some(Interval { mean, low, high })) => format!("{mean:.2}x [{low:.2}, {high:.2}]"),
         (None, None) => "no noise to compare".to_owned(),
     };
-    format!("  without {:<22} {what}", subset.without)
+    let name = match subset.strategies.as_str() {
+        "hit,next-event" => " (pt)",
+        "lens" => " (lt)",
+        _ => "",
+    };
+    format!("  without {:<27} {what}", format!("{}{name}", subset.without))
 }
 
 /// One row a strategy.
