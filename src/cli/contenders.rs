@@ -82,6 +82,10 @@ fn axes(arguments: &Study) -> Result<Vec<Axis>> {
     let named = named.into_iter().filter(|(_, values)| !values.is_empty());
     let mut axes: Vec<Axis> =
         named.map(|(option, values)| Axis::new(option, values)).collect::<Result<_>>()?;
+    if !arguments.strategies.is_empty() && arguments.integrators.is_empty() {
+        // All strategies are those of bdpt; the scene's own integrator may have fewer.
+        axes.insert(0, Axis { values: vec![(String::new(), "--integrator bdpt".to_owned())] });
+    }
     for text in &arguments.vary {
         let (option, values) = text.split_once('=').unwrap_or((text.as_str(), ""));
         let values: Vec<String> = values.split(',').map(str::to_owned).collect();

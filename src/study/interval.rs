@@ -2,11 +2,12 @@
 //!
 //! Few seeds, often with heavy tails: what can be negative gets Student's t; what is positive gets it for the logarithm
 //! of its mean, so that the estimate stays the mean (which is what the expected error is) while the interval is longer
-//! upwards and never reaches zero. What is made of several means is drawn anew from the seeds.
+//! upwards and never reaches zero. What is made of several means gets the same, with an error
+//! that is found by drawing seeds anew.
 
 use super::outcome::Interval;
 use crate::sampling::{Stream, stream::Purpose};
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Resamples of a bootstrap.
 const DRAWS: u64 = 4_000;
@@ -54,23 +55,22 @@ pub fn positive(values: &[f64], confidence: f64) -> Interval {
     Interval { mean, low: mean / factor, high: mean * factor }
 }
 
-/// Of what `estimate` makes of seeds (their indices, of which there are `count`), by drawing seeds with replacement;
-/// the same seeds give the same interval. Its ends lie further out than the plain percentiles, by as much as Student's t
-/// for so few lies beyond the normal distribution (Hesterberg 2015, "What teachers should know about the bootstrap",
-/// sec. 3.1.2).
+/// Of a positive number that `estimate` makes of seeds (their indices, of which there are `count`): Student's t for its
+/// logarithm, whose error is found by drawing seeds with replacement. Plain percentiles of few draws are too narrow: of
+/// four seeds, ends that should be missed once in 20 times are missed five times. The same seeds give the same interval.
 pub fn bootstrap(count: usize, confidence: f64, estimate: impl Fn(&[usize]) -> f64) -> Interval {
     let all: Vec<usize> = (0..count).collect();
     let draw = |index| {
         let mut stream = Stream::new(0, index, 0, Purpose::Study);
         let picks: Vec<usize> = (0..count).map(|_| stream.below(count)).collect();
-        estimate(&picks)
+        estimate(&picks).ln()
     };
-    let mut found: Vec<f64> = (0..DRAWS).map(draw).collect();
-    found.sort_by(f64::total_cmp);
+    let found: Vec<f64> = (0..DRAWS).map(draw).collect();
     let n = count as f64;
-    let beyond = Normal::standard().sf((n / (n - 1.0)).sqrt() * quantile(n - 1.0, confidence));
-    let at = |share: f64| found[(share * (found.len() - 1) as f64).round() as usize];
-    Interval { mean: estimate(&all), low: at(beyond), high: at(1.0 - beyond) }
+    // The draws vary as n - 1 of n values do.
+    let spread = Mean::of(&found).error * (DRAWS as f64).sqrt() * (n / (n - 1.0)).sqrt();
+    let (mean, factor) = (estimate(&all), (quantile(n - 1.0, confidence) * spread).exp());
+    Interval { mean, low: mean / factor, high: mean * factor }
 }
 
 /// Slope of the straight line of least squares through points (log x, log y); none where they do not tell: fewer than
@@ -108,20 +108,33 @@ mod tests {
         assert!(plain(&[1.0, f64::NAN], 0.95).mean.is_nan() && plain(&[1.0], 0.95).low.is_nan());
     }
 
-    /// Draws of a mean of few values are discrete, but most of them lie within its standard error.
     #[test]
     fn a_bootstrap_of_the_mean_is_as_wide_as_its_error() {
         let values: Vec<f64> = (0..100).map(f64::from).collect();
         let mean = |picks: &[usize]| picks.iter().map(|i| values[*i]).sum::<f64>() / picks.len() as f64;
-        let found = bootstrap(values.len(), 0.95, mean);
-        // The variance of 0 to 99 is 833.25, that of their mean a hundredth of it.
-        let reach = 1.96 * 8.3325f64.sqrt();
+        let (found, expected) = (bootstrap(values.len(), 0.95, mean), positive(&values, 0.95));
         assert_eq!(found.mean, 49.5);
-        assert!(
-            (found.high - 49.5 - reach).abs() < 0.8 && (49.5 - found.low - reach).abs() < 0.8,
-            "{found:?}"
-        );
+        let wide = |interval: Interval| (interval.high / interval.low).ln();
+        assert!((wide(found) / wide(expected) - 1.0).abs() < 0.05, "{found:?} {expected:?}");
         assert_eq!(bootstrap(100, 0.95, mean), found);
+        assert!(bootstrap(2, 0.95, |picks| 1.0 / picks[0] as f64).low.is_nan());
+    }
+
+    /// Means of eight exponential values lie within most of their intervals. Of 800, 95 % are 760 +- 6.2; for skewed
+    /// values some fewer (93 % by a simulation in another language).
+    #[test]
+    fn intervals_hold_the_truth_as_often_as_they_say() {
+        let mut held = [0, 0];
+        for index in 0..800 {
+            let mut stream = Stream::new(7, index, 1, Purpose::Study);
+            let values: Vec<f64> = (0..8).map(|_| f64::from(stream.exponential())).collect();
+            let mean = |picks: &[usize]| picks.iter().map(|i| values[*i]).sum::<f64>() / picks.len() as f64;
+            let intervals = [positive(&values, 0.95), bootstrap(8, 0.95, mean)];
+            for (held, interval) in held.iter_mut().zip(intervals) {
+                *held += u32::from(interval.low < 1.0 && 1.0 < interval.high);
+            }
+        }
+        assert!(held.iter().all(|held| (720..780).contains(held)), "{held:?}");
     }
 
     #[test]
