@@ -45,13 +45,13 @@ fn a_cube_has_sides_and_the_defaults_do() {
 #[test]
 fn mistakes_are_explained() {
     let bench = Bench::new();
-    bench.run("flights --sigma-a 0 --sigma-s 0").is_refused(&["both are 0", "remedy"]);
-    bench.run("flights --sigma-a -1 --sigma-s 1").is_refused(&["from 0 to"]);
-    bench.run("flights --sigma-s 1").is_refused(&["--sigma-a"]);
-    bench.run("flights --sigma-a 1 --sigma-s 1 --steps 1e-6 --size 10").is_refused(&["--steps", "at least"]);
-    bench.run("flights --sigma-a 1 --sigma-s 1 --steps 0").is_refused(&["1e-6"]);
-    bench.run("flights --sigma-a 1 --sigma-s 1 --angle 90").is_refused(&["89.9"]);
-    bench.run("flights hg g=2 --sigma-a 1 --sigma-s 1").is_refused(&["phase g=2"]);
-    bench.run("flights --sigma-a 1 --sigma-s 0 --svg f.svg --photons 10").is_refused(&["--svg", "none"]);
+    bench.run("flights --sigma-a 0 --sigma-s 0").refuses(&["both are 0", "remedy"]);
+    bench.run("flights --sigma-a -1 --sigma-s 1").refuses(&["from 0 to"]);
+    bench.run("flights --sigma-s 1").refuses(&["--sigma-a"]);
+    bench.run("flights --sigma-a 1 --sigma-s 1 --steps 1e-6 --size 10").refuses(&["--steps", "at least"]);
+    bench.run("flights --sigma-a 1 --sigma-s 1 --steps 0").refuses(&["1e-6"]);
+    bench.run("flights --sigma-a 1 --sigma-s 1 --angle 90").refuses(&["89.9"]);
+    bench.run("flights hg g=2 --sigma-a 1 --sigma-s 1").refuses(&["phase g=2"]);
+    bench.run("flights --sigma-a 1 --sigma-s 0 --svg f.svg --photons 10").refuses(&["--svg", "none"]);
     assert_eq!(bench.files(), [""; 0]);
 }

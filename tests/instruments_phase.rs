@@ -59,11 +59,11 @@ fn nested_functions_tables_and_files_are_understood() {
 #[test]
 fn mistakes_are_explained() {
     let bench = Bench::new();
-    bench.run("phase henyey").is_refused(&["phase function", "isotropic", "tabphase"]);
-    bench.run("phase hg k=1").is_refused(&["\"k\"", "known here: g"]);
-    bench.run("phase hg g=1").is_refused(&["phase g=1", "between -1 and 1", "remedy"]);
-    bench.run("phase hg -o nowhere --samples 100").is_refused(&["create the folder nowhere"]);
-    bench.run("phase hg --parallels 2").is_refused(&["3..=1025"]);
-    bench.run("phase hg --significance 1").is_refused(&["between 0 and 1"]);
+    bench.run("phase henyey").refuses(&["phase function", "isotropic", "tabphase"]);
+    bench.run("phase hg k=1").refuses(&["\"k\"", "known here: g"]);
+    bench.run("phase hg g=1").refuses(&["phase g=1", "between -1 and 1", "remedy"]);
+    bench.run("phase hg -o nowhere --samples 100").refuses(&["create the folder nowhere"]);
+    bench.run("phase hg --parallels 2").refuses(&["3..=1025"]);
+    bench.run("phase hg --significance 1").refuses(&["between 0 and 1"]);
     assert_eq!(bench.files(), [""; 0]);
 }

@@ -78,7 +78,7 @@ impl Run {
     }
 
     /// It ends with code 2, having said all of `hints`.
-    pub fn is_refused(self, hints: &[&str]) {
+    pub fn refuses(self, hints: &[&str]) {
         let run = self.ends(2);
         for hint in hints {
             assert!(run.err().contains(hint), "{}: no \"{hint}\" in: {}", run.words, run.err());

@@ -61,6 +61,17 @@ fn all_unbiased_methods_agree_in_a_cube() {
     assert!((steep.closed_forms()[DIRECT + 1].unwrap() - (-2.0 * 0.75 / 0.8f64.sin()).exp()).abs() < 1e-6);
 }
 
+/// Power that is nearly gone ends by chance, and is not lost in the mean: here nearly every photon comes to that.
+#[test]
+fn all_power_leaves_or_stays() {
+    let study = study(&slab(0.5, 40.0, 0.0), &[], effort(20_000));
+    for found in &study.methods {
+        let all: f64 = [SCATTERED, DIRECT, ABSORBED].iter().map(|q| found.estimates[*q].estimate.mean).sum();
+        // Of at most 1e-3 one in ten survives tenfold: 3e-3 / sqrt(20 000) is the standard error at most.
+        assert!((all - 1.0).abs() < 8e-5, "{found:?}");
+    }
+}
+
 /// Short steps err little: the bias shrinks with the step, and the time grows.
 #[test]
 fn shorter_steps_err_less() {
