@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     bsdf::{BsdfModel, Transport},
-    math::{Lanes, Spectrum, Vec3, measure},
+    math::{Lanes, Spectrum, Vec3, measure, offset},
     medium::{Matter, MediumIndex},
     phase::{Deflection, PhaseModel},
     sampling::Stream,
@@ -120,7 +120,7 @@ pub fn visit<P: Profile>(
     scatter(scene, vertex, kind.transport, stream)
 }
 
-/// The vertex at the end of a flight; none if it coincides with the one before.
+/// The vertex at the end of a flight; none if its density is no number.
 #[inline]
 pub fn land<P: Profile>(
     departure: &Departure<P::Sums>,
@@ -138,7 +138,7 @@ pub fn land<P: Profile>(
     let distance_squared = if (P::INFINITE && departure.from_infinity) || escaped {
         1.0
     } else {
-        position.distance_squared(departure.position)
+        squared_distance(position, departure.position)
     };
     let mut vertex = Vertex {
         position,
@@ -162,7 +162,7 @@ pub fn land<P: Profile>(
     let geometry = measure::solid_angle_to_vertex(vertex.cosine(direction), distance_squared);
     let density = departure.forward * transmitted.hero(hero) * sigma_t.hero(hero) * geometry;
     vertex.inverse = 1.0 / density;
-    // A density of 0, infinite, or so small that its inverse overflows: no walk in a real scene comes here.
+    // A density of 0, infinite, or so great or small that its inverse is: no walk in a real scene comes here.
     if !(vertex.inverse > 0.0 && vertex.inverse < f32::INFINITY) {
         return None;
     }
@@ -175,6 +175,19 @@ pub fn land<P: Profile>(
     }
     vertex.joins = if departure.dirac { 0.0 } else { visitor.joins(vertex.edges, position) };
     Some(vertex)
+}
+
+/// Squared distance of two vertices one flight apart, never 0. In dense media many a flight is shorter than a rounding
+/// error of positions; it counts as one, for its walk goes on: ended there, walks of thousands of collisions would lose
+/// their light.
+#[inline]
+fn squared_distance(a: Vec3, b: Vec3) -> f32 {
+    let squared = a.distance_squared(b);
+    if squared > 0.0 {
+        return squared;
+    }
+    let rounding = offset::ROUNDOFF * a.abs().max_element();
+    (rounding * rounding).max(f32::MIN_POSITIVE)
 }
 
 /// A direction after scattering.
@@ -262,4 +275,18 @@ fn reflect<S: Sums>(
     }
     let (forward, backward) = (sample.forward * survival, sample.backward * survival);
     Some(Turn { direction, weight, forward, backward, dirac: sample.dirac })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vertices_are_never_without_distance() {
+        let place = Vec3::new(3.0, -4.0, 1.0);
+        assert!(squared_distance(place, place) > 1e-14);
+        assert!(squared_distance(place, place) < 1e-12);
+        assert!(squared_distance(Vec3::ZERO, Vec3::ZERO) > 0.0);
+        assert_eq!(squared_distance(place, Vec3::new(3.0, -4.0, 3.0)), 4.0);
+    }
 }

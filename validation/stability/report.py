@@ -44,6 +44,8 @@ class Table:
     """All lines, judged together."""
 
     lines: list[Line]
+    command: str
+    """That made it."""
     perturbation: float
     strict: bool
 
@@ -102,7 +104,7 @@ class Table:
 
     def markdown(self) -> str:
         """The whole table, row by row."""
-        parts = [INTRODUCTION, self.summary().split("\n")[0] + "."]
+        parts = [f"# Stability\n\n    {self.command}", INTRODUCTION, self.summary().split("\n")[0] + "."]
         judged = list(zip(self.lines, self.verdicts()))
         for row, group in groupby(judged, key=lambda pair: pair[0].case.row):
             group = list(group)
@@ -161,9 +163,7 @@ COLUMNS = (
     "| case | method | truth | expected | found | standard error | relative | resolves | verdict | NaN/inf | worst sample |\n"
     "|---|---|---|---|---|---|---|---|---|---|---|"
 )
-INTRODUCTION = f"""# Stability
-
-Every number that a scene gives, at its extremes, against truth. Each line is a case by one integrator (and tracker):
+INTRODUCTION = f"""Every number that a scene gives, at its extremes, against truth. Each line is a case by one integrator (and tracker):
 
 - expected, found: the mean over the image, of the channel that differs most; its standard error is that of the difference.
 - resolves: the relative difference that would have been refused all but surely. It must be below 2 % (light

@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 import tempfile
 import time
 import zlib
@@ -74,10 +75,16 @@ def run(effort: Effort, output: Path, only: str = "", perturbation: float = 0, s
     for line in found_lines(chosen, effort, 1 + perturbation):
         lines.append(line)
         print(report.short(line), flush=True)
-    table = report.Table(lines, perturbation, strict)
+    table = report.Table(lines, command(sys.argv[1:]), perturbation, strict)
     table.write(output)
     print(table.summary())
     return table.holds()
+
+
+def command(arguments: list[str]) -> str:
+    """What was typed, but for where the table goes."""
+    kept = [a for i, a in enumerate(arguments) if not a.startswith("--output") and arguments[i - 1 : i] != ["--output"]]
+    return " ".join(["python3 -m validation", *kept])
 
 
 def found_lines(chosen: list[Case], effort: Effort, factor: float) -> Iterator[Line]:

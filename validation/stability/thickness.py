@@ -51,8 +51,9 @@ def furnaces() -> list[Case]:
         long = b >= 1e3
         effort = min(1, 10 / b) if not long else 50 / b
         # Walks that meet the sky, and nothing else, make no noise at all.
-        chosen = methods("pt", "bdpt", effort=effort) | (methods("pt/hit", effort=effort / 2) if long else {})
-        found.append(Case(ROW, f"white ball under the sky, b {b:g}", source, 1, chosen, "furnace", 0.1 if long else 0.02, LONG if long else ""))
+        chosen = {"pt/hit": effort / 2, "pt": effort, "bdpt": effort / 5} if long else methods("pt", "bdpt", effort=effort)
+        resolves = 0.02 if not long else 0.1 if b < 5e3 else 0.3
+        found.append(Case(ROW, f"white ball under the sky, b {b:g}", source, 1, chosen, "furnace", resolves, LONG if long else ""))
     return found
 
 
