@@ -8,6 +8,7 @@ use crate::{
         format::{FileKind, Format},
     },
     render::{self, Image, Progress, Settings, budget::Budget},
+    sampling::Sampler,
     scene::build::Setup,
     transport::Strategies,
 };
@@ -87,7 +88,7 @@ fn shoot(setup: &Setup, settings: &Settings, goal: &Goal, label: Option<&str>) -
     goal.write(film, &mut image)?;
     let preview = goal.path.with_extension("png");
     film::png::write(&preview, film.width as usize, film.height as usize, &image.pixels)?;
-    print_summary(&image, &goal.path, &preview, label);
+    print_summary(&image, settings, &goal.path, &preview, label);
     Ok(serde_json::json!({
         "samples_per_pixel": image.samples_per_pixel,
         "render_seconds": image.elapsed.as_secs_f64(),
@@ -176,6 +177,7 @@ impl Goal {
 struct Bar {
     bar: ProgressBar,
     by_time: bool,
+    sampler: Sampler,
 }
 
 impl Bar {
@@ -194,12 +196,13 @@ impl Bar {
             bar.set_style(style);
         }
         bar.set_prefix(label.map_or(String::new(), |label| format!("{label}  ")));
-        Self { bar, by_time: settings.budget.samples_per_pixel.is_none() }
+        let by_time = settings.budget.samples_per_pixel.is_none();
+        Self { bar, by_time, sampler: settings.options.sampler }
     }
 
     fn tell(&self, progress: &Progress) {
-        let noise =
-            progress.noise.map_or("noise not known yet".to_owned(), |n| format!("noise {}", percent(n)));
+        let told = |noise| told(noise, self.sampler);
+        let noise = progress.noise.map_or("noise not known yet".to_owned(), told);
         self.bar.set_message(format!("{} samples/pixel  {noise}", progress.passes));
         self.bar.set_position(if self.by_time { milliseconds(progress.elapsed) } else { progress.samples });
     }
@@ -207,6 +210,14 @@ impl Bar {
 
 fn milliseconds(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
+}
+
+/// The noise of an image; where its samples are spread evenly, there is less than their variance says.
+fn told(noise: f64, sampler: Sampler) -> String {
+    match sampler {
+        Sampler::Independent => format!("noise {}", percent(noise)),
+        Sampler::Sobol => format!("noise below {}", percent(noise)),
+    }
 }
 
 /// A relative error, in percent with two digits.
@@ -221,8 +232,9 @@ fn percent(relative: f64) -> String {
     format!("{:.digits$} %", 100.0 * relative)
 }
 
-fn print_summary(image: &Image, output: &Path, preview: &Path, label: Option<&str>) {
-    let noise = image.noise.map_or(String::new(), |n| format!(", noise {}", percent(n)));
+fn print_summary(image: &Image, settings: &Settings, output: &Path, preview: &Path, label: Option<&str>) {
+    let told = |noise| format!(", {}", told(noise, settings.options.sampler));
+    let noise = image.noise.map_or(String::new(), told);
     let label = label.map_or(String::new(), |label| format!("{label}: "));
     super::say(&format!(
         "{label}{} samples/pixel in {:.1} s{noise}: {} and {}",

@@ -4,8 +4,9 @@ use super::{
     Estimator,
     cache::LightCache,
     connect::{self, Joined, Span},
+    forced,
     profile::Profile,
-    vertex::Vertex,
+    vertex::{Site, Vertex},
     walk::{Departure, Kind, Visitor, walk},
     weight::End,
 };
@@ -146,7 +147,10 @@ impl<'a, P: Profile, S: Splats> Light<'a, P, S> {
         if hidden || !self.splats.covers(seen.film) {
             return None;
         }
-        let end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
+        let mut end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
+        if P::MEDIA && self.estimator.forced_interaction && matches!(vertex.site, Site::Medium(_)) {
+            end.tail = end.tail * forced::gain(self.estimator, seen.ray);
+        }
         let joined = self.join_end(&end, &seen, false, stream)?;
         Some((seen.film, joined))
     }
