@@ -61,8 +61,10 @@ fn cloud(interior: Value) -> Vec<(&'static str, Value)> {
 fn in_thin_and_thick_fog() {
     for sigma_t in [0.02, 1.0, 30.0] {
         let fog = medium(sigma_t, 0.8, 0.3);
-        let alone = [USUAL[0], USUAL[1], strategies("hit"), strategies("hit+lens")];
-        agrees(&format!("fog of {sigma_t}"), &scene(&foggy_room(fog)), &alone, 48);
+        // By chance, thick fog lets no eye walk through to the lamp.
+        let alone = [USUAL[0], USUAL[1], strategies("hit+lens"), strategies("hit")];
+        let sets = if sigma_t > 10.0 { &alone[..3] } else { &alone };
+        agrees(&format!("fog of {sigma_t}"), &scene(&foggy_room(fog)), sets, 48);
     }
 }
 
@@ -90,7 +92,7 @@ fn in_fog_without_end() {
         ("floor", with(floor(-0.6, 1.0, 0.5), &[("exterior", named("fog")), ("interior", named("fog"))])),
         ("lamp", with(lamp_ball([0.2, 0.4, -0.3], 0.3, 3.0), &[("exterior", named("fog"))])),
     ];
-    agrees("endless", &scene(&parts), &USUAL, 64);
+    agrees("endless", &scene(&parts), &USUAL, 512);
 }
 
 /// Smoke that varies, seen from outside or (`inside`) from within.
@@ -125,7 +127,7 @@ fn in_smoke_that_varies_by_every_tracker() {
 /// Wisps with nothing between them: cells whose mean says nothing, and light that misses them.
 #[test]
 fn in_chromatic_wisps_by_null_collisions() {
-    let noise = json!({"type": "noise", "octaves": 3, "frequency": 3, "offset": -0.2, "amplitude": 1});
+    let noise = json!({"type": "noise", "octaves": 3, "frequency": 3, "bias": -0.2, "amplitude": 1});
     let wisps =
         json!({"type": "product", "a": {"type": "constvolume", "value": rgb(0.3, 1.0, 2.5)}, "b": noise});
     agrees("wisps", &smoky(wisps, "null_collision", false, 2.0), &USUAL, 96);
@@ -221,7 +223,7 @@ fn thin_media_are_less_noisy() {
         ("sun", sun([0.3, -1.0, -0.2], 10.0)),
     ];
     let scene = scene(&parts);
-    for (set, factor) in [(Strategies::PT, 20.0), (Strategies::BDPT, 1.0)] {
+    for (set, factor) in [(Strategies::PT, 100.0), (Strategies::BDPT, 50.0)] {
         let (chance, forced) = (variance(&Stage::new(&scene), set), variance(&forced(&scene), set));
         assert!(factor * forced < chance, "{}: {chance} {forced}", common::name_of(set));
     }

@@ -6,6 +6,7 @@ use common::{
     Stage,
     claims::{Claims, Sample},
     pieces::*,
+    strategies,
 };
 use serde_json::{Value, json};
 use tyndall::{math::Spectrum, sampling::Sampler, transport::Strategies};
@@ -107,7 +108,7 @@ fn images_are_less_noisy() {
         ("integrator", depth(2)),
     ];
     let scene = scene(&parts);
-    for (set, factor) in [(Strategies::PT, 4.0), (Strategies::BDPT, 2.0)] {
+    for (set, factor) in [(strategies("next-event"), 8.0), (Strategies::PT, 1.5), (Strategies::BDPT, 1.2)] {
         let (plain, even) = (variance(&Stage::new(&scene), set, 64), variance(&even(&scene), set, 64));
         assert!(factor * even < plain, "{}: {plain} {even}", common::name_of(set));
     }

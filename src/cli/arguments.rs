@@ -173,7 +173,7 @@ pub struct Estimator {
 
     /// How random numbers are spread over the samples of a pixel and over light walks [default: the scene's sampler]
     ///
-    /// With sobol, noise is shown as if samples were independent: it is less.
+    /// With sobol, noise is estimated as if samples were independent, and said to be below that.
     #[arg(long, value_enum, value_name = "NAME")]
     pub sampler: Option<Sampler>,
 

@@ -228,6 +228,7 @@ impl Goal {
 struct Bar {
     bar: ProgressBar,
     by: By,
+    sampler: Sampler,
 }
 
 /// What fills the bar.
@@ -252,7 +253,7 @@ impl Bar {
             bar.set_style(style);
         }
         bar.set_prefix(label.map_or(String::new(), |label| format!("{label}  ")));
-        Self { bar, by }
+        Self { bar, by, sampler: task.settings.options.sampler }
     }
 
     fn tell(&self, progress: &Progress) {
@@ -261,7 +262,10 @@ impl Bar {
                 let share = 100.0 * progress.within.unwrap_or(0.0);
                 format!("{share:.1} % of the pixels within {}", percent(within))
             }
-            _ => progress.noise.map_or("noise not known yet".to_owned(), |n| format!("noise {}", percent(n))),
+            _ => {
+                let told = |noise| told(noise, self.sampler);
+                progress.noise.map_or("noise not known yet".to_owned(), told)
+            }
         };
         self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
         self.bar.set_position(match self.by {
@@ -274,6 +278,14 @@ impl Bar {
 
 fn milliseconds(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
+}
+
+/// The noise of an image; where its samples are spread evenly, there is less than their variance says.
+fn told(noise: f64, sampler: Sampler) -> String {
+    match sampler {
+        Sampler::Independent => format!("noise {}", percent(noise)),
+        Sampler::Sobol => format!("noise below {}", percent(noise)),
+    }
 }
 
 /// A relative error, in percent with two digits.
@@ -289,7 +301,8 @@ fn percent(relative: f64) -> String {
 }
 
 fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, label: Option<&str>) {
-    let noise = image.noise.map_or(String::new(), |n| format!(", noise {}", percent(n)));
+    let told = |noise| format!(", {}", told(noise, task.settings.options.sampler));
+    let noise = image.noise.map_or(String::new(), told);
     let noise = match (&image.reached, task.precision) {
         (Some(reached), Some(Precision { error, .. })) => {
             let share = 100.0 * reached.share;

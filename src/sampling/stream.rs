@@ -86,7 +86,7 @@ impl Stream {
 
     /// Exponential with mean 1, exact in both tails: an optical depth of 1e-7 or of 40 comes as often as it
     /// should, which -ln(1-u) of a 24-bit u does not give.
-    #[inline]
+    #[inline(always)]
     pub fn exponential(&mut self) -> f32 {
         if !self.point.is_spent() {
             return self.even_exponential();
@@ -105,10 +105,16 @@ impl Stream {
     #[inline]
     pub fn normal(&mut self) -> f32 {
         if !self.point.is_spent() {
-            return inverse::normal(self.coordinate()) as f32;
+            return self.even_normal();
         }
         let x: f64 = StandardNormal.sample(&mut self.generator);
         x as f32
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn even_normal(&mut self) -> f32 {
+        inverse::normal(self.coordinate()) as f32
     }
 
     /// Uniform in 0..`n`; `n` > 0.

@@ -1,9 +1,11 @@
 //! Forced interaction (P03T sec. A.2.2): a primary ray that crosses media makes two walks, one from a collision in them
 //! and one from what lies behind. Thin media are seen by every sample, not by the few that chance has collide.
 //!
-//! The weights are those of walks that are left to chance: functions of the path that sum to one over its strategies,
-//! which is all that they must be. Between strategies that make the first segment from the eye, which all but the lens
-//! joins do, what forcing does to densities cancels; lens joins are weighted higher than would be best.
+//! Forcing makes collisions in thin media denser by 1 / (1 - T), T the transmittance of all media that the ray crosses.
+//! The balance heuristic is told: that factor multiplies the density of every strategy that makes the first segment from
+//! the eye, which all but the lens joins do. It depends on the primary ray alone, so that it is the same function of
+//! the path in every strategy, and the weights sum to one. On surfaces and where media shine the factor is left at 1:
+//! the weights there are not the best, but right.
 
 use super::{
     Estimator,
@@ -12,9 +14,15 @@ use super::{
     profile::Profile,
     record::Recorder,
     segment::{self, Flown},
+    vertex::Site,
     walk::{Kind, Visitor, land, visit, walk},
 };
-use crate::{bsdf::Transport, math::Vec2, sampling::Stream};
+use crate::{
+    bsdf::Transport,
+    math::{Lanes, Vec2},
+    sampling::Stream,
+    shape::Ray,
+};
 
 /// One eye sample with a forced interaction; the rest as in [`super::eye::sample`].
 pub fn sample<P: Profile, R: Recorder<P::Sums>>(
@@ -35,15 +43,36 @@ pub fn sample<P: Profile, R: Recorder<P::Sums>>(
     }
     let mut along = |flown: &Flown<P::Lanes>, stream: &mut Stream| eye.pass(&departure, flown, stream);
     let (ray, medium, hidden) = (departure.ray, departure.medium, departure.hidden);
-    let ends = segment::force::<P>(scene, ray, medium, hidden, hero, stream, &mut along);
-    for end in ends.into_iter().flatten() {
+    let forced = segment::force::<P>(scene, ray, medium, hidden, hero, stream, &mut along);
+    for end in forced.ends.into_iter().flatten() {
         eye.restart(departure.position);
         eye.depart(&departure);
         let Some(mut vertex) = land::<P>(&departure, &end.flight, hero, &eye) else { continue };
         vertex.throughput = departure.throughput * end.share;
+        if let Site::Medium(_) = vertex.site {
+            let gain = gain_of(forced.sure_depth);
+            vertex.inverse /= gain.hero(hero);
+            vertex.reach = vertex.reach * gain.scaled(1.0 / gain.hero(hero));
+        }
         if let Some(next) = visit(scene, kind, &end.flight.landing, &vertex, &mut eye, stream) {
             walk(scene, kind, next, &mut eye, stream);
         }
     }
     eye.into_recorder()
+}
+
+/// By how much more densely forcing makes the first vertex from the eye in a medium, per lane, where primary ray `ray`
+/// sees it.
+pub fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Lanes {
+    let Estimator { scene, hide_emitters, .. } = *estimator;
+    gain_of(segment::sure_depth::<P>(scene, ray, scene.sensor_medium, hide_emitters))
+}
+
+/// No gain is taken to be more than this: thinner media are seen by eye walks alone as it is.
+const MOST: f32 = 1e4;
+
+/// 1 / (1 - exp(-depth)); where nothing is sure to be crossed nothing is known, and nothing gained.
+fn gain_of<L: Lanes>(depth: L) -> L {
+    let lane = |depth: f32| if depth > 0.0 { (-1.0 / (-depth).exp_m1()).min(MOST) } else { 1.0 };
+    L::from_spectrum(depth.to_spectrum().map(lane))
 }

@@ -4,9 +4,10 @@ use super::{
     Estimator,
     cache::LightCache,
     connect::{self, Joined, Span},
+    forced,
     profile::Profile,
     record::{Meeting, Recorder},
-    vertex::Vertex,
+    vertex::{Site, Vertex},
     walk::{Departure, Kind, Visitor, walk},
     weight::{End, Sums},
 };
@@ -153,7 +154,10 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Light<'a, P, R> {
         if hidden || !self.recorder.covers(seen.film) {
             return None;
         }
-        let end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
+        let mut end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
+        if P::MEDIA && self.estimator.forced_interaction && matches!(vertex.site, Site::Medium(_)) {
+            end.tail = end.tail.times(forced::gain(self.estimator, seen.ray));
+        }
         let joined = self.join_end(&end, &seen, false, stream)?;
         Some((seen.film, joined))
     }

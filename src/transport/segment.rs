@@ -6,7 +6,7 @@ pub mod forced;
 pub mod passage;
 
 pub use flight::{Flight, Flown, Landing, fly};
-pub use forced::force;
+pub use forced::{force, sure_depth};
 pub use passage::pass;
 
 use crate::{

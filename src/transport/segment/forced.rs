@@ -4,7 +4,7 @@
 use super::{
     depth_of,
     flight::{Flight, Flown, Landing, Toll, toll},
-    past,
+    passed, past,
 };
 use crate::{
     math::{Lanes, Section, Spectrum},
@@ -22,6 +22,14 @@ pub struct End<L> {
     pub flight: Flight<L>,
     /// Contribution over the density by which it was really sampled.
     pub share: Spectrum,
+}
+
+/// A forced flight.
+pub struct Forced<L> {
+    /// In the media, where there is something to collide with, and on what lies behind.
+    pub ends: [Option<End<L>>; 2],
+    /// See [`sure_depth`].
+    pub sure_depth: L,
 }
 
 /// What lies behind while the ray is followed.
@@ -91,7 +99,7 @@ impl<L: Lanes> Way<L> {
 }
 
 /// Follows `ray` from `medium` to the first surface that stops it, and forces a collision of the `hero` channel on the
-/// way: that, where there is something to collide with, and the end. `hidden` and `along` as in [`super::fly`].
+/// way. `hidden` and `along` as in [`super::fly`].
 pub fn force<P: Profile>(
     scene: &Scene,
     ray: Ray,
@@ -100,13 +108,54 @@ pub fn force<P: Profile>(
     hero: usize,
     stream: &mut Stream,
     along: &mut impl FnMut(&Flown<P::Lanes>, &mut Stream),
-) -> [Option<End<P::Lanes>>; 2] {
-    let (parts, behind, spent) = follow::<P>(scene, ray, medium, hidden, hero, stream, along);
-    let collision = collide::<P>(scene, &parts, spent, hero, stream);
-    [collision, (behind.share.max_element() > 0.0).then_some(behind)]
+) -> Forced<P::Lanes> {
+    let Followed { parts, behind, depth, sure_depth } =
+        follow::<P>(scene, ray, medium, hidden, hero, stream, along);
+    let collision = collide::<P>(scene, &parts, depth, hero, stream);
+    Forced { ends: [collision, (behind.share.max_element() > 0.0).then_some(behind)], sure_depth }
 }
 
-/// The parts of the ray that collisions can happen in, where it ends, and the depth up to there.
+/// Optical depth per lane of the media that `ray` crosses from `medium` on, before the first surface that holds
+/// anything back: what a forced flight always follows. Never random: the same for all strategies.
+pub fn sure_depth<P: Profile>(
+    scene: &Scene,
+    mut ray: Ray,
+    mut medium: MediumIndex,
+    hidden: bool,
+) -> P::Lanes {
+    let mut depth = P::Lanes::splat(0.0);
+    let mut skipped = 0.0;
+    loop {
+        let hit = scene.geometry.closest(&ray);
+        let length = hit.map_or(ray.t_max, |hit| hit.t);
+        let section = Section { origin: ray.origin, direction: ray.direction, length };
+        let crossed = &scene.media[medium.0 as usize];
+        depth = depth
+            + match &crossed.varying {
+                Some(varying) => varying.depth::<P::Lanes>(&section),
+                None => depth_of(P::Lanes::from_spectrum(crossed.sigma_t), length + skipped),
+            };
+        let Some(hit) = hit.filter(|_| P::NULLS) else { return depth };
+        let point = scene.geometry.surface(&ray, &hit);
+        if passed(scene, &point, ray.direction, hidden).max_element() < 1.0 {
+            return depth;
+        }
+        (ray, skipped) = past(&ray, &point);
+        medium = scene.medium_beyond(&point, &ray, medium);
+    }
+}
+
+/// A ray that was followed.
+struct Followed<L> {
+    /// The parts of it that collisions can happen in.
+    parts: Vec<Part<L>>,
+    /// Where it ends.
+    behind: End<L>,
+    /// The depth up to there by which collisions are drawn.
+    depth: f32,
+    sure_depth: L,
+}
+
 fn follow<P: Profile>(
     scene: &Scene,
     mut ray: Ray,
@@ -115,8 +164,9 @@ fn follow<P: Profile>(
     hero: usize,
     stream: &mut Stream,
     along: &mut impl FnMut(&Flown<P::Lanes>, &mut Stream),
-) -> (Vec<Part<P::Lanes>>, End<P::Lanes>, f32) {
+) -> Followed<P::Lanes> {
     let mut parts = Vec::new();
+    let mut sure = None;
     let mut way = Way::new();
     let mut skipped = 0.0;
     loop {
@@ -139,10 +189,14 @@ fn follow<P: Profile>(
             Some(point) if !P::NULLS => Landing::Surface(point),
             Some(point) => match toll(scene, &point, ray.direction, hidden, stream) {
                 Toll::Stopped(probability) => {
+                    sure.get_or_insert(way.depth);
                     way.tint /= probability;
                     Landing::Surface(point)
                 }
                 Toll::Passed(through, probability) => {
+                    if probability < 1.0 {
+                        sure.get_or_insert(way.depth);
+                    }
                     way.tint *= through / probability;
                     way.depth = way.depth + P::Lanes::splat(-probability.ln());
                     (ray, skipped) = past(&ray, &point);
@@ -153,7 +207,8 @@ fn follow<P: Profile>(
         };
         let Way { depth, through, ratio, tint, spent } = way;
         let share = through.to_spectrum() * tint;
-        return (parts, End { flight: Flight { landing, medium, depth, ratio, tint }, share }, spent);
+        let behind = End { flight: Flight { landing, medium, depth, ratio, tint }, share };
+        return Followed { parts, behind, depth: spent, sure_depth: sure.unwrap_or(depth) };
     }
 }
 
