@@ -159,8 +159,8 @@ pub struct Estimator {
     #[arg(long, value_enum, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub strategies: Vec<Strategy>,
 
-    /// How strategies that can make the same path share it: balance, power, maximum, cutoff (or cutoff:ALPHA, 0.1 unless
-    /// given; it needs a --max-depth of at most 32) or uniform [default: the scene's, else balance]
+    /// How strategies that can make the same path share it: balance, power, maximum, cutoff (or cutoff:ALPHA, 0.1
+    /// unless given; it needs a --max-depth of at most 32) or uniform [default: the scene's, else balance]
     ///
     /// The image is the same within noise; the noise differs. All but balance run on the profile everything.
     #[arg(long, value_name = "NAME", value_parser = heuristic)]

@@ -3,7 +3,8 @@
 
 use std::fmt;
 
-/// A rule of multiple importance sampling (Veach 1997, sec. 9.2). With q = n p, expected samples times density:
+/// A rule of multiple importance sampling (Veach 1997, sec. 9.2). With q = n p, expected samples times density, of every
+/// strategy by every hero channel:
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Heuristic {
     /// Weights proportional to q (LW96 eq. 14).
@@ -18,7 +19,7 @@ pub enum Heuristic {
         /// Between 0, which would be the balance heuristic, and 1, which would be the maximum heuristic.
         alpha: f32,
     },
-    /// The same for every strategy that can make the path.
+    /// The same for every strategy that can make the path, whose heroes share it in proportion to q.
     Uniform,
 }
 

@@ -179,9 +179,11 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
 fn heuristic(params: &Params<'_>) -> Result<Heuristic> {
     let Some(text) = params.optional_string("heuristic")? else { return Ok(Heuristic::default()) };
     Heuristic::parse(text).map_err(|expected| {
+        let names = Heuristic::NAMES.map(|(name, _)| name);
+        let name = text.split(':').next().unwrap_or(text);
+        let hint = if names.contains(&name) { String::new() } else { nearest(name, &names) };
         let error = params.complain("heuristic", expected, format!("\"{text}\""));
-        let remedy = format!("{}{}", nearest(text, &Heuristic::NAMES.map(|(name, _)| name)), error.remedy);
-        Error { remedy, ..error }
+        Error { remedy: format!("{hint}{}", error.remedy), ..error }
     })
 }
 

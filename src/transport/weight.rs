@@ -1,4 +1,4 @@
-//! Weights of strategies (LW96 eq. 14), O(1) per connection. The folders' files are the heuristics; `sums` is what they
+//! Weights of strategies (LW96 eq. 14), O(1) per connection. The files of the folder are the heuristics; `sums` is what they
 //! have in common.
 
 mod balance;
