@@ -260,9 +260,11 @@ fn advice(subsets: &[SubsetReport]) -> String {
     let gains = subsets.iter().filter_map(|subset| Some((subset, subset.gain?)));
     let best = gains.filter(|(_, gain)| gain.low > 1.0).max_by(|(_, a), (_, b)| a.mean.total_cmp(&b.mean));
     match best {
-        Some((subset, Interval { mean, low, high })) => format!(
-            "leave out {}: {mean:.2}x [{low:.2}, {high:.2}] less error x time; --strategies {}",
-            subset.without, subset.strategies
+        Some((subset, gain)) => format!(
+            "leave out {}: {} less error x time; --strategies {}",
+            subset.without,
+            table::times(gain),
+            subset.strategies
         ),
         None if subsets.is_empty() => {
             "keep all strategies: without any of them paths would be missing".to_owned()

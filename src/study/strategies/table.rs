@@ -3,6 +3,15 @@
 use super::{CellReport, Report, SubsetReport};
 use crate::study::outcome::Interval;
 
+/// A ratio and its interval, by two digits after the point or two that say something.
+pub(super) fn times(ratio: Interval) -> String {
+    let text = |x: f64| {
+        let digits = if x > 0.0 { (1.0 - x.log10().floor()).clamp(2.0, 9.0) } else { 2.0 };
+        format!("{x:.0$}", digits as usize)
+    };
+    format!("{}x [{}, {}]", text(ratio.mean), text(ratio.low), text(ratio.high))
+}
+
 /// The report as text.
 pub fn table(report: &Report) -> String {
     let [width, height] = report.size;
@@ -89,7 +98,7 @@ fn seconds(seconds: f64) -> String {
 fn subset(subset: &SubsetReport) -> String {
     let what = match (&subset.lacks, subset.gain) {
         (Some(lacks), _) => format!("cannot make: {lacks}"),
-        (None, Some(Interval { mean, low, high })) => format!("{mean:.2}x [{low:.2}, {high:.2}]"),
+        (None, Some(gain)) => times(gain),
         (None, None) => "no noise to compare".to_owned(),
     };
     let name = match subset.strategies.as_str() {
@@ -122,4 +131,15 @@ pub fn csv(report: &Report) -> String {
         .join(",")
     }));
     lines.join("\n") + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_ratios_keep_their_digits() {
+        assert_eq!(times(Interval { mean: 1.304, low: 12.0, high: 0.0 }), "1.30x [12.00, 0.00]");
+        assert_eq!(times(Interval { mean: 0.0034, low: 0.15, high: 0.96 }), "0.0034x [0.15, 0.96]");
+    }
 }
