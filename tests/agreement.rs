@@ -11,7 +11,7 @@ use common::{
     strategies,
 };
 use serde_json::{Value, json};
-use tyndall::transport::Strategies;
+use tyndall::{study::coverage, transport::Strategies};
 
 /// What decides which strategies can make all paths of a scene.
 #[derive(Clone, Copy, Default)]
@@ -454,4 +454,43 @@ fn under_a_beam() {
     claims.equal("beam: lens alone", &render("lens", 1000), &all);
     claims.equal("beam: hit, next event, lens", &render("hit+next-event+lens", 2000), &all);
     claims.settle();
+}
+
+/// What a study says of sets of strategies is what these tests know of them.
+#[test]
+fn paths_out_of_reach_are_told_of_every_set_that_does_not_cover() {
+    let room = || foggy_room(medium(1.0, 0.8, 0.3));
+    let with_part = |name, part| [&room()[..], &[(name, part)]].concat();
+    let smooth = Kind { smooth: true, ..LAMP_IN_VIEW };
+    let mirror = with(floor(-0.6, 0.5, 0.5), &[("bsdf", json!({"type": "conductor"}))]);
+    let view = json!([{"type": "lookat", "origin": [0, 1, 3], "target": [0, 0, 0], "up": [0, 1, 0]}]);
+    let sky_alone = [
+        ("sensor", json!({"type": "orthographic", "to_world": view})),
+        ("floor", floor(-0.6, 2.0, 0.5)),
+        ("sky", sky(0.5)),
+    ];
+    let points = [
+        ("sensor", room()[0].1.clone()),
+        ("room", common::pieces::room(0.6, None)),
+        ("p", point([0.0; 3], 1.0)),
+    ];
+    for (scene, kind) in [
+        (scene(&room()), LAMP_IN_VIEW),
+        (scene(&with_part("integrator", json!({"type": "bdpt", "hide_emitters": true}))), Kind::default()),
+        (scene(&with_part("p", point([0.0; 3], 1.0))), Kind { points: true, ..LAMP_IN_VIEW }),
+        (scene(&points), Kind { points: true, ..Kind::default() }),
+        (scene(&with_part("mirror", mirror)), smooth),
+        (scene(&sky_alone), smooth),
+    ] {
+        let stage = Stage::new(&scene);
+        let reach = |set: Strategies| {
+            coverage::unreachable(&stage.setup.scene, set, stage.setup.integrator.hide_emitters)
+        };
+        for set in (1..16).map(|set: u32| [1, 2, 4, 8].map(|bit| set & bit > 0)) {
+            let [hit, next_event, join, lens] = set;
+            let set = Strategies { hit, next_event, join, lens };
+            let missing = reach(set);
+            assert_eq!(missing.is_empty(), covers(set, kind), "{}: {missing:?} {scene}", name_of(set));
+        }
+    }
 }

@@ -19,13 +19,16 @@ pub fn unreachable(scene: &Scene, strategies: Strategies, hide_emitters: bool) -
     let any = |is: fn(&Emitter) -> bool| scene.lights.all.iter().any(|light| is(&light.emitter));
     let (hittable, points) = (any(Emitter::is_hittable), any(|emitter| !emitter.is_hittable()));
     let beams = any(|emitter| !emitter.is_connectible());
+    let surrounded = scene.lights.environment.is_some() && !hide_emitters;
+    let parallel = scene.sensor.is_parallel();
     let kinds = [
         (!hit && !next_event && !lens, "the shortest paths, which have nothing to join"),
         (
             points && !next_event && !lens,
             "light of point, spot and directional emitters that is scattered once",
         ),
-        (beams && !join && !lens, "light of emitters that shine along a single direction"),
+        (beams && !lens, "light of emitters that shine along a single direction"),
+        (surrounded && parallel && !hit, "surroundings that a sensor of parallel rays sees directly"),
         (
             smooth && points && !lens,
             "light of point, spot and directional emitters over smooth mirrors or lenses",

@@ -261,9 +261,8 @@ impl Study<'_> {
         let mut outcomes = Vec::new();
         for Player { contender, slug, entry, .. } in players {
             let slot = |seed| Slot { scene, contender: slug, seed };
-            let units: Vec<Unit> = seeds(question)
-                .map(|seed| self.store.read_json(slot(seed).numbers()))
-                .collect::<Result<_>>()?;
+            let unit = |seed| self.store.read_json(slot(seed).numbers(), LOST_UNIT);
+            let units: Vec<Unit> = seeds(question).map(unit).collect::<Result<_>>()?;
             let turns = Turns { name: &contender.name, first: slot(question.first_seed), units: &units };
             let mut notes = entry.notes.clone();
             notes.extend(coverage::notes(&entry.setup.scene, &entry.settings.options));
@@ -278,6 +277,9 @@ impl Study<'_> {
         Ok(outcomes)
     }
 }
+
+/// For a render whose numbers cannot be read.
+const LOST_UNIT: &str = "remove the file, and it is rendered anew; or start all anew by --restart";
 
 fn seeds(question: &Question) -> impl Iterator<Item = u64> {
     let first = question.first_seed;

@@ -40,15 +40,15 @@ impl Store {
     pub fn open(root: &Path, question: &Question, restart: bool) -> Result<(Self, Plan)> {
         create(&root.join("runs"))?;
         let store = Self { root: root.to_owned(), _lock: lock(&root.join("runs/lock"))? };
-        let holds_study = store.has(PLAN) || store.has("study.json");
-        if restart && holds_study {
+        store.sweep(&root.join("runs"))?;
+        if restart && (store.has("study.json") || store.has_runs()?) {
             store.empty()?;
         }
-        store.sweep(&root.join("runs"))?;
         store.sweep(&root.join("images"))?;
         let plan = match store.has(PLAN) {
             true => store.planned(question)?,
             false if store.has("study.json") => return Err(store.taken("a study that was made otherwise")),
+            false if store.has_runs()? => return Err(store.taken("the runs of a study without their plan")),
             false => Plan::new(question.clone()),
         };
         store.write_json(PLAN, &plan)?;
@@ -56,7 +56,8 @@ impl Store {
     }
 
     fn planned(&self, question: &Question) -> Result<Plan> {
-        let plan: Plan = self.read_json(PLAN)?;
+        let plan: Plan =
+            self.read_json(PLAN, "add --restart to drop what the folder holds, or choose another folder")?;
         match first_difference(&plan.question, question) {
             None => Ok(plan),
             Some((place, old, new)) => {
@@ -71,13 +72,18 @@ impl Store {
         Error::new(self.root.display(), expected, found, remedy)
     }
 
+    /// True if a study has begun here.
+    fn has_runs(&self) -> Result<bool> {
+        Ok(entries(&self.root.join("runs"))?.iter().any(|path| !is_lock(path)))
+    }
+
     /// Removes an earlier study; the lock stays.
     fn empty(&self) -> Result<()> {
         for name in PRODUCTS {
             remove(&self.root.join(name))?;
         }
         for path in entries(&self.root.join("runs"))? {
-            if path.file_name().is_some_and(|name| name != "lock") {
+            if !is_lock(&path) {
                 remove(&path)?;
             }
         }
@@ -131,12 +137,11 @@ impl Store {
         output::write(&self.ready(name)?, |file| file.write_all(text.as_bytes()))
     }
 
-    /// Reads what [`Store::write_json`] wrote.
-    pub fn read_json<T: DeserializeOwned>(&self, name: impl AsRef<Path>) -> Result<T> {
+    /// Reads what [`Store::write_json`] wrote; `remedy` is for files that are no longer whole.
+    pub fn read_json<T: DeserializeOwned>(&self, name: impl AsRef<Path>, remedy: &str) -> Result<T> {
         let path = self.root.join(name);
         let text = fs::read_to_string(&path).map_err(|error| Error::io(&path, "read", &error))?;
         serde_json::from_str(&text).map_err(|error| {
-            let remedy = "remove the file, and it is made anew; or start anew by --restart";
             Error::new(path.display(), "the file as a study left it", error.to_string(), remedy)
         })
     }
@@ -157,6 +162,10 @@ impl Store {
         create(path.parent().unwrap_or(&self.root))?;
         Ok(path)
     }
+}
+
+fn is_lock(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name == "lock")
 }
 
 fn create(folder: &Path) -> Result<()> {
@@ -237,6 +246,14 @@ mod tests {
         assert!(Store::open(folder.path(), &question(), false).unwrap_err().found.contains("otherwise"));
         fs::write(folder.path().join("runs/plan.json"), "{").unwrap();
         let error = Store::open(folder.path(), &question(), false).unwrap_err();
-        assert!(error.remedy.contains("made anew"), "{error}");
+        assert!(error.remedy.contains("--restart"), "{error}");
+        for name in ["study.json", "runs/plan.json"] {
+            fs::remove_file(folder.path().join(name)).unwrap();
+        }
+        fs::create_dir(folder.path().join("runs/fog")).unwrap();
+        let error = Store::open(folder.path(), &question(), false).unwrap_err();
+        assert!(error.found.contains("without their plan"), "{error}");
+        drop(Store::open(folder.path(), &question(), true).unwrap());
+        assert!(!folder.path().join("runs/fog").exists());
     }
 }
