@@ -108,7 +108,7 @@ fn every_number_can_be_drawn() {
         let mut study = Study::new(&["room"], &["a", "b"], 3);
         study.set_all(value);
         let html = page_of(&study);
-        for shape in all(&html, ".chart .series *, .chart .guide *") {
+        for shape in all(&html, ".chart .series *, .chart .band *, .chart .guide *") {
             let numbers = shape.value().attrs().filter(|(name, _)| ["points", "cx", "cy"].contains(name));
             for place in numbers.flat_map(|(_, text)| text.split([' ', ',']).filter(|part| !part.is_empty()))
             {

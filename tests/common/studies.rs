@@ -80,8 +80,7 @@ impl Study {
 /// An image of the size of all, pixel by pixel.
 pub fn write_image(path: &Path, light: impl Fn(usize) -> f32) {
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    let pixels: Vec<Spectrum> =
-        (0..WIDTH * HEIGHT).map(|k| light(k)).map(|l| vec3(l, 0.8 * l, 0.6 * l)).collect();
+    let pixels: Vec<Spectrum> = (0..WIDTH * HEIGHT).map(light).map(|l| vec3(l, 0.8 * l, 0.6 * l)).collect();
     let format = Format::default();
     exr::write(path, WIDTH, HEIGHT, format.channels(&pixels, &[]), format).unwrap();
 }

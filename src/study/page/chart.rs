@@ -65,14 +65,15 @@ impl<'a> Chart<'a> {
         if let Some(floor) = Self::floor_of(self.scene, self.measure) {
             parts.push(group("floor", &self.layer(|plane| self.draw_level(plane, floor))?));
         }
-        for series in 0..self.scene.contenders.len() {
-            let band = group("band", &self.layer(|plane| self.draw_band(plane, series))?);
+        let all = 0..self.scene.contenders.len();
+        // Below every line, lest one contender's doubt hides another's curve.
+        for series in all.clone() {
+            parts.push(of_series("band", series, &self.layer(|plane| self.draw_band(plane, series))?));
+        }
+        for series in all {
             let line = group("line", &self.layer(|plane| self.draw_line(plane, series))?);
             let marks = group("marks", &self.layer(|plane| self.draw_marks(plane, series))?);
-            parts.push(format!(
-                "<g class=\"series hue{}\" data-series=\"{series}\">{band}{line}{marks}</g>",
-                hue(series)
-            ));
+            parts.push(of_series("series", series, &(line + &marks)));
         }
         Ok(parts.concat())
     }
@@ -164,6 +165,11 @@ impl<'a> Chart<'a> {
 
 fn group(class: &str, inside: &str) -> String {
     format!("<g class=\"{class}\">{inside}</g>")
+}
+
+/// In a contender's colour, to be hidden with it.
+fn of_series(class: &str, series: usize, inside: &str) -> String {
+    format!("<g class=\"{class} hue{}\" data-series=\"{series}\">{inside}</g>", hue(series))
 }
 
 /// Which of the page's colours a contender has.

@@ -77,7 +77,7 @@ function curves(section) {
     function toggle(button) {
         const pressed = button.getAttribute("aria-pressed") !== "true";
         button.setAttribute("aria-pressed", pressed);
-        const groups = all(frame, `.series[data-series="${button.dataset.series}"]`);
+        const groups = all(frame, `[data-series="${button.dataset.series}"]`);
         groups.forEach((group) => group.classList.toggle("off", !pressed));
         leave();
     }
