@@ -224,7 +224,7 @@ def run_convergence(options: argparse.Namespace) -> bool:
 
 def add_stability(commands: Commands) -> None:
     command = add(commands, "stability", run_stability, "Extremes of every number that a scene gives, each against truth.")
-    command.add_argument("--only", default="", help="only lines whose row or case contains this")
+    command.add_argument("--only", default="", help="only lines whose row or case contains this, or A|B")
     command.add_argument("--quick", action="store_true", help="fewer samples; a line too coarse is then no failure")
     command.add_argument("--batches", type=int, default=12, help="independent images of each line (default %(default)s)")
     command.add_argument("--spp", type=int, help="most samples a pixel in each, times the line's own factor (default 2048, quick 128)")

@@ -60,8 +60,9 @@ AIM = 0.6
 
 
 def cases(only: str = "") -> list[Case]:
-    """The lines whose row or name contains `only`."""
-    return [case for group in GROUPS for case in group.cases() if only in f"{case.row}: {case.name}"]
+    """The lines whose row or name contains `only`, or one of several such texts with | between them."""
+    every = [case for group in GROUPS for case in group.cases()]
+    return [case for case in every if any(part in f"{case.row}: {case.name}" for part in only.split("|"))]
 
 
 def run(effort: Effort, output: Path, only: str = "", perturbation: float = 0, strict: bool = True) -> bool:
