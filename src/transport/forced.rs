@@ -12,8 +12,7 @@ use super::{
     cache::LightCache,
     eye::{Eye, depart},
     profile::Profile,
-    segment::{self, Flown},
-    vertex::Site,
+    segment::{self, Flown, Landing},
     walk::{Kind, Visitor, land, visit, walk},
 };
 use crate::{
@@ -46,7 +45,7 @@ pub fn sample<P: Profile>(
         eye.restart(departure.position);
         let Some(mut vertex) = land::<P>(&departure, &end.flight, hero, &eye) else { continue };
         vertex.throughput = departure.throughput * end.share;
-        if let Site::Medium(_) = vertex.site {
+        if let Landing::Medium(..) = end.flight.landing {
             let gain = gain_of(forced.sure_depth);
             vertex.inverse /= gain.hero(hero);
             vertex.reach = vertex.reach * gain.scaled(1.0 / gain.hero(hero));
