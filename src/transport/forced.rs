@@ -13,8 +13,7 @@ use super::{
     eye::{Eye, depart},
     profile::Profile,
     record::Recorder,
-    segment::{self, Flown},
-    vertex::Site,
+    segment::{self, Flown, Landing},
     walk::{Kind, Visitor, land, visit, walk},
 };
 use crate::{
@@ -49,7 +48,7 @@ pub fn sample<P: Profile, R: Recorder<P::Sums>>(
         eye.depart(&departure);
         let Some(mut vertex) = land::<P>(&departure, &end.flight, hero, &eye) else { continue };
         vertex.throughput = departure.throughput * end.share;
-        if let Site::Medium(_) = vertex.site {
+        if let Landing::Medium(..) = end.flight.landing {
             let gain = gain_of(forced.sure_depth);
             vertex.inverse /= gain.hero(hero);
             vertex.reach = vertex.reach * gain.scaled(1.0 / gain.hero(hero));
