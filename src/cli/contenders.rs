@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    study::contender::{Contender, slug},
+    study::convergence::contender::{Contender, slug},
 };
 use clap::{CommandFactory, Parser};
 

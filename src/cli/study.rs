@@ -13,12 +13,14 @@ use crate::{
         build::{self, Overrides, Setup},
     },
     study::{
-        contender::{Contender, Entry},
+        convergence::{
+            contender::{Contender, Entry},
+            question::{Effort, Question, ReferenceFile, SceneQuestion, Wanted, fingerprint},
+            reference,
+            run::{self, Progress, Signature},
+            table,
+        },
         page,
-        question::{Effort, Question, ReferenceFile, SceneQuestion, Wanted, fingerprint},
-        reference,
-        run::{self, Progress, Signature},
-        table,
     },
     transport::Strategies,
 };

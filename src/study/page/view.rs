@@ -16,7 +16,7 @@ use std::path::Path;
 
 /// The page.
 #[derive(Template)]
-#[template(path = "page.html")]
+#[template(path = "page.html", config = "src/study/page/askama.toml")]
 pub struct Page<'a> {
     outcome: &'a Outcome,
     scenes: Vec<SceneView<'a>>,

@@ -1,9 +1,7 @@
 //! What a study found, as text: a table to look at and rows for other programs.
 
-use super::{
-    outcome::{ContenderOutcome, Interval, Outcome, SceneOutcome},
-    unit::Unit,
-};
+use super::unit::Unit;
+use crate::study::outcome::{ContenderOutcome, Interval, Outcome, SceneOutcome};
 use std::fmt::Write as _;
 
 /// First row of `study.csv`.

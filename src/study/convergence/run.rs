@@ -2,9 +2,6 @@
 
 use super::{
     contender::{Contender, Enter, Entry},
-    coverage,
-    outcome::{Outcome, Reference, SceneOutcome},
-    picture::Picture,
     plan::{self, Part, Plan, ScenePlan},
     question::{Effort, Question, Wanted},
     reference::{self, Truth},
@@ -14,6 +11,11 @@ use super::{
     unit::{self, Slot, Unit},
 };
 use crate::error::{Error, Result};
+use crate::study::{
+    coverage,
+    outcome::{ContenderOutcome, Outcome, Reference, SceneOutcome},
+    picture::Picture,
+};
 use std::path::Path;
 
 /// What stands in the outcome besides what was found.
@@ -256,7 +258,7 @@ impl Study<'_> {
         question: &Question,
         players: &[Player<'_>],
         truth: &Truth,
-    ) -> Result<Vec<super::outcome::ContenderOutcome>> {
+    ) -> Result<Vec<ContenderOutcome>> {
         let mut first: Option<Vec<Unit>> = None;
         let mut outcomes = Vec::new();
         for Player { contender, slug, entry, .. } in players {

@@ -1,10 +1,12 @@
 //! From the numbers of all seeds to what is told: means, intervals, slopes, and what gives cause for doubt.
 
 use super::{
-    interval::{self, Mean},
-    outcome::{ContenderOutcome, Interval, Point},
     reference::Truth,
     unit::{Measured, Slot, Unit},
+};
+use crate::study::{
+    interval::{self, Mean},
+    outcome::{ContenderOutcome, Interval, Point},
 };
 use std::path::PathBuf;
 

@@ -6,10 +6,10 @@
 //! before the numbers.
 
 use super::{
-    picture::{self, Picture},
     plan::Plan,
     question::{Question, first_difference},
 };
+use crate::study::picture::{self, Picture};
 use crate::{
     error::{Error, Result},
     film::output,

@@ -2,13 +2,15 @@
 
 use super::{
     contender::{Enter, Entry},
-    coverage,
-    interval::Mean,
-    picture::{self, Picture},
     plan::{self, Batches},
     question::{Effort, Question, ReferenceFile},
     store::Store,
     unit,
+};
+use crate::study::{
+    coverage,
+    interval::Mean,
+    picture::{self, Picture},
 };
 use crate::{
     error::{Error, Result},

@@ -1,11 +1,10 @@
 //! One render of one contender, looked at on its way: all budgets of a seed share their samples.
 
-use super::{
-    contender::Entry,
+use super::{contender::Entry, store::Store};
+use crate::study::{
     metrics::{Measures, measures},
     outcome::number,
     picture::Picture,
-    store::Store,
 };
 use crate::{
     error::Result,
