@@ -1,7 +1,7 @@
 """Albedo 0, 1 - 1e-7 and 1."""
 
 from validation.closed_forms.slab import Slab, lit_slab
-from validation.stability.case import ALL, EYE, Case, ball, fog, methods, moved, oven
+from validation.stability.case import ALL, EYE, Case, ball, fog, moved, oven
 from validation.stability.half_space import reflectance
 from validation.stability.thickness import AWAY
 

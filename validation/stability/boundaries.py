@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from validation.closed_forms.case import SKY, camera, scene
+from validation.closed_forms.case import camera, scene
 from validation.closed_forms.slab import HALF_WIDTH, Slab, lit_slab
 from validation.scene import Scene
-from validation.stability.case import ALL, BLACK, EYE, NULL, Case, fog, lamp, methods, moved, named, oven, parallel
+from validation.stability.case import ALL, BLACK, EYE, NULL, Case, fog, lamp, methods, moved, oven, parallel
 from validation.stability.thickness import AWAY
 
 CAMERA = "camera on a boundary"

@@ -104,7 +104,8 @@ class Table:
 
     def markdown(self) -> str:
         """The whole table, row by row."""
-        parts = [f"# Stability\n\n    {self.command}", INTRODUCTION, self.summary().split("\n")[0] + "."]
+        told = [] if self.strict else ["Made with fewer samples than usual (`--quick`): many lines resolve less than that."]
+        parts = [f"# Stability\n\n    {self.command}", INTRODUCTION, *told, self.summary().split("\n")[0] + "."]
         judged = list(zip(self.lines, self.verdicts()))
         for row, group in groupby(judged, key=lambda pair: pair[0].case.row):
             group = list(group)

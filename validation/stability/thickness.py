@@ -5,7 +5,7 @@ import numpy as np
 from validation.closed_forms.case import SIZE, camera, scene
 from validation.closed_forms.furnace import ball_of_medium
 from validation.closed_forms.slab import Slab, lit_slab
-from validation.stability.case import ALL, BLACK, EYE, ISOTROPIC, NULL, Case, ball, fog, lamp, methods, moved, named, oven, parallel, with_object
+from validation.stability.case import ALL, BLACK, ISOTROPIC, NULL, Case, ball, fog, lamp, methods, moved, named, oven, parallel, with_object
 from validation.stability.half_space import reflectance
 
 ROW = "optical thickness 1e-6 to 1e6"
