@@ -422,3 +422,42 @@ impl Findings {
         self.report.rows.iter().map(row).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_is_left_out_once_and_no_set_comes_twice() {
+        let named = |full: Strategies| -> Vec<String> {
+            subsets(full).into_iter().map(|set| subset(full, set, None).without).collect()
+        };
+        assert_eq!(
+            named(Strategies::BDPT),
+            ["hit", "next-event", "join", "lens", "join,lens", "hit,next-event,join"]
+        );
+        assert_eq!(named(Strategies::PT), ["hit", "next-event"]);
+        assert_eq!(named(Strategies::LT), [""; 0], "nothing is left of it");
+        // What the path tracer leaves out of these is what is left out by one kind already.
+        assert_eq!(
+            named(Strategies::BDPT.without(StrategyKind::Join)),
+            ["hit", "next-event", "lens", "hit,next-event"]
+        );
+    }
+
+    #[test]
+    fn advice_needs_an_interval_that_lies_above_one() {
+        let one = |kind: StrategyKind, mean: f64, low: f64| {
+            let gain = Interval { mean, low, high: 2.0 * mean };
+            subset(Strategies::BDPT, Strategies::BDPT.without(kind), Some(gain))
+        };
+        let doubtful = one(StrategyKind::Join, 3.0, 0.9);
+        assert!(advice(std::slice::from_ref(&doubtful)).starts_with("keep all strategies: no set"));
+        assert!(advice(&[]).contains("paths would be missing"));
+        let sure = [doubtful, one(StrategyKind::Hit, 1.1, 1.05), one(StrategyKind::Lens, 1.3, 1.2)];
+        assert_eq!(
+            advice(&sure),
+            "leave out lens: 1.30x [1.20, 2.60] less error x time; --strategies hit,next-event,join"
+        );
+    }
+}
