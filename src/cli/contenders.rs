@@ -146,7 +146,7 @@ fn product(axes: &[Axis]) -> Vec<Contender> {
 }
 
 /// Who may make a reference, best first; where all `contenders` bound the depth of paths alike, with that bound, and with
-/// flights that are sampled without bias.
+/// flights that are sampled without bias. Light tracing is not among them: what it rarely finds makes a bad truth.
 pub fn referees(contenders: &[Contender]) -> Result<Vec<String>> {
     let mut depths = Vec::new();
     for contender in contenders {
@@ -159,7 +159,7 @@ pub fn referees(contenders: &[Contender]) -> Result<Vec<String>> {
         Some(MaxDepth::Unbounded) => " --max-depth -1".to_owned(),
         Some(MaxDepth::Edges(edges)) => format!(" --max-depth {edges}"),
     };
-    Ok(["bdpt", "pt", "lt"].map(|name| format!("--integrator {name} --tracker auto{depth}")).into())
+    Ok(["bdpt", "pt"].map(|name| format!("--integrator {name} --tracker auto{depth}")).into())
 }
 
 /// Names for scenes out of their files' names, each its own.

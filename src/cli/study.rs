@@ -116,8 +116,8 @@ pub struct Study {
           allow_negative_numbers = true)]
     pub reference_errors: Vec<f64>,
 
-    /// Who makes the reference, by options of `tyndall render`: "--integrator bdpt" [default: an integrator that does not
-    /// compete, where one covers the scene and is not hopelessly noisy, else a contender with other seeds]
+    /// Who makes the reference, by options of `tyndall render`: "--integrator bdpt" [default: bdpt or pt, whichever does
+    /// not compete, where it covers the scene and is not much noisier, else a contender with other seeds]
     #[arg(long = "reference-by", value_name = "OPTIONS", allow_hyphen_values = true)]
     pub by: Option<String>,
 

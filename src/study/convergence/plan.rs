@@ -92,7 +92,7 @@ pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> u64 {
 
 /// Relative variance of few samples of `entry`, the same number for everybody; NaN if unknown.
 pub fn variance(entry: &Entry, first_seed: u64) -> f64 {
-    const SAMPLES: u64 = 8;
+    const SAMPLES: u64 = 16;
     let budget = Budget { samples_per_pixel: Some(SAMPLES), time: None };
     let settings = unit::settled(entry, first_seed ^ PILOT_SEED, budget);
     let image = render::render(&entry.setup.scene, &unit::plain_film(entry), &settings, &mut |_| {});
