@@ -78,6 +78,8 @@ fn axes(arguments: &Study) -> Result<Vec<Axis>> {
         ("integrator", &arguments.integrators),
         ("strategies", &arguments.strategies),
         ("tracker", &arguments.trackers),
+        ("heuristic", &arguments.heuristics),
+        ("sampler", &arguments.samplers),
     ];
     let named = named.into_iter().filter(|(_, values)| !values.is_empty());
     let mut axes: Vec<Axis> =
@@ -85,6 +87,10 @@ fn axes(arguments: &Study) -> Result<Vec<Axis>> {
     if !arguments.strategies.is_empty() && arguments.integrators.is_empty() {
         // All strategies are those of bdpt; the scene's own integrator may have fewer.
         axes.insert(0, Axis { values: vec![(String::new(), "--integrator bdpt".to_owned())] });
+    }
+    if arguments.heuristics.iter().any(|name| name != "balance") {
+        // The others are compiled for this profile only: times are those of heuristics, not of profiles.
+        axes.push(Axis { values: vec![(String::new(), "--profile everything".to_owned())] });
     }
     for text in &arguments.vary {
         let (option, values) = text.split_once('=').unwrap_or((text.as_str(), ""));
@@ -208,6 +214,17 @@ mod tests {
                 "mine: --integrator lt --max-depth 3",
                 "max-depth=2: --max-depth 2",
                 "max-depth=-1: --max-depth -1",
+            ]
+        );
+    }
+
+    #[test]
+    fn heuristics_compete_on_one_profile() {
+        assert_eq!(
+            shown(&["--heuristics", "balance,power", "--samplers", "sobol"]),
+            [
+                "balance sobol: --heuristic balance --sampler sobol --profile everything",
+                "power sobol: --heuristic power --sampler sobol --profile everything",
             ]
         );
     }

@@ -47,7 +47,7 @@ pub struct Study {
 
     /// Integrators that compete, separated by commas: bdpt, pt, lt [default: bdpt,pt, where nobody else is named]
     ///
-    /// All axes (--integrators, --strategies, --trackers, --vary) multiply.
+    /// All axes (--integrators, --strategies, --trackers, --heuristics, --samplers, --vary) multiply.
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub integrators: Vec<String>,
 
@@ -59,6 +59,14 @@ pub struct Study {
     /// Flight samplers that compete, such as exact,null_collision
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub trackers: Vec<String>,
+
+    /// Heuristics that compete, such as balance,power,maximum; all on the profile everything
+    #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
+    pub heuristics: Vec<String>,
+
+    /// Sources of random numbers that compete: independent, sobol
+    #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
+    pub samplers: Vec<String>,
 
     /// Any option of `tyndall render` that says how paths are made, as an axis: max-depth=2,4,8; of a switch: on,off. May
     /// be repeated
