@@ -18,6 +18,17 @@ fn forced(scene: &Value) -> Stage {
     stage
 }
 
+#[test]
+fn a_scene_may_ask_for_it() {
+    let asked = |more: Value| {
+        let parts =
+            [("sensor", camera([0.0, 1.0, 3.0], [0.0; 3], 8)), ("sky", sky(1.0)), ("integrator", more)];
+        Stage::new(&scene(&parts)).setup.integrator.forced_interaction
+    };
+    assert!(asked(json!({"type": "volpath", "forced_interaction": true})));
+    assert!(!asked(json!({"type": "bdpt"})));
+}
+
 const SEEDS: u64 = 16;
 
 /// Forced and unforced images by some sets of strategies, each with seeds of its own.

@@ -86,6 +86,23 @@ fn the_number_of_threads_changes_nothing() {
     }
 }
 
+#[test]
+fn a_scene_says_which_sampler() {
+    for (name, sampler) in [
+        ("independent", Sampler::Independent),
+        ("sobol", Sampler::Sobol),
+        ("ldsampler", Sampler::Sobol),
+        ("multijitter", Sampler::Sobol),
+        ("orthogonal", Sampler::Sobol),
+        ("stratified", Sampler::Sobol),
+    ] {
+        let asked = json!({"type": name, "sample_count": 9});
+        let view = with(camera([0.0, 1.0, 3.0], [0.0; 3], 8), &[("sampler", asked)]);
+        let setup = Stage::new(&scene(&[("sensor", view), ("sky", sky(1.0))])).setup;
+        assert_eq!((setup.sampler, setup.samples_per_pixel), (sampler, 9), "{name}");
+    }
+}
+
 /// Mean over pixels of the variance of an image.
 fn variance(stage: &Stage, set: Strategies, samples: u64) -> f64 {
     let seeds = 24u64;

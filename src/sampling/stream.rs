@@ -214,9 +214,9 @@ mod tests {
     }
 
     /// The mean squared error of an integral over two coordinates, by the mean of consecutive samples, against that of
-    /// independent ones.
+    /// independent ones: far less for neighbours, which make the points of squares, and for most other pairs.
     #[test]
-    fn integrals_over_any_two_coordinates_are_far_better() {
+    fn integrals_over_two_coordinates_are_far_better() {
         let (n, keys) = (256, 24);
         let drawn: Vec<Vec<Vec<f32>>> = (0..keys)
             .map(|key| {
@@ -229,6 +229,7 @@ mod tests {
             .collect();
         // x y has mean 1/4 and variance 7/144.
         let independent = 7.0 / 144.0 / n as f64;
+        let mut ratios = Vec::new();
         for a in 0..DIMENSIONS as usize {
             for b in 0..a {
                 let error = |points: &Vec<Vec<f32>>| {
@@ -236,9 +237,13 @@ mod tests {
                     (sum / n as f64 - 0.25).powi(2)
                 };
                 let even = drawn.iter().map(error).sum::<f64>() / keys as f64;
-                assert!(even < 0.2 * independent, "{a}, {b}: {}", even / independent);
+                let (ratio, most) = (even / independent, if b + 1 == a { 0.1 } else { 1.0 });
+                assert!(ratio < most, "{a}, {b}: {ratio}");
+                ratios.push(ratio);
             }
         }
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        assert!(mean < 0.03, "{mean}");
     }
 
     /// What follows the coordinates is independent: a stream goes on for ever.
