@@ -2,14 +2,13 @@
 
 use crate::{
     error::{Error, Result},
-    math::{Spectrum, vec3},
-    study::outcome::{Outcome, SceneOutcome},
+    math::Spectrum,
+    study::{
+        outcome::{Outcome, SceneOutcome},
+        picture::{self, Picture},
+    },
 };
-use image::{ImageReader, Limits};
 use std::path::Path;
-
-/// What a decoder may allocate [bytes]: a few bytes of header must not ask for all memory.
-const MOST_BYTES: u64 = 1 << 31;
 
 /// The study in the file at `path`: at least one scene, in each at least one contender with at least one budget.
 pub fn outcome(path: &Path) -> Result<Outcome> {
@@ -19,7 +18,7 @@ pub fn outcome(path: &Path) -> Result<Outcome> {
         .map_err(|error| Error::new(path.display(), "the numbers of a study", error.to_string(), remedy))?;
     let outcome: Outcome = serde_json::from_str(&text).map_err(|error| {
         let place = format!("{}:{}:{}", path.display(), error.line(), error.column());
-        let remedy = "run the study anew; every number of it is finite";
+        let remedy = "run the study anew";
         Error::new(place, "a study as JSON", error.to_string(), remedy)
     })?;
     match gap(&outcome) {
@@ -52,18 +51,13 @@ fn gap_in_scene(scene: &SceneOutcome) -> Option<(&'static str, String)> {
 
 /// The pixels of an image that has the size of `scene`, of any values.
 pub fn image(path: &Path, scene: &SceneOutcome) -> Result<Vec<Spectrum>> {
-    let unreadable = |found: String| {
-        let expected = format!("an image of {} x {} pixels", scene.width, scene.height);
-        Error::new(path.display(), expected, found, "run the study anew, or bring its images back")
-    };
-    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
-    let mut reader = reader.map_err(|error| unreadable(error.to_string()))?;
-    let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(MOST_BYTES);
-    reader.limits(limits);
-    let image = reader.decode().map_err(|error| unreadable(error.to_string()))?.into_rgb32f();
-    if (image.width() as usize, image.height() as usize) != (scene.width, scene.height) {
-        return Err(unreadable(format!("{} x {}", image.width(), image.height())));
+    let expected = || format!("an image of {} x {} pixels", scene.width, scene.height);
+    let remedy = "run the study anew, or bring its images back";
+    let picture = picture::read(path)
+        .map_err(|error| Error { expected: expected(), remedy: remedy.to_owned(), ..error })?;
+    let Picture { width, height, pixels, .. } = picture;
+    if (width, height) != (scene.width, scene.height) {
+        return Err(Error::new(path.display(), expected(), format!("{width} x {height}"), remedy));
     }
-    Ok(image.pixels().map(|p| vec3(p[0], p[1], p[2])).collect())
+    Ok(pixels)
 }
