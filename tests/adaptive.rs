@@ -76,7 +76,6 @@ fn pixels_are_within_the_error_as_often_as_promised() {
         let part = covered(&images, &truth, error as f32);
         // Pixels of one render share light walks, so their number says little about how sure this is: by 64 pixels that
         // were one, 12 renders.
-        println!("COVER {part}");
         assert!(part > 0.95 - 0.03, "{part} of the pixels are within {error}");
     }
 }

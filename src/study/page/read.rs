@@ -53,8 +53,11 @@ fn gap_in_scene(scene: &SceneOutcome) -> Option<(&'static str, String)> {
 pub fn image(path: &Path, scene: &SceneOutcome) -> Result<Vec<Spectrum>> {
     let expected = || format!("an image of {} x {} pixels", scene.width, scene.height);
     let remedy = "run the study anew, or bring its images back";
-    let picture = picture::read(path)
-        .map_err(|error| Error { expected: expected(), remedy: remedy.to_owned(), ..error })?;
+    let picture = picture::read(path).map_err(|error| Error {
+        expected: expected(),
+        remedy: remedy.to_owned(),
+        ..error
+    })?;
     let Picture { width, height, pixels, .. } = picture;
     if (width, height) != (scene.width, scene.height) {
         return Err(Error::new(path.display(), expected(), format!("{width} x {height}"), remedy));
