@@ -53,6 +53,16 @@ fn scenes() -> Vec<(&'static str, Value)> {
     ]
 }
 
+/// The same scenes, with a collision forced on every primary ray.
+fn forced() -> Vec<(&'static str, Value)> {
+    let mut scenes = scenes();
+    scenes.remove(0);
+    for (_, scene) in &mut scenes {
+        scene["integrator"] = json!({"type": "bdpt", "forced_interaction": true});
+    }
+    scenes
+}
+
 fn bits(value: Spectrum) -> [u32; 3] {
     value.to_array().map(f32::to_bits)
 }
@@ -61,6 +71,14 @@ fn bits(value: Spectrum) -> [u32; 3] {
 fn assert_consistent(what: &str, sample: &PixelSample) {
     let mut sum = Spectrum::ZERO;
     for one in &sample.tries {
+        if !matches!(one.partner, Partner::Met(..)) {
+            let vertices = sample.eye[one.walk].stops.len();
+            assert!(
+                (1..=vertices).contains(&(one.t as usize - 1)),
+                "{what}: vertex {} of {vertices}",
+                one.t - 1
+            );
+        }
         if let Partner::Light { walk, edges, position } = &one.partner {
             assert_eq!(one.s, edges + 1, "{what}");
             assert_eq!(sample.light[walk].stops[*edges as usize - 1].position, *position, "{what}");
@@ -79,7 +97,7 @@ fn assert_consistent(what: &str, sample: &PixelSample) {
 #[test]
 fn a_sample_made_again_is_what_its_pass_adds() {
     let pixels = [0, 17, 20 * SIZE as usize + 13, 35 * SIZE as usize + 39, (SIZE * SIZE - 1) as usize];
-    for (name, scene) in scenes() {
+    for (name, scene) in scenes().into_iter().chain(forced()) {
         let stage = Stage::new(&scene);
         let (mut lit, mut joined, mut splats) = (0, 0, 0);
         for set in [Strategies::BDPT, Strategies::PT, Strategies::LT, strategies("hit+join")] {
@@ -183,7 +201,7 @@ fn densities_are_those_of_the_walk() {
     let told = desk.pixel("20 20 --samples 40");
     let (mut surfaces, mut media) = (0, 0);
     for sample in told["samples"].as_array().unwrap() {
-        let walk = &sample["eye_walk"];
+        let walk = &sample["eye_walks"][0];
         assert_eq!(numbers(&walk["start"]["position"]), [5.0, 0.0, 0.9], "the lens");
         let (mut before, mut leg) = (walk["start"]["position"].clone(), walk["start"]["onward"].clone());
         for vertex in walk["vertices"].as_array().unwrap() {
@@ -224,7 +242,7 @@ fn contributions_are_told_with_their_strategies() {
     for one in &all {
         let (s, t) = (one["s"].as_u64().unwrap(), one["t"].as_u64().unwrap());
         assert_eq!(one["strategy"], ["hit", "next-event", "join"][s.min(2) as usize]);
-        assert_eq!(one["eye_vertex"], t - 1);
+        assert_eq!((&one["eye_walk"], &one["eye_vertex"]), (&json!(0), &json!(t - 1)));
         assert_eq!((one["light"].is_null(), one["emitter"].is_null()), (s < 2, s >= 2));
         if (s, t) == (0, 2) {
             assert_eq!(one["weight"], 1.0, "nothing else shows the lamp directly: {one}");
@@ -251,7 +269,7 @@ fn the_file_holds_what_is_printed_otherwise() {
         .as_array()
         .unwrap()
         .iter()
-        .map(|sample| sample["eye_walk"]["end"].clone())
+        .map(|sample| sample["eye_walks"][0]["end"].clone())
         .collect();
     assert!(ends.contains(&json!("left the scene")), "{ends:?}");
 }

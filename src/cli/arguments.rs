@@ -181,8 +181,12 @@ pub struct Estimator {
     /// [default: the scene's forced_interaction]
     ///
     /// Less noise in thin media, where few rays collide by chance; the image is the same within noise.
-    #[arg(long)]
+    #[arg(long, overrides_with = "no_forced_interaction")]
     pub forced_interaction: bool,
+
+    /// Leave primary rays to chance, whatever the scene says
+    #[arg(long, overrides_with = "forced_interaction")]
+    pub no_forced_interaction: bool,
 
     /// Which code renders; the image is the same within noise, only the time differs
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]

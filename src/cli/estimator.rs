@@ -68,7 +68,8 @@ fn forced_interaction(asked: &arguments::Estimator, setup: &Setup, strategies: S
         let why = if by_eye { "the scene has no media" } else { "no strategy in use walks from the eye" };
         super::complain(&format!("warning: --forced-interaction has no effect: {why}"));
     }
-    by_eye && (asked.forced_interaction || setup.integrator.forced_interaction)
+    let forced = asked.forced_interaction || setup.integrator.forced_interaction;
+    by_eye && forced && !asked.no_forced_interaction
 }
 
 fn sampler(asked: &arguments::Estimator, setup: &Setup) -> Sampler {

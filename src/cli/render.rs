@@ -92,7 +92,10 @@ fn precision(arguments: &arguments::Render, setup: &Setup, options: &Options) ->
         Err(Error::new("--error", expected, found, remedy))
     };
     if options.sampler == Sampler::Sobol {
-        return refuse("the sampler sobol", "leave --error out, or give --sampler independent");
+        return refuse(
+            "samples that are spread evenly (sobol, or what in the scene means it)",
+            "leave --error out, or give --sampler independent",
+        );
     }
     if options.strategies == Strategies::NONE {
         return refuse("the preview fog", "leave --error out, or choose another --integrator");

@@ -9,7 +9,7 @@
 
 use super::{BLOCKS_AT_ONCE, Job, Progress, block::Outcome, budget::Budget, watch::Clock};
 use crate::{
-    math::{DVec3, Spectrum},
+    math::{DVec3, Spectrum, spectrum::LUMINANCE},
     transport::profile::Profile,
 };
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ pub(super) struct Developed {
     pub pixels: Vec<Spectrum>,
     /// Passes over the image, both halves together.
     pub passes: u64,
-    /// See [`crate::film::accumulator::Accumulator::noise`].
+    /// Root of the mean squared relative error, as what ends pixels measures it.
     pub noise: Option<f64>,
     /// Where and how far.
     pub reached: Reached,
@@ -117,7 +117,9 @@ impl Half {
     fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
         if self.floor == 0.0 {
             let luminances = (0..self.eye.len()).map(|pixel| luminance(self.moments(pixel).0));
-            self.floor = FLOOR * luminances.sum::<f64>() / self.eye.len() as f64;
+            // One broken sample must not decide for all pixels.
+            let sum: f64 = luminances.filter(|luminance| luminance.is_finite()).sum();
+            self.floor = FLOOR * sum / self.eye.len() as f64;
         }
         for pixel in (0..active.len()).filter(|pixel| active[*pixel]) {
             if !self.content[pixel] {
@@ -136,9 +138,11 @@ impl Half {
     /// that is all black, after samples enough.
     fn judge_black(&mut self, limits: &Limits) {
         let is_black = |pixel: usize| self.squares[pixel] == DVec3::ZERO;
-        let mut lit = (0..self.content.len()).filter(|pixel| !is_black(*pixel)).peekable();
-        let waited = lit.peek().is_some() || self.passes >= limits.passes_without_light;
-        if waited && lit.all(|pixel| self.content[pixel]) {
+        let pixels = || 0..self.content.len();
+        // What has no variance, such as an emitter in view, does not tell that light was found elsewhere.
+        let light_was_found = pixels().any(|pixel| !is_black(pixel) && self.errors[pixel] > 0.0);
+        let waited = light_was_found || self.passes >= limits.passes_without_light;
+        if waited && pixels().all(|pixel| is_black(pixel) || self.content[pixel]) {
             self.content.fill(true);
         }
     }
@@ -146,6 +150,9 @@ impl Half {
     /// Squared relative error that the mean over both halves has at a pixel, the greatest of its channels.
     fn error(&self, pixel: usize) -> f64 {
         let (mean, variance) = self.moments(pixel);
+        if !mean.is_finite() {
+            return f64::INFINITY;
+        }
         let scale = mean.abs().max(DVec3::splat(self.floor));
         let relative = variance / (2.0 * self.passes as f64);
         // A black image has no floor: no variance, no error.
@@ -302,14 +309,16 @@ impl<'a, P: Profile> Adaptive<'a, P> {
         self.samples.iter_mut().zip(&self.active).for_each(|(n, active)| *n += u32::from(*active));
     }
 
-    /// Ends what can be ended. Where time ran out between the halves they are not alike, and nothing is.
+    /// Ends what can be ended.
     fn look(&mut self) {
         let [first, second] = self.halves.each_ref().map(|half| half.passes);
-        if first != second || first < 2 {
+        // Where the budget ended between the halves they are not alike; this look is the last one then.
+        let passes = first.min(second);
+        if passes < 2 {
             return;
         }
         let width = self.job.film.width as usize;
-        let limits = Limits::after(self.halves[0].passes, self.precision);
+        let limits = Limits::after(passes, self.precision);
         self.halves.iter_mut().for_each(|half| half.judge(&self.active, width, &limits));
         let [first, second] = &mut self.halves;
         first.end(second);
@@ -349,5 +358,5 @@ fn rms(halves: &[&Half]) -> f64 {
 }
 
 fn luminance(rgb: DVec3) -> f64 {
-    rgb.dot(DVec3::new(0.212_671, 0.715_160, 0.072_169))
+    rgb.dot(LUMINANCE.as_dvec3())
 }

@@ -26,8 +26,8 @@ pub struct PixelSample {
     pub factor: f32,
     /// The channel that samples distances, where extinction differs between channels.
     pub hero: Option<usize>,
-    /// The eye walk.
-    pub eye: Walk,
+    /// The eye walk; where an interaction is forced the walk from that collision, then that from what lies behind.
+    pub eye: Vec<Walk>,
     /// What the strategies tried from its vertices brought, in order; values before `factor`.
     pub tries: Vec<Try>,
     /// What light walks brought to the pixel, in order.
@@ -90,6 +90,8 @@ pub struct Stop {
 /// A strategy tried from the eye walk.
 #[derive(Clone, Debug)]
 pub struct Try {
+    /// Which of the eye walks.
+    pub walk: usize,
     /// Light vertices.
     pub s: u32,
     /// Eye vertices, the lens among them.
@@ -152,14 +154,22 @@ impl Bench<'_> {
 pub(super) fn pixel<P: Profile>(ready: &Ready<'_, P>, pass: usize, pixel: usize) -> PixelSample {
     let Ready { estimator, blocks, film, seed } = ready;
     let own = (0..blocks.count()).find(|block| blocks.pixels(*block).any(|p| p == pixel)).unwrap_or(0);
-    let lit: Vec<Lit<P::Sums>> =
-        (0..blocks.count()).into_par_iter().map(|block| light(ready, pass, block, pixel)).collect();
+    let lit: Vec<Lit<P::Sums>> = (0..blocks.count())
+        .into_par_iter()
+        .map(|block| {
+            let lit = light(ready, pass, block, pixel);
+            // Of other blocks only what they splat is asked for: all caches together would be too large.
+            if block == own { lit } else { Lit { splats: lit.splats, ..Lit::empty(P::Lanes::COUNT) } }
+        })
+        .collect();
     let start = blocks.eye_start(estimator, film, *seed, pass, pixel);
     let (position, aperture, factor, hero) = (start.position, start.aperture, start.weight, start.hero);
-    let mut eye = OfEye { trail: Trail::new(), kept: &lit[own].kept[hero], tries: Vec::new() };
+    let mut eye =
+        OfEye { trail: Trail::new(), done: Vec::new(), kept: &lit[own].kept[hero], tries: Vec::new() };
     let recorder: &mut dyn Recorder<P::Sums> = &mut eye;
     start.trace(estimator, &lit[own].cache, recorder);
-    let OfEye { trail: Trail { walk: eye, .. }, tries, .. } = eye;
+    let OfEye { trail: Trail { walk: last, .. }, done: mut eye, tries, .. } = eye;
+    eye.push(last);
     let radiance = sum(tries.iter().filter_map(|one| one.joined.map(|joined| joined.value)));
     let mut value = Spectrum::ZERO;
     for (block, lit) in lit.iter().enumerate() {
@@ -192,11 +202,15 @@ struct Lit<S: Sums> {
     splats: Vec<Splat>,
 }
 
+impl<S: Sums> Lit<S> {
+    fn empty(heroes: usize) -> Self {
+        Self { cache: LightCache::new(heroes), kept: vec![Vec::new(); heroes], splats: Vec::new() }
+    }
+}
+
 fn light<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize, pixel: usize) -> Lit<P::Sums> {
     let Ready { estimator, blocks, film, .. } = ready;
-    let mut cache = LightCache::new(P::Lanes::COUNT);
-    let mut kept = vec![Vec::new(); P::Lanes::COUNT];
-    let mut splats = Vec::new();
+    let Lit { mut cache, mut kept, mut splats } = Lit::empty(P::Lanes::COUNT);
     if estimator.needs_light_walks() {
         for walk in blocks.light_walks(block) {
             let mut seen = OfLight::new(film, pixel, walk);
@@ -287,6 +301,8 @@ fn stop<S: Sums>(vertex: &Vertex<S>) -> Stop {
 /// Sees the eye walk.
 struct OfEye<'a> {
     trail: Trail<'a>,
+    /// Walks before the one at hand.
+    done: Vec<Walk>,
     kept: &'a [(u64, u32)],
     tries: Vec<Try>,
 }
@@ -302,9 +318,13 @@ impl<S: Sums> Recorder<S> for OfEye<'_> {
             }
             Meeting::Lens(_) => return,
         };
-        self.tries.push(Try { s, t, partner, joined: joined.copied() });
+        let walk = self.done.len();
+        self.tries.push(Try { walk, s, t, partner, joined: joined.copied() });
     }
     fn depart(&mut self, departure: &Departure<S>) {
+        if departure.edges == 0 && self.trail.walk.start.is_some() {
+            self.done.push(std::mem::replace(&mut self.trail, Trail::new()).walk);
+        }
         self.trail.depart(departure);
     }
     fn arrive(&mut self, vertex: &Vertex<S>) {

@@ -48,8 +48,8 @@ pub struct Sample {
     pub filter: f32,
     /// The channel that samples distances, where extinction differs between channels.
     pub hero: Option<&'static str>,
-    /// The eye walk.
-    pub eye_walk: WalkText,
+    /// The eye walk; where an interaction is forced the walk from that collision, then that from what lies behind.
+    pub eye_walks: Vec<WalkText>,
     /// The strategies tried from its vertices.
     pub contributions: Vec<Contribution>,
     /// What light walks brought to the pixel by the lens (t = 1).
@@ -173,6 +173,8 @@ pub struct Contribution {
     pub t: u32,
     /// The kind of strategy.
     pub strategy: &'static str,
+    /// The eye walk, by its number from 0.
+    pub eye_walk: usize,
     /// The last eye vertex, by its number in the walk. For s = 0 it is on the emitter.
     pub eye_vertex: u32,
     /// For s = 0 in a medium or at infinity, where the walk met it: on its way, at no vertex of its own.
@@ -289,7 +291,7 @@ fn describe(setup: &Setup, max_depth: Option<u32>, number: u64, sample: &PixelSa
         aperture: sample.aperture.to_array(),
         filter: sample.factor,
         hero: sample.hero.map(|hero| ["red", "green", "blue"][hero]),
-        eye_walk: text.walk(&sample.eye, longest),
+        eye_walks: sample.eye.iter().map(|walk| text.walk(walk, longest)).collect(),
         contributions: sample.tries.iter().map(|one| text.contribution(one, sample.factor)).collect(),
         splats: sample.splats.iter().map(splat).collect(),
         light_walks: sample
@@ -441,6 +443,7 @@ impl Text<'_> {
             s: one.s,
             t: one.t,
             strategy: StrategyKind::of(one.s, one.t).name(),
+            eye_walk: one.walk,
             eye_vertex: one.t - 1,
             met,
             emitter,

@@ -86,6 +86,7 @@ impl<P: Profile, R: Recorder<P::Sums>> Visitor<P> for Eye<'_, P, R> {
         self.recorder.arrive(vertex);
         if let Site::Surface(point) = &vertex.site
             && let Some(light) = self.estimator.scene.surface(point.shape).emitter
+            && self.estimator.counts.hit > 0.0
         {
             let scene = self.estimator.scene;
             self.recorder.start();
@@ -124,6 +125,9 @@ impl<P: Profile, R: Recorder<P::Sums>> Visitor<P> for Eye<'_, P, R> {
 
     fn escape(&mut self, vertex: &Vertex<P::Sums>) {
         self.recorder.escape(vertex);
+        if self.estimator.counts.hit <= 0.0 {
+            return;
+        }
         self.recorder.start();
         if let Some(link) = self.estimator.scene.lights.met_at_infinity(-vertex.incoming) {
             let hit = self.hit(vertex, &link);

@@ -46,9 +46,11 @@ pub fn trace<P: Profile>(
         Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
     let mut light = Light::new(estimator, cache, recorder, start, hero);
     let aperture = scene.sensor.sample_aperture(stream);
-    light.recorder.start();
-    let joined = light.join_start_to_lens(aperture, stream);
-    light.splat(1, joined);
+    if estimator.counts.lens > 0.0 {
+        light.recorder.start();
+        let joined = light.join_start_to_lens(aperture, stream);
+        light.splat(1, joined);
+    }
     walk(scene, kind, departure, &mut light, stream);
 }
 

@@ -117,7 +117,21 @@ pub fn visit<P: Profile>(
     if vertex.edges == kind.max_edges {
         return None;
     }
-    scatter(scene, vertex, kind.transport, stream)
+    let next = scatter(scene, vertex, kind.transport, stream)?;
+    if vertex.edges < LONG { Some(next) } else { thinned(next, stream) }
+}
+
+/// Walks of more segments end by chance: where nothing absorbs and nothing is left to leave, in white fog without end,
+/// they would else go on for ever.
+const LONG: u32 = 100_000;
+/// The chance with which a long walk goes on from a vertex.
+const LONG_SURVIVAL: f32 = 0.9999;
+
+/// Roulette that no density knows of, the same for all strategies.
+#[cold]
+fn thinned<S: Sums>(next: Departure<S>, stream: &mut Stream) -> Option<Departure<S>> {
+    let throughput = next.throughput / LONG_SURVIVAL;
+    (stream.uniform() < LONG_SURVIVAL).then_some(Departure { throughput, ..next })
 }
 
 /// The vertex at the end of a flight; none if its density is no number.
@@ -183,7 +197,8 @@ pub fn land<P: Profile>(
 #[inline]
 fn squared_distance(a: Vec3, b: Vec3) -> f32 {
     let squared = a.distance_squared(b);
-    if squared > 0.0 {
+    // What is no number is none of these.
+    if squared != 0.0 {
         return squared;
     }
     let rounding = offset::ROUNDOFF * a.abs().max_element();

@@ -127,7 +127,7 @@ struct Leg<L> {
     length: f32,
 }
 
-/// A flight to the next surface, in one medium that began `skipped` metres before the ray does.
+/// A flight to the next surface, in one medium that, where it is homogeneous, began `skipped` metres before the ray.
 #[inline(always)]
 fn fly_leg<P: Profile>(
     scene: &Scene,
@@ -168,7 +168,8 @@ fn fly_straight<P: Profile>(
         None if collision < limit => {
             (Landing::Medium(ray.origin + ray.direction * collision, medium.matter()), flown)
         }
-        None => (Landing::Escape, f32::INFINITY),
+        // Infinite for all but primary rays, which the far clip ends.
+        None => (Landing::Escape, limit + skipped),
     };
     let one = P::Lanes::splat(1.0);
     let depth = if P::MEDIA { depth_of(sigma_t, distance) } else { P::Lanes::splat(0.0) };

@@ -41,7 +41,7 @@ pub fn pass<P: Profile>(
         return None;
     }
     let mut way = Way::<P>::new();
-    way.add(scene, medium, &ray, ray.t_max + cut, stream);
+    way.add(scene, medium, &ray, ray.t_max + cut, 0.0, stream);
     Some(way.passage(medium))
 }
 
@@ -58,7 +58,7 @@ fn pass_through<P: Profile>(
     let mut skipped = 0.0;
     loop {
         let Some(hit) = scene.geometry.closest(&ray) else {
-            way.add(scene, medium, &ray, ray.t_max + cut + skipped, stream);
+            way.add(scene, medium, &ray, ray.t_max + cut, skipped, stream);
             return Some(way.passage(medium));
         };
         let point = scene.geometry.surface(&ray, &hit);
@@ -68,7 +68,7 @@ fn pass_through<P: Profile>(
         }
         way.passing *= through.max_element();
         way.tint *= through;
-        way.add(scene, medium, &ray, hit.t + skipped, stream);
+        way.add(scene, medium, &ray, hit.t, skipped, stream);
         (ray, skipped) = past(&ray, &point);
         medium = scene.medium_beyond(&point, &ray, medium);
         if ray.t_max < f32::INFINITY {
@@ -99,9 +99,17 @@ impl<P: Profile> Way<P> {
         Self { depth: zero, estimate: one, passing: 1.0, tint: Spectrum::ONE }
     }
 
-    /// Goes `length` along `ray` through `medium`.
+    /// Goes `length` along `ray` through `medium`, which began `skipped` metres before; see [`past`].
     #[inline(always)]
-    fn add(&mut self, scene: &Scene, medium: MediumIndex, ray: &Ray, length: f32, stream: &mut Stream) {
+    fn add(
+        &mut self,
+        scene: &Scene,
+        medium: MediumIndex,
+        ray: &Ray,
+        length: f32,
+        skipped: f32,
+        stream: &mut Stream,
+    ) {
         if !P::MEDIA {
             return;
         }
@@ -115,7 +123,7 @@ impl<P: Profile> Way<P> {
             self.estimate = self.estimate * varying.transmittance::<P::Lanes>(&section, depth, stream);
             return;
         }
-        let depth = depth_of(P::Lanes::from_spectrum(medium.sigma_t), length);
+        let depth = depth_of(P::Lanes::from_spectrum(medium.sigma_t), length + skipped);
         self.depth = self.depth + depth;
         if P::HETEROGENEOUS {
             self.estimate = self.estimate * depth.exp_neg();
