@@ -7,7 +7,7 @@ mod validation;
 use common::studies::{self, Study};
 use scraper::{ElementRef, Html, Selector};
 use std::{fs, path::Path, process::Command};
-use tyndall::study::page;
+use tyndall::study::{outcome::Interval, page};
 
 /// The page of a study, refused unless it is well-formed and stands alone.
 fn page_of(study: &Study) -> Html {
@@ -104,7 +104,7 @@ fn one_contender_with_one_budget_is_enough() {
 
 #[test]
 fn every_number_can_be_drawn() {
-    for value in [0.0, 1.0, 1e-30, f64::MIN_POSITIVE, 5e-324, 1e30, f64::MAX] {
+    for value in [0.0, 1.0, 1e-30, f64::MIN_POSITIVE, 5e-324, 1e30, f64::MAX, f64::NAN] {
         let mut study = Study::new(&["room"], &["a", "b"], 3);
         study.set_all(value);
         let html = page_of(&study);
@@ -116,9 +116,43 @@ fn every_number_can_be_drawn() {
                 assert!((-40.0..=1640.0).contains(&place), "{value:e}: {place}");
             }
         }
+        for mark in all(&html, ".chart:not([hidden]) .marks circle") {
+            let at = ["cx", "cy"].map(|name| mark.value().attr(name).unwrap().parse::<f64>().unwrap());
+            // What is no number stands at the worst corner: as late as can be, with as much error as can be.
+            let is_worst = at[0] >= 1570.0 && at[1] <= 30.0;
+            assert_eq!(is_worst, value.is_nan(), "{value:e}: {at:?}");
+        }
         let page = texts(&html, "main").concat();
         assert!(!page.contains("NaN") && !page.contains("inf"), "{value:e}");
     }
+}
+
+#[test]
+fn what_is_known_of_reference_and_ratios_is_said_once() {
+    let mut study = Study::new(&["room"], &["a", "b", "c"], 3);
+    let says = |study: &Study| {
+        study.rewrite();
+        let html = page_of(study);
+        (texts(&html, "#scene-0 header").concat(), texts(&html, "footer").concat())
+    };
+    study.outcome.scenes[0].reference.own_relmse = Some(1.0);
+    let (header, footer) = says(&study);
+    assert_eq!(header.matches("own error").count(), 3, "{header}");
+    assert!(footer.contains("as independent") && !footer.contains("paired"), "{footer}");
+    let ratio = Some(Interval { mean: 2.0, low: 1.9, high: 2.1 });
+    study.outcome.scenes[0].contenders[1].ratio = ratio;
+    // As `tyndall study` says it.
+    study.outcome.scenes[0].contenders[1].notes = vec!["only 1.2 times the reference's own: some".to_owned()];
+    let (header, footer) = says(&study);
+    assert!(header.matches("own error").count() == 2 && header.contains("only 1.2 times"), "{header}");
+    assert!(footer.contains("as independent") && footer.contains("paired"), "{footer}");
+    study.outcome.scenes[0].contenders[2].ratio = ratio;
+    study.outcome.scenes[0].reference.own_relmse = None;
+    let (header, footer) = says(&study);
+    assert!(header.contains("is not known"), "{header}");
+    assert!(!footer.contains("as independent") && footer.contains("paired"), "{footer}");
+    study.outcome.scenes[0].notes = vec!["nobody knows the reference's own error".to_owned()];
+    assert!(!says(&study).0.contains("is not known"));
 }
 
 #[test]
@@ -149,8 +183,6 @@ fn what_is_missing_is_named() {
     refused(&study, &["study.json:", "a study as JSON", "remedy"]);
     fs::write(&numbers, whole.replacen("\"width\"", "\"wide\"", 1)).unwrap();
     refused(&study, &["missing field `width`"]);
-    fs::write(&numbers, whole.replacen("\"mean\":", "\"mean\":null,\"x\":", 1)).unwrap();
-    refused(&study, &["study.json:1:", "null", "finite"]);
     fs::remove_file(&numbers).unwrap();
     refused(&study, &["study.json", "the numbers of a study"]);
 

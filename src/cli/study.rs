@@ -1,7 +1,7 @@
 //! `tyndall study`: error against run time.
 
 use super::{
-    arguments::{Size, Tracker, definition, duration, positive_u32, size, threads as threads_of},
+    arguments::{Size, Tracker, confidence, definition, duration, positive_u32, size, threads as threads_of},
     complain, contenders, estimator, say, threads,
 };
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     error::{Error, Result},
     render::{Settings, budget::Budget},
     scene::{
-        self,
+        self, Sources,
         build::{self, Overrides, Setup},
     },
     study::{
@@ -111,7 +111,7 @@ pub struct Study {
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
 
-    /// Of every interval, between 0 and 1
+    /// Of every interval, from 0.5 to 0.9999
     #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = confidence, allow_negative_numbers = true)]
     pub confidence: f64,
 
@@ -145,11 +145,6 @@ pub struct Study {
 
 /// Time of the largest budget [s].
 const SECONDS: f64 = 8.0;
-
-fn confidence(text: &str) -> std::result::Result<f64, String> {
-    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share < 1.0);
-    share.ok_or_else(|| "expected a share between 0 and 1, such as 0.95".to_owned())
-}
 
 fn error(text: &str) -> std::result::Result<f64, String> {
     let error = text.parse().ok().filter(|error: &f64| error.is_finite() && *error >= 0.0);
@@ -185,8 +180,12 @@ pub fn run(arguments: &Study) -> Result<()> {
 
 fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Result<Question> {
     let names = contenders::scene_names(&arguments.scenes);
-    let scene =
-        |(name, file): (String, &PathBuf)| Ok(SceneQuestion { name, fingerprint: fingerprint(&read(file)?) });
+    let scene = |(name, file): (String, &PathBuf)| {
+        Ok(SceneQuestion {
+            name,
+            fingerprint: fingerprint_of(&scene::sources(file, &arguments.definitions)?)?,
+        })
+    };
     let effort = match (arguments.spp, arguments.seconds) {
         (Some(spp), _) => Effort::Samples(u64::from(spp)),
         (None, seconds) => Effort::Seconds(seconds.map_or(SECONDS, |seconds| seconds.as_secs_f64())),
@@ -204,6 +203,16 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
         effort,
         threads,
     })
+}
+
+/// Of all that a scene is read from.
+fn fingerprint_of(sources: &Sources) -> Result<String> {
+    let spectra = format!("{:?}", sources.spectra);
+    let mut all = vec![fingerprint(spectra.as_bytes())];
+    for file in &sources.files {
+        all.push(fingerprint(&read(file)?));
+    }
+    Ok(fingerprint(all.concat().as_bytes()))
 }
 
 fn wanted(arguments: &Study, contenders: &[Contender]) -> Result<Wanted> {
@@ -328,16 +337,19 @@ impl<'a> Stage<'a> {
 /// Said of a contender whose name promises a difference that there is not.
 const IDLE_TRACKER: &str = "its tracker has no effect: no medium of this scene varies";
 
-/// The command as it was typed.
+/// The command, as a shell takes it.
 fn command() -> String {
-    let word = |word: String| match word.contains(|c: char| c.is_whitespace() || "\"'$*;&|<>()".contains(c)) {
-        true => format!("'{}'", word.replace('\'', "'\\''")),
-        false => word,
-    };
-    std::iter::once("tyndall".to_owned())
-        .chain(std::env::args().skip(1).map(word))
-        .collect::<Vec<_>>()
-        .join(" ")
+    let words = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
+    std::iter::once("tyndall".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// `word` in quotes, unless no shell can find anything in it that means more than itself.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+,./:@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
 }
 
 fn machine(threads: usize) -> String {
@@ -378,6 +390,27 @@ impl Bar {
         if self.is_hidden && tenths > self.tenths {
             self.tenths = tenths;
             complain(&format!("{} % done: {doing}", 10 * tenths));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_that_mean_more_to_a_shell_are_quoted() {
+        for (word, expected) in [
+            ("a/b-c_d.json", "a/b-c_d.json"),
+            ("hit+join,x=1", "hit+join,x=1"),
+            ("", "''"),
+            ("~", "'~'"),
+            ("a b", "'a b'"),
+            ("it's", "'it'\\''s'"),
+            ("`ls`#{a}", "'`ls`#{a}'"),
+            ("é", "'é'"),
+        ] {
+            assert_eq!(quoted(word), expected);
         }
     }
 }
