@@ -13,7 +13,7 @@ from validation import exr, tyndall
 from validation.failure import Failure
 from validation.study import plan, truth
 from validation.study.measures import Measures, measures
-from validation.study.rivals import Rival, rivals, usual
+from validation.study.rivals import Rival, rivals, unusual, usual
 from validation.study.scenes import Subject
 from validation.study.store import Run, Store
 from validation.study.truth import Truth
@@ -48,18 +48,30 @@ class Found:
     load_seconds: dict[str, float | None]
     seeds: int
     """Rounds that are complete."""
+    notes: list[str]
+    """What there is to say about all of it."""
 
 
 def study(subject: Subject, settings: Settings, store: Store, seconds: float) -> Found:
     """Does what is not done yet, in about so many seconds."""
     started = time.monotonic()
     names = settings.contenders or usual(subject.scene)
+    absent = {} if settings.contenders else unusual(subject.scene)
     contenders = rivals(subject.scene, names, subject.size, settings.threads)
     planned = made_plan(subject, contenders, settings, store, seconds)
     reference = made_truth(contenders, planned, settings, store)
     seeds = take_turns(contenders, planned, reference, settings.seeds, store, started + seconds)
-    tell_of_noise(contenders, planned, reference, store)
-    return Found(subject, reference, contenders, planned["samples"], planned["load_seconds"], seeds)
+    notes = told(absent, reference, seeds, settings.seeds)
+    return Found(subject, reference, contenders, planned["samples"], planned["load_seconds"], seeds, notes)
+
+
+def told(absent: dict[str, str], reference: Truth, seeds: int, wanted: int) -> list[str]:
+    """A scene's notes."""
+    notes = [f"{name} is left out: {why}" for name, why in absent.items()]
+    notes += [reference.warning] if reference.warning else []
+    notes += [f"time was up after {seeds} of {wanted} seeds; the same command again goes on"] if seeds < wanted else []
+    notes += ["nobody knows the reference's own error"] if reference.own_relmse is None else []
+    return notes
 
 
 def identity(subject: Subject, contenders: list[Rival], settings: Settings) -> dict[str, Any]:
@@ -153,19 +165,6 @@ def take_turns(
         shown = ", ".join(f"{name} {error:.2g}" for name, error in errors.items())
         print(f"  seed {number + 1} of {seeds}, {time.monotonic() - started:.1f} s; relMSE: {shown}", flush=True)
     return seeds
-
-
-NOTICEABLE = 0.1
-"""Part of a relMSE that its reference may have made."""
-
-
-def tell_of_noise(contenders: list[Rival], planned: dict[str, Any], reference: Truth, store: Store) -> None:
-    """Says so if the reference's own error is a good part of the least that was measured."""
-    last = [store.run(rival.slug, len(planned["samples"][rival.name]) - 1, 0) for rival in contenders]
-    least = min(run.measures.relmse for run in last if run)
-    if reference.own_relmse and reference.own_relmse > NOTICEABLE * least:
-        part = 100 * reference.own_relmse / least
-        print(f"  note: about {part:.0f} % of the least relMSE is the reference's own; --minutes or --reference would help")
 
 
 def complete(contenders: list[Rival], planned: dict[str, Any], seed: int, store: Store) -> bool:

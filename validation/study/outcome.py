@@ -57,8 +57,12 @@ class Contender:
     """Of log relMSE over log seconds; none from fewer than three points."""
     efficiency: Interval
     """1 / (relMSE x seconds) at the last budget [1/s]."""
+    ratio: Interval | None
+    """Its efficiency over that of the scene's first contender, seeds paired; none for that one."""
     variance: str
     """An image: of each value in one render at the last budget."""
+    notes: list[str]
+    """What the reader should know: signs of bias, an error that is the reference's own, images that hold NaN."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,8 @@ class SceneOutcome:
     height: int
     reference: Reference
     contenders: list[Contender]
+    notes: list[str]
+    """What the reader should know: who was left out and why, seeds that are missing, a reference to mistrust."""
 
 
 @dataclass(frozen=True)

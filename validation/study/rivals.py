@@ -118,8 +118,13 @@ def rival(scene: Scene, name: str, size: Size, threads: int) -> Rival:
     raise Failure(f"{name}: no such contender", f"choose among {', '.join(known())}")
 
 
+def unusual(scene: Scene) -> dict[str, str]:
+    """Who is left out unless asked for, and why."""
+    lt = {} if tree.light_tracing_applies(tree.tree(scene)) else {"lt": "light walks cannot find all of the light here"}
+    llvm = {} if mitsuba.libllvm() else {name: "no LLVM is installed" for name in known() if "llvm" in name}
+    return lt | llvm
+
+
 def usual(scene: Scene) -> list[str]:
     """All that can render the scene: light tracing only where it applies, compiled variants only where LLVM is."""
-    lt = [] if tree.light_tracing_applies(tree.tree(scene)) else ["lt"]
-    llvm = [] if mitsuba.libllvm() else [name for name in known() if "llvm" in name]
-    return [name for name in known() if name not in (*lt, *llvm)]
+    return [name for name in known() if name not in unusual(scene)]

@@ -14,6 +14,7 @@ from validation.study.measures import NAMES
 from validation.study.outcome import Contender, Interval, Outcome, Point, Reference, SceneOutcome
 from validation.study.rivals import Rival
 from validation.study.store import Run, Store
+from validation.study.truth import Truth
 
 
 def scene_outcome(found: Found, store: Store, folder: Path) -> SceneOutcome:
@@ -23,7 +24,7 @@ def scene_outcome(found: Found, store: Store, folder: Path) -> SceneOutcome:
     exr.write_image(folder / image, found.truth.image)
     reference = Reference(image, found.truth.how, found.truth.own_relmse)
     contenders = [contender(found, rival, store, folder) for rival in found.rivals]
-    return SceneOutcome(name, width, height, reference, contenders)
+    return SceneOutcome(name, width, height, reference, contenders, found.notes)
 
 
 def contender(found: Found, rival: Rival, store: Store, folder: Path) -> Contender:
@@ -32,15 +33,39 @@ def contender(found: Found, rival: Rival, store: Store, folder: Path) -> Contend
     table = runs(found, rival, store)
     relmse, seconds = (np.array([[of(run) for run in row] for row in table]) for of in (error_of, seconds_of))
     last = len(table[0]) - 1
+    points = [point(rival, k, [row[k] for row in table], store, folder, place) for k in range(last + 1)]
+    is_first = rival is found.rivals[0]
     exr.write_image(folder / place / "variance.exr", variance(rival, last, found.seeds, store))
     return Contender(
         name=rival.name,
         load_seconds=found.load_seconds.get(rival.name),
-        points=[point(rival, k, [row[k] for row in table], store, folder, place) for k in range(last + 1)],
+        points=points,
         slope=intervals.of_slope(relmse, seconds),
         efficiency=intervals.of_efficiency(relmse[:, last], seconds[:, last]),
+        ratio=None if is_first else intervals.of_ratio(last_of(found, found.rivals[0], store), last_of(found, rival, store)),
         variance=f"{place}/variance.exr",
+        notes=doubts([row[last] for row in table], points[last], found.truth),
     )
+
+
+def last_of(found: Found, rival: Rival, store: Store) -> np.ndarray:
+    """Errors and seconds at a contender's last budget, (2, seeds)."""
+    last = [row[-1] for row in runs(found, rival, store)]
+    return np.array([[error_of(run) for run in last], [seconds_of(run) for run in last]])
+
+
+FAR_ABOVE = 10.0
+"""An error this many times that of the reference is nearly all the contender's own."""
+
+
+def doubts(last: list[Run], at_last: Point, truth: Truth) -> list[str]:
+    """What a contender's last budget gives cause to say."""
+    found, broken = at_last.relmse.mean, sum(not math.isfinite(run.measures.mse) for run in last)
+    notes = [f"{broken} of its {len(last)} images hold NaN or infinite values"] if broken else []
+    if truth.own_relmse and found < FAR_ABOVE * truth.own_relmse:
+        times = f"only {found / truth.own_relmse:.1f} times the reference's own"
+        notes.append(f"its relMSE of {found:.3g} is {times}: part of its error is the reference's")
+    return notes
 
 
 def error_of(run: Run) -> float:
@@ -61,9 +86,17 @@ def runs(found: Found, rival: Rival, store: Store) -> list[list[Run]]:
 def point(rival: Rival, budget: int, done: list[Run], store: Store, folder: Path, place: str) -> Point:
     """One budget over all seeds; the first seed's image is copied."""
     image = f"{place}/{budget}.exr"
-    shutil.copyfile(store.path(rival.slug, budget, 0), folder / image)
+    copied(store.path(rival.slug, budget, 0), folder / image)
     of = {name: intervals.of_mean(np.array([getattr(run.measures, name) for run in done])) for name in NAMES}
     return Point(done[0].samples, intervals.of_mean(np.array([seconds_of(run) for run in done])), **of, image=image)
+
+
+def copied(source: Path, target: Path) -> None:
+    """Copies a file, whole or not at all."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    partial = target.with_suffix(".partial")
+    shutil.copyfile(source, partial)
+    partial.replace(target)
 
 
 def variance(rival: Rival, budget: int, seeds: int, store: Store) -> np.ndarray:
@@ -111,7 +144,13 @@ def scene_table(scene: SceneOutcome) -> str:
     rivals = [c.efficiency for c in scene.contenders if c.name.startswith("mitsuba")]
     best = max(rivals, key=lambda efficiency: efficiency.mean, default=None)
     title = f"\n## {scene.name}, {scene.width} x {scene.height}\n\nReference: {scene.reference.how}; its own relMSE: {own}.\n\n"
-    return title + HEADER + "".join(row(c, best) for c in scene.contenders)
+    return title + HEADER + "".join(row(c, best) for c in scene.contenders) + notes(scene)
+
+
+def notes(scene: SceneOutcome) -> str:
+    """What the reader should know, as a list."""
+    said = [*scene.notes, *(f"{c.name}: {note}" for c in scene.contenders for note in c.notes)]
+    return "\n" + "".join(f"- {note}.\n" for note in said) if said else ""
 
 
 def row(c: Contender, best: Interval | None) -> str:

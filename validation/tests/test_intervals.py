@@ -45,3 +45,33 @@ def test_the_slope_of_a_power_law_is_its_power(power: float) -> None:
 
 def test_two_points_have_no_slope() -> None:
     assert intervals.of_slope(np.ones((8, 2)), np.ones((8, 2))) is None
+
+
+def test_a_bootstrap_of_a_mean_is_as_wide_as_its_error() -> None:
+    values = np.arange(100.0)
+    found = intervals.bootstrap(100, lambda picks: values[picks].mean(axis=-1))
+    error = stats.sem(values) / values.mean()
+    assert found.mean == 49.5
+    assert np.log(found.high / found.mean) == pytest.approx(stats.t.ppf(0.975, 99) * error, rel=0.05)
+    assert intervals.bootstrap(100, lambda picks: values[picks].mean(axis=-1)) == found
+
+
+def test_ratios_are_paired() -> None:
+    own = np.random.default_rng(5).gamma(3, size=(2, 8))
+    found = intervals.of_ratio(own * np.array([[3.0], [2.0]]), own)
+    assert (found.mean, found.low, found.high) == pytest.approx((6, 6, 6))
+
+
+def test_the_ratio_holds_as_often_as_it_says() -> None:
+    random, trials = np.random.default_rng(6), 300
+    held = 0
+    for _ in range(trials):
+        errors = random.normal(5, 0.5, (2, 8))
+        found = intervals.of_ratio(np.stack([2 * errors[0], np.ones(8)]), np.stack([errors[1], np.ones(8)]))
+        held += found.low <= 2 <= found.high
+    assert stats.binomtest(held, trials, 0.95).pvalue > 1e-4
+
+
+def test_what_is_not_finite_stays_so() -> None:
+    found = intervals.of_ratio(np.array([[1.0, np.nan], [1, 1]]), np.ones((2, 2)))
+    assert np.isnan([found.mean, found.low, found.high]).all()

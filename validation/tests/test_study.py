@@ -89,6 +89,24 @@ def test_known_laws_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert exr.read_image(tmp_path / entry.reference.image) == pytest.approx(TRUTH, abs=0.15)
 
 
+def test_efficiencies_are_held_against_the_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found, _ = studied(tmp_path, monkeypatch, seeds=8)
+    quiet, loud = summary.scene_outcome(found, Store(tmp_path / "runs" / "toy"), tmp_path).contenders
+    assert quiet.ratio is None and loud.ratio
+    assert loud.ratio.mean == pytest.approx(loud.efficiency.mean / quiet.efficiency.mean, rel=0.01)
+    assert loud.ratio.low < loud.ratio.mean < loud.ratio.high
+
+
+def test_what_the_reader_should_know_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert conduct.told({}, Truth(TRUTH, "known", 0.1), 6, 6) == []
+    told = conduct.told({"lt": "why not"}, Truth(TRUTH, "known", None, "they disagree"), 5, 6)
+    assert [note.split(" ")[0] for note in told] == ["lt", "they", "time", "nobody"] and "5 of 6 seeds" in told[2]
+    found, _ = studied(tmp_path, monkeypatch)
+    near = Found(found.subject, Truth(TRUTH, "known", 0.2), found.rivals, found.samples, {}, found.seeds, told)
+    entry = summary.scene_outcome(near, Store(tmp_path / "runs" / "toy"), tmp_path)
+    assert entry.notes == told and "the reference's own" in entry.contenders[0].notes[0]
+
+
 def test_an_interrupted_study_goes_on_to_the_same_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     _, whole = studied(tmp_path / "whole", monkeypatch)
     total, again = sum(one.rendered for one in whole), 0
