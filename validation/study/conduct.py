@@ -103,6 +103,7 @@ def made_plan(
         raise Failure(problem, "name another --output, or delete that folder")
     if kept:
         return kept
+    store.refuse_strangers()
     started = time.monotonic()
     pilots = {rival.name: told_pilot(rival, PILOTS_PART * seconds / len(contenders)) for rival in contenders}
     left = seconds - (time.monotonic() - started)

@@ -1,7 +1,6 @@
 """What a study has finished, kept in `runs/`, so that an interrupted one goes on: each file is whole or not there."""
 
 import json
-import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,9 +32,15 @@ class Store:
         return self.read(self.folder / "plan.json")
 
     def keep_plan(self, plan: dict[str, Any]) -> None:
-        """Keeps the plan, and nothing that belongs to another one."""
-        shutil.rmtree(self.folder, ignore_errors=True)
+        """Keeps the plan, in a folder of which nothing belongs to another one."""
+        self.refuse_strangers()
         self.write(self.folder / "plan.json", plan)
+
+    def refuse_strangers(self) -> None:
+        """What lies here without a plan was made by somebody else. It may be dear: nothing is ever deleted."""
+        strangers = [path for path in self.folder.glob("*") if path.suffix != ".partial"] if self.folder.is_dir() else []
+        if strangers and not (self.folder / "plan.json").is_file():
+            raise Failure(f"{self.folder} holds {strangers[0].name}, and no plan", "name another --output, or delete that folder")
 
     def run(self, contender: str, budget: int, seed: int) -> Run | None:
         """A finished render."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation import exr
+from validation import cli, exr
 from validation.failure import Failure
 from validation.places import ROOT
 from validation.scene import Scene
@@ -149,6 +149,25 @@ def test_renders_of_another_study_are_not_taken(tmp_path: Path, monkeypatch: pyt
     studied(tmp_path, monkeypatch)
     with pytest.raises(Failure, match="another study"):
         studied(tmp_path, monkeypatch, points=3)
+
+
+def test_nothing_of_others_is_deleted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    dear = tmp_path / "runs" / "toy" / "turns" / "numbers.json"
+    dear.parent.mkdir(parents=True)
+    dear.write_text("weeks of work")
+    with pytest.raises(Failure, match="toy holds turns, and no plan"):
+        studied(tmp_path, monkeypatch)
+    assert dear.read_text() == "weeks of work" and not Noise.seeds
+
+
+@pytest.mark.parametrize("mark", ["runs/plan.json", "study.json"])
+def test_a_study_of_the_program_is_left_alone(mark: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "runs").mkdir()
+    (tmp_path / mark).write_text("{}")
+    monkeypatch.setattr(conduct, "rivals", lambda *_: pytest.fail("something would be rendered"))
+    with pytest.raises(Failure, match="made otherwise"):
+        cli.main(["convergence", "--output", str(tmp_path)])
+    assert [path.name for path in tmp_path.rglob("*.json")] == [Path(mark).name]
 
 
 def test_half_a_file_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
