@@ -1,8 +1,12 @@
 """What a study found, as it stands in `study.json`; the words are those of `src/study/outcome.rs`, which tells more."""
 
 import json
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
+
+from validation.failure import Failure
 
 FILE = "study.json"
 
@@ -97,3 +101,40 @@ def write(outcome: Outcome, folder: Path) -> Path:
     partial.write_text(json.dumps(asdict(outcome), indent=1, allow_nan=False) + "\n")
     partial.replace(path)
     return path
+
+
+def read(folder: Path) -> Outcome:
+    """Reads a study's `study.json`, whoever wrote it; what is `null` where a number should be is NaN."""
+    path = folder / FILE
+    if not path.is_file():
+        raise Failure(f"{folder}: no {FILE} in it", "name the folder of a study that `convergence` or `tyndall study` made")
+    try:
+        told = json.loads(path.read_text())
+        return Outcome(**{**told, "scenes": [scene_of(scene) for scene in told["scenes"]]})
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        raise Failure(f"{path}: not what a study has: {error!r}", "make the study again, with this version")
+
+
+def scene_of(told: dict[str, Any]) -> SceneOutcome:
+    """One scene's entry."""
+    contenders = [contender_of(one) for one in told["contenders"]]
+    return SceneOutcome(**{"notes": [], **told, "reference": Reference(**told["reference"]), "contenders": contenders})
+
+
+def contender_of(told: dict[str, Any]) -> Contender:
+    """One contender's entry."""
+    values: dict[str, Any] = {"ratio": None, "notes": [], **told, "points": [point_of(point) for point in told["points"]]}
+    for name in ("slope", "efficiency", "ratio"):
+        values[name] = values[name] and interval_of(values[name])
+    return Contender(**values)
+
+
+def point_of(told: dict[str, Any]) -> Point:
+    """One budget's entry."""
+    values: dict[str, Any] = {name: interval_of(value) if isinstance(value, dict) else value for name, value in told.items()}
+    return Point(**values)
+
+
+def interval_of(told: dict[str, float | None]) -> Interval:
+    """Three numbers."""
+    return Interval(**{name: math.nan if value is None else float(value) for name, value in told.items()})

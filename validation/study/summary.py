@@ -14,7 +14,6 @@ from validation.study.measures import NAMES
 from validation.study.outcome import Contender, Interval, Outcome, Point, Reference, SceneOutcome
 from validation.study.rivals import Rival
 from validation.study.store import Run, Store
-from validation.study.truth import Truth
 
 
 def scene_outcome(found: Found, store: Store, folder: Path) -> SceneOutcome:
@@ -23,11 +22,11 @@ def scene_outcome(found: Found, store: Store, folder: Path) -> SceneOutcome:
     image = f"images/{name}/reference.exr"
     exr.write_image(folder / image, found.truth.image)
     reference = Reference(image, found.truth.how, found.truth.own_relmse)
-    contenders = [contender(found, rival, store, folder) for rival in found.rivals]
+    contenders = [contender(found, rival, reference, store, folder) for rival in found.rivals]
     return SceneOutcome(name, width, height, reference, contenders, found.notes)
 
 
-def contender(found: Found, rival: Rival, store: Store, folder: Path) -> Contender:
+def contender(found: Found, rival: Rival, reference: Reference, store: Store, folder: Path) -> Contender:
     """One contender's entry."""
     place = f"images/{found.subject.scene.name}/{rival.slug}"
     table = runs(found, rival, store)
@@ -44,7 +43,7 @@ def contender(found: Found, rival: Rival, store: Store, folder: Path) -> Contend
         efficiency=intervals.of_efficiency(relmse[:, last], seconds[:, last]),
         ratio=None if is_first else intervals.of_ratio(last_of(found, found.rivals[0], store), last_of(found, rival, store)),
         variance=f"{place}/variance.exr",
-        notes=doubts([row[last] for row in table], points[last], found.truth),
+        notes=broken([row[last] for row in table]) + doubts(points[last], reference),
     )
 
 
@@ -58,14 +57,18 @@ FAR_ABOVE = 10.0
 """An error this many times that of the reference is nearly all the contender's own."""
 
 
-def doubts(last: list[Run], at_last: Point, truth: Truth) -> list[str]:
-    """What a contender's last budget gives cause to say."""
-    found, broken = at_last.relmse.mean, sum(not math.isfinite(run.measures.mse) for run in last)
-    notes = [f"{broken} of its {len(last)} images hold NaN or infinite values"] if broken else []
-    if truth.own_relmse and found < FAR_ABOVE * truth.own_relmse:
-        times = f"only {found / truth.own_relmse:.1f} times the reference's own"
-        notes.append(f"its relMSE of {found:.3g} is {times}: part of its error is the reference's")
-    return notes
+def broken(last: list[Run]) -> list[str]:
+    """What there is to say of images that are none."""
+    count = sum(not math.isfinite(run.measures.mse) for run in last)
+    return [f"{count} of its {len(last)} images hold NaN or infinite values"] if count else []
+
+
+def doubts(last: Point, reference: Reference) -> list[str]:
+    """What there is to say of an error that is not much greater than the reference's own."""
+    found, own = last.relmse.mean, reference.own_relmse
+    if not own or not found < FAR_ABOVE * own:
+        return []
+    return [f"its relMSE of {found:.3g} is only {found / own:.1f} times the reference's own: part of it is the reference's"]
 
 
 def error_of(run: Run) -> float:
@@ -126,9 +129,9 @@ def write_csv(path: Path, all_rows: list[dict[str, object]]) -> None:
         writer.writerows(all_rows)
 
 
-def markdown(outcome: Outcome) -> str:
-    """`study.md`: a table for each scene."""
-    head = f"# Error against run time\n\n{outcome.made_by}; {outcome.machine}; intervals hold {100 * outcome.confidence:.0f} %.\n\n    {outcome.command}\n"
+def markdown(outcome: Outcome, figures: str = "") -> str:
+    """`study.md`: a table for each scene, after `figures`."""
+    head = f"# Error against run time\n\n{figures}{outcome.made_by}; {outcome.machine}; intervals hold {100 * outcome.confidence:.0f} %.\n\n    {outcome.command}\n"
     return head + "".join(map(scene_table, outcome.scenes))
 
 
