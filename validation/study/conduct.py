@@ -59,9 +59,10 @@ def study(subject: Subject, settings: Settings, store: Store, seconds: float) ->
     absent = {} if settings.contenders else unusual(subject.scene)
     contenders = rivals(subject.scene, names, subject.size, settings.threads)
     planned = made_plan(subject, contenders, settings, store, seconds)
+    contenders = [rival for rival in contenders if rival.name not in planned["left_out"]]
     reference = made_truth(contenders, planned, settings, store)
     seeds = take_turns(contenders, planned, reference, settings.seeds, store, started + seconds)
-    notes = told(absent, reference, seeds, settings.seeds)
+    notes = told(absent | planned["left_out"], reference, seeds, settings.seeds)
     return Found(subject, reference, contenders, planned["samples"], planned["load_seconds"], seeds, notes)
 
 
@@ -102,20 +103,36 @@ def made_plan(
         problem = f"{store.folder} holds renders of another study: other scene, settings, or program"
         raise Failure(problem, "name another --output, or delete that folder")
     if kept:
-        return kept
+        return {"left_out": {}, **kept}
     store.refuse_strangers()
     started = time.monotonic()
-    pilots = {rival.name: told_pilot(rival, PILOTS_PART * seconds / len(contenders)) for rival in contenders}
+    pilots, left_out = all_pilots(contenders, PILOTS_PART * seconds / len(contenders))
     left = seconds - (time.monotonic() - started)
-    top = plan.top_seconds(max(left, seconds / 4), len(contenders), settings.seeds, settings.points)
+    top = plan.top_seconds(max(left, seconds / 4), len(pilots), settings.seeds, settings.points)
     made = {
         "identity": wanted,
         "samples": {name: plan.budgets(p.rate, top, settings.points) for name, p in pilots.items()},
         "reference": plan.reference_samples(pilots, max(left, seconds / 4)),
-        "load_seconds": {rival.name: rival.load_seconds for rival in contenders},
+        "load_seconds": {rival.name: rival.load_seconds for rival in contenders if rival.name in pilots},
+        "left_out": left_out,
     }
     store.keep_plan(made)
     return made
+
+
+def all_pilots(contenders: list[Rival], seconds: float) -> tuple[dict[str, plan.Pilot], dict[str, str]]:
+    """Everyone's pilot, and why there is none of those who cannot render the scene."""
+    pilots: dict[str, plan.Pilot] = {}
+    left_out: dict[str, str] = {}
+    for rival in contenders:
+        try:
+            pilots[rival.name] = told_pilot(rival, seconds)
+        except Failure as failure:
+            left_out[rival.name] = failure.problem
+            print(f"  {rival.name:32} is left out: {failure.problem}", flush=True)
+    if not pilots:
+        raise Failure(f"no contender can render the scene: {next(iter(left_out.values()))}", "mend the scene, or name other --contenders")
+    return pilots, left_out
 
 
 def told_pilot(rival: Rival, seconds: float) -> plan.Pilot:

@@ -30,6 +30,8 @@ def of_efficiency(relmse: np.ndarray, seconds: np.ndarray, confidence: float = C
     """1 / (relMSE x seconds): the mean cost's t-interval carried over by the logarithm, so that no end is negative."""
     cost = np.asarray(relmse) * np.asarray(seconds)
     mean = float(cost.mean())
+    if math.isnan(mean):
+        return Interval(mean, mean, mean)
     if mean <= 0:
         raise Failure("every render equals the reference: nothing here is random", "study a scene whose light scatters")
     half = student(len(cost), confidence) * cost.std(ddof=1) / math.sqrt(len(cost)) / mean
@@ -65,8 +67,8 @@ def cost(done: np.ndarray, picks: np.ndarray) -> np.ndarray:
 
 def of_slope(relmse: np.ndarray, seconds: np.ndarray, confidence: float = CONFIDENCE) -> Interval | None:
     """Of log relMSE over log seconds, arrays (seeds, budgets): a line is fitted to each seed's own renders, which are
-    independent; none from fewer than three budgets, or where an error is 0."""
-    if relmse.shape[1] < 3 or (relmse <= 0).any():
+    independent; none from fewer than three budgets, or where an error is 0 or none."""
+    if relmse.shape[1] < 3 or not (np.isfinite(relmse) & (relmse > 0)).all():
         return None
     x, y = np.log(seconds), np.log(relmse)
     x = x - x.mean(axis=1, keepdims=True)

@@ -98,9 +98,18 @@ def write(outcome: Outcome, folder: Path) -> Path:
     """Writes `study.json`, whole or not at all."""
     path = folder / FILE
     partial = path.with_suffix(".partial")
-    partial.write_text(json.dumps(asdict(outcome), indent=1, allow_nan=False) + "\n")
+    partial.write_text(json.dumps(without_nan(asdict(outcome)), indent=1, allow_nan=False) + "\n")
     partial.replace(path)
     return path
+
+
+def without_nan(value: Any) -> Any:
+    """What JSON can hold: what is no finite number is `null`."""
+    if isinstance(value, dict):
+        return {name: without_nan(one) for name, one in value.items()}
+    if isinstance(value, list):
+        return [without_nan(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def read(folder: Path) -> Outcome:

@@ -40,7 +40,7 @@ class Rival(ABC):
 
     @abstractmethod
     def render(self, spp: int, seed: int) -> Timed:
-        """An image that no other seed gives."""
+        """An image that no other seed gives. What is not finite in it is kept: it is told, and ends no study."""
 
 
 class TyndallRival(Rival):
@@ -51,7 +51,7 @@ class TyndallRival(Rival):
         self.integrator, _, self.tracker = method.partition(":")
 
     def render(self, spp: int, seed: int) -> Timed:
-        options: dict[str, Any] = {"integrator": self.integrator, "tracker": self.tracker or None}
+        options: dict[str, Any] = {"integrator": self.integrator, "tracker": self.tracker or None, "must_be_finite": False}
         done = tyndall.run(self.scene, spp=spp, seed=seed, size=self.size, threads=self.threads, **options)
         if self.load_seconds is None:
             self.load_seconds = done.report.get("load_seconds")
@@ -94,7 +94,7 @@ class MitsubaRival(Rival):
             part = min(most, spp - done)
             total += part * mitsuba.image(self.loaded, part, SEEDS_OF_PASSES * seed + number, self.integrator)
         dr.sync_thread()
-        return tyndall.finite(total / spp), time.perf_counter() - start
+        return total / spp, time.perf_counter() - start
 
 
 def known() -> list[str]:

@@ -1,6 +1,7 @@
 """What a study has finished, kept in `runs/`, so that an interrupted one goes on: each file is whole or not there."""
 
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 from validation import exr
 from validation.failure import Failure
 from validation.study.measures import Measures
+from validation.study.outcome import without_nan
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,10 @@ class Store:
     def run(self, contender: str, budget: int, seed: int) -> Run | None:
         """A finished render."""
         told = self.read(self.path(contender, budget, seed).with_suffix(".json"))
-        return Run(told["samples"], told["seconds"], Measures(**told["measures"])) if told else None
+        if not told:
+            return None
+        measured = {name: math.nan if value is None else value for name, value in told["measures"].items()}
+        return Run(told["samples"], told["seconds"], Measures(**measured))
 
     def keep_run(self, contender: str, budget: int, seed: int, run: Run, image: np.ndarray | None) -> None:
         """Keeps a render, and its image where it is wanted later."""
@@ -76,5 +81,5 @@ class Store:
         """Writes so that no half file is ever taken for a whole one."""
         path.parent.mkdir(parents=True, exist_ok=True)
         partial = path.with_suffix(".partial")
-        partial.write_text(json.dumps(content, allow_nan=False))
+        partial.write_text(json.dumps(without_nan(content), allow_nan=False))
         partial.replace(path)

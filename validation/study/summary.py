@@ -145,7 +145,7 @@ def scene_table(scene: SceneOutcome) -> str:
     """One scene's, at each contender's last budget."""
     own = "unknown" if scene.reference.own_relmse is None else f"{scene.reference.own_relmse:.2g}"
     rivals = [c.efficiency for c in scene.contenders if c.name.startswith("mitsuba")]
-    best = max(rivals, key=lambda efficiency: efficiency.mean, default=None)
+    best = max((one for one in rivals if math.isfinite(one.mean)), key=lambda efficiency: efficiency.mean, default=None)
     title = f"\n## {scene.name}, {scene.width} x {scene.height}\n\nReference: {scene.reference.how}; its own relMSE: {own}.\n\n"
     return title + HEADER + "".join(row(c, best) for c in scene.contenders) + notes(scene)
 
@@ -176,5 +176,7 @@ def spread(interval: Interval, form: str = "{:.3g}") -> str:
 def ratio(a: Interval, b: Interval) -> Interval:
     """Of two independent efficiencies: their intervals' half widths in logarithms add as errors do."""
     mean = a.mean / b.mean
+    if not all(math.isfinite(end) and end > 0 for i in (a, b) for end in (i.low, i.high)):
+        return Interval(mean, math.nan, math.nan)
     half = 0.0 if a is b else math.hypot(*(math.log(i.high / i.low) / 2 for i in (a, b)))
     return Interval(mean, mean * math.exp(-half), mean * math.exp(half))

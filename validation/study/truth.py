@@ -43,14 +43,19 @@ def pooled(batches: dict[str, np.ndarray], samples: dict[str, int]) -> Truth:
     """The mean of all contenders' batches (batches, height, width, 3), each weighted by its precision in the whole
     image. If the two are not of one mind, the brighter is taken alone: both should be unbiased, but what a short run of rare,
     bright paths has not found yet makes it darker, and lets it look less noisy than it is."""
+    broken = [name for name, images in batches.items() if not np.isfinite(images).all()]
+    batches = {name: images for name, images in batches.items() if name not in broken}
+    if not batches:
+        raise Failure(f"the reference by {' and '.join(broken)} holds NaN or infinite values", "give a --reference")
     parts = {name: estimate(images) for name, images in batches.items()}
     told = "; ".join(f"{len(batches[name])} x {samples[name]} samples per pixel of {name}" for name in parts)
     warning = disagreement(batches)
+    unfit = f"{' and '.join(broken)} took no part in the reference: what it renders holds NaN or infinite values" if broken else ""
     if warning:
         name = max(parts, key=lambda name: float(parts[name].mean.mean()))
         return Truth(parts[name].mean, f"{told}; {name} alone, as they disagree", own_error(parts[name]), warning)
     whole = weighted(list(parts.values()))
-    return Truth(whole.mean, f"pooled by precision: {told}" if len(parts) > 1 else told, own_error(whole))
+    return Truth(whole.mean, f"pooled by precision: {told}" if len(parts) > 1 else told, own_error(whole), unfit)
 
 
 def weighted(parts: list[Estimate]) -> Estimate:

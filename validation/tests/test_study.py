@@ -170,6 +170,54 @@ def test_a_study_of_the_program_is_left_alone(mark: str, tmp_path: Path, monkeyp
     assert [path.name for path in tmp_path.rglob("*.json")] == [Path(mark).name]
 
 
+class Broken(Noise):
+    """Cannot load, or now and then gives what is no number."""
+
+    def __init__(self, name: str, loads: bool):
+        super().__init__(name, 1.0, 0.01)
+        self.loads = loads
+
+    def render(self, spp: int, seed: int) -> Timed:
+        if not self.loads:
+            raise Failure("no such plugin", "install it")
+        image, seconds = super().render(spp, seed)
+        image[3, 4, 1] = np.nan if seed >= plan.FIRST_SEED + 64 else image[3, 4, 1]  # not by the first seed
+        return image, seconds
+
+
+def with_another(folder: Path, monkeypatch: pytest.MonkeyPatch, other: Rival) -> tuple[Found, outcome.SceneOutcome]:
+    """A study in which a third one takes part, and what is read back of it."""
+    settings = Settings(["toy"], 4, 3, 2, None)
+    store = Store(folder / "runs" / "toy")
+    monkeypatch.setattr(conduct, "rivals", lambda *_: [noises()[0], other, noises()[1]])
+    conduct.study(SUBJECT, settings, store, 60.0)
+    found = conduct.study(SUBJECT, settings, store, 60.0)  # again, all of it kept
+    entry = summary.scene_outcome(found, store, folder)
+    outcome.write(outcome.Outcome("us", "the command", "a machine", intervals.CONFIDENCE, [entry]), folder)
+    summary.markdown(outcome.read(folder))
+    return found, outcome.read(folder).scenes[0]
+
+
+def test_who_cannot_load_a_scene_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found, entry = with_another(tmp_path, monkeypatch, Broken("mitsuba broken", loads=False))
+    assert [c.name for c in entry.contenders] == ["tyndall bdpt", "mitsuba volpath x"]
+    assert entry.notes == ["mitsuba broken is left out: no such plugin"] and found.seeds == 4
+
+
+def test_one_value_that_is_none_ends_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _, entry = with_another(tmp_path, monkeypatch, Broken("tyndall broken", loads=True))
+    good, broken, _ = entry.contenders
+    assert np.isfinite([good.efficiency.mean, good.efficiency.low, good.points[-1].relmse.high]).all()
+    assert np.isnan([broken.efficiency.mean, broken.points[-1].relmse.mean]).all() and broken.slope is None
+    assert broken.notes[0] == "3 of its 4 images hold NaN or infinite values"
+
+
+def test_a_study_of_nobody_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(conduct, "rivals", lambda *_: [Broken("tyndall broken", loads=False)])
+    with pytest.raises(Failure, match="no contender can render the scene: no such plugin"):
+        conduct.study(SUBJECT, Settings(["toy"], 2, 2, 2, None), Store(tmp_path / "toy"), 60.0)
+
+
 def test_half_a_file_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     studied(tmp_path, monkeypatch)
     (tmp_path / "runs" / "toy" / "plan.json").write_text("{")
