@@ -11,7 +11,7 @@ import numpy as np
 
 from validation import exr, tyndall
 from validation.failure import Failure
-from validation.study import plan, truth
+from validation.study import plan, tree, truth
 from validation.study.measures import Measures, measures
 from validation.study.rivals import Rival, rivals, unusual, usual
 from validation.study.scenes import Subject
@@ -58,9 +58,10 @@ def study(subject: Subject, settings: Settings, store: Store, seconds: float) ->
     names = settings.contenders or usual(subject.scene)
     absent = {} if settings.contenders else unusual(subject.scene)
     contenders = rivals(subject.scene, names, subject.size, settings.threads)
+    given = given_truth(subject, settings)
     planned = made_plan(subject, contenders, settings, store, seconds)
     contenders = [rival for rival in contenders if rival.name not in planned["left_out"]]
-    reference = made_truth(contenders, planned, settings, store)
+    reference = given or made_truth(contenders, planned, store)
     seeds = take_turns(contenders, planned, reference, settings.seeds, store, started + seconds)
     notes = told(absent | planned["left_out"], reference, seeds, settings.seeds)
     return Found(subject, reference, contenders, planned["samples"], planned["load_seconds"], seeds, notes)
@@ -143,10 +144,16 @@ def told_pilot(rival: Rival, seconds: float) -> plan.Pilot:
     return found
 
 
-def made_truth(contenders: list[Rival], planned: dict[str, Any], settings: Settings, store: Store) -> Truth:
-    """The reference; its finished batches are kept."""
-    if settings.reference:
-        return truth.given(settings.reference)
+def given_truth(subject: Subject, settings: Settings) -> Truth | None:
+    """The reference that was given, which must fit before anything is rendered."""
+    if settings.reference is None:
+        return None
+    found = truth.given(settings.reference)
+    return truth.of_size(found, subject.size or tree.film_size(tree.tree(subject.scene)))
+
+
+def made_truth(contenders: list[Rival], planned: dict[str, Any], store: Store) -> Truth:
+    """The reference by the contenders themselves; its finished batches are kept."""
     chosen = [rival for rival in contenders if rival.name in planned["reference"]]
     samples = planned["reference"]
     found = truth.pooled({rival.name: batches(rival, samples[rival.name], store) for rival in chosen}, samples)

@@ -232,6 +232,16 @@ def test_a_given_reference_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert not list((tmp_path / "runs").rglob("reference*"))
 
 
+def test_a_reference_of_another_size_is_refused_before_anything_is_rendered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    exr.write_image(tmp_path / "truth.exr", TRUTH)
+    monkeypatch.setattr(conduct, "rivals", lambda *_: noises())
+    film = {"type": "scene", "sensor": {"type": "perspective", "film": {"type": "hdrfilm", "height": 24}}}
+    for subject in (Subject(Scene(film, "toy")), Subject(SUBJECT.scene, (24, 32))):
+        with pytest.raises(Failure, match="the reference has 32 x 24 pixels, the scene (768 x 24|24 x 32)"):
+            conduct.study(subject, Settings(["toy"], 2, 2, 2, tmp_path / "truth.exr"), Store(tmp_path / "runs"), 60.0)
+    assert not Noise.seeds
+
+
 def test_time_that_is_up_ends_a_study_after_whole_rounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = noises()
     planned = {"samples": {one.name: [1, 2] for one in made}}
