@@ -1,4 +1,5 @@
-"""Confidence intervals over seeds."""
+"""Confidence intervals over seeds, made as `src/study/interval.rs` makes them: what can be negative gets Student's t, what
+is positive gets it for the logarithm of its mean, which stays the estimate."""
 
 import math
 from collections.abc import Callable
@@ -6,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 from scipy import stats
 
-from validation.failure import Failure
 from validation.study.outcome import Interval
 
 CONFIDENCE = 0.95
@@ -26,16 +26,20 @@ def of_mean(values: np.ndarray, confidence: float = CONFIDENCE) -> Interval:
     return Interval(float(values.mean()), float(values.mean() - half), float(values.mean() + half))
 
 
-def of_efficiency(relmse: np.ndarray, seconds: np.ndarray, confidence: float = CONFIDENCE) -> Interval:
-    """1 / (relMSE x seconds): the mean cost's t-interval carried over by the logarithm, so that no end is negative."""
-    cost = np.asarray(relmse) * np.asarray(seconds)
-    mean = float(cost.mean())
-    if math.isnan(mean):
+def of_positive(values: np.ndarray, confidence: float = CONFIDENCE) -> Interval:
+    """Of the mean of values that are not negative: the t-interval of its logarithm, so that no end is negative."""
+    values = np.asarray(values, dtype=np.float64)
+    mean = float(values.mean())
+    if mean == 0:
         return Interval(mean, mean, mean)
-    if mean <= 0:
-        raise Failure("every render equals the reference: nothing here is random", "study a scene whose light scatters")
-    half = student(len(cost), confidence) * cost.std(ddof=1) / math.sqrt(len(cost)) / mean
-    return Interval(1 / mean, math.exp(-half) / mean, math.exp(half) / mean)
+    half = student(len(values), confidence) * values.std(ddof=1) / math.sqrt(len(values)) / mean
+    with np.errstate(over="ignore"):
+        return Interval(mean, float(mean * np.exp(-half)), float(mean * np.exp(half)))
+
+
+def of_efficiency(done: np.ndarray, confidence: float = CONFIDENCE) -> Interval:
+    """1 / (mean relMSE x mean seconds) of errors and seconds, (2, seeds). What has no error has no finite one."""
+    return bootstrap(done.shape[1], lambda picks: 1 / cost(done, picks), confidence)
 
 
 def bootstrap(count: int, estimate: Callable[[np.ndarray], np.ndarray], confidence: float = CONFIDENCE) -> Interval:

@@ -40,7 +40,7 @@ def contender(found: Found, rival: Rival, reference: Reference, store: Store, fo
         load_seconds=found.load_seconds.get(rival.name),
         points=points,
         slope=intervals.of_slope(relmse, seconds),
-        efficiency=intervals.of_efficiency(relmse[:, last], seconds[:, last]),
+        efficiency=intervals.of_efficiency(last_of(found, rival, store)),
         ratio=None if is_first else intervals.of_ratio(last_of(found, found.rivals[0], store), last_of(found, rival, store)),
         variance=f"{place}/variance.exr",
         notes=broken([row[last] for row in table]) + doubts(points[last], reference),
@@ -90,8 +90,13 @@ def point(rival: Rival, budget: int, done: list[Run], store: Store, folder: Path
     """One budget over all seeds; the first seed's image is copied."""
     image = f"{place}/{budget}.exr"
     copied(store.path(rival.slug, budget, 0), folder / image)
-    of = {name: intervals.of_mean(np.array([getattr(run.measures, name) for run in done])) for name in NAMES}
-    return Point(done[0].samples, intervals.of_mean(np.array([seconds_of(run) for run in done])), **of, image=image)
+    of = {name: interval(name, np.array([getattr(run.measures, name) for run in done])) for name in NAMES}
+    return Point(done[0].samples, interval("seconds", np.array([seconds_of(run) for run in done])), **of, image=image)
+
+
+def interval(name: str, values: np.ndarray) -> Interval:
+    """Of a measure: only the difference of means has either sign."""
+    return intervals.of_mean(values) if name == "difference" else intervals.of_positive(values)
 
 
 def copied(source: Path, target: Path) -> None:
@@ -107,24 +112,25 @@ def variance(rival: Rival, budget: int, seeds: int, store: Store) -> np.ndarray:
     return np.stack([store.image(rival.slug, budget, seed) for seed in range(seeds)]).var(axis=0, ddof=1)
 
 
-COLUMNS = ("scene", "contender", "budget", "seed", "samples", "seconds", *NAMES)
+COLUMNS = ("scene", "contender", "samples", "seed", "seconds", *NAMES)
+"""As `src/study/convergence/table.rs` writes them."""
 
 
 def rows(found: Found, store: Store) -> list[dict[str, object]]:
     """One row a render."""
     return [
-        {"scene": found.subject.scene.name, "contender": rival.name, "budget": budget, "seed": seed,
-         "samples": run.samples, "seconds": run.seconds, **vars(run.measures)}
+        {"scene": found.subject.scene.name, "contender": rival.name, "samples": run.samples, "seed": seed,
+         "seconds": run.seconds, **vars(run.measures)}
         for rival in found.rivals
         for seed, row in enumerate(runs(found, rival, store))
-        for budget, run in enumerate(row)
+        for run in row
     ]  # fmt: skip
 
 
 def write_csv(path: Path, all_rows: list[dict[str, object]]) -> None:
     """`study.csv`."""
     with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(all_rows)
 

@@ -273,6 +273,13 @@ def test_all_that_is_named_lies_beside(tmp_path: Path, monkeypatch: pytest.Monke
     assert "| tyndall bdpt |" in (tmp_path / "study.md").read_text()
 
 
+def test_the_columns_are_those_of_the_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, monkeypatch)
+    rust = (ROOT / "src" / "study" / "convergence" / "table.rs").read_text()
+    header = re.search(r'CSV_HEADER: &str =\s*"(.*?)\\n"', rust)
+    assert header and (tmp_path / "study.csv").read_bytes().split(b"\n")[0].decode() == header[1]
+
+
 def test_the_words_are_those_of_the_program() -> None:
     rust = (ROOT / "src" / "study" / "outcome.rs").read_text()
     ours = (outcome.Outcome, outcome.SceneOutcome, outcome.Reference, outcome.Contender, outcome.Point, outcome.Interval)
