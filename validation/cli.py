@@ -8,7 +8,7 @@ from validation import assets, cells, compare, contenders, coverage, matrix, pag
 from validation import comparison_page, package_tests
 from validation.compare import Effort
 from validation.failure import Failure
-from validation.places import OUTPUT, SCENES
+from validation.places import OUTPUT, REPORTS, SCENES
 from validation.scene import open_scene
 from validation.study import command as convergence
 
@@ -43,6 +43,7 @@ def parser() -> argparse.ArgumentParser:
     add_stability(commands)
     add_selftest(commands)
     add_convergence(commands)
+    add_record(commands)
     add(commands, "test", lambda _: package_tests.run(), "The tests of this package itself.")
     return top
 
@@ -220,6 +221,18 @@ def add_convergence(commands: Commands) -> None:
 
 def run_convergence(options: argparse.Namespace) -> bool:
     return convergence.run(options, options.size, parameters_of(options))
+
+
+def add_record(commands: Commands) -> None:
+    command = add(commands, "record", run_record, "A finished study's table, curves and images, for the repository.")
+    command.add_argument("folder", type=Path, help="of a study by `convergence` or `tyndall study`")
+    command.add_argument("--output", type=Path, default=REPORTS, help="folder for the three files (default %(default)s)")
+
+
+def run_record(options: argparse.Namespace) -> bool:
+    from validation.study import record  # it loads a plotting library, which no other command needs
+
+    return record.run(options.folder, options.output)
 
 
 def add_stability(commands: Commands) -> None:

@@ -10,6 +10,7 @@ TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
 ENVIRONMENT = TARGET / "validation-env"
 CACHE = TARGET / "validation-cache"
 OUTPUT = TARGET / "validation"
+REPORTS = ROOT / "validation" / "reports"
 REQUIREMENTS = ROOT / "validation" / "requirements.txt"
 REQUIREMENTS_DEV = ROOT / "validation" / "requirements-dev.txt"
 """Those, and what tests the package itself."""

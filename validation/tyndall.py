@@ -81,10 +81,11 @@ def run(
     strategies: str | Iterable[str] | None = None,
     tracker: str | None = None,
     parameters: Mapping[str, object] | None = None,
+    must_be_finite: bool = True,
     **more: Option,
 ) -> Rendering:
     """One image and its report. `size` is (width, height), `time_limit` in seconds, `parameters` replace the $names of a
-    scene. Any other option of `tyndall render` may be given by its name: `heuristic="power"` is `--heuristic power`,
+    scene. An image that holds NaN or infinite values is refused, unless `must_be_finite` is False. Any other option of `tyndall render` may be given by its name: `heuristic="power"` is `--heuristic power`,
     `forced_interaction=True` is `--forced-interaction`."""
     scene = as_scene(scene, parameters)
     options: dict[str, Any] = {
@@ -103,7 +104,8 @@ def run(
         output, report = Path(folder, "image.exr"), Path(folder, "report.json")
         arguments = [*flags({"output": output, "report": report, **options}), *definitions(scene.parameters)]
         done = call([str(binary()), "render", str(scene_file(scene, Path(folder))), *arguments])
-        return rendering(output, report, done.stderr)
+        found = rendering(output, report, done.stderr)
+    return replace(found, image=finite(found.image)) if must_be_finite else found
 
 
 def info(scene: AnyScene, parameters: Mapping[str, object] | None = None, **more: Option) -> str:
@@ -158,7 +160,7 @@ def rendering(output: Path, report: Path, messages: str) -> Rendering:
         raise Failure("one image was expected and none was written", "leave out options that make many, such as frames")
     told, layers = json.loads(report.read_text()), exr.read(output)
     return Rendering(
-        image=finite(exr.colours(layers[exr.ROOT])),
+        image=exr.colours(layers[exr.ROOT]),
         render_seconds=told["render_seconds"],
         samples_per_pixel=told["samples_per_pixel"],
         report=told,

@@ -46,6 +46,7 @@ def run(asked: Any, size: tuple[int, int] | None, parameters: dict[str, str]) ->
     """Runs the command; finished renders in the folder are not done again."""
     started = time.monotonic()
     settings = checked(asked)
+    refuse_other_studies(asked.output)
     subjects = [Subject(open_scene(path, parameters), size) for path in asked.scenes] or scenes.standing()
     threads_are_bound(settings.threads)
     found: list[Found] = []
@@ -80,6 +81,13 @@ def checked(asked: Any) -> Settings:
         raise Failure("two scenes have one name, which would be that of their folders too", "study them one at a time")
     contenders = asked.contenders.split(",") if asked.contenders else None
     return Settings(contenders, asked.seeds, asked.points, asked.threads, asked.reference)
+
+
+def refuse_other_studies(folder: Path) -> None:
+    """A folder of `tyndall study`, whose plan lies elsewhere, is not written into."""
+    runs = folder / "runs"
+    if (runs / "plan.json").is_file() or (folder / outcome.FILE).is_file() and not any(runs.glob("*/plan.json")):
+        raise Failure(f"{folder} holds a study that was made otherwise, as by `tyndall study`", "name another --output")
 
 
 def threads_are_bound(threads: int) -> None:

@@ -11,9 +11,9 @@ import numpy as np
 
 from validation import exr, tyndall
 from validation.failure import Failure
-from validation.study import plan, truth
+from validation.study import plan, tree, truth
 from validation.study.measures import Measures, measures
-from validation.study.rivals import Rival, rivals, usual
+from validation.study.rivals import Rival, rivals, unusual, usual
 from validation.study.scenes import Subject
 from validation.study.store import Run, Store
 from validation.study.truth import Truth
@@ -48,18 +48,32 @@ class Found:
     load_seconds: dict[str, float | None]
     seeds: int
     """Rounds that are complete."""
+    notes: list[str]
+    """What there is to say about all of it."""
 
 
 def study(subject: Subject, settings: Settings, store: Store, seconds: float) -> Found:
     """Does what is not done yet, in about so many seconds."""
     started = time.monotonic()
     names = settings.contenders or usual(subject.scene)
+    absent = {} if settings.contenders else unusual(subject.scene)
     contenders = rivals(subject.scene, names, subject.size, settings.threads)
+    given = given_truth(subject, settings)
     planned = made_plan(subject, contenders, settings, store, seconds)
-    reference = made_truth(contenders, planned, settings, store)
+    contenders = [rival for rival in contenders if rival.name not in planned["left_out"]]
+    reference = given or made_truth(contenders, planned, store)
     seeds = take_turns(contenders, planned, reference, settings.seeds, store, started + seconds)
-    tell_of_noise(contenders, planned, reference, store)
-    return Found(subject, reference, contenders, planned["samples"], planned["load_seconds"], seeds)
+    notes = told(absent | planned["left_out"], reference, seeds, settings.seeds)
+    return Found(subject, reference, contenders, planned["samples"], planned["load_seconds"], seeds, notes)
+
+
+def told(absent: dict[str, str], reference: Truth, seeds: int, wanted: int) -> list[str]:
+    """A scene's notes."""
+    notes = [f"{name} is left out: {why}" for name, why in absent.items()]
+    notes += [reference.warning] if reference.warning else []
+    notes += [f"time was up after {seeds} of {wanted} seeds; the same command again goes on"] if seeds < wanted else []
+    notes += ["nobody knows the reference's own error"] if reference.own_relmse is None else []
+    return notes
 
 
 def identity(subject: Subject, contenders: list[Rival], settings: Settings) -> dict[str, Any]:
@@ -90,19 +104,36 @@ def made_plan(
         problem = f"{store.folder} holds renders of another study: other scene, settings, or program"
         raise Failure(problem, "name another --output, or delete that folder")
     if kept:
-        return kept
+        return {"left_out": {}, **kept}
+    store.refuse_strangers()
     started = time.monotonic()
-    pilots = {rival.name: told_pilot(rival, PILOTS_PART * seconds / len(contenders)) for rival in contenders}
+    pilots, left_out = all_pilots(contenders, PILOTS_PART * seconds / len(contenders))
     left = seconds - (time.monotonic() - started)
-    top = plan.top_seconds(max(left, seconds / 4), len(contenders), settings.seeds, settings.points)
+    top = plan.top_seconds(max(left, seconds / 4), len(pilots), settings.seeds, settings.points)
     made = {
         "identity": wanted,
         "samples": {name: plan.budgets(p.rate, top, settings.points) for name, p in pilots.items()},
         "reference": plan.reference_samples(pilots, max(left, seconds / 4)),
-        "load_seconds": {rival.name: rival.load_seconds for rival in contenders},
+        "load_seconds": {rival.name: rival.load_seconds for rival in contenders if rival.name in pilots},
+        "left_out": left_out,
     }
     store.keep_plan(made)
     return made
+
+
+def all_pilots(contenders: list[Rival], seconds: float) -> tuple[dict[str, plan.Pilot], dict[str, str]]:
+    """Everyone's pilot, and why there is none of those who cannot render the scene."""
+    pilots: dict[str, plan.Pilot] = {}
+    left_out: dict[str, str] = {}
+    for rival in contenders:
+        try:
+            pilots[rival.name] = told_pilot(rival, seconds)
+        except Failure as failure:
+            left_out[rival.name] = failure.problem
+            print(f"  {rival.name:32} is left out: {failure.problem}", flush=True)
+    if not pilots:
+        raise Failure(f"no contender can render the scene: {next(iter(left_out.values()))}", "mend the scene, or name other --contenders")
+    return pilots, left_out
 
 
 def told_pilot(rival: Rival, seconds: float) -> plan.Pilot:
@@ -113,10 +144,16 @@ def told_pilot(rival: Rival, seconds: float) -> plan.Pilot:
     return found
 
 
-def made_truth(contenders: list[Rival], planned: dict[str, Any], settings: Settings, store: Store) -> Truth:
-    """The reference; its finished batches are kept."""
-    if settings.reference:
-        return truth.given(settings.reference)
+def given_truth(subject: Subject, settings: Settings) -> Truth | None:
+    """The reference that was given, which must fit before anything is rendered."""
+    if settings.reference is None:
+        return None
+    found = truth.given(settings.reference)
+    return truth.of_size(found, subject.size or tree.film_size(tree.tree(subject.scene)))
+
+
+def made_truth(contenders: list[Rival], planned: dict[str, Any], store: Store) -> Truth:
+    """The reference by the contenders themselves; its finished batches are kept."""
     chosen = [rival for rival in contenders if rival.name in planned["reference"]]
     samples = planned["reference"]
     found = truth.pooled({rival.name: batches(rival, samples[rival.name], store) for rival in chosen}, samples)
@@ -153,19 +190,6 @@ def take_turns(
         shown = ", ".join(f"{name} {error:.2g}" for name, error in errors.items())
         print(f"  seed {number + 1} of {seeds}, {time.monotonic() - started:.1f} s; relMSE: {shown}", flush=True)
     return seeds
-
-
-NOTICEABLE = 0.1
-"""Part of a relMSE that its reference may have made."""
-
-
-def tell_of_noise(contenders: list[Rival], planned: dict[str, Any], reference: Truth, store: Store) -> None:
-    """Says so if the reference's own error is a good part of the least that was measured."""
-    last = [store.run(rival.slug, len(planned["samples"][rival.name]) - 1, 0) for rival in contenders]
-    least = min(run.measures.relmse for run in last if run)
-    if reference.own_relmse and reference.own_relmse > NOTICEABLE * least:
-        part = 100 * reference.own_relmse / least
-        print(f"  note: about {part:.0f} % of the least relMSE is the reference's own; --minutes or --reference would help")
 
 
 def complete(contenders: list[Rival], planned: dict[str, Any], seed: int, store: Store) -> bool:

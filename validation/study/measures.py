@@ -1,6 +1,7 @@
 """Measures of an image's error against a reference, as `src/study/outcome.rs` defines them: all channels alike, and
 what the reference's own error adds is left in (it is told beside them)."""
 
+import math
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -31,13 +32,15 @@ NAMES = tuple(field.name for field in fields(Measures))
 
 
 def measures(image: np.ndarray, reference: np.ndarray) -> Measures:
-    """Of an image of the reference's shape."""
+    """Of an image of the reference's shape; of one that holds a value that is not finite every measure is NaN."""
     if image.shape != reference.shape:
         problem = f"an image of shape {image.shape} cannot be held against a reference of shape {reference.shape}"
         raise Failure(problem, "give a reference of the size at which the scene is rendered")
     x, r = np.asarray(image, dtype=np.float64).ravel(), np.asarray(reference, dtype=np.float64).ravel()
     if not r.any():
         raise Failure("the reference is black: no error can be relative to it", "light the scene")
+    if not np.isfinite(x).all():
+        return Measures(*[math.nan] * len(NAMES))
     off, squared = np.abs(x - r), (x - r) ** 2
     relative = squared / (r**2 + FLOOR)
     return Measures(

@@ -25,7 +25,7 @@ class Pilot:
     rate: float
     """Samples per pixel and second."""
     cost: float
-    """relMSE x seconds, roughly."""
+    """relMSE x seconds, roughly; infinite where an image holds what is not finite."""
 
 
 def pilot(rival: Rival, seconds: float) -> Pilot:
@@ -41,7 +41,7 @@ def pilot(rival: Rival, seconds: float) -> Pilot:
     middle = (image + other) / 2
     relative = float(((image - other) ** 2 / 2 / (middle**2 + FLOOR)).mean())
     both = (taken + max(again, 1e-4)) / 2
-    return Pilot(spp / both, relative * both)
+    return Pilot(spp / both, relative * both if math.isfinite(relative) else math.inf)
 
 
 def budgets(rate: float, top: float, points: int) -> list[int]:

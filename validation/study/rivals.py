@@ -40,7 +40,7 @@ class Rival(ABC):
 
     @abstractmethod
     def render(self, spp: int, seed: int) -> Timed:
-        """An image that no other seed gives."""
+        """An image that no other seed gives. What is not finite in it is kept: it is told, and ends no study."""
 
 
 class TyndallRival(Rival):
@@ -51,7 +51,7 @@ class TyndallRival(Rival):
         self.integrator, _, self.tracker = method.partition(":")
 
     def render(self, spp: int, seed: int) -> Timed:
-        options: dict[str, Any] = {"integrator": self.integrator, "tracker": self.tracker or None}
+        options: dict[str, Any] = {"integrator": self.integrator, "tracker": self.tracker or None, "must_be_finite": False}
         done = tyndall.run(self.scene, spp=spp, seed=seed, size=self.size, threads=self.threads, **options)
         if self.load_seconds is None:
             self.load_seconds = done.report.get("load_seconds")
@@ -94,7 +94,7 @@ class MitsubaRival(Rival):
             part = min(most, spp - done)
             total += part * mitsuba.image(self.loaded, part, SEEDS_OF_PASSES * seed + number, self.integrator)
         dr.sync_thread()
-        return tyndall.finite(total / spp), time.perf_counter() - start
+        return total / spp, time.perf_counter() - start
 
 
 def known() -> list[str]:
@@ -118,8 +118,13 @@ def rival(scene: Scene, name: str, size: Size, threads: int) -> Rival:
     raise Failure(f"{name}: no such contender", f"choose among {', '.join(known())}")
 
 
+def unusual(scene: Scene) -> dict[str, str]:
+    """Who is left out unless asked for, and why."""
+    lt = {} if tree.light_tracing_applies(tree.tree(scene)) else {"lt": "light walks cannot find all of the light here"}
+    llvm = {} if mitsuba.libllvm() else {name: "no LLVM is installed" for name in known() if "llvm" in name}
+    return lt | llvm
+
+
 def usual(scene: Scene) -> list[str]:
     """All that can render the scene: light tracing only where it applies, compiled variants only where LLVM is."""
-    lt = [] if tree.light_tracing_applies(tree.tree(scene)) else ["lt"]
-    llvm = [] if mitsuba.libllvm() else [name for name in known() if "llvm" in name]
-    return [name for name in known() if name not in (*lt, *llvm)]
+    return [name for name in known() if name not in unusual(scene)]

@@ -1,7 +1,7 @@
 """What a study has finished, kept in `runs/`, so that an interrupted one goes on: each file is whole or not there."""
 
 import json
-import shutil
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ import numpy as np
 from validation import exr
 from validation.failure import Failure
 from validation.study.measures import Measures
+from validation.study.outcome import without_nan
 
 
 @dataclass(frozen=True)
@@ -33,14 +34,23 @@ class Store:
         return self.read(self.folder / "plan.json")
 
     def keep_plan(self, plan: dict[str, Any]) -> None:
-        """Keeps the plan, and nothing that belongs to another one."""
-        shutil.rmtree(self.folder, ignore_errors=True)
+        """Keeps the plan, in a folder of which nothing belongs to another one."""
+        self.refuse_strangers()
         self.write(self.folder / "plan.json", plan)
+
+    def refuse_strangers(self) -> None:
+        """What lies here without a plan was made by somebody else. It may be dear: nothing is ever deleted."""
+        strangers = [path for path in self.folder.glob("*") if path.suffix != ".partial"] if self.folder.is_dir() else []
+        if strangers and not (self.folder / "plan.json").is_file():
+            raise Failure(f"{self.folder} holds {strangers[0].name}, and no plan", "name another --output, or delete that folder")
 
     def run(self, contender: str, budget: int, seed: int) -> Run | None:
         """A finished render."""
         told = self.read(self.path(contender, budget, seed).with_suffix(".json"))
-        return Run(told["samples"], told["seconds"], Measures(**told["measures"])) if told else None
+        if not told:
+            return None
+        measured = {name: math.nan if value is None else value for name, value in told["measures"].items()}
+        return Run(told["samples"], told["seconds"], Measures(**measured))
 
     def keep_run(self, contender: str, budget: int, seed: int, run: Run, image: np.ndarray | None) -> None:
         """Keeps a render, and its image where it is wanted later."""
@@ -71,5 +81,5 @@ class Store:
         """Writes so that no half file is ever taken for a whole one."""
         path.parent.mkdir(parents=True, exist_ok=True)
         partial = path.with_suffix(".partial")
-        partial.write_text(json.dumps(content, allow_nan=False))
+        partial.write_text(json.dumps(without_nan(content), allow_nan=False))
         partial.replace(path)

@@ -42,6 +42,19 @@ def path_integrator(whole: dict[str, Any], kind: str) -> dict[str, Any]:
     return {"type": kind, **ours, **kept}
 
 
+MITSUBAS_FILM = {"width": 768, "height": 576}
+"""What a film has that does not say."""
+
+
+def film_size(whole: dict[str, Any]) -> tuple[int, int] | None:
+    """Width and height of the images of the scene's first sensor; None if there is none."""
+    film = next((o for o in objects(whole) if o["type"].endswith("film")), None)
+    if film is None:
+        return None
+    width, height = (int(film.get(f"crop_{side}", film.get(side, MITSUBAS_FILM[side]))) for side in ("width", "height"))
+    return width, height
+
+
 def light_tracing_applies(whole: dict[str, Any]) -> bool:
     """False where light tracing alone has no finite variance (a lens in a medium) or misses paths (smooth surfaces)."""
     named = {name for name, o in whole.items() if isinstance(o, dict) and o.get("type") in MEDIA}

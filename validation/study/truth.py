@@ -1,7 +1,9 @@
 """The image that errors are measured against: given, or pooled from long renders of both renderers."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -31,26 +33,52 @@ def given(path: Path) -> Truth:
     if not path.is_file():
         raise Failure(f"{path}: no such reference", "name an .exr, or an .npz with mean and se")
     if path.suffix != ".npz":
-        return Truth(exr.read_image(path), f"read from {path.name}", None)
+        return usable(Truth(exr.read_image(path), f"read from {path.name}", None), path)
     try:
         found = read_reference(path)
-    except (KeyError, ValueError) as error:
+    except (KeyError, ValueError, OSError, BadZipFile) as error:
         raise Failure(f"{path}: {error}", "write it by numpy.savez(path, mean=image, se=standard_error)")
-    return Truth(found.mean, f"read from {path.name}", own_error(found))
+    return usable(Truth(found.mean, f"read from {path.name}", own_error(found)), path)
+
+
+def usable(truth: Truth, path: Path) -> Truth:
+    """A reference that errors can be measured against."""
+    image = truth.image
+    if image.ndim != 3 or image.shape[2] != 3:
+        raise Failure(f"{path}: an array of shape {image.shape} is no image", "give (height, width, 3)")
+    if not np.isfinite(image).all() or not math.isfinite(truth.own_relmse or 0):
+        raise Failure(f"{path}: holds NaN or infinite values", "give a reference whose values are all finite")
+    if not image.any():
+        raise Failure(f"{path}: is black: no error can be relative to it", "light the scene")
+    return truth
+
+
+def of_size(truth: Truth, size: tuple[int, int] | None) -> Truth:
+    """The reference, refused if its (width, height) is another one; None: nobody knows."""
+    height, width = truth.image.shape[:2]
+    if size and size != (width, height):
+        problem = f"the reference has {width} x {height} pixels, the scene {size[0]} x {size[1]}"
+        raise Failure(problem, "give a reference of the size at which the scene is rendered, or --size")
+    return truth
 
 
 def pooled(batches: dict[str, np.ndarray], samples: dict[str, int]) -> Truth:
     """The mean of all contenders' batches (batches, height, width, 3), each weighted by its precision in the whole
     image. If the two are not of one mind, the brighter is taken alone: both should be unbiased, but what a short run of rare,
     bright paths has not found yet makes it darker, and lets it look less noisy than it is."""
+    broken = [name for name, images in batches.items() if not np.isfinite(images).all()]
+    batches = {name: images for name, images in batches.items() if name not in broken}
+    if not batches:
+        raise Failure(f"the reference by {' and '.join(broken)} holds NaN or infinite values", "give a --reference")
     parts = {name: estimate(images) for name, images in batches.items()}
     told = "; ".join(f"{len(batches[name])} x {samples[name]} samples per pixel of {name}" for name in parts)
     warning = disagreement(batches)
+    unfit = f"{' and '.join(broken)} took no part in the reference: what it renders holds NaN or infinite values" if broken else ""
     if warning:
         name = max(parts, key=lambda name: float(parts[name].mean.mean()))
         return Truth(parts[name].mean, f"{told}; {name} alone, as they disagree", own_error(parts[name]), warning)
     whole = weighted(list(parts.values()))
-    return Truth(whole.mean, f"pooled by precision: {told}" if len(parts) > 1 else told, own_error(whole))
+    return Truth(whole.mean, f"pooled by precision: {told}" if len(parts) > 1 else told, own_error(whole), unfit)
 
 
 def weighted(parts: list[Estimate]) -> Estimate:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation import exr
+from validation import cli, exr
 from validation.failure import Failure
 from validation.places import ROOT
 from validation.scene import Scene
@@ -89,6 +89,24 @@ def test_known_laws_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert exr.read_image(tmp_path / entry.reference.image) == pytest.approx(TRUTH, abs=0.15)
 
 
+def test_efficiencies_are_held_against_the_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found, _ = studied(tmp_path, monkeypatch, seeds=8)
+    quiet, loud = summary.scene_outcome(found, Store(tmp_path / "runs" / "toy"), tmp_path).contenders
+    assert quiet.ratio is None and loud.ratio
+    assert loud.ratio.mean == pytest.approx(loud.efficiency.mean / quiet.efficiency.mean, rel=0.01)
+    assert loud.ratio.low < loud.ratio.mean < loud.ratio.high
+
+
+def test_what_the_reader_should_know_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert conduct.told({}, Truth(TRUTH, "known", 0.1), 6, 6) == []
+    told = conduct.told({"lt": "why not"}, Truth(TRUTH, "known", None, "they disagree"), 5, 6)
+    assert [note.split(" ")[0] for note in told] == ["lt", "they", "time", "nobody"] and "5 of 6 seeds" in told[2]
+    found, _ = studied(tmp_path, monkeypatch)
+    near = Found(found.subject, Truth(TRUTH, "known", 0.2), found.rivals, found.samples, {}, found.seeds, told)
+    entry = summary.scene_outcome(near, Store(tmp_path / "runs" / "toy"), tmp_path)
+    assert entry.notes == told and "the reference's own" in entry.contenders[0].notes[0]
+
+
 def test_an_interrupted_study_goes_on_to_the_same_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     _, whole = studied(tmp_path / "whole", monkeypatch)
     total, again = sum(one.rendered for one in whole), 0
@@ -133,6 +151,73 @@ def test_renders_of_another_study_are_not_taken(tmp_path: Path, monkeypatch: pyt
         studied(tmp_path, monkeypatch, points=3)
 
 
+def test_nothing_of_others_is_deleted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    dear = tmp_path / "runs" / "toy" / "turns" / "numbers.json"
+    dear.parent.mkdir(parents=True)
+    dear.write_text("weeks of work")
+    with pytest.raises(Failure, match="toy holds turns, and no plan"):
+        studied(tmp_path, monkeypatch)
+    assert dear.read_text() == "weeks of work" and not Noise.seeds
+
+
+@pytest.mark.parametrize("mark", ["runs/plan.json", "study.json"])
+def test_a_study_of_the_program_is_left_alone(mark: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "runs").mkdir()
+    (tmp_path / mark).write_text("{}")
+    monkeypatch.setattr(conduct, "rivals", lambda *_: pytest.fail("something would be rendered"))
+    with pytest.raises(Failure, match="made otherwise"):
+        cli.main(["convergence", "--output", str(tmp_path)])
+    assert [path.name for path in tmp_path.rglob("*.json")] == [Path(mark).name]
+
+
+class Broken(Noise):
+    """Cannot load, or now and then gives what is no number."""
+
+    def __init__(self, name: str, loads: bool):
+        super().__init__(name, 1.0, 0.01)
+        self.loads = loads
+
+    def render(self, spp: int, seed: int) -> Timed:
+        if not self.loads:
+            raise Failure("no such plugin", "install it")
+        image, seconds = super().render(spp, seed)
+        image[3, 4, 1] = np.nan if seed >= plan.FIRST_SEED + 64 else image[3, 4, 1]  # not by the first seed
+        return image, seconds
+
+
+def with_another(folder: Path, monkeypatch: pytest.MonkeyPatch, other: Rival) -> tuple[Found, outcome.SceneOutcome]:
+    """A study in which a third one takes part, and what is read back of it."""
+    settings = Settings(["toy"], 4, 3, 2, None)
+    store = Store(folder / "runs" / "toy")
+    monkeypatch.setattr(conduct, "rivals", lambda *_: [noises()[0], other, noises()[1]])
+    conduct.study(SUBJECT, settings, store, 60.0)
+    found = conduct.study(SUBJECT, settings, store, 60.0)  # again, all of it kept
+    entry = summary.scene_outcome(found, store, folder)
+    outcome.write(outcome.Outcome("us", "the command", "a machine", intervals.CONFIDENCE, [entry]), folder)
+    summary.markdown(outcome.read(folder))
+    return found, outcome.read(folder).scenes[0]
+
+
+def test_who_cannot_load_a_scene_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found, entry = with_another(tmp_path, monkeypatch, Broken("mitsuba broken", loads=False))
+    assert [c.name for c in entry.contenders] == ["tyndall bdpt", "mitsuba volpath x"]
+    assert entry.notes == ["mitsuba broken is left out: no such plugin"] and found.seeds == 4
+
+
+def test_one_value_that_is_none_ends_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _, entry = with_another(tmp_path, monkeypatch, Broken("tyndall broken", loads=True))
+    good, broken, _ = entry.contenders
+    assert np.isfinite([good.efficiency.mean, good.efficiency.low, good.points[-1].relmse.high]).all()
+    assert np.isnan([broken.efficiency.mean, broken.points[-1].relmse.mean]).all() and broken.slope is None
+    assert broken.notes[0] == "3 of its 4 images hold NaN or infinite values"
+
+
+def test_a_study_of_nobody_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(conduct, "rivals", lambda *_: [Broken("tyndall broken", loads=False)])
+    with pytest.raises(Failure, match="no contender can render the scene: no such plugin"):
+        conduct.study(SUBJECT, Settings(["toy"], 2, 2, 2, None), Store(tmp_path / "toy"), 60.0)
+
+
 def test_half_a_file_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     studied(tmp_path, monkeypatch)
     (tmp_path / "runs" / "toy" / "plan.json").write_text("{")
@@ -145,6 +230,16 @@ def test_a_given_reference_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     found, made = studied(tmp_path, monkeypatch, reference=tmp_path / "truth.exr")
     assert found.truth.own_relmse is None and (found.truth.image == TRUTH.astype(np.float32)).all()
     assert not list((tmp_path / "runs").rglob("reference*"))
+
+
+def test_a_reference_of_another_size_is_refused_before_anything_is_rendered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    exr.write_image(tmp_path / "truth.exr", TRUTH)
+    monkeypatch.setattr(conduct, "rivals", lambda *_: noises())
+    film = {"type": "scene", "sensor": {"type": "perspective", "film": {"type": "hdrfilm", "height": 24}}}
+    for subject in (Subject(Scene(film, "toy")), Subject(SUBJECT.scene, (24, 32))):
+        with pytest.raises(Failure, match="the reference has 32 x 24 pixels, the scene (768 x 24|24 x 32)"):
+            conduct.study(subject, Settings(["toy"], 2, 2, 2, tmp_path / "truth.exr"), Store(tmp_path / "runs"), 60.0)
+    assert not Noise.seeds
 
 
 def test_time_that_is_up_ends_a_study_after_whole_rounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -176,6 +271,13 @@ def test_all_that_is_named_lies_beside(tmp_path: Path, monkeypatch: pytest.Monke
     with (tmp_path / "study.csv").open() as file:
         assert len(list(csv.DictReader(file))) == 2 * 4 * 6
     assert "| tyndall bdpt |" in (tmp_path / "study.md").read_text()
+
+
+def test_the_columns_are_those_of_the_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, monkeypatch)
+    rust = (ROOT / "src" / "study" / "convergence" / "table.rs").read_text()
+    header = re.search(r'CSV_HEADER: &str =\s*"(.*?)\\n"', rust)
+    assert header and (tmp_path / "study.csv").read_bytes().split(b"\n")[0].decode() == header[1]
 
 
 def test_the_words_are_those_of_the_program() -> None:

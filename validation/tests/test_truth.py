@@ -48,6 +48,31 @@ def test_halves_that_disagree_are_not_mixed() -> None:
     assert "standard errors apart" in found.warning and "bright alone" in found.how
 
 
+def test_what_is_not_finite_takes_no_part() -> None:
+    good, broken = noisy(0.1), noisy(0.1)
+    broken[1, 2, 3, 0] = np.inf
+    found = truth.pooled({"good": good, "broken": broken}, {"good": 1, "broken": 1})
+    assert (found.image == good.mean(axis=0)).all() and "broken took no part" in found.warning
+    with pytest.raises(Failure, match="by broken holds NaN"):
+        truth.pooled({"broken": broken}, {"broken": 1})
+
+
+def test_references_that_do_not_serve_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.exr"
+    with_nan, infinite = TRUTH.copy(), TRUTH.copy()
+    with_nan[1, 2, 0], infinite[3, 4, 1] = np.nan, np.inf
+    for image, complaint in ((with_nan, "NaN"), (infinite, "NaN"), (0 * TRUTH, "black")):
+        exr.write_image(path, image)
+        with pytest.raises(Failure, match=complaint):
+            truth.given(path)
+    np.savez(tmp_path / "b.npz", mean=TRUTH, se=np.full(TRUTH.shape, np.nan))
+    np.savez(tmp_path / "flat.npz", mean=TRUTH[0], se=TRUTH[0])
+    (tmp_path / "c.npz").write_text("no archive")
+    for name, complaint in (("b.npz", "NaN"), ("flat.npz", "no image"), ("c.npz", "c.npz")):
+        with pytest.raises(Failure, match=complaint):
+            truth.given(tmp_path / name)
+
+
 def test_references_are_read_from_files(tmp_path: Path) -> None:
     exr.write_image(tmp_path / "a.exr", TRUTH)
     np.savez(tmp_path / "b.npz", mean=TRUTH, se=np.full(TRUTH.shape, 0.1))
