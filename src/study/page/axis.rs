@@ -43,9 +43,10 @@ impl Span {
         value > self.low / NEAR && value < self.high * NEAR
     }
 
-    /// `value` on the scale; what is off it stands at its end.
+    /// `value` on the scale; what is off it stands at its end, and what is no number at the high one: of errors and
+    /// times that is the worst.
     pub fn clamped(&self, value: f64) -> f64 {
-        value.clamp(self.low, self.high)
+        if value.is_nan() { self.high } else { value.clamp(self.low, self.high) }
     }
 
     /// For plotters.
@@ -133,6 +134,13 @@ mod tests {
             assert!(ticks.len() <= 9 && !ticks.is_empty(), "{values:?}: {ticks:?}");
             assert!(ticks.iter().all(|tick| !span.label(*tick).is_empty()));
         }
+    }
+
+    #[test]
+    fn what_is_off_a_scale_stands_at_its_end_and_nan_at_the_worst() {
+        let span = Span { low: 0.1, high: 10.0 };
+        let shown = [0.0, 1.0, f64::INFINITY, f64::NAN].map(|value| span.clamped(value));
+        assert_eq!(shown, [0.1, 1.0, 10.0, 10.0]);
     }
 
     #[test]
