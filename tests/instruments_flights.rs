@@ -42,6 +42,18 @@ fn a_cube_has_sides_and_the_defaults_do() {
     assert_eq!(figures["methods"].as_array().unwrap().len(), 7);
 }
 
+/// Unscattered light that hardly any photon is: e^-20 of all passes the first, all but 1e-7 the second.
+#[test]
+fn what_no_photon_has_met_is_no_bias() {
+    for medium in ["--sigma-a 0 --sigma-s 1 --size 20", "--sigma-a 0 --sigma-s 1e-7"] {
+        let bench = Bench::new();
+        let run = bench.run(&format!("flights {medium} --photons 2000 --json f.json")).ends(0);
+        for method in &bench.json("f.json")["methods"].as_array().unwrap()[..3] {
+            assert!(method["largest_z"].as_f64().is_some_and(|z| z < 4.0), "{medium}: {}", run.out());
+        }
+    }
+}
+
 #[test]
 fn mistakes_are_explained() {
     let bench = Bench::new();
@@ -52,6 +64,7 @@ fn mistakes_are_explained() {
     bench.run("flights --sigma-a 1 --sigma-s 1 --steps 0").refuses(&["1e-6"]);
     bench.run("flights --sigma-a 1 --sigma-s 1 --angle 90").refuses(&["89.9"]);
     bench.run("flights hg g=2 --sigma-a 1 --sigma-s 1").refuses(&["phase g=2"]);
-    bench.run("flights --sigma-a 1 --sigma-s 0 --svg f.svg --photons 10").refuses(&["--svg", "none"]);
+    // Refused before so many photons fly, which would take days.
+    bench.run("flights --sigma-a 1 --sigma-s 0 --svg f.svg --photons 100000000000").refuses(&["--svg", "none"]);
     assert_eq!(bench.files(), [""; 0]);
 }

@@ -101,15 +101,15 @@ fn angle(text: &str) -> std::result::Result<f64, String> {
 pub fn run(arguments: &Flights) -> Result<bool> {
     let experiment = experiment(arguments)?;
     let steps = steps(arguments, &experiment)?;
+    if arguments.svg.is_some() && !steps.iter().any(|step| Law::is_measurable(*step, experiment.sigma_s)) {
+        let remedy = "let --sigma-s be above 0, or its steps longer";
+        return Err(Error::new("--svg", "flights that end in a scattering", "none", remedy));
+    }
     let truth_photons = arguments.truth_photons.unwrap_or(4 * arguments.photons);
     let effort = Effort { photons: arguments.photons, truth_photons, seed: arguments.seed };
     let study = flights::study(&experiment, &steps, effort);
     say(&describe(arguments, &study, truth_photons));
     if let Some(path) = &arguments.svg {
-        if study.laws.is_empty() {
-            let remedy = "let --sigma-s be above 0, or its steps longer";
-            return Err(Error::new("--svg", "flights that end in a scattering", "none", remedy));
-        }
         let drawing = drawing::svg(&study.laws, experiment.sigma_s)?;
         output::write(path, |file| file.write_all(drawing.as_bytes()))?;
     }

@@ -79,14 +79,24 @@ pub fn error(step: f64, sigma_s: f64) -> f64 {
 }
 
 impl Law {
+    /// True if [`Law::measure`] has something to measure.
+    pub fn is_measurable(step: f64, sigma_s: f64) -> bool {
+        Self::affordable(step, sigma_s).1 >= 2
+    }
+
+    /// The probability that a step ends in a scattering, and how many flights may be measured.
+    fn affordable(step: f64, sigma_s: f64) -> (f64, u64) {
+        let probability = -(-sigma_s * step).exp_m1();
+        (probability, (MOST_STEPS * probability) as u64)
+    }
+
     /// Flies at most `flights` times without a border; none where nothing scatters.
     pub fn measure(step: f64, sigma_s: f64, flights: u64, seed: u64, index: u64) -> Option<Self> {
-        let probability = -(-sigma_s * step).exp_m1();
-        let affordable = (MOST_STEPS * probability) as u64;
-        let flights = flights.min(affordable).max(2);
-        if probability <= 0.0 || affordable < 2 {
+        let (probability, affordable) = Self::affordable(step, sigma_s);
+        if affordable < 2 {
             return None;
         }
+        let flights = flights.min(affordable).max(2);
         let mut stream = Stream::new(seed, index, u64::MAX, Purpose::Study);
         let mut flight = || {
             let mut steps = 1.0;

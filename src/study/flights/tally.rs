@@ -88,6 +88,13 @@ impl Estimate {
         Self { mean, standard_error: 0.0 }
     }
 
+    /// The same for judging: values of `photons` that are all equal do not make their mean certain. What one photon in
+    /// as many does may not have happened yet, and such a photon changes the mean by about 1 / `photons`.
+    pub fn at_best(self, photons: u64) -> Self {
+        let least = 1.0 / photons as f64;
+        Self { standard_error: if self.standard_error > 0.0 { self.standard_error } else { least }, ..self }
+    }
+
     /// How many standard errors of both it is above `other`.
     pub fn z(&self, other: &Self) -> f64 {
         let off = self.mean - other.mean;
