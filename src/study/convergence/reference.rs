@@ -135,7 +135,12 @@ pub fn make(
         let (width, height) = (film.width as usize, film.height as usize);
         store.write_image(file(name, batch), &Picture::new(width, height, image.unwrap_or_default()))?;
     }
-    let images = (0..batches.count).map(|batch| store.read_image(file(name, batch)));
+    let image = |batch| {
+        let image = store.read_image(file(name, batch))?;
+        image.check_finite(&store.root().join(file(name, batch)))?;
+        Ok(image)
+    };
+    let images = (0..batches.count).map(image);
     Ok(together(&images.collect::<Result<Vec<_>>>()?, describe(batches)))
 }
 
@@ -185,10 +190,7 @@ pub fn read(wanted: &ReferenceFile, width: usize, height: usize) -> Result<Truth
         let remedy = format!("give one of that size, or --size {}x{}", found.0, found.1);
         return Err(Error::new(path.display(), expected, format!("{} x {}", found.0, found.1), remedy));
     }
-    if let Some(at) = picture.pixels.iter().position(|pixel| !pixel.is_finite()) {
-        let found = format!("{} in column {}, row {}", picture.pixels[at], at % width, at / width);
-        return Err(Error::new(path.display(), "finite radiance in every pixel", found, "render it anew"));
-    }
+    picture.check_finite(&path)?;
     Ok(Truth {
         picture,
         how: format!("read from {}", wanted.file),
@@ -199,7 +201,7 @@ pub fn read(wanted: &ReferenceFile, width: usize, height: usize) -> Result<Truth
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::question::tests::question, *};
 
     #[test]
     fn a_reference_knows_its_error() {
@@ -210,6 +212,20 @@ mod tests {
         assert!((truth.own_relmse.unwrap() - 1.0 / 3.0 / 4.01).abs() < 1e-12);
         assert!((truth.mean_error.unwrap() - (1.0f64 / 3.0).sqrt() / 2.0).abs() < 1e-12);
         assert_eq!(together(&[image(0.0), image(0.0)], String::new()).mean_error, Some(0.0));
+    }
+
+    #[test]
+    fn a_made_reference_without_a_number_somewhere_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (store, _) = Store::open(folder.path(), &question(), false).unwrap();
+        let batches = Batches { words: String::new(), like: None, count: 2, samples: 1 };
+        for (batch, last) in [1.0, f32::NAN].into_iter().enumerate() {
+            let image = Picture::new(2, 1, vec![Spectrum::ONE, Spectrum::splat(last)]);
+            store.write_image(file("fog", batch as u64), &image).unwrap();
+        }
+        let entry = &mut || Err(Error::new("", "no batch to be missing", "", ""));
+        let error = make(&store, "fog", &batches, 0, entry, &mut |_, _| ()).unwrap_err();
+        assert!(error.place.contains("1.exr") && error.found.contains("column 1, row 0"), "{error}");
     }
 
     #[test]
