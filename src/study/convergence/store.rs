@@ -40,11 +40,10 @@ impl Store {
     pub fn open(root: &Path, question: &Question, restart: bool) -> Result<(Self, Plan)> {
         create(&root.join("runs"))?;
         let store = Self { root: root.to_owned(), _lock: lock(&root.join("runs/lock"))? };
-        store.sweep(&root.join("runs"))?;
+        store.sweep()?;
         if restart && (store.has("study.json") || store.has_runs()?) {
             store.empty()?;
         }
-        store.sweep(&root.join("images"))?;
         let plan = match store.has(PLAN) {
             true => store.planned(question)?,
             false if store.has("study.json") => return Err(store.taken("a study that was made otherwise")),
@@ -90,17 +89,10 @@ impl Store {
         Ok(())
     }
 
-    /// Removes what a killed process had begun to write.
-    fn sweep(&self, folder: &Path) -> Result<()> {
-        for path in entries(folder)? {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if path.is_dir() {
-                self.sweep(&path)?;
-            } else if name.starts_with('.') && name.ends_with(".partial") {
-                remove(&path)?;
-            }
-        }
-        Ok(())
+    /// Removes what a killed process had begun to write: beside the study's products, and anywhere in its folders.
+    fn sweep(&self) -> Result<()> {
+        entries(&self.root)?.iter().filter(|path| is_partial(path)).try_for_each(|path| remove(path))?;
+        ["runs", "images"].into_iter().try_for_each(|name| sweep(&self.root.join(name)))
     }
 
     /// Where the folder is.
@@ -162,6 +154,20 @@ impl Store {
         create(path.parent().unwrap_or(&self.root))?;
         Ok(path)
     }
+}
+
+fn sweep(folder: &Path) -> Result<()> {
+    entries(folder)?.iter().try_for_each(|path| match path.is_dir() {
+        true => sweep(path),
+        false if is_partial(path) => remove(path),
+        false => Ok(()),
+    })
+}
+
+/// True for a file that was never whole; see [`output::write`].
+fn is_partial(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with('.') && name.ends_with(".partial") && !path.is_dir()
 }
 
 fn is_lock(path: &Path) -> bool {
@@ -232,9 +238,10 @@ mod tests {
         drop(Store::open(folder.path(), &question(), true).unwrap());
         assert!(path("images/holiday.jpg").exists());
         fs::write(path("runs/.a.partial"), "ha").unwrap();
+        fs::write(path(".b.partial"), "ha").unwrap();
         fs::write(path("study.csv"), "old").unwrap();
         drop(Store::open(folder.path(), &question(), false).unwrap());
-        assert!(!path("runs/.a.partial").exists() && path("study.csv").exists());
+        assert!(!path("runs/.a.partial").exists() && !path(".b.partial").exists() && path("study.csv").exists());
         drop(Store::open(folder.path(), &question(), true).unwrap());
         assert!(!path("study.csv").exists() && path("notes.txt").exists());
     }
