@@ -328,16 +328,19 @@ impl<'a> Stage<'a> {
 /// Said of a contender whose name promises a difference that there is not.
 const IDLE_TRACKER: &str = "its tracker has no effect: no medium of this scene varies";
 
-/// The command as it was typed.
+/// The command, as a shell takes it.
 fn command() -> String {
-    let word = |word: String| match word.contains(|c: char| c.is_whitespace() || "\"'$*;&|<>()".contains(c)) {
-        true => format!("'{}'", word.replace('\'', "'\\''")),
-        false => word,
-    };
-    std::iter::once("tyndall".to_owned())
-        .chain(std::env::args().skip(1).map(word))
-        .collect::<Vec<_>>()
-        .join(" ")
+    let words = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
+    std::iter::once("tyndall".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// `word` in quotes, unless no shell can find anything in it that means more than itself.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+,./:@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
 }
 
 fn machine(threads: usize) -> String {
@@ -378,6 +381,27 @@ impl Bar {
         if self.is_hidden && tenths > self.tenths {
             self.tenths = tenths;
             complain(&format!("{} % done: {doing}", 10 * tenths));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_that_mean_more_to_a_shell_are_quoted() {
+        for (word, expected) in [
+            ("a/b-c_d.json", "a/b-c_d.json"),
+            ("hit+join,x=1", "hit+join,x=1"),
+            ("", "''"),
+            ("~", "'~'"),
+            ("a b", "'a b'"),
+            ("it's", "'it'\\''s'"),
+            ("`ls`#{a}", "'`ls`#{a}'"),
+            ("é", "'é'"),
+        ] {
+            assert_eq!(quoted(word), expected);
         }
     }
 }
