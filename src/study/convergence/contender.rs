@@ -20,11 +20,11 @@ impl Contender {
     }
 }
 
-/// `name` without what a file's name should not hold.
+/// `name` without what a file's name should not hold, nor begin with.
 pub fn slug(name: &str) -> String {
     let kept = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '+' | '=' | '.');
     let slug: String = name.trim().chars().map(|c| if kept(c) { c } else { '_' }).collect();
-    if slug.trim_matches('.').is_empty() { format!("_{slug}") } else { slug }
+    if slug.is_empty() || slug.starts_with('.') { format!("_{slug}") } else { slug }
 }
 
 /// A contender ready to render a scene.
@@ -51,8 +51,9 @@ mod tests {
     fn slugs_are_names_of_files() {
         for (name, expected) in [
             ("bdpt hit+next-event", "bdpt_hit+next-event"),
-            ("../a/b\\c", ".._a_b_c"),
+            ("../a/b\\c", "_.._a_b_c"),
             ("..", "_.."),
+            (".lock", "_.lock"),
             ("", "_"),
             ("\u{3b1}=0.5", "\u{3b1}=0.5"),
         ] {

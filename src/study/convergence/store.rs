@@ -31,6 +31,8 @@ pub struct Store {
 
 /// The plan, in the folder.
 const PLAN: &str = "runs/plan.json";
+/// What says that somebody is at work, in `runs`: a name that no scene has (see [`super::contender::slug`]).
+const LOCK: &str = ".lock";
 /// What a study writes besides `runs`.
 const PRODUCTS: [&str; 4] = ["study.json", "study.csv", "study.html", "images"];
 
@@ -39,7 +41,7 @@ impl Store {
     /// left there is removed first.
     pub fn open(root: &Path, question: &Question, restart: bool) -> Result<(Self, Plan)> {
         create(&root.join("runs"))?;
-        let store = Self { root: root.to_owned(), _lock: lock(&root.join("runs/lock"))? };
+        let store = Self { root: root.to_owned(), _lock: lock(&root.join("runs").join(LOCK))? };
         store.sweep()?;
         if restart && (store.has("study.json") || store.has_runs()?) {
             store.empty()?;
@@ -171,7 +173,7 @@ fn is_partial(path: &Path) -> bool {
 }
 
 fn is_lock(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name == "lock")
+    path.file_name().is_some_and(|name| name == LOCK)
 }
 
 fn create(folder: &Path) -> Result<()> {
