@@ -7,7 +7,7 @@ mod validation;
 use common::studies::{self, Study};
 use scraper::{ElementRef, Html, Selector};
 use std::{fs, path::Path, process::Command};
-use tyndall::study::page;
+use tyndall::study::{outcome::Interval, page};
 
 /// The page of a study, refused unless it is well-formed and stands alone.
 fn page_of(study: &Study) -> Html {
@@ -125,6 +125,34 @@ fn every_number_can_be_drawn() {
         let page = texts(&html, "main").concat();
         assert!(!page.contains("NaN") && !page.contains("inf"), "{value:e}");
     }
+}
+
+#[test]
+fn what_is_known_of_reference_and_ratios_is_said_once() {
+    let mut study = Study::new(&["room"], &["a", "b", "c"], 3);
+    let says = |study: &Study| {
+        study.rewrite();
+        let html = page_of(study);
+        (texts(&html, "#scene-0 header").concat(), texts(&html, "footer").concat())
+    };
+    study.outcome.scenes[0].reference.own_relmse = Some(1.0);
+    let (header, footer) = says(&study);
+    assert_eq!(header.matches("own error").count(), 3, "{header}");
+    assert!(footer.contains("as independent") && !footer.contains("paired"), "{footer}");
+    let ratio = Some(Interval { mean: 2.0, low: 1.9, high: 2.1 });
+    study.outcome.scenes[0].contenders[1].ratio = ratio;
+    // As `tyndall study` says it.
+    study.outcome.scenes[0].contenders[1].notes = vec!["only 1.2 times the reference's own: some".to_owned()];
+    let (header, footer) = says(&study);
+    assert!(header.matches("own error").count() == 2 && header.contains("only 1.2 times"), "{header}");
+    assert!(footer.contains("as independent") && footer.contains("paired"), "{footer}");
+    study.outcome.scenes[0].contenders[2].ratio = ratio;
+    study.outcome.scenes[0].reference.own_relmse = None;
+    let (header, footer) = says(&study);
+    assert!(header.contains("is not known"), "{header}");
+    assert!(!footer.contains("as independent") && footer.contains("paired"), "{footer}");
+    study.outcome.scenes[0].notes = vec!["nobody knows the reference's own error".to_owned()];
+    assert!(!says(&study).0.contains("is not known"));
 }
 
 #[test]

@@ -77,6 +77,20 @@ impl<'a> Page<'a> {
         chart::hue(*series)
     }
 
+    /// Where the intervals of ratios come from.
+    fn pairing(&self) -> &'static str {
+        let others = || self.outcome.scenes.iter().flat_map(|scene| scene.contenders.iter().skip(1));
+        let paired = others().filter(|contender| contender.ratio.is_some()).count();
+        match others().count() - paired {
+            _ if paired == 0 => "A ratio’s interval takes both efficiencies as independent.",
+            0 => "A ratio’s interval is over paired seeds.",
+            _ => {
+                "A ratio’s interval is over paired seeds where the study tells it so, \
+                 and else takes both efficiencies as independent."
+            }
+        }
+    }
+
     /// How much there is to see.
     fn counted(&self) -> String {
         let some = |count: usize, one: &str, many: &str| match count {
@@ -181,19 +195,28 @@ fn notes(scene: &SceneOutcome) -> Vec<String> {
     own_error(scene).into_iter().chain(told).collect()
 }
 
-/// What the reference's own error means for theirs.
+/// True if one of `notes` is about the reference's own error already.
+fn tell_of_reference(notes: &[String]) -> bool {
+    notes.iter().any(|note| note.contains("the reference's own"))
+}
+
+/// What the reference's own error means for theirs, where the study does not say it itself.
 fn own_error(scene: &SceneOutcome) -> Vec<String> {
     let Some(own) = scene.reference.own_relmse else {
+        if tell_of_reference(&scene.notes) {
+            return Vec::new();
+        }
         return vec!["How far the reference itself is from the truth is not known.".into()];
     };
     let near =
         |contender: &&ContenderOutcome| last(contender).is_some_and(|point| own > 0.1 * point.relmse.mean);
+    let silent = |contender: &&ContenderOutcome| !tell_of_reference(&contender.notes);
     let share = |contender: &ContenderOutcome| {
         let share = last(contender).map_or(0.0, |point| 100.0 * own / point.relmse.mean);
         let name = &contender.name;
         format!("The reference's own error is {} % of the last relMSE of {name}.", figures::number(share))
     };
-    scene.contenders.iter().filter(near).map(share).collect()
+    scene.contenders.iter().filter(near).filter(silent).map(share).collect()
 }
 
 fn last(contender: &ContenderOutcome) -> Option<&Point> {
