@@ -39,7 +39,7 @@ pub fn all(arguments: &Study) -> Result<Vec<Contender>> {
     if !axes.is_empty() {
         contenders.extend(product(&axes));
     } else if contenders.is_empty() {
-        contenders.extend(product(&[Axis::new("integrator", &["bdpt".to_owned(), "pt".to_owned()])?]));
+        contenders.extend(product(&[Axis::new("--integrators", "integrator", &["bdpt".to_owned(), "pt".to_owned()])?]));
     }
     for contender in &contenders {
         parse(&contender.name, &contender.words)?;
@@ -75,15 +75,15 @@ struct Axis {
 /// Every axis that was asked for. An option of `render` needs a line here only to have a flag of its own.
 fn axes(arguments: &Study) -> Result<Vec<Axis>> {
     let named = [
-        ("integrator", &arguments.integrators),
-        ("strategies", &arguments.strategies),
-        ("tracker", &arguments.trackers),
-        ("heuristic", &arguments.heuristics),
-        ("sampler", &arguments.samplers),
+        ("--integrators", "integrator", &arguments.integrators),
+        ("--strategies", "strategies", &arguments.strategies),
+        ("--trackers", "tracker", &arguments.trackers),
+        ("--heuristics", "heuristic", &arguments.heuristics),
+        ("--samplers", "sampler", &arguments.samplers),
     ];
-    let named = named.into_iter().filter(|(_, values)| !values.is_empty());
+    let named = named.into_iter().filter(|(.., values)| !values.is_empty());
     let mut axes: Vec<Axis> =
-        named.map(|(option, values)| Axis::new(option, values)).collect::<Result<_>>()?;
+        named.map(|(flag, option, values)| Axis::new(flag, option, values)).collect::<Result<_>>()?;
     if !arguments.strategies.is_empty() && arguments.integrators.is_empty() {
         // All strategies are those of bdpt; the scene's own integrator may have fewer.
         axes.insert(0, Axis { values: vec![(String::new(), "--integrator bdpt".to_owned())] });
@@ -95,14 +95,16 @@ fn axes(arguments: &Study) -> Result<Vec<Axis>> {
     for text in &arguments.vary {
         let (option, values) = text.split_once('=').unwrap_or((text.as_str(), ""));
         let values: Vec<String> = values.split(',').map(str::to_owned).collect();
-        axes.push(Axis::new(option.trim_start_matches('-'), &values)?.named(option));
+        let option = option.trim_start_matches('-');
+        axes.push(Axis::new(&format!("--vary {option}"), option, &values)?.named(option));
     }
     Ok(axes)
 }
 
 impl Axis {
-    /// The axis of `option` (its long name). Where the option is a switch, its values are "on" and "off".
-    fn new(option: &str, values: &[String]) -> Result<Self> {
+    /// The axis of `option` (its long name), which `flag` asked for. Where the option is a switch, its values are "on" and
+    /// "off"; off is said, lest the scene say otherwise.
+    fn new(flag: &str, option: &str, values: &[String]) -> Result<Self> {
         let command = Words::command();
         let all = || command.get_arguments().filter_map(|argument| argument.get_long());
         let Some(argument) = command.get_arguments().find(|argument| argument.get_long() == Some(option))
@@ -116,14 +118,14 @@ impl Axis {
             (false, "") => Err("no value".to_owned()),
             (false, value) => Ok(format!("--{option} {}", value.replace('+', ","))),
             (true, "on") => Ok(format!("--{option}")),
-            (true, "off") => Ok(String::new()),
+            (true, "off") => Ok(format!("--no-{option}")),
             (true, value) => Err(format!("\"{value}\"")),
         };
         let pair = |value: &String| Ok((value.clone(), words(value)?));
         let values =
             values.iter().map(pair).collect::<std::result::Result<_, String>>().map_err(|found| {
                 let expected = if is_switch { "on, off, or both" } else { "values, separated by commas" };
-                Error::new(format!("--vary {option}"), expected, found, "see tyndall study --help")
+                Error::new(flag, expected, found, "see tyndall study --help")
             })?;
         Ok(Self { values })
     }
@@ -242,6 +244,9 @@ mod tests {
             (["--vary", "max-dept=2"], "max-depth"),
             (["--vary", "max-depth"], "values"),
             (["--vary", "max-depth=deep"], "number of edges"),
+            (["--vary", "max-depth=2,,3"], "--vary max-depth: expected values"),
+            (["--samplers", "sobol,"], "--samplers: expected values"),
+            (["--vary", "forced-interaction=yes"], "on, off"),
         ] {
             let error = contenders(&options).unwrap_err().to_string();
             assert!(error.contains(hint), "{options:?}: {error}");
