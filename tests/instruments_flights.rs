@@ -65,6 +65,8 @@ fn mistakes_are_explained() {
     bench.run("flights --sigma-a 1 --sigma-s 1 --angle 90").refuses(&["89.9"]);
     bench.run("flights hg g=2 --sigma-a 1 --sigma-s 1").refuses(&["phase g=2"]);
     // Refused before so many photons fly, which would take days.
-    bench.run("flights --sigma-a 1 --sigma-s 0 --svg f.svg --photons 100000000000").refuses(&["--svg", "none"]);
+    bench
+        .run("flights --sigma-a 1 --sigma-s 0 --svg f.svg --photons 100000000000")
+        .refuses(&["--svg", "none"]);
     assert_eq!(bench.files(), [""; 0]);
 }

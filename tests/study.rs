@@ -14,7 +14,10 @@ use std::{
     time::{Duration, Instant},
 };
 use tempfile::TempDir;
-use tyndall::{math::Spectrum, study::picture};
+use tyndall::{
+    math::Spectrum,
+    study::picture::{self, Picture},
+};
 
 /// A folder in which the program runs.
 struct Desk {
@@ -401,6 +404,21 @@ fn a_time_is_turned_into_samples_once() {
     desk.study(&words);
     assert_eq!(timeless(&desk.json("out/study.json")), numbers);
     assert_eq!(desk.json("out/runs/plan.json"), plan);
+}
+
+#[test]
+fn a_scene_whose_image_changed_is_another_scene() {
+    let sky = |value: f32| Picture::new(2, 3, vec![Spectrum::splat(value); 6]);
+    let camera = camera([0.0; 3], [0.0, 0.0, 1.0], 4);
+    let lit = scene(&[("sensor", camera), ("sky", json!({"type": "envmap", "filename": "sky.exr"}))]);
+    let desk = Desk::new(&[("open.json", lit)]);
+    let words = ["open.json", "-o", "out", "--spp", "2", "--seeds", "2", "--reference-spp", "2"];
+    sky(1.0).write(&desk.path("sky.exr")).unwrap();
+    desk.study(&words);
+    sky(2.0).write(&desk.path("sky.exr")).unwrap();
+    desk.refuses(&words, &["scenes[0].fingerprint", "another folder"]);
+    sky(1.0).write(&desk.path("sky.exr")).unwrap();
+    desk.study(&words);
 }
 
 #[test]

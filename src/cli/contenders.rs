@@ -39,7 +39,11 @@ pub fn all(arguments: &Study) -> Result<Vec<Contender>> {
     if !axes.is_empty() {
         contenders.extend(product(&axes));
     } else if contenders.is_empty() {
-        contenders.extend(product(&[Axis::new("--integrators", "integrator", &["bdpt".to_owned(), "pt".to_owned()])?]));
+        contenders.extend(product(&[Axis::new(
+            "--integrators",
+            "integrator",
+            &["bdpt".to_owned(), "pt".to_owned()],
+        )?]));
     }
     for contender in &contenders {
         parse(&contender.name, &contender.words)?;

@@ -9,7 +9,7 @@ use crate::{
     error::{Error, Result},
     render::{Settings, budget::Budget},
     scene::{
-        self,
+        self, Sources,
         build::{self, Overrides, Setup},
     },
     study::{
@@ -185,8 +185,12 @@ pub fn run(arguments: &Study) -> Result<()> {
 
 fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Result<Question> {
     let names = contenders::scene_names(&arguments.scenes);
-    let scene =
-        |(name, file): (String, &PathBuf)| Ok(SceneQuestion { name, fingerprint: fingerprint(&read(file)?) });
+    let scene = |(name, file): (String, &PathBuf)| {
+        Ok(SceneQuestion {
+            name,
+            fingerprint: fingerprint_of(&scene::sources(file, &arguments.definitions)?)?,
+        })
+    };
     let effort = match (arguments.spp, arguments.seconds) {
         (Some(spp), _) => Effort::Samples(u64::from(spp)),
         (None, seconds) => Effort::Seconds(seconds.map_or(SECONDS, |seconds| seconds.as_secs_f64())),
@@ -204,6 +208,16 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
         effort,
         threads,
     })
+}
+
+/// Of all that a scene is read from.
+fn fingerprint_of(sources: &Sources) -> Result<String> {
+    let spectra = format!("{:?}", sources.spectra);
+    let mut all = vec![fingerprint(spectra.as_bytes())];
+    for file in &sources.files {
+        all.push(fingerprint(&read(file)?));
+    }
+    Ok(fingerprint(all.concat().as_bytes()))
 }
 
 fn wanted(arguments: &Study, contenders: &[Contender]) -> Result<Wanted> {

@@ -4,6 +4,7 @@ pub mod accel;
 pub mod boundary;
 pub mod build;
 mod extents;
+mod files;
 mod film;
 mod finder;
 pub mod heuristic;
@@ -24,6 +25,7 @@ mod time;
 mod write;
 mod xml;
 
+pub use files::{Sources, sources};
 pub use read::{Spelling, read};
 pub use write::{Conversion, Naming, convert, write};
 

@@ -36,7 +36,7 @@ pub struct Question {
 pub struct SceneQuestion {
     /// As in file names.
     pub name: String,
-    /// Of the scene file's content.
+    /// Of all that the scene is read from: its file, those it includes, meshes, images, grids, spectra.
     pub fingerprint: String,
 }
 

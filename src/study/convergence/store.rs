@@ -243,7 +243,9 @@ mod tests {
         fs::write(path(".b.partial"), "ha").unwrap();
         fs::write(path("study.csv"), "old").unwrap();
         drop(Store::open(folder.path(), &question(), false).unwrap());
-        assert!(!path("runs/.a.partial").exists() && !path(".b.partial").exists() && path("study.csv").exists());
+        assert!(
+            !path("runs/.a.partial").exists() && !path(".b.partial").exists() && path("study.csv").exists()
+        );
         drop(Store::open(folder.path(), &question(), true).unwrap());
         assert!(!path("study.csv").exists() && path("notes.txt").exists());
     }

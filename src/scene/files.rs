@@ -1,0 +1,82 @@
+//! What a scene is read from: its own file, and all that it includes and names.
+
+use super::read::read_with_origins;
+use crate::{
+    description::{Location, Object, Value},
+    error::Result,
+};
+use std::path::{Path, PathBuf};
+
+/// What decides about a scene, apart from the user's definitions: where none of it changes, the scene does not.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sources {
+    /// The scene file, the files that it includes, and those there are of the ones that its plugins name (meshes, images,
+    /// grids), each once.
+    pub files: Vec<PathBuf>,
+    /// Spectra, which may come from files that the tree no longer names: pairs of wavelength [nm] and value.
+    pub spectra: Vec<Vec<(f64, f64)>>,
+}
+
+/// The sources of the scene at `path`, read with the user's `definitions` as by [`super::read`].
+pub fn sources(path: &Path, definitions: &[(String, String)]) -> Result<Sources> {
+    let (root, origins) = read_with_origins(path, definitions)?;
+    let mut sources = Sources { files: vec![path.to_owned()], spectra: Vec::new() };
+    origins.included.into_iter().for_each(|file| sources.add(file));
+    sources.walk(&root);
+    Ok(sources)
+}
+
+impl Sources {
+    fn walk(&mut self, object: &Object) {
+        for property in &object.properties {
+            match &property.value {
+                Value::Object(child) => self.walk(child),
+                Value::Spectrum(pairs) => self.spectra.push(pairs.clone()),
+                Value::String(name) if property.name.ends_with("filename") => {
+                    self.add(beside(&property.location, name));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A file that is not there is for its plugin to complain about.
+    fn add(&mut self, file: PathBuf) {
+        if file.is_file() && !self.files.contains(&file) {
+            self.files.push(file);
+        }
+    }
+}
+
+/// The file called `name` at `place`, as plugins look for it.
+fn beside(place: &Location, name: &str) -> PathBuf {
+    place.file.parent().unwrap_or(Path::new("")).join(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn whatever_a_scene_is_read_from_is_found_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir(path("parts")).unwrap();
+        let scene = r#"<scene version="3.0.0"><include filename="parts/wall.xml"/>
+            <emitter type="envmap"><string name="filename" value="sky.exr"/></emitter>
+            <shape type="ply"><string name="filename" value="none.ply"/></shape></scene>"#;
+        let wall = r#"<scene version="3.0.0"><shape type="obj"><string name="filename" value="wall.obj"/>
+            <bsdf type="diffuse"><spectrum name="reflectance" filename="grey.spd"/></bsdf></shape>
+            <shape type="obj"><string name="filename" value="wall.obj"/></shape></scene>"#;
+        let files =
+            [("scene.xml", scene), ("parts/wall.xml", wall), ("parts/grey.spd", "400 0.5\n700 0.25\n")];
+        for (name, text) in files.into_iter().chain([("sky.exr", ""), ("parts/wall.obj", "")]) {
+            fs::write(path(name), text).unwrap();
+        }
+        let mut found = sources(&path("scene.xml"), &[]).unwrap();
+        found.files.sort();
+        assert_eq!(found.files, ["parts/wall.obj", "parts/wall.xml", "scene.xml", "sky.exr"].map(path));
+        assert_eq!(found.spectra, [[(400.0, 0.5), (700.0, 0.25)]]);
+    }
+}
