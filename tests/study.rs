@@ -431,7 +431,7 @@ fn what_cannot_be_done_is_said() {
         (&["-o", "out"], &["SCENE"]),
         (&["room.json"], &["--output"]),
         (&["room.json", "-o", "out", "--seeds", "1"], &["--seeds", "2.."]),
-        (&["room.json", "-o", "out", "--confidence", "95"], &["between 0 and 1"]),
+        (&["room.json", "-o", "out", "--confidence", "95"], &["from 0.5 to 0.9999"]),
         (&["room.json", "-o", "out", "--spp", "2", "--seconds", "2"], &["--seconds"]),
         (&["room.json", "-o", "out", "--reference-error", "1"], &["--reference <FILE>"]),
         (&["room.json", "-o", "new", "--reference", "none.exr"], &["none.exr", "check that the path"]),

@@ -374,7 +374,7 @@ fn relative_error(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a relative error from 1e-5 to 1, such as 0.02".to_owned())
 }
 
-fn confidence(text: &str) -> Result<f64, String> {
+pub(super) fn confidence(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|confidence: &f64| (0.5..=0.9999).contains(confidence));
     number.ok_or_else(|| "expected a probability from 0.5 to 0.9999, such as 0.95".to_owned())
 }

@@ -1,7 +1,7 @@
 //! `tyndall study`: error against run time.
 
 use super::{
-    arguments::{Size, Tracker, definition, duration, positive_u32, size, threads as threads_of},
+    arguments::{Size, Tracker, confidence, definition, duration, positive_u32, size, threads as threads_of},
     complain, contenders, estimator, say, threads,
 };
 use crate::{
@@ -111,7 +111,7 @@ pub struct Study {
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
 
-    /// Of every interval, between 0 and 1
+    /// Of every interval, from 0.5 to 0.9999
     #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = confidence, allow_negative_numbers = true)]
     pub confidence: f64,
 
@@ -145,11 +145,6 @@ pub struct Study {
 
 /// Time of the largest budget [s].
 const SECONDS: f64 = 8.0;
-
-fn confidence(text: &str) -> std::result::Result<f64, String> {
-    let share = text.parse().ok().filter(|share: &f64| *share > 0.0 && *share < 1.0);
-    share.ok_or_else(|| "expected a share between 0 and 1, such as 0.95".to_owned())
-}
 
 fn error(text: &str) -> std::result::Result<f64, String> {
     let error = text.parse().ok().filter(|error: &f64| error.is_finite() && *error >= 0.0);

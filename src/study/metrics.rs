@@ -4,7 +4,7 @@ use crate::math::Spectrum;
 use serde::Serialize;
 
 /// What keeps relative measures finite where the reference is black [radiance, or its square].
-const FLOOR: f64 = 0.01;
+pub const FLOOR: f64 = 0.01;
 
 /// The share of the worst values that the trimmed measure leaves out.
 const TRIMMED: f64 = 0.001;

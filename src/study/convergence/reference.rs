@@ -10,6 +10,7 @@ use super::{
 use crate::study::{
     coverage,
     interval::Mean,
+    metrics::FLOOR,
     picture::{self, Picture},
 };
 use crate::{
@@ -161,7 +162,7 @@ fn together(images: &[Picture], how: String) -> Truth {
     let (pixels, relative): (Vec<Spectrum>, Vec<f64>) = (0..images[0].pixels.len())
         .map(|pixel| {
             let (mean, variance) = moments(images.iter().map(|image| image.pixels[pixel].as_dvec3()));
-            let relative = variance / images.len() as f64 / (mean * mean + DVec3::splat(0.01));
+            let relative = variance / images.len() as f64 / (mean * mean + DVec3::splat(FLOOR));
             (mean.as_vec3(), relative.element_sum() / 3.0)
         })
         .unzip();

@@ -53,7 +53,8 @@ pub struct Measured {
 
 impl Measured {
     fn of(snapshot: &Snapshot, reference: &[Spectrum]) -> Self {
-        let Measures { mse, relmse, trimmed_relmse, mape, smape, .. } = measures(&snapshot.pixels, reference);
+        let Measures { mse, relmse, trimmed_relmse, mape, smape, difference, .. } =
+            measures(&snapshot.pixels, reference);
         Self {
             samples: snapshot.samples_per_pixel,
             seconds: snapshot.elapsed.as_secs_f64(),
@@ -62,7 +63,7 @@ impl Measured {
             trimmed_relmse,
             mape,
             smape,
-            difference: difference(mean(&snapshot.pixels), mean(reference)),
+            difference,
         }
     }
 }
@@ -71,11 +72,6 @@ impl Measured {
 pub fn mean(pixels: &[Spectrum]) -> f64 {
     let sum: f64 = pixels.iter().flat_map(|pixel| pixel.to_array()).map(f64::from).sum();
     sum / (3 * pixels.len()).max(1) as f64
-}
-
-/// `found` over `expected`, less 1; two blacks are equal.
-fn difference(found: f64, expected: f64) -> f64 {
-    if found == expected { 0.0 } else { found / expected - 1.0 }
 }
 
 /// Where a render's files lie.

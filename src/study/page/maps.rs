@@ -1,32 +1,29 @@
 //! False colours of what went wrong: relative squared errors, and relative variances, on one logarithmic scale.
 
 use super::figures::power_of_ten;
-use crate::math::Spectrum;
+use crate::{
+    math::Spectrum,
+    study::metrics::{FLOOR, relative_square},
+};
 use colorgrad::Gradient as _;
-
-/// Keeps black pixels from deciding everything, as in relMSE.
-const FLOOR: f64 = 0.01;
 
 /// No number: no colour of the scale.
 const BROKEN: [u8; 3] = [0, 255, 255];
 
 /// The squared error of each pixel over the reference's square: its mean over the image is relMSE.
 pub fn errors(image: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
-    let squared = |x: f64, r: f64| (x - r) * (x - r);
-    relative(image, reference, squared)
+    means(image, reference, relative_square)
 }
 
 /// The variance of each pixel over the reference's square: what [`errors`] are in the mean, but for bias.
 pub fn variances(variance: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
-    relative(variance, reference, |variance, _| variance)
+    means(variance, reference, |variance, r| variance / (r * r + FLOOR))
 }
 
-fn relative(image: &[Spectrum], reference: &[Spectrum], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+/// Means over channels of what `of` makes of values and those of the reference.
+fn means(image: &[Spectrum], reference: &[Spectrum], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let pixel = |(x, r): (&Spectrum, &Spectrum)| {
-        let channel = |c: usize| {
-            let (x, r) = (f64::from(x[c]), f64::from(r[c]));
-            of(x, r) / (r * r + FLOOR)
-        };
+        let channel = |c: usize| of(f64::from(x[c]), f64::from(r[c]));
         (channel(0) + channel(1) + channel(2)) / 3.0
     };
     image.iter().zip(reference).map(pixel).collect()

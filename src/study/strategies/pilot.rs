@@ -1,7 +1,11 @@
 //! Sets of strategies against each other: short renders that take turns, so that whatever else the machine does falls
 //! upon all of them, and what their passes say of error and time.
 
-use crate::{math::Spectrum, render::bench::Bench, study::outcome::Interval};
+use crate::{
+    math::Spectrum,
+    render::bench::Bench,
+    study::{metrics::FLOOR, outcome::Interval},
+};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Confidence of every interval.
@@ -63,7 +67,7 @@ fn take_turn(contender: &Bench<'_>, reference: &[Spectrum], passes: std::ops::Ra
     let relative = moments.iter().zip(reference).flat_map(|(moments, r)| {
         moments.iter().zip(r.to_array()).map(move |([sum, square], r)| {
             let variance = ((square - sum * sum / count) / (count - 1.0)).max(0.0);
-            variance / (f64::from(r).powi(2) + 0.01)
+            variance / (f64::from(r).powi(2) + FLOOR)
         })
     });
     let relmse = relative.sum::<f64>() / (3 * reference.len()) as f64;
