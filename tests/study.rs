@@ -408,7 +408,7 @@ fn a_time_is_turned_into_samples_once() {
 
 #[test]
 fn a_scene_whose_image_changed_is_another_scene() {
-    let sky = |value: f32| Picture::new(2, 1, vec![Spectrum::splat(value); 2]);
+    let sky = |value: f32| Picture::new(2, 3, vec![Spectrum::splat(value); 6]);
     let camera = camera([0.0; 3], [0.0, 0.0, 1.0], 4);
     let lit = scene(&[("sensor", camera), ("sky", json!({"type": "envmap", "filename": "sky.exr"}))]);
     let desk = Desk::new(&[("open.json", lit)]);
