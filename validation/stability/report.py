@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
+from validation.files import write_text
 from validation.stability.case import Case
 from validation.stability.judge import Found, refused
 from validation.statistics import SIGNIFICANCE
@@ -98,9 +99,8 @@ class Table:
 
     def write(self, folder: Path) -> None:
         """stability.md and stability.json."""
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "stability.md").write_text(self.markdown())
-        (folder / "stability.json").write_text(json.dumps(self.dictionary(), indent=1) + "\n")
+        write_text(folder / "stability.md", self.markdown())
+        write_text(folder / "stability.json", json.dumps(self.dictionary(), indent=1) + "\n")
 
     def markdown(self) -> str:
         """The whole table, row by row."""

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from validation.failure import Failure
+from validation.files import write_text
 from validation.places import ROOT
 from validation.study import curves, outcome, strips, summary
 from validation.study.outcome import Outcome
@@ -27,9 +28,7 @@ def run(folder: Path, output: Path) -> bool:
     output.mkdir(parents=True, exist_ok=True)
     curves.write(found, output / CURVES)
     strips.write(found, folder, output / STRIPS)
-    partial = (output / TABLE).with_suffix(".partial")
-    partial.write_text(summary.markdown(told(found), FIGURES))
-    partial.replace(output / TABLE)
+    write_text(output / TABLE, summary.markdown(told(found), FIGURES))
     print(f"{TABLE}, {CURVES} and {STRIPS} are in {output}")
     return True
 
