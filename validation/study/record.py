@@ -42,11 +42,12 @@ def told(found: Outcome) -> Outcome:
     return replace(found, command=portable(found.command), scenes=scenes)
 
 
+OUTPUT = ("--output", "-o")
+
+
 def portable(command: str) -> str:
     """A command without the folder that it wrote into, its files named from the root of the repository."""
     words = shlex.split(command)
-    if "--output" in words:
-        place = words.index("--output")
-        del words[place : place + 2]
-    kept = [word for word in words if not word.startswith("--output=")]
+    before = ["", *words]
+    kept = [word for last, word in zip(before, words) if last not in OUTPUT and word not in OUTPUT and not word.startswith("--output=")]
     return shlex.join(word.removeprefix(f"{ROOT}/") for word in kept)

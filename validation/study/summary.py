@@ -134,7 +134,7 @@ def write_csv(path: Path, all_rows: list[dict[str, object]]) -> None:
     text = io.StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(all_rows)
+    writer.writerows({name: "NaN" if value != value else value for name, value in row.items()} for row in all_rows)
     write_text(path, text.getvalue())
 
 
