@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
@@ -36,6 +37,10 @@ def running() -> Iterator[Browser]:
         browser.close()
 
 
+Scheme = Literal["light", "dark"]
+"""What a reader prefers."""
+
+
 @dataclass(frozen=True)
 class Opened:
     """A page, and all that it said or asked for."""
@@ -46,7 +51,7 @@ class Opened:
 
 
 @contextmanager
-def opened(browser: Browser, file: Path, width: int, height: int, scheme: str = "light") -> Iterator[Opened]:
+def opened(browser: Browser, file: Path, width: int, height: int, scheme: Scheme = "light") -> Iterator[Opened]:
     """The page at a size of window [CSS pixels], without a network."""
     context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme, offline=True)
     result = Opened(context.new_page())

@@ -10,6 +10,7 @@ from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, REPORTS, SCENES
 from validation.scene import open_scene
+from validation.made_by import made_by_command
 from validation.study import command as convergence
 
 QUICK = Effort(batches=16, spp=48)
@@ -109,7 +110,7 @@ def run_compare(options: argparse.Namespace) -> bool:
     page = options.output / f"{scene.name}.html"
     comparison_page.write(comparison_page.page(scene, effort, found), page)
     print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}, and all there is to see in {page}")
-    print(f"made by: {comparison_page.made_by_command()}")
+    print(f"made by: {made_by_command()}")
     return all(isinstance(verdict, compare.Verdict) and verdict.passed for verdict in found.values())
 
 

@@ -1,7 +1,5 @@
 """What `compare` found as one HTML page that holds its pictures and needs no network."""
 
-import shlex
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +10,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from validation import flip, picture, png
 from validation.compare import RETRY, Effort, Verdict
 from validation.failure import Failure
+from validation.files import write_text
+from validation.made_by import made_by_command
 from validation.scene import Scene
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -55,11 +55,6 @@ def page(scene: Scene, effort: Effort, found: Mapping[str, Verdict | Failure]) -
     )
 
 
-def made_by_command() -> str:
-    """The command that makes it again."""
-    return shlex.join(["python3", "-m", "validation", *sys.argv[1:]])
-
-
 def section(method: str, verdict: Verdict) -> Section:
     """Draws one method's pictures."""
     if verdict.reference is None or verdict.found is None or verdict.map is None:
@@ -77,10 +72,7 @@ def section(method: str, verdict: Verdict) -> Section:
 
 def write(page: Page, path: Path) -> None:
     """Writes the page, whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_suffix(".partial")
-    partial.write_text(html(page), encoding="utf-8")
-    partial.replace(path)
+    write_text(path, html(page))
 
 
 def html(page: Page) -> str:

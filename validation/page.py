@@ -2,14 +2,15 @@
 
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import get_args
 
 import mitsuba as mi
 import numpy as np
-from playwright.sync_api import Browser, Error, Locator, Page
+from playwright.sync_api import Browser, Error, FloatRect, Locator, Page
 
-from validation.browser import Opened, chromium, opened, running
+from validation.browser import Opened, Scheme, chromium, opened, running
 from validation.failure import Failure
 
 DESKTOP, PHONE = (1280, 900), (375, 800)
@@ -46,7 +47,7 @@ def findings(browser: Browser, file: Path, output: Path) -> Iterator[Finding]:
             yield from of_scene(desktop.page, scene)
         yield "the console stays silent", "; ".join(desktop.complaints)
         yield "nothing is asked for but the page itself", "; ".join(foreign(desktop, file))
-    for scheme in ("light", "dark"):
+    for scheme in get_args(Scheme):
         for name, size in (("desktop", DESKTOP), ("phone", PHONE)):
             yield from of_picture(browser, file, size, scheme, output / f"{file.stem}_{name}_{scheme}.png")
     for width in WIDTHS:
@@ -75,7 +76,7 @@ def overflow(page: Page) -> str:
     )
 
 
-def of_picture(browser: Browser, file: Path, size: tuple[int, int], scheme: str, picture: Path) -> Iterator[Finding]:
+def of_picture(browser: Browser, file: Path, size: tuple[int, int], scheme: Scheme, picture: Path) -> Iterator[Finding]:
     """The whole page as a picture, that somebody may look at."""
     with opened(browser, file, *size, scheme) as page:
         page.page.screenshot(path=picture, full_page=True)
@@ -120,7 +121,7 @@ def against(check: Callable[[Page, Locator], str], page: Page, scene: Locator) -
 
 def choices(scene: Locator, kind: str) -> list[str]:
     """The values of a switch."""
-    return [radio.get_attribute("value") for radio in scene.locator(f'input[name^="{kind}-"]').all()]
+    return [radio.get_attribute("value") or "" for radio in scene.locator(f'input[name^="{kind}-"]').all()]
 
 
 def choose(scene: Locator, kind: str, value: str) -> None:
@@ -216,9 +217,17 @@ def brightness(png: bytes) -> float:
     return float(np.array(mi.Bitmap(stream))[:, :, :3].mean())
 
 
-def middle(thing: Locator) -> tuple[float, float]:
+def place(thing: Locator) -> FloatRect:
     """On the screen."""
     box = thing.bounding_box()
+    if box is None:
+        raise Error("what should be seen is hidden")
+    return box
+
+
+def middle(thing: Locator) -> tuple[float, float]:
+    """On the screen."""
+    box = place(thing)
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
@@ -232,7 +241,7 @@ def boxes(scene: Locator) -> list[tuple[float, float, float]]:
     )
 
 
-def alike(found: list[tuple[float, ...]]) -> bool:
+def alike(found: Sequence[tuple[float, ...]]) -> bool:
     """True if all have the same numbers."""
     return bool(np.allclose(found, found[0], atol=0.02))
 
@@ -301,7 +310,7 @@ def drags(page: Page, scene: Locator) -> str:
     """From a third to three quarters."""
     stage = scene.locator(".stage")
     stage.scroll_into_view_if_needed()
-    box = stage.bounding_box()
+    box = place(stage)
     at = [(box["x"] + share * box["width"], box["y"] + box["height"] / 2) for share in (0.33, 0.75)]
     drag(page, *at)
     return is_at(cut(scene), 75)

@@ -5,9 +5,10 @@ from functools import cache, partial
 import numpy as np
 
 from validation.closed_forms import point_light
+from validation.closed_forms.case import medium
 from validation.closed_forms.slab import Slab, lit_slab
 from validation.stability import photons
-from validation.stability.case import EYE, Case, ball, medium, methods, moved, named, oven
+from validation.stability.case import EYE, Case, ball, methods, moved, named, oven
 from validation.stability.thickness import AWAY
 from validation.statistics import Estimate
 

@@ -1,5 +1,7 @@
 """Camera on a boundary, coincident faces of touching media."""
 
+from typing import Any
+
 import numpy as np
 
 from validation.closed_forms.case import camera, scene
@@ -36,7 +38,7 @@ def on_boundary() -> list[Case]:
 
 def seen(name: str, blocker: float, inside: bool, outwards: bool = False) -> Scene:
     """The slab of the closed forms with its camera in its top face."""
-    tree = lit_slab(SLAB, name, blocker).source
+    tree = lit_slab(SLAB, name, blocker).tree()
     view = camera((0, 0, 0), (0, 1 if outwards else -1, 0), 0.1, up=(0, 0, 1), near_clip=NEAR)
     medium = {"medium": {"type": "ref", "id": "matter"}} if inside else {}
     slab = {**tree["slab"], "interior": {"type": "ref", "id": "matter"}}
@@ -70,7 +72,7 @@ CUT = 0.3
 
 def halves(total: str, blocker: float) -> Scene:
     """The slab as two cubes that share a face."""
-    tree = lit_slab(SLAB, total, blocker).source
+    tree = lit_slab(SLAB, total, blocker).tree()
     matter = {"type": "ref", "id": "matter"}
     parts = {
         name: {"type": "cube", "to_world": layer(low, high), "bsdf": NULL, "interior": matter}
@@ -91,7 +93,7 @@ DEPTHS = (0.3, 1.1, 0.7)
 def absorbers() -> Case:
     """Three absorbers, one on the other, before a lamp."""
     edges = np.array([-1, -0.37, 0.21, 1])
-    parts = {}
+    parts: dict[str, Any] = {}
     for i, (low, high, depth) in enumerate(zip(edges, edges[1:], DEPTHS)):
         to_world = [{"type": "scale", "value": [1, 1, (high - low) / 2]}, {"type": "translate", "value": [0, 0, (high + low) / 2]}]
         parts[f"part{i}"] = {"type": "cube", "to_world": to_world, "bsdf": NULL, "interior": fog(depth / (high - low), 0)}
@@ -102,7 +104,7 @@ def absorbers() -> Case:
 
 def pair() -> Case:
     """Two white cubes of different media side by side."""
-    parts = {
+    parts: dict[str, Any] = {
         name: {"type": "cube", "to_world": [{"type": "scale", "value": 0.6}, {"type": "translate", "value": [x, 0.1, 0]}], "bsdf": NULL, "interior": fog(s, 1, g)}
         for name, x, s, g in (("left", -0.6, 1, 0.0), ("right", 0.6, 5, 0.5))
     }

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -88,7 +89,7 @@ def lamp(radiance: float) -> dict:
 OVEN_RADIUS = 3.0
 
 
-def oven(name: str, radiance: float = 1, sides: dict = BLACK, **inside: dict) -> Scene:
+def oven(name: str, radiance: float = 1, sides: dict = BLACK, **inside: Any) -> Scene:
     """A hollow sphere that shines inwards, seen from within: whatever absorbs nothing inside shows the radiance of the
     wall. Unlike the sky's, this furnace is one that light tracing can heat."""
     wall = {"type": "sphere", "radius": OVEN_RADIUS, "flip_normals": True, "bsdf": sides, "emitter": lamp(radiance)}

@@ -105,7 +105,7 @@ def lit_fog() -> Scene:
     air = {"type": "ref", "id": "fog"}
     place = {"center": point_light.LIGHT.tolist(), "radius": TINY}
     bulb = {"type": "sphere", **place, "bsdf": BLACK, "exterior": air, "emitter": lamp(radiance)}
-    return Scene({**source.source, "light": bulb}, "tiny lamp in fog", {})
+    return Scene({**source.tree(), "light": bulb}, "tiny lamp in fog", {})
 
 
 # Against a surface

@@ -40,8 +40,8 @@ def cosines(g: float, u: np.ndarray) -> np.ndarray:
 
 def turned(direction: np.ndarray, cosine: np.ndarray, turn: np.ndarray) -> np.ndarray:
     """Directions at these cosines from the given ones, about which `turn` in [0, 1) goes round once."""
-    helper = np.where(np.abs(direction[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]])
-    across = np.cross(direction, helper)
+    aside = np.where(np.abs(direction[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]])
+    across = np.cross(direction, aside)
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     other = np.cross(direction, across)
     sine = np.sqrt(np.maximum(0, 1 - cosine**2))[:, None]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
+from validation.files import write_text
 from validation.stability.case import Case
 from validation.stability.judge import Found, refused
 from validation.statistics import SIGNIFICANCE
@@ -65,6 +66,8 @@ class Table:
 
     def coarse(self, line: Line) -> bool:
         """True if an error could hide here that the case says would not."""
+        if line.found is None:
+            return False
         resolution = line.found.resolution(len(self.lines))
         return math.isfinite(resolution) and resolution > line.case.required(line.method)
 
@@ -98,9 +101,8 @@ class Table:
 
     def write(self, folder: Path) -> None:
         """stability.md and stability.json."""
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "stability.md").write_text(self.markdown())
-        (folder / "stability.json").write_text(json.dumps(self.dictionary(), indent=1) + "\n")
+        write_text(folder / "stability.md", self.markdown())
+        write_text(folder / "stability.json", json.dumps(self.dictionary(), indent=1) + "\n")
 
     def markdown(self) -> str:
         """The whole table, row by row."""
@@ -108,13 +110,13 @@ class Table:
         parts = [f"# Stability\n\n    {self.command}", INTRODUCTION, *told, self.summary().split("\n")[0] + "."]
         judged = list(zip(self.lines, self.verdicts()))
         for row, group in groupby(judged, key=lambda pair: pair[0].case.row):
-            group = list(group)
-            parts.append("\n".join([f"## {row}", "", COLUMNS, *(self.markdown_line(*pair) for pair in group)]))
-            told = {f"- {line.case.name}: {line.case.coarse}." for line, _ in group if line.case.coarse}
-            told |= {f"- {line.case.name}: {line.case.flaw}." for line, _ in group if line.case.flaw}
-            told |= {f"- {line.case.name}, {line.method}: {line.problem}" for line, _ in group if line.problem}
-            if told:
-                parts.append("\n".join(sorted(told)))
+            pairs = list(group)
+            parts.append("\n".join([f"## {row}", "", COLUMNS, *(self.markdown_line(*pair) for pair in pairs)]))
+            remarks = {f"- {line.case.name}: {line.case.coarse}." for line, _ in pairs if line.case.coarse}
+            remarks |= {f"- {line.case.name}: {line.case.flaw}." for line, _ in pairs if line.case.flaw}
+            remarks |= {f"- {line.case.name}, {line.method}: {line.problem}" for line, _ in pairs if line.problem}
+            if remarks:
+                parts.append("\n".join(sorted(remarks)))
         return "\n\n".join(parts) + "\n"
 
     def markdown_line(self, line: Line, verdict: str) -> str:

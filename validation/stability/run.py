@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation import mitsuba, tyndall
+from validation import exr, tyndall
 from validation.closed_forms.case import SIZE
 from validation.failure import Failure
 from validation.scene import Scene, changed
@@ -92,7 +92,7 @@ def found_lines(chosen: list[Case], effort: Effort, factor: float) -> Iterator[L
     """Every case by every method, in order; all processors render."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         pairs = [(case, method) for case in chosen for method in case.methods]
-        yield from pool.map(lambda pair: line(*pair, effort, factor), pairs)
+        yield from pool.map(lambda pair: line(pair[0], pair[1], effort, factor), pairs)
 
 
 def line(case: Case, method: str, effort: Effort, factor: float) -> Line:
@@ -149,7 +149,7 @@ def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None)
         options["--size"] = f"{size}x{size}" if size else ""
         arguments = [str(part) for option, value in options.items() if value != "" for part in (option, value)]
         call([str(tyndall.binary()), "render", str(path), *arguments])
-        return mitsuba.read_exr(output)
+        return exr.stacked(exr.read(output)[exr.ROOT])[:, :, :3]
 
 
 def call(command: list[str]) -> None:

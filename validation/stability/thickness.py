@@ -24,7 +24,7 @@ def cases() -> list[Case]:
 
 def glowing() -> list[Case]:
     """Slabs that absorb and glow, and scatter nothing, before black: radiance 1 - exp(-b)."""
-    flat = lit_slab(Slab(0, 1, 0), "", -1.5).source
+    flat = lit_slab(Slab(0, 1, 0), "", -1.5).tree()
     found = []
     for b in DECADES:
         slab = {**flat["slab"], "interior": {**fog(b, 0), "radiance": 1.0}}

@@ -1,5 +1,7 @@
 """Empty media, and media with one lit voxel."""
 
+from typing import Any
+
 import numpy as np
 
 from validation.closed_forms import varying
@@ -81,7 +83,7 @@ def dimmed() -> float:
     return GAIN / AIR * float(np.exp(-AIR * over) - np.exp(-AIR * (over + 1 / VOXELS)))
 
 
-def block(name: str, interior: dict, **more: dict) -> Scene:
+def block(name: str, interior: dict, **more: Any) -> Scene:
     """The unit cube along z: two by two rows of voxels, that which is lit below at the right."""
     x, y = LIT[2] / VOXELS, (LIT[1] + 1) / VOXELS
     view = {k: v for k, v in camera((x, y, 3), (x, y, 0), 1).items() if k != "fov"}

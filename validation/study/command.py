@@ -4,18 +4,19 @@ import argparse
 import math
 import os
 import platform
-import shlex
 import subprocess
-import sys
 import time
+from collections import Counter
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from validation import tyndall
 from validation.failure import Failure
+from validation.files import write_text
 from validation.places import OUTPUT
 from validation.scene import open_scene
+from validation.made_by import made_by_command
 from validation.study import intervals, outcome, scenes, summary
 from validation.study.conduct import Found, Settings, study
 from validation.study.outcome import Outcome
@@ -80,6 +81,9 @@ def checked(asked: Any) -> Settings:
     if len(set(names)) < len(names):
         raise Failure("two scenes have one name, which would be that of their folders too", "study them one at a time")
     contenders = asked.contenders.split(",") if asked.contenders else None
+    twice = [name for name, count in Counter(contenders or []).items() if count > 1]
+    if twice:
+        raise Failure(f"--contenders names {' and '.join(twice)} more than once", "name everyone once")
     return Settings(contenders, asked.seeds, asked.points, asked.threads, asked.reference)
 
 
@@ -109,7 +113,7 @@ def publish(found: list[Found], folder: Path, settings: Settings) -> None:
     whole = Outcome(renderers(), made_by_command(), machine(settings.threads), intervals.CONFIDENCE, entries)
     outcome.write(whole, folder)
     summary.write_csv(folder / "study.csv", [row for one, store in zip(found, stores) for row in summary.rows(one, store)])
-    (folder / "study.md").write_text(summary.markdown(whole))
+    write_text(folder / "study.md", summary.markdown(whole))
 
 
 def report(folder: Path) -> None:
@@ -117,8 +121,6 @@ def report(folder: Path) -> None:
     done = subprocess.run([str(tyndall.binary()), "report", str(folder)], capture_output=True, text=True)
     if done.returncode == 0:
         print(done.stdout.strip() or f"{folder}/study.html")
-    elif "unrecognized subcommand" in done.stderr:
-        print("this tyndall knows no `report`: there is no study.html")
     else:
         raise Failure(f"tyndall report {folder}: {done.stderr.strip()}", "see its message; the numbers are written")
     print(f"numbers are in {folder}/study.json, study.csv and study.md")
@@ -128,11 +130,6 @@ def renderers() -> str:
     """Programs and versions."""
     own = subprocess.run([str(tyndall.binary()), "--version"], capture_output=True, text=True).stdout.strip()
     return f"{own}, Mitsuba {version('mitsuba')} (Dr.Jit {version('drjit')})"
-
-
-def made_by_command() -> str:
-    """The command that makes it again."""
-    return shlex.join(["python3", "-m", "validation", *sys.argv[1:]])
 
 
 def machine(threads: int) -> str:

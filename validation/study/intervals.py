@@ -71,9 +71,12 @@ def cost(done: np.ndarray, picks: np.ndarray) -> np.ndarray:
 
 def of_slope(relmse: np.ndarray, seconds: np.ndarray, confidence: float = CONFIDENCE) -> Interval | None:
     """Of log relMSE over log seconds, arrays (seeds, budgets): a line is fitted to each seed's own renders, which are
-    independent; none from fewer than three budgets, or where an error is 0 or none."""
+    independent; none from fewer than three budgets, where an error is 0 or none, or
+    where times do not differ."""
     if relmse.shape[1] < 3 or not (np.isfinite(relmse) & (relmse > 0)).all():
         return None
     x, y = np.log(seconds), np.log(relmse)
+    if (x == x[:, :1]).all(axis=1).any():
+        return None
     x = x - x.mean(axis=1, keepdims=True)
     return of_mean((x * y).sum(axis=1) / (x**2).sum(axis=1), confidence)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.failure import Failure
+from validation.files import write_text
 
 FILE = "study.json"
 
@@ -97,9 +98,7 @@ class Outcome:
 def write(outcome: Outcome, folder: Path) -> Path:
     """Writes `study.json`, whole or not at all."""
     path = folder / FILE
-    partial = path.with_suffix(".partial")
-    partial.write_text(json.dumps(without_nan(asdict(outcome)), indent=1, allow_nan=False) + "\n")
-    partial.replace(path)
+    write_text(path, json.dumps(without_nan(asdict(outcome)), indent=1, allow_nan=False) + "\n")
     return path
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from validation.failure import Failure
+from validation.files import write_text
 from validation.places import ROOT
 from validation.study import curves, outcome, strips, summary
 from validation.study.outcome import Outcome
@@ -27,9 +28,7 @@ def run(folder: Path, output: Path) -> bool:
     output.mkdir(parents=True, exist_ok=True)
     curves.write(found, output / CURVES)
     strips.write(found, folder, output / STRIPS)
-    partial = (output / TABLE).with_suffix(".partial")
-    partial.write_text(summary.markdown(told(found), FIGURES))
-    partial.replace(output / TABLE)
+    write_text(output / TABLE, summary.markdown(told(found), FIGURES))
     print(f"{TABLE}, {CURVES} and {STRIPS} are in {output}")
     return True
 
@@ -43,11 +42,12 @@ def told(found: Outcome) -> Outcome:
     return replace(found, command=portable(found.command), scenes=scenes)
 
 
+OUTPUT = ("--output", "-o")
+
+
 def portable(command: str) -> str:
     """A command without the folder that it wrote into, its files named from the root of the repository."""
     words = shlex.split(command)
-    if "--output" in words:
-        place = words.index("--output")
-        del words[place : place + 2]
-    kept = [word for word in words if not word.startswith("--output=")]
+    before = ["", *words]
+    kept = [word for last, word in zip(before, words) if last not in OUTPUT and word not in OUTPUT and not word.startswith("--output=")]
     return shlex.join(word.removeprefix(f"{ROOT}/") for word in kept)

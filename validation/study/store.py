@@ -10,6 +10,7 @@ import numpy as np
 
 from validation import exr
 from validation.failure import Failure
+from validation.files import write_text
 from validation.study.measures import Measures
 from validation.study.outcome import without_nan
 
@@ -79,7 +80,4 @@ class Store:
     @staticmethod
     def write(path: Path, content: dict[str, Any]) -> None:
         """Writes so that no half file is ever taken for a whole one."""
-        path.parent.mkdir(parents=True, exist_ok=True)
-        partial = path.with_suffix(".partial")
-        partial.write_text(json.dumps(without_nan(content), allow_nan=False))
-        partial.replace(path)
+        write_text(path, json.dumps(without_nan(content), allow_nan=False))

@@ -1,6 +1,7 @@
 """What the renders of a scene amount to: the numbers of `study.json`, the images beside it, and tables."""
 
 import csv
+import io
 import math
 import shutil
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from validation import exr
+from validation.files import write_text
 from validation.study import intervals
 from validation.study.conduct import Found
 from validation.study.measures import NAMES
@@ -129,10 +131,11 @@ def rows(found: Found, store: Store) -> list[dict[str, object]]:
 
 def write_csv(path: Path, all_rows: list[dict[str, object]]) -> None:
     """`study.csv`."""
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(all_rows)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({name: "NaN" if value != value else value for name, value in row.items()} for row in all_rows)
+    write_text(path, text.getvalue())
 
 
 def markdown(outcome: Outcome, figures: str = "") -> str:

@@ -51,6 +51,11 @@ def test_the_slope_of_a_power_law_is_its_power(power: float) -> None:
     assert found and (found.mean, found.low, found.high) == pytest.approx((power, power, power))
 
 
+def test_one_time_has_no_slope() -> None:
+    seconds = np.array([[1.0, 2, 4], [0.1, 0.1, 0.1]])  # whose mean is not exactly any of them
+    assert intervals.of_slope(1 / np.array([[1.0, 2, 4], [1, 2, 4]]), seconds) is None
+
+
 def test_two_points_have_no_slope() -> None:
     assert intervals.of_slope(np.ones((8, 2)), np.ones((8, 2))) is None
 

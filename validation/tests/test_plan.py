@@ -93,6 +93,7 @@ def test_what_mitsuba_cannot_load_is_told() -> None:
         ("a.json --reference nowhere.exr", "no such reference"),
         ("a.json b/a.json", "one name"),
         ("a.json", "no such scene"),
+        ("--contenders pt,bdpt,pt", "names pt more than once"),
     ],
 )
 def test_what_makes_no_sense_is_refused(arguments: str, complaint: str, tmp_path: Path) -> None:

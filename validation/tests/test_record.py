@@ -72,6 +72,11 @@ def test_the_record_is_the_same_again_and_names_no_place(tmp_path: Path) -> None
     assert all(f"]({name})" in text for name in (record.CURVES, record.STRIPS))
 
 
+@pytest.mark.parametrize("place", ["--output a", "-o a", "--output=a", ""])
+def test_commands_do_not_tell_where_they_wrote(place: str) -> None:
+    assert record.portable(f"tyndall study {place} 'b c.xml' --seeds 4") == "tyndall study 'b c.xml' --seeds 4"
+
+
 def test_curves_are_where_the_numbers_are(tmp_path: Path) -> None:
     [first, *_] = curves.figure(study(tmp_path)).axes
     bdpt = first.get_lines()[0]
