@@ -40,6 +40,11 @@ def short(line: Line) -> str:
     )
 
 
+HOLDS = "holds"
+COARSELY = "holds, coarsely"
+"""So does a line that could have hidden more than it should."""
+
+
 @dataclass(frozen=True)
 class Table:
     """All lines, judged together."""
@@ -48,7 +53,7 @@ class Table:
     command: str
     """That made it."""
     perturbation: float
-    strict: bool
+    quick: bool
 
     def verdicts(self) -> list[str]:
         """A word for each line."""
@@ -62,7 +67,7 @@ class Table:
             return "KNOWN FLAW"
         if wrong:
             return "REFUSED"
-        return "TOO COARSE" if self.strict and self.coarse(line) else "holds"
+        return COARSELY if self.coarse(line) else HOLDS
 
     def coarse(self, line: Line) -> bool:
         """True if an error could hide here that the case says would not."""
@@ -78,7 +83,7 @@ class Table:
 
     def failing(self) -> list[Line]:
         """The lines that do not hold."""
-        return [line for line, verdict in zip(self.lines, self.verdicts()) if verdict not in ("holds", "KNOWN FLAW")]
+        return [line for line, verdict in zip(self.lines, self.verdicts()) if verdict not in (HOLDS, COARSELY, "KNOWN FLAW")]
 
     def flawed(self) -> int:
         """How many lines are off as is known."""
@@ -97,7 +102,8 @@ class Table:
         lost = sum(line.found.not_finite for line in self.lines if line.found)
         flawed = self.flawed()
         holding = f"{len(self.lines) - len(wrong) - flawed} of {len(self.lines)} lines hold"
-        return f"{holding}, {flawed} are off as is known, {lost} values are NaN or infinite{names}"
+        coarsely = self.verdicts().count(COARSELY)
+        return f"{holding} ({coarsely} of them resolve less than asked), {flawed} are off as is known, {lost} values are NaN or infinite{names}"
 
     def write(self, folder: Path) -> None:
         """stability.md and stability.json."""
@@ -106,7 +112,7 @@ class Table:
 
     def markdown(self) -> str:
         """The whole table, row by row."""
-        told = [] if self.strict else ["Made with fewer samples than usual (`--quick`): many lines resolve less than that."]
+        told = [] if not self.quick else ["Made with fewer samples than usual (`--quick`): many lines resolve less than that."]
         parts = [f"# Stability\n\n    {self.command}", INTRODUCTION, *told, self.summary().split("\n")[0] + "."]
         judged = list(zip(self.lines, self.verdicts()))
         for row, group in groupby(judged, key=lambda pair: pair[0].case.row):
@@ -170,7 +176,7 @@ INTRODUCTION = f"""Every number that a scene gives, at its extremes, against tru
 
 - expected, found: the mean over the image, of the channel that differs most; its standard error is that of the difference.
 - resolves: the relative difference that would have been refused all but surely. It must be below 2 % (light
-  tracing: 6 %), or the reason is told.
+  tracing: 6 %), or the reason is told; else the line is said to hold coarsely.
 - verdict: means of the image and of {4 * 4} tiles by Welch's test on independent images, all lines together by Holm's rule at
   significance {SIGNIFICANCE:g}.
 - NaN/inf: values of all images that are not finite; any is a failure.
