@@ -1,7 +1,9 @@
 //! What the tests of several rooms share: descriptions by hand and the chi-square test.
 
-use crate::description::{Location, Object, Position, Property, Value};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use crate::{
+    description::{Location, Object, Position, Property, Value},
+    study::chi_square,
+};
 use std::sync::Arc;
 
 /// A place for objects that come from no file.
@@ -25,30 +27,9 @@ pub fn object(plugin: &str, properties: &[(&str, Value)]) -> Object {
     }
 }
 
-/// The p-value of Pearson's chi-square test. Cells are pooled, in order, until each expects at least 5
-/// counts. More than a few counts where none are expected are a certain failure; a few may come from
-/// the corner of a cell that the quadrature of its expectation missed.
+/// The p-value of Pearson's chi-square test, see [`chi_square::chi_square`].
 pub fn chi_square(observed: &[u64], expected: &[f64]) -> f64 {
-    let impossible: u64 = observed.iter().zip(expected).filter(|(_, e)| **e < 1e-6).map(|(o, _)| o).sum();
-    if impossible > 3 {
-        return 0.0;
-    }
-    let mut cells: Vec<(f64, f64)> = vec![(0.0, 0.0)];
-    for (o, e) in observed.iter().zip(expected) {
-        if cells.last().is_some_and(|cell| cell.1 >= 5.0) {
-            cells.push((0.0, 0.0));
-        }
-        let cell = cells.last_mut().unwrap();
-        *cell = (cell.0 + *o as f64, cell.1 + e);
-    }
-    if cells.len() > 1 && cells.last().is_some_and(|cell| cell.1 < 5.0) {
-        let (o, e) = cells.pop().unwrap();
-        let cell = cells.last_mut().unwrap();
-        *cell = (cell.0 + o, cell.1 + e);
-    }
-    let statistic: f64 = cells.iter().map(|(o, e)| (o - e).powi(2) / e).sum();
-    let freedom = cells.len() - 1;
-    if freedom == 0 { 1.0 } else { ChiSquared::new(freedom as f64).unwrap().sf(statistic) }
+    chi_square::chi_square(observed, expected).p_value
 }
 
 /// The significance level of each of `tests` tests that makes 0.01 for all of them together (Sidak).

@@ -2,11 +2,12 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
 mod common;
+#[path = "common/instrument.rs"]
+mod instrument;
 
 use common::{Stage, pieces::*, strategies};
 use serde_json::{Value, json};
-use std::{path::PathBuf, process::Command};
-use tempfile::TempDir;
+use std::path::PathBuf;
 use tyndall::{
     math::Spectrum,
     render::{
@@ -125,27 +126,19 @@ fn a_sample_made_again_is_what_its_pass_adds() {
 }
 
 /// A folder with a scene, in which the program runs.
-struct Desk {
-    folder: TempDir,
-}
+struct Desk(instrument::Bench);
 
 impl Desk {
     fn new(scene: &Value) -> Self {
-        let desk = Self { folder: TempDir::new().unwrap() };
-        std::fs::write(desk.path("scene.json"), scene.to_string()).unwrap();
-        desk
+        Self(instrument::Bench::with_scene(scene))
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
+        self.0.path(name)
     }
 
-    /// Exit code, standard output, standard error.
     fn run(&self, words: &str) -> (Option<i32>, String, String) {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"));
-        let output = program.current_dir(self.folder.path()).args(words.split_whitespace()).output().unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        (output.status.code(), text(output.stdout), text(output.stderr))
+        self.0.run(words).told()
     }
 
     fn pixel(&self, words: &str) -> Value {

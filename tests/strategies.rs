@@ -3,15 +3,17 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
 mod common;
+#[path = "common/instrument.rs"]
+mod instrument;
 
 use common::{
     Stage,
     claims::{Claims, Sample},
     pieces::*,
 };
+use instrument::Bench as Desk;
 use serde_json::{Value, json};
-use std::{collections::BTreeMap, path::Path, process::Command};
-use tempfile::TempDir;
+use std::{collections::BTreeMap, path::Path};
 use tyndall::{
     math::Spectrum,
     render::{
@@ -151,35 +153,6 @@ fn every_strategy_alone_shows_the_same() {
     claims.settle();
 }
 
-/// A folder with a scene, in which the program runs.
-struct Desk {
-    folder: TempDir,
-}
-
-impl Desk {
-    fn new(scene: &Value) -> Self {
-        let desk = Self { folder: TempDir::new().unwrap() };
-        std::fs::write(desk.path("scene.json"), scene.to_string()).unwrap();
-        desk
-    }
-
-    fn path(&self, name: &str) -> std::path::PathBuf {
-        self.folder.path().join(name)
-    }
-
-    /// Exit code, standard output, standard error.
-    fn run(&self, words: &str) -> (Option<i32>, String, String) {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"));
-        let output = program.current_dir(self.folder.path()).args(words.split_whitespace()).output().unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        (output.status.code(), text(output.stdout), text(output.stderr))
-    }
-
-    fn json(&self, name: &str) -> Value {
-        serde_json::from_str(&std::fs::read_to_string(self.path(name)).unwrap()).unwrap()
-    }
-}
-
 /// All channels of an OpenEXR file.
 fn channels(path: &Path) -> BTreeMap<String, Vec<f32>> {
     use exr::prelude::*;
@@ -197,9 +170,9 @@ fn shares(cells: &[Value], key: &str) -> f64 {
 
 #[test]
 fn the_program_writes_tables_layers_and_sheets() {
-    let desk = Desk::new(&foggy_room(medium(1.0, 0.8, 0.3)));
+    let desk = Desk::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
     let (code, out, err) =
-        desk.run("strategies scene.json -o deep/er --spp 6 --pilots 20 --depth 3 --seed 4");
+        desk.run("strategies scene.json -o deep/er --spp 6 --pilots 20 --depth 3 --seed 4").told();
     assert_eq!(code, Some(0), "{err}");
     for word in
         ["next-event", "eye walks", "light walks", "covariances", "advice:", "without join,lens", "exposure"]
@@ -241,8 +214,8 @@ fn the_program_writes_tables_layers_and_sheets() {
 
 #[test]
 fn what_a_scene_needs_is_not_left_out() {
-    let desk = Desk::new(&glass_ball());
-    let (code, out, err) = desk.run("strategies scene.json --spp 2 --pilots 1 --depth 2 --size 4x4");
+    let desk = Desk::with_scene(&glass_ball());
+    let (code, out, err) = desk.run("strategies scene.json --spp 2 --pilots 1 --depth 2 --size 4x4").told();
     assert_eq!(code, Some(0), "{err}");
     assert!(out.contains("cannot make: light of area, sky or medium by smooth"), "{out}");
     let subsets = desk.json("scene-strategies/strategies.json")["subsets"].clone();
@@ -251,7 +224,8 @@ fn what_a_scene_needs_is_not_left_out() {
         assert_eq!(set["lacks"].is_string(), without_hit, "{set}");
         assert_eq!(set["gain"].is_null(), without_hit, "{set}");
     }
-    let (code, out, err) = desk.run("strategies scene.json --spp 1 --pilots 0 --integrator pt --size 4x4");
+    let (code, out, err) =
+        desk.run("strategies scene.json --spp 1 --pilots 0 --integrator pt --size 4x4").told();
     assert_eq!(code, Some(0), "{err}");
     assert!(!out.contains("advice") && !out.contains("  join ") && out.contains("next-event"), "{out}");
     assert!(desk.json("scene-strategies/strategies.json")["variance"].is_null(), "one pass has none");
@@ -259,7 +233,7 @@ fn what_a_scene_needs_is_not_left_out() {
 
 #[test]
 fn what_cannot_be_done_is_refused() {
-    let desk = Desk::new(&foggy_room(medium(1.0, 0.8, 0.3)));
+    let desk = Desk::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
     for (words, hints) in [
         ("strategies scene.json --depth 0", vec!["--depth", "1"]),
         ("strategies scene.json --integrator fog", vec!["paths", "--integrator bdpt"]),
@@ -267,7 +241,7 @@ fn what_cannot_be_done_is_refused() {
         ("strategies scene.json --size 12000x12000", vec!["GiB", "--size", "--depth"]),
         ("strategies none.json", vec!["none.json"]),
     ] {
-        let (code, _, err) = desk.run(words);
+        let (code, _, err) = desk.run(words).told();
         assert_eq!(code, Some(2), "{words}: {err}");
         assert!(hints.iter().all(|hint| err.contains(hint)) && !err.contains("panicked"), "{words}: {err}");
     }
@@ -276,10 +250,10 @@ fn what_cannot_be_done_is_refused() {
 /// What a strategy is called is how it is typed.
 #[test]
 fn kinds_are_called_as_they_are_typed() {
-    let desk = Desk::new(&foggy_room(medium(1.0, 0.8, 0.3)));
+    let desk = Desk::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
     for kind in StrategyKind::ALL {
         let words = format!("render scene.json --spp 1 --size 2x2 --strategies {}", kind.name());
-        let (code, _, err) = desk.run(&words);
+        let (code, _, err) = desk.run(&words).told();
         assert_eq!(code, Some(0), "{err}");
     }
 }

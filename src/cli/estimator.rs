@@ -3,6 +3,7 @@
 use super::arguments;
 use crate::{
     error::{Error, Result},
+    render::{Settings, budget::Budget},
     sampling::Sampler,
     scene::{
         build::Setup,
@@ -15,8 +16,14 @@ use crate::{
     },
 };
 
+/// A render of `setup` with `budget`, its paths made as asked.
+pub fn settings(asked: &arguments::Estimator, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
+    let options = options(asked, setup, seed)?;
+    Ok(Settings { options, budget, seed, profile: profile(asked, setup) })
+}
+
 /// The compiled estimator.
-pub fn profile(asked: &arguments::Estimator, setup: &Setup) -> ProfileName {
+fn profile(asked: &arguments::Estimator, setup: &Setup) -> ProfileName {
     let profile = match asked.profile {
         arguments::Profile::Everything => ProfileName::Everything,
         arguments::Profile::Fitted => {
@@ -31,7 +38,7 @@ fn heuristic(asked: &arguments::Estimator, setup: &Setup) -> Heuristic {
 }
 
 /// What the estimator does; where nothing is asked for, as the scene says.
-pub fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result<Options> {
+fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result<Options> {
     let strategies = strategies(asked, setup.integrator.method)?;
     if strategies == Strategies::NONE && asked.max_depth.is_some() {
         super::complain("warning: --max-depth has no effect: the integrator fog makes no paths");

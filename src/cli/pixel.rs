@@ -4,12 +4,7 @@ use super::{
     arguments::{Estimator, Scene, Size, positive_u32, size, threads},
     estimator, load, say,
 };
-use crate::{
-    error::Result,
-    film,
-    render::{Settings, budget::Budget},
-    study::pixel,
-};
+use crate::{error::Result, film, render::budget::Budget, study::pixel};
 use clap::Args;
 use std::{io::Write as _, num::NonZeroUsize, path::PathBuf};
 
@@ -60,12 +55,8 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
-    let settings = Settings {
-        options: estimator::options(&arguments.estimator, &setup, arguments.seed)?,
-        budget: Budget { samples_per_pixel: None, time: None },
-        seed: arguments.seed,
-        profile: estimator::profile(&arguments.estimator, &setup),
-    };
+    let budget = Budget { samples_per_pixel: None, time: None };
+    let settings = estimator::settings(&arguments.estimator, &setup, arguments.seed, budget)?;
     let at = [arguments.x, arguments.y];
     let pool = super::threads(arguments.threads)?;
     let found =

@@ -151,10 +151,10 @@ fn figures(image: &Image, task: &Task) -> serde_json::Value {
 }
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
-    let options = estimator::options(&arguments.estimator, setup, arguments.seed)?;
-    let profile = estimator::profile(&arguments.estimator, setup);
-    let budget = budget(arguments, setup, options.strategies == Strategies::NONE);
-    Ok(Settings { options, budget, seed: arguments.seed, profile })
+    let endless = Budget { samples_per_pixel: None, time: None };
+    let settings = estimator::settings(&arguments.estimator, setup, arguments.seed, endless)?;
+    let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
+    Ok(Settings { budget, ..settings })
 }
 
 /// Samples per pixel of a preview are no more than these, unless they are asked for.

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    render::{Settings, budget::Budget},
+    render::budget::Budget,
     study::strategies::{self, Plan},
 };
 use clap::Args;
@@ -57,12 +57,8 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
-    let settings = Settings {
-        options: estimator::options(&arguments.estimator, &setup, arguments.seed)?,
-        budget: Budget { samples_per_pixel: None, time: None },
-        seed: arguments.seed,
-        profile: estimator::profile(&arguments.estimator, &setup),
-    };
+    let budget = Budget { samples_per_pixel: None, time: None };
+    let settings = estimator::settings(&arguments.estimator, &setup, arguments.seed, budget)?;
     let passes = arguments.spp.map_or(setup.samples_per_pixel, u64::from) as usize;
     let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);
     let plan = Plan { depth: arguments.depth, passes, pilots };

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     description::Object,
     error::{Error, Result},
-    render::{Settings, budget::Budget},
+    render::budget::Budget,
     scene::{
         self, Sources,
         build::{self, Overrides, Setup},
@@ -321,13 +321,12 @@ impl<'a> Stage<'a> {
     fn enter(&mut self, scene: usize, words: &str) -> Result<Entry> {
         let asked = contenders::parse("contender", words)?;
         let (setup, load_seconds) = self.setup(scene, asked.tracker)?;
-        let options = estimator::options(&asked, &setup, 0)?;
-        if options.strategies == Strategies::NONE {
+        let budget = Budget { samples_per_pixel: Some(1), time: None };
+        let settings = estimator::settings(&asked, &setup, 0, budget)?;
+        if settings.options.strategies == Strategies::NONE {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));
         }
-        let budget = Budget { samples_per_pixel: Some(1), time: None };
-        let settings = Settings { options, budget, seed: 0, profile: estimator::profile(&asked, &setup) };
         let still = setup.scene.media.iter().all(|medium| medium.varying.is_none());
         let idle = (asked.tracker.is_some() && still).then(|| IDLE_TRACKER.to_owned());
         Ok(Entry { setup, settings, load_seconds, notes: idle.into_iter().collect() })

@@ -12,6 +12,7 @@ mod compiled;
 mod fog;
 pub mod parts;
 mod primary;
+mod recorder;
 pub mod sample;
 mod watch;
 

@@ -36,8 +36,8 @@ fn passed(scene: &Scene, point: &SurfacePoint, direction: Vec3, hidden: bool) ->
 }
 
 /// The rest of a ray beyond a surface point that it crosses, and how far beyond the surface it starts [m]: what was
-/// skipped to be clear of the surface still counts as way through a homogeneous medium there. In media whose mean free path is
-/// some hundreds of rounding errors, light would otherwise always start too deep.
+/// skipped to be clear of the surface still counts as way through a homogeneous medium there. In media whose mean free
+/// path is some hundreds of rounding errors, light would otherwise always start too deep.
 #[inline]
 fn past(ray: &Ray, point: &SurfacePoint) -> (Ray, f32) {
     let origin = offset::leave_surface(point.position, point.error, point.normal, ray.direction);

@@ -16,6 +16,13 @@ impl Bench {
         Self(TempDir::new().unwrap())
     }
 
+    /// One with `scene.json` in it.
+    pub fn with_scene(scene: &serde_json::Value) -> Self {
+        let bench = Self::new();
+        std::fs::write(bench.path("scene.json"), scene.to_string()).unwrap();
+        bench
+    }
+
     /// Where a file of this name lies.
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
@@ -60,6 +67,11 @@ pub struct Run {
 }
 
 impl Run {
+    /// Exit code, standard output, standard error.
+    pub fn told(&self) -> (Option<i32>, String, String) {
+        (self.output.status.code(), self.out(), self.err())
+    }
+
     /// Standard output.
     pub fn out(&self) -> String {
         String::from_utf8(self.output.stdout.clone()).unwrap()

@@ -4,9 +4,12 @@
 use crate::{
     math::Spectrum,
     render::bench::Bench,
-    study::{metrics::FLOOR, outcome::Interval},
+    study::{
+        interval::{self, Mean},
+        metrics::FLOOR,
+        outcome::Interval,
+    },
 };
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Confidence of every interval.
 pub const CONFIDENCE: f64 = 0.95;
@@ -84,10 +87,8 @@ pub fn gain(full: &[Turn], other: &[Turn]) -> Option<Interval> {
     let log = |without| (product(full, without) / product(other, without)).ln();
     let (n, all) = (full.len() as f64, log(None));
     let values: Vec<f64> = (0..full.len()).map(|turn| n * all - (n - 1.0) * log(Some(turn))).collect();
-    let mean = values.iter().sum::<f64>() / n;
-    let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0) / n;
-    let quantile = StudentsT::new(0.0, 1.0, n - 1.0).ok()?.inverse_cdf(0.5 + 0.5 * CONFIDENCE);
-    let half = quantile * variance.sqrt();
+    let Mean { error, freedom, .. } = Mean::of(&values);
+    let half = interval::quantile(freedom, CONFIDENCE) * error;
     let found = all.is_finite() && half.is_finite();
     found.then(|| Interval { mean: all.exp(), low: (all - half).exp(), high: (all + half).exp() })
 }
