@@ -46,7 +46,6 @@ fn figures_are_printed_and_written() {
     assert!((number("/radiance/relmse") - 9.0 / 4.01 / 192.0).abs() < 1e-6);
     assert!((number("/radiance/ratio/1") - 211.0 / 208.0).abs() < 1e-6);
     assert!(number("/display/mse") > 0.0 && number("/display/mse") < 1e-3);
-    #[cfg(feature = "flip")]
     assert!(number("/flip") > 0.0 && number("/flip") < 0.2);
     let map = image::open(bench.path("d.png")).unwrap().to_rgb8();
     let brightness = |x, y| map.get_pixel(x, y).0.iter().map(|c| u32::from(*c)).sum::<u32>();

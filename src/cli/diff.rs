@@ -172,17 +172,14 @@ pub fn run(arguments: &Diff) -> Result<bool> {
 /// The measures that have limits.
 fn measured(arguments: &Diff, difference: &Difference) -> Result<Vec<f64>> {
     let value = |limit: &Limit| {
-        difference.measure(&limit.measure).ok_or_else(|| unknown("--fail-above", &limit.measure, difference))
+        difference.measure(&limit.measure).ok_or_else(|| unknown("--fail-above", &limit.measure))
     };
     arguments.fail_above.iter().map(value).collect()
 }
 
-/// Why there is no such measure of these images.
-fn unknown(place: &str, measure: &str, difference: &Difference) -> Error {
-    let (found, remedy) = match difference.display {
-        None => ("a layer that is no colours", "leave it out, or compare layers of R G B"),
-        Some(_) => ("a program built without FLIP", "build with the feature flip, which is on by default"),
-    };
+/// There is no such measure of these images.
+fn unknown(place: &str, measure: &str) -> Error {
+    let (found, remedy) = ("a layer that is no colours", "leave it out, or compare layers of R G B");
     Error::new(place, format!("images of which {measure} is known"), found, remedy)
 }
 
@@ -199,7 +196,7 @@ fn judge(limits: &[Limit], values: &[f64]) -> bool {
 
 fn mapped(arguments: &Diff, image: &Picture, reference: &Picture, difference: &Difference) -> Result<Mapped> {
     let mapped = difference::map(arguments.map_of.of(), image, reference, difference, arguments.map_to);
-    mapped.ok_or_else(|| unknown("--map-of", "FLIP", difference))
+    mapped.ok_or_else(|| unknown("--map-of", "FLIP"))
 }
 
 fn legend(shows: Shows, mapped: &Mapped) -> String {
@@ -297,12 +294,9 @@ fn describe_tolerance(tolerance: Tolerance) -> String {
 
 fn describe_flip(arguments: &Diff, difference: &Difference) -> String {
     let per_degree = arguments.pixels_per_degree;
-    match (difference.measure("flip"), &difference.display) {
-        (Some(mean), _) => {
-            row("FLIP, mean", &[String::new(), format!("{mean:.4} ({per_degree} pixels/degree)")])
-        }
-        (None, Some(_)) => "FLIP: not known, this program was built without the feature flip".into(),
-        (None, None) => "FLIP: none, the layer is no colours".into(),
+    match difference.measure("flip") {
+        Some(mean) => row("FLIP, mean", &[String::new(), format!("{mean:.4} ({per_degree} pixels/degree)")]),
+        None => "FLIP: none, the layer is no colours".into(),
     }
 }
 
@@ -322,7 +316,7 @@ fn figures(arguments: &Diff, image: &Picture, difference: &Difference) -> Value 
             ToneCurve::White(white) => json!({ "white": white }),
             ToneCurve::Scale(scale) => json!({ "scale": scale }),
         }),
-        "flip": shown.and_then(|shown| shown.mean_flip()),
+        "flip": shown.map(difference::Shown::mean_flip),
         "pixels_per_degree": arguments.pixels_per_degree,
     })
 }

@@ -10,7 +10,7 @@
 use super::output;
 use crate::{
     error::Result,
-    math::{Spectrum, SpectrumExt},
+    math::{Spectrum, SpectrumExt, srgb},
 };
 use image::{ExtendedColorType, ImageEncoder, ImageError, codecs::png::PngEncoder};
 use std::{io, path::Path};
@@ -59,7 +59,7 @@ impl ToneCurve {
             Self::White(white) => displayed(shown(pixel), white),
             Self::Scale(scale) => (shown(pixel) * scale).min(Spectrum::ONE),
         };
-        Spectrum::from_array(shown.to_array().map(srgb))
+        Spectrum::from_array(shown.to_array().map(srgb::encode))
     }
 }
 
@@ -98,12 +98,6 @@ fn displayed(pixel: Spectrum, white: f32) -> Spectrum {
     }
     let grey = Spectrum::splat(mapped);
     grey + (scaled - grey) * ((1.0 - mapped) / (most - mapped))
-}
-
-/// The sRGB transfer function (IEC 61966-2-1), from linear to encoded.
-fn srgb(linear: f32) -> f32 {
-    let c = linear.clamp(0.0, 1.0);
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// The nearest byte for an encoded channel in [0, 1].

@@ -13,6 +13,7 @@ pub mod offset;
 pub mod section;
 pub mod similarity;
 pub mod spectrum;
+pub mod srgb;
 pub mod warp;
 pub mod wrap;
 

@@ -101,15 +101,14 @@ pub struct Shown {
     pub curve: ToneCurve,
     /// The measures.
     pub comparison: Comparison,
-    /// LDR-FLIP of every pixel, in [0, 1]; none if the program was built without it.
-    pub flip: Option<Vec<f32>>,
+    /// LDR-FLIP of every pixel, in [0, 1].
+    pub flip: Vec<f32>,
 }
 
 impl Shown {
     /// Mean of FLIP.
-    pub fn mean_flip(&self) -> Option<f64> {
-        let flip = self.flip.as_ref()?;
-        Some(flip.iter().map(|value| f64::from(*value)).sum::<f64>() / flip.len() as f64)
+    pub fn mean_flip(&self) -> f64 {
+        self.flip.iter().map(|value| f64::from(*value)).sum::<f64>() / self.flip.len() as f64
     }
 }
 
@@ -142,7 +141,7 @@ impl Difference {
         let display = self.display.as_ref();
         match name.strip_prefix("display.") {
             Some(name) => display?.comparison.measure(name),
-            None if name == "flip" => display?.mean_flip(),
+            None if name == "flip" => display.map(Shown::mean_flip),
             None => self.radiance.measure(name),
         }
     }
@@ -178,7 +177,7 @@ fn shown(image: &Picture, reference: &Picture, channels: usize, view: &View) -> 
     let curve = view.curve.unwrap_or_else(|| ToneCurve::of(&reference.pixels));
     let [image_shown, reference_shown] =
         [image, reference].map(|p| p.pixels.iter().map(|pixel| curve.show(*pixel)).collect::<Vec<_>>());
-    let flip = flip::map([&image_shown, &reference_shown], image.width, image.height, view.pixels_per_degree);
+    let flip = flip::map([&image_shown, &reference_shown], image.width, view.pixels_per_degree);
     let comparison = comparison([&image_shown, &reference_shown], image.width, channels, view.tolerance);
     Shown { curve, comparison, flip }
 }

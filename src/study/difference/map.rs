@@ -48,7 +48,7 @@ pub fn map(
         MapOf::Relative => of_pixels(metrics::relative_square),
         MapOf::Absolute => of_pixels(|x, r| (x - r).abs()),
         MapOf::Signed => of_pixels(|x, r| x - r),
-        MapOf::Flip => difference.display.as_ref()?.flip.clone()?,
+        MapOf::Flip => difference.display.as_ref()?.flip.clone(),
     };
     let most = most.unwrap_or_else(|| if of == MapOf::Flip { 1.0 } else { end(&values) });
     let range = (if of == MapOf::Signed { -most } else { 0.0 }, most);

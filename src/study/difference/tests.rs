@@ -70,7 +70,6 @@ fn pictures_that_do_not_match_are_explained() {
     assert!(compare(&depth, &depth, files(), &view).unwrap().display.is_none());
 }
 
-#[cfg(feature = "flip")]
 #[test]
 fn flip_is_nothing_for_equal_and_nearly_one_for_opposite_images() {
     let flat = |value: f32| picture(16, &[Spectrum::splat(value); 256]);
