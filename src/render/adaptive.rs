@@ -7,11 +7,14 @@
 //! What light walks bring to the film is a mean over passes too, of every pixel at once: it ends for a half where the
 //! last pixel of the other half is content.
 
-use super::{BLOCKS_AT_ONCE, Job, Progress, block::Outcome, budget::Budget, watch::Clock};
-use crate::{
-    math::{DVec3, Spectrum, spectrum::LUMINANCE},
-    transport::profile::Profile,
+use super::{
+    Progress,
+    bench::{BLOCKS_AT_ONCE, Bench},
+    block::Outcome,
+    budget::Budget,
+    watch::Clock,
 };
+use crate::math::{DVec3, Spectrum, spectrum::LUMINANCE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -225,8 +228,8 @@ impl Limits {
 }
 
 /// The two halves at work.
-pub(super) struct Adaptive<'a, P: Profile> {
-    job: &'a Job<'a, P>,
+pub(super) struct Adaptive<'a> {
+    bench: &'a Bench<'a>,
     clock: &'a Clock,
     precision: Precision,
     halves: [Half; 2],
@@ -235,12 +238,12 @@ pub(super) struct Adaptive<'a, P: Profile> {
     samples: Vec<u32>,
 }
 
-impl<'a, P: Profile> Adaptive<'a, P> {
+impl<'a> Adaptive<'a> {
     /// Nothing done yet.
-    pub fn new(job: &'a Job<'a, P>, precision: Precision, clock: &'a Clock) -> Self {
-        let pixels = job.film.len();
+    pub fn new(bench: &'a Bench<'a>, precision: Precision, clock: &'a Clock) -> Self {
+        let pixels = bench.film.len();
         let halves = [Half::new(pixels), Half::new(pixels)];
-        Self { job, clock, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
+        Self { bench, clock, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
     }
 
     /// Renders until every pixel is content or the budget is spent.
@@ -259,8 +262,8 @@ impl<'a, P: Profile> Adaptive<'a, P> {
 
     /// Renders until both halves have `goal` passes; false if the budget ends before.
     fn advance(&mut self, goal: u64, progress: &mut dyn FnMut(Progress)) -> bool {
-        let count = self.job.blocks.count();
-        let Budget { samples_per_pixel, time } = self.job.settings.budget;
+        let count = self.bench.compiled.blocks().count();
+        let Budget { samples_per_pixel, time } = self.bench.settings.budget;
         let end = samples_per_pixel.unwrap_or(u64::MAX).min(2 * goal);
         let mut eye = vec![DVec3::ZERO; self.active.len()];
         let mut light = eye.clone();
@@ -287,15 +290,8 @@ impl<'a, P: Profile> Adaptive<'a, P> {
 
     /// Renders the active pixels of blocks, and their light walks.
     fn work(&self, tasks: std::ops::Range<usize>) -> Vec<Outcome> {
-        let Job { estimator, film, blocks, settings, .. } = *self.job;
-        let (count, active) = (blocks.count(), &self.active);
-        tasks
-            .into_par_iter()
-            .map(|task| {
-                let (pass, block) = (task / count, task % count);
-                blocks.render(estimator, film, settings.seed, pass, block, |pixel| active[pixel])
-            })
-            .collect()
+        let wants = |pixel: usize| self.active[pixel];
+        self.bench.work(tasks, |pass, block| self.bench.compiled.render(pass, block, &wants))
     }
 
     fn passes(&self) -> u64 {
@@ -317,7 +313,7 @@ impl<'a, P: Profile> Adaptive<'a, P> {
         if passes < 2 {
             return;
         }
-        let width = self.job.film.width as usize;
+        let width = self.bench.film.width as usize;
         let limits = Limits::after(passes, self.precision);
         self.halves.iter_mut().for_each(|half| half.judge(&self.active, width, &limits));
         let [first, second] = &mut self.halves;
@@ -334,7 +330,7 @@ impl<'a, P: Profile> Adaptive<'a, P> {
     }
 
     fn progress(&self, tasks: usize) -> Progress {
-        let samples = (tasks as u64 * self.active.len() as u64) / self.job.blocks.count() as u64;
+        let samples = (tasks as u64 * self.active.len() as u64) / self.bench.compiled.blocks().count() as u64;
         let (passes, elapsed) = (self.passes(), self.clock.elapsed());
         Progress { samples, passes, elapsed, noise: None, within: Some(self.share()) }
     }

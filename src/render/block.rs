@@ -1,10 +1,14 @@
 //! A block: a fixed set of pixels scattered over the image, rendered together with a light cache of their own.
 
-use super::fog::{PILOT_RAYS, Preview};
+use super::{
+    compiled::Ready,
+    fog::{PILOT_RAYS, Preview},
+};
 use crate::{
     film::Film,
     math::{DVec3, Lanes, Spectrum, Vec2},
     sampling::{Sampler, Stream, stream::Purpose},
+    scene::Scene,
     shape::Ray,
     transport::{
         Estimator, Joined, LightCache, Sums,
@@ -70,12 +74,12 @@ impl Outcome {
 }
 
 impl Blocks {
-    /// Divides `pixels` for estimators of profile `P`, whose walks draw from streams of `sampler`.
-    pub fn new<P: Profile>(pixels: usize, sampler: Sampler) -> Self {
+    /// Divides `pixels` for estimators of so many hero channels, whose walks draw from streams of `sampler`.
+    pub fn new(pixels: usize, heroes: usize, sampler: Sampler) -> Self {
         let count = pixels.div_ceil(PIXELS_PER_BLOCK).max(1);
         let golden = (pixels as f64 * 0.618_033_988_75) as usize;
         let stride = (golden.max(1)..).find(|s| gcd(*s, pixels) == 1).unwrap_or(1);
-        let heroes = P::Lanes::COUNT as u64;
+        let heroes = heroes as u64;
         let walks_per_block = (pixels.div_ceil(count) as u64).div_ceil(heroes) * heroes;
         Self { pixels, count, stride, walks_per_block, heroes, sampler }
     }
@@ -103,18 +107,11 @@ impl Blocks {
 
     /// Where the eye walk of `pixel` in `pass` starts.
     #[inline]
-    pub fn eye_start<P: Profile>(
-        &self,
-        estimator: &Estimator<'_, P>,
-        film: &Film,
-        seed: u64,
-        pass: usize,
-        pixel: usize,
-    ) -> EyeStart {
+    pub fn eye_start(&self, scene: &Scene, film: &Film, seed: u64, pass: usize, pixel: usize) -> EyeStart {
         let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, Purpose::Eye);
         let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
         let (position, weight) = film.sample(pixel, &mut stream);
-        let aperture = estimator.sample_aperture(&mut stream);
+        let aperture = scene.sensor.sample_aperture(&mut stream);
         EyeStart { stream, hero, position, aperture, weight }
     }
 
@@ -133,17 +130,16 @@ impl Blocks {
     /// Renders one sample of every pixel of `block` that `wants` one.
     pub fn render<P: Profile>(
         &self,
-        estimator: &Estimator<'_, P>,
-        film: &Film,
-        seed: u64,
+        ready: &Ready<'_, P>,
         pass: usize,
         block: usize,
-        wants: impl Fn(usize) -> bool,
+        wants: &dyn Fn(usize) -> bool,
     ) -> Outcome {
+        let Ready { estimator, scene, film, seed, .. } = ready;
         let mut light = Splatted { film, values: Vec::new() };
-        let cache = self.trace_light(estimator, seed, pass, block, &mut light);
+        let cache = self.trace_light(estimator, *seed, pass, block, &mut light);
         let eye = self.pixels(block).filter(|pixel| wants(*pixel)).map(|pixel| {
-            let start = self.eye_start(estimator, film, seed, pass, pixel);
+            let start = self.eye_start(scene, film, *seed, pass, pixel);
             let (weight, sum) = (start.weight, start.trace(estimator, &cache, Sum::default()));
             (pixel as u32, sum.radiance * weight)
         });
@@ -198,27 +194,19 @@ impl EyeStart {
 
 impl Blocks {
     /// Shows one sample of every pixel of `block` as a preview.
-    pub fn show<P: Profile>(
-        &self,
-        estimator: &Estimator<'_, P>,
-        preview: &Preview<'_>,
-        film: &Film,
-        seed: u64,
-        pass: usize,
-        block: usize,
-    ) -> Outcome {
+    pub fn show(&self, preview: &Preview<'_>, film: &Film, seed: u64, pass: usize, block: usize) -> Outcome {
         let eye = self.pixels(block).map(|pixel| {
-            let mut start = self.eye_start(estimator, film, seed, pass, pixel);
-            let ray = estimator.primary_ray(start.position, start.aperture);
+            let mut start = self.eye_start(preview.scene, film, seed, pass, pixel);
+            let ray = preview.scene.sensor.ray(start.position, start.aperture).ray;
             (pixel as u32, preview.radiance(ray, &mut start.stream) * start.weight)
         });
         Outcome { eye: eye.collect(), light: Vec::new() }
     }
 
     /// Rays through pixels all over the film, with random numbers of their own.
-    pub fn pilot_rays<'a, P: Profile>(
+    pub fn pilot_rays<'a>(
         &'a self,
-        estimator: &'a Estimator<'_, P>,
+        scene: &'a Scene,
         film: &'a Film,
         seed: u64,
     ) -> impl Iterator<Item = (Ray, Stream)> + 'a {
@@ -226,8 +214,8 @@ impl Blocks {
             let pixel = (index as u128 * self.pixels as u128 / PILOT_RAYS as u128) as usize;
             let mut stream = Stream::new(seed, index as u64, 0, Purpose::Pilot);
             let (position, _) = film.sample(pixel, &mut stream);
-            let aperture = estimator.sample_aperture(&mut stream);
-            (estimator.primary_ray(position, aperture), stream)
+            let aperture = scene.sensor.sample_aperture(&mut stream);
+            (scene.sensor.ray(position, aperture).ray, stream)
         })
     }
 }
@@ -260,16 +248,15 @@ fn gcd(a: usize, b: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transport::profile::{Everything, Vacuum};
 
     #[test]
     fn blocks_hold_every_pixel_once() {
         for pixels in [1, 2, 7, 1024, 1025, 48 * 48, 640 * 480] {
-            let blocks = Blocks::new::<Vacuum>(pixels, Sampler::Independent);
+            let blocks = Blocks::new(pixels, 1, Sampler::Independent);
             let mut seen = vec![0; pixels];
             (0..blocks.count()).flat_map(|b| blocks.pixels(b)).for_each(|p| seen[p] += 1);
             assert!(seen.iter().all(|n| *n == 1), "{pixels}");
-            assert_eq!(Blocks::new::<Everything>(pixels, Sampler::Sobol).walks_per_block() % 3, 0);
+            assert_eq!(Blocks::new(pixels, 3, Sampler::Sobol).walks_per_block() % 3, 0);
         }
     }
 }

@@ -1,9 +1,6 @@
 //! How long each strategy takes: the time of its joins, and that of the walks.
 
-use super::{
-    bench::{Bench, Ready},
-    parts::Cells,
-};
+use super::{bench::Bench, compiled::Ready, parts::Cells};
 use crate::{
     film::Film,
     math::Vec2,
@@ -49,14 +46,14 @@ impl Times {
 
 /// The times of a block.
 pub(super) fn block<P: Profile>(ready: &Ready<'_, P>, cells: Cells, pass: usize, block: usize) -> Times {
-    let Ready { estimator, blocks, film, seed } = ready;
+    let Ready { estimator, blocks, scene, film, seed } = ready;
     let mut watch = Watch::new(film, cells);
     let mut recorder: &mut dyn Recorder<P::Sums> = &mut watch;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut recorder);
     let light_walks = watch.rest();
     for pixel in blocks.pixels(block) {
         let recorder: &mut dyn Recorder<P::Sums> = &mut watch;
-        blocks.eye_start(estimator, film, *seed, pass, pixel).trace(estimator, &cache, recorder);
+        blocks.eye_start(scene, film, *seed, pass, pixel).trace(estimator, &cache, recorder);
     }
     let eye_walks = watch.rest();
     let tries = watch.joins.iter().map(|spans| spans.len() as u64).collect();

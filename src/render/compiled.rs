@@ -1,36 +1,107 @@
-//! Which compiled estimator does a piece of work: chosen once, outermost.
+//! The compiled estimator: chosen once, outermost. What lies behind [`Compiled`] is compiled for every profile, so only
+//! what walks through the scene belongs there; loops over passes, sums and files are compiled once.
 
-use super::Settings;
-use crate::transport::{
-    Heuristic,
-    profile::{
-        Bounded, ByCutoff, ByMaximum, ByPower, ByUniform, ChromaticFog, Everything, Fire, Fog, Profile,
-        ProfileName, Smoke, Vacuum,
+use super::{
+    Settings,
+    block::{Blocks, Outcome},
+    clock::{self, Times},
+    parts::{self, Cells, Part},
+    sample::{self, EyeSample, Splat, Walk},
+};
+use crate::{
+    film::Film,
+    math::{Lanes, Spectrum},
+    sampling::Stream,
+    scene::Scene,
+    shape::Ray,
+    transport::{
+        Estimator, Heuristic,
+        profile::{
+            Bounded, ByCutoff, ByMaximum, ByPower, ByUniform, ChromaticFog, Everything, Fire, Fog, Profile,
+            ProfileName, Smoke, Vacuum,
+        },
     },
 };
 
-/// Work that is compiled for every profile.
-pub trait Work {
-    /// What comes of it.
-    type Output;
-
-    /// Does it with estimators of profile `P`.
-    fn by<P: Profile>(self) -> Self::Output;
+/// What every estimator can do, whatever its profile: whole blocks and walks, so that the call costs nothing.
+pub(super) trait Compiled: Sync {
+    /// How pixels are divided.
+    fn blocks(&self) -> &Blocks;
+    /// See [`Blocks::render`].
+    fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome;
+    /// See [`Estimator::transmittance`].
+    fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum;
+    /// See [`parts::block`].
+    fn parts(&self, cells: Cells, pass: usize, block: usize) -> Vec<Part>;
+    /// See [`clock::block`].
+    fn time(&self, cells: Cells, pass: usize, block: usize) -> Times;
+    /// See [`sample::eye`].
+    fn eye_sample(&self, pass: usize, block: usize, pixel: usize) -> EyeSample;
+    /// See [`sample::splats`].
+    fn splats(&self, pass: usize, block: usize, pixel: usize) -> Vec<Splat>;
+    /// See [`sample::light_walk`].
+    fn light_walk(&self, pass: usize, walk: u64) -> Walk;
 }
 
-/// Does `work` with the profile that `settings` name, or the one that their heuristic is compiled for.
-pub fn choose<W: Work>(settings: &Settings, work: W) -> W::Output {
-    match (settings.options.heuristic, settings.profile) {
-        (Heuristic::Power, _) => work.by::<ByPower>(),
-        (Heuristic::Maximum, _) => work.by::<ByMaximum>(),
-        (Heuristic::Cutoff { .. }, _) => work.by::<ByCutoff>(),
-        (Heuristic::Uniform, _) => work.by::<ByUniform>(),
-        (Heuristic::Balance, ProfileName::Vacuum) => work.by::<Vacuum>(),
-        (Heuristic::Balance, ProfileName::Fog) => work.by::<Fog>(),
-        (Heuristic::Balance, ProfileName::Bounded) => work.by::<Bounded>(),
-        (Heuristic::Balance, ProfileName::Smoke) => work.by::<Smoke>(),
-        (Heuristic::Balance, ProfileName::Fire) => work.by::<Fire>(),
-        (Heuristic::Balance, ProfileName::ChromaticFog) => work.by::<ChromaticFog>(),
-        (Heuristic::Balance, ProfileName::Everything) => work.by::<Everything>(),
+/// An estimator of profile `P` with all it takes to use it.
+pub(super) struct Ready<'a, P: Profile> {
+    pub estimator: Estimator<'a, P>,
+    pub blocks: Blocks,
+    pub scene: &'a Scene,
+    pub film: &'a Film,
+    pub seed: u64,
+}
+
+impl<'a, P: Profile> Ready<'a, P> {
+    fn prepare(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
+        let blocks = Blocks::new(film.len(), P::Lanes::COUNT, settings.options.sampler);
+        let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
+        let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
+        Box::new(Self { estimator, blocks, scene, film, seed: settings.seed })
     }
+}
+
+impl<P: Profile> Compiled for Ready<'_, P> {
+    fn blocks(&self) -> &Blocks {
+        &self.blocks
+    }
+    fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
+        self.blocks.render(self, pass, block, wants)
+    }
+    fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
+        self.estimator.transmittance(primary, stream)
+    }
+    fn parts(&self, cells: Cells, pass: usize, block: usize) -> Vec<Part> {
+        parts::block(self, cells, pass, block)
+    }
+    fn time(&self, cells: Cells, pass: usize, block: usize) -> Times {
+        clock::block(self, cells, pass, block)
+    }
+    fn eye_sample(&self, pass: usize, block: usize, pixel: usize) -> EyeSample {
+        sample::eye(self, pass, block, pixel)
+    }
+    fn splats(&self, pass: usize, block: usize, pixel: usize) -> Vec<Splat> {
+        sample::light(self, pass, block, pixel).splats
+    }
+    fn light_walk(&self, pass: usize, walk: u64) -> Walk {
+        sample::light_walk(self, pass, walk)
+    }
+}
+
+/// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for.
+pub(super) fn choose<'a>(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
+    let prepare = match (settings.options.heuristic, settings.profile) {
+        (Heuristic::Power, _) => Ready::<ByPower>::prepare,
+        (Heuristic::Maximum, _) => Ready::<ByMaximum>::prepare,
+        (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
+        (Heuristic::Uniform, _) => Ready::<ByUniform>::prepare,
+        (Heuristic::Balance, ProfileName::Vacuum) => Ready::<Vacuum>::prepare,
+        (Heuristic::Balance, ProfileName::Fog) => Ready::<Fog>::prepare,
+        (Heuristic::Balance, ProfileName::Bounded) => Ready::<Bounded>::prepare,
+        (Heuristic::Balance, ProfileName::Smoke) => Ready::<Smoke>::prepare,
+        (Heuristic::Balance, ProfileName::Fire) => Ready::<Fire>::prepare,
+        (Heuristic::Balance, ProfileName::ChromaticFog) => Ready::<ChromaticFog>::prepare,
+        (Heuristic::Balance, ProfileName::Everything) => Ready::<Everything>::prepare,
+    };
+    prepare(scene, film, settings)
 }

@@ -21,7 +21,7 @@ pub const PILOT_RAYS: usize = 1024;
 
 /// A scene in fog of one radiance.
 pub struct Preview<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     hide_emitters: bool,
     threshold: f32,
     /// L_fog.

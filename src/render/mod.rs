@@ -27,17 +27,12 @@ use crate::{
     },
     math::{Spectrum, Vec3},
     scene::{Scene, integrator::Look},
-    transport::{
-        Estimator, Heuristic, Options, Strategies,
-        profile::{Profile, ProfileName},
-    },
+    transport::{Heuristic, Options, Strategies, profile::ProfileName},
 };
 use adaptive::{Adaptive, Developed, Precision, Reached};
-use block::{Blocks, Outcome};
+use bench::{BLOCKS_AT_ONCE, Bench};
 use budget::Budget;
-use compiled::Work;
 use fog::Preview;
-use rayon::prelude::*;
 use std::time::Duration;
 use watch::{Clock, Watch};
 
@@ -89,10 +84,6 @@ pub struct Image {
     /// How far a wanted precision was reached, if one was wanted.
     pub reached: Option<Reached>,
 }
-
-/// Blocks that are worked on between two looks at the clock: enough to keep any machine's threads busy, and
-/// independent of their number.
-const BLOCKS_AT_ONCE: usize = 64;
 
 /// Renders `scene` onto `film`, telling `progress` now and then.
 pub fn render(scene: &Scene, film: &Film, settings: &Settings, progress: &mut dyn FnMut(Progress)) -> Image {
@@ -172,64 +163,37 @@ fn dispatch(
     layers: &[Layer],
     watch: &mut Watch<'_>,
 ) -> Image {
-    compiled::choose(settings, Render { scene, film, settings, mode, layers, watch })
-}
-
-/// A render that waits for its profile.
-struct Render<'a, 'b> {
-    scene: &'a Scene,
-    film: &'a Film,
-    settings: &'a Settings,
-    mode: Mode<'a>,
-    layers: &'a [Layer],
-    watch: &'a mut Watch<'b>,
-}
-
-impl Work for Render<'_, '_> {
-    type Output = Image;
-
-    fn by<P: Profile>(self) -> Image {
-        let Self { scene, film, settings, mode, layers, watch } = self;
-        let clock = Clock::start();
-        let blocks = Blocks::new::<P>(film.len(), settings.options.sampler);
-        let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
-        let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
-        let squares = layers.iter().any(Layer::needs_squares);
-        let accumulator = if squares { Accumulator::with_products } else { Accumulator::new }(film.len());
-        let Options { hide_emitters, seed, .. } = settings.options;
-        let rays = || blocks.pilot_rays(&estimator, film, seed);
-        let preview = match mode {
-            Mode::Preview(look) => Some(Preview::new(scene, look, hide_emitters, rays())),
-            _ => None,
-        };
-        let preview = preview.as_ref();
-        let job = Job { estimator: &estimator, preview, film, blocks: &blocks, settings };
-        if let Mode::Precision(precision) = mode {
-            let found = Adaptive::new(&job, precision, &clock).run(watch.progress);
-            return finish(&job, scene, &clock, found, layers);
+    let clock = Clock::start();
+    let bench = Bench::new(scene, film, settings);
+    let preview = match mode {
+        Mode::Precision(precision) => {
+            let found = Adaptive::new(&bench, precision, &clock).run(watch.progress);
+            return finish(&bench, &clock, found, layers);
         }
-        let (accumulator, noise, clock) = job.accumulate(accumulator, clock, watch);
-        let passes = accumulator.passes();
-        let seen = primary::Pass::new(film, layers).run(scene, &job, passes);
-        let pixels = accumulator.mean();
-        let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
-        let elapsed = clock.elapsed();
-        Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers, reached: None }
-    }
+        Mode::Preview(look) => {
+            let Options { hide_emitters, seed, .. } = settings.options;
+            let rays = bench.compiled.blocks().pilot_rays(scene, film, seed);
+            Some(Preview::new(scene, look, hide_emitters, rays))
+        }
+        Mode::Budget => None,
+    };
+    let squares = layers.iter().any(Layer::needs_squares);
+    let accumulator = if squares { Accumulator::with_products } else { Accumulator::new }(film.len());
+    let (accumulator, noise, clock) = accumulate(&bench, preview.as_ref(), accumulator, clock, watch);
+    let passes = accumulator.passes();
+    let seen = primary::Pass::new(film, layers).run(&bench, passes);
+    let pixels = accumulator.mean();
+    let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
+    let elapsed = clock.elapsed();
+    Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers, reached: None }
 }
 
 /// The image of an adaptive render, with a layer that tells how many samples its pixels took.
-fn finish<P: Profile>(
-    job: &Job<'_, P>,
-    scene: &Scene,
-    clock: &Clock,
-    found: Developed,
-    layers: &[Layer],
-) -> Image {
+fn finish(bench: &Bench<'_>, clock: &Clock, found: Developed, layers: &[Layer]) -> Image {
     let Developed { pixels, passes, noise, reached } = found;
     let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
     let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes);
-    let seen = primary::Pass::new(job.film, layers).run(scene, job, mean);
+    let seen = primary::Pass::new(bench.film, layers).run(bench, mean);
     let none = Accumulator::new(0);
     let mut layers: Vec<_> = layers.iter().flat_map(|layer| develop(layer, &pixels, &none, &seen)).collect();
     let values = reached.samples.iter().map(|n| *n as f32).collect();
@@ -238,64 +202,47 @@ fn finish<P: Profile>(
     Image { pixels, samples_per_pixel: mean, elapsed, noise, alpha: seen.alpha, layers, reached }
 }
 
-/// What does not change during a render.
-struct Job<'a, P: Profile> {
-    estimator: &'a Estimator<'a, P>,
-    /// Shown in place of what the estimator says.
-    preview: Option<&'a Preview<'a>>,
-    film: &'a Film,
-    blocks: &'a Blocks,
-    settings: &'a Settings,
-}
-
-impl<P: Profile> Job<'_, P> {
-    /// Adds up passes until the budget is spent; with the noise of their mean.
-    fn accumulate(
-        &self,
-        mut accumulator: Accumulator,
-        mut clock: Clock,
-        watch: &mut Watch<'_>,
-    ) -> (Accumulator, Option<f64>, Clock) {
-        let Self { estimator, preview, film, blocks, settings } = *self;
-        let mut pass = vec![Spectrum::ZERO; film.len()];
-        let (mut next, mut noise) = (0, None);
-        loop {
-            let wanted = settings.budget.limit_tasks(next + BLOCKS_AT_ONCE, blocks.count());
-            let tasks = next..watch.limit_tasks(wanted, accumulator.passes(), blocks.count());
-            let outcomes: Vec<Outcome> = tasks
-                .clone()
-                .into_par_iter()
-                .map(|task| {
-                    let (pass, block) = (task / blocks.count(), task % blocks.count());
-                    match preview {
-                        None => blocks.render(estimator, film, settings.seed, pass, block, |_| true),
-                        Some(preview) => blocks.show(estimator, preview, film, settings.seed, pass, block),
-                    }
-                })
-                .collect();
-            for (task, outcome) in tasks.clone().zip(&outcomes) {
-                outcome.add_to(&mut pass);
-                if (task + 1) % blocks.count() == 0 {
-                    accumulator.add(&pass);
-                    pass.fill(Spectrum::ZERO);
-                }
+/// Adds up passes until the budget is spent; with the noise of their mean. A preview is shown in place of what the
+/// estimator says.
+fn accumulate(
+    bench: &Bench<'_>,
+    preview: Option<&Preview<'_>>,
+    mut accumulator: Accumulator,
+    mut clock: Clock,
+    watch: &mut Watch<'_>,
+) -> (Accumulator, Option<f64>, Clock) {
+    let Bench { film, settings: Settings { budget, seed, .. }, compiled, .. } = bench;
+    let (blocks, count) = (compiled.blocks(), compiled.blocks().count());
+    let mut pass = vec![Spectrum::ZERO; film.len()];
+    let (mut next, mut noise) = (0, None);
+    loop {
+        let wanted = budget.limit_tasks(next + BLOCKS_AT_ONCE, count);
+        let tasks = next..watch.limit_tasks(wanted, accumulator.passes(), count);
+        let outcomes = bench.work(tasks.clone(), |pass, block| match preview {
+            None => compiled.render(pass, block, &|_| true),
+            Some(preview) => blocks.show(preview, film, *seed, pass, block),
+        });
+        for (task, outcome) in tasks.clone().zip(&outcomes) {
+            outcome.add_to(&mut pass);
+            if (task + 1) % count == 0 {
+                accumulator.add(&pass);
+                pass.fill(Spectrum::ZERO);
             }
-            if next / blocks.count() != tasks.end / blocks.count() {
-                noise = accumulator.noise();
-            }
-            next = tasks.end;
-            let (elapsed, passes) = (clock.elapsed(), accumulator.passes());
-            if next.is_multiple_of(blocks.count()) && watch.is_mark(passes) {
-                let show = || {
-                    (watch.show)(Snapshot { pixels: accumulator.mean(), samples_per_pixel: passes, elapsed })
-                };
-                clock.hold(show);
-            }
-            let samples = (next as u64 * film.len() as u64) / blocks.count() as u64;
-            (watch.progress)(Progress { samples, passes, elapsed, noise, within: None });
-            if settings.budget.is_spent(next, blocks.count(), elapsed) {
-                return (accumulator, noise, clock);
-            }
+        }
+        if next / count != tasks.end / count {
+            noise = accumulator.noise();
+        }
+        next = tasks.end;
+        let (elapsed, passes) = (clock.elapsed(), accumulator.passes());
+        if next.is_multiple_of(count) && watch.is_mark(passes) {
+            let show =
+                || (watch.show)(Snapshot { pixels: accumulator.mean(), samples_per_pixel: passes, elapsed });
+            clock.hold(show);
+        }
+        let samples = (next as u64 * film.len() as u64) / count as u64;
+        (watch.progress)(Progress { samples, passes, elapsed, noise, within: None });
+        if budget.is_spent(next, count, elapsed) {
+            return (accumulator, noise, clock);
         }
     }
 }

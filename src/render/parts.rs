@@ -1,6 +1,6 @@
 //! The image in parts: what each strategy brings, weighted and as if it ran alone (Veach 1997, fig. 10.2 and 10.3).
 
-use super::bench::{Bench, Ready};
+use super::{bench::Bench, compiled::Ready};
 use crate::{
     film::{Film, accumulator::Accumulator},
     math::{Spectrum, Vec2},
@@ -97,14 +97,14 @@ pub(super) struct Part {
 
 /// The parts of a block.
 pub(super) fn block<P: Profile>(ready: &Ready<'_, P>, cells: Cells, pass: usize, block: usize) -> Vec<Part> {
-    let Ready { estimator, blocks, film, seed } = ready;
+    let Ready { estimator, blocks, scene, film, seed } = ready;
     let mut light = OfLight { film, cells, parts: Vec::new() };
     let mut recorder: &mut dyn Recorder<P::Sums> = &mut light;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut recorder);
     let mut parts = light.parts;
     let mut eye = OfEye { cells, sums: vec![(Spectrum::ZERO, Spectrum::ZERO); cells.count()] };
     for pixel in blocks.pixels(block) {
-        let start = blocks.eye_start(estimator, film, *seed, pass, pixel);
+        let start = blocks.eye_start(scene, film, *seed, pass, pixel);
         let factor = start.weight;
         let recorder: &mut dyn Recorder<P::Sums> = &mut eye;
         start.trace(estimator, &cache, recorder);
@@ -223,7 +223,8 @@ impl Bench<'_> {
     /// The parts of the image that `passes` passes make, told of as they come.
     pub fn parts(&self, cells: Cells, passes: usize, tell: &mut dyn FnMut(usize)) -> Parts {
         let pixels = self.film.len();
-        let images = |cell: Cell| self.strategies.has(cell.kind()).then(|| PartImages::new(pixels));
+        let images =
+            |cell: Cell| self.settings.options.strategies.has(cell.kind()).then(|| PartImages::new(pixels));
         let mut parts =
             Parts { cells, images: cells.all().map(images).collect(), whole: Accumulator::new(pixels) };
         let mut whole = vec![Spectrum::ZERO; pixels];

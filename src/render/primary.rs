@@ -1,7 +1,7 @@
 //! What primary rays see: alpha, and the layers that tell of the first surface. A cheap pass of its own, only
 //! where something asks for it, through the same film positions as the eye walks.
 
-use super::{Job, block::EyeStart};
+use super::{bench::Bench, block::EyeStart};
 use crate::{
     bsdf::BsdfModel,
     film::{
@@ -12,7 +12,6 @@ use crate::{
     sampling::Stream,
     scene::{Scene, accel::Geometry},
     shape::{Hit, Primitive, Ray, SurfacePoint},
-    transport::profile::Profile,
 };
 use rayon::prelude::*;
 use std::f32::consts::PI;
@@ -54,19 +53,20 @@ impl Pass {
     }
 
     /// Traces as many primary rays per pixel as there were `passes`.
-    pub fn run<P: Profile>(&self, scene: &Scene, job: &Job<'_, P>, passes: u64) -> Seen {
+    pub fn run(&self, bench: &Bench<'_>, passes: u64) -> Seen {
+        let Bench { scene, film, settings, compiled } = bench;
         let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
             return Seen { alpha: Vec::new(), planes: Vec::new() };
         }
         let environment = scene.lights.environment.is_some();
-        let mut means = vec![Vec3::ZERO; job.film.len() * width];
+        let mut means = vec![Vec3::ZERO; film.len() * width];
         means.par_chunks_mut(width).enumerate().for_each(|(pixel, means)| {
             let mut sums = vec![[0f64; 3]; width];
             for pass in 0..passes {
-                let mut start =
-                    job.blocks.eye_start(job.estimator, job.film, job.settings.seed, pass as usize, pixel);
-                let view = View::new(scene, job, environment, &start, passes);
+                let blocks = compiled.blocks();
+                let mut start = blocks.eye_start(scene, film, settings.seed, pass as usize, pixel);
+                let view = View::new(bench, environment, &start, passes);
                 let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
                 let values = self.quantities.iter().map(|quantity| view.quantity(*quantity));
                 for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
@@ -90,9 +90,9 @@ impl Pass {
 }
 
 /// A primary ray and what it meets first; nulls and boundaries of media count, as in Mitsuba.
-struct View<'a, P: Profile> {
+struct View<'a> {
     scene: &'a Scene,
-    job: &'a Job<'a, P>,
+    bench: &'a Bench<'a>,
     film: Vec2,
     aperture: Vec2,
     ray: Ray,
@@ -103,22 +103,23 @@ struct View<'a, P: Profile> {
     step: f32,
 }
 
-impl<'a, P: Profile> View<'a, P> {
-    fn new(scene: &'a Scene, job: &'a Job<'a, P>, environment: bool, start: &EyeStart, passes: u64) -> Self {
+impl<'a> View<'a> {
+    fn new(bench: &'a Bench<'a>, environment: bool, start: &EyeStart, passes: u64) -> Self {
+        let scene = bench.scene;
         let EyeStart { position: film, aperture, .. } = *start;
-        let ray = job.estimator.primary_ray(film, aperture);
+        let ray = scene.sensor.ray(film, aperture).ray;
         let hit = scene.geometry.closest(&ray).map(|hit| (hit, scene.geometry.surface(&ray, &hit)));
-        Self { scene, job, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }
+        Self { scene, bench, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }
     }
 
     /// The chance that the ray interacts with something or meets a visible environment: what Mitsuba's
     /// `volpath` finds out by walking on. Emitters that are hidden do not count.
     fn alpha(&self, stream: &mut Stream) -> f32 {
-        let hidden = self.job.settings.options.hide_emitters;
+        let hidden = self.bench.settings.options.hide_emitters;
         if self.environment && !hidden {
             return 1.0;
         }
-        let through = self.job.estimator.transmittance(self.ray, stream);
+        let through = self.bench.compiled.transmittance(self.ray, stream);
         1.0 - (through.x + through.y + through.z) / 3.0
     }
 
@@ -154,7 +155,7 @@ impl<'a, P: Profile> View<'a, P> {
     fn uv_change(&self, hit: &Hit, point: &SurfacePoint, across: Vec2) -> Vec2 {
         let (du, dv) = partials(&self.scene.geometry, &self.ray, hit, point);
         let neighbour = self.film + across * self.step;
-        let Ray { origin, direction, .. } = self.job.estimator.primary_ray(neighbour, self.aperture);
+        let Ray { origin, direction, .. } = self.scene.sensor.ray(neighbour, self.aperture).ray;
         let t = (point.position - origin).dot(point.normal) / direction.dot(point.normal);
         let moved = origin + direction * t - point.position;
         let (uu, uv, vv) = (du.dot(du), du.dot(dv), dv.dot(dv));

@@ -1,6 +1,6 @@
 //! One pixel sample made again, with all that its walks met: what one pass adds to one pixel.
 
-use super::bench::{Bench, Ready};
+use super::{bench::Bench, compiled::Ready};
 use crate::{
     film::Film,
     math::{Lanes, Spectrum, Vec2, Vec3},
@@ -12,7 +12,6 @@ use crate::{
         record::{Meeting, Recorder},
     },
 };
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// What one pass adds to one pixel, and how.
@@ -143,51 +142,54 @@ impl Splat {
 }
 
 impl Bench<'_> {
-    /// What `pass` adds to `pixel` (row-major index), and how.
+    /// What `pass` adds to `pixel` (row-major index), and how: all light walks of the pass, for any of them may land on
+    /// the pixel, the eye walk, and once more the light walks that brought something.
     pub fn sample(&self, pass: usize, pixel: usize) -> PixelSample {
-        self.compiled.sample(pass, pixel)
+        let (blocks, compiled) = (self.compiled.blocks(), &self.compiled);
+        let own = (0..blocks.count()).find(|block| blocks.pixels(*block).any(|p| p == pixel)).unwrap_or(0);
+        let splats = self.work(0..blocks.count(), |_, block| compiled.splats(pass, block, pixel));
+        let EyeSample { film, aperture, factor, hero, eye, tries } = compiled.eye_sample(pass, own, pixel);
+        let radiance = sum(tries.iter().filter_map(|one| one.joined.map(|joined| joined.value)));
+        let mut value = Spectrum::ZERO;
+        for (block, splats) in splats.iter().enumerate() {
+            // The order in which a pass adds up.
+            if block == own {
+                value += radiance * factor;
+            }
+            splats.iter().for_each(|splat| value += splat.value());
+        }
+        let splats: Vec<Splat> = splats.into_iter().flatten().collect();
+        let joined = tries.iter().filter_map(|one| match one.partner {
+            Partner::Light { walk, .. } => Some(walk),
+            _ => None,
+        });
+        let light = splats.iter().map(|splat| splat.walk).chain(joined);
+        let light = light.map(|walk| (walk, compiled.light_walk(pass, walk))).collect();
+        PixelSample { film, aperture, factor, hero, eye, tries, splats, light, value }
     }
 }
 
-/// Makes the sample of `pixel` in `pass` again: all light walks of the pass, for any of them may land on the pixel,
-/// the eye walk, and once more the light walks that brought something.
-pub(super) fn pixel<P: Profile>(ready: &Ready<'_, P>, pass: usize, pixel: usize) -> PixelSample {
-    let Ready { estimator, blocks, film, seed } = ready;
-    let own = (0..blocks.count()).find(|block| blocks.pixels(*block).any(|p| p == pixel)).unwrap_or(0);
-    let lit: Vec<Lit<P::Sums>> = (0..blocks.count())
-        .into_par_iter()
-        .map(|block| {
-            let lit = light(ready, pass, block, pixel);
-            // Of other blocks only what they splat is asked for: all caches together would be too large.
-            if block == own { lit } else { Lit { splats: lit.splats, ..Lit::empty(P::Lanes::COUNT) } }
-        })
-        .collect();
-    let start = blocks.eye_start(estimator, film, *seed, pass, pixel);
-    let (position, aperture, factor, hero) = (start.position, start.aperture, start.weight, start.hero);
-    let mut eye =
-        OfEye { trail: Trail::new(), done: Vec::new(), kept: &lit[own].kept[hero], tries: Vec::new() };
+/// The part of a [`PixelSample`] that its eye walk makes.
+pub(super) struct EyeSample {
+    film: Vec2,
+    aperture: Vec2,
+    factor: f32,
+    hero: Option<usize>,
+    eye: Vec<Walk>,
+    tries: Vec<Try>,
+}
+
+/// Makes the eye walk of `pixel` in `pass` again, joined with the light walks of `block`.
+pub(super) fn eye<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize, pixel: usize) -> EyeSample {
+    let lit = light(ready, pass, block, pixel);
+    let start = ready.blocks.eye_start(ready.scene, ready.film, ready.seed, pass, pixel);
+    let (film, aperture, factor, hero) = (start.position, start.aperture, start.weight, start.hero);
+    let mut eye = OfEye { trail: Trail::new(), done: Vec::new(), kept: &lit.kept[hero], tries: Vec::new() };
     let recorder: &mut dyn Recorder<P::Sums> = &mut eye;
-    start.trace(estimator, &lit[own].cache, recorder);
+    start.trace(&ready.estimator, &lit.cache, recorder);
     let OfEye { trail: Trail { walk: last, .. }, done: mut eye, tries, .. } = eye;
     eye.push(last);
-    let radiance = sum(tries.iter().filter_map(|one| one.joined.map(|joined| joined.value)));
-    let mut value = Spectrum::ZERO;
-    for (block, lit) in lit.iter().enumerate() {
-        // The order in which a pass adds up.
-        if block == own {
-            value += radiance * factor;
-        }
-        lit.splats.iter().for_each(|splat| value += splat.value());
-    }
-    let splats: Vec<Splat> = lit.into_iter().flat_map(|lit| lit.splats).collect();
-    let joined = tries.iter().filter_map(|one| match one.partner {
-        Partner::Light { walk, .. } => Some(walk),
-        _ => None,
-    });
-    let light = splats.iter().map(|splat| splat.walk).chain(joined);
-    let light = light.map(|walk| (walk, again(ready, pass, walk))).collect();
-    let hero = (P::Lanes::COUNT > 1).then_some(hero);
-    PixelSample { film: position, aperture, factor, hero, eye, tries, splats, light, value }
+    EyeSample { film, aperture, factor, hero: (P::Lanes::COUNT > 1).then_some(hero), eye, tries }
 }
 
 fn sum(values: impl Iterator<Item = Spectrum>) -> Spectrum {
@@ -195,22 +197,23 @@ fn sum(values: impl Iterator<Item = Spectrum>) -> Spectrum {
 }
 
 /// The light walks of a block.
-struct Lit<S: Sums> {
+pub(super) struct Lit<S: Sums> {
     cache: LightCache<S>,
     /// Walk and segments from its start of every vertex in the cache, per hero channel in the cache's order.
     kept: Vec<Vec<(u64, u32)>>,
-    splats: Vec<Splat>,
+    pub splats: Vec<Splat>,
 }
 
-impl<S: Sums> Lit<S> {
-    fn empty(heroes: usize) -> Self {
-        Self { cache: LightCache::new(heroes), kept: vec![Vec::new(); heroes], splats: Vec::new() }
-    }
-}
-
-fn light<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize, pixel: usize) -> Lit<P::Sums> {
+/// Traces the light walks of `block`; of what they bring to the film, the splats on `pixel`.
+pub(super) fn light<P: Profile>(
+    ready: &Ready<'_, P>,
+    pass: usize,
+    block: usize,
+    pixel: usize,
+) -> Lit<P::Sums> {
     let Ready { estimator, blocks, film, .. } = ready;
-    let Lit { mut cache, mut kept, mut splats } = Lit::empty(P::Lanes::COUNT);
+    let heroes = P::Lanes::COUNT;
+    let (mut cache, mut kept, mut splats) = (LightCache::new(heroes), vec![Vec::new(); heroes], Vec::new());
     if estimator.needs_light_walks() {
         for walk in blocks.light_walks(block) {
             let mut seen = OfLight::new(film, pixel, walk);
@@ -239,7 +242,7 @@ fn trace<P: Profile>(
 }
 
 /// All vertices of a light walk.
-fn again<P: Profile>(ready: &Ready<'_, P>, pass: usize, walk: u64) -> Walk {
+pub(super) fn light_walk<P: Profile>(ready: &Ready<'_, P>, pass: usize, walk: u64) -> Walk {
     let mut trail = Trail::of_light(ready.film);
     trace(ready, pass, walk, &mut LightCache::new(P::Lanes::COUNT), &mut trail);
     trail.walk

@@ -163,10 +163,12 @@ impl<'a, P: Profile> Estimator<'a, P> {
     fn plan_joins(&mut self, seed: u64, walks_per_block: u64) {
         self.keep = 1.0;
         let mut cache = LightCache::new(P::Lanes::COUNT);
+        // Compiled for instruments anyhow; pilot walks are few.
+        let mut recorder: &mut dyn Recorder<P::Sums> = &mut Nowhere;
         for walk in 0..PILOT_WALKS {
             let mut stream = Stream::new(seed, walk, 0, Purpose::Pilot);
             let hero = walk as usize % P::Lanes::COUNT;
-            light::trace(self, &mut cache, &mut Nowhere, hero, &mut stream);
+            light::trace(self, &mut cache, &mut recorder, hero, &mut stream);
         }
         let per_walk = (cache.len() as f32 / PILOT_WALKS as f32).max(1.0 / PILOT_WALKS as f32);
         self.keep = (CACHE_VERTICES / (per_walk * walks_per_block as f32)).min(1.0);
@@ -196,11 +198,6 @@ impl<'a, P: Profile> Estimator<'a, P> {
         light::trace(self, cache, recorder, hero, stream);
     }
 
-    /// The ray of an eye walk through `film` [pixels] and a point of the aperture.
-    pub fn primary_ray(&self, film: Vec2, aperture: Vec2) -> Ray {
-        eye::depart(self, film, aperture).ray
-    }
-
     /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
     pub fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
         let passage = segment::pass::<P>(
@@ -212,11 +209,6 @@ impl<'a, P: Profile> Estimator<'a, P> {
             stream,
         );
         passage.map_or(Spectrum::ZERO, |passage| passage.transmittance)
-    }
-
-    /// A point of the sensor's aperture.
-    pub fn sample_aperture(&self, stream: &mut Stream) -> Vec2 {
-        self.scene.sensor.sample_aperture(stream)
     }
 
     /// One eye walk of channel `hero` through `film` [pixels] and a point of the aperture; what it brings goes to

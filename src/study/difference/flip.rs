@@ -42,7 +42,7 @@ const SENSITIVITY: [&[Gaussian]; 3] = [
 pub(super) fn map(pixels: [&[Spectrum]; 2], width: usize, pixels_per_degree: f32) -> Vec<f32> {
     let [image, reference] = pixels.map(|pixels| Seen::new(pixels, width, pixels_per_degree));
     let largest = hyab(hunt(vec3(0.0, 1.0, 0.0)), hunt(vec3(0.0, 0.0, 1.0))).powf(COLOUR_EXPONENT);
-    let pairs = image.pixels.par_iter().zip(&reference.pixels);
+    let pairs = image.pixels.iter().zip(&reference.pixels);
     let flip = pairs.map(|(image, reference)| {
         let colour = hyab(image.colour, reference.colour).powf(COLOUR_EXPONENT);
         let feature = (image.edge - reference.edge).abs().max((image.point - reference.point).abs());
@@ -138,37 +138,29 @@ fn balanced(kernel: &[f32]) -> Vec<f32> {
     kernel.iter().map(|value| value / if *value < 0.0 { negative } else { positive }).collect()
 }
 
-/// Convolves rows with one kernel and columns with another; beyond the image are the pixels of its border.
+/// Convolves rows with one kernel and columns with another.
 fn convolve(plane: &[f32], width: usize, rows: &[f32], columns: &[f32]) -> Vec<f32> {
     let height = plane.len() / width;
-    let along_rows =
-        weighted(plane, width, rows, |at, offset| at - at % width + shifted(at % width, offset, width));
-    weighted(&along_rows, width, columns, |at, offset| {
-        shifted(at / width, offset, height) * width + at % width
-    })
+    let transposed = transpose(&convolve_rows(plane, width, rows), width);
+    transpose(&convolve_rows(&transposed, height, columns), height)
 }
 
-/// The sum over a kernel of what lies at `neighbour` of a pixel and an offset.
-fn weighted(
-    plane: &[f32],
-    width: usize,
-    kernel: &[f32],
-    neighbour: impl Fn(usize, isize) -> usize + Sync,
-) -> Vec<f32> {
-    let radius = (kernel.len() / 2) as isize;
+/// Beyond the ends of a row its end pixels are repeated.
+fn convolve_rows(plane: &[f32], width: usize, kernel: &[f32]) -> Vec<f32> {
+    let radius = kernel.len() / 2;
     let mut sums = vec![0.0; plane.len()];
-    sums.par_chunks_mut(width).enumerate().for_each(|(row, sums)| {
-        for (column, sum) in sums.iter_mut().enumerate() {
-            let at = row * width + column;
-            let values = kernel.iter().zip(-radius..).map(|(w, offset)| w * plane[neighbour(at, offset)]);
-            *sum = values.sum();
+    sums.par_chunks_mut(width).zip(plane.par_chunks(width)).for_each(|(sums, row)| {
+        let padded = (0..width + 2 * radius).map(|x| row[x.saturating_sub(radius).min(width - 1)]);
+        let padded: Vec<f32> = padded.collect();
+        for (sum, window) in sums.iter_mut().zip(padded.windows(kernel.len())) {
+            *sum = window.iter().zip(kernel).map(|(value, weight)| value * weight).sum();
         }
     });
     sums
 }
 
-fn shifted(at: usize, offset: isize, size: usize) -> usize {
-    at.saturating_add_signed(offset).min(size - 1)
+fn transpose(plane: &[f32], width: usize) -> Vec<f32> {
+    (0..width).flat_map(|column| plane.iter().skip(column).step_by(width)).copied().collect()
 }
 
 /// Linear sRGB of white.
