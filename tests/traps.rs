@@ -348,7 +348,8 @@ fn the_media_of_camera_and_lamps_are_found() {
         let mut parts = fogs.to_vec();
         parts.extend([("sensor", view), ("lamp", lamp)]);
         let stage = Stage::new(&scene(&parts));
-        assert!(stage.setup.warnings.is_empty(), "{:?}", stage.setup.warnings);
+        let unexpected = stage.setup.warnings.iter().find(|w| !w.contains("Mitsuba would take vacuum"));
+        assert!(unexpected.is_none(), "{unexpected:?}");
         stage.render(Strategies::BDPT, 16, 3)
     };
     let stated = image(with(view.clone(), &[("medium", named("fog"))]), lamp(Some("smoke")));

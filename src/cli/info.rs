@@ -12,7 +12,7 @@ use crate::{
     medium::{Choice, Heterogeneous, tracker::Tracker},
     phase::PhaseModel,
     scene::{
-        Scene,
+        Infinity, Scene,
         build::Setup,
         integrator::{Integrator, Method, Restriction},
         lights::Light,
@@ -48,6 +48,9 @@ fn describe(setup: &Setup) -> String {
         scene.lights.all.iter().map(|light| format!("emitter     {}", describe_emitter(setup, light))),
     );
     lines.push(format!("camera      in {}", medium_name(setup, scene.sensor_medium.0)));
+    if scene.lights.has_infinite() {
+        lines.push(format!("infinity    {}", describe_infinity(setup)));
+    }
     lines
         .extend((1..scene.media.len()).map(|index| format!("medium      {}", describe_medium(setup, index))));
     let without = if left_out.is_empty() { "nothing".to_owned() } else { left_out.join(", ") };
@@ -108,7 +111,7 @@ fn describe_integrator(integrator: &Integrator) -> String {
 
 fn describe_shapes(scene: &Scene) -> String {
     let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
-    let boundaries = scene.surfaces.iter().filter(|surface| surface.boundary.is_some()).count();
+    let boundaries = scene.surfaces.iter().filter(|surface| surface.boundary.is_known()).count();
     format!("{} ({primitives} primitives), {boundaries} of them bound media", scene.surfaces.len())
 }
 
@@ -116,6 +119,15 @@ fn medium_name(setup: &Setup, index: u32) -> &str {
     match index.checked_sub(1) {
         Some(index) => &setup.medium_names[index as usize],
         None => "vacuum",
+    }
+}
+
+fn describe_infinity(setup: &Setup) -> String {
+    let Scene { known, outside, .. } = &setup.scene;
+    let name = medium_name(setup, outside.0);
+    match known.infinity {
+        Infinity::Uniform(_) | Infinity::Unseen(_) => format!("in {name}"),
+        Infinity::Directional(_) => format!("in {name} and, in other directions, in other media"),
     }
 }
 

@@ -168,6 +168,13 @@ impl Emitter {
     }
 }
 
+impl Emitter {
+    /// The unit direction in which its light travels, where there is only one.
+    pub fn direction(&self) -> Option<Vec3> {
+        if let Kind::Directional(sun) = &self.kind { Some(sun.direction) } else { None }
+    }
+}
+
 impl PointKind {
     /// Intensity towards unit `direction` [W/sr].
     #[inline]

@@ -71,6 +71,11 @@ impl Blueprint {
         given.has_no_end(self.varies()).then_some(&given.location)
     }
 
+    /// True if nothing arrives through it from infinity.
+    pub fn extinguishes_without_end(&self) -> bool {
+        !self.varies() && self.medium.sigma_t.min_element() > 0.0
+    }
+
     /// The medium, which lies `around` where its volumes do not say so themselves.
     pub fn finish(self, around: Around, treatment: &Treatment) -> Result<Medium> {
         let medium = match self.fields {

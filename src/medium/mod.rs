@@ -117,6 +117,13 @@ impl Medium {
         Matter { sigma_t: self.sigma_t, albedo: self.albedo }
     }
 
+    /// What remains of light along an infinite way through it: 1 where it varies, for then it ends somewhere.
+    #[inline]
+    pub fn from_infinity(&self) -> Spectrum {
+        let lane = |sigma_t: f32| if sigma_t > 0.0 && self.varying.is_none() { 0.0 } else { 1.0 };
+        Spectrum::new(lane(self.sigma_t.x), lane(self.sigma_t.y), lane(self.sigma_t.z))
+    }
+
     /// True if extinction differs between channels, so that flights need a hero channel.
     pub fn is_chromatic(&self) -> bool {
         match &self.varying {

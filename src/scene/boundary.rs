@@ -1,93 +1,140 @@
-//! Which medium a point lies in: told by the first boundaries that rays from it meet.
+//! The media on the two sides of shapes, and what the sides that a ray meets say of the medium it runs through.
 
 use super::{Surface, accel::Geometry};
 use crate::{
     math::{Vec3, offset, vec2, warp},
     medium::MediumIndex,
-    shape::Ray,
+    shape::{Ray, SurfacePoint},
 };
 
-/// Directions asked, spread evenly over the sphere.
-const DIRECTIONS: u32 = 32;
-
-/// What the rays from a point say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
-    /// No boundary lies anywhere around.
-    Nothing,
-    /// All rays that met a boundary agree.
-    Medium(MediumIndex),
-    /// They disagree: the shapes do not enclose their media. The medium most of them name.
-    Ambiguous(MediumIndex),
+/// The media on the two sides of a shape; none where nothing is known of a side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Boundary {
+    /// Behind the surface, where the normal points away from.
+    pub interior: Option<MediumIndex>,
+    /// In front of the surface.
+    pub exterior: Option<MediumIndex>,
 }
 
-/// Asks rays in all directions from `point`, which must not lie on a surface.
-pub fn medium_at(geometry: &Geometry, surfaces: &[Surface], point: Vec3) -> Found {
-    let mut votes: Vec<(MediumIndex, u32)> = Vec::new();
-    for index in 0..DIRECTIONS {
-        if let Some(medium) = ask(geometry, surfaces, point, direction(index)) {
-            match votes.iter_mut().find(|(voted, _)| *voted == medium) {
-                Some((_, count)) => *count += 1,
-                None => votes.push((medium, 1)),
-            }
+impl Boundary {
+    /// What a file states. Light that gets through a surface must be in some medium behind it: if one side is stated,
+    /// the other is vacuum, as in Mitsuba. Nothing gets through an opaque one, and a side that is not stated says
+    /// nothing.
+    pub fn stated(interior: Option<MediumIndex>, exterior: Option<MediumIndex>, transmits: bool) -> Self {
+        if !transmits || (interior.is_none() && exterior.is_none()) {
+            return Self { interior, exterior };
         }
+        let side = |stated: Option<MediumIndex>| Some(stated.unwrap_or(MediumIndex::VACUUM));
+        Self { interior: side(interior), exterior: side(exterior) }
     }
-    votes.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    match votes.as_slice() {
-        [] => Found::Nothing,
-        [(medium, _)] => Found::Medium(*medium),
-        [(medium, _), ..] => Found::Ambiguous(*medium),
+
+    /// True if a medium is known on some side.
+    pub fn is_known(&self) -> bool {
+        self.interior.is_some() || self.exterior.is_some()
+    }
+
+    /// Only one of the sides is known.
+    pub fn is_half_known(&self) -> bool {
+        self.interior.is_some() != self.exterior.is_some()
+    }
+
+    /// The medium on the side whose directions have this `cosine` to the normal.
+    #[inline]
+    pub fn side(&self, cosine: f32) -> Option<MediumIndex> {
+        if cosine > 0.0 { self.exterior } else { self.interior }
     }
 }
 
-/// What the first boundary along a ray says of the medium before it.
-struct Claim {
-    medium: MediumIndex,
-    /// The boundary is seen from its inside.
+/// A side of a boundary that a ray has met.
+#[derive(Clone, Copy, Debug)]
+pub struct Side {
+    /// The medium of the ray.
+    pub medium: MediumIndex,
+    /// The shape.
+    pub shape: u32,
+    /// Where.
+    pub position: Vec3,
+    /// It was met from its inside.
     inside: bool,
     /// Its faces may be another's too (see [`touching`]).
     touching: bool,
 }
 
-/// The medium in front of the first boundary along a ray. Surfaces that do not separate media do not matter.
-///
-/// Where two shapes share a face, a ray meets one of the two, and which one is chance: seen from within one shape, the
-/// other's face says that one is outside of it, which is true and not the question. Other directions are asked then,
-/// for a boundary that is seen from its inside: no ray meets one that starts outside.
-pub fn ask(geometry: &Geometry, surfaces: &[Surface], origin: Vec3, direction: Vec3) -> Option<MediumIndex> {
-    let first = claim(geometry, surfaces, origin, direction)?;
-    if first.inside || !first.touching {
-        return Some(first.medium);
+impl Side {
+    /// Where two shapes share a face, a ray meets one of the two, and which one is chance: seen from within one, the
+    /// other's face says that one is outside of it, which is true and not the question.
+    pub fn is_doubtful(&self) -> bool {
+        self.touching && !self.inside
     }
-    let others = (0..DIRECTIONS).step_by(4).map(self::direction);
-    let inside = others
-        .filter_map(|other| claim(geometry, surfaces, origin, other))
-        .find(|claim| claim.inside)
-        .map(|claim| claim.medium);
-    inside.or(Some(first.medium))
+
+    /// What was met from `origin`, all doubt removed: rays in other directions are looked at for a side that is met from
+    /// its inside. No ray meets such a one that starts outside.
+    pub fn undoubted(self, geometry: &Geometry, surfaces: &[Surface], origin: Vec3) -> Self {
+        if !self.is_doubtful() {
+            return self;
+        }
+        let look = |direction: Vec3| {
+            let ray = Ray { origin, direction, t_max: f32::INFINITY };
+            if let Met::Side(side) = first(geometry, surfaces, ray, true) { Some(side) } else { None }
+        };
+        let mut others = (0..DIRECTIONS).step_by(4).map(direction).filter_map(look);
+        others.find(|side| side.inside).unwrap_or(self)
+    }
 }
 
-fn claim(geometry: &Geometry, surfaces: &[Surface], origin: Vec3, direction: Vec3) -> Option<Claim> {
-    let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
-    // A ray cannot meet more surfaces than there are, but a sphere twice; the bound ends even a faulty one.
-    for _ in 0..10_000 {
-        let hit = geometry.closest(&ray)?;
+/// What a ray meets that has to do with media. Surfaces that light passes and that separate no media do not count.
+#[derive(Clone, Copy, Debug)]
+pub enum Met {
+    /// A side of which the medium is known.
+    Side(Side),
+    /// An opaque surface of which this side's medium is not known.
+    Wall {
+        /// The point.
+        point: SurfacePoint,
+        /// The other side's medium is known: as in Mitsuba this one's is then vacuum, unless there is evidence.
+        half_known: bool,
+    },
+    /// Nothing up to the end of the ray.
+    Nothing,
+}
+
+/// Most surfaces that a ray is followed through: it cannot meet more than there are, but a sphere twice; the bound ends
+/// even a faulty one.
+const MOST_SURFACES: u32 = 10_000;
+
+/// The first thing that `ray` meets. Where `through_walls`, opaque surfaces are passed if they say nothing.
+pub fn first(geometry: &Geometry, surfaces: &[Surface], mut ray: Ray, through_walls: bool) -> Met {
+    for _ in 0..MOST_SURFACES {
+        let Some(hit) = geometry.closest(&ray) else { return Met::Nothing };
         let point = geometry.surface(&ray, &hit);
-        let Surface { boundary, touching, .. } = surfaces[point.shape as usize];
-        if let Some(boundary) = boundary {
-            let inside = point.normal.dot(direction) >= 0.0;
-            let medium = if inside { boundary.interior } else { boundary.exterior };
-            return Some(Claim { medium, inside, touching });
+        let Surface { boundary, touching, transmits, .. } = surfaces[point.shape as usize];
+        let inside = point.normal.dot(ray.direction) >= 0.0;
+        let (shape, position) = (point.shape, point.position);
+        match if inside { boundary.interior } else { boundary.exterior } {
+            Some(medium) => return Met::Side(Side { medium, shape, position, inside, touching }),
+            None if transmits || through_walls => {}
+            None => return Met::Wall { point, half_known: boundary.is_half_known() },
         }
-        ray.origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+        let origin = offset::leave_surface(point.position, point.error, point.normal, ray.direction);
+        ray.t_max -= (origin - ray.origin).dot(ray.direction);
+        ray.origin = origin;
     }
-    None
+    Met::Nothing
+}
+
+/// The medium that a ray is in which leaves a boundary that may share faces with another: that of the first side ahead.
+pub fn medium_ahead(geometry: &Geometry, surfaces: &[Surface], ray: &Ray) -> Option<MediumIndex> {
+    let ray = Ray { t_max: f32::INFINITY, ..*ray };
+    match first(geometry, surfaces, ray, true) {
+        Met::Side(side) => Some(side.undoubted(geometry, surfaces, ray.origin).medium),
+        _ => None,
+    }
 }
 
 /// For every shape, whether its boundary may share faces with that of another: their boxes meet, and neither
 /// lies within the other.
 pub fn touching(geometry: &Geometry, surfaces: &[Surface]) -> Vec<bool> {
-    let bounding: Vec<usize> = (0..surfaces.len()).filter(|i| surfaces[*i].boundary.is_some()).collect();
+    let bounding: Vec<usize> = (0..surfaces.len()).filter(|i| surfaces[*i].boundary.is_known()).collect();
     let boxes: Vec<(Vec3, Vec3)> = bounding.iter().map(|i| geometry.shapes()[*i].bounds()).collect();
     let mut touching = vec![false; surfaces.len()];
     for (i, a) in boxes.iter().enumerate() {
@@ -110,8 +157,11 @@ fn meet(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
     !(apart || within(a, b) || within(b, a))
 }
 
+/// Directions of [`direction`], spread evenly over the sphere.
+pub const DIRECTIONS: u32 = 32;
+
 /// Direction `index` of a golden-angle spiral.
-fn direction(index: u32) -> Vec3 {
+pub fn direction(index: u32) -> Vec3 {
     let turn = (index as f32 * 0.618_034).fract();
     warp::to_sphere(vec2((index as f32 + 0.5) / DIRECTIONS as f32, turn))
 }
@@ -137,5 +187,14 @@ mod tests {
         ] {
             assert_eq!((meet(unit, other), meet(other, unit)), (expected, expected), "{name}");
         }
+    }
+
+    #[test]
+    fn an_unstated_side_is_vacuum_only_where_light_gets_through() {
+        let fog = Some(MediumIndex(1));
+        assert_eq!(Boundary::stated(fog, None, true).exterior, Some(MediumIndex::VACUUM));
+        assert_eq!(Boundary::stated(None, fog, true).interior, Some(MediumIndex::VACUUM));
+        assert_eq!(Boundary::stated(fog, None, false), Boundary { interior: fog, exterior: None });
+        assert_eq!(Boundary::stated(None, None, true), Boundary::default());
     }
 }

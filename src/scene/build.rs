@@ -2,14 +2,15 @@
 //! belongs together is tied up by index.
 
 use super::{
-    Boundary, Scene, Surface,
+    Scene, Surface,
     accel::Geometry,
-    boundary,
+    boundary::{self, Boundary},
     extents::Extents,
     film,
-    finder::Finder,
     integrator::{self, Integrator},
-    lights::{Light, Lights},
+    lights::{Light, Lights, emissive},
+    locate::{Infinity, Known, Locator},
+    placement::{Names, Placement, place_camera},
     plugins,
     sampler::{self, Sampling},
     sections::Sections,
@@ -149,6 +150,7 @@ struct Builder<'a> {
     recentre: DVec3,
     shapes: Vec<Shape>,
     shape_names: Vec<String>,
+    shape_locations: Vec<Location>,
     surfaces: Vec<Surface>,
     bsdfs: Vec<Bsdf>,
     bsdf_names: Vec<String>,
@@ -156,6 +158,7 @@ struct Builder<'a> {
     place: Place,
     media: Vec<Blueprint>,
     medium_names: Vec<String>,
+    medium_ids: Vec<Option<String>>,
     medium_index: HashMap<*const Object, MediumIndex>,
     emitters: Vec<Placed<'a>>,
     /// BSDF of shapes that name none: diffuse 0.5, and black on emitters.
@@ -169,6 +172,7 @@ impl<'a> Builder<'a> {
             recentre: place.recentre,
             shapes: Vec::new(),
             shape_names: Vec::new(),
+            shape_locations: Vec::new(),
             surfaces: Vec::new(),
             bsdfs: Vec::new(),
             bsdf_names: Vec::new(),
@@ -176,6 +180,7 @@ impl<'a> Builder<'a> {
             place,
             media: vec![Blueprint::vacuum()],
             medium_names: Vec::new(),
+            medium_ids: Vec::new(),
             medium_index: HashMap::new(),
             emitters: Vec::new(),
             default_bsdf: [None; 2],
@@ -185,7 +190,8 @@ impl<'a> Builder<'a> {
     fn shape(&mut self, child: &Child<'a>) -> Result<()> {
         let params = Params::new(child.object, self.library);
         let shape = shape::build(&params, self.recentre)?;
-        let boundary = self.boundary(&params)?;
+        let interior = self.side(&params, "interior")?;
+        let exterior = self.side(&params, "exterior")?;
         let index = self.shapes.len() as u32;
         let emitter = self.shape_emitter(&params, index)?;
         let bsdfs = params.children(|child| bsdf::ROWS.iter().any(|row| row.name == child.object.plugin))?;
@@ -197,19 +203,17 @@ impl<'a> Builder<'a> {
         params.finish()?;
         self.shapes.push(shape);
         self.shape_names.push(name_of(child.object));
-        let connectible = self.bsdfs[bsdf as usize].is_connectible();
-        self.surfaces.push(Surface { bsdf, emitter, boundary, touching: false, connectible });
+        self.shape_locations.push(child.location.clone());
+        let model = &self.bsdfs[bsdf as usize];
+        let (connectible, transmits) = (model.is_connectible(), model.transmits());
+        let boundary = Boundary::stated(interior, exterior, transmits);
+        self.surfaces.push(Surface { bsdf, emitter, boundary, transmits, touching: false, connectible });
         Ok(())
     }
 
-    fn boundary(&mut self, params: &Params<'a>) -> Result<Option<Boundary>> {
-        let interior = params.child("interior")?.map(|child| self.medium(child.object)).transpose()?;
-        let exterior = params.child("exterior")?.map(|child| self.medium(child.object)).transpose()?;
-        if interior.is_none() && exterior.is_none() {
-            return Ok(None);
-        }
-        let side = |medium: Option<MediumIndex>| medium.unwrap_or(MediumIndex::VACUUM);
-        Ok(Some(Boundary { interior: side(interior), exterior: side(exterior) }))
+    /// The medium that the file states on one side of a shape.
+    fn side(&mut self, params: &Params<'a>, name: &'static str) -> Result<Option<MediumIndex>> {
+        params.child(name)?.map(|child| self.medium(child.object)).transpose()
     }
 
     fn shape_emitter(&mut self, params: &Params<'a>, shape: u32) -> Result<Option<u32>> {
@@ -281,6 +285,7 @@ impl<'a> Builder<'a> {
         let index = MediumIndex(self.media.len() as u32);
         self.media.push(medium::build(object, self.library, &self.place)?);
         self.medium_names.push(name_of(object));
+        self.medium_ids.push(object.id.clone());
         self.medium_index.insert(std::ptr::from_ref(object), index);
         Ok(index)
     }
@@ -324,38 +329,43 @@ impl<'a> Builder<'a> {
         sensor_location: &Location,
         treatment: &Treatment,
     ) -> Result<Scene> {
-        let geometry = Geometry::build(self.shapes);
+        let geometry = Geometry::build(std::mem::take(&mut self.shapes));
         let touching = boundary::touching(&geometry, &self.surfaces);
         self.surfaces.iter_mut().zip(touching).for_each(|(surface, touching)| surface.touching = touching);
-        let finder = Finder { geometry: &geometry, surfaces: &self.surfaces, library: self.library };
+        let names = Names {
+            library: self.library,
+            media: &self.medium_names,
+            ids: &self.medium_ids,
+            shapes: &self.shape_names,
+            locations: &self.shape_locations,
+            recentre: self.recentre,
+        };
         let ambient = stated.unwrap_or(MediumIndex::VACUUM);
+        let (mut known, survey) =
+            Known::survey(&geometry, &self.surfaces, self.stated_points(start, stated), ambient);
+        names.warn_of_contradictions(&survey);
         let sensor_medium = match stated {
             Some(medium) => medium,
             // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
-            None => finder.around(start, ambient, sensor_location, "the camera"),
+            None => place_camera(&geometry, &self.surfaces, &mut known, start, &names, sensor_location),
         };
-        let (recentre, outside) = (self.recentre, finder.far_outside(sensor_medium));
+        let outside = known.infinity.most();
+        let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
+        names.warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
         let viewpoint = sensor.position();
-        let extents = Extents { geometry: &geometry, surfaces: &self.surfaces, viewpoint, outside };
-        finder.warn_of_endless_light(&self.media[outside.0 as usize]);
+        let extents =
+            Extents { geometry: &geometry, surfaces: &self.surfaces, viewpoint, outside, survey: &survey };
         let media = extents.finish(self.media, treatment)?;
-        let shining = finder.shining(&media, outside);
-        let lights = self.emitters.into_iter().map(|Placed { emitter, shape, stated, location }| {
-            let position = emitter.position().map(|position| (position - recentre).as_vec3());
-            let across = |shape| finder.straddles(shape, outside);
-            let straddles = stated.is_none() && shape.is_some_and(across);
-            let medium = match (stated, shape, position) {
-                (Some(medium), ..) => medium,
-                (None, Some(shape), _) if !straddles => finder.in_front_of(shape, sensor_medium, location),
-                (None, None, Some(position)) => {
-                    finder.around(position, sensor_medium, location, "an emitter")
-                }
-                _ => outside,
-            };
-            Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles }
-        });
-        let lights: Vec<Light> = lights.chain(shining).collect();
-        let lights = Lights::new(lights, &geometry, &media[outside.0 as usize]);
+        let locator = Locator { geometry: &geometry, surfaces: &self.surfaces, known: &known };
+        let placement = Placement { locator, names: &names, ambient: sensor_medium };
+        let recentre = self.recentre;
+        let lights = self.emitters.into_iter().map(|placed| light(placed, recentre, &placement));
+        let lights: Vec<Light> = lights.chain(emissive(&media, locator, outside)).collect();
+        let around = match known.infinity {
+            Infinity::Directional(_) => &media[0],
+            _ => &media[outside.0 as usize],
+        };
+        let lights = Lights::new(lights, &geometry, around);
         Ok(Scene {
             lights,
             geometry,
@@ -363,9 +373,31 @@ impl<'a> Builder<'a> {
             bsdfs: self.bsdfs,
             media,
             outside,
+            known,
             sensor,
             sensor_medium,
             recentre,
         })
     }
+
+    /// Camera and emitters at points whose medium the file states; the camera stands at `start`.
+    fn stated_points(&self, start: Vec3, medium: Option<MediumIndex>) -> Vec<(Vec3, MediumIndex)> {
+        let emitters = self.emitters.iter().filter_map(|placed| {
+            Some(((placed.emitter.position()? - self.recentre).as_vec3(), placed.stated?))
+        });
+        medium.map(|medium| (start, medium)).into_iter().chain(emitters).collect()
+    }
+}
+
+/// An emitter with the medium that it lies in.
+fn light(placed: Placed<'_>, recentre: DVec3, placement: &Placement<'_>) -> Light {
+    let Placed { emitter, shape, stated, location } = placed;
+    let position = emitter.position().map(|position| (position - recentre).as_vec3());
+    let (medium, straddles) = match (stated, shape, position) {
+        (Some(medium), ..) => (medium, false),
+        (None, Some(shape), _) => placement.of_shape(shape, location),
+        (None, None, Some(position)) => (placement.of_point(position, location), false),
+        (None, None, None) => placement.of_infinite(&emitter),
+    };
+    Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles }
 }

@@ -1,7 +1,7 @@
 //! How far the media of a scene reach: the boxes in which coefficients that vary without bounds of their own are
 //! looked at.
 
-use super::{Surface, accel::Geometry};
+use super::{Surface, accel::Geometry, locate::Survey};
 use crate::{
     error::Result,
     math::Vec3,
@@ -21,6 +21,8 @@ pub struct Extents<'a> {
     pub viewpoint: Vec3,
     /// The medium around everything.
     pub outside: MediumIndex,
+    /// How far rays in each medium were seen to get: shapes that hold one need not close it.
+    pub survey: &'a Survey,
 }
 
 impl Extents<'_> {
@@ -36,14 +38,19 @@ impl Extents<'_> {
     /// The box around the shapes that hold `medium`; around the whole scene where it also lies outside of some: false.
     fn of(&self, medium: MediumIndex) -> (bool, [Vec3; 2]) {
         let boundaries = || self.surfaces.iter().zip(self.geometry.shapes());
-        let holds = |surface: &Surface| surface.boundary.is_some_and(|b| b.interior == medium);
-        let leaks = |surface: &Surface| surface.boundary.is_some_and(|b| b.exterior == medium);
+        let holds = |surface: &Surface| surface.boundary.interior == Some(medium);
+        let leaks = |surface: &Surface| surface.boundary.exterior == Some(medium);
         let inside = boundaries().filter(|(surface, _)| holds(surface)).map(|(_, shape)| shape.bounds());
         let everywhere = medium == self.outside || boundaries().any(|(surface, _)| leaks(surface));
-        match inside.reduce(union) {
-            Some(bounds) if !everywhere => (true, widened(bounds)),
+        match inside.reduce(union).map(widened) {
+            Some(bounds) if !everywhere && self.ends_within(medium, bounds) => (true, bounds),
             _ => (false, self.scene()),
         }
+    }
+
+    fn ends_within(&self, medium: MediumIndex, [low, high]: [Vec3; 2]) -> bool {
+        let seen = self.survey.extents.get(medium.0 as usize).copied().flatten();
+        seen.is_none_or(|(l, h)| l.cmpge(low).all() && h.cmple(high).all())
     }
 
     fn scene(&self) -> [Vec3; 2] {

@@ -6,13 +6,14 @@ pub mod build;
 mod extents;
 mod files;
 mod film;
-mod finder;
 pub mod heuristic;
 pub mod integrator;
 mod json;
 pub mod lights;
+mod locate;
 mod origins;
 mod parameters;
+mod placement;
 mod plugins;
 mod read;
 mod references;
@@ -37,16 +38,10 @@ use crate::{
     shape::{Ray, SurfacePoint},
 };
 use accel::Geometry;
+use boundary::Boundary;
 use lights::Lights;
-
-/// Which media lie on the two sides of a shape.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Boundary {
-    /// Behind the surface, where the normal points away from.
-    pub interior: MediumIndex,
-    /// In front of the surface.
-    pub exterior: MediumIndex,
-}
+pub use locate::Infinity;
+use locate::{Known, Locator};
 
 /// What a shape is made of.
 #[derive(Clone, Copy, Debug)]
@@ -55,8 +50,10 @@ pub struct Surface {
     pub bsdf: u32,
     /// Index of its emitter.
     pub emitter: Option<u32>,
-    /// The media on its sides; none where it does not separate media.
-    pub boundary: Option<Boundary>,
+    /// The media on its sides.
+    pub boundary: Boundary,
+    /// Light can get to the other side.
+    pub transmits: bool,
     /// The boundary may share faces with another shape's (see [`boundary::touching`]).
     pub touching: bool,
     /// Some of its scattering is not Dirac: the answer of its BSDF, kept where every vertex asks.
@@ -77,8 +74,10 @@ pub struct Scene {
     pub lights: Lights,
     /// The camera.
     pub sensor: Sensor,
-    /// The medium around everything.
+    /// The medium around everything; where that differs by direction, the one seen most.
     pub outside: MediumIndex,
+    /// What is known of where media lie.
+    pub known: Known,
     /// The medium around the camera.
     pub sensor_medium: MediumIndex,
     /// Where the origin of all positions lies in the file's coordinates [m].
@@ -101,36 +100,44 @@ impl Scene {
     /// The medium that a ray in `medium` is in when it leaves `point` in `direction`.
     #[inline]
     pub fn medium_towards(&self, point: &SurfacePoint, direction: Vec3, medium: MediumIndex) -> MediumIndex {
-        match self.surface(point.shape).boundary {
-            Some(boundary) if point.normal.dot(direction) > 0.0 => boundary.exterior,
-            Some(boundary) => boundary.interior,
-            None => medium,
-        }
+        self.surface(point.shape).boundary.side(point.normal.dot(direction)).unwrap_or(medium)
     }
 
-    /// The medium that `ray` is in, which has left `point` from within `medium`. Where two boundaries share a
-    /// face, a ray meets only one of the two, and which one is chance; what it is in now, the next one tells.
+    /// The medium that `ray` is in, which has passed `point` from within `medium`. Where two boundaries share a
+    /// face, a ray meets only one of the two, and which one is chance; what it is in now, the next one says. Opaque
+    /// surfaces are passed where they are hidden, as if they were not there.
     #[inline]
     pub fn medium_beyond(&self, point: &SurfacePoint, ray: &Ray, medium: MediumIndex) -> MediumIndex {
-        if self.surface(point.shape).touching
-            && let Some(found) = boundary::ask(&self.geometry, &self.surfaces, ray.origin, ray.direction)
-        {
+        let Surface { touching, transmits, .. } = *self.surface(point.shape);
+        if !transmits {
+            return medium;
+        }
+        if touching && let Some(found) = boundary::medium_ahead(&self.geometry, &self.surfaces, ray) {
             return found;
         }
         self.medium_towards(point, ray.direction, medium)
+    }
+
+    fn locator(&self) -> Locator<'_> {
+        Locator { geometry: &self.geometry, surfaces: &self.surfaces, known: &self.known }
     }
 
     /// The medium that light of an emitter is in when it leaves from `origin` in `direction`.
     #[inline]
     pub fn emission_medium(&self, light: u32, origin: Vec3, direction: Vec3) -> MediumIndex {
         let light = &self.lights.all[light as usize];
-        let asked = || boundary::ask(&self.geometry, &self.surfaces, origin, direction);
-        if light.straddles { asked().unwrap_or(light.medium) } else { light.medium }
+        if !light.straddles {
+            return light.medium;
+        }
+        if light.emitter.is_infinite() {
+            return self.locator().from_infinity(origin, direction);
+        }
+        self.locator().along(origin, direction).unwrap_or(light.medium)
     }
 
     /// True if `position` lies in `medium`, as far as a ray from there towards `direction` can tell.
     pub fn is_within(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> bool {
-        boundary::ask(&self.geometry, &self.surfaces, position, direction).unwrap_or(self.outside) == medium
+        self.locator().along(position, direction).unwrap_or(self.outside) == medium
     }
 
     /// The part of light that passes `point` undeflected along `direction`.

@@ -1,7 +1,10 @@
 //! A scene at another time: what drifts in a wind is moved, all else stays as it was read and built.
 
-use super::{Scene, finder::Finder, lights::Lights};
-use crate::{description::Library, emitter::Kind, error::Result};
+use super::{
+    Scene,
+    lights::{Lights, emissive},
+};
+use crate::{emitter::Kind, error::Result};
 
 impl Scene {
     /// Moves the scene to `time` [s]; false where nothing in it depends on time. Media that change are looked at
@@ -16,10 +19,9 @@ impl Scene {
         }
         if changed {
             let steady = std::mem::take(&mut self.lights).all.into_iter();
-            let library = Library::default();
-            let finder = Finder { geometry: &self.geometry, surfaces: &self.surfaces, library: &library };
-            let shining = finder.shining(&self.media, self.outside);
-            let lights = steady.filter(|light| !matches!(light.emitter.kind, Kind::Medium(_))).chain(shining);
+            let emissive = emissive(&self.media, self.locator(), self.outside);
+            let lights =
+                steady.filter(|light| !matches!(light.emitter.kind, Kind::Medium(_))).chain(emissive);
             let outside = &self.media[self.outside.0 as usize];
             self.lights = Lights::new(lights.collect(), &self.geometry, outside);
         }

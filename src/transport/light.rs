@@ -68,15 +68,22 @@ pub fn begin<P: Profile>(scene: &Scene, stream: &mut Stream) -> Option<Start> {
 /// Leaves the emitter. Before it only an eye walk that meets it can join.
 pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Departure<P::Sums> {
     let hits = if start.hittable { estimator.counts.hit } else { 0.0 };
+    let scene = estimator.scene;
+    let medium = scene.emission_medium(start.light, start.origin, start.direction);
+    let arriving = if P::INFINITE && start.infinite {
+        scene.media[medium.0 as usize].from_infinity()
+    } else {
+        Spectrum::ONE
+    };
     Departure {
         position: start.position,
         ray: Ray { origin: start.origin, direction: start.direction, t_max: f32::INFINITY },
-        medium: estimator.scene.emission_medium(start.light, start.origin, start.direction),
+        medium,
         from_infinity: start.infinite,
         edges: 0,
         hidden: false,
         dirac: start.dirac,
-        throughput: start.throughput,
+        throughput: start.throughput * arriving,
         forward: start.forward,
         carried: P::Sums::of(connect::rate_of::<P>(start.rate).scaled(hits * start.cosine / start.start)),
         reach: P::Lanes::splat(1.0),

@@ -8,9 +8,11 @@
 
 mod link;
 mod start;
+mod volume;
 
 pub use link::Link;
 pub use start::{Leaving, Start};
+pub(super) use volume::emissive;
 
 use super::accel::Geometry;
 use crate::{
@@ -33,7 +35,7 @@ pub struct Light {
     pub shape: Option<u32>,
     /// The medium its light starts in.
     pub medium: MediumIndex,
-    /// A shape that lies in several media: each ray asks for its own, and `medium` is where no boundary is met.
+    /// Its light starts in several media: that of each ray is located, and `medium` is where nothing is known.
     pub straddles: bool,
 }
 
@@ -69,7 +71,7 @@ impl Lights {
     /// Arranges `all` emitters of a scene within a sphere around `geometry` and what varies of the medium `outside`.
     pub fn new(all: Vec<Light>, geometry: &Geometry, outside: &Medium) -> Self {
         let (centre, radius) = sphere_around(geometry, outside);
-        let from_infinity = from_infinity(outside);
+        let from_infinity = outside.from_infinity();
         let weight = |light: &Light| {
             let area = light.shape.map_or(0.0, |shape| geometry.area(shape));
             let arriving = if light.emitter.is_infinite() { from_infinity.max_element() } else { 1.0 };
@@ -137,12 +139,6 @@ fn of_media(all: &[Light]) -> Vec<Option<u32>> {
         }
     }
     found
-}
-
-/// What remains of light along an infinite way through a medium: 1 where it varies, for then it ends somewhere.
-fn from_infinity(outside: &Medium) -> Spectrum {
-    let lane = |sigma_t: f32| if sigma_t > 0.0 && outside.varying.is_none() { 0.0 } else { 1.0 };
-    Spectrum::new(lane(outside.sigma_t.x), lane(outside.sigma_t.y), lane(outside.sigma_t.z))
 }
 
 /// Centre and radius of a sphere that holds everything.

@@ -1,0 +1,44 @@
+//! Media that emit, as emitters of a scene.
+
+use super::Light;
+use crate::{
+    emitter::{Emitter, Glow},
+    math::{SpectrumExt, Vec3, warp},
+    medium::{Emission, Medium, MediumIndex},
+    sampling::{Stream, stream::Purpose},
+    scene::locate::Locator,
+};
+
+/// Points of an emissive medium's box that are located.
+const POINTS: u32 = 4096;
+
+/// The emissive ones among `media`; `outside` is what a point lies in of which nothing is known.
+pub fn emissive<'a>(
+    media: &'a [Medium],
+    locator: Locator<'a>,
+    outside: MediumIndex,
+) -> impl Iterator<Item = Light> + use<'a> {
+    (0..).zip(media).filter_map(move |(index, medium)| {
+        let (emission, medium) = (medium.emission.clone()?, MediumIndex(index));
+        let filled = filled(&emission, medium, locator, outside);
+        let emitter = Emitter::of_medium(Glow { emission, filled });
+        Some(Light { emitter, position: Vec3::ZERO, shape: None, medium, straddles: false })
+    })
+}
+
+/// The part of the power of `emission` that is emitted in `medium`, above 0.
+fn filled(emission: &Emission, medium: MediumIndex, locator: Locator<'_>, outside: MediumIndex) -> f64 {
+    let mut stream = Stream::new(2, u64::from(medium.0), 0, Purpose::Pilot);
+    let mut sum = [0.0, 0.0];
+    for _ in 0..POINTS {
+        let point = emission.sample(&mut stream);
+        let direction = warp::to_sphere(stream.square());
+        let density = emission.density(point);
+        // Rounding may have put it just outside.
+        let share = if density > 0.0 { f64::from(emission.at(point).luminance() / density) } else { 0.0 };
+        let found = locator.along(point, direction).unwrap_or(outside);
+        sum[0] += share;
+        sum[1] += if found == medium { share } else { 0.0 };
+    }
+    (sum[1] / sum[0]).max(1.0 / f64::from(POINTS))
+}

@@ -1,0 +1,462 @@
+//! Which medium a point lies in, where nothing states it: the camera, emitters, infinity.
+//!
+//! Evidence flows along unblocked segments from where the medium is known: the sides of boundaries, a camera or emitters
+//! that state theirs. From a point rays are aimed at these, and go on from walls that say nothing: whatever is connected by
+//! free segments lies in one medium. A guess (nothing unblocked was found) is weaker, and whoever asks must warn of it.
+
+use super::{
+    Surface,
+    accel::Geometry,
+    boundary::{self, DIRECTIONS, Met, Side},
+};
+use crate::{
+    math::{Frame, Vec3, measure, offset, warp},
+    medium::MediumIndex,
+    sampling::{Stream, stream::Purpose},
+    shape::{Ray, SurfacePoint},
+};
+
+/// Rays of a survey from the boundaries of a scene, all together.
+const SURVEY_RAYS: usize = 32_768;
+/// Rays of a survey from one side of a boundary, and from a point whose medium is stated.
+const RAYS_PER_SIDE: usize = 64;
+/// Segments of a chain of evidence from wall to wall.
+const LONGEST_CHAIN: u32 = 8;
+/// Chains that are tried around a point.
+const CHAINS: usize = 128;
+/// Pieces of evidence that settle the medium of a point.
+const ENOUGH: u32 = 8;
+/// Shares of evidence below this are taken for rays that slipped through an edge.
+const SLIPS: f32 = 0.01;
+
+/// The medium at infinity, by direction.
+#[derive(Clone, Debug)]
+pub enum Infinity {
+    /// Nothing whose medium is known was seen to reach it; this is assumed.
+    Unseen(MediumIndex),
+    /// The same all around.
+    Uniform(MediumIndex),
+    /// Unit directions towards it, and what lies there; the nearest one counts.
+    Directional(Vec<(Vec3, MediumIndex)>),
+}
+
+impl Infinity {
+    /// The medium in unit `direction`.
+    pub fn towards(&self, direction: Vec3) -> MediumIndex {
+        match self {
+            Self::Unseen(medium) | Self::Uniform(medium) => *medium,
+            Self::Directional(seen) => {
+                let nearest = seen.iter().max_by(|a, b| direction.dot(a.0).total_cmp(&direction.dot(b.0)));
+                nearest.map_or(MediumIndex::VACUUM, |(_, medium)| *medium)
+            }
+        }
+    }
+
+    fn of(seen: Vec<(Vec3, MediumIndex)>, otherwise: MediumIndex) -> Self {
+        let mut votes = Votes::default();
+        seen.iter().for_each(|(_, medium)| votes.add(*medium, None));
+        match votes.settled() {
+            None => Self::Unseen(otherwise),
+            Some((medium, None)) => Self::Uniform(medium),
+            Some(_) => Self::Directional(seen),
+        }
+    }
+
+    /// The same; none where it is only assumed.
+    fn seen_towards(&self, direction: Vec3) -> Option<MediumIndex> {
+        (!matches!(self, Self::Unseen(_))).then(|| self.towards(direction))
+    }
+
+    /// The medium of most directions that were seen.
+    pub fn most(&self) -> MediumIndex {
+        match self {
+            Self::Unseen(medium) | Self::Uniform(medium) => *medium,
+            Self::Directional(seen) => {
+                let mut votes = Votes::default();
+                seen.iter().for_each(|(_, medium)| votes.add(*medium, None));
+                votes.settled().map_or(MediumIndex::VACUUM, |(medium, _)| medium)
+            }
+        }
+    }
+}
+
+/// How many pieces of evidence name each medium, and a shape that does.
+#[derive(Debug, Default)]
+struct Votes(Vec<(MediumIndex, u32, Option<u32>)>);
+
+impl Votes {
+    fn add(&mut self, medium: MediumIndex, witness: Option<u32>) {
+        match self.0.iter_mut().find(|(voted, ..)| *voted == medium) {
+            Some((_, count, first)) => {
+                *count += 1;
+                *first = first.or(witness);
+            }
+            None => self.0.push((medium, 1, witness)),
+        }
+    }
+
+    fn total(&self) -> u32 {
+        self.0.iter().map(|(_, count, _)| count).sum()
+    }
+
+    /// The medium of most votes, and the shapes of those and of the runner-up where they disagree.
+    fn settled(mut self) -> Option<(MediumIndex, Option<[Option<u32>; 2]>)> {
+        let total = self.total();
+        self.0.sort_by_key(|(_, count, _)| std::cmp::Reverse(*count));
+        self.0.retain(|(_, count, _)| *count as f32 > SLIPS * total as f32);
+        match self.0.as_slice() {
+            [] => None,
+            [(medium, ..)] => Some((*medium, None)),
+            [(medium, _, a), (_, _, b), ..] => Some((*medium, Some([*a, *b]))),
+        }
+    }
+}
+
+/// What is known of a scene's media before anything is located.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// Shapes of whose sides some medium is known.
+    boundaries: Vec<u32>,
+    /// Points whose medium is stated, or has been located.
+    points: Vec<(Vec3, MediumIndex)>,
+    /// The only medium that anything in the scene speaks of.
+    only: Option<MediumIndex>,
+    /// What surrounds the scene.
+    pub infinity: Infinity,
+}
+
+/// A side of a boundary in one medium, from which an unblocked way leads to another in a different one.
+#[derive(Clone, Copy, Debug)]
+pub struct Contradiction {
+    /// The shape where the way begins; none for a point whose medium is stated.
+    pub from: Option<u32>,
+    /// The medium there.
+    pub medium: MediumIndex,
+    /// Where it ends.
+    pub at: Side,
+}
+
+/// What the boundaries of a scene say of each other.
+#[derive(Debug, Default)]
+pub struct Survey {
+    /// Where they are open or overlap.
+    pub contradictions: Vec<Contradiction>,
+    /// Per medium, least and greatest corner of what rays within it have met; infinite where they met nothing.
+    pub extents: Vec<Option<(Vec3, Vec3)>>,
+    escapes: Vec<(Vec3, MediumIndex)>,
+}
+
+impl Survey {
+    fn extend(&mut self, medium: MediumIndex, low: Vec3, high: Vec3) {
+        let index = medium.0 as usize;
+        self.extents.resize(self.extents.len().max(index + 1), None);
+        let grown = self.extents[index].map_or((low, high), |(l, h)| (l.min(low), h.max(high)));
+        self.extents[index] = Some(grown);
+    }
+}
+
+/// How well the medium of a point is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Certainty {
+    /// All evidence along unblocked segments agrees.
+    Seen,
+    /// It does not; a shape that speaks for the medium, and one against it.
+    Contradicted([Option<u32>; 2]),
+    /// It is the vacuum that Mitsuba takes for what a wall around leaves unstated.
+    Unstated,
+    /// It was seen through opaque surfaces only.
+    ThroughWalls,
+    /// There is no evidence.
+    Assumed,
+}
+
+/// The medium of a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Located {
+    /// Which.
+    pub medium: MediumIndex,
+    /// How well it is known.
+    pub certainty: Certainty,
+}
+
+/// Locates points among the shapes of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Locator<'a> {
+    /// All shapes.
+    pub geometry: &'a Geometry,
+    /// What they are made of.
+    pub surfaces: &'a [Surface],
+    /// What is known.
+    pub known: &'a Known,
+}
+
+impl Known {
+    /// Looks around from all boundaries and the `points` whose medium is stated; where there are none of either, everything
+    /// lies in `otherwise`.
+    pub fn survey(
+        geometry: &Geometry,
+        surfaces: &[Surface],
+        points: Vec<(Vec3, MediumIndex)>,
+        otherwise: MediumIndex,
+    ) -> (Self, Survey) {
+        let boundaries = (0..surfaces.len() as u32).filter(|i| surfaces[*i as usize].boundary.is_known());
+        let known = Self {
+            only: only_medium(surfaces, &points, otherwise),
+            boundaries: boundaries.collect(),
+            points,
+            infinity: Infinity::Unseen(otherwise),
+        };
+        if let Some(medium) = known.only {
+            return (Self { infinity: Infinity::Uniform(medium), ..known }, Survey::default());
+        }
+        let mut survey = Survey::default();
+        Locator { geometry, surfaces, known: &known }.survey(&mut survey);
+        let infinity = Infinity::of(std::mem::take(&mut survey.escapes), otherwise);
+        (Self { infinity, ..known }, survey)
+    }
+
+    /// True if one medium is all that can lie anywhere.
+    pub fn is_uniform(&self) -> bool {
+        self.only.is_some()
+    }
+
+    /// From here on `point` is known to lie in `medium`.
+    pub fn add(&mut self, point: Vec3, medium: MediumIndex) {
+        self.points.push((point, medium));
+    }
+}
+
+/// The one medium that is stated, be it by a vacuum left unstated; none where there are several.
+fn only_medium(
+    surfaces: &[Surface],
+    points: &[(Vec3, MediumIndex)],
+    otherwise: MediumIndex,
+) -> Option<MediumIndex> {
+    let sides = surfaces.iter().flat_map(|Surface { boundary, .. }| {
+        let unstated = boundary.is_half_known().then_some(MediumIndex::VACUUM);
+        [boundary.interior, boundary.exterior, unstated]
+    });
+    let mut stated = sides.flatten().chain(points.iter().map(|(_, medium)| *medium));
+    let first = stated.next().unwrap_or(otherwise);
+    stated.all(|medium| medium == first).then_some(first)
+}
+
+impl Locator<'_> {
+    fn survey(&self, survey: &mut Survey) {
+        let boundaries = &self.known.boundaries;
+        let every = (2 * 4 * boundaries.len()).div_ceil(SURVEY_RAYS).max(1);
+        let rays = (SURVEY_RAYS / (2 * boundaries.len()).max(1)).clamp(4, RAYS_PER_SIDE);
+        for &shape in boundaries.iter().step_by(every) {
+            let mut stream = Stream::new(1, u64::from(shape), 0, Purpose::Pilot);
+            for _ in 0..rays {
+                self.survey_sides(shape, survey, &mut stream);
+            }
+        }
+        for (index, &(position, medium)) in (0..).zip(&self.known.points) {
+            let mut stream = Stream::new(2, index, 0, Purpose::Pilot);
+            survey.extend(medium, position, position);
+            for _ in 0..RAYS_PER_SIDE {
+                let direction = warp::to_sphere(stream.square());
+                self.follow(position, direction, medium, None, survey, &mut stream);
+            }
+        }
+    }
+
+    /// A ray from a point of `shape` on each side whose medium is known.
+    fn survey_sides(&self, shape: u32, survey: &mut Survey, stream: &mut Stream) {
+        let point = self.geometry.sample_area(shape, stream);
+        let Surface { boundary, touching, .. } = self.surfaces[shape as usize];
+        if touching && self.is_shared(&point) {
+            return;
+        }
+        for normal in [point.normal, -point.normal] {
+            let direction = diffuse(normal, stream);
+            if let Some(medium) = boundary.side(point.normal.dot(normal)) {
+                let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+                self.follow(origin, direction, medium, Some(shape), survey, stream);
+            }
+        }
+    }
+
+    /// Follows a ray in `medium` and on from walls, until it meets a boundary or nothing.
+    fn follow(
+        &self,
+        mut origin: Vec3,
+        mut direction: Vec3,
+        medium: MediumIndex,
+        from: Option<u32>,
+        survey: &mut Survey,
+        stream: &mut Stream,
+    ) {
+        for _ in 0..LONGEST_CHAIN {
+            let ray = Ray { origin, direction, t_max: f32::INFINITY };
+            match boundary::first(self.geometry, self.surfaces, ray, false) {
+                Met::Side(side) => {
+                    survey.extend(medium, side.position, side.position);
+                    if side.medium != medium && !side.is_doubtful() {
+                        survey.contradictions.push(Contradiction { from, medium, at: side });
+                    }
+                    return;
+                }
+                Met::Wall { point, .. } => {
+                    survey.extend(medium, point.position, point.position);
+                    (origin, direction) = bounce(&point, direction, stream);
+                }
+                Met::Nothing => {
+                    survey.extend(medium, Vec3::NEG_INFINITY, Vec3::INFINITY);
+                    return survey.escapes.push((direction, medium));
+                }
+            }
+        }
+    }
+
+    /// True if another boundary has a face at `point` too.
+    fn is_shared(&self, point: &SurfacePoint) -> bool {
+        let reach = 4.0 * offset::gamma(32) * point.position.abs().max_element() + point.error.max_element();
+        let [above, below] = [reach, -reach].map(|by| point.position + point.normal * by);
+        let mut ray = Ray { origin: above, direction: -point.normal, t_max: above.distance(below) };
+        for _ in 0..4 {
+            let Some(hit) = self.geometry.closest(&ray) else { return false };
+            if self.geometry.shape_of(&hit) != point.shape {
+                return true;
+            }
+            let met = self.geometry.surface(&ray, &hit);
+            let origin = offset::leave_surface(met.position, met.error, met.normal, ray.direction);
+            ray = Ray { origin, t_max: (below - origin).dot(ray.direction), ..ray };
+        }
+        false
+    }
+
+    /// The medium around `point`, which lies on no surface.
+    pub fn locate(&self, point: Vec3, stream: &mut Stream) -> Option<Located> {
+        if let Some(medium) = self.known.only {
+            return Some(Located { medium, certainty: Certainty::Seen });
+        }
+        let (votes, unstated) = self.evidence(point, ENOUGH, stream);
+        match votes.settled() {
+            Some((medium, None)) => Some(Located { medium, certainty: Certainty::Seen }),
+            Some((medium, Some(shapes))) => {
+                Some(Located { medium, certainty: Certainty::Contradicted(shapes) })
+            }
+            None if unstated => Some(Located { medium: MediumIndex::VACUUM, certainty: Certainty::Unstated }),
+            None => self.through_walls(point),
+        }
+    }
+
+    /// The medium of a ray that leaves `origin` in `direction`; always the same for the same ray.
+    pub fn along(&self, origin: Vec3, direction: Vec3) -> Option<MediumIndex> {
+        if let Some(medium) = self.known.only {
+            return Some(medium);
+        }
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        if let Met::Side(side) = boundary::first(self.geometry, self.surfaces, ray, false) {
+            return Some(side.undoubted(self.geometry, self.surfaces, origin).medium);
+        }
+        let bits = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
+        let mut stream =
+            Stream::new(bits(origin.x, origin.y), bits(origin.z, direction.x), 0, Purpose::Pilot);
+        let (votes, unstated) = self.evidence(origin, 1, &mut stream);
+        match votes.settled() {
+            Some((medium, _)) => Some(medium),
+            None if unstated => Some(MediumIndex::VACUUM),
+            None => self.through_walls(origin).map(|located| located.medium),
+        }
+    }
+
+    /// What light from infinity that starts at `origin` in `direction` is in.
+    pub fn from_infinity(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        match boundary::first(self.geometry, self.surfaces, ray, false) {
+            Met::Side(side) => side.undoubted(self.geometry, self.surfaces, origin).medium,
+            Met::Wall { .. } | Met::Nothing => self.known.infinity.towards(-direction),
+        }
+    }
+
+    /// Up to `enough` pieces of evidence around `point`, and whether a wall was seen that leaves this side unstated.
+    fn evidence(&self, point: Vec3, enough: u32, stream: &mut Stream) -> (Votes, bool) {
+        let (mut votes, mut unstated) = (Votes::default(), false);
+        let targets = self.known.boundaries.len() + self.known.points.len();
+        for _ in 0..CHAINS.max(4 * targets).min(64 * CHAINS) {
+            if votes.total() >= enough {
+                break;
+            }
+            if let Some((medium, witness)) = self.chain(point, &mut unstated, stream) {
+                votes.add(medium, witness);
+            }
+        }
+        (votes, unstated)
+    }
+
+    /// One chain of unblocked segments from `point` to something that knows its medium.
+    fn chain(
+        &self,
+        point: Vec3,
+        unstated: &mut bool,
+        stream: &mut Stream,
+    ) -> Option<(MediumIndex, Option<u32>)> {
+        let mut origin = point;
+        let mut leaving = None;
+        for _ in 0..LONGEST_CHAIN {
+            let (ray, target) = self.aim(origin, leaving, stream);
+            match boundary::first(self.geometry, self.surfaces, ray, false) {
+                Met::Side(side) => {
+                    let side = side.undoubted(self.geometry, self.surfaces, origin);
+                    return Some((side.medium, Some(side.shape)));
+                }
+                Met::Wall { point, half_known } => {
+                    *unstated |= half_known;
+                    let (from, direction) = bounce(&point, ray.direction, stream);
+                    (origin, leaving) = (from, Some(direction));
+                }
+                Met::Nothing => {
+                    let seen = target.or_else(|| self.known.infinity.seen_towards(ray.direction));
+                    return seen.map(|medium| (medium, None));
+                }
+            }
+        }
+        None
+    }
+
+    /// A ray from `origin`: half of them in a direction of chance, or `leaving`; half aimed at a boundary, or at a point of
+    /// known medium, where they end.
+    fn aim(&self, origin: Vec3, leaving: Option<Vec3>, stream: &mut Stream) -> (Ray, Option<MediumIndex>) {
+        let Known { boundaries, points, .. } = self.known;
+        if stream.uniform() < 0.5 {
+            let index = stream.below(boundaries.len() + points.len());
+            let (target, medium) = match boundaries.get(index) {
+                Some(shape) => (self.geometry.sample_area(*shape, stream).position, None),
+                None => (points[index - boundaries.len()].0, Some(points[index - boundaries.len()].1)),
+            };
+            if let Some((direction, distance, _)) = measure::between(origin, target) {
+                let t_max = if medium.is_some() { distance } else { f32::INFINITY };
+                return (Ray { origin, direction, t_max }, medium);
+            }
+        }
+        let direction = leaving.unwrap_or_else(|| warp::to_sphere(stream.square()));
+        (Ray { origin, direction, t_max: f32::INFINITY }, None)
+    }
+
+    /// What is seen from `point` through walls.
+    fn through_walls(&self, point: Vec3) -> Option<Located> {
+        let mut votes = Votes::default();
+        for direction in (0..DIRECTIONS).map(boundary::direction) {
+            let ray = Ray { origin: point, direction, t_max: f32::INFINITY };
+            if let Met::Side(side) = boundary::first(self.geometry, self.surfaces, ray, true) {
+                votes.add(side.medium, Some(side.shape));
+            }
+        }
+        let (medium, _) = votes.settled()?;
+        Some(Located { medium, certainty: Certainty::ThroughWalls })
+    }
+}
+
+/// A direction from a wall with this unit normal, as matt paint would scatter it.
+fn diffuse(normal: Vec3, stream: &mut Stream) -> Vec3 {
+    Frame::around(normal).to_world(warp::to_cosine_hemisphere(stream.square())).normalize()
+}
+
+/// Where a ray that came in `direction` goes on from a wall.
+fn bounce(point: &SurfacePoint, direction: Vec3, stream: &mut Stream) -> (Vec3, Vec3) {
+    let away = diffuse(offset::side_of(point.normal, -direction), stream);
+    (offset::leave_surface(point.position, point.error, point.normal, away), away)
+}

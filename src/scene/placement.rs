@@ -1,0 +1,253 @@
+//! Which media the camera and the emitters of a scene lie in, with a warning for everything that is a guess.
+
+use super::{
+    accel::Geometry,
+    boundary::Boundary,
+    locate::{Certainty, Contradiction, Infinity, Known, Located, Locator, Survey},
+};
+use crate::{
+    description::{Library, Location, Position},
+    emitter::Emitter,
+    math::{DVec3, Vec3, offset},
+    medium::{Blueprint, MediumIndex},
+    sampling::{Stream, stream::Purpose},
+    shape::SurfacePoint,
+};
+
+/// Points of an emitting shape that are located.
+const POINTS: u32 = 64;
+
+/// What messages call things by.
+pub struct Names<'a> {
+    /// Takes the warnings.
+    pub library: &'a Library,
+    /// Id (or plugin name) of each medium after vacuum.
+    pub media: &'a [String],
+    /// The ids of those that have one.
+    pub ids: &'a [Option<String>],
+    /// The same of each shape.
+    pub shapes: &'a [String],
+    /// Where each shape stands in the file.
+    pub locations: &'a [Location],
+    /// Origin of all positions in the file's coordinates [m].
+    pub recentre: DVec3,
+}
+
+impl Names<'_> {
+    fn medium(&self, medium: MediumIndex) -> String {
+        match medium.0.checked_sub(1) {
+            Some(index) => format!("\"{}\"", self.media[index as usize]),
+            None => "vacuum".to_owned(),
+        }
+    }
+
+    fn shape(&self, shape: Option<u32>) -> String {
+        shape.map_or("the camera or an emitter".to_owned(), |shape| {
+            format!("\"{}\"", self.shapes[shape as usize])
+        })
+    }
+
+    /// What to write into a camera or emitter so that it lies in `medium`.
+    fn line(&self, medium: MediumIndex, location: &Location) -> String {
+        let Some(index) = medium.0.checked_sub(1) else {
+            return "a homogeneous medium with \"sigma_t\" 0".to_owned();
+        };
+        match (&self.ids[index as usize], &location.position) {
+            (None, _) => "a reference to that medium, under an id".to_owned(),
+            (Some(id), Position::Text { .. }) => format!("<ref id=\"{id}\"/>"),
+            (Some(id), Position::Path(_)) => format!("\"medium\": {{\"type\": \"ref\", \"id\": \"{id}\"}}"),
+        }
+    }
+
+    /// Says what `located` is if not certain; `what` stands at `location`.
+    fn warn(&self, located: Located, what: &str, location: &Location) {
+        let (medium, line) = (self.medium(located.medium), self.line(located.medium, location));
+        let text = match located.certainty {
+            Certainty::Seen | Certainty::Unstated => return,
+            Certainty::Contradicted([a, b]) => format!(
+                "rays from {what} meet boundaries of different media, those of {} and {} among them; \
+                 it is taken to lie in {medium}, which most rays meet. Close the shapes that bound media, or add \
+                 {line} to it",
+                self.shape(a),
+                self.shape(b)
+            ),
+            Certainty::ThroughWalls => format!(
+                "nothing between {what} and the opaque shapes around it says which medium it lies in; it is taken to \
+                 lie in {medium}, which is seen behind them. Add {line} to it"
+            ),
+            Certainty::Assumed => format!(
+                "nothing says which medium {what} lies in; it is taken to lie in {medium}, as the camera does. Add \
+                 {line} to it"
+            ),
+        };
+        self.library.warn(location, &text);
+    }
+
+    /// Shapes that are open or overlap; every pair once, those that most rays prove first.
+    pub fn warn_of_contradictions(&self, survey: &Survey) {
+        let key = |c: &Contradiction| (c.from, c.medium, c.at.shape, c.at.medium);
+        let mut found: Vec<(&Contradiction, usize)> = Vec::new();
+        for contradiction in &survey.contradictions {
+            match found.iter_mut().find(|(first, _)| key(first) == key(contradiction)) {
+                Some((_, count)) => *count += 1,
+                None => found.push((contradiction, 1)),
+            }
+        }
+        // A single ray may have slipped through an edge.
+        found.retain(|(_, count)| *count > 1);
+        found.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let Some((Contradiction { from, medium, at }, _)) = found.first() else { return };
+        let place = at.position.as_dvec3() + self.recentre;
+        let others = match found.len() {
+            1 => String::new(),
+            n => format!(" (and {} more such pairs)", n - 1),
+        };
+        let text = format!(
+            "the boundaries of media contradict each other: a free line from {} in {} ends on the side of \
+             \"{}\" in {}, near {place:.3}{others}. No image is right then, and camera and light subpaths may \
+             differ. Close shapes that bound media, let none of them overlap, and state the exterior of those \
+             that lie within a medium",
+            self.shape(*from),
+            self.medium(*medium),
+            self.shapes[at.shape as usize],
+            self.medium(at.medium)
+        );
+        self.library.warn(&self.locations[at.shape as usize], &text);
+    }
+
+    /// The medium of a camera that states none is not what Mitsuba takes.
+    fn warn_of_camera_in(&self, medium: MediumIndex, location: &Location) {
+        let (name, line) = (self.medium(medium), self.line(medium, location));
+        let text = format!(
+            "the camera states no medium, and the shapes around it say that it lies in {name}, which is what is \
+             rendered; Mitsuba would take vacuum. Add {line} to the sensor to make both the same"
+        );
+        self.library.warn(location, &text);
+    }
+
+    /// Of the medium around everything, light has to end somewhere, and none comes in from infinity.
+    pub fn warn_of_endless(&self, outside: MediumIndex, media: &[Blueprint], sky: Option<&Location>) {
+        let blueprint = &media[outside.0 as usize];
+        if let Some(location) = blueprint.endless_emission() {
+            let text = "this medium lies around the whole scene and emits without end; it is taken to emit only in the box \
+                        around all shapes and the camera. Put it into a shape to say where it ends";
+            self.library.warn(location, text);
+        }
+        if let Some(location) = sky
+            && blueprint.extinguishes_without_end()
+        {
+            let text = format!(
+                "no light of this emitter arrives: {} lies around the whole scene without end. If it should fill a \
+                 part of the scene only, close that by shapes, openings by a \"null\" surface with this medium as \
+                 its interior",
+                self.medium(outside)
+            );
+            self.library.warn(location, &text);
+        }
+    }
+}
+
+/// Finds the media of camera and emitters.
+pub struct Placement<'a> {
+    /// Finds media.
+    pub locator: Locator<'a>,
+    /// For warnings.
+    pub names: &'a Names<'a>,
+    /// Where nothing else is known.
+    pub ambient: MediumIndex,
+}
+
+/// The medium of a camera whose ray through the middle of the image starts at `start`, and which states none; what it is
+/// taken for helps to find others, if it is a guess.
+pub fn place_camera(
+    geometry: &Geometry,
+    surfaces: &[super::Surface],
+    known: &mut Known,
+    start: Vec3,
+    names: &Names<'_>,
+    location: &Location,
+) -> MediumIndex {
+    let locator = Locator { geometry, surfaces, known };
+    let mut stream = Stream::new(3, 0, 0, Purpose::Pilot);
+    let located = locator
+        .locate(start, &mut stream)
+        .unwrap_or(Located { medium: MediumIndex::VACUUM, certainty: Certainty::Unstated });
+    names.warn(located, "the camera", location);
+    if located.certainty == Certainty::Seen && located.medium != MediumIndex::VACUUM {
+        names.warn_of_camera_in(located.medium, location);
+    }
+    if located.certainty != Certainty::Seen {
+        known.add(start, located.medium);
+    }
+    located.medium
+}
+
+impl Placement<'_> {
+    fn assumed(&self) -> Located {
+        Located { medium: self.ambient, certainty: Certainty::Assumed }
+    }
+
+    /// The medium of an emitter at a point.
+    pub fn of_point(&self, position: Vec3, location: &Location) -> MediumIndex {
+        let mut stream = Stream::new(4, 0, 0, Purpose::Pilot);
+        let located = self.locator.locate(position, &mut stream).unwrap_or_else(|| self.assumed());
+        self.names.warn(located, "an emitter", location);
+        located.medium
+    }
+
+    /// The medium on the emitting side of a shape, and whether light of different points starts in different ones.
+    pub fn of_shape(&self, shape: u32, location: &Location) -> (MediumIndex, bool) {
+        let mut stream = Stream::new(5, u64::from(shape), 0, Purpose::Pilot);
+        let mut located = (0..POINTS).map(|_| {
+            let point = self.locator.geometry.sample_area(shape, &mut stream);
+            self.in_front_of(&point, &mut stream)
+        });
+        let first = located.next().unwrap_or_else(|| self.assumed());
+        // Where all that can be said is one medium, no other points have to be asked.
+        if self.locator.known.is_uniform() || self.is_stated(shape) {
+            return (first.medium, false);
+        }
+        let weakest = located.max_by_key(|found| (found.medium != first.medium, rank(found.certainty)));
+        let differs = weakest.is_some_and(|other| other.medium != first.medium);
+        if !differs {
+            let weaker = weakest.filter(|other| rank(other.certainty) > rank(first.certainty));
+            self.names.warn(weaker.unwrap_or(first), "an emitting shape", location);
+        }
+        (first.medium, differs)
+    }
+
+    /// Both sides of `shape` are known.
+    fn is_stated(&self, shape: u32) -> bool {
+        let Boundary { interior, exterior } = self.locator.surfaces[shape as usize].boundary;
+        interior.is_some() && exterior.is_some()
+    }
+
+    /// The medium on the emitting side of a point of a shape.
+    fn in_front_of(&self, point: &SurfacePoint, stream: &mut Stream) -> Located {
+        let towards = point.shading.normal;
+        let side = self.locator.surfaces[point.shape as usize].boundary.side(point.normal.dot(towards));
+        if let Some(medium) = side {
+            return Located { medium, certainty: Certainty::Seen };
+        }
+        let origin = offset::leave_surface(point.position, point.error, point.normal, towards);
+        self.locator.locate(origin, stream).unwrap_or_else(|| self.assumed())
+    }
+
+    /// The medium that light from infinity comes through, and whether that differs by direction.
+    pub fn of_infinite(&self, emitter: &Emitter) -> (MediumIndex, bool) {
+        let infinity = &self.locator.known.infinity;
+        let medium = emitter.direction().map_or(infinity.most(), |direction| infinity.towards(-direction));
+        (medium, matches!(infinity, Infinity::Directional(_)))
+    }
+}
+
+/// How weak evidence is.
+fn rank(certainty: Certainty) -> u32 {
+    match certainty {
+        Certainty::Seen => 0,
+        Certainty::Unstated => 1,
+        Certainty::Contradicted(_) => 2,
+        Certainty::ThroughWalls => 3,
+        Certainty::Assumed => 4,
+    }
+}
