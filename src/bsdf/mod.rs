@@ -40,7 +40,7 @@ pub use thindielectric::ThinDielectric;
 pub use translucent::Translucent;
 pub use twosided::TwoSided;
 
-use crate::description::{Library, Object, Params, Row, build_by_row};
+use crate::description::{Build, Library, Object, Params, Registry};
 use crate::error::{Error, Result};
 use crate::math::{Spectrum, SpectrumExt, Vec2, Vec3, vec3};
 use crate::sampling::Stream;
@@ -210,9 +210,9 @@ macro_rules! bsdfs {
         }
 
         /// Every surface model there is, by plugin name.
-        pub const ROWS: &[Row<Bsdf>] = &[
-            $(Row { name: $name, build: |params: &Params<'_>| $model::build(params).map(Bsdf::from) },)*
-        ];
+        pub const ROWS: Registry<Build<Bsdf>> = Registry::new("a bsdf", &[
+            $(($name, |params: &Params<'_>| $model::build(params).map(Bsdf::from)),)*
+        ]);
 
         /// Instances of every model, for the tests that hold for all.
         #[cfg(test)]
@@ -243,7 +243,7 @@ bsdfs! {
 
 /// Builds the surface model that `object` describes.
 pub fn build(object: &Object, library: &Library) -> Result<Bsdf> {
-    build_by_row(object, library, "bsdf", ROWS)
+    ROWS.build(object, library)
 }
 
 /// The parameter `name` as a texture of reflectances or transmittances: no channel exceeds 1.
@@ -281,7 +281,7 @@ fn number(texture: &Texture, uv: Vec2) -> f32 {
 
 /// The `COUNT` nested bsdfs, in file order; textures and other children are not among them.
 fn only_nested<const COUNT: usize>(params: &Params<'_>) -> Result<[Bsdf; COUNT]> {
-    let children = params.children(|child| ROWS.iter().any(|row| row.name == child.object.plugin))?;
+    let children = params.children(|child| ROWS.has(child.object))?;
     let nested =
         children.iter().map(|child| build(child.object, params.library)).collect::<Result<Vec<_>>>()?;
     nested.try_into().map_err(|found: Vec<Bsdf>| {

@@ -35,7 +35,7 @@ pub use sum::Sum;
 pub use wind::Wind;
 
 use crate::{
-    description::{Library, Object, Params, Value, find_row},
+    description::{Library, Object, Params, Registry, Value},
     error::{Error, Result},
     math::{DAffine3, DVec3, Lanes, Section, Spectrum, Vec3},
 };
@@ -147,12 +147,11 @@ macro_rules! volumes {
         }
 
         /// Every volume there is, by plugin name.
-        pub const ROWS: &[Row] = &[
-            $(Row {
-                name: $name,
-                build: |params: &Params<'_>, place: &Place| $model::build(params, place).map(Volume::$model),
-            },)*
-        ];
+        pub const ROWS: Registry<BuildVolume> = Registry::new("a volume", &[
+            $(($name, |params: &Params<'_>, place: &Place| {
+                $model::build(params, place).map(Volume::$model)
+            }),)*
+        ]);
 
         /// Instances of every model, for the tests that hold for all.
         #[cfg(test)]
@@ -180,13 +179,8 @@ volumes! {
 /// Plugins that are parts of a volume and none themselves, and whose parts they are.
 pub const PARTS: &[(&str, &str)] = &[("wave", "cosine"), ("term", "polynomial")];
 
-/// How a volume is called and built.
-pub struct Row {
-    /// Mitsuba's plugin name, or ours where Mitsuba has none.
-    pub name: &'static str,
-    /// Builds it.
-    pub build: fn(&Params<'_>, &Place) -> Result<Volume>,
-}
+/// How a volume is built.
+pub type BuildVolume = fn(&Params<'_>, &Place) -> Result<Volume>;
 
 impl Volume {
     /// The grey `value` everywhere, given where the unit cube lies.
@@ -236,16 +230,11 @@ impl Volume {
     }
 }
 
-/// True if `object` is a volume.
-pub fn is_volume(object: &Object) -> bool {
-    ROWS.iter().any(|row| row.name == object.plugin)
-}
-
 /// Builds the volume that `object` describes.
 pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Volume> {
-    let row = find_row(object, "volume", ROWS, |row| row.name)?;
+    let build = ROWS.find(object)?;
     let params = Params::new(object, library);
-    let built = (row.build)(&params, place)?;
+    let built = build(&params, place)?;
     params.finish()?;
     Ok(built)
 }
@@ -258,7 +247,7 @@ pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Resu
     match property.map(|property| &property.value) {
         None => Ok(None),
         Some(Value::Object(_) | Value::Reference(_)) => match params.child(name)? {
-            Some(child) if is_volume(child.object) => build(child.object, params.library, place).map(Some),
+            Some(child) if ROWS.has(child.object) => build(child.object, params.library, place).map(Some),
             _ => params.color(name, 0.0).map(constant),
         },
         Some(_) => params.color(name, 0.0).map(constant),

@@ -3,10 +3,12 @@
 pub mod colour;
 mod library;
 pub mod params;
+mod registry;
 pub mod transform;
 
 pub use library::Library;
 pub use params::Params;
+pub use registry::{Build, Registry, nearest, suggest};
 use std::{fmt, path::PathBuf, sync::Arc};
 pub use transform::TransformStep;
 
@@ -109,80 +111,4 @@ impl Value {
             Self::Reference(id) => format!("a reference to \"{id}\""),
         }
     }
-}
-
-/// One row of a registry: how a plugin is called and built. Everything that lists names reads these rows.
-pub struct Row<T> {
-    /// Mitsuba's plugin name, or ours where Mitsuba has none.
-    pub name: &'static str,
-    /// Builds it from its description.
-    pub build: fn(&Params<'_>) -> crate::error::Result<T>,
-}
-
-/// Builds `object` by the row that bears its plugin name; every parameter that the row's builder did not ask
-/// for is an error. `kind` names the category in the error (`bsdf`, `phase function`, ...).
-pub fn build_by_row<T>(
-    object: &Object,
-    library: &Library,
-    kind: &str,
-    rows: &[Row<T>],
-) -> crate::error::Result<T> {
-    let row = find_row(object, kind, rows, |row| row.name)?;
-    let params = Params::new(object, library);
-    let built = (row.build)(&params)?;
-    params.finish()?;
-    Ok(built)
-}
-
-/// The row that bears the plugin name of `object`; `name` is a row's.
-pub fn find_row<'a, R>(
-    object: &Object,
-    kind: &str,
-    rows: &'a [R],
-    name: fn(&R) -> &'static str,
-) -> crate::error::Result<&'a R> {
-    rows.iter().find(|row| name(row) == object.plugin).ok_or_else(|| {
-        let names: Vec<_> = rows.iter().map(name).collect();
-        crate::error::Error::new(
-            &object.location,
-            format!("the type of a {kind}"),
-            format!("\"{}\"", object.plugin),
-            suggest(&object.plugin, "known", &names),
-        )
-    })
-}
-
-/// At most so many names are listed in a message.
-const LISTED: usize = 24;
-
-/// The known name closest to `found`, if one is close, and the names that are known after `what` ("known",
-/// "known ids"); of very many names only those that look most like it.
-pub fn suggest(found: &str, what: &str, known: &[&str]) -> String {
-    let mut shown = known.to_vec();
-    if known.len() > LISTED {
-        shown.sort_by_key(|name| (strsim::damerau_levenshtein(found, name), *name));
-        shown.truncate(LISTED / 2);
-    }
-    let list = if known.is_empty() { "none".into() } else { shown.join(", ") };
-    let rest = match known.len() - shown.len() {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    format!("{}{what}: {list}{rest}", nearest(found, known))
-}
-
-/// "did you mean ...? " for the known name closest to `found`; empty where none is close.
-pub fn nearest(found: &str, known: &[&str]) -> String {
-    // Whether a name is written in camel case or with underscores is no great distance.
-    let plain = |name: &str| name.replace(['_', '-'], "").to_lowercase();
-    let between = |a: &str, b: &str| {
-        strsim::damerau_levenshtein(a, b).min(1 + strsim::damerau_levenshtein(&plain(a), &plain(b)))
-    };
-    known
-        .iter()
-        .map(|name| (between(found, name), name))
-        .min()
-        .filter(|(distance, name)| *distance <= 1 + name.len().min(found.len()) / 3)
-        .map(|(_, name)| format!("did you mean \"{name}\"? "))
-        .unwrap_or_default()
 }

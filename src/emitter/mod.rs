@@ -26,7 +26,7 @@ pub use projector::Projector;
 pub use spot::Spot;
 
 use crate::{
-    description::{Library, Object, Params, Row, find_row},
+    description::{Build, Library, Object, Params, Registry},
     error::Result,
     math::{DVec3, Spectrum, Vec3, spectrum::LUMINANCE},
     medium,
@@ -83,32 +83,30 @@ pub enum Environment {
 }
 
 /// Every kind of emitter.
-pub const ROWS: &[Row<Kind>] = &[
-    Row { name: "area", build: |p| Area::build(p).map(Kind::Area) },
-    Row { name: "directionalarea", build: |p| DirectionalArea::build(p).map(Kind::DirectionalArea) },
-    Row { name: "point", build: |p| Point::build(p).map(PointKind::Point).map(Kind::Point) },
-    Row { name: "spot", build: |p| Spot::build(p).map(PointKind::Spot).map(Kind::Point) },
-    Row { name: "projector", build: |p| Projector::build(p).map(PointKind::Projector).map(Kind::Point) },
-    Row { name: "directional", build: |p| Directional::build(p).map(Kind::Directional) },
-    Row { name: "constant", build: |p| Constant::build(p).map(Environment::Constant).map(Kind::Environment) },
-    Row { name: "envmap", build: |p| EnvMap::build(p).map(Environment::EnvMap).map(Kind::Environment) },
-];
+pub const ROWS: Registry<Build<Kind>> = Registry::new(
+    "an emitter",
+    &[
+        ("area", |p| Area::build(p).map(Kind::Area)),
+        ("directionalarea", |p| DirectionalArea::build(p).map(Kind::DirectionalArea)),
+        ("point", |p| Point::build(p).map(PointKind::Point).map(Kind::Point)),
+        ("spot", |p| Spot::build(p).map(PointKind::Spot).map(Kind::Point)),
+        ("projector", |p| Projector::build(p).map(PointKind::Projector).map(Kind::Point)),
+        ("directional", |p| Directional::build(p).map(Kind::Directional)),
+        ("constant", |p| Constant::build(p).map(Environment::Constant).map(Kind::Environment)),
+        ("envmap", |p| EnvMap::build(p).map(Environment::EnvMap).map(Kind::Environment)),
+    ],
+);
 
 /// Builds the emitter that `object` describes; positions still stand in the file's coordinates. A medium among
 /// its children (the one it stands in) is the scene's to read.
 pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
     let params = Params::new(object, library);
-    let row = find_row(object, "emitter", ROWS, |row| row.name)?;
-    let kind = (row.build)(&params)?;
+    let (name, build) = ROWS.row(object)?;
+    let kind = build(&params)?;
     let sampling_weight = sampling_weight(&params)?;
-    params.children(|child| medium::is_medium(child.object))?;
+    params.children(|child| medium::ROWS.has(child.object))?;
     params.finish()?;
-    Ok(Emitter { name: row.name, kind, sampling_weight })
-}
-
-/// True if `object` is an emitter.
-pub fn is_emitter(object: &Object) -> bool {
-    ROWS.iter().any(|row| row.name == object.plugin)
+    Ok(Emitter { name, kind, sampling_weight })
 }
 
 impl Emitter {

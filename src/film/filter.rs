@@ -5,7 +5,11 @@
 //! what the lobes cancel: the integral of |f| over that of f.
 
 use super::lobes::{self, Lobes};
-use crate::{description::Params, error::Result, sampling::Stream};
+use crate::{
+    description::{Build, Params, Registry},
+    error::Result,
+    sampling::Stream,
+};
 use std::f32::consts::PI;
 
 /// A separable filter, by its profile along one axis, in pixels.
@@ -39,23 +43,17 @@ pub enum Filter {
 }
 
 /// Filter names and how each reads its parameters.
-pub const ROWS: &[crate::description::Row<Filter>] = &[
-    crate::description::Row { name: "box", build: |_| Ok(Filter::Box) },
-    crate::description::Row {
-        name: "tent",
-        build: |p| Ok(Filter::Tent { radius: positive(p, "radius", 1.0)? }),
-    },
-    crate::description::Row {
-        name: "gaussian",
-        build: |p| Ok(Filter::Gaussian { stddev: positive(p, "stddev", 0.5)? }),
-    },
-    crate::description::Row {
-        name: "mitchell",
-        build: |p| Ok(Filter::Cubic { b: fraction(p, "B")?, c: fraction(p, "C")? }),
-    },
-    crate::description::Row { name: "catmullrom", build: |_| Ok(Filter::Cubic { b: 0.0, c: 0.5 }) },
-    crate::description::Row { name: "lanczos", build: |p| Ok(Filter::Lanczos { lobes: lobe_count(p)? }) },
-];
+pub const ROWS: Registry<Build<Filter>> = Registry::new(
+    "a reconstruction filter",
+    &[
+        ("box", |_| Ok(Filter::Box)),
+        ("tent", |p| Ok(Filter::Tent { radius: positive(p, "radius", 1.0)? })),
+        ("gaussian", |p| Ok(Filter::Gaussian { stddev: positive(p, "stddev", 0.5)? })),
+        ("mitchell", |p| Ok(Filter::Cubic { b: fraction(p, "B")?, c: fraction(p, "C")? })),
+        ("catmullrom", |_| Ok(Filter::Cubic { b: 0.0, c: 0.5 })),
+        ("lanczos", |p| Ok(Filter::Lanczos { lobes: lobe_count(p)? })),
+    ],
+);
 
 fn positive(params: &Params<'_>, name: &'static str, default: f64) -> Result<f32> {
     Ok(params.float_within(name, default, 1e-3, 1e3)? as f32)

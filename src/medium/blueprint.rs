@@ -4,22 +4,18 @@
 use super::{Choice, Heterogeneous, Medium, Treatment, emission::Given, heterogeneous::Fields};
 use crate::{
     density::{self, Place, Volume},
-    description::{Library, Location, Object, Params, find_row},
+    description::{Library, Location, Object, Params, Registry},
     error::{Error, Result},
     math::{Spectrum, Vec3},
     phase::{self, Phase},
 };
 
-/// How a medium is called and read.
-pub struct Row {
-    /// Mitsuba's plugin name.
-    pub name: &'static str,
-    read: fn(&Params<'_>, &Place) -> Result<Blueprint>,
-}
+/// How the parameters of a medium are read.
+pub type BuildMedium = fn(&Params<'_>, &Place) -> Result<Blueprint>;
 
 /// Every kind of medium.
-pub const ROWS: &[Row] =
-    &[Row { name: "homogeneous", read: homogeneous }, Row { name: "heterogeneous", read: heterogeneous }];
+pub const ROWS: Registry<BuildMedium> =
+    Registry::new("a medium", &[("homogeneous", homogeneous), ("heterogeneous", heterogeneous)]);
 
 /// A medium whose parameters have been read.
 #[derive(Clone, Debug)]
@@ -42,16 +38,11 @@ pub struct Around {
 
 /// Reads the medium that `object` describes.
 pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Blueprint> {
-    let row = find_row(object, "medium", ROWS, |row| row.name)?;
+    let build = ROWS.find(object)?;
     let params = Params::new(object, library);
-    let read = (row.read)(&params, place)?;
+    let read = build(&params, place)?;
     params.finish()?;
     Ok(read)
-}
-
-/// True if `object` is a medium.
-pub fn is_medium(object: &Object) -> bool {
-    ROWS.iter().any(|row| row.name == object.plugin)
 }
 
 impl Blueprint {
@@ -147,7 +138,7 @@ fn scale(params: &Params<'_>) -> Result<f32> {
 /// What all media have: the phase function, and parameters of Mitsuba's that have no meaning here.
 fn common(params: &Params<'_>) -> Result<Phase> {
     params.accept_unused(&["sample_emitters", "has_spectral_extinction"], "the scene itself decides");
-    match params.children(|child| phase::is_phase(child.object))?.as_slice() {
+    match params.children(|child| phase::ROWS.has(child.object))?.as_slice() {
         [] => Ok(Phase::Isotropic(phase::Isotropic)),
         [one] => phase::build(one.object, params.library),
         [_, second, ..] => Err(Error::new(

@@ -85,7 +85,7 @@ fn volume(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Opti
     let Some(property) = params.property(name) else { return Ok(None) };
     if matches!(property.value, Value::Object(_) | Value::Reference(_))
         && let Some(child) = params.child(name)?
-        && density::is_volume(child.object)
+        && density::ROWS.has(child.object)
     {
         return density::build(child.object, params.library, place).map(Some);
     }

@@ -12,7 +12,7 @@ use crate::{
     math::{Spectrum, SpectrumExt},
     phase::{self, Phase},
 };
-pub use blueprint::{Around, Blueprint, ROWS, build, is_medium};
+pub use blueprint::{Around, Blueprint, ROWS, build};
 pub use emission::Emission;
 use emission::{Given, Within};
 pub use extinction::Extinction;

@@ -36,7 +36,7 @@ pub use schlick::Schlick;
 pub use specular_sphere::SpecularSphere;
 pub use table::Table;
 
-use crate::description::{Library, Object, Params, Row, build_by_row};
+use crate::description::{Build, Library, Object, Params, Registry};
 use crate::error::Result;
 use crate::math::{Frame, Vec3};
 use crate::sampling::Stream;
@@ -86,12 +86,9 @@ macro_rules! phases {
         }
 
         /// Every phase function there is, by plugin name.
-        pub const ROWS: &[Row<Phase>] = &[
-            $($(Row {
-                name: $name,
-                build: |params: &Params<'_>| $model::$build(params).map(Phase::$model),
-            },)+)*
-        ];
+        pub const ROWS: Registry<Build<Phase>> = Registry::new("a phase function", &[
+            $($(($name, |params: &Params<'_>| $model::$build(params).map(Phase::$model)),)+)*
+        ]);
 
         /// Instances of every model, for the tests that hold for all.
         #[cfg(test)]
@@ -121,7 +118,7 @@ phases! {
 
 /// Builds the phase function that `object` describes.
 pub fn build(object: &Object, library: &Library) -> Result<Phase> {
-    build_by_row(object, library, "phase function", ROWS)
+    ROWS.build(object, library)
 }
 
 /// The world direction that `local` is in a frame around `direction`. It is made unit again: in a walk of
@@ -143,9 +140,4 @@ fn asymmetry(params: &Params<'_>, name: &'static str, default: f64) -> Result<f6
         return Ok(value);
     }
     Err(params.complain(name, "a number between -1 and 1 (both excluded)", value.to_string()))
-}
-
-/// True if `object` is a phase function.
-pub fn is_phase(object: &Object) -> bool {
-    ROWS.iter().any(|row| row.name == object.plugin)
 }

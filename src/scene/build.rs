@@ -194,7 +194,7 @@ impl<'a> Builder<'a> {
         let exterior = self.side(&params, "exterior")?;
         let index = self.shapes.len() as u32;
         let emitter = self.shape_emitter(&params, index)?;
-        let bsdfs = params.children(|child| bsdf::ROWS.iter().any(|row| row.name == child.object.plugin))?;
+        let bsdfs = params.children(|child| bsdf::ROWS.has(child.object))?;
         let bsdf = match bsdfs.as_slice() {
             [] => self.default_bsdf(emitter.is_some())?,
             [one] => self.bsdf(one.object)?,
@@ -217,7 +217,7 @@ impl<'a> Builder<'a> {
     }
 
     fn shape_emitter(&mut self, params: &Params<'a>, shape: u32) -> Result<Option<u32>> {
-        let emitters = params.children(|child| emitter::is_emitter(child.object))?;
+        let emitters = params.children(|child| emitter::ROWS.has(child.object))?;
         let child = match emitters.as_slice() {
             [] => return Ok(None),
             [one] => one,
@@ -292,7 +292,7 @@ impl<'a> Builder<'a> {
 
     /// The medium that a camera or emitter says it stands in.
     fn stated_medium(&mut self, params: &Params<'a>) -> Result<Option<MediumIndex>> {
-        match params.children(|child| medium::is_medium(child.object))?.as_slice() {
+        match params.children(|child| medium::ROWS.has(child.object))?.as_slice() {
             [] => Ok(None),
             [one] => self.medium(one.object).map(Some),
             [_, second, ..] => Err(only_one(second, "medium")),
@@ -306,7 +306,7 @@ impl<'a> Builder<'a> {
             [one] => film::build(one.object, self.library, overrides)?,
             [_, second, ..] => return Err(only_one(second, "film")),
         };
-        let sampling = match params.children(|child| sampler::is_sampler(child.object))?.as_slice() {
+        let sampling = match params.children(|child| sampler::ROWS.has(child.object))?.as_slice() {
             [] => Sampling::default(),
             [one] => sampler::build(one.object, self.library)?,
             [_, second, ..] => return Err(only_one(second, "sampler")),

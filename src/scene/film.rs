@@ -2,7 +2,7 @@
 
 use super::build::{Overrides, only_one};
 use crate::{
-    description::{Library, Object, Params, build_by_row, params::Child},
+    description::{Library, Object, Params, params::Child},
     error::{Error, Result},
     film::{
         Film, Window,
@@ -110,11 +110,11 @@ fn rfilter(params: &Params<'_>) -> Result<Filter> {
     let is_filter = |child: &Child<'_>| {
         child.name == "rfilter"
             || child.object.tag.as_deref() == Some("rfilter")
-            || filter::ROWS.iter().any(|row| row.name == child.object.plugin)
+            || filter::ROWS.has(child.object)
     };
     match params.children(is_filter)?.as_slice() {
         [] => Ok(DEFAULT_FILTER),
-        [one] => build_by_row(one.object, params.library, "reconstruction filter", filter::ROWS),
+        [one] => filter::ROWS.build(one.object, params.library),
         [_, second, ..] => Err(only_one(second, "rfilter")),
     }
 }

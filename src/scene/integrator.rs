@@ -3,7 +3,7 @@
 //! `non_scattering` restrict what media do.
 
 use crate::{
-    description::{Library, Object, Params, Row, build_by_row, nearest, params::Child},
+    description::{Build, Library, Object, Params, Registry, nearest, params::Child},
     error::{Error, Result},
     film::layer::{Content, Layer, QUANTITIES},
     math::Spectrum,
@@ -107,22 +107,25 @@ impl Default for Integrator {
 }
 
 /// Every integrator.
-pub const ROWS: &[Row<Integrator>] = &[
-    Row { name: "bdpt", build: |p| build_as(p, Method::Bdpt) },
-    Row { name: "path", build: |p| build_as(p, Method::Pt) },
-    Row { name: "volpath", build: |p| build_as(p, Method::Pt) },
-    Row { name: "volpathmis", build: |p| build_as(p, Method::Pt) },
-    Row { name: "ptracer", build: |p| build_as(p, Method::Lt) },
-    Row { name: "fog", build: build_fog },
-    Row { name: "single_scattering", build: build_single_scattering },
-    Row { name: "non_scattering", build: build_non_scattering },
-    Row { name: "aov", build: build_aov },
-    Row { name: "moment", build: build_moment },
-];
+pub const ROWS: Registry<Build<Integrator>> = Registry::new(
+    "an integrator",
+    &[
+        ("bdpt", |p| build_as(p, Method::Bdpt)),
+        ("path", |p| build_as(p, Method::Pt)),
+        ("volpath", |p| build_as(p, Method::Pt)),
+        ("volpathmis", |p| build_as(p, Method::Pt)),
+        ("ptracer", |p| build_as(p, Method::Lt)),
+        ("fog", build_fog),
+        ("single_scattering", build_single_scattering),
+        ("non_scattering", build_non_scattering),
+        ("aov", build_aov),
+        ("moment", build_moment),
+    ],
+);
 
 /// Builds the integrator that `object` describes.
 pub fn build(object: &Object, library: &Library) -> Result<Integrator> {
-    let integrator = build_by_row(object, library, "integrator", ROWS)?;
+    let integrator = ROWS.build(object, library)?;
     check_names(object, &integrator.layers)?;
     Ok(integrator)
 }
@@ -143,11 +146,6 @@ fn check_names(object: &Object, layers: &[Layer]) -> Result<()> {
             Err(Error::new(&object.location, expected, format!("\"{name}\""), remedy))
         }
     }
-}
-
-/// True if `object` is an integrator.
-pub fn is_integrator(object: &Object) -> bool {
-    ROWS.iter().any(|row| row.name == object.plugin)
 }
 
 fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
@@ -243,7 +241,7 @@ fn build_aov(params: &Params<'_>) -> Result<Integrator> {
         None => Integrator { method: Method::Pt, max_depth: Some(0), ..Integrator::default() },
         Some(child) => {
             let name = name_of(&child);
-            let inner = build_by_row(child.object, params.library, "integrator", ROWS)?;
+            let inner = ROWS.build(child.object, params.library)?;
             let mut layers = vec![Layer { name: name.into(), content: Content::Image }];
             layers.extend(inner.layers.iter().map(|layer| within(name, layer)));
             Integrator { layers, ..inner }
@@ -258,7 +256,7 @@ fn build_aov(params: &Params<'_>) -> Result<Integrator> {
 /// mean.
 fn build_moment(params: &Params<'_>) -> Result<Integrator> {
     let Some(child) = nested(params)? else { return Err(params.missing("integrator", "an integrator")) };
-    let inner = build_by_row(child.object, params.library, "integrator", ROWS)?;
+    let inner = ROWS.build(child.object, params.library)?;
     if !inner.layers.is_empty() {
         let found = format!("\"{}\"", child.object.plugin);
         let remedy =
@@ -283,7 +281,7 @@ fn accept_outer(params: &Params<'_>) {
 /// The integrator inside another.
 fn nested<'a>(params: &Params<'a>) -> Result<Option<Child<'a>>> {
     let children = params
-        .children(|child| is_integrator(child.object) || child.object.tag.as_deref() == Some("integrator"))?;
+        .children(|child| ROWS.has(child.object) || child.object.tag.as_deref() == Some("integrator"))?;
     match children.as_slice() {
         [] => Ok(None),
         [one] => Ok(Some(*one)),

@@ -1,21 +1,24 @@
 //! How many samples a scene asks for, and how their random numbers are spread.
 
 use crate::{
-    description::{Library, Object, Params},
+    description::{Library, Object, Params, Registry},
     error::Result,
     sampling::Sampler,
 };
 
 /// Every sampler. Those of Mitsuba that stratify do so to spread numbers evenly, each in a way of its own; here all that
 /// is Sobol's sequence.
-pub(super) const NAMES: [(&str, Sampler); 6] = [
-    ("independent", Sampler::Independent),
-    ("ldsampler", Sampler::Sobol),
-    ("multijitter", Sampler::Sobol),
-    ("orthogonal", Sampler::Sobol),
-    ("sobol", Sampler::Sobol),
-    ("stratified", Sampler::Sobol),
-];
+pub(super) const ROWS: Registry<Sampler> = Registry::new(
+    "a sampler",
+    &[
+        ("independent", Sampler::Independent),
+        ("ldsampler", Sampler::Sobol),
+        ("multijitter", Sampler::Sobol),
+        ("orthogonal", Sampler::Sobol),
+        ("sobol", Sampler::Sobol),
+        ("stratified", Sampler::Sobol),
+    ],
+);
 
 /// What a sampler asks for.
 #[derive(Clone, Copy, Debug)]
@@ -31,17 +34,9 @@ impl Default for Sampling {
     }
 }
 
-/// The sampler of a plugin's name.
-fn named(plugin: &str) -> Option<Sampler> {
-    NAMES.iter().find(|(name, _)| *name == plugin).map(|(_, sampler)| *sampler)
-}
-
-pub(super) fn is_sampler(object: &Object) -> bool {
-    named(&object.plugin).is_some()
-}
-
-/// Reads `object`, which [`is_sampler`].
+/// Reads `object`.
 pub(super) fn build(object: &Object, library: &Library) -> Result<Sampling> {
+    let sampler = *ROWS.find(object)?;
     let params = Params::new(object, library);
     let count = params.integer("sample_count", 4)?;
     params.accept_unused(&["seed", "jitter", "strength"], "the sequence of random numbers is Tyndall's own");
@@ -49,5 +44,5 @@ pub(super) fn build(object: &Object, library: &Library) -> Result<Sampling> {
     if count < 1 {
         return Err(params.complain("sample_count", "an integer >= 1", count.to_string()));
     }
-    Ok(Sampling { samples_per_pixel: count as u64, sampler: named(&object.plugin).unwrap_or_default() })
+    Ok(Sampling { samples_per_pixel: count as u64, sampler })
 }

@@ -28,15 +28,15 @@ pub struct Sections<'a> {
 
 /// True if `object` only waits to be referred to.
 fn is_definition(object: &Object) -> bool {
-    bsdf::ROWS.iter().any(|row| row.name == object.plugin)
-        || medium::is_medium(object)
-        || crate::phase::is_phase(object)
-        || crate::texture::ROWS.iter().any(|row| row.name == object.plugin)
-        || density::is_volume(object)
+    bsdf::ROWS.has(object)
+        || medium::ROWS.has(object)
+        || crate::phase::ROWS.has(object)
+        || crate::texture::ROWS.has(object)
+        || density::ROWS.has(object)
 }
 
 fn is_shape(object: &Object) -> bool {
-    shape::ROWS.iter().any(|row| row.name == object.plugin)
+    shape::ROWS.has(object)
 }
 
 impl<'a> Sections<'a> {
@@ -45,16 +45,16 @@ impl<'a> Sections<'a> {
         let params = Params::new(root, library);
         let time = params.float("time", 0.0)?;
         let shapes = params.children(|child| is_shape(child.object))?;
-        let emitters = params.children(|child| emitter::is_emitter(child.object))?;
-        let sensors = params.children(|child| sensor::is_sensor(child.object))?;
-        let integrators = params.children(|child| integrator::is_integrator(child.object))?;
+        let emitters = params.children(|child| emitter::ROWS.has(child.object))?;
+        let sensors = params.children(|child| sensor::ROWS.has(child.object))?;
+        let integrators = params.children(|child| integrator::ROWS.has(child.object))?;
         let definitions = params.children(|child| is_definition(child.object))?;
         check_idle(&definitions, root, library, time)?;
         if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
             !(is_shape(child.object)
-                || emitter::is_emitter(child.object)
-                || sensor::is_sensor(child.object)
-                || integrator::is_integrator(child.object)
+                || emitter::ROWS.has(child.object)
+                || sensor::ROWS.has(child.object)
+                || integrator::ROWS.has(child.object)
                 || is_definition(child.object))
         }) {
             return Err(misplaced(unknown));
@@ -83,13 +83,13 @@ impl<'a> Sections<'a> {
 /// matter to whether it can be built.
 fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()> {
     let place = Place { recentre: DVec3::ZERO, time };
-    if bsdf::ROWS.iter().any(|row| row.name == object.plugin) {
+    if bsdf::ROWS.has(object) {
         bsdf::build(object, library).map(drop)
-    } else if medium::is_medium(object) {
+    } else if medium::ROWS.has(object) {
         medium::build(object, library, &place).map(drop)
-    } else if crate::phase::is_phase(object) {
+    } else if crate::phase::ROWS.has(object) {
         crate::phase::build(object, library).map(drop)
-    } else if density::is_volume(object) {
+    } else if density::ROWS.has(object) {
         density::build(object, library, &place).map(drop)
     } else {
         crate::texture::build(object, library).map(drop)
@@ -109,7 +109,7 @@ fn misplaced(child: &Child<'_>) -> Error {
             child.location,
             "a sensor of Tyndall",
             found,
-            format!("replace it by one of {}", sensor::names().collect::<Vec<_>>().join(", ")),
+            format!("replace it by one of {}", sensor::ROWS.names().join(", ")),
         );
     }
     let remedy = "move it into the object that it belongs to (films and samplers into the sensor)";

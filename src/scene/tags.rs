@@ -1,7 +1,7 @@
 //! Which XML tag a plugin goes with. XML always says; JSON leaves it to the plugin's name and place.
 
 use super::{integrator, sampler};
-use crate::{bsdf, density, description::Row, emitter, film::filter, medium, phase, sensor, shape, texture};
+use crate::{bsdf, density, emitter, film::filter, medium, phase, sensor, shape, texture};
 
 /// Tags of plugins.
 pub(super) const TAGS: [&str; 13] = [
@@ -136,24 +136,20 @@ pub(super) const INSIDE: [(&str, &[&str]); 13] = [
     ("volume", &["volume", "texture"]),
 ];
 
-fn names<T>(rows: &'static [Row<T>]) -> Vec<&'static str> {
-    rows.iter().map(|row| row.name).collect()
-}
-
 /// Plugins that Tyndall itself builds under `tag`; none where there is no registry of them.
 pub(super) fn ours(tag: &str) -> Vec<&'static str> {
     match tag {
-        "sensor" => sensor::names().collect(),
-        "integrator" => names(integrator::ROWS),
-        "sampler" => sampler::NAMES.iter().map(|(name, _)| *name).collect(),
-        "rfilter" => names(filter::ROWS),
-        "shape" => shape::ROWS.iter().map(|row| row.name).collect(),
-        "bsdf" => names(bsdf::ROWS),
-        "texture" => names(texture::ROWS),
-        "emitter" => names(emitter::ROWS),
-        "medium" => medium::ROWS.iter().map(|row| row.name).collect(),
-        "phase" => names(phase::ROWS),
-        "volume" => density::ROWS.iter().map(|row| row.name).collect(),
+        "sensor" => sensor::ROWS.names(),
+        "integrator" => integrator::ROWS.names(),
+        "sampler" => sampler::ROWS.names(),
+        "rfilter" => filter::ROWS.names(),
+        "shape" => shape::ROWS.names(),
+        "bsdf" => bsdf::ROWS.names(),
+        "texture" => texture::ROWS.names(),
+        "emitter" => emitter::ROWS.names(),
+        "medium" => medium::ROWS.names(),
+        "phase" => phase::ROWS.names(),
+        "volume" => density::ROWS.names(),
         _ => Vec::new(),
     }
 }

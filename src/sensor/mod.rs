@@ -19,8 +19,8 @@ pub use perspective::Perspective;
 pub use thinlens::ThinLens;
 
 use crate::{
-    description::{Library, Object, Params, nearest},
-    error::{Error, Result},
+    description::{Library, Object, Params, Registry},
+    error::Result,
     math::{DVec3, Vec2, Vec3},
     sampling::Stream,
     shape::Ray,
@@ -74,37 +74,26 @@ pub struct Projection {
 
 /// Reads the parameters of one kind of sensor (except film, sampler and medium); the point `recentre` of the
 /// file's coordinates becomes the origin.
-type BuildSensor = fn(&Params<'_>, DVec3, Crop) -> Result<Sensor>;
+pub type BuildSensor = fn(&Params<'_>, DVec3, Crop) -> Result<Sensor>;
 
 /// All sensors: Mitsuba's plugin name and the builder.
-const ROWS: &[(&str, BuildSensor)] = &[
-    ("perspective", |p, recentre, crop| Perspective::build(p, recentre, crop).map(Sensor::Perspective)),
-    ("thinlens", |p, recentre, crop| ThinLens::build(p, recentre, crop).map(Sensor::ThinLens)),
-    ("orthographic", |p, recentre, crop| Orthographic::build(p, recentre, crop).map(Sensor::Orthographic)),
-];
-
-/// The plugin names of all sensors.
-pub fn names() -> impl Iterator<Item = &'static str> {
-    ROWS.iter().map(|(name, _)| *name)
-}
-
-/// True if `object` is a sensor.
-pub fn is_sensor(object: &Object) -> bool {
-    names().any(|name| name == object.plugin)
-}
+pub const ROWS: Registry<BuildSensor> = Registry::new(
+    "a sensor",
+    &[
+        ("perspective", |p, recentre, crop| Perspective::build(p, recentre, crop).map(Sensor::Perspective)),
+        ("thinlens", |p, recentre, crop| ThinLens::build(p, recentre, crop).map(Sensor::ThinLens)),
+        ("orthographic", |p, recentre, crop| {
+            Orthographic::build(p, recentre, crop).map(Sensor::Orthographic)
+        }),
+    ],
+);
 
 /// Builds the sensor that `params` describes. Does not call `finish`: film, sampler and medium remain for the
 /// scene to read.
 pub fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Sensor> {
-    let plugin = &params.object.plugin;
-    if let Some((_, build)) = ROWS.iter().find(|(name, _)| name == plugin) {
-        let sensor = build(params, recentre, crop)?;
-        params.accept_unused(&["shutter_open", "shutter_close"], "nothing moves");
-        return Ok(sensor);
-    }
-    let names: Vec<_> = names().collect();
-    let remedy = format!("{}known: {}", nearest(plugin, &names), names.join(", "));
-    Err(Error::new(params.location(), "the type of a sensor", format!("\"{plugin}\""), remedy))
+    let sensor = ROWS.find(params.object)?(params, recentre, crop)?;
+    params.accept_unused(&["shutter_open", "shutter_close"], "nothing moves");
+    Ok(sensor)
 }
 
 /// Where the sensor stands in the file's coordinates.

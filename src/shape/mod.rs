@@ -20,8 +20,8 @@ mod sphere;
 mod spherical_rectangle;
 
 use crate::{
-    description::{Params, nearest},
-    error::{Error, Result},
+    description::{Params, Registry},
+    error::Result,
     math::{DVec3, Frame, Vec2, Vec3},
     sampling::Stream,
 };
@@ -143,39 +143,30 @@ pub enum Shape {
     Mesh(Mesh),
 }
 
-/// Builds a shape from its parameters; the point `recentre` becomes the origin.
+/// Builds a shape from its geometry parameters and no others (materials, media and emitters are the scene's); the
+/// point `recentre` becomes the origin.
 pub type BuildShape = fn(&Params<'_>, DVec3) -> Result<Shape>;
 
-/// One row of the registry: Mitsuba's plugin name and its builder.
-pub struct ShapeRow {
-    /// The plugin's name.
-    pub name: &'static str,
-    /// Reads the geometry parameters and no others (materials, media and lights are the scene's).
-    pub build: BuildShape,
-}
-
 /// All shapes.
-pub const ROWS: &[ShapeRow] = &[
-    ShapeRow { name: "rectangle", build: rectangle::build },
-    ShapeRow { name: "cube", build: cube::build },
-    ShapeRow { name: "sphere", build: sphere::build },
-    ShapeRow { name: "disk", build: disk::build },
-    ShapeRow { name: "cylinder", build: cylinder::build },
-    ShapeRow { name: "obj", build: obj::build },
-    ShapeRow { name: "ply", build: ply::build },
-    ShapeRow { name: "serialized", build: serialized::build },
-];
+pub const ROWS: Registry<BuildShape> = Registry::new(
+    "a shape",
+    &[
+        ("rectangle", rectangle::build),
+        ("cube", cube::build),
+        ("sphere", sphere::build),
+        ("disk", disk::build),
+        ("cylinder", cylinder::build),
+        ("obj", obj::build),
+        ("ply", ply::build),
+        ("serialized", serialized::build),
+    ],
+);
 
 /// Builds the shape that `params` describes. Does not call `finish`: children remain for the scene to read.
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
-    let plugin = &params.object.plugin;
-    if let Some(row) = ROWS.iter().find(|row| row.name == plugin) {
-        params.accept_unused(&["silhouette_sampling_weight"], "it matters to derivatives only");
-        return (row.build)(params, recentre);
-    }
-    let names: Vec<_> = ROWS.iter().map(|row| row.name).collect();
-    let remedy = format!("{}known: {}", nearest(plugin, &names), names.join(", "));
-    Err(Error::new(params.location(), "the type of a shape", format!("\"{plugin}\""), remedy))
+    let build = ROWS.find(params.object)?;
+    params.accept_unused(&["silhouette_sampling_weight"], "it matters to derivatives only");
+    build(params, recentre)
 }
 
 impl Shape {

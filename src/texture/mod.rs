@@ -13,7 +13,7 @@ pub use image::Image;
 pub use uniform::Uniform;
 
 use crate::description::{
-    Library, Object, Params, Row, Value, build_by_row,
+    Build, Library, Object, Params, Registry, Value,
     colour::{self, Role},
 };
 use crate::error::Result;
@@ -65,10 +65,10 @@ macro_rules! textures {
         }
 
         /// Every texture there is, by plugin name.
-        pub const ROWS: &[Row<Texture>] = &[
-            $(Row { name: $name, build: |params: &Params<'_>| $model::build(params).map(Texture::$model) },)*
-            $(color_row($color),)*
-        ];
+        pub const ROWS: Registry<Build<Texture>> = Registry::new("a texture", &[
+            $(($name, |params: &Params<'_>| $model::build(params).map(Texture::$model)),)*
+            $(($color, build_color),)*
+        ]);
 
         /// Instances of every model, for the tests that hold for all.
         #[cfg(test)]
@@ -96,7 +96,7 @@ impl Texture {
 
 /// Builds the texture that `object` describes.
 pub fn build(object: &Object, library: &Library) -> Result<Texture> {
-    build_by_row(object, library, "texture", ROWS)
+    ROWS.build(object, library)
 }
 
 /// The parameter `name` as a texture: a colour, or a nested or referenced texture; a grey `default` where
@@ -142,10 +142,6 @@ fn build_color(params: &Params<'_>) -> Result<Texture> {
         [child] if !params.has("color") => build(child.object, params.library),
         _ => Err(params.complain("", "either one texture or a \"color\" in d65", "more")),
     }
-}
-
-const fn color_row(name: &'static str) -> Row<Texture> {
-    Row { name, build: build_color }
 }
 
 /// The part of a `to_uv` transform that acts on texture positions: an affine map of the plane.

@@ -59,7 +59,7 @@ fn value(word: &str, text: &str) -> Result<Value> {
         ("true", _) => Value::Boolean(true),
         ("false", _) => Value::Boolean(false),
         (_, Ok(number)) => Value::Float(number),
-        _ if ROWS.iter().any(|row| row.name == text) => Value::Object(object(text, location(word))),
+        _ if ROWS.get(text).is_some() => Value::Object(object(text, location(word))),
         _ => Value::String(text.into()),
     })
 }
