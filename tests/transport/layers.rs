@@ -1,10 +1,8 @@
 //! What a film can be asked for besides the whole image: windows of it, alpha, layers of the first surface,
 //! moments.
 
-mod common;
-
-use common::{
-    Stage,
+use crate::common::{
+    self, Stage,
     claims::{Claims, Sample},
     pieces::*,
 };

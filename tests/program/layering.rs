@@ -1,6 +1,5 @@
 //! The modules stand in layers: each may use its own layer and those above it in [`LAYERS`], none below.
 //! `lib.rs` lists them in the same order.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
 use std::{
     fs,

@@ -1,8 +1,6 @@
 //! Media that shine, against closed forms: slabs that emit and absorb, and rooms of one temperature.
 
-mod common;
-
-use common::{Stage, claims::Claims, name_of, pieces::*, strategies};
+use crate::common::{Stage, claims::Claims, name_of, pieces::*, strategies};
 use serde_json::{Value, json};
 use tyndall::transport::{Strategies, profile::ProfileName};
 

@@ -1,38 +1,15 @@
 //! Scene files in both spellings: what they mean, and what is said of broken ones.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
-use tempfile::TempDir;
+use crate::sandbox::Sandbox;
+use std::{fs, path::Path};
 use tyndall::{
     description::{Object, TransformStep, Value},
     error::Error,
     scene,
 };
 
-/// A folder with scene files in it.
-struct Desk {
-    folder: TempDir,
-}
-
-impl Desk {
-    fn new(files: &[(&str, &str)]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        for (name, text) in files {
-            let path = folder.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, text).unwrap();
-        }
-        Self { folder }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn read(&self, name: &str, definitions: &[(&str, &str)]) -> Result<Object, Error> {
+impl Sandbox {
+    fn read_scene(&self, name: &str, definitions: &[(&str, &str)]) -> Result<Object, Error> {
         let definitions: Vec<_> = definitions.iter().map(|(n, v)| (n.to_string(), v.to_string())).collect();
         scene::read(&self.path(name), &definitions)
     }
@@ -40,11 +17,11 @@ impl Desk {
 
 fn read_xml(inside: &str, definitions: &[(&str, &str)]) -> Result<Object, Error> {
     let text = format!("<scene version=\"3.0.0\">{inside}</scene>");
-    Desk::new(&[("scene.xml", &text)]).read("scene.xml", definitions)
+    Sandbox::with_files(&[("scene.xml", &text)]).read_scene("scene.xml", definitions)
 }
 
 fn read_json(text: &str, definitions: &[(&str, &str)]) -> Result<Object, Error> {
-    Desk::new(&[("scene.json", text)]).read("scene.json", definitions)
+    Sandbox::with_files(&[("scene.json", text)]).read_scene("scene.json", definitions)
 }
 
 fn property<'a>(object: &'a Object, name: &str) -> &'a Value {
@@ -179,9 +156,9 @@ fn a_constant_spectrum_file_and_a_sampled_one() {
         ),
         ("s.spd", "# glass\n400 0.1 # violet\n\n700.5\t0.4\n"),
     ];
-    let desk = Desk::new(&files);
+    let sandbox = Sandbox::with_files(&files);
     for name in ["scene.xml", "scene.json"] {
-        let scene = desk.read(name, &[]).unwrap();
+        let scene = sandbox.read_scene(name, &[]).unwrap();
         let pairs = Value::Spectrum(vec![(400.0, 0.1), (700.5, 0.4)]);
         assert_eq!(*property(child(&scene, 0), "v"), pairs);
     }
@@ -236,7 +213,7 @@ fn names_and_references() {
 
 #[test]
 fn includes_and_search_folders() {
-    let desk = Desk::new(&[
+    let sandbox = Sandbox::with_files(&[
         (
             "scene.xml",
             r#"<scene version="3.0.0"><path value="assets"/><default name="r" value="2"/>
@@ -255,7 +232,7 @@ fn includes_and_search_folders() {
         ),
         ("parts/c.obj", ""),
     ]);
-    let scene = desk.read("scene.xml", &[]).unwrap();
+    let scene = sandbox.read_scene("scene.xml", &[]).unwrap();
     assert_eq!(scene.properties.len(), 6);
     let radius = &child(&scene, 0).properties[0];
     assert_eq!(radius.value, Value::Float(2.0));
@@ -269,11 +246,11 @@ fn includes_and_search_folders() {
         Value::String(name) => name.clone(),
         other => panic!("{}", other.describe()),
     };
-    let found = desk.path("assets/a.obj").display().to_string();
+    let found = sandbox.path("assets/a.obj").display().to_string();
     assert_eq!([name(1), name(2), name(4), name(5)], [&found, "c.obj", &found, "b.obj"]);
 }
 
-/// Files that include one another, as `files` of [`Desk`].
+/// Files that include one another, as `files` of [`Sandbox`].
 const MANY_FILES: [(&str, &str); 5] = [
     (
         "a.xml",
@@ -306,14 +283,14 @@ const MANY_FILES: [(&str, &str); 5] = [
 /// The radii of all spheres in file order; what Mitsuba 3.9.1 makes of the same files.
 #[test]
 fn many_files_are_read_as_mitsuba_reads_them() {
-    let desk = Desk::new(&MANY_FILES);
+    let sandbox = Sandbox::with_files(&MANY_FILES);
     for (definitions, expected) in [
         (&[][..], [3.0, 3.0, 2.0, 3.0, 5.0, 2.0]),
         (&[("r", "4")], [3.0, 3.0, 4.0, 3.0, 5.0, 4.0]),
         (&[("late", "6")], [6.0, 6.0, 2.0, 6.0, 5.0, 2.0]),
         (&[("again", "7"), ("file", "parts/b.xml")], [3.0, 3.0, 2.0, 3.0, 5.0, 7.0]),
     ] {
-        let scene = desk.read("a.xml", definitions).unwrap();
+        let scene = sandbox.read_scene("a.xml", definitions).unwrap();
         let spheres = scene.properties.iter().filter_map(|p| match &p.value {
             Value::Object(child) if child.plugin == "sphere" => Some(property(child, "radius")),
             _ => None,
@@ -323,7 +300,7 @@ fn many_files_are_read_as_mitsuba_reads_them() {
         let Value::Object(last) = &scene.properties.last().unwrap().value else { panic!() };
         assert_eq!(last.properties[0].value, Value::Reference("skin".into()));
     }
-    let error = desk.read("a.xml", &[("lat", "6")]).unwrap_err();
+    let error = sandbox.read_scene("a.xml", &[("lat", "6")]).unwrap_err();
     assert!(error.found.contains("-D lat=6") && error.remedy.contains("did you mean \"late\""), "{error}");
 }
 
@@ -331,21 +308,21 @@ fn many_files_are_read_as_mitsuba_reads_them() {
 /// place on; the version is each file's own. As in Mitsuba, but that reads versions before 2 too.
 #[test]
 fn what_holds_in_a_file_and_what_beyond() {
-    let desk = Desk::new(&MANY_FILES);
+    let sandbox = Sandbox::with_files(&MANY_FILES);
     let write = |name: &str, inside: &str| {
-        fs::write(desk.path(name), format!("<scene version=\"3.0.0\">{inside}</scene>")).unwrap();
+        fs::write(sandbox.path(name), format!("<scene version=\"3.0.0\">{inside}</scene>")).unwrap();
     };
     write("parts/path.xml", "<path value=\"../lib\"/><bsdf type=\"diffuse\" id=\"skin\"/>");
-    let error = desk.read("leak.xml", &[]).unwrap_err();
+    let error = sandbox.read_scene("leak.xml", &[]).unwrap_err();
     assert!(error.place.ends_with("leak.xml:1:69") && error.expected.contains("existing file"), "{error}");
     write(
         "late.xml",
         "<shape type=\"s\"><float name=\"a\" value=\"$x\"/></shape><default name=\"x\" value=\"2\"/>",
     );
-    assert!(desk.read("late.xml", &[]).unwrap_err().found.contains("$x"));
+    assert!(sandbox.read_scene("late.xml", &[]).unwrap_err().found.contains("$x"));
     write("old.xml", "<include filename=\"parts/old.xml\"/>");
-    fs::write(desk.path("parts/old.xml"), "<scene version=\"0.6.0\"/>").unwrap();
-    let error = desk.read("old.xml", &[]).unwrap_err();
+    fs::write(sandbox.path("parts/old.xml"), "<scene version=\"0.6.0\"/>").unwrap();
+    let error = sandbox.read_scene("old.xml", &[]).unwrap_err();
     assert!(
         error.place.ends_with("parts/old.xml:1:8") && error.remedy.contains("transform_upgrade"),
         "{error}"
@@ -360,7 +337,7 @@ fn versions_from_2_on_have_no_camel_case() {
             "<scene version=\"{version}\"><sensor type=\"perspective\"/>
              <bsdf type=\"dielectric\"><float name=\"intIOR\" value=\"1.3\"/></bsdf></scene>"
         );
-        let scene = Desk::new(&[("scene.xml", &text)]).read("scene.xml", &[]).unwrap();
+        let scene = Sandbox::with_files(&[("scene.xml", &text)]).read_scene("scene.xml", &[]).unwrap();
         let Err(error) = scene::build::build(&scene, scene::build::Overrides::default()) else { panic!() };
         assert!(error.found.contains("intIOR") && error.remedy.contains("\"int_ior\""), "{error}");
     }
@@ -502,7 +479,7 @@ fn broken_files_of_xml_are_refused() {
         broken("<!DOCTYPE s [<!ENTITY a 'b'>]><scene version='3.0.0'/>", "", &["document type", "<default>"]),
         broken("", "scene.xml:1:1", &["well-formed XML"]),
     ];
-    check(&rows, |text| Desk::new(&[("scene.xml", text)]).read("scene.xml", &[]));
+    check(&rows, |text| Sandbox::with_files(&[("scene.xml", text)]).read_scene("scene.xml", &[]));
 }
 
 #[test]
@@ -600,27 +577,27 @@ fn definitions_must_fit_the_scene() {
 
 #[test]
 fn files_that_are_no_scenes_are_refused() {
-    let desk = Desk::new(&[("scene.txt", "")]);
-    fs::write(desk.path("latin.xml"), b"<scene version='3.0.0'><!-- \xe9 --></scene>").unwrap();
+    let sandbox = Sandbox::with_files(&[("scene.txt", "")]);
+    fs::write(sandbox.path("latin.xml"), b"<scene version='3.0.0'><!-- \xe9 --></scene>").unwrap();
     for (name, word) in [
         ("scene.txt", ".xml or .json"),
         ("none.xml", "os error 2"),
         ("none.json", "os error 2"),
         ("latin.xml", "UTF-8"),
     ] {
-        let message = desk.read(name, &[]).unwrap_err().to_string();
+        let message = sandbox.read_scene(name, &[]).unwrap_err().to_string();
         assert!(message.contains(name) && message.contains(word), "{message}");
     }
 }
 
 #[test]
 fn mistakes_in_included_files_name_those_files() {
-    let desk = Desk::new(&[
+    let sandbox = Sandbox::with_files(&[
         ("scene.xml", r#"<scene version="3.0.0"><include filename="a.xml"/></scene>"#),
         ("a.xml", "<scene version=\"3.0.0\">\n<include filename=\"b.xml\"/></scene>"),
         ("b.xml", "<scene version=\"3.0.0\">\n\n  <include filename=\"a.xml\"/></scene>"),
     ]);
-    let error = desk.read("scene.xml", &[]).unwrap_err();
+    let error = sandbox.read_scene("scene.xml", &[]).unwrap_err();
     assert!(error.place.ends_with("b.xml:3:12") && error.remedy.contains("circle"), "{error}");
 }
 
@@ -649,7 +626,7 @@ fn small_files_that_would_grow_without_end_are_errors() {
     let mut files: Vec<(&str, &str)> =
         files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
     files.push(("12.xml", "<scene version='3.0.0'/>"));
-    let error = Desk::new(&files).read("0.xml", &[]).unwrap_err();
+    let error = Sandbox::with_files(&files).read_scene("0.xml", &[]).unwrap_err();
     assert!(error.expected.contains("at most 10000 includes"), "{error}");
 }
 

@@ -1,10 +1,8 @@
-//! What is said of broken scenes, word for word. Every message is there to be read in `errors/messages.txt`.
+//! What is said of broken scenes, word for word. Every message is there to be read in `messages.txt`.
 //!
-//! After a change that is meant, `TYNDALL_BLESS=1 cargo test --test errors` writes that file anew; the difference is
+//! After a change that is meant, `TYNDALL_BLESS=1 cargo test --test program errors` writes that file anew; the difference is
 //! to be read like code.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
-#[path = "errors/cases.rs"]
 mod cases;
 
 use cases::{Case, File};
@@ -58,7 +56,7 @@ fn messages(cases: &[Case]) -> String {
 
 #[test]
 fn messages_are_as_written_down() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/errors/messages.txt");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/errors/messages.txt");
     let found = messages(&cases::all());
     if std::env::var_os("TYNDALL_BLESS").is_some() {
         fs::write(&file, &found).unwrap();

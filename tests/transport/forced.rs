@@ -1,9 +1,7 @@
 //! Forced interaction shows the same image as walks that are left to chance, and with less noise where media are thin.
 
-mod common;
-
-use common::{
-    Stage,
+use crate::common::{
+    self, Stage,
     claims::{Claims, Sample},
     pieces::*,
     strategies,

@@ -1,19 +1,16 @@
 //! `tyndall strategies`: the parts that strategies bring make the image, each alone shows what all together do where it
 //! can, and the program says so.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
-mod common;
-#[path = "common/instrument.rs"]
-mod instrument;
-
-use common::{
-    Stage,
-    claims::{Claims, Sample},
-    pieces::*,
+use crate::{
+    common::{
+        self, Stage,
+        claims::{Claims, Sample},
+        pieces::*,
+    },
+    sandbox::Sandbox,
 };
-use instrument::Bench as Desk;
 use serde_json::{Value, json};
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
 use tyndall::{
     math::Spectrum,
     render::{
@@ -154,32 +151,22 @@ fn every_strategy_alone_shows_the_same() {
 }
 
 /// All channels of an OpenEXR file.
-fn channels(path: &Path) -> BTreeMap<String, Vec<f32>> {
-    use exr::prelude::*;
-    let layer = read_first_flat_layer_from_file(path).unwrap().layer_data;
-    let values = |samples: FlatSamples| match samples {
-        FlatSamples::F32(values) => values,
-        other => panic!("{other:?}"),
-    };
-    layer.channel_data.list.into_iter().map(|c| (c.name.to_string(), values(c.sample_data))).collect()
-}
-
 fn shares(cells: &[Value], key: &str) -> f64 {
     cells.iter().map(|cell| cell[key].as_f64().unwrap()).sum()
 }
 
 #[test]
 fn the_program_writes_tables_layers_and_sheets() {
-    let desk = Desk::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
+    let sandbox = Sandbox::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
     let (code, out, err) =
-        desk.run("strategies scene.json -o deep/er --spp 6 --pilots 20 --depth 3 --seed 4").told();
+        sandbox.run("strategies scene.json -o deep/er --spp 6 --pilots 20 --depth 3 --seed 4").told();
     assert_eq!(code, Some(0), "{err}");
     for word in
         ["next-event", "eye walks", "light walks", "covariances", "advice:", "without join,lens", "exposure"]
     {
         assert!(out.contains(word), "no \"{word}\" in {out}");
     }
-    let report = desk.json("deep/er/strategies.json");
+    let report = sandbox.json("deep/er/strategies.json");
     let cells = report["cells"].as_array().unwrap();
     assert_eq!(cells.len(), 2 + 3 + 4 + 4);
     assert!((shares(cells, "energy") - 1.0).abs() < 1e-5);
@@ -190,10 +177,10 @@ fn the_program_writes_tables_layers_and_sheets() {
     // Next-event estimation is tried once at every vertex that is no black lamp, the lens once from every start.
     let tries = |name: &str| cells.iter().find(|c| c["name"] == name).unwrap()["tries"].as_f64().unwrap();
     assert!((tries("s1t1") - 1.0).abs() < 1e-9 && tries("s1t2") <= 1.0 && tries("s2t2") <= tries("s1t2"));
-    let csv = std::fs::read_to_string(desk.path("deep/er/strategies.csv")).unwrap();
+    let csv = std::fs::read_to_string(sandbox.path("deep/er/strategies.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + cells.len());
     assert!(csv.lines().all(|line| line.split(',').count() == 11), "{csv}");
-    let layers = channels(&desk.path("deep/er/weighted.exr"));
+    let layers = sandbox.channels("deep/er/weighted.exr");
     assert_eq!(layers.len(), 3 * (1 + cells.len()));
     let greens: Vec<&Vec<f32>> =
         cells.iter().map(|c| &layers[&format!("{}.G", c["name"].as_str().unwrap())]).collect();
@@ -201,9 +188,9 @@ fn the_program_writes_tables_layers_and_sheets() {
         let parts: f32 = greens.iter().map(|green| green[pixel]).sum();
         assert!((parts - whole).abs() <= 1e-5 * whole);
     }
-    assert_eq!(channels(&desk.path("deep/er/unweighted.exr")).len(), layers.len());
+    assert_eq!(sandbox.channels("deep/er/unweighted.exr").len(), layers.len());
     for sheet in ["weighted.png", "unweighted.png"] {
-        let size = image::image_dimensions(desk.path("deep/er").join(sheet)).unwrap();
+        let size = image::image_dimensions(sandbox.path("deep/er").join(sheet)).unwrap();
         assert_eq!(size, (4 * 12 + 4, 4 * 12 + 4), "four rows, four cells in the longest");
     }
     let subsets = report["subsets"].as_array().unwrap();
@@ -214,26 +201,27 @@ fn the_program_writes_tables_layers_and_sheets() {
 
 #[test]
 fn what_a_scene_needs_is_not_left_out() {
-    let desk = Desk::with_scene(&glass_ball());
-    let (code, out, err) = desk.run("strategies scene.json --spp 2 --pilots 1 --depth 2 --size 4x4").told();
+    let sandbox = Sandbox::with_scene(&glass_ball());
+    let (code, out, err) =
+        sandbox.run("strategies scene.json --spp 2 --pilots 1 --depth 2 --size 4x4").told();
     assert_eq!(code, Some(0), "{err}");
     assert!(out.contains("cannot make: light of area, sky or medium by smooth"), "{out}");
-    let subsets = desk.json("scene-strategies/strategies.json")["subsets"].clone();
+    let subsets = sandbox.json("scene-strategies/strategies.json")["subsets"].clone();
     for set in subsets.as_array().unwrap() {
         let without_hit = set["without"].as_str().unwrap().contains("hit");
         assert_eq!(set["lacks"].is_string(), without_hit, "{set}");
         assert_eq!(set["gain"].is_null(), without_hit, "{set}");
     }
     let (code, out, err) =
-        desk.run("strategies scene.json --spp 1 --pilots 0 --integrator pt --size 4x4").told();
+        sandbox.run("strategies scene.json --spp 1 --pilots 0 --integrator pt --size 4x4").told();
     assert_eq!(code, Some(0), "{err}");
     assert!(!out.contains("advice") && !out.contains("  join ") && out.contains("next-event"), "{out}");
-    assert!(desk.json("scene-strategies/strategies.json")["variance"].is_null(), "one pass has none");
+    assert!(sandbox.json("scene-strategies/strategies.json")["variance"].is_null(), "one pass has none");
 }
 
 #[test]
 fn what_cannot_be_done_is_refused() {
-    let desk = Desk::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
+    let sandbox = Sandbox::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
     for (words, hints) in [
         ("strategies scene.json --depth 0", vec!["--depth", "1"]),
         ("strategies scene.json --integrator fog", vec!["paths", "--integrator bdpt"]),
@@ -241,7 +229,7 @@ fn what_cannot_be_done_is_refused() {
         ("strategies scene.json --size 12000x12000", vec!["GiB", "--size", "--depth"]),
         ("strategies none.json", vec!["none.json"]),
     ] {
-        let (code, _, err) = desk.run(words).told();
+        let (code, _, err) = sandbox.run(words).told();
         assert_eq!(code, Some(2), "{words}: {err}");
         assert!(hints.iter().all(|hint| err.contains(hint)) && !err.contains("panicked"), "{words}: {err}");
     }
@@ -250,10 +238,10 @@ fn what_cannot_be_done_is_refused() {
 /// What a strategy is called is how it is typed.
 #[test]
 fn kinds_are_called_as_they_are_typed() {
-    let desk = Desk::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
+    let sandbox = Sandbox::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
     for kind in StrategyKind::ALL {
         let words = format!("render scene.json --spp 1 --size 2x2 --strategies {}", kind.name());
-        let (code, _, err) = desk.run(&words).told();
+        let (code, _, err) = sandbox.run(&words).told();
         assert_eq!(code, Some(0), "{err}");
     }
 }

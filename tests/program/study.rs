@@ -1,9 +1,6 @@
 //! `tyndall study` as a user runs it: what it finds, what it says, and that it can be stopped at any moment.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
-mod common;
-
-use common::pieces::*;
+use crate::common::pieces::*;
 use serde_json::{Value, json};
 use std::{
     collections::BTreeMap,

@@ -1,9 +1,7 @@
 //! Integrators that do less: the preview `fog` against BMA02 eq. 5 by hand, `single_scattering` against quadrature
 //! (P03 eq. 18-19), `non_scattering` against Beer and Lambert (P03T eq. 2.9); and scenes at other times.
 
-mod common;
-
-use common::{Stage, pieces::*};
+use crate::common::{self, Stage, pieces::*};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 use tyndall::{

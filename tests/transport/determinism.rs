@@ -1,10 +1,8 @@
 //! The same seed gives the same image, bit for bit, whatever the machine is doing; and the code that has
 //! everything gives the same image as the code that fits.
 
-mod common;
-
-use common::{
-    Stage,
+use crate::common::{
+    self, Stage,
     claims::{Claims, Sample},
     pieces::*,
 };

@@ -1,16 +1,17 @@
-//! The instruments as a user runs them: a folder, the program in it, and what came of it.
-#![allow(dead_code, reason = "every test program uses its own part of this")]
+//! The program as a user runs it: in a temporary folder with some files, and what came of it.
 
+use exr::prelude::read_first_flat_layer_from_file;
 use std::{
+    collections::BTreeMap,
     path::PathBuf,
     process::{Command, Output},
 };
 use tempfile::TempDir;
 
 /// A folder in which the program runs.
-pub struct Bench(TempDir);
+pub struct Sandbox(TempDir);
 
-impl Bench {
+impl Sandbox {
     /// An empty one.
     pub fn new() -> Self {
         Self(TempDir::new().unwrap())
@@ -18,9 +19,18 @@ impl Bench {
 
     /// One with `scene.json` in it.
     pub fn with_scene(scene: &serde_json::Value) -> Self {
-        let bench = Self::new();
-        std::fs::write(bench.path("scene.json"), scene.to_string()).unwrap();
-        bench
+        Self::with_files(&[("scene.json", &scene.to_string())])
+    }
+
+    /// One with these files in it, folders made as their names say.
+    pub fn with_files(files: &[(&str, &str)]) -> Self {
+        let sandbox = Self::new();
+        for (name, text) in files {
+            let path = sandbox.path(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        }
+        sandbox
     }
 
     /// Where a file of this name lies.
@@ -41,6 +51,18 @@ impl Bench {
         Run { words: words.join(" "), output }
     }
 
+    /// A file.
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+
+    /// The channels of an OpenEXR image.
+    pub fn channels(&self, name: &str) -> BTreeMap<String, Vec<f32>> {
+        let layer = read_first_flat_layer_from_file(self.path(name)).unwrap().layer_data;
+        let list = layer.channel_data.list.into_iter();
+        list.map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
+    }
+
     /// A text file.
     pub fn text(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).unwrap()
@@ -51,7 +73,7 @@ impl Bench {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
-    /// Names of all files.
+    /// Names of all files, hidden ones too.
     pub fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).unwrap();
         let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();

@@ -1,10 +1,8 @@
 //! `pt`, `lt`, `bdpt` and every other set of strategies that can make all paths of a scene show the same image:
 //! the weights of the strategies that run sum to one, whichever they are.
 
-mod common;
-
-use common::{
-    Stage,
+use crate::common::{
+    self, Stage,
     claims::{Claims, Sample},
     name_of,
     pieces::*,

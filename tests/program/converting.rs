@@ -1,44 +1,19 @@
 //! Scenes written again: nothing is lost on the way from one spelling to the other and back.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
+use crate::sandbox::Sandbox;
 use proptest::{
     collection::vec,
     prelude::*,
     sample::select,
     test_runner::{Config, RngSeed},
 };
-use std::{
-    collections::HashSet,
-    fs,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
-use tempfile::TempDir;
+use std::{collections::HashSet, fs, path::Path, sync::Arc};
 use tyndall::{
     description::{Location, Object, Position, Property, TransformStep, Value},
     scene::{self, Naming, Spelling},
 };
 
-/// A folder to write scenes into.
-struct Desk {
-    folder: TempDir,
-}
-
-impl Desk {
-    fn new(files: &[(&str, &str)]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        for (name, text) in files {
-            let path = folder.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, text).unwrap();
-        }
-        Self { folder }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
+impl Sandbox {
     /// The tree in a file, without places.
     fn read(&self, name: &str, definitions: &[(&str, &str)]) -> Object {
         let root = scene::read(&self.path(name), &pairs(definitions)).unwrap_or_else(|error| {
@@ -242,20 +217,20 @@ proptest! {
 
     #[test]
     fn what_is_written_is_read_again(tree in any_scene()) {
-        let desk = Desk::new(&[]);
-        let (xml, text) = desk.through(&tree, Spelling::Xml);
+        let sandbox = Sandbox::with_files(&[]);
+        let (xml, text) = sandbox.through(&tree, Spelling::Xml);
         assert_same(&tree, &xml, &text);
         prop_assert_eq!(scene::write(&xml, Spelling::Xml, Path::new("nowhere")).unwrap(), text);
     }
 
     #[test]
     fn both_ways_lose_nothing(tree in any_scene()) {
-        let desk = Desk::new(&[]);
-        let (json, text) = desk.through(&tree, Spelling::Json);
-        let (again, same_text) = desk.through(&json, Spelling::Json);
+        let sandbox = Sandbox::with_files(&[]);
+        let (json, text) = sandbox.through(&tree, Spelling::Json);
+        let (again, same_text) = sandbox.through(&json, Spelling::Json);
         assert_same(&json, &again, &text);
         prop_assert_eq!(&text, &same_text);
-        let (xml, _) = desk.through(&json, Spelling::Xml);
+        let (xml, _) = sandbox.through(&json, Spelling::Xml);
         assert_same(&tree, &xml, &text);
     }
 }
@@ -293,17 +268,17 @@ proptest! {
         let plain = scene::write(&tree, Spelling::Xml, Path::new("nowhere")).unwrap();
         prop_assume!(plain.lines().count() > 2);
         let (text, settable) = parametrised(&plain, &choices);
-        let desk = Desk::new(&[("a.xml", &text)]);
-        assert_same(&tree, &desk.read("a.xml", &[]), &text);
-        let (json, _) = desk.convert("a.xml", "b.json", &[]);
-        desk.convert("b.json", "c.xml", &[]);
-        let (same, notes) = desk.convert("a.xml", "d.xml", &[]);
+        let sandbox = Sandbox::with_files(&[("a.xml", &text)]);
+        assert_same(&tree, &sandbox.read("a.xml", &[]), &text);
+        let (json, _) = sandbox.convert("a.xml", "b.json", &[]);
+        sandbox.convert("b.json", "c.xml", &[]);
+        let (same, notes) = sandbox.convert("a.xml", "d.xml", &[]);
         prop_assert_eq!(notes, [""; 0]);
         let settings: Vec<_> = settable.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         for definitions in [&[][..], &settings] {
-            let expected = desk.read("a.xml", definitions);
-            assert_same(&expected, &desk.read("c.xml", definitions), &json);
-            assert_same(&expected, &desk.read("d.xml", definitions), &same);
+            let expected = sandbox.read("a.xml", definitions);
+            assert_same(&expected, &sandbox.read("c.xml", definitions), &json);
+            assert_same(&expected, &sandbox.read("d.xml", definitions), &same);
         }
     }
 }
@@ -312,21 +287,21 @@ proptest! {
 fn numbers_keep_their_kind_and_every_bit() {
     let text = r#"{"type": "scene", "s": {"type": "sphere", "a": 1, "b": 1.0, "c": -0.0, "d": 0.1, "e": 1e300,
         "f": 9223372036854775807, "g": 5e-324, "v": [-0.0, 1e22, 3]}}"#;
-    let desk = Desk::new(&[("a.json", text)]);
-    desk.convert("a.json", "b.xml", &[]);
-    desk.convert("b.xml", "c.json", &[]);
-    assert_same(&desk.read("a.json", &[]), &desk.read("c.json", &[]), "");
-    let xml = fs::read_to_string(desk.path("b.xml")).unwrap();
+    let sandbox = Sandbox::with_files(&[("a.json", text)]);
+    sandbox.convert("a.json", "b.xml", &[]);
+    sandbox.convert("b.xml", "c.json", &[]);
+    assert_same(&sandbox.read("a.json", &[]), &sandbox.read("c.json", &[]), "");
+    let xml = fs::read_to_string(sandbox.path("b.xml")).unwrap();
     for line in [r#"<integer name="a" value="1"/>"#, r#"<float name="b" value="1"/>"#, r#"value="-0.0""#] {
         assert!(xml.contains(line), "{xml}");
     }
-    assert!(fs::read_to_string(desk.path("c.json")).unwrap().contains(r#""b": 1.0"#));
+    assert!(fs::read_to_string(sandbox.path("c.json")).unwrap().contains(r#""b": 1.0"#));
 }
 
 /// Whatever the user sets, both files mean the same.
-fn assert_same_with(desk: &Desk, a: &str, b: &str, definitions: &[(&str, &str)]) {
-    let tidy = |name: &str| tidied(desk.read(name, definitions));
-    assert_same(&tidy(a), &tidy(b), &fs::read_to_string(desk.path(b)).unwrap());
+fn assert_same_with(sandbox: &Sandbox, a: &str, b: &str, definitions: &[(&str, &str)]) {
+    let tidy = |name: &str| tidied(sandbox.read(name, definitions));
+    assert_same(&tidy(a), &tidy(b), &fs::read_to_string(sandbox.path(b)).unwrap());
 }
 
 /// Without what only one of the spellings has: tags, and names made up.
@@ -360,8 +335,8 @@ fn parameters_stay_parameters() {
           <rgb name="c" value="$grey"/><rgb name="d" value="0.1 $grey 0.3"/><point name="p" value="$axis"/></shape>
       </scene>"#
         .replace("${res}0", "$res");
-    let desk = Desk::new(&[("a.xml", &xml)]);
-    let (json, notes) = desk.convert("a.xml", "b.json", &[]);
+    let sandbox = Sandbox::with_files(&[("a.xml", &xml)]);
+    let (json, notes) = sandbox.convert("a.xml", "b.json", &[]);
     for part in [
         r#""res": 48"#,
         r#""fov": 40.0"#,
@@ -379,34 +354,42 @@ fn parameters_stay_parameters() {
     }
     assert!(notes.iter().all(|note| note.contains("$axis") && note.contains("in JSON")), "{notes:?}");
     assert!(!notes.is_empty());
-    desk.convert("b.json", "c.xml", &[]);
-    let (again, _) = desk.convert("c.xml", "d.json", &[]);
+    sandbox.convert("b.json", "c.xml", &[]);
+    let (again, _) = sandbox.convert("c.xml", "d.json", &[]);
     assert_eq!(json, again);
     for definitions in [
         &[][..],
         &[("res", "7"), ("fov", "12.5"), ("on", "false"), ("kind", "cube")],
         &[("wide", "3"), ("dir", "elsewhere"), ("grey", "0.25")],
     ] {
-        assert_same_with(&desk, "a.xml", "b.json", definitions);
-        assert_same_with(&desk, "a.xml", "c.xml", definitions);
+        assert_same_with(&sandbox, "a.xml", "b.json", definitions);
+        assert_same_with(&sandbox, "a.xml", "c.xml", definitions);
     }
     // What the user sets becomes the default.
-    desk.convert("a.xml", "set.json", &[("res", "9")]);
+    sandbox.convert("a.xml", "set.json", &[("res", "9")]);
     assert_eq!(
-        format!("{:?}", tidied(desk.read("set.json", &[]))),
-        format!("{:?}", tidied(desk.read("b.json", &[("res", "9")])))
+        format!("{:?}", tidied(sandbox.read("set.json", &[]))),
+        format!("{:?}", tidied(sandbox.read("b.json", &[("res", "9")])))
     );
     // Or all parameters go, and their values stay.
-    let filled =
-        scene::convert(&desk.path("a.xml"), &desk.path("e.json"), &pairs(&[("res", "9")]), Naming::Fill);
+    let filled = scene::convert(
+        &sandbox.path("a.xml"),
+        &sandbox.path("e.json"),
+        &pairs(&[("res", "9")]),
+        Naming::Fill,
+    );
     let filled = filled.unwrap();
     assert_eq!((filled.text.contains('$'), filled.notes.len()), (false, 0), "{}", filled.text);
-    fs::write(desk.path("e.json"), filled.text).unwrap();
-    assert_same(&tidied(desk.read("a.xml", &[("res", "9")])), &tidied(desk.read("e.json", &[])), "filled");
+    fs::write(sandbox.path("e.json"), filled.text).unwrap();
+    assert_same(
+        &tidied(sandbox.read("a.xml", &[("res", "9")])),
+        &tidied(sandbox.read("e.json", &[])),
+        "filled",
+    );
     // The same spelling loses not even the lists.
-    let (_, notes) = desk.convert("a.xml", "same.xml", &[]);
+    let (_, notes) = sandbox.convert("a.xml", "same.xml", &[]);
     assert_eq!(notes, [""; 0]);
-    assert_same_with(&desk, "a.xml", "same.xml", &[("axis", "1, 2, 3")]);
+    assert_same_with(&sandbox, "a.xml", "same.xml", &[("axis", "1, 2, 3")]);
 }
 
 #[test]
@@ -414,13 +397,13 @@ fn parameters_of_json_stay_too() {
     let json = r#"{"type": "scene", "$defaults": {"n": 4, "x": 0.5, "on": false, "dir": "maps", "file": "$dir/a"},
         "s": {"type": "sphere", "n": "$n", "x": "$x", "on": "$on", "f": "$file.png", "v": ["$x", "$n", 2], "t": "\\$n",
               "c": {"type": "rgb", "value": "$x"}, "w": [{"type": "scale", "x": "$x"}, {"type": "rotate", "axis": [0, "$n", 0], "angle": "$x"}]}}"#;
-    let desk = Desk::new(&[("a.json", json)]);
+    let sandbox = Sandbox::with_files(&[("a.json", json)]);
     for (to, back) in [("b.xml", "c.json"), ("b2.json", "c2.xml")] {
-        assert_eq!(desk.convert("a.json", to, &[]).1, [""; 0]);
-        assert_eq!(desk.convert(to, back, &[]).1, [""; 0]);
+        assert_eq!(sandbox.convert("a.json", to, &[]).1, [""; 0]);
+        assert_eq!(sandbox.convert(to, back, &[]).1, [""; 0]);
         for definitions in [&[][..], &[("n", "3"), ("x", "0.25"), ("on", "true"), ("dir", "b")]] {
-            assert_same_with(&desk, "a.json", to, definitions);
-            assert_same_with(&desk, "a.json", back, definitions);
+            assert_same_with(&sandbox, "a.json", to, definitions);
+            assert_same_with(&sandbox, "a.json", back, definitions);
         }
     }
 }
@@ -431,25 +414,25 @@ fn how_a_parameter_was_spelled_shows_in_no_text() {
     let xml = r#"<scene version="3.0.0"><default name="on" value="True"/><default name="n" value="007"/>
         <shape type="sphere" id="s"><boolean name="a" value="$on"/><integer name="b" value="$n"/>
         <string name="c" value="is $on"/><string name="d" value="agent $n"/></shape></scene>"#;
-    let desk = Desk::new(&[("a.xml", xml)]);
-    let (json, notes) = desk.convert("a.xml", "b.json", &[]);
+    let sandbox = Sandbox::with_files(&[("a.xml", xml)]);
+    let (json, notes) = sandbox.convert("a.xml", "b.json", &[]);
     assert!(json.contains("is True") && json.contains("agent 007") && notes.len() == 2, "{json} {notes:?}");
-    assert_same_with(&desk, "a.xml", "b.json", &[]);
+    assert_same_with(&sandbox, "a.xml", "b.json", &[]);
 }
 
 #[test]
 fn a_parameter_that_a_matrix_of_nine_hides_is_told() {
     let json = r#"{"type": "scene", "$defaults": {"z": 0}, "s": {"type": "sphere",
         "to_world": [{"type": "matrix", "value": [1, 0, 0, "$z", 1, 0, 0, 0, 1]}]}}"#;
-    let desk = Desk::new(&[("a.json", json)]);
-    let (_, notes) = desk.convert("a.json", "b.xml", &[]);
+    let sandbox = Sandbox::with_files(&[("a.json", json)]);
+    let (_, notes) = sandbox.convert("a.json", "b.xml", &[]);
     assert!(notes[0].contains("$.s.to_world") && notes[0].contains("$z"), "{notes:?}");
-    assert_same_with(&desk, "a.json", "b.xml", &[]);
+    assert_same_with(&sandbox, "a.json", "b.xml", &[]);
 }
 
 #[test]
 fn files_are_found_from_the_new_folder() {
-    let desk = Desk::new(&[
+    let sandbox = Sandbox::with_files(&[
         (
             "in/a.xml",
             r#"<scene version="3.0.0"><path value="assets"/><default name="d" value="meshes"/>
@@ -466,14 +449,14 @@ fn files_are_found_from_the_new_folder() {
         ("in/parts/c.ply", ""),
         ("out/keep", ""),
     ]);
-    let (json, notes) = desk.convert("in/a.xml", "out/a.json", &[]);
+    let (json, notes) = sandbox.convert("in/a.xml", "out/a.json", &[]);
     for name in ["../in/parts/c.ply", "../in/assets/m.obj", "/abs/o.obj"] {
         assert!(json.contains(&format!("\"filename\": \"{name}\"")), "{name} in {json}");
     }
     assert!(notes.iter().any(|note| note.contains("parts/b.xml")), "{notes:?}");
     assert!(notes.iter().any(|note| note.contains("files now start at")), "{notes:?}");
     // In its own folder names stay, parameters in them too.
-    let (json, notes) = desk.convert("in/a.xml", "in/a.json", &[]);
+    let (json, notes) = sandbox.convert("in/a.xml", "in/a.json", &[]);
     for name in ["parts/c.ply", "assets/m.obj", "$d/n.obj", "/abs/o.obj"] {
         assert!(json.contains(&format!("\"filename\": \"{name}\"")), "{name} in {json}");
     }
@@ -485,16 +468,16 @@ fn names_are_made_up_and_dropped_again() {
     let xml = r#"<scene version="3.0.0"><bsdf type="diffuse" id="glass"/>
         <sensor type="perspective"><film type="hdrfilm"><rfilter type="gaussian"/></film></sensor>
         <shape type="sphere"><ref id="glass"/></shape><shape type="cube"/><shape type="cube" id="shape"/></scene>"#;
-    let desk = Desk::new(&[("a.xml", xml)]);
-    let (json, _) = desk.convert("a.xml", "b.json", &[]);
+    let sandbox = Sandbox::with_files(&[("a.xml", xml)]);
+    let (json, _) = sandbox.convert("a.xml", "b.json", &[]);
     for key in
         [r#""film""#, r#""rfilter""#, r#""bsdf": { "type": "ref""#, r#""shape_2": {"#, r#""shape_3": {"#]
     {
         assert!(json.contains(key), "no {key} in {json}");
     }
-    let (again, _) = desk.convert("b.json", "c.xml", &[]);
+    let (again, _) = sandbox.convert("b.json", "c.xml", &[]);
     assert!(again.contains("<film type=\"hdrfilm\">") && again.contains("<ref id=\"glass\"/>"), "{again}");
-    let (json_again, _) = desk.convert("c.xml", "d.json", &[]);
+    let (json_again, _) = sandbox.convert("c.xml", "d.json", &[]);
     assert_eq!(json, json_again);
 }
 
@@ -505,23 +488,23 @@ fn names_ids_and_aliases_do_not_get_mixed_up() {
         <float name="n" value="1"/><bsdf type="diffuse" id="n"/>
         <shape type="sphere"><ref id="$k"/></shape><shape type="sphere"><ref id="x"/></shape>
         <shape type="sphere"><ref id="n"/></shape></scene>"#;
-    let desk = Desk::new(&[("a.xml", xml)]);
+    let sandbox = Sandbox::with_files(&[("a.xml", xml)]);
     for (from, to) in [("a.xml", "b.json"), ("b.json", "c.xml"), ("a.xml", "d.xml"), ("c.xml", "e.json")] {
-        desk.convert(from, to, &[]);
-        let root = desk.read(to, &[]);
+        sandbox.convert(from, to, &[]);
+        let root = sandbox.read(to, &[]);
         let shapes = root.properties.iter().filter_map(|p| match &p.value {
             Value::Object(child) if child.plugin == "sphere" => Some(child.properties[0].value.clone()),
             _ => None,
         });
         let ids = ["a", "x", "n"].map(|id| Value::Reference(id.into()));
-        assert!(shapes.eq(ids), "{to}: {}", fs::read_to_string(desk.path(to)).unwrap());
+        assert!(shapes.eq(ids), "{to}: {}", fs::read_to_string(sandbox.path(to)).unwrap());
         assert!(root.properties.iter().any(|p| p.value == Value::Float(1.0) && p.name == "n"));
     }
 }
 
 #[test]
 fn what_a_spelling_cannot_hold_is_an_error() {
-    let desk = Desk::new(&[
+    let sandbox = Sandbox::with_files(&[
         ("control.json", r#"{"type": "scene", "s": {"type": "sphere", "note": "a\u0001"}}"#),
         (
             "dotted.xml",
@@ -531,8 +514,9 @@ fn what_a_spelling_cannot_hold_is_an_error() {
         ("told.json", r#"{"type": "scene", "s": {"type": "blob", "$tag": "shape"}}"#),
     ]);
     let refused = |from: &str, to: &str, words: &[&str]| {
-        let error =
-            scene::convert(&desk.path(from), &desk.path(to), &[], Naming::Keep).unwrap_err().to_string();
+        let error = scene::convert(&sandbox.path(from), &sandbox.path(to), &[], Naming::Keep)
+            .unwrap_err()
+            .to_string();
         words.iter().for_each(|word| assert!(error.contains(word), "{word}: {error}"));
     };
     refused("control.json", "a.xml", &["$.s.note", "U+0001", "what XML can hold"]);
@@ -540,9 +524,9 @@ fn what_a_spelling_cannot_hold_is_an_error() {
     refused("unknown.json", "a.xml", &["$.s", "\"blob\"", "\"$tag\""]);
     refused("unknown.json", "a.yaml", &[".xml or .json"]);
     refused("told.json", "./told.json", &["the same file"]);
-    let (xml, _) = desk.convert("told.json", "told.xml", &[]);
+    let (xml, _) = sandbox.convert("told.json", "told.xml", &[]);
     assert!(xml.contains("<shape type=\"blob\" id=\"s\"/>"), "{xml}");
-    assert!(desk.convert("told.xml", "again.json", &[]).0.contains("\"$tag\": \"shape\""));
+    assert!(sandbox.convert("told.xml", "again.json", &[]).0.contains("\"$tag\": \"shape\""));
 }
 
 /// Every scene that is shipped, there and back.
@@ -561,8 +545,8 @@ fn shipped_scenes_come_back() {
         // Beside the scene, so that names of files stay; nothing is written there.
         let there =
             scene::convert(&path, &path.with_extension(format!("new.{other}")), &[], Naming::Keep).unwrap();
-        let desk = Desk::new(&[(&format!("there.{other}"), &there.text)]);
-        let back = desk.convert(&format!("there.{other}"), &format!("back.{ours}"), &[]).0;
+        let sandbox = Sandbox::with_files(&[(&format!("there.{other}"), &there.text)]);
+        let back = sandbox.convert(&format!("there.{other}"), &format!("back.{ours}"), &[]).0;
         let direct =
             scene::convert(&path, &path.with_extension(format!("new.{ours}")), &[], Naming::Keep).unwrap();
         assert_eq!(direct.text, back, "{}", path.display());
@@ -576,11 +560,11 @@ fn shipped_scenes_come_back() {
 fn a_constant_spectrum_stays_one() {
     let xml = r#"<scene version="3.0.0"><default name="s" value="0.25"/><bsdf type="diffuse" id="b">
         <spectrum name="reflectance" value="0.5"/><spectrum name="other" value="$s"/></bsdf></scene>"#;
-    let desk = Desk::new(&[("a.xml", xml)]);
-    desk.convert("a.xml", "b.json", &[]);
-    desk.convert("b.json", "c.xml", &[]);
+    let sandbox = Sandbox::with_files(&[("a.xml", xml)]);
+    sandbox.convert("a.xml", "b.json", &[]);
+    sandbox.convert("b.json", "c.xml", &[]);
     for definitions in [&[][..], &[("s", "0.75")]] {
-        assert_same_with(&desk, "a.xml", "b.json", definitions);
-        assert_same_with(&desk, "a.xml", "c.xml", definitions);
+        assert_same_with(&sandbox, "a.xml", "b.json", definitions);
+        assert_same_with(&sandbox, "a.xml", "c.xml", definitions);
     }
 }

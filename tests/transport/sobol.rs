@@ -1,9 +1,7 @@
 //! Sobol sampling shows the same image as independent sampling, on any number of threads, and with less noise.
 
-mod common;
-
-use common::{
-    Stage,
+use crate::common::{
+    self, Stage,
     claims::{Claims, Sample},
     pieces::*,
     strategies,

@@ -1,9 +1,7 @@
 //! Known traps of bidirectional transport through media, one test each, named for its cause.
 
-mod common;
-
-use common::{
-    Stage,
+use crate::common::{
+    self, Stage,
     claims::{Claims, Sample},
     pieces::*,
     strategies,

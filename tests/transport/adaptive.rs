@@ -1,9 +1,7 @@
 //! Renders that stop by precision: unbiased, within what they promise, and not fooled by pixels that are black so far.
 
-mod common;
-
-use common::{
-    Stage,
+use crate::common::{
+    self, Stage,
     claims::{Claims, Sample},
     pieces::*,
 };

@@ -1,13 +1,10 @@
 //! `tyndall pixel`: a sample made again is the sample that was, and what is told of it adds up.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
-mod common;
-#[path = "common/instrument.rs"]
-mod instrument;
-
-use common::{Stage, pieces::*, strategies};
+use crate::{
+    common::{self, Stage, pieces::*, strategies},
+    sandbox::Sandbox,
+};
 use serde_json::{Value, json};
-use std::path::PathBuf;
 use tyndall::{
     math::Spectrum,
     render::{
@@ -125,33 +122,18 @@ fn a_sample_made_again_is_what_its_pass_adds() {
     }
 }
 
-/// A folder with a scene, in which the program runs.
-struct Desk(instrument::Bench);
-
-impl Desk {
-    fn new(scene: &Value) -> Self {
-        Self(instrument::Bench::with_scene(scene))
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path(name)
-    }
-
-    fn run(&self, words: &str) -> (Option<i32>, String, String) {
-        self.0.run(words).told()
-    }
-
+impl Sandbox {
     fn pixel(&self, words: &str) -> Value {
-        let (code, out, err) = self.run(&format!("pixel scene.json {words}"));
+        let (code, out, err) = self.run(&format!("pixel scene.json {words}")).told();
         assert_eq!(code, Some(0), "{words}: {err}");
         serde_json::from_str(&out).unwrap()
     }
 
     /// Pixel (`x`, `y`) of a render.
     fn rendered(&self, words: &str, x: usize, y: usize) -> [f32; 3] {
-        let (code, _, err) = self.run(&format!("render scene.json -o image.pfm {words}"));
+        let (code, _, err) = self.run(&format!("render scene.json -o image.pfm {words}")).told();
         assert_eq!(code, Some(0), "{words}: {err}");
-        let bytes = std::fs::read(self.path("image.pfm")).unwrap();
+        let bytes = self.bytes("image.pfm");
         let size = SIZE as usize;
         let pixels = &bytes[bytes.len() - size * size * 12..];
         let at = 12 * ((size - 1 - y) * size + x);
@@ -170,18 +152,18 @@ fn floats(value: &Value) -> [f32; 3] {
 #[test]
 fn the_program_tells_what_a_render_holds() {
     let chromatic = medium(rgb(0.3, 1.0, 2.0), 0.8, 0.3);
-    let desk = Desk::new(&foggy_room(Some(chromatic), "gaussian"));
+    let sandbox = Sandbox::with_scene(&foggy_room(Some(chromatic), "gaussian"));
     for more in ["--seed 5", "--seed 6 --strategies hit,join,lens --max-depth 4", "--integrator pt"] {
-        let rendered = desk.rendered(&format!("--spp 1 {more}"), 22, 17);
-        let told = desk.pixel(&format!("22 17 {more}"));
+        let rendered = sandbox.rendered(&format!("--spp 1 {more}"), 22, 17);
+        let told = sandbox.pixel(&format!("22 17 {more}"));
         assert_eq!(floats(&told["samples"][0]["value"]), rendered, "{more}");
         // The mean of two is half the sum.
-        let mean = desk.rendered(&format!("--spp 2 {more}"), 22, 17);
-        let told = desk.pixel(&format!("22 17 --samples 2 {more}"));
+        let mean = sandbox.rendered(&format!("--spp 2 {more}"), 22, 17);
+        let told = sandbox.pixel(&format!("22 17 --samples 2 {more}"));
         let [a, b] = [0, 1].map(|sample| floats(&told["samples"][sample]["value"]));
         let halves: [f32; 3] = std::array::from_fn(|c| ((f64::from(a[c]) + f64::from(b[c])) / 2.0) as f32);
         assert_eq!(halves, mean, "{more}");
-        let second = desk.pixel(&format!("22 17 --sample 1 {more}"));
+        let second = sandbox.pixel(&format!("22 17 --sample 1 {more}"));
         assert_eq!(second["samples"][0], told["samples"][1]);
     }
 }
@@ -190,8 +172,9 @@ fn the_program_tells_what_a_render_holds() {
 /// cosine on a surface, over the square of the distance. Positions are those of the file.
 #[test]
 fn densities_are_those_of_the_walk() {
-    let desk = Desk::new(&foggy_room(Some(with(medium(0.7, 0.8, 0.3), &[("id", json!("mist"))])), "box"));
-    let told = desk.pixel("20 20 --samples 40");
+    let sandbox =
+        Sandbox::with_scene(&foggy_room(Some(with(medium(0.7, 0.8, 0.3), &[("id", json!("mist"))])), "box"));
+    let told = sandbox.pixel("20 20 --samples 40");
     let (mut surfaces, mut media) = (0, 0);
     for sample in told["samples"].as_array().unwrap() {
         let walk = &sample["eye_walks"][0];
@@ -228,8 +211,8 @@ fn densities_are_those_of_the_walk() {
 /// Weights that are told are those of paths: of one segment there are two strategies, and here one is left out.
 #[test]
 fn contributions_are_told_with_their_strategies() {
-    let desk = Desk::new(&foggy_room(Some(medium(0.3, 0.8, 0.3)), "box"));
-    let told = desk.pixel("20 20 --samples 30 --strategies hit,next-event,join");
+    let sandbox = Sandbox::with_scene(&foggy_room(Some(medium(0.3, 0.8, 0.3)), "box"));
+    let told = sandbox.pixel("20 20 --samples 30 --strategies hit,next-event,join");
     let samples = told["samples"].as_array().unwrap();
     let all: Vec<&Value> = samples.iter().flat_map(|s| s["contributions"].as_array().unwrap()).collect();
     for one in &all {
@@ -252,13 +235,13 @@ fn contributions_are_told_with_their_strategies() {
 
 #[test]
 fn the_file_holds_what_is_printed_otherwise() {
-    let desk = Desk::new(&cloud_under_sky(json!(1.0)));
-    let (code, out, err) = desk.run("pixel scene.json 3 5 -o told.json --threads 1");
+    let sandbox = Sandbox::with_scene(&cloud_under_sky(json!(1.0)));
+    let (code, out, err) = sandbox.run("pixel scene.json 3 5 -o told.json --threads 1").told();
     assert_eq!((code, out.trim()), (Some(0), "told.json"), "{err}");
     let file: Value =
-        serde_json::from_str(&std::fs::read_to_string(desk.path("told.json")).unwrap()).unwrap();
-    assert_eq!(file, desk.pixel("3 5"));
-    let ends: Vec<Value> = desk.pixel("3 5 --samples 20")["samples"]
+        serde_json::from_str(&std::fs::read_to_string(sandbox.path("told.json")).unwrap()).unwrap();
+    assert_eq!(file, sandbox.pixel("3 5"));
+    let ends: Vec<Value> = sandbox.pixel("3 5 --samples 20")["samples"]
         .as_array()
         .unwrap()
         .iter()
@@ -269,7 +252,7 @@ fn the_file_holds_what_is_printed_otherwise() {
 
 #[test]
 fn what_is_not_there_is_refused() {
-    let desk = Desk::new(&foggy_room(None, "box"));
+    let sandbox = Sandbox::with_scene(&foggy_room(None, "box"));
     for (words, hints) in [
         ("pixel scene.json 40 0", vec!["X", "0 to 39", "40"]),
         ("pixel scene.json 0 40", vec!["Y", "0 to 39", "40"]),
@@ -280,7 +263,7 @@ fn what_is_not_there_is_refused() {
         ("pixel scene.json 4 4 --integrator fog", vec!["paths", "--integrator bdpt"]),
         ("pixel scene.json 4 4 -o nowhere/at.json", vec!["nowhere"]),
     ] {
-        let (code, _, err) = desk.run(words);
+        let (code, _, err) = sandbox.run(words).told();
         assert_eq!(code, Some(2), "{words}: {err}");
         assert!(hints.iter().all(|hint| err.contains(hint)) && !err.contains("panicked"), "{words}: {err}");
     }

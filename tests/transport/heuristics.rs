@@ -1,9 +1,7 @@
 //! Whatever heuristic shares the paths among the strategies, the image is the same: known radiance in furnaces, that of
 //! the balance heuristic elsewhere.
 
-mod common;
-
-use common::{
+use crate::common::{
     Stage,
     claims::{Claims, Sample},
     pieces::*,
