@@ -1,11 +1,9 @@
 """The closed forms as tests: every case through every method that can render it."""
 
-import numpy as np
-
 from validation import compare
 from validation.closed_forms import furnace, glowing, point_light, slab, varying
 from validation.closed_forms.case import Case
-from validation.compare import Effort
+from validation.compare import Effort, Measured
 from validation.places import OUTPUT
 
 
@@ -22,5 +20,6 @@ def run(effort: Effort, methods: tuple[str, ...] = (), only: str = "") -> bool:
 def test(case: Case, method: str, effort: Effort) -> bool:
     """One case by one method."""
     scaled = Effort(effort.batches, max(1, round(effort.spp * case.effort)), effort.seed)
-    truth = np.stack([case.image()] * 2)  # two equal batches: a mean without variance
-    return compare.tested(case.scene, method, scaled, lambda _: truth, OUTPUT)
+    truth = Measured.exactly(case.image())
+    candidate = compare.candidate_renderer(case.scene, method)
+    return compare.agree(compare.tested(case.scene, method, scaled, lambda _: truth, candidate, OUTPUT))
