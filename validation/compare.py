@@ -1,7 +1,9 @@
 """The pixel-by-pixel test of one scene: independent batches from both renderers, Welch's test for each value."""
 
+import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import numpy as np
 
 from validation import mitsuba, picture, png, tyndall
 from validation.failure import Failure
+from validation.places import OUTPUT
 from validation.scene import Scene, derived
 from validation.statistics import Estimate, estimate, exact, sidak_limit, standard_score
 
@@ -117,10 +120,14 @@ HEADER = (
 
 
 def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size: Size = None) -> Renderer:
-    """Mitsuba on this scene, loaded once."""
-    loaded = mitsuba.load(scene, variant, size)
-    image = lambda effort, i: mitsuba.image(loaded, effort.spp, effort.seed + i)
-    return lambda effort: Measured.of(np.stack([image(effort, i) for i in range(effort.batches)]))
+    """Mitsuba on this scene."""
+
+    def measured(effort: Effort) -> Measured:
+        with mitsuba.ALONE:
+            loaded = mitsuba.load(scene, variant, size)
+            return Measured.of(np.stack([mitsuba.image(loaded, effort.spp, effort.seed + i) for i in range(effort.batches)]))
+
+    return measured
 
 
 def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int | None = None) -> Renderer:
@@ -137,7 +144,7 @@ def candidate_renderer(scene: Scene, method: str, size: Size = None, threads: in
     """One of Tyndall's methods, or `mitsuba`: Mitsuba itself with other seeds, to test the test."""
     if method != "mitsuba":
         return tyndall_renderer(scene, method, size, threads)
-    return other_seeds(lambda effort: mitsuba_renderer(scene, size=size)(effort))
+    return other_seeds(mitsuba_renderer(scene, size=size))
 
 
 def other_seeds(renderer: Renderer) -> Renderer:
@@ -230,6 +237,15 @@ def tested(scene: Scene, method: str, effort: Effort, reference: Renderer, candi
 def agree(found: Verdict | Failure) -> bool:
     """What cannot be rendered is a disagreement too."""
     return isinstance(found, Verdict) and found.passed
+
+
+def all_agree(tests: Iterable[Callable[[], Verdict | Failure]], claim: str) -> bool:
+    """Runs tests on all processors, their renders on one thread each; true if all agree."""
+    print(HEADER, flush=True)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        passed = list(pool.map(lambda test: agree(test()), tests))
+    print(f"{sum(passed)} of {len(passed)} {claim}; pictures are in {OUTPUT}")
+    return all(passed)
 
 
 def save_picture(path: Path, reference: np.ndarray, found: np.ndarray, z: np.ndarray) -> None:

@@ -1,13 +1,13 @@
 """Every cross-check scene through Mitsuba and through each of Tyndall's integrators that can render it."""
 
-import os
 from collections.abc import Iterable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 from validation import cells, compare, coverage, references
 from validation.cases import CASES, Case
-from validation.compare import Effort, Renderer
+from validation.compare import Effort, Renderer, Verdict
+from validation.failure import Failure
 from validation.places import OUTPUT, RECORDED
 from validation.scene import Scene
 
@@ -67,26 +67,22 @@ def full(only: str = "") -> bool:
 
 
 def run(jobs: Iterable[Job], effort: Effort, only: str = "", recorded: bool = False) -> bool:
-    """Compares every scene whose name contains `only` by every method, printing as it goes; true if all agree."""
-    print(compare.HEADER, flush=True)
-    tests = [(job, method) for job in jobs if only in job.scene.name for method in job.methods]
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        passed = list(pool.map(lambda test: agrees(test[0], test[1], effort, recorded), tests))
-    print(f"{sum(passed)} of {len(passed)} comparisons agree; pictures are in {OUTPUT}")
-    return all(passed)
+    """Compares every scene whose name contains `only` by every method; true if all agree."""
+    tests = [partial(test, job, method, effort, recorded) for job in jobs if only in job.scene.name for method in job.methods]
+    return compare.all_agree(tests, "comparisons agree")
 
 
-def agrees(job: Job, method: str, effort: Effort, recorded: bool) -> bool:
+def test(job: Job, method: str, effort: Effort, recorded: bool) -> Verdict | Failure:
     """One scene by one method."""
     candidate = compare.candidate_renderer(job.scene, method, threads=1)
-    return compare.agree(compare.tested(job.scene, method, effort.times(job.effort), job.reference(recorded), candidate, OUTPUT))
+    return compare.tested(job.scene, method, effort.times(job.effort), job.reference(recorded), candidate, OUTPUT)
 
 
 def still_recorded(only: str = "") -> bool:
     """Mitsuba's images in the repository against new ones."""
     jobs = [job for job in fixed() if only in job.scene.name and not job.own]
     test = lambda job: compare.tested(job.truth, "recorded", FULL.times(job.effort), job.reference(False), job.reference(True), OUTPUT)
-    return all([compare.agree(test(job)) for job in jobs])
+    return compare.all_agree([partial(test, job) for job in jobs], "recorded images are those of new ones")
 
 
 def record(only: str = "") -> bool:

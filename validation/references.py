@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from validation import mitsuba
 from validation.compare import Effort, Measured, Renderer, Size, mitsuba_renderer
 from validation.failure import Failure
 from validation.places import CACHE, RECORDED
@@ -28,10 +29,11 @@ class Cached:
 
     def __call__(self, effort: Effort) -> Measured:
         path = self.path(effort)
-        if not path.is_file():
-            start = time.perf_counter()
-            measured = mitsuba_renderer(self.scene, self.variant, self.size)(effort)
-            keep(path, measured, seconds=np.array(time.perf_counter() - start))
+        with mitsuba.ALONE:  # who waited finds what was rendered meanwhile
+            if not path.is_file():
+                start = time.perf_counter()
+                measured = mitsuba_renderer(self.scene, self.variant, self.size)(effort)
+                keep(path, measured, seconds=np.array(time.perf_counter() - start))
         with np.load(path) as kept:
             self.seconds = float(kept["seconds"])
             return measured_of(kept, effort)
