@@ -5,21 +5,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from validation import assets, cells, compare, contenders, coverage, matrix, page, pane, plume, race, references, selftest, truths
-from validation import comparison_page, package_tests
+from validation import comparison_page, full, package_tests
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, REPORTS, SCENES
 from validation.scene import open_scene
 from validation.made_by import made_by_command
 from validation.study import command as convergence
-
-QUICK = Effort(batches=16, spp=48)
-FULL = Effort(batches=32, spp=256)
-FULL_CELL = Effort(batches=16, spp=80)
-"""Of the generated cells, nearly two thousand: about two hours of two cores."""
-SAMPLE = 24
-"""Generated cells that the quick matrix takes."""
-
 
 Commands = argparse._SubParsersAction  # argparse gives it no public name
 
@@ -45,6 +37,7 @@ def parser() -> argparse.ArgumentParser:
     add_selftest(commands)
     add_convergence(commands)
     add_record(commands)
+    add(commands, "full", lambda _: full.run(), full.TEXT)
     add(commands, "test", lambda _: package_tests.run(), "The tests of this package itself.")
     return top
 
@@ -106,31 +99,31 @@ def run_compare(options: argparse.Namespace) -> bool:
     reference = references.cached(scene, options.size)
     print(compare.HEADER, flush=True)
     methods, effort, size = options.integrators.split(","), effort_of(options), options.size
-    found = {method: compare.attempted(scene, method, effort, reference, options.output, size) for method in methods}
+    candidates = {method: compare.candidate_renderer(scene, method, size) for method in methods}
+    found = {method: compare.tested(scene, method, effort, reference, candidates[method], options.output) for method in methods}
     page = options.output / f"{scene.name}.html"
     comparison_page.write(comparison_page.page(scene, effort, found), page)
     print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}, and all there is to see in {page}")
     print(f"made by: {made_by_command()}")
-    return all(isinstance(verdict, compare.Verdict) and verdict.passed for verdict in found.values())
+    return all(map(compare.agree, found.values()))
 
 
 def add_matrix(commands: Commands) -> None:
     command = add(commands, "matrix", run_matrix, "Every cross-check scene through all integrators that can render it.")
-    effort = command.add_mutually_exclusive_group()
-    effort.add_argument("--quick", dest="effort", action="store_const", const=QUICK, default=QUICK, help="minutes (default)")
-    effort.add_argument("--full", dest="effort", action="store_const", const=FULL, help="all generated cells; hours")
+    depth = command.add_mutually_exclusive_group()
+    depth.add_argument("--quick", dest="depth", action="store_const", const="quick", default="quick", help="against Mitsuba's images in the repository; minutes (default)")
+    depth.add_argument("--full", dest="depth", action="store_const", const="full", help="all generated scenes too, and Mitsuba renders everything again")
+    depth.add_argument("--record", dest="depth", action="store_const", const="record", help="render Mitsuba's images in the repository again")
     command.add_argument("--only", default="", help="only scenes whose name contains this")
-    command.add_argument(
-        "--matrix-seed", type=int, default=cells.SEED, metavar="N", help="another sample of the generated cells (default %(default)s)"
-    )
+    command.add_argument("--matrix-seed", type=int, default=cells.SEED, metavar="N", help="quick: another sample of the generated scenes, which Mitsuba renders (default %(default)s)")
     add(commands, "coverage", lambda _: coverage.run(), "Which shared plugins no cross-check scene has.")
     add(commands, "assets", lambda _: assets.run(), "Makes the cross-check scenes' images and meshes anew.")
 
 
 def run_matrix(options: argparse.Namespace) -> bool:
-    quick = options.effort == QUICK
-    chosen = cells.sample(SAMPLE, options.matrix_seed) if quick else cells.cells()
-    return matrix.run(options.effort, chosen, QUICK if quick else FULL_CELL, options.only)
+    if options.depth == "quick":
+        return matrix.quick(options.only, options.matrix_seed)
+    return matrix.full(options.only) if options.depth == "full" else matrix.record(options.only)
 
 
 def add_selftest(commands: Commands) -> None:

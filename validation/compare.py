@@ -1,16 +1,19 @@
 """The pixel-by-pixel test of one scene: independent batches from both renderers, Welch's test for each value."""
 
+import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from validation import mitsuba, picture, tyndall
+from validation import mitsuba, picture, png, tyndall
 from validation.failure import Failure
+from validation.places import OUTPUT
 from validation.scene import Scene, derived
-from validation.statistics import Estimate, estimate, sidak_limit, standard_score
+from validation.statistics import Estimate, estimate, exact, sidak_limit, standard_score
 
 ACCEPTED = 0.9975
 """Share of pixel values that must pass, as in Mitsuba's own render tests."""
@@ -27,8 +30,6 @@ MEDIA = ("homogeneous", "heterogeneous")
 
 Size = tuple[int, int] | None
 """Width and height, or the scene's own."""
-Renderer = Callable[[int, int], np.ndarray]
-"""spp, seed -> image."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,29 @@ class Effort:
     def times(self, factor: float) -> "Effort":
         """The effort with so many times the samples."""
         return Effort(self.batches, max(1, round(factor * self.spp)), self.seed)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """An image as it is compared: its pixels (height, width, 3), the means of its tiles, and that of the whole (3,)."""
+
+    pixels: Estimate
+    tiles: Estimate
+    whole: Estimate
+
+    @staticmethod
+    def of(batches: np.ndarray) -> "Measured":
+        """The mean of independent images."""
+        return Measured(estimate(batches), estimate(tiled(batches)), estimate(batches.mean(axis=(1, 2))))
+
+    @staticmethod
+    def exactly(image: np.ndarray) -> "Measured":
+        """An image known without error."""
+        return Measured(exact(image), exact(tiled(image[None])[0]), exact(image.mean(axis=(0, 1))))
+
+
+Renderer = Callable[[Effort], Measured]
+"""One scene by one program and method."""
 
 
 @dataclass(frozen=True)
@@ -95,41 +119,44 @@ HEADER = (
 )
 
 
-def render_batches(renderer: Renderer, effort: Effort) -> np.ndarray:
-    """Independent images of one scene."""
-    return np.stack([renderer(effort.spp, effort.seed + i) for i in range(effort.batches)])
-
-
 def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size: Size = None) -> Renderer:
-    """Mitsuba on this scene, loaded once."""
-    loaded = mitsuba.load(scene, variant, size)
-    return lambda spp, seed: mitsuba.image(loaded, spp, seed)
+    """Mitsuba on this scene."""
+
+    def measured(effort: Effort) -> Measured:
+        with mitsuba.ALONE:
+            loaded = mitsuba.load(scene, variant, size)
+            return Measured.of(np.stack([mitsuba.image(loaded, effort.spp, effort.seed + i) for i in range(effort.batches)]))
+
+    return measured
 
 
-def tyndall_renderer(scene: Scene, method: str, size: Size = None) -> Renderer:
+def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int | None = None) -> Renderer:
     """Tyndall on this scene. The method is an integrator and, after a colon, a tracker that all media shall use."""
     integrator, _, tracker = method.partition(":")
     # Samples that are spread evenly leave so little noise that the test would be one of Mitsuba's own approximations,
     # such as filters in tables, and of how independent the batches of its even samplers are.
-    return lambda spp, seed: tyndall.render(
-        scene, integrator=integrator, tracker=tracker or None, spp=spp, seed=seed, size=size, sampler="independent"
-    )
+    options = {"integrator": integrator, "tracker": tracker or None, "size": size, "sampler": "independent"}
+    render = lambda effort: tyndall.render_batches(scene, effort.batches, spp=effort.spp, seed=effort.seed, threads=threads, **options)
+    return lambda effort: Measured.of(render(effort))
 
 
-def candidate_renderer(scene: Scene, method: str, size: Size = None) -> Renderer:
+def candidate_renderer(scene: Scene, method: str, size: Size = None, threads: int | None = None) -> Renderer:
     """One of Tyndall's methods, or `mitsuba`: Mitsuba itself with other seeds, to test the test."""
     if method != "mitsuba":
-        return tyndall_renderer(scene, method, size)
-    other = mitsuba_renderer(scene, size=size)
-    return lambda spp, seed: other(spp, seed + 500)
+        return tyndall_renderer(scene, method, size, threads)
+    return other_seeds(mitsuba_renderer(scene, size=size))
 
 
-def judge(scene: str, method: str, ours: np.ndarray, theirs: np.ndarray, seconds: float) -> Verdict:
-    """The test itself, on batches of both sides."""
-    z = scores(ours, theirs)
-    tiles = scores(tiled(ours), tiled(theirs))
-    whole_a, whole_b = estimate(ours.mean(axis=(1, 2))), estimate(theirs.mean(axis=(1, 2)))
-    score = standard_score(whole_a, whole_b)
+def other_seeds(renderer: Renderer) -> Renderer:
+    """The same renderer as if it were another one."""
+    return lambda effort: renderer(replace(effort, seed=effort.seed + 500))
+
+
+def judge(scene: str, method: str, ours: Measured, theirs: Measured, seconds: float) -> Verdict:
+    """The test itself."""
+    z = standard_score(ours.pixels, theirs.pixels)
+    tiles = standard_score(ours.tiles, theirs.tiles)
+    score = standard_score(ours.whole, theirs.whole)
     channel = int(np.abs(score).argmax())
     y, x = np.unravel_index(np.abs(z).max(axis=2).argmax(), z.shape[:2])
     return Verdict(
@@ -138,19 +165,14 @@ def judge(scene: str, method: str, ours: np.ndarray, theirs: np.ndarray, seconds
         accepted=float((np.abs(z) <= sidak_limit(z.size)).mean()),
         tile_score=float(np.abs(tiles).max() / sidak_limit(tiles.size)),
         image_score=float(score[channel]),
-        difference=relative_difference(whole_a, whole_b, channel),
-        resolution=IMAGE_ERRORS * float(np.hypot(whole_a.error, whole_b.error).max() / whole_b.mean.max()),
+        difference=relative_difference(ours.whole, theirs.whole, channel),
+        resolution=IMAGE_ERRORS * float(np.hypot(ours.whole.error, theirs.whole.error).max() / theirs.whole.mean.max()),
         worst=(int(x), int(y)),
         seconds=seconds,
         map=z,
-        reference=theirs.mean(axis=0),
-        found=ours.mean(axis=0),
+        reference=theirs.pixels.mean,
+        found=ours.pixels.mean,
     )
-
-
-def scores(ours: np.ndarray, theirs: np.ndarray) -> np.ndarray:
-    """The normal score of each value's difference."""
-    return standard_score(estimate(ours), estimate(theirs))
 
 
 def tiled(batches: np.ndarray) -> np.ndarray:
@@ -171,23 +193,23 @@ def compare(
     scene: Scene,
     method: str,
     effort: Effort,
-    reference: Callable[[Effort], np.ndarray],
+    reference: Renderer,
     candidate: Renderer,
     output: Path | None = None,
 ) -> Verdict:
-    """Tests a candidate against reference batches; a disagreement gets a second, harder trial, which decides."""
+    """Tests a candidate against a reference; a disagreement gets a second, harder trial, which decides."""
     trials = 0
     while True:
         trials += 1
         theirs = reference(effort)
         start = time.perf_counter()
-        ours = render_batches(candidate, effort)
+        ours = candidate(effort)
         verdict = judge(scene.name, method, ours, theirs, time.perf_counter() - start)
         if verdict.passed or trials == 2:
             break
         effort = effort.harder()
     if output:
-        save_picture(output / f"{scene.name}-{slug(method)}.png", theirs, ours, z_of(verdict))
+        save_picture(output / f"{scene.name}-{slug(method)}.png", theirs.pixels.mean, ours.pixels.mean, z_of(verdict))
     return replace(verdict, trials=trials, reference_seconds=getattr(reference, "seconds", None))
 
 
@@ -201,30 +223,9 @@ def slug(method: str) -> str:
     return method.replace(":", "-")
 
 
-def tested(
-    scene: Scene,
-    method: str,
-    effort: Effort,
-    reference: Callable[[Effort], np.ndarray],
-    output: Path,
-    size: Size = None,
-) -> bool:
-    """Compares, prints the row, and tells whether both agree. What cannot be rendered is a disagreement too."""
-    found = attempted(scene, method, effort, reference, output, size)
-    return isinstance(found, Verdict) and found.passed
-
-
-def attempted(
-    scene: Scene,
-    method: str,
-    effort: Effort,
-    reference: Callable[[Effort], np.ndarray],
-    output: Path,
-    size: Size = None,
-) -> Verdict | Failure:
+def tested(scene: Scene, method: str, effort: Effort, reference: Renderer, candidate: Renderer, output: Path) -> Verdict | Failure:
     """Compares and prints the row: the verdict, or why there is none."""
     try:
-        candidate = candidate_renderer(scene, method, size)
         verdict = compare(scene, method, effort, reference, candidate, output)
     except Failure as failure:
         print(f"{scene.name:{NAME_WIDTH}} {method:{METHOD_WIDTH}} CANNOT: {failure}", flush=True)
@@ -233,12 +234,25 @@ def attempted(
     return verdict
 
 
-def save_picture(path: Path, theirs: np.ndarray, ours: np.ndarray, z: np.ndarray) -> None:
+def agree(found: Verdict | Failure) -> bool:
+    """What cannot be rendered is a disagreement too."""
+    return isinstance(found, Verdict) and found.passed
+
+
+def all_agree(tests: Iterable[Callable[[], Verdict | Failure]], claim: str) -> bool:
+    """Runs tests on all processors, their renders on one thread each; true if all agree."""
+    print(HEADER, flush=True)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        passed = list(pool.map(lambda test: agree(test()), tests))
+    print(f"{sum(passed)} of {len(passed)} {claim}; pictures are in {OUTPUT}")
+    return all(passed)
+
+
+def save_picture(path: Path, reference: np.ndarray, found: np.ndarray, z: np.ndarray) -> None:
     """Mitsuba, Tyndall, and where they differ."""
-    reference, found = theirs.mean(axis=0), ours.mean(axis=0)
     white = picture.white_of(reference)
     row = picture.side_by_side(picture.displayed(reference, white), picture.displayed(found, white), picture.diverging(z))
-    mitsuba.write_png(path, row)
+    png.write(path, row)
 
 
 def perturbed(scene: Scene, amount: float) -> Scene:

@@ -53,9 +53,10 @@ def stacked(channels: dict[str, np.ndarray]) -> np.ndarray:
 
 def colours(channels: dict[str, np.ndarray]) -> np.ndarray:
     """The picture as linear RGB, (height, width, 3) float64, of channels R G B, X Y Z or Y; alpha is left out."""
-    for names, matrix in (("RGB", np.eye(3)), ("XYZ", np.linalg.inv(XYZ_OF_RGB)), ("YYY", np.eye(3))):
+    for names in ("RGB", "XYZ", "YYY"):
         if set(names) <= channels.keys():
-            return np.stack([channels[name] for name in names], axis=-1).astype(np.float64) @ matrix.T
+            planes = np.stack([channels[name] for name in names], axis=-1).astype(np.float64)
+            return planes @ np.linalg.inv(XYZ_OF_RGB).T if names == "XYZ" else planes
     raise Failure(f"no picture among the channels {', '.join(channels) or '(none)'}", "name an image with R, G and B")
 
 

@@ -1,46 +1,98 @@
 """Every cross-check scene through Mitsuba and through each of Tyndall's integrators that can render it."""
 
-from collections.abc import Callable, Iterable
-
-import numpy as np
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import partial
 
 from validation import cells, compare, coverage, references
 from validation.cases import CASES, Case
-from validation.compare import Effort
-from validation.places import OUTPUT
+from validation.compare import Effort, Renderer, Verdict
+from validation.failure import Failure
+from validation.places import OUTPUT, RECORDED
 from validation.scene import Scene
 
-Batches = Callable[[Effort], np.ndarray]
-"""A reference's, by effort."""
+QUICK = Effort(batches=16, spp=32)
+"""With Mitsuba's recorded images, this resolves what 48 samples of both renderers do."""
+FULL = Effort(batches=16, spp=80, seed=5001)
+FULL_CELL = Effort(batches=16, spp=10, seed=5001)
+"""Of the generated scenes, nearly two thousand."""
+RECORDED_EFFORT = Effort(batches=16, spp=192)
+"""Of Mitsuba's images in the repository, times the scene's own factor."""
 
 
-def run(effort: Effort, chosen: Iterable[cells.Cell], cell_effort: Effort, only: str = "") -> bool:
-    """Compares every case and the chosen generated cells whose names contain `only`, printing as it goes; true if all
-    agree and, where all were asked for, no shared plugin is in none of the scenes."""
-    print(compare.HEADER, flush=True)
-    passed = [one for case in CASES if only in case.scene().name for one in run_case(case, effort)]
-    passed += [one for cell in chosen if only in cell.name for one in run_cell(cell, cell_effort)]
-    print(f"{sum(passed)} of {len(passed)} comparisons agree; pictures are in {OUTPUT}")
-    return all(passed) and (bool(only) or coverage.run())
+@dataclass(frozen=True)
+class Job:
+    """A scene, who is to render it, with how many samples relative to the common number, and what Mitsuba renders."""
+
+    scene: Scene
+    methods: tuple[str, ...]
+    effort: float
+    truth: Scene
+    variant: str = "scalar_rgb"
+    own: str = ""
+    """A method of Tyndall's that stands in for Mitsuba."""
+
+    def reference(self, recorded: bool) -> Renderer:
+        """Mitsuba's image as the repository keeps it, or rendered now (unless it is kept under target/)."""
+        if self.own:
+            return compare.other_seeds(compare.tyndall_renderer(self.truth, self.own))
+        if recorded:
+            return references.recorded(self.truth, RECORDED_EFFORT.times(self.effort), self.variant)
+        return references.cached(self.truth, variant=self.variant)
 
 
-def run_case(case: Case, effort: Effort) -> list[bool]:
-    """All comparisons of one scene: which of them agree."""
-    reference = own(case) if case.own else references.cached(case.truth(), variant=case.variant)
-    return agreements(case.scene(), tuple(case.all_methods()), effort.times(case.effort), reference)
+def of_case(case: Case) -> Job:
+    """A cross-check scene."""
+    return Job(case.scene(), tuple(case.all_methods()), case.effort, case.truth(), case.variant, case.own)
 
 
-def own(case: Case) -> Batches:
-    """Batches of Tyndall's by another method, with other seeds."""
-    render = compare.candidate_renderer(case.scene(), case.own)
-    return lambda effort: compare.render_batches(lambda spp, seed: render(spp, seed + 500), effort)
+def of_cell(cell: cells.Cell) -> Job:
+    """A generated scene."""
+    return Job(cell.scene(), cell.methods(), cell.effort(), cell.scene())
 
 
-def run_cell(cell: cells.Cell, effort: Effort) -> list[bool]:
-    """All comparisons of one generated scene."""
-    return agreements(cell.scene(), cell.methods(), effort.times(cell.effort()), references.cached(cell.scene()))
+def fixed(seed: int = cells.SEED) -> list[Job]:
+    """What every test run compares: all cross-check scenes and a sample of the generated ones."""
+    return [*map(of_case, CASES), *map(of_cell, cells.sample(seed=seed))]
 
 
-def agreements(scene: Scene, methods: tuple[str, ...], effort: Effort, reference: Batches) -> list[bool]:
-    """One scene by several methods."""
-    return [compare.tested(scene, method, effort, reference, OUTPUT) for method in methods]
+def quick(only: str = "", seed: int = cells.SEED) -> bool:
+    """The fixed sample against Mitsuba's images in the repository; no shared plugin may be in none of its scenes."""
+    return run(fixed(seed), QUICK, only, recorded=seed == cells.SEED) and (bool(only) or coverage.run())
+
+
+def full(only: str = "") -> bool:
+    """All scenes against Mitsuba as it renders now, and so its images in the repository."""
+    return all([run(map(of_case, CASES), FULL, only), run(map(of_cell, cells.cells()), FULL_CELL, only), still_recorded(only)])
+
+
+def run(jobs: Iterable[Job], effort: Effort, only: str = "", recorded: bool = False) -> bool:
+    """Compares every scene whose name contains `only` by every method; true if all agree."""
+    tests = [partial(test, job, method, effort, recorded) for job in jobs if only in job.scene.name for method in job.methods]
+    return compare.all_agree(tests, "comparisons agree")
+
+
+def test(job: Job, method: str, effort: Effort, recorded: bool) -> Verdict | Failure:
+    """One scene by one method."""
+    candidate = compare.candidate_renderer(job.scene, method, threads=1)
+    return compare.tested(job.scene, method, effort.times(job.effort), job.reference(recorded), candidate, OUTPUT)
+
+
+def still_recorded(only: str = "") -> bool:
+    """Mitsuba's images in the repository against new ones."""
+    jobs = [job for job in fixed() if only in job.scene.name and not job.own]
+    test = lambda job: compare.tested(job.truth, "recorded", FULL.times(job.effort), job.reference(False), job.reference(True), OUTPUT)
+    return compare.all_agree([partial(test, job) for job in jobs], "recorded images are those of new ones")
+
+
+def record(only: str = "") -> bool:
+    """Renders Mitsuba's images of the fixed sample again; those that no scene has any more go."""
+    jobs = {job.truth.name: job for job in fixed() if not job.own}
+    for path in RECORDED.glob("*.npz"):
+        if path.stem not in jobs:
+            path.unlink()
+    for name, job in jobs.items():
+        if only in name:
+            references.record(job.truth, RECORDED_EFFORT.times(job.effort), job.variant)
+            print(name, flush=True)
+    return True

@@ -4,6 +4,7 @@ import os
 from functools import cache
 from glob import glob
 from pathlib import Path
+from threading import RLock
 from typing import Any
 
 import mitsuba as mi
@@ -17,6 +18,8 @@ OUR_INTEGRATORS = ("bdpt", "pt", "lt")
 ROULETTE = {True: 24, False: 1000}
 """From which depth Mitsuba ends paths at random, for unlimited and for limited depth. Its default, 5, makes much
 noise; without any, paths of unlimited depth in a closed room would go on until their weight underflows."""
+ALONE = RLock()
+"""Held by whoever loads and renders: the variant is Mitsuba's, not a scene's, and it uses all processors by itself."""
 LLVM_PLACES = (
     "/usr/lib/*/libLLVM.so.19*",
     "/usr/lib/*/libLLVM-19.so*",

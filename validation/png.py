@@ -3,6 +3,7 @@
 import base64
 import struct
 import zlib
+from pathlib import Path
 
 import numpy as np
 
@@ -17,6 +18,12 @@ def encoded(pixels: np.ndarray) -> bytes:
     rows = np.hstack([unfiltered, np.ascontiguousarray(pixels, dtype=np.uint8).reshape(height, 3 * width)])
     header = struct.pack(">II5B", width, height, *RGB_OF_8_BITS)
     return SIGNATURE + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes(), 9)) + chunk(b"IEND", b"")
+
+
+def write(path: Path, pixels: np.ndarray) -> None:
+    """Writes the file and the folders that it needs."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(encoded(pixels))
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:

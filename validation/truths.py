@@ -1,26 +1,25 @@
 """The closed forms as tests: every case through every method that can render it."""
 
-import numpy as np
+from functools import partial
 
 from validation import compare
 from validation.closed_forms import furnace, glowing, point_light, slab, varying
 from validation.closed_forms.case import Case
-from validation.compare import Effort
+from validation.compare import Effort, Measured, Verdict
+from validation.failure import Failure
 from validation.places import OUTPUT
 
 
 def run(effort: Effort, methods: tuple[str, ...] = (), only: str = "") -> bool:
     """Tests all cases whose name contains `only`, by the given methods or by all that apply; true if all hold."""
-    print(compare.HEADER, flush=True)
     every = (*furnace.cases(), *slab.cases(), *point_light.cases(), *varying.cases(), *glowing.cases())
     cases = [case for case in every if only in case.scene.name]
-    passed = [test(case, method, effort) for case in cases for method in methods or case.methods]
-    print(f"{sum(passed)} of {len(passed)} images are as theory says; pictures are in {OUTPUT}")
-    return all(passed)
+    tests = [partial(test, case, method, effort.times(case.effort)) for case in cases for method in methods or case.methods]
+    return compare.all_agree(tests, "images are as theory says")
 
 
-def test(case: Case, method: str, effort: Effort) -> bool:
+def test(case: Case, method: str, effort: Effort) -> Verdict | Failure:
     """One case by one method."""
-    scaled = Effort(effort.batches, max(1, round(effort.spp * case.effort)), effort.seed)
-    truth = np.stack([case.image()] * 2)  # two equal batches: a mean without variance
-    return compare.tested(case.scene, method, scaled, lambda _: truth, OUTPUT)
+    truth = Measured.exactly(case.image())
+    candidate = compare.candidate_renderer(case.scene, method, threads=1)
+    return compare.tested(case.scene, method, effort, lambda _: truth, candidate, OUTPUT)

@@ -44,6 +44,8 @@ class Rendering:
     layers: dict[str, np.ndarray] = field(default_factory=dict)
     """Every layer of the file, float32: `<root>` is the picture with its alpha, others are those of an `aov` integrator;
     (height, width) of one channel, else (height, width, channels)."""
+    batches: np.ndarray | None = None
+    """With the option `batches`: each of the images that `image` is the mean of, (batches, height, width, 3), float64."""
     messages: str = ""
     """Warnings of the program."""
 
@@ -82,10 +84,12 @@ def run(
     tracker: str | None = None,
     parameters: Mapping[str, object] | None = None,
     must_be_finite: bool = True,
+    patience: float | None = None,
     **more: Option,
 ) -> Rendering:
     """One image and its report. `size` is (width, height), `time_limit` in seconds, `parameters` replace the $names of a
-    scene. An image that holds NaN or infinite values is refused, unless `must_be_finite` is False. Any other option of `tyndall render` may be given by its name: `heuristic="power"` is `--heuristic power`,
+    scene. An image that holds NaN or infinite values is refused, unless `must_be_finite` is False; with
+    `patience`, so is one that takes longer than so many seconds. Any other option of `tyndall render` may be given by its name: `heuristic="power"` is `--heuristic power`,
     `forced_interaction=True` is `--forced-interaction`."""
     scene = as_scene(scene, parameters)
     options: dict[str, Any] = {
@@ -103,9 +107,19 @@ def run(
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         output, report = Path(folder, "image.exr"), Path(folder, "report.json")
         arguments = [*flags({"output": output, "report": report, **options}), *definitions(scene.parameters)]
-        done = call([str(binary()), "render", str(scene_file(scene, Path(folder))), *arguments])
+        done = call([str(binary()), "render", str(scene_file(scene, Path(folder))), *arguments], patience)
         found = rendering(output, report, done.stderr)
-    return replace(found, image=finite(found.image)) if must_be_finite else found
+    if must_be_finite:
+        finite(found.image if found.batches is None else found.batches)
+    return found
+
+
+def render_batches(scene: AnyScene, batches: int, **options: Any) -> np.ndarray:
+    """Independent images of one scene, (batches, height, width, 3) float64 in linear RGB, by one process: their seeds are
+    `seed`, `seed + 1` and so on. The options are those of `run`."""
+    found = run(scene, batches=batches, **options).batches
+    assert found is not None
+    return found
 
 
 def info(scene: AnyScene, parameters: Mapping[str, object] | None = None, **more: Option) -> str:
@@ -159,7 +173,9 @@ def rendering(output: Path, report: Path, messages: str) -> Rendering:
     if not (output.is_file() and report.is_file()):
         raise Failure("one image was expected and none was written", "leave out options that make many, such as frames")
     told, layers = json.loads(report.read_text()), exr.read(output)
+    count = told.get("batches", 0)
     return Rendering(
+        batches=np.stack([exr.colours(layers[f"batch.{k}"]) for k in range(count)]) if count else None,
         image=exr.colours(layers[exr.ROOT]),
         render_seconds=told["render_seconds"],
         samples_per_pixel=told["samples_per_pixel"],
@@ -187,18 +203,20 @@ def absolute(o: dict[str, Any], folder: Path) -> dict[str, Any]:
     return {**o, "filename": str(folder / o["filename"])} if "filename" in o else o
 
 
-def call(command: list[str]) -> subprocess.CompletedProcess[str]:
-    """Runs the program; what it says on stderr is shown only when it fails."""
-    done = subprocess.run(command, capture_output=True, text=True)
+def call(command: list[str], patience: float | None = None) -> subprocess.CompletedProcess[str]:
+    """Runs the program, for so many seconds at most; what it says on stderr is shown only when it fails."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=patience)
+    except subprocess.TimeoutExpired:
+        raise Failure(f"{' '.join(command)}: not done after {patience:g} s", "see what does not end") from None
     if done.returncode != 0:
         said = (done.stderr or done.stdout).strip()[-4000:]
         raise Failure(f"{' '.join(command)}\n  exit code {done.returncode}: {said}", "run the command by hand")
     return done
 
 
-def finite(image: np.ndarray) -> np.ndarray:
-    """The image, refused if anything in it is not a number."""
+def finite(image: np.ndarray) -> None:
+    """Refuses an image, or several, in which anything is not a number."""
     if not np.isfinite(image).all():
-        y, x, channel = np.argwhere(~np.isfinite(image))[0]
+        y, x, channel = np.argwhere(~np.isfinite(image))[0][-3:]
         raise Failure(f"not a finite number at pixel ({x}, {y}), channel {channel}", "mend the renderer")
-    return image

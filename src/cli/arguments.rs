@@ -112,6 +112,14 @@ pub struct Render {
     #[arg(long, value_name = "C", value_parser = confidence, requires = "error", allow_negative_numbers = true)]
     pub confidence: Option<f64>,
 
+    /// Render N images with the seeds --seed, --seed + 1, ... and write their mean
+    ///
+    /// The EXR also holds the standard error of the mean (standard_error.R, ...) and every image (batch.0.R, batch.1.R,
+    /// ...), for whatever needs independent images. --spp and --time-limit hold for each of them; the scene is loaded
+    /// once.
+    #[arg(long, value_name = "N", value_parser = batches, conflicts_with = "error", allow_negative_numbers = true)]
+    pub batches: Option<u32>,
+
     /// Seed of all random numbers; the same seed gives the same image
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
@@ -357,6 +365,11 @@ pub(super) fn positive_u32(text: &str) -> Result<u32, String> {
     }
 }
 
+fn batches(text: &str) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|batches| (2..=1000).contains(batches));
+    number.ok_or_else(|| "expected a number of images from 2 to 1000, such as 16".to_owned())
+}
+
 fn frames(text: &str) -> Result<Frames, String> {
     let expected = || "expected frames from 0 to 99999999, such as 0..47, or one, such as 12".to_owned();
     let frame = |text: &str| text.parse().ok().filter(|n| *n <= 99_999_999).ok_or_else(expected);
@@ -544,6 +557,9 @@ mod tests {
             ("render a.xml --size 5", "640x480"),
             ("render a.xml --size -5x5", "from 1 to"),
             ("render a.xml --spp 0", "at least 1"),
+            ("render a.xml --batches 1", "from 2 to 1000"),
+            ("render a.xml --batches -4", "from 2 to 1000"),
+            ("render a.xml --batches 8 --error 0.02", "cannot be used with"),
             ("render a.xml --spp -3", "whole number"),
             ("render a.xml --threads 0", "at least 1"),
             ("render a.xml --threads 99999", "at most 4096"),

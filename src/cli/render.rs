@@ -25,7 +25,8 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
     let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let settings = settings(arguments, &setup)?;
-    let task = Task { settings, precision: precision(arguments, &setup, &settings.options)? };
+    let precision = precision(arguments, &setup, &settings.options)?;
+    let task = Task { settings, precision, batches: arguments.batches };
     let goal = Goal::new(arguments, &setup)?;
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
@@ -82,6 +83,8 @@ fn seed_of(seed: u64, frame: u32) -> u64 {
 struct Task {
     settings: Settings,
     precision: Option<Precision>,
+    /// Independent images, if more than one.
+    batches: Option<u32>,
 }
 
 /// What every pixel is to be known with.
@@ -111,15 +114,38 @@ const CONFIDENCE: f64 = 0.95;
 
 /// Renders one image and writes it; its figures.
 fn shoot(setup: &Setup, task: &Task, goal: &Goal, label: Option<&str>) -> Result<serde_json::Value> {
-    let bar = Bar::new(task, setup.film.len(), label);
-    let mut image = render(setup, task, &mut |progress| bar.tell(&progress));
-    bar.bar.finish_and_clear();
+    let mut image = match task.batches {
+        None => watched(setup, task, label),
+        Some(count) => batches(setup, task, goal.format, count, label),
+    };
     goal.write(&setup.film, &mut image)?;
     let preview = goal.path.with_extension("png");
     let (width, height) = (setup.film.width as usize, setup.film.height as usize);
     film::png::write(&preview, width, height, &image.pixels)?;
     print_summary(&image, task, &goal.path, &preview, label);
     Ok(figures(&image, task))
+}
+
+/// Renders one image under a progress bar.
+fn watched(setup: &Setup, task: &Task, label: Option<&str>) -> Image {
+    let bar = Bar::new(task, setup.film.len(), label);
+    let image = render(setup, task, &mut |progress| bar.tell(&progress));
+    bar.bar.finish_and_clear();
+    image
+}
+
+/// Renders images with consecutive seeds; their mean, with each of them as a layer.
+fn batches(setup: &Setup, task: &Task, format: Format, count: u32, label: Option<&str>) -> Image {
+    let one = |k: u32| {
+        let mut settings = task.settings;
+        settings.seed = settings.seed.wrapping_add(k.into());
+        settings.options.seed = settings.options.seed.wrapping_add(k.into());
+        let label =
+            format!("{}batch {} of {count}", label.map_or(String::new(), |l| format!("{l}, ")), k + 1);
+        watched(setup, &Task { settings, ..*task }, Some(&label))
+    };
+    let images: Vec<Image> = (0..count).map(one).collect();
+    Image::mean_of(&images, &setup.integrator.layers, format)
 }
 
 fn render(setup: &Setup, task: &Task, tell: &mut dyn FnMut(Progress)) -> Image {
@@ -142,6 +168,9 @@ fn figures(image: &Image, task: &Task) -> serde_json::Value {
         "relative_error": image.noise,
         "profile": task.settings.profile.name(),
     });
+    if let Some(batches) = task.batches {
+        figures["batches"] = batches.into();
+    }
     if let Some(reached) = &image.reached {
         figures["pixels_within_error"] = reached.share.into();
         figures["least_samples"] = reached.samples.iter().min().copied().into();
@@ -192,8 +221,10 @@ impl Goal {
                 (stem.with_extension(scene.file.extension()), scene.file)
             }
         };
-        if file != FileKind::OpenExr && !setup.integrator.layers.is_empty() {
-            let expected = "an OpenEXR file, to hold the layers of the scene's aov or moment integrator";
+        let has_layers = !setup.integrator.layers.is_empty();
+        if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {
+            let layers = if has_layers { "of the scene's aov or moment integrator" } else { "of --batches" };
+            let expected = format!("an OpenEXR file, to hold the layers {layers}");
             let found = format!("a file that holds {}", file.holds());
             let remedy = "let its name end in .exr, or set the film's file_format to openexr";
             return Err(Error::new(path.display(), expected, found, remedy));

@@ -4,6 +4,7 @@
 //! their results are added up in block order whatever thread made them.
 
 pub mod adaptive;
+mod batches;
 pub mod bench;
 mod block;
 pub mod budget;

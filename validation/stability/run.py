@@ -1,9 +1,7 @@
 """Renders every line of the table and judges all of them together."""
 
 import os
-import subprocess
 import sys
-import tempfile
 import time
 import zlib
 from collections.abc import Iterator
@@ -13,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation import exr, tyndall
+from validation import tyndall
 from validation.closed_forms.case import SIZE
 from validation.failure import Failure
 from validation.scene import Scene, changed
@@ -102,9 +100,9 @@ def line(case: Case, method: str, effort: Effort, factor: float) -> Line:
     first = effort.seed + 1000 * (zlib.crc32(f"{case.row} {case.name}".encode()) % 100_000)
     try:
         truth = case.expected()
-        single = raw(case.scene, method, 1, first, SINGLE if case.methods[method] >= 0.1 else None)
+        single = raw(case.scene, method, 1, first, SINGLE if case.methods[method] >= 0.1 else None)[0]
         spp = samples(case, method, single, truth, effort)
-        batches = np.stack([raw(case.scene, method, spp, first + 1 + i) for i in range(effort.batches)])
+        batches = raw(case.scene, method, spp, first + 1, batches=effort.batches)
     except Failure as failure:
         return Line(case, method, None, str(failure))
     return Line(case, method, judge(batches, single, truth, time.perf_counter() - start, factor))
@@ -138,29 +136,24 @@ def spread(single: np.ndarray) -> np.ndarray:
     return squares.var(axis=(1, 3)).mean(axis=(0, 1))
 
 
-def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None) -> np.ndarray:
-    """An image as it is in the file, NaN and infinities included."""
+def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None, batches: int | None = None) -> np.ndarray:
+    """Independent images, or one, as they are in the file: NaN and infinities included."""
     integrator, _, tracker = method.partition(":")
     integrator, _, strategies = integrator.partition("/")
-    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
-        output = Path(folder, "image.exr")
-        path = tyndall.scene_file(Scene(changed(scene.source, single_precision), scene.name, {}, scene.base), Path(folder))
-        options = {"-o": output, "--integrator": integrator, "--strategies": strategies, "--tracker": tracker, "--spp": spp, "--seed": seed, "--threads": 1}
-        options["--size"] = f"{size}x{size}" if size else ""
-        arguments = [str(part) for option, value in options.items() if value != "" for part in (option, value)]
-        call([str(tyndall.binary()), "render", str(path), *arguments])
-        return exr.stacked(exr.read(output)[exr.ROOT])[:, :, :3]
-
-
-def call(command: list[str]) -> None:
-    """Runs the program, but not for ever."""
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
-    except subprocess.TimeoutExpired:
-        raise Failure(f"{' '.join(command)}: not done after {PATIENCE} s", "see what does not end") from None
-    if done.returncode != 0:
-        said = (done.stderr or done.stdout).strip()[-2000:]
-        raise Failure(f"{' '.join(command)}\n  exit code {done.returncode}: {said}", "run the command by hand")
+    done = tyndall.run(
+        Scene(changed(scene.source, single_precision), scene.name, {}, scene.base),
+        integrator=integrator,
+        strategies=strategies or None,
+        tracker=tracker or None,
+        spp=spp,
+        seed=seed,
+        size=(size, size) if size else None,
+        batches=batches,
+        threads=1,
+        patience=PATIENCE * (batches or 1),
+        must_be_finite=False,
+    )
+    return done.image[None] if done.batches is None else done.batches
 
 
 def single_precision(o: dict) -> dict:

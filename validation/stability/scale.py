@@ -10,7 +10,7 @@ from validation.compare import Effort
 from validation.scene import Scene
 from validation.stability.case import ALL, EYE, ISOTROPIC, NULL, Case, diffuse, fog, lamp, moved, named, scaled
 from validation.stability.anisotropy import fog_image
-from validation.statistics import Estimate, estimate
+from validation.statistics import Estimate
 
 SCALE = "scene scale 1e-6 to 1e6"
 ORIGIN = "a scene 1e5 units from the origin"
@@ -49,7 +49,7 @@ def room() -> Scene:
 @cache
 def reference() -> Estimate:
     """The room by Mitsuba."""
-    return estimate(references.cached(room())(REFERENCE).astype(float))
+    return references.cached(room())(REFERENCE).pixels
 
 
 def known() -> list[Case]:

@@ -7,7 +7,7 @@ import numpy as np
 from markupsafe import escape
 
 from validation import comparison_page, flip
-from validation.compare import Effort, Verdict, judge
+from validation.compare import Effort, Measured, Verdict, judge
 from validation.failure import Failure
 from validation.scene import Scene
 
@@ -31,7 +31,7 @@ class Reader(HTMLParser):
 
 def verdict(name: str) -> Verdict:
     """Of two small stacks of noise."""
-    ours, theirs = (np.random.default_rng(seed).uniform(0.5, 1, (8, 6, 8, 3)) for seed in (1, 2))
+    ours, theirs = (Measured.of(np.random.default_rng(seed).uniform(0.5, 1, (8, 6, 8, 3))) for seed in (1, 2))
     return judge(name, "pt", ours, theirs, 1.5)
 
 

@@ -52,6 +52,16 @@ def test_layers_come_by_name() -> None:
     assert done.samples_per_pixel == 1 and done.render_seconds > 0 and "load_seconds" in done.report
 
 
+def test_batches_are_the_images_of_their_seeds() -> None:
+    options: dict[str, Any] = {"spp": 1, "size": (8, 6), "integrator": "lt"}
+    batches = tyndall.render_batches(SCENE, 3, seed=5, **options)
+    assert (batches == np.stack([tyndall.render(SCENE, seed=seed, **options) for seed in (5, 6, 7)])).all()
+    done = tyndall.run(SCENE, batches=3, seed=5, **options)
+    assert np.allclose(done.image, batches.mean(axis=0), rtol=1e-3) and done.samples_per_pixel == 3
+    error = batches.std(axis=0, ddof=1) / np.sqrt(3)
+    assert np.allclose(done.layers["standard_error"], error, rtol=2e-3, atol=1e-6)
+
+
 def test_parameters_and_info() -> None:
     lampbox = SCENES / "lampbox_up.xml"
     assert tyndall.render(lampbox, spp=1, parameters={"res": 6}).shape == (6, 6, 3)

@@ -1,0 +1,570 @@
+//! Scenes written again: nothing is lost on the way from one spelling to the other and back.
+
+use crate::sandbox::Sandbox;
+use proptest::{
+    collection::vec,
+    prelude::*,
+    sample::select,
+    test_runner::{Config, RngSeed},
+};
+use std::{collections::HashSet, fs, path::Path, sync::Arc};
+use tyndall::{
+    description::{Location, Object, Position, Property, TransformStep, Value},
+    scene::{self, Naming, Spelling},
+};
+
+impl Sandbox {
+    /// The tree in a file, without places.
+    fn read(&self, name: &str, definitions: &[(&str, &str)]) -> Object {
+        let root = scene::read(&self.path(name), &pairs(definitions)).unwrap_or_else(|error| {
+            panic!("{error}\n{}", fs::read_to_string(self.path(name)).unwrap_or_default())
+        });
+        without_places(root, &nowhere())
+    }
+
+    /// Converts one file to another and gives its text and the notes.
+    fn convert(&self, from: &str, to: &str, definitions: &[(&str, &str)]) -> (String, Vec<String>) {
+        let conversion =
+            scene::convert(&self.path(from), &self.path(to), &pairs(definitions), Naming::Keep).unwrap();
+        fs::write(self.path(to), &conversion.text).unwrap();
+        (conversion.text, conversion.notes)
+    }
+
+    /// What comes back of `root` as a file of this spelling, and the file's text.
+    fn through(&self, root: &Object, spelling: Spelling) -> (Object, String) {
+        let text = scene::write(root, spelling, Path::new("nowhere")).unwrap();
+        let name = if spelling == Spelling::Xml { "scene.xml" } else { "scene.json" };
+        fs::write(self.path(name), &text).unwrap();
+        (self.read(name, &[]), text)
+    }
+}
+
+fn pairs(definitions: &[(&str, &str)]) -> Vec<(String, String)> {
+    definitions.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
+}
+
+fn nowhere() -> Location {
+    Location { file: Arc::new("nowhere/scene".into()), position: Position::Path(String::new()) }
+}
+
+fn without_places(mut object: Object, nowhere: &Location) -> Object {
+    object.location = nowhere.clone();
+    for property in &mut object.properties {
+        property.location = nowhere.clone();
+        if let Value::Object(child) = &mut property.value {
+            *child = without_places(child.clone(), nowhere);
+        }
+    }
+    object
+}
+
+/// Equal to the last bit: `-0.0` is not `0.0`.
+fn assert_same(a: &Object, b: &Object, text: &str) {
+    let (a, b) = (format!("{a:#?}"), format!("{b:#?}"));
+    if let Some((a, b)) = a.lines().zip(b.lines()).find(|(a, b)| a != b) {
+        panic!("{a} is not {b}:\n{text}");
+    }
+    assert_eq!(a, b, "{text}");
+}
+
+fn finite() -> impl Strategy<Value = f64> + Clone {
+    let odd = select(vec![0.0, -0.0, 1.0, -1.0, 5e-324, f64::MAX, 0.1 + 0.2, 1e16, 1e22, 123_456_789.0]);
+    prop_oneof![odd, -100.0..100.0, any::<u64>().prop_map(bits)]
+}
+
+/// Any finite number there is.
+fn bits(bits: u64) -> f64 {
+    Some(f64::from_bits(bits)).filter(|x| x.is_finite()).unwrap_or(2.5)
+}
+
+fn triple(number: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = [f64; 3]> {
+    [number.clone(), number.clone(), number]
+}
+
+/// Text that XML can hold.
+fn text() -> impl Strategy<Value = String> {
+    let odd = ["", "$", "\\$", "\\\\$x", " a ", "<&\"'>", "a\tb\nc\r", "#$%", "\u{e9}\u{1f30d}", "]]>"];
+    prop_oneof![select(odd.to_vec()).prop_map(str::to_owned), "[ -~\u{a0}-\u{ff}\u{4e00}-\u{4eff}]{0,12}"]
+}
+
+fn step() -> impl Strategy<Value = TransformStep> {
+    let apart = |[origin, target, up]: &[[f64; 3]; 3]| {
+        let d: Vec<f64> = (0..3).map(|i| target[i] - origin[i]).collect();
+        let cross = [up[1] * d[2] - up[2] * d[1], up[2] * d[0] - up[0] * d[2], up[0] * d[1] - up[1] * d[0]];
+        cross.iter().any(|c| c.abs() > 0.01)
+    };
+    let near = || triple(-10.0..10.0f64);
+    let look = [near(), near(), near()].prop_filter("a view", apart);
+    prop_oneof![
+        triple(finite()).prop_map(TransformStep::Translate),
+        triple(finite()).prop_map(TransformStep::Scale),
+        (triple(0.1..10.0f64), finite()).prop_map(|(axis, angle)| TransformStep::Rotate { axis, angle }),
+        look.prop_map(|[origin, target, up]| TransformStep::LookAt { origin, target, up }),
+        vec(finite(), 16).prop_map(|rows| TransformStep::Matrix(rows.try_into().unwrap())),
+    ]
+}
+
+fn spectrum() -> impl Strategy<Value = Value> {
+    vec((1.0..100.0f64, finite()), 2..5).prop_map(|steps| {
+        let rising = steps.iter().scan(300.0, |nm, (more, value)| {
+            *nm += more;
+            Some((*nm, *value))
+        });
+        Value::Spectrum(rising.collect())
+    })
+}
+
+fn value() -> impl Strategy<Value = Value> {
+    prop_oneof![
+        any::<bool>().prop_map(Value::Boolean),
+        any::<i64>().prop_map(Value::Integer),
+        finite().prop_map(Value::Float),
+        text().prop_map(Value::String),
+        triple(finite()).prop_map(Value::Rgb),
+        triple(finite()).prop_map(Value::Vector),
+        vec(step(), 0..4).prop_map(Value::Transform),
+        spectrum(),
+    ]
+}
+
+/// Tags with plugins, one of them unknown.
+const PLUGINS: &[(&str, &str)] = &[
+    ("shape", "sphere"),
+    ("bsdf", "diffuse"),
+    ("bsdf", "clay"),
+    ("medium", "homogeneous"),
+    ("rfilter", "gaussian"),
+    ("volume", "gridvolume"),
+    ("texture", "d65"),
+    ("phase", "a \"b\" <c> $d"),
+];
+
+fn property(name: String, value: Value) -> Property {
+    Property { name, value, location: nowhere() }
+}
+
+fn plugin(tag: &str, plugin: &str, properties: Vec<Property>) -> Object {
+    let [tag, plugin] = [tag, plugin].map(str::to_owned);
+    Object { tag: Some(tag), plugin, id: None, properties, location: nowhere() }
+}
+
+/// A plugin without ids and references; names are given later.
+fn object() -> impl Strategy<Value = Object> {
+    let values = || vec(value().prop_map(|v| property(String::new(), v)), 0..4);
+    let leaf = (select(PLUGINS), values()).prop_map(|((tag, name), values)| plugin(tag, name, values));
+    leaf.prop_recursive(3, 12, 3, move |inner| {
+        (select(PLUGINS), values(), vec(inner, 0..3)).prop_map(|((tag, name), mut values, children)| {
+            values.extend(children.into_iter().map(|child| property(String::new(), Value::Object(child))));
+            plugin(tag, name, values)
+        })
+    })
+}
+
+/// Names that are no tags. Names and ids come from here by turns.
+const NAMES: &[&str] = &["a", "to_world", "Größe", "x y", "interior", "p-1", "a<b>&\"c\"", "filename"];
+
+/// Gives names and ids, and refers from later objects to earlier ones.
+fn scene(children: Vec<Object>, choices: &[u8]) -> Object {
+    let mut christening = Christening { choices: choices.iter().copied().cycle(), ids: Vec::new() };
+    let mut properties = Vec::new();
+    for (index, mut child) in children.into_iter().enumerate() {
+        let earlier = christening.ids.clone();
+        christening.name(&mut child, &earlier);
+        if !index.is_multiple_of(3) {
+            child.id.get_or_insert_with(|| format!("top {index}"));
+            christening.ids.extend(child.id.clone());
+        }
+        properties.push(property(String::new(), Value::Object(child)));
+    }
+    plugin("scene", "scene", properties)
+}
+
+struct Christening<I> {
+    choices: I,
+    ids: Vec<String>,
+}
+
+impl<I: Iterator<Item = u8>> Christening<I> {
+    fn name(&mut self, object: &mut Object, earlier: &[String]) {
+        for (index, p) in object.properties.iter_mut().enumerate() {
+            let choice = usize::from(self.choices.next().unwrap());
+            let is_named = !matches!(p.value, Value::Object(_)) || choice.is_multiple_of(2);
+            if is_named {
+                p.name = format!("{}{index}", NAMES[choice % NAMES.len()]);
+            }
+            if let Value::Object(child) = &mut p.value {
+                self.name(child, earlier);
+                if choice.is_multiple_of(5) {
+                    let id = format!("{}.{}", ["id", "$id", "i\u{e9} d"][choice % 3], self.ids.len());
+                    self.ids.push(id.clone());
+                    child.id = Some(id);
+                }
+            }
+        }
+        for (index, id) in earlier.iter().enumerate().filter(|(index, _)| index.is_multiple_of(4)) {
+            let name = if index.is_multiple_of(3) { format!("link {index}") } else { String::new() };
+            object.properties.push(property(name, Value::Reference(id.clone())));
+        }
+    }
+}
+
+fn any_scene() -> impl Strategy<Value = Object> {
+    (vec(object(), 0..5), vec(any::<u8>(), 8)).prop_map(|(children, choices)| scene(children, &choices))
+}
+
+proptest! {
+    #![proptest_config(Config { cases: 400, rng_seed: RngSeed::Fixed(1996), failure_persistence: None, ..Config::default() })]
+
+    #[test]
+    fn what_is_written_is_read_again(tree in any_scene()) {
+        let sandbox = Sandbox::with_files(&[]);
+        let (xml, text) = sandbox.through(&tree, Spelling::Xml);
+        assert_same(&tree, &xml, &text);
+        prop_assert_eq!(scene::write(&xml, Spelling::Xml, Path::new("nowhere")).unwrap(), text);
+    }
+
+    #[test]
+    fn both_ways_lose_nothing(tree in any_scene()) {
+        let sandbox = Sandbox::with_files(&[]);
+        let (json, text) = sandbox.through(&tree, Spelling::Json);
+        let (again, same_text) = sandbox.through(&json, Spelling::Json);
+        assert_same(&json, &again, &text);
+        prop_assert_eq!(&text, &same_text);
+        let (xml, _) = sandbox.through(&json, Spelling::Xml);
+        assert_same(&tree, &xml, &text);
+    }
+}
+
+/// Puts parameters in place of values in XML as it is written, and says which could be set to what.
+fn parametrised(xml: &str, choices: &[u8]) -> (String, Vec<(String, &'static str)>) {
+    let others = [("float", "2.5"), ("integer", "7"), ("boolean", "false"), ("string", "other")];
+    let lists = ["point", "vector", "rgb", "translate", "scale", "matrix"];
+    let (mut defaults, mut body, mut settable) = (String::new(), String::new(), Vec::new());
+    for (line, choice) in xml.lines().skip(1).zip(choices.iter().cycle()) {
+        let tag = line.trim_start_matches([' ', '<']).split([' ', '/', '>']).next().unwrap();
+        let other = others.iter().find(|(known, _)| *known == tag).map(|(_, other)| *other);
+        let value = line.rsplit_once(" value=\"").and_then(|(_, rest)| rest.strip_suffix("\"/>"));
+        match value.filter(|_| choice % 3 != 0 && (other.is_some() || lists.contains(&tag))) {
+            Some(value) => {
+                let name = format!("p{}_", defaults.lines().count());
+                defaults += &format!("<default name=\"{name}\" value=\"{value}\"/>\n");
+                body += &format!(
+                    "{}value=\"${name}\"/>\n",
+                    line.strip_suffix(&format!("value=\"{value}\"/>")).unwrap()
+                );
+                settable.extend(other.filter(|_| choice % 2 == 0).map(|other| (name, other)));
+            }
+            None => body += &format!("{line}\n"),
+        }
+    }
+    (format!("<scene version=\"3.0.0\">\n{defaults}{body}"), settable)
+}
+
+proptest! {
+    #![proptest_config(Config { cases: 200, rng_seed: RngSeed::Fixed(2002), failure_persistence: None, ..Config::default() })]
+
+    #[test]
+    fn parameters_go_both_ways(tree in any_scene(), choices in vec(any::<u8>(), 16)) {
+        let plain = scene::write(&tree, Spelling::Xml, Path::new("nowhere")).unwrap();
+        prop_assume!(plain.lines().count() > 2);
+        let (text, settable) = parametrised(&plain, &choices);
+        let sandbox = Sandbox::with_files(&[("a.xml", &text)]);
+        assert_same(&tree, &sandbox.read("a.xml", &[]), &text);
+        let (json, _) = sandbox.convert("a.xml", "b.json", &[]);
+        sandbox.convert("b.json", "c.xml", &[]);
+        let (same, notes) = sandbox.convert("a.xml", "d.xml", &[]);
+        prop_assert_eq!(notes, [""; 0]);
+        let settings: Vec<_> = settable.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        for definitions in [&[][..], &settings] {
+            let expected = sandbox.read("a.xml", definitions);
+            assert_same(&expected, &sandbox.read("c.xml", definitions), &json);
+            assert_same(&expected, &sandbox.read("d.xml", definitions), &same);
+        }
+    }
+}
+
+#[test]
+fn numbers_keep_their_kind_and_every_bit() {
+    let text = r#"{"type": "scene", "s": {"type": "sphere", "a": 1, "b": 1.0, "c": -0.0, "d": 0.1, "e": 1e300,
+        "f": 9223372036854775807, "g": 5e-324, "v": [-0.0, 1e22, 3]}}"#;
+    let sandbox = Sandbox::with_files(&[("a.json", text)]);
+    sandbox.convert("a.json", "b.xml", &[]);
+    sandbox.convert("b.xml", "c.json", &[]);
+    assert_same(&sandbox.read("a.json", &[]), &sandbox.read("c.json", &[]), "");
+    let xml = fs::read_to_string(sandbox.path("b.xml")).unwrap();
+    for line in [r#"<integer name="a" value="1"/>"#, r#"<float name="b" value="1"/>"#, r#"value="-0.0""#] {
+        assert!(xml.contains(line), "{xml}");
+    }
+    assert!(fs::read_to_string(sandbox.path("c.json")).unwrap().contains(r#""b": 1.0"#));
+}
+
+/// Whatever the user sets, both files mean the same.
+fn assert_same_with(sandbox: &Sandbox, a: &str, b: &str, definitions: &[(&str, &str)]) {
+    let tidy = |name: &str| tidied(sandbox.read(name, definitions));
+    assert_same(&tidy(a), &tidy(b), &fs::read_to_string(sandbox.path(b)).unwrap());
+}
+
+/// Without what only one of the spellings has: tags, and names made up.
+fn tidied(mut object: Object) -> Object {
+    object.tag = None;
+    for p in &mut object.properties {
+        if let Value::Object(child) = &mut p.value {
+            *child = tidied(child.clone());
+        }
+        if matches!(p.value, Value::Object(_) | Value::Reference(_)) {
+            p.name.clear();
+        }
+    }
+    if object.id.as_ref().is_some_and(|id| id.starts_with("shape") || id == "sensor") {
+        object.id = None;
+    }
+    object
+}
+
+#[test]
+fn parameters_stay_parameters() {
+    let xml = r#"<scene version="3.0.0">
+        <default name="res" value="48"/><default name="fov" value="40"/><default name="on" value="true"/>
+        <default name="dir" value="maps"/><default name="wide" value="$fov"/><default name="idle" value="x"/>
+        <default name="kind" value="sphere"/><default name="axis" value="0 1 0"/><default name="grey" value="0.5"/>
+        <sensor type="perspective"><float name="fov" value="$fov"/><float name="wide" value="$wide"/>
+          <transform name="to_world"><rotate value="$axis" angle="$fov"/><translate x="$res" y="1"/>
+            <scale value="$grey"/><lookat origin="$grey, 1 0" target="0 0 0" up="0 0 1"/></transform>
+          <film type="hdrfilm"><integer name="width" value="$res"/><integer name="height" value="${res}0"/></film></sensor>
+        <shape type="$kind" id="$kind"><boolean name="flip" value="$on"/><string name="map" value="$dir/a $on.png"/>
+          <rgb name="c" value="$grey"/><rgb name="d" value="0.1 $grey 0.3"/><point name="p" value="$axis"/></shape>
+      </scene>"#
+        .replace("${res}0", "$res");
+    let sandbox = Sandbox::with_files(&[("a.xml", &xml)]);
+    let (json, notes) = sandbox.convert("a.xml", "b.json", &[]);
+    for part in [
+        r#""res": 48"#,
+        r#""fov": 40.0"#,
+        r#""wide": "$fov""#,
+        r#""on": true"#,
+        r#""dir": "maps""#,
+        r#""idle": "x""#,
+        r#""width": "$res""#,
+        r#""type": "$kind""#,
+        r#""map": "$dir/a $on.png""#,
+        r#"[0.1, "$grey", 0.3]"#,
+        r#""angle": "$fov""#,
+    ] {
+        assert!(json.contains(part), "no {part} in {json}");
+    }
+    assert!(notes.iter().all(|note| note.contains("$axis") && note.contains("in JSON")), "{notes:?}");
+    assert!(!notes.is_empty());
+    sandbox.convert("b.json", "c.xml", &[]);
+    let (again, _) = sandbox.convert("c.xml", "d.json", &[]);
+    assert_eq!(json, again);
+    for definitions in [
+        &[][..],
+        &[("res", "7"), ("fov", "12.5"), ("on", "false"), ("kind", "cube")],
+        &[("wide", "3"), ("dir", "elsewhere"), ("grey", "0.25")],
+    ] {
+        assert_same_with(&sandbox, "a.xml", "b.json", definitions);
+        assert_same_with(&sandbox, "a.xml", "c.xml", definitions);
+    }
+    // What the user sets becomes the default.
+    sandbox.convert("a.xml", "set.json", &[("res", "9")]);
+    assert_eq!(
+        format!("{:?}", tidied(sandbox.read("set.json", &[]))),
+        format!("{:?}", tidied(sandbox.read("b.json", &[("res", "9")])))
+    );
+    // Or all parameters go, and their values stay.
+    let filled = scene::convert(
+        &sandbox.path("a.xml"),
+        &sandbox.path("e.json"),
+        &pairs(&[("res", "9")]),
+        Naming::Fill,
+    );
+    let filled = filled.unwrap();
+    assert_eq!((filled.text.contains('$'), filled.notes.len()), (false, 0), "{}", filled.text);
+    fs::write(sandbox.path("e.json"), filled.text).unwrap();
+    assert_same(
+        &tidied(sandbox.read("a.xml", &[("res", "9")])),
+        &tidied(sandbox.read("e.json", &[])),
+        "filled",
+    );
+    // The same spelling loses not even the lists.
+    let (_, notes) = sandbox.convert("a.xml", "same.xml", &[]);
+    assert_eq!(notes, [""; 0]);
+    assert_same_with(&sandbox, "a.xml", "same.xml", &[("axis", "1, 2, 3")]);
+}
+
+#[test]
+fn parameters_of_json_stay_too() {
+    let json = r#"{"type": "scene", "$defaults": {"n": 4, "x": 0.5, "on": false, "dir": "maps", "file": "$dir/a"},
+        "s": {"type": "sphere", "n": "$n", "x": "$x", "on": "$on", "f": "$file.png", "v": ["$x", "$n", 2], "t": "\\$n",
+              "c": {"type": "rgb", "value": "$x"}, "w": [{"type": "scale", "x": "$x"}, {"type": "rotate", "axis": [0, "$n", 0], "angle": "$x"}]}}"#;
+    let sandbox = Sandbox::with_files(&[("a.json", json)]);
+    for (to, back) in [("b.xml", "c.json"), ("b2.json", "c2.xml")] {
+        assert_eq!(sandbox.convert("a.json", to, &[]).1, [""; 0]);
+        assert_eq!(sandbox.convert(to, back, &[]).1, [""; 0]);
+        for definitions in [&[][..], &[("n", "3"), ("x", "0.25"), ("on", "true"), ("dir", "b")]] {
+            assert_same_with(&sandbox, "a.json", to, definitions);
+            assert_same_with(&sandbox, "a.json", back, definitions);
+        }
+    }
+}
+
+/// JSON spells truth values and numbers in one way; where a text shows how they were spelled, it stays text.
+#[test]
+fn how_a_parameter_was_spelled_shows_in_no_text() {
+    let xml = r#"<scene version="3.0.0"><default name="on" value="True"/><default name="n" value="007"/>
+        <shape type="sphere" id="s"><boolean name="a" value="$on"/><integer name="b" value="$n"/>
+        <string name="c" value="is $on"/><string name="d" value="agent $n"/></shape></scene>"#;
+    let sandbox = Sandbox::with_files(&[("a.xml", xml)]);
+    let (json, notes) = sandbox.convert("a.xml", "b.json", &[]);
+    assert!(json.contains("is True") && json.contains("agent 007") && notes.len() == 2, "{json} {notes:?}");
+    assert_same_with(&sandbox, "a.xml", "b.json", &[]);
+}
+
+#[test]
+fn a_parameter_that_a_matrix_of_nine_hides_is_told() {
+    let json = r#"{"type": "scene", "$defaults": {"z": 0}, "s": {"type": "sphere",
+        "to_world": [{"type": "matrix", "value": [1, 0, 0, "$z", 1, 0, 0, 0, 1]}]}}"#;
+    let sandbox = Sandbox::with_files(&[("a.json", json)]);
+    let (_, notes) = sandbox.convert("a.json", "b.xml", &[]);
+    assert!(notes[0].contains("$.s.to_world") && notes[0].contains("$z"), "{notes:?}");
+    assert_same_with(&sandbox, "a.json", "b.xml", &[]);
+}
+
+#[test]
+fn files_are_found_from_the_new_folder() {
+    let sandbox = Sandbox::with_files(&[
+        (
+            "in/a.xml",
+            r#"<scene version="3.0.0"><path value="assets"/><default name="d" value="meshes"/>
+               <include filename="parts/b.xml"/><shape type="obj"><string name="filename" value="m.obj"/></shape>
+               <shape type="obj"><string name="filename" value="$d/n.obj"/></shape>
+               <shape type="obj"><string name="filename" value="/abs/o.obj"/></shape></scene>"#,
+        ),
+        ("in/assets/m.obj", ""),
+        ("in/meshes/n.obj", ""),
+        (
+            "in/parts/b.xml",
+            r#"<scene version="3.0.0"><shape type="ply"><string name="filename" value="c.ply"/></shape></scene>"#,
+        ),
+        ("in/parts/c.ply", ""),
+        ("out/keep", ""),
+    ]);
+    let (json, notes) = sandbox.convert("in/a.xml", "out/a.json", &[]);
+    for name in ["../in/parts/c.ply", "../in/assets/m.obj", "/abs/o.obj"] {
+        assert!(json.contains(&format!("\"filename\": \"{name}\"")), "{name} in {json}");
+    }
+    assert!(notes.iter().any(|note| note.contains("parts/b.xml")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.contains("files now start at")), "{notes:?}");
+    // In its own folder names stay, parameters in them too.
+    let (json, notes) = sandbox.convert("in/a.xml", "in/a.json", &[]);
+    for name in ["parts/c.ply", "assets/m.obj", "$d/n.obj", "/abs/o.obj"] {
+        assert!(json.contains(&format!("\"filename\": \"{name}\"")), "{name} in {json}");
+    }
+    assert!(notes.iter().any(|note| note.contains("names of 2 files")), "{notes:?}");
+}
+
+#[test]
+fn names_are_made_up_and_dropped_again() {
+    let xml = r#"<scene version="3.0.0"><bsdf type="diffuse" id="glass"/>
+        <sensor type="perspective"><film type="hdrfilm"><rfilter type="gaussian"/></film></sensor>
+        <shape type="sphere"><ref id="glass"/></shape><shape type="cube"/><shape type="cube" id="shape"/></scene>"#;
+    let sandbox = Sandbox::with_files(&[("a.xml", xml)]);
+    let (json, _) = sandbox.convert("a.xml", "b.json", &[]);
+    for key in
+        [r#""film""#, r#""rfilter""#, r#""bsdf": { "type": "ref""#, r#""shape_2": {"#, r#""shape_3": {"#]
+    {
+        assert!(json.contains(key), "no {key} in {json}");
+    }
+    let (again, _) = sandbox.convert("b.json", "c.xml", &[]);
+    assert!(again.contains("<film type=\"hdrfilm\">") && again.contains("<ref id=\"glass\"/>"), "{again}");
+    let (json_again, _) = sandbox.convert("c.xml", "d.json", &[]);
+    assert_eq!(json, json_again);
+}
+
+#[test]
+fn names_ids_and_aliases_do_not_get_mixed_up() {
+    let xml = r#"<scene version="3.0.0"><default name="k" value="second"/>
+        <bsdf type="diffuse" name="x" id="a"/><bsdf type="null" id="x"/><alias id="a" as="second"/>
+        <float name="n" value="1"/><bsdf type="diffuse" id="n"/>
+        <shape type="sphere"><ref id="$k"/></shape><shape type="sphere"><ref id="x"/></shape>
+        <shape type="sphere"><ref id="n"/></shape></scene>"#;
+    let sandbox = Sandbox::with_files(&[("a.xml", xml)]);
+    for (from, to) in [("a.xml", "b.json"), ("b.json", "c.xml"), ("a.xml", "d.xml"), ("c.xml", "e.json")] {
+        sandbox.convert(from, to, &[]);
+        let root = sandbox.read(to, &[]);
+        let shapes = root.properties.iter().filter_map(|p| match &p.value {
+            Value::Object(child) if child.plugin == "sphere" => Some(child.properties[0].value.clone()),
+            _ => None,
+        });
+        let ids = ["a", "x", "n"].map(|id| Value::Reference(id.into()));
+        assert!(shapes.eq(ids), "{to}: {}", fs::read_to_string(sandbox.path(to)).unwrap());
+        assert!(root.properties.iter().any(|p| p.value == Value::Float(1.0) && p.name == "n"));
+    }
+}
+
+#[test]
+fn what_a_spelling_cannot_hold_is_an_error() {
+    let sandbox = Sandbox::with_files(&[
+        ("control.json", r#"{"type": "scene", "s": {"type": "sphere", "note": "a\u0001"}}"#),
+        (
+            "dotted.xml",
+            r#"<scene version="3.0.0"><shape type="sphere"><float name="a.b" value="1"/></shape></scene>"#,
+        ),
+        ("unknown.json", r#"{"type": "scene", "s": {"type": "blob"}}"#),
+        ("told.json", r#"{"type": "scene", "s": {"type": "blob", "$tag": "shape"}}"#),
+    ]);
+    let refused = |from: &str, to: &str, words: &[&str]| {
+        let error = scene::convert(&sandbox.path(from), &sandbox.path(to), &[], Naming::Keep)
+            .unwrap_err()
+            .to_string();
+        words.iter().for_each(|word| assert!(error.contains(word), "{word}: {error}"));
+    };
+    refused("control.json", "a.xml", &["$.s.note", "U+0001", "what XML can hold"]);
+    refused("dotted.xml", "a.json", &["dotted.xml:1:45", "a.b", "what JSON can hold"]);
+    refused("unknown.json", "a.xml", &["$.s", "\"blob\"", "\"$tag\""]);
+    refused("unknown.json", "a.yaml", &[".xml or .json"]);
+    refused("told.json", "./told.json", &["the same file"]);
+    let (xml, _) = sandbox.convert("told.json", "told.xml", &[]);
+    assert!(xml.contains("<shape type=\"blob\" id=\"s\"/>"), "{xml}");
+    assert!(sandbox.convert("told.xml", "again.json", &[]).0.contains("\"$tag\": \"shape\""));
+}
+
+/// Every scene that is shipped, there and back.
+#[test]
+fn shipped_scenes_come_back() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["scenes", "scenes/crosscheck", "tests/scenes"];
+    let entries = folders.iter().flat_map(|folder| fs::read_dir(root.join(folder)).unwrap());
+    let mut seen = HashSet::new();
+    for path in entries.map(|entry| entry.unwrap().path()) {
+        let (ours, other) = match path.extension().and_then(|e| e.to_str()) {
+            Some("xml") => ("xml", "json"),
+            Some("json") => ("json", "xml"),
+            _ => continue,
+        };
+        // Beside the scene, so that names of files stay; nothing is written there.
+        let there =
+            scene::convert(&path, &path.with_extension(format!("new.{other}")), &[], Naming::Keep).unwrap();
+        let sandbox = Sandbox::with_files(&[(&format!("there.{other}"), &there.text)]);
+        let back = sandbox.convert(&format!("there.{other}"), &format!("back.{ours}"), &[]).0;
+        let direct =
+            scene::convert(&path, &path.with_extension(format!("new.{ours}")), &[], Naming::Keep).unwrap();
+        assert_eq!(direct.text, back, "{}", path.display());
+        assert!(there.notes.is_empty(), "{:?}", there.notes);
+        seen.insert(ours);
+    }
+    assert_eq!(seen.len(), 2);
+}
+
+#[test]
+fn a_constant_spectrum_stays_one() {
+    let xml = r#"<scene version="3.0.0"><default name="s" value="0.25"/><bsdf type="diffuse" id="b">
+        <spectrum name="reflectance" value="0.5"/><spectrum name="other" value="$s"/></bsdf></scene>"#;
+    let sandbox = Sandbox::with_files(&[("a.xml", xml)]);
+    sandbox.convert("a.xml", "b.json", &[]);
+    sandbox.convert("b.json", "c.xml", &[]);
+    for definitions in [&[][..], &[("s", "0.75")]] {
+        assert_same_with(&sandbox, "a.xml", "b.json", definitions);
+        assert_same_with(&sandbox, "a.xml", "c.xml", definitions);
+    }
+}

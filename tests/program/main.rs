@@ -1,0 +1,19 @@
+//! The program as a user meets it: its command line, the files it reads and writes, and what it says of mistakes.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod sandbox;
+
+mod command_line;
+mod converting;
+mod diff;
+mod errors;
+mod flights;
+mod layering;
+mod page;
+mod phase;
+mod pixel;
+mod reading;
+mod strategies;
+mod study;

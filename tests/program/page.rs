@@ -1,0 +1,218 @@
+//! `tyndall report`: the page of a made-up study, read back as HTML and, where there is a Chromium, looked at in it.
+
+use crate::common::studies::{self, Study};
+use scraper::{ElementRef, Html, Selector};
+use std::{fs, path::Path, process::Command};
+use tyndall::study::{outcome::Interval, page};
+
+/// The page of a study, refused unless it is well-formed and stands alone.
+fn page_of(study: &Study) -> Html {
+    let path = page::write(study.folder.path()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(path, study.folder.path().join("study.html"));
+    let text = fs::read_to_string(path).unwrap();
+    let html = Html::parse_document(&text);
+    assert!(html.errors.is_empty(), "{:?}", html.errors);
+    stands_alone(&text, &html);
+    html
+}
+
+/// Nothing in it leads to another file.
+fn stands_alone(text: &str, html: &Html) {
+    for element in html.select(&Selector::parse("*").unwrap()) {
+        for name in ["src", "href", "srcset", "data", "action"] {
+            let Some(address) = element.value().attr(name) else { continue };
+            assert!(address.starts_with("data:") || address.starts_with('#'), "{name}={address:.80}");
+        }
+    }
+    assert!(!text.contains("://") && !text.contains("@import"), "an address in the page");
+}
+
+fn all<'a>(html: &'a Html, query: &str) -> Vec<ElementRef<'a>> {
+    let selector = Selector::parse(query).unwrap();
+    html.select(&selector).collect()
+}
+
+fn texts(html: &Html, query: &str) -> Vec<String> {
+    all(html, query).iter().map(|element| element.text().collect::<String>().trim().to_owned()).collect()
+}
+
+#[test]
+fn everything_of_a_study_is_on_its_page() {
+    let study = Study::new(&["room", "church"], &["bdpt", "pt", "volpath"], 4);
+    let html = page_of(&study);
+    assert_eq!(texts(&html, ".scene h2"), ["room", "church"]);
+    assert_eq!(texts(&html, "#scene-1 .legend button"), ["bdpt", "pt", "volpath"]);
+    assert_eq!(texts(&html, "#scene-0 .strip h4").len(), 4);
+    // Five measures over two axes, one shown at first; a mark for every budget.
+    assert_eq!(all(&html, "#scene-0 .chart").len(), 10);
+    assert_eq!(all(&html, "#scene-0 .chart:not([hidden])").len(), 1);
+    let marks = all(&html, "#scene-0 .chart:not([hidden]) .marks > *");
+    assert_eq!(marks.len(), 3 * 4);
+    assert_eq!(all(&html, "#scene-0 .chart:not([hidden]) .floor > *").len(), 1);
+    // The reference; an image and an error of each at each level; a variance of each.
+    assert_eq!(all(&html, "#scene-0 img.source").len(), 1 + 3 * 4 * 2 + 3);
+    let footer = texts(&html, "footer").concat();
+    for said in [&study.outcome.command, &study.outcome.machine] {
+        assert!(footer.contains(said.as_str()), "{said} is not in: {footer}");
+    }
+    assert!(texts(&html, "#scene-0 header").concat().contains(&study.outcome.scenes[0].reference.how));
+}
+
+#[test]
+fn what_scripts_read_is_what_stands_in_the_study() {
+    let study = Study::new(&["room"], &["</script><b>&amp;", "é 漢 \u{2028} \"'"], 2);
+    let html = page_of(&study);
+    let data: serde_json::Value = serde_json::from_str(&texts(&html, "#data").concat()).unwrap();
+    let names: Vec<_> = study.outcome.scenes[0].contenders.iter().map(|c| c.name.as_str()).collect();
+    let told: Vec<_> =
+        data["scenes"][0].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
+    assert_eq!(told, names);
+    assert_eq!(data["scenes"][0][0]["points"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn names_are_text_wherever_they_stand() {
+    let name = "<img src=x onerror=alert(1)> & \"quotes\" 'n' ünï漢 {{ x }} --> ]]>";
+    let mut study = Study::new(&[name], &[name, "</style></title><script>"], 2);
+    study.outcome.command = name.into();
+    study.outcome.machine = name.into();
+    study.outcome.made_by = name.into();
+    study.outcome.scenes[0].reference.how = name.into();
+    study.rewrite();
+    let html = page_of(&study);
+    assert_eq!(texts(&html, ".scene h2"), [name]);
+    assert!(texts(&html, "title").concat().contains(name));
+    assert_eq!(texts(&html, ".legend button"), [name, "</style></title><script>"]);
+    assert_eq!(texts(&html, "code")[0], name);
+    assert!(all(&html, "[onerror]").is_empty());
+    assert_eq!(all(&html, "script").len(), 2);
+    let frame = all(&html, ".frame")[0].value().attr("aria-label").unwrap().to_owned();
+    assert!(frame.contains(name), "{frame}");
+}
+
+#[test]
+fn one_contender_with_one_budget_is_enough() {
+    let html = page_of(&Study::new(&["room"], &["bdpt"], 1));
+    assert_eq!(all(&html, ".strip").len(), 1);
+    assert_eq!(all(&html, ".chart:not([hidden]) .marks > *").len(), 1);
+    assert!(all(&html, ".glance").is_empty() && all(&html, "nav").is_empty());
+}
+
+#[test]
+fn every_number_can_be_drawn() {
+    for value in [0.0, 1.0, 1e-30, f64::MIN_POSITIVE, 5e-324, 1e30, f64::MAX, f64::NAN] {
+        let mut study = Study::new(&["room"], &["a", "b"], 3);
+        study.set_all(value);
+        let html = page_of(&study);
+        for shape in all(&html, ".chart .series *, .chart .band *, .chart .guide *") {
+            let numbers = shape.value().attrs().filter(|(name, _)| ["points", "cx", "cy"].contains(name));
+            for place in numbers.flat_map(|(_, text)| text.split([' ', ',']).filter(|part| !part.is_empty()))
+            {
+                let place: f64 = place.parse().unwrap();
+                assert!((-40.0..=1640.0).contains(&place), "{value:e}: {place}");
+            }
+        }
+        for mark in all(&html, ".chart:not([hidden]) .marks circle") {
+            let at = ["cx", "cy"].map(|name| mark.value().attr(name).unwrap().parse::<f64>().unwrap());
+            // What is no number, or beyond all scales, stands at the worst corner: late, and with much error.
+            let is_worst = at[0] >= 1570.0 && at[1] <= 30.0;
+            assert_eq!(is_worst, value.is_nan() || value == f64::MAX, "{value:e}: {at:?}");
+        }
+        let page = texts(&html, "main").concat();
+        assert!(!page.contains("NaN") && !page.contains("inf"), "{value:e}");
+    }
+}
+
+#[test]
+fn what_is_known_of_reference_and_ratios_is_said_once() {
+    let mut study = Study::new(&["room"], &["a", "b", "c"], 3);
+    let says = |study: &Study| {
+        study.rewrite();
+        let html = page_of(study);
+        (texts(&html, "#scene-0 header").concat(), texts(&html, "footer").concat())
+    };
+    study.outcome.scenes[0].reference.own_relmse = Some(1.0);
+    let (header, footer) = says(&study);
+    assert_eq!(header.matches("own error").count(), 3, "{header}");
+    assert!(footer.contains("as independent") && !footer.contains("paired"), "{footer}");
+    let ratio = Some(Interval { mean: 2.0, low: 1.9, high: 2.1 });
+    study.outcome.scenes[0].contenders[1].ratio = ratio;
+    // As `tyndall study` says it.
+    study.outcome.scenes[0].contenders[1].notes = vec!["only 1.2 times the reference's own: some".to_owned()];
+    let (header, footer) = says(&study);
+    assert!(header.matches("own error").count() == 2 && header.contains("only 1.2 times"), "{header}");
+    assert!(footer.contains("as independent") && footer.contains("paired"), "{footer}");
+    study.outcome.scenes[0].contenders[2].ratio = ratio;
+    study.outcome.scenes[0].reference.own_relmse = None;
+    let (header, footer) = says(&study);
+    assert!(header.contains("is not known"), "{header}");
+    assert!(!footer.contains("as independent") && footer.contains("paired"), "{footer}");
+    study.outcome.scenes[0].notes = vec!["nobody knows the reference's own error".to_owned()];
+    assert!(!says(&study).0.contains("is not known"));
+}
+
+#[test]
+fn broken_pixels_are_shown_as_such() {
+    let study = Study::new(&["room"], &["a"], 2);
+    let broken = [f32::NAN, f32::INFINITY, -1.0, 1e30];
+    studies::write_image(
+        &study.folder.path().join(&study.outcome.scenes[0].contenders[0].points[1].image),
+        |k| broken[k % broken.len()],
+    );
+    page_of(&study);
+}
+
+fn refused(study: &Study, hints: &[&str]) {
+    let error = page::write(study.folder.path()).unwrap_err().to_string();
+    for hint in hints {
+        assert!(error.contains(hint), "no \"{hint}\" in: {error}");
+    }
+    assert!(!study.folder.path().join("study.html").exists());
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let study = Study::new(&["room"], &["bdpt"], 2);
+    let numbers = study.folder.path().join("study.json");
+    let whole = fs::read_to_string(&numbers).unwrap();
+    fs::write(&numbers, &whole[..whole.len() / 2]).unwrap();
+    refused(&study, &["study.json:", "a study as JSON", "remedy"]);
+    fs::write(&numbers, whole.replacen("\"width\"", "\"wide\"", 1)).unwrap();
+    refused(&study, &["missing field `width`"]);
+    fs::remove_file(&numbers).unwrap();
+    refused(&study, &["study.json", "the numbers of a study"]);
+
+    let mut study = Study::new(&["room"], &["bdpt"], 2);
+    study.outcome.scenes[0].contenders[0].points.clear();
+    study.rewrite();
+    refused(&study, &["at least one budget", "bdpt in room"]);
+    study.outcome.scenes.clear();
+    study.rewrite();
+    refused(&study, &["at least one scene"]);
+
+    let study = Study::new(&["room"], &["bdpt"], 2);
+    let image = study.folder.path().join(&study.outcome.scenes[0].contenders[0].points[1].image);
+    fs::write(&image, "no image").unwrap();
+    refused(&study, &[&image.display().to_string(), "an image of 12 x 8 pixels"]);
+    fs::remove_file(&image).unwrap();
+    refused(&study, &[&image.display().to_string()]);
+    let mut study = Study::new(&["room"], &["bdpt"], 2);
+    study.outcome.scenes[0].width = 13;
+    study.rewrite();
+    refused(&study, &["reference.exr", "13 x 8", "12 x 8"]);
+}
+
+#[test]
+fn the_command_says_where_the_page_is() {
+    let study = Study::new(&["room"], &["bdpt"], 2);
+    let run = |folder: &Path| {
+        Command::new(env!("CARGO_BIN_EXE_tyndall")).arg("report").arg(folder).output().unwrap()
+    };
+    let output = run(study.folder.path());
+    assert!(output.status.success());
+    let path = String::from_utf8(output.stdout).unwrap();
+    assert!(Path::new(path.trim()).is_file(), "{path}");
+    let output = run(&study.folder.path().join("nowhere"));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("nowhere/study.json"));
+}

@@ -1,0 +1,121 @@
+//! The program as a user runs it: in a temporary folder with some files, and what came of it.
+
+use exr::prelude::read_first_flat_layer_from_file;
+use std::{
+    collections::BTreeMap,
+    path::PathBuf,
+    process::{Command, Output},
+};
+use tempfile::TempDir;
+
+/// A folder in which the program runs.
+pub struct Sandbox(TempDir);
+
+impl Sandbox {
+    /// An empty one.
+    pub fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    /// One with `scene.json` in it.
+    pub fn with_scene(scene: &serde_json::Value) -> Self {
+        Self::with_files(&[("scene.json", &scene.to_string())])
+    }
+
+    /// One with these files in it, folders made as their names say.
+    pub fn with_files(files: &[(&str, &str)]) -> Self {
+        let sandbox = Self::new();
+        for (name, text) in files {
+            let path = sandbox.path(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        }
+        sandbox
+    }
+
+    /// Where a file of this name lies.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Runs the program with `words` as its arguments.
+    pub fn run(&self, words: &str) -> Run {
+        let words: Vec<&str> = words.split_whitespace().collect();
+        self.run_words(&words)
+    }
+
+    /// The same with arguments that may hold spaces.
+    pub fn run_words(&self, words: &[&str]) -> Run {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+        let output = program.current_dir(self.0.path()).args(words).output().unwrap();
+        Run { words: words.join(" "), output }
+    }
+
+    /// A file.
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+
+    /// The channels of an OpenEXR image.
+    pub fn channels(&self, name: &str) -> BTreeMap<String, Vec<f32>> {
+        let layer = read_first_flat_layer_from_file(self.path(name)).unwrap().layer_data;
+        let list = layer.channel_data.list.into_iter();
+        list.map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
+    }
+
+    /// A text file.
+    pub fn text(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    /// A JSON file.
+    pub fn json(&self, name: &str) -> serde_json::Value {
+        serde_json::from_str(&self.text(name)).unwrap()
+    }
+
+    /// Names of all files, hidden ones too.
+    pub fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+/// What came of it.
+pub struct Run {
+    words: String,
+    output: Output,
+}
+
+impl Run {
+    /// Exit code, standard output, standard error.
+    pub fn told(&self) -> (Option<i32>, String, String) {
+        (self.output.status.code(), self.out(), self.err())
+    }
+
+    /// Standard output.
+    pub fn out(&self) -> String {
+        String::from_utf8(self.output.stdout.clone()).unwrap()
+    }
+
+    /// Standard error.
+    pub fn err(&self) -> String {
+        String::from_utf8(self.output.stderr.clone()).unwrap()
+    }
+
+    /// It ends with this code, without a panic.
+    pub fn ends(self, code: i32) -> Self {
+        assert_eq!(self.output.status.code(), Some(code), "{}: {}{}", self.words, self.out(), self.err());
+        assert!(!self.err().contains("panicked"), "{}: {}", self.words, self.err());
+        self
+    }
+
+    /// It ends with code 2, having said all of `hints`.
+    pub fn refuses(self, hints: &[&str]) {
+        let run = self.ends(2);
+        for hint in hints {
+            assert!(run.err().contains(hint), "{}: no \"{hint}\" in: {}", run.words, run.err());
+        }
+    }
+}

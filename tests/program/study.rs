@@ -1,0 +1,461 @@
+//! `tyndall study` as a user runs it: what it finds, what it says, and that it can be stopped at any moment.
+
+use crate::common::pieces::*;
+use serde_json::{Value, json};
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+use tempfile::TempDir;
+use tyndall::{
+    math::Spectrum,
+    study::picture::{self, Picture},
+};
+
+/// A folder in which the program runs.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    /// With scenes in it, by the names of their files.
+    fn new(scenes: &[(&str, Value)]) -> Self {
+        let desk = Self { folder: TempDir::new().unwrap() };
+        for (name, scene) in scenes {
+            fs::write(desk.path(name), scene.to_string()).unwrap();
+        }
+        desk
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+        command.current_dir(self.folder.path()).arg("study").args(words);
+        command
+    }
+
+    fn run(&self, words: &[&str]) -> Output {
+        self.command(words).output().unwrap()
+    }
+
+    /// Runs a study that succeeds; what it says.
+    fn study(&self, words: &[&str]) -> String {
+        let output = self.run(words);
+        assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// It ends with code 2, having said all of `hints`.
+    fn refuses(&self, words: &[&str], hints: &[&str]) {
+        let output = self.run(words);
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {told}");
+        for hint in hints {
+            assert!(told.contains(hint), "{words:?}: no \"{hint}\" in: {told}");
+        }
+        assert!(!told.contains("panicked"), "{words:?}: {told}");
+    }
+
+    fn json(&self, name: &str) -> Value {
+        serde_json::from_slice(&fs::read(self.path(name)).unwrap()).unwrap()
+    }
+
+    fn pixels(&self, name: &str) -> Vec<Spectrum> {
+        picture::read(&self.path(name)).unwrap().pixels
+    }
+}
+
+fn foggy_room() -> Value {
+    scene(&[
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("fog", medium(1.0, 0.8, 0.3)),
+        ("room", room(0.6, Some(named("fog")))),
+        ("lamp", lamp_ball([0.2, 0.3, -0.3], 0.3, 2.0)),
+    ])
+}
+
+/// All that is not time in an outcome.
+fn timeless(outcome: &Value) -> Value {
+    const TIMES: [&str; 5] = ["seconds", "slope", "efficiency", "ratio", "load_seconds"];
+    match outcome {
+        Value::Object(map) => {
+            let kept = map.iter().filter(|(name, _)| !TIMES.contains(&name.as_str()));
+            Value::Object(kept.map(|(name, value)| (name.clone(), timeless(value))).collect())
+        }
+        Value::Array(values) => values.iter().map(timeless).collect(),
+        other => other.clone(),
+    }
+}
+
+/// The rows of `study.csv` without their seconds.
+fn timeless_rows(csv: &str) -> Vec<Vec<String>> {
+    let seconds = csv.lines().next().unwrap().split(',').position(|name| name == "seconds").unwrap();
+    let fields = |line: &str| {
+        let fields = line.split(',').enumerate().filter(|(i, _)| *i != seconds);
+        fields.map(|(_, field)| field.to_owned()).collect()
+    };
+    csv.lines().map(fields).collect()
+}
+
+/// Every file below `folder`, by name.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        match entry.path() {
+            path if path.is_dir() => found.extend(files(&path)),
+            path => drop(found.insert(path.clone(), fs::read(path).unwrap_or_default())),
+        }
+    }
+    found
+}
+
+/// The end of a study, without times.
+struct Harvest {
+    outcome: Value,
+    rows: Vec<Vec<String>>,
+    plan: Value,
+    images: Vec<(PathBuf, Vec<u8>)>,
+}
+
+fn harvest(desk: &Desk) -> Harvest {
+    let relative = |path: PathBuf| path.strip_prefix(desk.folder.path()).unwrap().to_owned();
+    let images = files(&desk.path("out/images"));
+    Harvest {
+        outcome: timeless(&desk.json("out/study.json")),
+        rows: timeless_rows(&fs::read_to_string(desk.path("out/study.csv")).unwrap()),
+        plan: desk.json("out/runs/plan.json"),
+        images: images.into_iter().map(|(path, bytes)| (relative(path), bytes)).collect(),
+    }
+}
+
+/// Starts the study and kills it a random while after it has written some more files; false if it ended before.
+fn kill(desk: &Desk, words: &[&str], more: usize, pause: Duration) -> bool {
+    let before = files(&desk.path("out")).len();
+    let mut child = desk.command(words).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let started = Instant::now();
+    while files(&desk.path("out")).len() < before + more && child.try_wait().unwrap().is_none() {
+        assert!(started.elapsed() < Duration::from_secs(120), "nothing is written");
+        thread::sleep(Duration::from_millis(1));
+    }
+    thread::sleep(pause);
+    let is_killed = child.try_wait().unwrap().is_none();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    is_killed
+}
+
+#[test]
+fn a_study_killed_at_random_moments_ends_with_the_same_numbers() {
+    let words = [
+        "room.json",
+        "-o",
+        "out",
+        "--spp",
+        "64",
+        "--doublings",
+        "4",
+        "--seeds",
+        "3",
+        "--reference-spp",
+        "640",
+    ];
+    let (whole, broken) =
+        (Desk::new(&[("room.json", foggy_room())]), Desk::new(&[("room.json", foggy_room())]));
+    whole.study(&words);
+    let mut state = 12345u64;
+    let mut random = |below: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % below
+    };
+    let mut killed = 0;
+    for round in 0..8 {
+        // The first without a pause: however fast the machine, most of the study is still to come then.
+        let (more, pause) = (1 + random(6) as usize, Duration::from_micros(round * random(3000)));
+        killed += u32::from(kill(&broken, &words, more, pause));
+    }
+    assert!(killed >= 1, "it ended before it could be killed");
+    broken.study(&words);
+    let (expected, found) = (harvest(&whole), harvest(&broken));
+    assert_eq!(found.outcome, expected.outcome);
+    assert_eq!(found.rows, expected.rows);
+    assert_eq!(found.plan, expected.plan);
+    assert!(found.images == expected.images, "images differ");
+    let left: Vec<PathBuf> = files(&broken.path("out")).into_keys().collect();
+    assert!(!left.iter().any(|path| path.to_string_lossy().ends_with(".partial")), "{left:?}");
+    // 2 contenders, 3 seeds, 4 budgets, and the names of the columns.
+    assert_eq!(found.rows.len(), 25);
+}
+
+#[test]
+fn a_finished_study_is_told_again_without_rendering() {
+    // Under a name that the study's own files might have had.
+    let desk = Desk::new(&[("lock.json", foggy_room())]);
+    let words = ["lock.json", "-o", "out", "--spp", "4", "--seeds", "2", "--reference-spp", "32"];
+    let told = desk.study(&words);
+    for part in ["lock, 8 x 8", "contender", "bdpt", "pt", "relMSE", "own relMSE", "study.json"] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    let outcome = desk.json("out/study.json");
+    assert_eq!(desk.study(&words), told);
+    let mut again = desk.json("out/study.json");
+    for contender in 0..2 {
+        let load = "load_seconds";
+        again["scenes"][0]["contenders"][contender][load] =
+            outcome["scenes"][0]["contenders"][contender][load].clone();
+    }
+    assert_eq!(again, outcome, "the times are those of the first run");
+    // Another confidence is another look at the same renders.
+    desk.study(&[&words[..], &["--confidence", "0.5"]].concat());
+    let narrow = &desk.json("out/study.json")["scenes"][0]["contenders"][0]["points"][0]["relmse"];
+    let wide = &outcome["scenes"][0]["contenders"][0]["points"][0]["relmse"];
+    assert_eq!(narrow["mean"], wide["mean"]);
+    assert!(narrow["high"].as_f64() < wide["high"].as_f64());
+}
+
+/// What is looked at on the way is what a render of so many samples would have been.
+#[test]
+fn points_are_renders_and_measures_are_against_the_reference() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let made = ["room.json", "-o", "out", "--spp", "12", "--doublings", "3", "--seeds", "2", "--seed", "5"];
+    desk.study(&[&made[..], &["--integrators", "pt", "--reference-spp", "64"]].concat());
+    for (index, spp) in ["3", "6", "12"].into_iter().enumerate() {
+        let mut render = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+        render.current_dir(desk.folder.path()).args(["render", "room.json", "-o", "a.exr", "--spp", spp]);
+        assert!(render.args(["--integrator", "pt", "--seed", "5"]).output().unwrap().status.success());
+        assert_eq!(desk.pixels(&format!("out/images/room/pt/{index}.exr")), desk.pixels("a.exr"), "{spp}");
+    }
+    let outcome = desk.json("out/study.json");
+    let how = outcome["scenes"][0]["reference"]["how"].as_str().unwrap();
+    assert!(how.contains("bdpt") && how.contains("not among the contenders"), "{how}");
+    // By hand, for the first seed's last image.
+    let (image, truth) = (desk.pixels("a.exr"), desk.pixels("out/images/room/reference.exr"));
+    let pairs = image.iter().zip(&truth).flat_map(|(x, r)| x.to_array().into_iter().zip(r.to_array()));
+    let relative = pairs.map(|(x, r)| (f64::from(x - r)).powi(2) / (f64::from(r).powi(2) + 0.01));
+    let relmse = relative.sum::<f64>() / 192.0;
+    let csv = fs::read_to_string(desk.path("out/study.csv")).unwrap();
+    let row: Vec<&str> = csv.lines().nth(3).unwrap().split(',').collect();
+    assert_eq!(row[..4], ["room", "pt", "12", "5"]);
+    assert!((row[6].parse::<f64>().unwrap() / relmse - 1.0).abs() < 1e-6, "{row:?} {relmse}");
+    // The variance of two images is half the square of their difference.
+    let other = desk.pixels("out/runs/room/turns/pt/6.exr");
+    let variance = desk.pixels("out/images/room/pt/variance.exr");
+    let half_square = 0.5 * (image[20].x - other[20].x).powi(2);
+    assert!((variance[20].x - half_square).abs() <= 1e-5 * half_square, "{} {half_square}", variance[20].x);
+    // The same image read from a file gives the same numbers.
+    fs::copy(desk.path("out/images/room/reference.exr"), desk.path("truth.exr")).unwrap();
+    fs::rename(desk.path("out"), desk.path("first")).unwrap();
+    let file = ["--integrators", "pt", "--reference", "truth.exr", "--reference-error", "0.5"];
+    let told = desk.study(&[&made[..], &file].concat());
+    assert!(told.contains("times the reference's own"), "{told}");
+    let again = fs::read_to_string(desk.path("out/study.csv")).unwrap();
+    assert_eq!(timeless_rows(&again), timeless_rows(&csv));
+    assert_eq!(desk.json("out/study.json")["scenes"][0]["reference"]["own_relmse"], json!(0.5));
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// A numeric log-log slope of the mean relMSE over samples per pixel: without times, it is the same every time.
+fn slope_over_samples(contender: &Value) -> f64 {
+    let points: Vec<(f64, f64)> = contender["points"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|point| (number(&point["samples"]).ln(), number(&point["relmse"]["mean"]).ln()))
+        .collect();
+    let n = points.len() as f64;
+    let (x, y) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
+    points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>()
+        / points.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
+}
+
+#[test]
+fn an_unbiased_contender_falls_with_slope_minus_one() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let words = ["--integrators", "pt", "--spp", "256", "--doublings", "5", "--reference-spp", "8192"];
+    desk.study(&[&["room.json", "-o", "out"], &words[..]].concat());
+    let contender = &desk.json("out/study.json")["scenes"][0]["contenders"][0];
+    let slope = slope_over_samples(contender);
+    assert!((slope + 1.0).abs() < 0.1, "{slope}");
+    // Over time as well, though of renders of a millisecond no more is sure than that longer ones err less.
+    let timed = number(&contender["slope"]["mean"]);
+    assert!(timed.is_finite() && timed < 0.0, "{timed}");
+    let last = &contender["points"][4]["difference"];
+    assert!(number(&last["low"]) < 0.01 && number(&last["high"]) > -0.01, "{last}");
+    assert_eq!(contender.get("notes"), None, "{}", contender["notes"]);
+}
+
+/// A cloud of thin layers, which steps much longer than they are cannot see.
+fn layered() -> Value {
+    let wave = json!({"type": "cosine", "w": {"type": "wave", "amplitude": 1, "vector": [0, 0, 2]}});
+    let cloud = json!({"type": "heterogeneous", "sigma_t": wave, "albedo": 0.3, "scale": 2, "step": 1.9});
+    scene(&[
+        ("sensor", camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 8)),
+        ("cloud", null_box([-1.0; 3], [1.0; 3], Some(cloud))),
+        ("sky", sky(1.0)),
+    ])
+}
+
+#[test]
+fn bias_flattens_the_curve_and_shifts_the_mean() {
+    let desk = Desk::new(&[("cloud.json", layered())]);
+    let words = [
+        "--trackers",
+        "closed_form,march,exact",
+        "--spp",
+        "256",
+        "--doublings",
+        "5",
+        "--reference-spp",
+        "4096",
+    ];
+    let told = desk.study(&[&["cloud.json", "-o", "out"], &words[..]].concat());
+    let scene = &desk.json("out/study.json")["scenes"][0];
+    let [fair, biased] = [0, 1].map(|i| &scene["contenders"][i]);
+    assert_eq!((fair["name"].as_str(), biased["name"].as_str()), (Some("closed_form"), Some("march")));
+    let (steep, flat) = (slope_over_samples(fair), slope_over_samples(biased));
+    assert!((steep + 1.0).abs() < 0.1 && flat > -0.5, "{steep} {flat}");
+    let difference = &biased["points"][4]["difference"];
+    let (low, high) = (number(&difference["low"]), number(&difference["high"]));
+    assert!(low * high > 0.0 && low.abs().min(high.abs()) > 0.01, "{difference}");
+    for hint in ["march: is biased by the step", "march: its mean differs", "exact cannot render it"] {
+        assert!(told.contains(hint), "{hint}: {told}");
+    }
+    assert!(!told.contains("closed_form: its mean differs"), "{told}");
+    assert_eq!(scene["contenders"].as_array().unwrap().len(), 2);
+}
+
+/// A mirror under a lamp, which light walks cannot show.
+fn mirror() -> Value {
+    let mirror = with(floor(-0.5, 0.6, 0.5), &[("bsdf", json!({"type": "conductor"}))]);
+    scene(&[
+        ("sensor", camera([0.0, 0.5, 0.9], [0.0, -0.3, -0.5], 8)),
+        ("mirror", mirror),
+        ("room", room(0.6, None)),
+        ("lamp", lamp_panel([0.0, 0.95, 0.0], 0.4, 2.0)),
+    ])
+}
+
+#[test]
+fn several_scenes_and_what_a_contender_cannot_show() {
+    let desk = Desk::new(&[("room.json", foggy_room()), ("mirror.json", mirror())]);
+    let words = [
+        "--integrators",
+        "bdpt,lt",
+        "--spp",
+        "16",
+        "--seeds",
+        "6",
+        "--reference-spp",
+        "256",
+        "--threads",
+        "1",
+    ];
+    let more = ["--contender", "narrow, \"joined\": --strategies hit,join --max-depth 3"];
+    let told = desk.study(&[&["room.json", "mirror.json", "-o", "out"], &words[..], &more].concat());
+    for hint in
+        ["lt: its variance is infinite", "lt: leaves out anything seen in or through smooth", "lt: its mean"]
+    {
+        assert!(told.contains(hint), "{hint}: {told}");
+    }
+    let outcome = desk.json("out/study.json");
+    let scenes = outcome["scenes"].as_array().unwrap();
+    assert_eq!(scenes.iter().map(|s| s["name"].as_str().unwrap()).collect::<Vec<_>>(), ["room", "mirror"]);
+    assert_eq!(scenes[0]["contenders"][0]["name"], "narrow, \"joined\"");
+    assert!(scenes[0]["contenders"][0].get("ratio").is_none());
+    assert!(number(&scenes[0]["contenders"][1]["ratio"]["mean"]) > 0.0);
+    assert!(outcome["machine"].as_str().unwrap().ends_with("1 threads"), "{}", outcome["machine"]);
+    assert!(outcome["command"].as_str().unwrap().contains("'narrow, \"joined\": --strategies hit,join"));
+    for scene in scenes {
+        let images = scene["contenders"].as_array().unwrap().iter().flat_map(|contender| {
+            let points = contender["points"].as_array().unwrap().iter().map(|point| &point["image"]);
+            points.chain([&contender["variance"]])
+        });
+        for image in images.chain([&scene["reference"]["image"]]) {
+            assert!(desk.path("out").join(image.as_str().unwrap()).is_file(), "{image}");
+        }
+    }
+    let csv = fs::read_to_string(desk.path("out/study.csv")).unwrap();
+    assert!(csv.contains("\nroom,\"narrow, \"\"joined\"\"\",1,0,"), "{csv}");
+}
+
+#[test]
+fn a_time_is_turned_into_samples_once() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let words = ["room.json", "-o", "out", "--seconds", "0.2", "--seeds", "2", "--doublings", "3"];
+    desk.study(&words);
+    let plan = desk.json("out/runs/plan.json");
+    let budgets: Vec<u64> =
+        serde_json::from_value(plan["scenes"][0]["contenders"][0]["budgets"].clone()).unwrap();
+    assert!(budgets[2] > 3 && budgets[1] == 2 * budgets[0] && budgets[2] == 2 * budgets[1], "{budgets:?}");
+    let numbers = timeless(&desk.json("out/study.json"));
+    fs::remove_file(desk.path("out/runs/room/turns/pt/1.json")).unwrap();
+    desk.study(&words);
+    assert_eq!(timeless(&desk.json("out/study.json")), numbers);
+    assert_eq!(desk.json("out/runs/plan.json"), plan);
+}
+
+#[test]
+fn a_scene_whose_image_changed_is_another_scene() {
+    let sky = |value: f32| Picture::new(2, 3, vec![Spectrum::splat(value); 6]);
+    let camera = camera([0.0; 3], [0.0, 0.0, 1.0], 4);
+    let lit = scene(&[("sensor", camera), ("sky", json!({"type": "envmap", "filename": "sky.exr"}))]);
+    let desk = Desk::new(&[("open.json", lit)]);
+    let words = ["open.json", "-o", "out", "--spp", "2", "--seeds", "2", "--reference-spp", "2"];
+    sky(1.0).write(&desk.path("sky.exr")).unwrap();
+    desk.study(&words);
+    sky(2.0).write(&desk.path("sky.exr")).unwrap();
+    desk.refuses(&words, &["scenes[0].fingerprint", "another folder"]);
+    sky(1.0).write(&desk.path("sky.exr")).unwrap();
+    desk.study(&words);
+}
+
+#[test]
+fn what_cannot_be_done_is_said() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let quick = ["--spp", "2", "--seeds", "2", "--reference-spp", "2"];
+    let with_quick = |words: &[&'static str]| [words, &quick[..]].concat();
+    desk.study(&with_quick(&["room.json", "-o", "out"]));
+    let rows: [(&[&str], &[&str]); 16] = [
+        (&["-o", "out"], &["SCENE"]),
+        (&["room.json"], &["--output"]),
+        (&["room.json", "-o", "out", "--seeds", "1"], &["--seeds", "2.."]),
+        (&["room.json", "-o", "out", "--confidence", "95"], &["from 0.5 to 0.9999"]),
+        (&["room.json", "-o", "out", "--spp", "2", "--seconds", "2"], &["--seconds"]),
+        (&["room.json", "-o", "out", "--reference-error", "1"], &["--reference <FILE>"]),
+        (&["room.json", "-o", "new", "--reference", "none.exr"], &["none.exr", "check that the path"]),
+        (&["room.json", "-o", "new", "--reference", "room.json"], &["room.json", "an image file"]),
+        (&["room.json", "room.json", "-o", "new", "--reference", "a.exr"], &["one for each scene, 2 in all"]),
+        (&["room.json", "-o", "new", "--integrators", "fog"], &["preview", "bdpt, pt or lt"]),
+        (&["room.json", "-o", "new", "--reference-by", "--integrator fog"], &["preview"]),
+        (&["room.json", "-o", "new", "--contender", "pt"], &["NAME: OPTIONS", "for example"]),
+        (&["hall.json", "-o", "new"], &["hall.json"]),
+        (&["room.json", "-o", "room.json"], &["room.json", "a folder"]),
+        (&["room.json", "-o", "out", "--vary", "colour=red"], &["max-depth", "colour"]),
+        (
+            &["room.json", "-o", "new", "--size", "4x4", "--reference", "out/images/room/reference.exr"],
+            &["--size 8x8"],
+        ),
+    ];
+    for (words, hints) in rows {
+        desk.refuses(words, hints);
+    }
+    // Another study in the same folder.
+    desk.refuses(&["room.json", "-o", "out", "--spp", "2"], &["seeds = 2, where 8", "--restart"]);
+    fs::write(desk.path("room.json"), scene(&[("sensor", camera([0.0; 3], [0.0, 0.0, 1.0], 8))]).to_string())
+        .unwrap();
+    desk.refuses(&with_quick(&["room.json", "-o", "out"]), &["scenes[0].fingerprint", "another folder"]);
+    fs::write(desk.path("room.json"), foggy_room().to_string()).unwrap();
+    // A file that is no longer whole.
+    fs::write(desk.path("out/runs/room/turns/bdpt/0.json"), "{").unwrap();
+    desk.refuses(&with_quick(&["room.json", "-o", "out"]), &["bdpt/0.json", "remove the file", "--restart"]);
+    desk.study(&with_quick(&["room.json", "-o", "out", "--restart"]));
+}

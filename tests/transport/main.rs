@@ -1,0 +1,16 @@
+//! Images against one another and against known radiance: every claim is tested statistically.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod adaptive;
+mod agreement;
+mod determinism;
+mod forced;
+mod glowing;
+mod heuristics;
+mod layers;
+mod modes;
+mod openings;
+mod sobol;
+mod traps;

@@ -1,0 +1,43 @@
+"""Everything that can be checked, at full depth: what the quick checks of `cargo test` sample."""
+
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from validation import matrix, package_tests, page, truths, tyndall
+from validation.compare import Effort
+from validation.places import CROSSCHECK, OUTPUT
+from validation.stability import run as stability
+
+TEXT = "All scenes against Mitsuba, closed forms, stability and a page in a browser, at full depth: 40 minutes of two cores."
+
+
+def run() -> bool:
+    """Runs every part, whatever the others find; true if all hold."""
+    parts: dict[str, Callable[[], bool]] = {
+        "package": package_tests.run,
+        "page in a browser": study_page,
+        "closed forms": lambda: truths.run(Effort(batches=16, spp=512)),
+        "stability": lambda: stability.run(stability.Effort(), OUTPUT / "stability"),
+        "matrix": matrix.full,
+    }
+    found = {name: timed(part) for name, part in parts.items()}
+    for name, (holds, seconds) in found.items():
+        print(f"{name:24} {'holds' if holds else 'FAILS':8} {seconds:7.0f} s")
+    return all(holds for holds, _ in found.values())
+
+
+def timed(part: Callable[[], bool]) -> tuple[bool, float]:
+    """What a part finds and how long it takes."""
+    start = time.perf_counter()
+    return part(), time.perf_counter() - start
+
+
+def study_page() -> bool:
+    """The page of a small study."""
+    scenes = [str(CROSSCHECK / name) for name in ("cube_in_room.json", "vacuum_room.json")]
+    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
+        effort = ["--spp", "8", "--doublings", "4", "--seeds", "2", "--reference-spp", "64", "--size", "24x18"]
+        tyndall.call([str(tyndall.binary()), "study", *scenes, "-o", folder, *effort])
+        return page.run(Path(folder, "study.html"), OUTPUT / "page", if_possible=True)
