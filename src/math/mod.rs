@@ -10,9 +10,11 @@ pub mod fresnel;
 pub mod lanes;
 pub mod measure;
 pub mod offset;
+pub mod relative;
 pub mod section;
 pub mod similarity;
 pub mod spectrum;
+pub mod srgb;
 pub mod warp;
 pub mod wrap;
 

@@ -10,7 +10,7 @@ pub(super) fn map(
     height: usize,
     pixels_per_degree: f32,
 ) -> Option<Vec<f32>> {
-    use crate::film::png::byte;
+    use crate::math::srgb::byte;
     // Both fit: no side of a picture is longer than 65536.
     let (width, height) = (u32::try_from(width).ok()?, u32::try_from(height).ok()?);
     let [image, reference] = pixels.map(|pixels| {

@@ -2,11 +2,10 @@
 //! upon all of them, and what their passes say of error and time.
 
 use crate::{
-    math::Spectrum,
+    math::{Spectrum, relative::Relative},
     render::bench::Bench,
     study::{
         interval::{self, Mean},
-        metrics::FLOOR,
         outcome::Interval,
     },
 };
@@ -21,7 +20,7 @@ const PASSES: usize = 2;
 /// What one turn of one contender told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
-    /// relMSE of one pass: mean over pixels and channels of the variance between passes over (r^2 + 0.01), as
+    /// relMSE of one pass: mean over pixels and channels of the variance between passes over (r^2 + 0.01 m^2), as
     /// [`crate::study::outcome::Point::relmse`].
     pub relmse: f64,
     /// Time of one pass [s].
@@ -67,10 +66,11 @@ fn take_turn(contender: &Bench<'_>, reference: &[Spectrum], passes: std::ops::Ra
             }
         }
     });
+    let to = Relative::to(reference, 3);
     let relative = moments.iter().zip(reference).flat_map(|(moments, r)| {
         moments.iter().zip(r.to_array()).map(move |([sum, square], r)| {
             let variance = ((square - sum * sum / count) / (count - 1.0)).max(0.0);
-            variance / (f64::from(r).powi(2) + FLOOR)
+            to.square(variance, f64::from(r))
         })
     });
     let relmse = relative.sum::<f64>() / (3 * reference.len()) as f64;
