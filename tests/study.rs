@@ -402,8 +402,11 @@ fn outside(words: &str) -> String {
 #[test]
 fn another_renderer_competes_by_its_command_line() {
     let desk = Desk::new(&[("room.json", foggy_room())]);
-    let words = ["--integrators", "pt", "--spp", "16", "--doublings", "3", "--seeds", "3", "--reference-spp", "512"];
-    let once = outside("render {scene} {definitions} -o {out} --size {size} --spp {spp} --seed {seed} --threads {threads}");
+    let words =
+        ["--integrators", "pt", "--spp", "16", "--doublings", "3", "--seeds", "3", "--reference-spp", "512"];
+    let once = outside(
+        "render {scene} {definitions} -o {out} --size {size} --spp {spp} --seed {seed} --threads {threads}",
+    );
     // One start for all budgets, which reports its times.
     fs::write(
         desk.path("script.sh"),
@@ -419,20 +422,27 @@ fn another_renderer_competes_by_its_command_line() {
     let told = desk.study(&[&["room.json", "-o", "out"], &words[..], &externals].concat());
     let outcome = desk.json("out/study.json");
     let scene = &outcome["scenes"][0];
-    let names: Vec<&str> = scene["contenders"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
+    let names: Vec<&str> =
+        scene["contenders"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["one by one", "at once", "pt"]);
     // The same samples, so the same errors; times as reported, or else as seen from outside, which is told.
     let points = |contender: usize| scene["contenders"][contender]["points"].as_array().unwrap();
     for budget in 0..3 {
         let relmse = |contender: usize| number(&points(contender)[budget]["relmse"]["mean"]);
         assert!((relmse(0) / relmse(2) - 1.0).abs() < 1e-9 && (relmse(1) / relmse(2) - 1.0).abs() < 1e-9);
-        assert_eq!(number(&points(1)[budget]["seconds"]["mean"]), 1e-3 * number(&points(1)[budget]["samples"]));
+        assert_eq!(
+            number(&points(1)[budget]["seconds"]["mean"]),
+            1e-3 * number(&points(1)[budget]["samples"])
+        );
     }
     assert_eq!(scene["contenders"][1]["load_seconds"], json!(0.25));
     assert!(told.contains("one by one: its seconds are those of the whole command"), "{told}");
     assert!(!told.contains("at once: its seconds"), "{told}");
     let how = scene["reference"]["how"].as_str().unwrap();
-    assert!(how.starts_with("pooled by precision") && how.contains("one by one") && how.contains("bdpt"), "{how}");
+    assert!(
+        how.starts_with("pooled by precision") && how.contains("one by one") && how.contains("bdpt"),
+        "{how}"
+    );
     // It goes on where it was, and nothing is rendered again.
     assert_eq!(desk.study(&[&["room.json", "-o", "out"], &words[..], &externals].concat()), told);
     // A reference by those who are named.
@@ -445,7 +455,19 @@ fn another_renderer_competes_by_its_command_line() {
 #[test]
 fn what_another_renderer_cannot_do_is_said() {
     let desk = Desk::new(&[("room.json", foggy_room())]);
-    let words = ["room.json", "-o", "out", "--integrators", "pt", "--spp", "2", "--seeds", "2", "--reference-spp", "4"];
+    let words = [
+        "room.json",
+        "-o",
+        "out",
+        "--integrators",
+        "pt",
+        "--spp",
+        "2",
+        "--seeds",
+        "2",
+        "--reference-spp",
+        "4",
+    ];
     for (command, hints) in [
         ("sh -c 'echo no fog here >&2; exit 3' {scene} {seed} {spp} {out}", "exit status: 3: no fog here"),
         ("no_such_program {scene} {seed} {spp} {out}", "a program that can be started"),
@@ -466,7 +488,8 @@ fn what_another_renderer_cannot_do_is_said() {
 fn nothing_depends_on_the_unit_of_radiance() {
     let found = [1e-3, 1.0, 1e3].map(|unit| {
         let mut room = foggy_room();
-        room["lamp"]["emitter"]["radiance"] = json!({"type": "rgb", "value": [2.0 * unit, 2.0 * unit, 2.0 * unit]});
+        room["lamp"]["emitter"]["radiance"] =
+            json!({"type": "rgb", "value": [2.0 * unit, 2.0 * unit, 2.0 * unit]});
         let desk = Desk::new(&[("room.json", room)]);
         let mut render = Command::new(env!("CARGO_BIN_EXE_tyndall"));
         render.current_dir(desk.folder.path()).args(["render", "room.json", "-o", "a.exr", "--spp", "32"]);
@@ -474,7 +497,13 @@ fn nothing_depends_on_the_unit_of_radiance() {
         desk.study(&["room.json", "-o", "out", "--spp", "4", "--seeds", "2", "--reference-spp", "64"]);
         let last = &desk.json("out/study.json")["scenes"][0]["contenders"][1]["points"][2];
         let of = |name: &str| number(&last[name]["mean"]);
-        [number(&desk.json("report.json")["relative_error"]), of("relmse"), of("trimmed_relmse"), of("mape"), of("smape")]
+        [
+            number(&desk.json("report.json")["relative_error"]),
+            of("relmse"),
+            of("trimmed_relmse"),
+            of("mape"),
+            of("smape"),
+        ]
     });
     for one in &found {
         for (one, middle) in one.iter().zip(&found[1]) {

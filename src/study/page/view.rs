@@ -19,11 +19,11 @@ use std::path::Path;
 #[template(path = "page.html", config = "src/study/page/askama.toml")]
 pub struct Page<'a> {
     outcome: &'a Outcome,
-    scenes: Vec<SceneView<'a>>,
+    pub(super) scenes: Vec<SceneView<'a>>,
     contenders: Vec<&'a str>,
     measures: &'static [Measure],
     axes: &'static [Axis],
-    tones: String,
+    pub(super) tones: String,
     data: String,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Page<'a> {
     }
 
     fn style(&self) -> &'static str {
-        include_str!("style.css")
+        concat!(include_str!("curves.css"), include_str!("style.css"))
     }
 
     fn script(&self) -> &'static str {
@@ -155,12 +155,12 @@ impl Share {
 }
 
 /// A scene.
-struct SceneView<'a> {
+pub(super) struct SceneView<'a> {
     index: usize,
-    scene: &'a SceneOutcome,
-    rows: Vec<Row<'a>>,
-    charts: Vec<ChartView>,
-    strips: Strips,
+    pub(super) scene: &'a SceneOutcome,
+    pub(super) rows: Vec<Row<'a>>,
+    pub(super) charts: Vec<ChartView>,
+    pub(super) strips: Strips,
     notes: Vec<String>,
 }
 
@@ -224,10 +224,10 @@ fn last(contender: &ContenderOutcome) -> Option<&Point> {
 }
 
 /// Curves by one measure over one axis.
-struct ChartView {
+pub(super) struct ChartView {
     measure: &'static Measure,
     axis: &'static Axis,
-    svg: String,
+    pub(super) svg: String,
 }
 
 fn charts(scene: &SceneOutcome) -> Result<Vec<ChartView>> {
@@ -249,9 +249,9 @@ impl ChartView {
 }
 
 /// A contender's row of the table.
-struct Row<'a> {
+pub(super) struct Row<'a> {
     series: usize,
-    contender: &'a ContenderOutcome,
+    pub(super) contender: &'a ContenderOutcome,
     last: &'a Point,
     share: Share,
 }
@@ -262,7 +262,7 @@ impl<'a> Row<'a> {
         Self { series, contender, last, share: Share::of(scene, contender) }
     }
 
-    fn hue(&self) -> usize {
+    pub(super) fn hue(&self) -> usize {
         chart::hue(self.series)
     }
 
@@ -283,7 +283,7 @@ impl<'a> Row<'a> {
     }
 
     /// The mark of the curve, as the inside of an SVG element around (0, 0).
-    fn mark(&self) -> String {
+    pub(super) fn mark(&self) -> String {
         match chart::outline(self.series) {
             None => "<circle r=\"13\"/>".into(),
             Some(corners) => {
