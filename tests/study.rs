@@ -366,9 +366,11 @@ fn several_scenes_and_what_a_contender_cannot_show() {
     ];
     let more = ["--contender", "narrow, \"joined\": --strategies hit,join --max-depth 3"];
     let told = desk.study(&[&["room.json", "mirror.json", "-o", "out"], &words[..], &more].concat());
-    for hint in
-        ["lt: its variance is infinite", "lt: leaves out anything seen in or through smooth", "lt: its mean"]
-    {
+    for hint in [
+        "lt: its variance is infinite",
+        "lt: leaves out light of area, sky or medium seen in or through smooth",
+        "lt: its mean",
+    ] {
         assert!(told.contains(hint), "{hint}: {told}");
     }
     let outcome = desk.json("out/study.json");

@@ -77,20 +77,6 @@ impl<'a> Page<'a> {
         chart::hue(*series)
     }
 
-    /// Where the intervals of ratios come from.
-    fn pairing(&self) -> &'static str {
-        let others = || self.outcome.scenes.iter().flat_map(|scene| scene.contenders.iter().skip(1));
-        let paired = others().filter(|contender| contender.ratio.is_some()).count();
-        match others().count() - paired {
-            _ if paired == 0 => "A ratio’s interval takes both efficiencies as independent.",
-            0 => "A ratio’s interval is over paired seeds.",
-            _ => {
-                "A ratio’s interval is over paired seeds where the study tells it so, \
-                 and else takes both efficiencies as independent."
-            }
-        }
-    }
-
     /// How much there is to see.
     fn counted(&self) -> String {
         let some = |count: usize, one: &str, many: &str| match count {
@@ -133,12 +119,7 @@ impl Share {
     fn of(scene: &SceneOutcome, contender: &ContenderOutcome) -> Self {
         let efficiency = |contender: &ContenderOutcome| contender.efficiency.mean;
         let best = scene.contenders.iter().map(efficiency).fold(f64::MIN, f64::max);
-        let first = &scene.contenders[0];
-        let other = !std::ptr::eq(first, contender);
-        // Seeds that are paired tell more than two intervals.
-        let unpaired = || figures::ratio(contender.efficiency, first.efficiency);
-        let ratio = other.then(|| contender.ratio.unwrap_or_else(unpaired));
-        Self { ratio, best: efficiency(contender) >= best }
+        Self { ratio: contender.ratio, best: efficiency(contender) >= best }
     }
 
     fn text(&self) -> String {
@@ -191,36 +172,7 @@ fn notes(scene: &SceneOutcome) -> Vec<String> {
         .contenders
         .iter()
         .flat_map(|contender| contender.notes.iter().map(|note| format!("{}: {note}.", contender.name)));
-    let told = scene.notes.iter().map(|note| format!("{note}.")).chain(told);
-    own_error(scene).into_iter().chain(told).collect()
-}
-
-/// True if one of `notes` is about the reference's own error already.
-fn tell_of_reference(notes: &[String]) -> bool {
-    notes.iter().any(|note| note.contains("the reference's own"))
-}
-
-/// What the reference's own error means for theirs, where the study does not say it itself.
-fn own_error(scene: &SceneOutcome) -> Vec<String> {
-    let Some(own) = scene.reference.own_relmse else {
-        if tell_of_reference(&scene.notes) {
-            return Vec::new();
-        }
-        return vec!["How far the reference itself is from the truth is not known.".into()];
-    };
-    let near =
-        |contender: &&ContenderOutcome| last(contender).is_some_and(|point| own > 0.1 * point.relmse.mean);
-    let silent = |contender: &&ContenderOutcome| !tell_of_reference(&contender.notes);
-    let share = |contender: &ContenderOutcome| {
-        let share = last(contender).map_or(0.0, |point| 100.0 * own / point.relmse.mean);
-        let name = &contender.name;
-        format!("The reference's own error is {} % of the last relMSE of {name}.", figures::number(share))
-    };
-    scene.contenders.iter().filter(near).filter(silent).map(share).collect()
-}
-
-fn last(contender: &ContenderOutcome) -> Option<&Point> {
-    contender.points.last()
+    scene.notes.iter().map(|note| format!("{note}.")).chain(told).collect()
 }
 
 /// Curves by one measure over one axis.
