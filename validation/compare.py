@@ -238,7 +238,7 @@ def save_picture(path: Path, theirs: np.ndarray, ours: np.ndarray, z: np.ndarray
     reference, found = theirs.mean(axis=0), ours.mean(axis=0)
     white = picture.white_of(reference)
     row = picture.side_by_side(picture.displayed(reference, white), picture.displayed(found, white), picture.diverging(z))
-    mitsuba.write_png(path, row)
+    picture.write_png(path, row)
 
 
 def perturbed(scene: Scene, amount: float) -> Scene:

@@ -67,8 +67,13 @@ def test_what_mitsuba_cannot_load_is_told() -> None:
 
 def test_minutes_become_the_seconds_of_a_render() -> None:
     lines: list[list[str]] = []
+
+    def run(line: list[str]) -> bool:
+        lines.append(line)
+        return True
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(studies, "run", lambda line: lines.append(line) or True)
+        patch.setattr(studies, "run", run)
         assert cli.main(["convergence", "--minutes", "10", "--seeds", "4", "--contenders", "bdpt,pt,volpath:scalar_rgb", "-D", "res=8"]) == 0
     [line] = lines
     seconds = next(word for word in line if word.startswith("--seconds="))
