@@ -4,14 +4,13 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from validation import assets, cells, compare, contenders, coverage, matrix, page, pane, plume, race, references, selftest, truths
-from validation import comparison_page, full, package_tests
+from validation import assets, cells, compare, comparison_page, coverage, full, matrix, package_tests, page, plume, references, selftest
+from validation import studies, truths, tyndall
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, REPORTS, SCENES
 from validation.scene import open_scene
 from validation.made_by import made_by_command
-from validation.study import command as convergence
 
 Commands = argparse._SubParsersAction  # argparse gives it no public name
 
@@ -29,13 +28,11 @@ def parser() -> argparse.ArgumentParser:
     add_compare(commands)
     add_matrix(commands)
     add_closed_forms(commands)
-    add_race(commands)
-    add_pane(commands)
+    add_studies(commands)
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
     add_selftest(commands)
-    add_convergence(commands)
     add_record(commands)
     add(commands, "full", lambda _: full.run(), full.TEXT)
     add(commands, "test", lambda _: package_tests.run(), "The tests of this package itself.")
@@ -147,42 +144,28 @@ def run_closed_forms(options: argparse.Namespace) -> bool:
     return truths.run(effort_of(options), methods, options.only)
 
 
-def add_timing(command: argparse.ArgumentParser, rounds: int, seconds: float) -> None:
-    """How long to render."""
-    command.add_argument("--rounds", type=int, default=rounds, help="independent renders each (default %(default)s)")
-    command.add_argument("--seconds", type=float, default=seconds, help="time of each (default %(default)s)")
-    command.add_argument("--threads", type=int, default=2, help="of all contenders alike (default %(default)s)")
-
-
-def add_race(commands: Commands) -> None:
-    command = add(commands, "race", run_race, "Error against run time, side by side with Mitsuba.")
-    lampboxes = [SCENES / "lampbox_down.xml", SCENES / "lampbox_up.xml"]
-    command.add_argument("scenes", nargs="*", type=Path, default=lampboxes, help="default: both lamp boxes at -D res=256")
-    command.add_argument("--contenders", default="bdpt,pt,scalar_rgb,llvm_ad_rgb", help="the last is the one to beat")
-    command.add_argument("--reference", type=Path, help=".npz with mean and se; default: the contenders' own renders")
-    command.add_argument("--output", type=Path, default=OUTPUT / "race", help="folder for numbers and pictures")
-    add_parameters(command)
-    add_timing(command, rounds=8, seconds=5)
-
-
-def run_race(options: argparse.Namespace) -> bool:
-    reference = race.read_reference(options.reference) if options.reference else None
-    for path in options.scenes:
-        size = {"res": "256"} if path.name.startswith("lampbox") else {}
-        scene = open_scene(path, size | parameters_of(options))
-        rivals = contenders.contenders(scene, tuple(options.contenders.split(",")), options.threads)
-        race.report(scene.name, race.take_turns(rivals, options.rounds, options.seconds), reference, options.output)
-    return True
-
-
-def add_pane(commands: Commands) -> None:
-    command = add(commands, "pane", run_pane, "Light through frosted glass only (LW96 fig. 6): bdpt against pt.")
+def add_studies(commands: Commands) -> None:
+    command = add(commands, "convergence", studies.convergence, "Error against run time of Tyndall and Mitsuba, side by side, by `tyndall study`.")
+    command.add_argument("scenes", nargs="*", type=Path, metavar="SCENE", help="default: six that show different things")
+    command.add_argument("--minutes", type=float, default=25, help="time for everything, roughly (default %(default)s)")
+    command.add_argument("--seeds", type=int, default=8, help="independent renders of each budget (default %(default)s)")
+    command.add_argument("--points", type=int, default=5, help="budgets, each twice the one before (default %(default)s)")
+    command.add_argument("--size", help="WxH instead of the scenes' own")
+    studies.add_options(command, "bdpt,pt and all of Mitsuba's", "convergence")
+    command = add(commands, "race", studies.race, "relMSE x seconds against Mitsuba's volpath.")
+    command.add_argument("scenes", nargs="*", type=Path, help="default: both lamp boxes at -D res=256")
+    studies.add_options(command, "llvm_ad_rgb,scalar_rgb,bdpt,pt", "race")
+    add_timing(command, seconds=5)
+    command = add(commands, "pane", studies.pane, "Light through frosted glass only (LW96 fig. 6): bdpt against pt.")
     command.add_argument("scene", nargs="?", type=Path, default=SCENES / "church.json")
-    add_timing(command, rounds=8, seconds=10)
+    studies.add_options(command, "bdpt,pt", "pane")
+    add_timing(command, seconds=10)
 
 
-def run_pane(options: argparse.Namespace) -> bool:
-    return pane.run(open_scene(options.scene), options.rounds, options.seconds, options.threads)
+def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:
+    """How long to render."""
+    command.add_argument("--rounds", type=int, default=8, help="independent renders each (default %(default)s)")
+    command.add_argument("--seconds", type=float, default=seconds, help="time of each (default %(default)s)")
 
 
 def add_plume(commands: Commands) -> None:
@@ -206,17 +189,6 @@ def run_page(options: argparse.Namespace) -> bool:
     return page.run(options.file, options.output, options.if_possible)
 
 
-def add_convergence(commands: Commands) -> None:
-    command = add(commands, "convergence", run_convergence, convergence.TEXT)
-    convergence.options(command)
-    command.add_argument("--size", type=size, help="WxH instead of the scene's own")
-    add_parameters(command)
-
-
-def run_convergence(options: argparse.Namespace) -> bool:
-    return convergence.run(options, options.size, parameters_of(options))
-
-
 def add_record(commands: Commands) -> None:
     command = add(commands, "record", run_record, "A finished study's table, curves and images, for the repository.")
     command.add_argument("folder", type=Path, help="of a study by `convergence` or `tyndall study`")
@@ -224,9 +196,8 @@ def add_record(commands: Commands) -> None:
 
 
 def run_record(options: argparse.Namespace) -> bool:
-    from validation.study import record  # it loads a plotting library, which no other command needs
-
-    return record.run(options.folder, options.output)
+    print(tyndall.call([str(tyndall.binary()), "report", str(options.folder), "--record", str(options.output)]).stdout.strip())
+    return True
 
 
 def add_stability(commands: Commands) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation import mitsuba, picture, png, tyndall
+from validation import mitsuba, picture, tyndall
 from validation.failure import Failure
 from validation.places import OUTPUT
 from validation.scene import Scene, derived
@@ -252,7 +252,7 @@ def save_picture(path: Path, reference: np.ndarray, found: np.ndarray, z: np.nda
     """Mitsuba, Tyndall, and where they differ."""
     white = picture.white_of(reference)
     row = picture.side_by_side(picture.displayed(reference, white), picture.displayed(found, white), picture.diverging(z))
-    png.write(path, row)
+    picture.write_png(path, row)
 
 
 def perturbed(scene: Scene, amount: float) -> Scene:

@@ -4,10 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from validation import flip, picture, png
+from validation import flip, picture
 from validation.compare import RETRY, Effort, Verdict
 from validation.failure import Failure
 from validation.files import write_text
@@ -61,13 +60,13 @@ def section(method: str, verdict: Verdict) -> Section:
         raise ValueError("a page is made of verdicts that have their images")
     white = picture.white_of(verdict.reference)
     differences, mean = flip.compared(verdict.reference, verdict.found)
-    shown: list[tuple[str, np.ndarray]] = [
-        ("Mitsuba", picture.displayed(verdict.reference, white)),
-        ("Tyndall", picture.displayed(verdict.found, white)),
-        ("z, Tyndall less Mitsuba", picture.diverging(verdict.map, SHARPEST)),
+    shown = [
+        ("Mitsuba", picture.png(picture.displayed(verdict.reference, white))),
+        ("Tyndall", picture.png(picture.displayed(verdict.found, white))),
+        ("z, Tyndall less Mitsuba", picture.png(picture.diverging(verdict.map, SHARPEST))),
         ("FLIP", differences),
     ]
-    return Section(method, verdict, [(title, png.data_url(pixels)) for title, pixels in shown], mean)
+    return Section(method, verdict, [(title, picture.data_url(file)) for title, file in shown], mean)
 
 
 def write(page: Page, path: Path) -> None:

@@ -16,7 +16,7 @@ PYTHON = ENVIRONMENT / "bin" / "python"
 STAMP = ENVIRONMENT / "stamp"
 
 
-def enter() -> None:
+def enter(module: str = "validation") -> None:
     """Returns inside the environment; outside of it, makes it if need be and becomes a process in it."""
     if Path(sys.prefix).resolve() == ENVIRONMENT.resolve():
         return
@@ -24,7 +24,7 @@ def enter() -> None:
         raise Failure(f"Python 3.11 or newer is needed, this is {sys.version.split()[0]}", "install a newer Python 3")
     make_once()
     variables = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONNOUSERSITE": "1"}
-    os.execve(PYTHON, [str(PYTHON), "-m", "validation", *sys.argv[1:]], variables)
+    os.execve(PYTHON, [str(PYTHON), "-m", module, *sys.argv[1:]], variables)
 
 
 def make_once() -> None:

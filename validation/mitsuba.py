@@ -133,11 +133,3 @@ def step(s: dict) -> Any:
             return identity.look_at(s["origin"], s["target"], s["up"])
         case "matrix":
             return mi.ScalarTransform4f(np.reshape(s["value"], (4, 4)))
-
-
-def write_png(path: Path, pixels: np.ndarray) -> None:
-    """Writes 8-bit pixels, (height, width, 3)."""
-    if mi.variant() is None:
-        use("scalar_rgb")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    mi.Bitmap(np.ascontiguousarray(pixels)).write(str(path))

@@ -1,13 +1,25 @@
-"""Pictures for the eye: tone mapping, enlargement, and maps of disagreement."""
+"""Pictures for the eye: tone mapping, enlargement, and maps of disagreement; 8-bit pixels are (height, width, 3)."""
 
+import base64
+from pathlib import Path
+
+import mitsuba as mi
 import numpy as np
+
+from validation.mitsuba import use
+
+
+def bitmap(pixels: np.ndarray) -> mi.Bitmap:
+    """Mitsuba's picture of an array."""
+    if mi.variant() is None:
+        use("scalar_rgb")
+    return mi.Bitmap(np.ascontiguousarray(pixels))
 
 
 def displayed(image: np.ndarray, white: float) -> np.ndarray:
     """Linear RGB as 8-bit sRGB, `white` becoming full white."""
-    x = np.clip(image / white, 0, 1)
-    srgb = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
-    return np.round(255 * srgb).astype(np.uint8)
+    linear = bitmap(np.clip(image / white, 0, 1).astype(np.float32))
+    return np.array(linear.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.UInt8, srgb_gamma=True))
 
 
 def white_of(image: np.ndarray) -> float:
@@ -34,3 +46,21 @@ def side_by_side(*pictures: np.ndarray, gap: int = 4) -> np.ndarray:
     large = [enlarged(p) for p in pictures]
     rule = np.full((large[0].shape[0], gap, 3), 255, dtype=np.uint8)
     return np.concatenate([part for p in large for part in (p, rule)][:-1], axis=1)
+
+
+def png(pixels: np.ndarray) -> bytes:
+    """A PNG file of 8-bit pixels."""
+    stream = mi.MemoryStream()
+    bitmap(pixels).write(stream, mi.Bitmap.FileFormat.PNG)
+    return bytes(stream.raw_buffer())
+
+
+def write_png(path: Path, pixels: np.ndarray) -> None:
+    """Writes 8-bit pixels."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(png(pixels))
+
+
+def data_url(file: bytes) -> str:
+    """A PNG file as the address of an image that a page holds itself."""
+    return "data:image/png;base64," + base64.b64encode(file).decode("ascii")

@@ -62,11 +62,3 @@ def sidak_limit(tests: int, significance: float = SIGNIFICANCE) -> float:
     each = -np.expm1(np.log1p(-significance) / tests)
     return float(stats.norm.isf(each / 2))
 
-
-def bootstrap_median(values: np.ndarray, confidence: float = 0.95, draws: int = 10_000) -> tuple[float, float, float]:
-    """The median and its confidence interval."""
-    values = np.asarray(values)
-    picks = np.random.default_rng(1).integers(len(values), size=(draws, len(values)))
-    medians = np.median(values[picks], axis=1)
-    low, high = np.quantile(medians, [(1 - confidence) / 2, (1 + confidence) / 2])
-    return float(np.median(values)), float(low), float(high)

@@ -239,6 +239,10 @@ pub struct Report {
     /// Folder of the study: study.json and the images that it names
     #[arg(value_name = "FOLDER")]
     pub folder: PathBuf,
+
+    /// Also write its table, curves and images for a README to this folder: convergence.md, .svg and _strips.svg
+    #[arg(long, value_name = "FOLDER")]
+    pub record: Option<PathBuf>,
 }
 
 /// A scene file and what to set in it.

@@ -6,7 +6,10 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    study::convergence::contender::{Contender, slug},
+    study::convergence::{
+        contender::{Contender, How, slug},
+        external,
+    },
 };
 use clap::{CommandFactory, Parser};
 
@@ -33,20 +36,31 @@ pub fn parse(place: &str, words: &str) -> Result<Estimator> {
 pub fn all(arguments: &Study) -> Result<Vec<Contender>> {
     let mut contenders = Vec::new();
     for text in &arguments.contenders {
-        contenders.push(explicit(text)?);
+        let (name, words) = named("--contender", text, "joins: --integrator bdpt --strategies hit,join")?;
+        let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+        contenders.push(Contender { name, how: How::Options(words) });
+    }
+    let is_alone = contenders.is_empty();
+    for text in &arguments.externals {
+        let (name, command) =
+            named("--external", text, "other: render.py {scene} --seed {seed} --spp {spp} -o {out}")?;
+        external::words("--external", &command)?;
+        contenders.push(Contender { name, how: How::Command(command) });
     }
     let axes = axes(arguments)?;
     if !axes.is_empty() {
         contenders.extend(product(&axes));
-    } else if contenders.is_empty() {
+    } else if is_alone {
         contenders.extend(product(&[Axis::new(
             "--integrators",
             "integrator",
             &["bdpt".to_owned(), "pt".to_owned()],
         )?]));
     }
-    for contender in &contenders {
-        parse(&contender.name, &contender.words)?;
+    for Contender { name, how } in &contenders {
+        if let How::Options(words) = how {
+            parse(name, words)?;
+        }
     }
     let mut slugs: Vec<String> = contenders.iter().map(Contender::slug).collect();
     slugs.sort();
@@ -59,15 +73,15 @@ pub fn all(arguments: &Study) -> Result<Vec<Contender>> {
     }
 }
 
-/// "NAME: OPTIONS".
-fn explicit(text: &str) -> Result<Contender> {
-    let (name, words) = text.split_once(':').unwrap_or_default();
+/// The parts of "NAME: REST", which `flag` was given.
+fn named(flag: &str, text: &str, example: &str) -> Result<(String, String)> {
+    let (name, rest) = text.split_once(':').unwrap_or_default();
     if name.trim().is_empty() {
-        let remedy = "write, for example, --contender \"joins: --integrator bdpt --strategies hit,join\"";
-        return Err(Error::new("--contender", "NAME: OPTIONS", format!("\"{text}\""), remedy));
+        let expected = if flag == "--external" { "NAME: COMMAND" } else { "NAME: OPTIONS" };
+        let remedy = format!("write, for example, {flag} \"{example}\"");
+        return Err(Error::new(flag, expected, format!("\"{text}\""), remedy));
     }
-    let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
-    Ok(Contender { name: name.trim().to_owned(), words })
+    Ok((name.trim().to_owned(), rest.trim().to_owned()))
 }
 
 /// An option and the values that it takes in turn.
@@ -143,26 +157,25 @@ impl Axis {
 
 /// All combinations, the last axis varying fastest.
 fn product(axes: &[Axis]) -> Vec<Contender> {
-    let none = Contender { name: String::new(), words: String::new() };
     let joined = |a: &str, b: &str| format!("{a} {b}").trim().to_owned();
-    axes.iter().fold(vec![none], |contenders, axis| {
-        let with = |contender: &Contender| {
-            let Contender { name, words } = contender.clone();
-            axis.values.iter().map(move |(shown, more)| Contender {
-                name: joined(&name, shown),
-                words: joined(&words, more),
-            })
+    let all = axes.iter().fold(vec![(String::new(), String::new())], |contenders, axis| {
+        let with = |(name, words): &(String, String)| {
+            let both = |(shown, more): &(String, String)| (joined(name, shown), joined(words, more));
+            axis.values.iter().map(both).collect::<Vec<_>>()
         };
-        contenders.iter().flat_map(with).collect::<Vec<_>>()
-    })
+        contenders.iter().flat_map(with).collect()
+    });
+    all.into_iter().map(|(name, words)| Contender { name, how: How::Options(words) }).collect()
 }
 
 /// Who may make a reference, best first; where all `contenders` bound the depth of paths alike, with that bound, and with
 /// flights that are sampled without bias. Light tracing is not among them: what it rarely finds makes a bad truth.
-pub fn referees(contenders: &[Contender]) -> Result<Vec<String>> {
+pub fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
     let mut depths = Vec::new();
-    for contender in contenders {
-        depths.push(parse(&contender.name, &contender.words)?.max_depth);
+    for Contender { name, how } in contenders {
+        if let How::Options(words) = how {
+            depths.push(parse(name, words)?.max_depth);
+        }
     }
     let same =
         depths.first().copied().flatten().filter(|depth| depths.iter().all(|other| *other == Some(*depth)));
@@ -171,7 +184,8 @@ pub fn referees(contenders: &[Contender]) -> Result<Vec<String>> {
         Some(MaxDepth::Unbounded) => " --max-depth -1".to_owned(),
         Some(MaxDepth::Edges(edges)) => format!(" --max-depth {edges}"),
     };
-    Ok(["bdpt", "pt"].map(|name| format!("--integrator {name} --tracker auto{depth}")).into())
+    let options = |name| How::Options(format!("--integrator {name} --tracker auto{depth}"));
+    Ok(["bdpt", "pt"].map(options).into())
 }
 
 /// Names for scenes out of their files' names, each its own.
@@ -198,8 +212,14 @@ mod tests {
         all(&study)
     }
 
+    fn words(how: How) -> String {
+        match how {
+            How::Options(words) | How::Command(words) => words,
+        }
+    }
+
     fn shown(options: &[&str]) -> Vec<String> {
-        contenders(options).unwrap().into_iter().map(|c| format!("{}: {}", c.name, c.words)).collect()
+        contenders(options).unwrap().into_iter().map(|c| format!("{}: {}", c.name, words(c.how))).collect()
     }
 
     #[test]
@@ -225,6 +245,14 @@ mod tests {
     }
 
     #[test]
+    fn other_renderers_come_first_and_compete_with_the_usual() {
+        assert_eq!(
+            shown(&["--external", "other: r {scene} {seed} {spp} {out}"]),
+            ["other: r {scene} {seed} {spp} {out}", "bdpt: --integrator bdpt", "pt: --integrator pt"]
+        );
+    }
+
+    #[test]
     fn heuristics_compete_on_one_profile() {
         assert_eq!(
             shown(&["--heuristics", "balance,power", "--samplers", "sobol"]),
@@ -241,6 +269,8 @@ mod tests {
             (["--contender", "--integrator pt"], "NAME: OPTIONS"),
             (["--contender", ": --integrator pt"], "NAME: OPTIONS"),
             (["--contender", "a: --integrator ptt"], "bdpt"),
+            (["--external", "render.py"], "NAME: COMMAND"),
+            (["--external", "a: render.py {scene}"], "{budgets} and {folder}"),
             (["--contender", "a: --spp 4"], "how paths are made"),
             (["--integrators", "bdpt,bdpt"], "twice"),
             (["--integrators", "bdpt,ptt"], "ptt"),
@@ -259,7 +289,7 @@ mod tests {
 
     #[test]
     fn a_reference_is_as_deep_as_all_contenders() {
-        let depths = |options: &[&str]| referees(&contenders(options).unwrap()).unwrap()[0].clone();
+        let depths = |options: &[&str]| words(referees(&contenders(options).unwrap()).unwrap().remove(0));
         assert_eq!(depths(&[]), "--integrator bdpt --tracker auto");
         assert_eq!(depths(&["--vary", "max-depth=2,3"]), "--integrator bdpt --tracker auto");
         assert_eq!(depths(&["--vary", "max-depth=2"]), "--integrator bdpt --tracker auto --max-depth 2");

@@ -77,7 +77,7 @@ pub struct Limit {
 /// What a map shows of every pixel.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum Shows {
-    /// (x - r)^2 / (r^2 + 0.01)
+    /// (x - r)^2 / (r^2 + 0.01 m^2), where m is the mean luminance of the reference
     Relative,
     /// |x - r|
     Absolute,

@@ -17,7 +17,7 @@ use crate::{
         integrator::{Integrator, Method, Restriction},
         lights::Light,
     },
-    study::coverage,
+    study::coverage::{self, Paths},
     transport::{
         Strategies,
         profile::{Needs, ProfileName},
@@ -182,5 +182,6 @@ fn unreachable(scene: &Scene, integrator: &Integrator) -> Vec<String> {
         Method::Lt => Strategies::LT,
         Method::Fog => Strategies::NONE,
     };
-    coverage::unreachable(scene, strategies, integrator.hide_emitters)
+    let Integrator { max_depth, hide_emitters, .. } = *integrator;
+    coverage::unreachable(scene, strategies, Paths { max_depth, hide_emitters })
 }

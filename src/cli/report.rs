@@ -5,7 +5,10 @@ use crate::{error::Result, study::page};
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Report) -> Result<()> {
-    let path = page::write(&arguments.folder)?;
-    super::say(&path.display().to_string());
+    let mut paths = vec![page::write(&arguments.folder)?];
+    if let Some(to) = &arguments.record {
+        paths.extend(page::record(&arguments.folder, to)?);
+    }
+    paths.iter().for_each(|path| super::say(&path.display().to_string()));
     Ok(())
 }

@@ -14,7 +14,8 @@ use crate::{
     },
     study::{
         convergence::{
-            contender::{Contender, Entry},
+            contender::{Contender, Entry, How, Renderer},
+            external::{self, External},
             question::{Effort, Question, ReferenceFile, SceneQuestion, Wanted, fingerprint},
             reference,
             run::{self, Progress, Signature},
@@ -77,6 +78,16 @@ pub struct Study {
     #[arg(long = "contender", value_name = "NAME: OPTIONS", allow_hyphen_values = true)]
     pub contenders: Vec<String>,
 
+    /// Another renderer as a contender, by its command line: "mitsuba: render.py {scene} --seed {seed} --spp {spp} -o {out}";
+    /// may be repeated
+    ///
+    /// It is run for each budget, or for each seed with {budgets} (such as 16,32,64) and {folder} (where to write 16.exr,
+    /// 32.exr, 64.exr) in place of {spp} and {out}. Further placeholders: {definitions} (-D name=value for each parameter),
+    /// {size}, {width}, {height}, {threads}. It reports the seconds of rendering, without starting, loading and compiling,
+    /// on a line for each image: {"spp": 16, "seconds": 1.5, "load_seconds": 0.2}. validation/contender.py is one.
+    #[arg(long = "external", value_name = "NAME: COMMAND", allow_hyphen_values = true)]
+    pub externals: Vec<String>,
+
     /// Renders of each contender with a seed each; intervals come from these
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub seeds: u32,
@@ -124,10 +135,11 @@ pub struct Study {
           allow_negative_numbers = true)]
     pub reference_errors: Vec<f64>,
 
-    /// Who makes the reference, by options of `tyndall render`: "--integrator bdpt" [default: bdpt or pt, whichever does
-    /// not compete, where it covers the scene and is not much noisier, else a contender with other seeds]
+    /// What makes the reference, by options of `tyndall render`, such as "--integrator bdpt", or by the name of a
+    /// contender; several, by repeating this, make it together [default: bdpt or pt, whichever does not compete, where it
+    /// covers the scene and is not much noisier, else a contender with other seeds; and the first external contender]
     #[arg(long = "reference-by", value_name = "OPTIONS", allow_hyphen_values = true)]
-    pub by: Option<String>,
+    pub by: Vec<String>,
 
     /// Time to make each reference in [default: four times that of a contender's largest budgets]
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
@@ -156,7 +168,7 @@ pub fn run(arguments: &Study) -> Result<()> {
     let contenders = contenders::all(arguments)?;
     let pool = threads(arguments.threads)?;
     let question = question(arguments, contenders, pool.current_num_threads())?;
-    let mut stage = Stage::new(arguments);
+    let mut stage = Stage::new(arguments, pool.current_num_threads());
     check(&mut stage, &question)?;
     let signature = Signature {
         command: command(),
@@ -164,7 +176,7 @@ pub fn run(arguments: &Study) -> Result<()> {
         confidence: arguments.confidence,
     };
     let mut bar = Bar::new();
-    let enter = &mut |scene: usize, words: &str| stage.enter(scene, words);
+    let enter = &mut |scene: usize, how: &How| stage.enter(scene, how);
     let tell = &mut |progress: &Progress| bar.tell(progress);
     let outcome =
         pool.install(|| run::run(&arguments.output, arguments.restart, &question, &signature, enter, tell));
@@ -245,14 +257,15 @@ fn wanted(arguments: &Study, contenders: &[Contender]) -> Result<Wanted> {
         (Some(spp), _) => Some(Effort::Samples(u64::from(spp))),
         (None, seconds) => seconds.map(|seconds| Effort::Seconds(seconds.as_secs_f64())),
     };
-    let others = match &arguments.by {
-        None => contenders::referees(contenders)?,
-        Some(words) => {
-            contenders::parse("--reference-by", words)?;
-            vec![words.clone()]
-        }
+    let named = |text: &String| match contenders.iter().find(|contender| contender.name == *text) {
+        Some(contender) => Ok(contender.how.clone()),
+        None => contenders::parse("--reference-by", text).map(|_| How::Options(text.clone())),
     };
-    Ok(Wanted::Made { others, is_given: arguments.by.is_some(), effort })
+    let others = match arguments.by.is_empty() {
+        true => contenders::referees(contenders)?,
+        false => arguments.by.iter().map(named).collect::<Result<_>>()?,
+    };
+    Ok(Wanted::Made { others, is_given: !arguments.by.is_empty(), effort })
 }
 
 fn read(path: &Path) -> Result<Vec<u8>> {
@@ -270,7 +283,7 @@ fn check(stage: &mut Stage<'_>, question: &Question) -> Result<()> {
             reference::read(&files[scene], setup.film.width as usize, setup.film.height as usize)?;
         }
         if let Wanted::Made { others, is_given: true, .. } = &question.reference {
-            stage.enter(scene, &others[0])?;
+            others.iter().try_for_each(|how| stage.enter(scene, how).map(drop))?;
         }
     }
     Ok(())
@@ -279,13 +292,14 @@ fn check(stage: &mut Stage<'_>, question: &Question) -> Result<()> {
 /// The scene at work, as it was built for each tracker.
 struct Stage<'a> {
     arguments: &'a Study,
+    threads: usize,
     scene: Option<(usize, Object, f64)>,
     setups: Vec<(Option<Tracker>, Arc<Setup>, f64)>,
 }
 
 impl<'a> Stage<'a> {
-    fn new(arguments: &'a Study) -> Self {
-        Self { arguments, scene: None, setups: Vec::new() }
+    fn new(arguments: &'a Study, threads: usize) -> Self {
+        Self { arguments, threads, scene: None, setups: Vec::new() }
     }
 
     /// The scene as its file says.
@@ -318,7 +332,23 @@ impl<'a> Stage<'a> {
     }
 
     /// A contender ready to render.
-    fn enter(&mut self, scene: usize, words: &str) -> Result<Entry> {
+    fn enter(&mut self, scene: usize, how: &How) -> Result<Entry> {
+        match how {
+            How::Options(words) => self.own(scene, words),
+            How::Command(command) => self.external(scene, command),
+        }
+    }
+
+    fn external(&mut self, scene: usize, command: &str) -> Result<Entry> {
+        let setup = self.load(scene)?;
+        let size = (setup.film.width as usize, setup.film.height as usize);
+        let words = external::words("--external", command)?;
+        let Study { scenes, definitions, .. } = self.arguments;
+        let external = External::new(&words, &scenes[scene], definitions, size, self.threads)?;
+        Ok(Entry { setup, renderer: Renderer::External(external), notes: Vec::new() })
+    }
+
+    fn own(&mut self, scene: usize, words: &str) -> Result<Entry> {
         let asked = contenders::parse("contender", words)?;
         let (setup, load_seconds) = self.setup(scene, asked.tracker)?;
         let budget = Budget { samples_per_pixel: Some(1), time: None };
@@ -329,7 +359,8 @@ impl<'a> Stage<'a> {
         }
         let still = setup.scene.media.iter().all(|medium| medium.varying.is_none());
         let idle = (asked.tracker.is_some() && still).then(|| IDLE_TRACKER.to_owned());
-        Ok(Entry { setup, settings, load_seconds, notes: idle.into_iter().collect() })
+        let renderer = Renderer::Own { settings, load_seconds };
+        Ok(Entry { setup, renderer, notes: idle.into_iter().collect() })
     }
 }
 
@@ -338,17 +369,10 @@ const IDLE_TRACKER: &str = "its tracker has no effect: no medium of this scene v
 
 /// The command, as a shell takes it.
 fn command() -> String {
-    let words = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
-    std::iter::once("tyndall".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
-}
-
-/// `word` in quotes, unless no shell can find anything in it that means more than itself.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_=+,./:@%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
+    let words: Vec<String> =
+        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let all = || std::iter::once("tyndall").chain(words.iter().map(String::as_str));
+    shlex::try_join(all()).unwrap_or_else(|_| all().collect::<Vec<_>>().join(" "))
 }
 
 fn machine(threads: usize) -> String {
@@ -389,27 +413,6 @@ impl Bar {
         if self.is_hidden && tenths > self.tenths {
             self.tenths = tenths;
             complain(&format!("{} % done: {doing}", 10 * tenths));
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_that_mean_more_to_a_shell_are_quoted() {
-        for (word, expected) in [
-            ("a/b-c_d.json", "a/b-c_d.json"),
-            ("hit+join,x=1", "hit+join,x=1"),
-            ("", "''"),
-            ("~", "'~'"),
-            ("a b", "'a b'"),
-            ("it's", "'it'\\''s'"),
-            ("`ls`#{a}", "'`ls`#{a}'"),
-            ("é", "'é'"),
-        ] {
-            assert_eq!(quoted(word), expected);
         }
     }
 }

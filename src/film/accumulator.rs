@@ -1,6 +1,6 @@
 //! Sums and square sums of the passes over an image: its mean, and how far the mean may be off.
 
-use crate::math::{Spectrum, SpectrumExt, Vec3, spectrum::LUMINANCE};
+use crate::math::{Spectrum, SpectrumExt, Vec3, relative::Relative, spectrum::LUMINANCE};
 
 /// Adds up passes; each pass is one independent estimate of the whole image.
 #[derive(Clone, Debug)]
@@ -89,18 +89,21 @@ impl Accumulator {
         (self.passes > 1).then(|| self.sums.iter().zip(&self.luminance_squares).map(of_pixel).sum())
     }
 
-    /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01), by
-    /// luminance; none before the second pass. Passes are taken for independent: where a sampler spreads their random
-    /// numbers evenly, the error is less than this.
+    /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01 m^2), by
+    /// luminance, where m is that of the whole image; none before the second pass. Passes are taken for independent:
+    /// where a sampler spreads their random numbers evenly, the error is less than this.
     pub fn noise(&self) -> Option<f64> {
         if self.passes < 2 {
             return None;
         }
         let n = self.passes as f64;
+        let [r, g, b] = LUMINANCE.to_array().map(f64::from);
+        let mean = |sum: &[f64; 3]| (r * sum[0] + g * sum[1] + b * sum[2]) / n;
+        let means = self.sums.iter().map(mean).filter(|mean| mean.is_finite());
+        let to = Relative::to_mean(means.sum::<f64>() / self.sums.len() as f64);
         let relative = self.sums.iter().zip(&self.luminance_squares).map(|(sum, square)| {
-            let mean = (0.212_671 * sum[0] + 0.715_160 * sum[1] + 0.072_169 * sum[2]) / n;
-            let variance = ((square / n - mean * mean) / (n - 1.0)).max(0.0);
-            variance / (mean * mean + 0.01)
+            let mean = mean(sum);
+            to.square(((square / n - mean * mean) / (n - 1.0)).max(0.0), mean)
         });
         Some((relative.sum::<f64>() / self.sums.len() as f64).sqrt())
     }
@@ -140,9 +143,22 @@ mod tests {
         assert_eq!(film.noise(), None);
         film.add(&[Spectrum::splat(3.0)]);
         assert_eq!(film.mean(), vec![Spectrum::splat(2.0)]);
-        // Variance of the mean of {1, 3} is 1; relative to 2^2 + 0.01.
-        let expected = (1.0f64 / 4.01).sqrt();
+        // Variance of the mean of {1, 3} is 1; relative to 2^2 + 0.01 2^2.
+        let expected = (1.0f64 / 4.04).sqrt();
         assert!((film.noise().unwrap() - expected).abs() < 1e-5);
         assert!((film.luminance_variance().unwrap() - 2.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn noise_does_not_depend_on_the_unit_of_radiance() {
+        let noise = |unit: f32| {
+            let mut film = Accumulator::new(3);
+            for pass in [[0.0, 1.0, 5.0], [0.0, 3.0, 4.0], [0.1, 2.0, 6.0]] {
+                film.add(&pass.map(|value| Spectrum::splat(unit * value)));
+            }
+            film.noise().unwrap()
+        };
+        let one = noise(1.0);
+        assert!(one > 0.1 && [1e-3, 1e3].iter().all(|unit| (noise(*unit) / one - 1.0).abs() < 1e-5));
     }
 }

@@ -10,7 +10,10 @@
 use super::output;
 use crate::{
     error::Result,
-    math::{Spectrum, SpectrumExt, srgb},
+    math::{
+        Spectrum, SpectrumExt,
+        srgb::{Srgb as _, byte, shown, white},
+    },
 };
 use image::{ExtendedColorType, ImageEncoder, ImageError, codecs::png::PngEncoder};
 use std::{io, path::Path};
@@ -50,7 +53,7 @@ pub enum ToneCurve {
 impl ToneCurve {
     /// That with which `pixels` are written.
     pub fn of(pixels: &[Spectrum]) -> Self {
-        Self::White(white_point(pixels))
+        Self::White(white(pixels, BELOW_WHITE).map_or(1.0, |white| white.max(1.0)))
     }
 
     /// A pixel as shown: sRGB-encoded channels in [0, 1].
@@ -59,26 +62,13 @@ impl ToneCurve {
             Self::White(white) => displayed(shown(pixel), white),
             Self::Scale(scale) => (shown(pixel) * scale).min(Spectrum::ONE),
         };
-        Spectrum::from_array(shown.to_array().map(srgb::encode))
+        Spectrum::from_array(shown.to_array().map(|c| c.clamp(0.0, 1.0).srgb_encoded()))
     }
 }
 
 fn tone_mapped(pixels: &[Spectrum]) -> Vec<u8> {
     let curve = ToneCurve::of(pixels);
     pixels.iter().flat_map(|pixel| curve.show(*pixel).to_array().map(byte)).collect()
-}
-
-/// A pixel as if nothing had gone wrong with it. The bound keeps products of two finite.
-fn shown(pixel: Spectrum) -> Spectrum {
-    Spectrum::from_array(pixel.to_array().map(|c| if c > 0.0 { c.min(1e18) } else { 0.0 }))
-}
-
-fn white_point(pixels: &[Spectrum]) -> f32 {
-    let mut luminances: Vec<f32> = pixels.iter().map(|pixel| shown(*pixel).luminance()).collect();
-    let rank = (luminances.len() as f64 * BELOW_WHITE).ceil() as usize;
-    let Some(rank) = rank.checked_sub(1).filter(|rank| *rank < luminances.len()) else { return 1.0 };
-    let (_, white, _) = luminances.select_nth_unstable_by(rank, f32::total_cmp);
-    white.max(1.0)
 }
 
 fn displayed(pixel: Spectrum, white: f32) -> Spectrum {
@@ -98,11 +88,6 @@ fn displayed(pixel: Spectrum, white: f32) -> Spectrum {
     }
     let grey = Spectrum::splat(mapped);
     grey + (scaled - grey) * ((1.0 - mapped) / (most - mapped))
-}
-
-/// The nearest byte for an encoded channel in [0, 1].
-pub fn byte(encoded: f32) -> u8 {
-    (255.0 * encoded).round() as u8
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ pub mod fresnel;
 pub mod lanes;
 pub mod measure;
 pub mod offset;
+pub mod relative;
 pub mod section;
 pub mod similarity;
 pub mod spectrum;

@@ -3,6 +3,7 @@
 use crate::{
     description::{Location, Position},
     error::{Error, Result},
+    math::srgb::Srgb as _,
 };
 use std::{path::Path, sync::Arc};
 
@@ -120,14 +121,9 @@ pub(super) fn rgb(text: &str) -> Parsed<[f64; 3]> {
 fn hex(digits: &str) -> Parsed<[f64; 3]> {
     let number = u32::from_str_radix(digits, 16).ok();
     match number.filter(|_| digits.len() == 6 && digits.is_ascii() && !digits.starts_with('+')) {
-        Some(rgb) => Ok([rgb >> 16, rgb >> 8, rgb].map(|c| decoded(f64::from(c & 0xff) / 255.0))),
+        Some(rgb) => Ok([rgb >> 16, rgb >> 8, rgb].map(|c| (f64::from(c & 0xff) / 255.0).srgb_decoded())),
         None => mistake("six hexadecimal digits after #", quoted(&format!("#{digits}"))),
     }
-}
-
-/// The sRGB transfer function (IEC 61966-2-1), from encoded to linear.
-fn decoded(encoded: f64) -> f64 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// A spectrum: one value at all wavelengths, or values at wavelengths.

@@ -1,10 +1,7 @@
 //! How far an image is from a reference: the measures of a study, in double precision, every value alike.
 
-use crate::math::Spectrum;
+use crate::math::{Spectrum, relative::Relative};
 use serde::Serialize;
-
-/// What keeps relative measures finite where the reference is black [radiance, or its square].
-pub const FLOOR: f64 = 0.01;
 
 /// The share of the worst values that the trimmed measure leaves out.
 const TRIMMED: f64 = 0.001;
@@ -18,13 +15,13 @@ pub struct Measures {
     pub mse: f64,
     /// Square root of the mean squared error [radiance].
     pub rmse: f64,
-    /// mean((x - r)^2 / (r^2 + 0.01)).
+    /// mean((x - r)^2 / (r^2 + 0.01 m^2)), m the mean luminance of r.
     pub relmse: f64,
     /// The same without the worst 0.1 % of values (rounded down: of fewer than 1000 none is left out).
     pub trimmed_relmse: f64,
-    /// mean(|x - r| / (|r| + 0.01)).
+    /// mean(|x - r| / (|r| + 0.01 m)).
     pub mape: f64,
-    /// mean(2 |x - r| / (|x| + |r| + 0.01)).
+    /// mean(2 |x - r| / (|x| + |r| + 0.01 m)).
     pub smape: f64,
     /// mean(x) / mean(r) - 1: what is left of it where samples grow many is bias. 0 where the means are equal,
     /// infinite where only the reference's is 0.
@@ -42,11 +39,11 @@ pub fn measures(image: &[Spectrum], reference: &[Spectrum]) -> Measures {
 pub fn measures_of(image: &[Spectrum], reference: &[Spectrum], channels: usize) -> Measures {
     let absent = Spectrum::NAN;
     let pixel = |pixels: &[Spectrum], at: usize| pixels.get(at).copied().unwrap_or(absent);
-    let mut sums = Sums::default();
+    let (to, mut sums) = (Relative::to(reference, channels), Sums::default());
     for at in 0..image.len().max(reference.len()) {
         let (x, r) = (pixel(image, at), pixel(reference, at));
         for channel in 0..channels {
-            sums.add(f64::from(x[channel]), f64::from(r[channel]));
+            sums.add(f64::from(x[channel]), f64::from(r[channel]), to);
         }
     }
     sums.measures()
@@ -56,11 +53,6 @@ pub fn measures_of(image: &[Spectrum], reference: &[Spectrum], channels: usize) 
 pub fn means(pixels: &[Spectrum]) -> [f64; 3] {
     let sum = pixels.iter().fold(crate::math::DVec3::ZERO, |sum, pixel| sum + pixel.as_dvec3());
     (sum / pixels.len() as f64).to_array()
-}
-
-/// (x - r)^2 / (r^2 + 0.01) of one value.
-pub fn relative_square(x: f64, r: f64) -> f64 {
-    (x - r).powi(2) / (r * r + FLOOR)
 }
 
 #[derive(Default)]
@@ -75,16 +67,16 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, x: f64, r: f64) {
+    fn add(&mut self, x: f64, r: f64, to: Relative) {
         if !(x.is_finite() && r.is_finite()) {
             self.not_finite += 1;
             return;
         }
         let off = (x - r).abs();
         self.squares += off * off;
-        self.relative_squares.push(relative_square(x, r));
-        self.relative += off / (r.abs() + FLOOR);
-        self.symmetric += 2.0 * off / (x.abs() + r.abs() + FLOOR);
+        self.relative_squares.push(to.square(off * off, r));
+        self.relative += to.difference(off, r);
+        self.symmetric += to.difference(2.0 * off, x.abs() + r.abs());
         self.image += x;
         self.reference += r;
     }
@@ -129,15 +121,17 @@ mod tests {
         (found - expected).abs() <= 1e-6 * expected.abs()
     }
 
-    /// By hand, for x = (1, 0, 2) and r = (0.5, 0, 4): squares 0.25, 0, 4; relative to 0.26, 0.01, 16.01;
-    /// absolute 0.5, 0, 2 relative to 0.51, 0.01, 4.01, and twice them to 1.51, 0.01, 6.01.
+    /// By hand, for x = (1, 0, 2) and r = (0.5, 0, 4), of luminance m = 0.5 R + 4 B: squares 0.25, 0, 4 relative to r^2
+    /// + 0.01 m^2; absolute 0.5, 0, 2 relative to |r| + 0.01 m, and twice them to |x| + |r| + 0.01 m.
     #[test]
     fn measures_are_those_worked_out_by_hand() {
         let m = measures(&[vec3(1.0, 0.0, 2.0)], &[vec3(0.5, 0.0, 4.0)]);
         assert!(close(m.mse, 4.25 / 3.0) && close(m.rmse, (4.25f64 / 3.0).sqrt()), "{m:?}");
-        assert!(close(m.relmse, (0.25 / 0.26 + 4.0 / 16.01) / 3.0), "{m:?}");
-        assert!(close(m.mape, (0.5 / 0.51 + 2.0 / 4.01) / 3.0), "{m:?}");
-        assert!(close(m.smape, (1.0 / 1.51 + 4.0 / 6.01) / 3.0), "{m:?}");
+        let floor = 0.5 * 0.212_671 + 4.0 * 0.072_169;
+        let (square, floor) = (0.01 * floor * floor, 0.01 * floor);
+        assert!(close(m.relmse, (0.25 / (0.25 + square) + 4.0 / (16.0 + square)) / 3.0), "{m:?}");
+        assert!(close(m.mape, (0.5 / (0.5 + floor) + 2.0 / (4.0 + floor)) / 3.0), "{m:?}");
+        assert!(close(m.smape, (1.0 / (1.5 + floor) + 4.0 / (6.0 + floor)) / 3.0), "{m:?}");
         assert!(close(m.difference, 3.0 / 4.5 - 1.0) && m.trimmed_relmse == m.relmse, "{m:?}");
         let red = measures_of(&[vec3(1.0, 0.0, 2.0)], &[vec3(0.5, 0.0, 4.0)], 1);
         assert!(close(red.mse, 0.25) && close(red.difference, 1.0), "{red:?}");

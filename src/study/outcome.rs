@@ -79,13 +79,13 @@ pub struct Point {
     pub seconds: Interval,
     /// Mean squared error [radiance^2].
     pub mse: Interval,
-    /// mean((x - r)^2 / (r^2 + 0.01)).
+    /// mean((x - r)^2 / (r^2 + 0.01 m^2)), m the mean luminance of r.
     pub relmse: Interval,
     /// The same without the worst 0.1 % of values.
     pub trimmed_relmse: Interval,
-    /// mean(|x - r| / (|r| + 0.01)).
+    /// mean(|x - r| / (|r| + 0.01 m)).
     pub mape: Interval,
-    /// mean(2 |x - r| / (|x| + |r| + 0.01)).
+    /// mean(2 |x - r| / (|x| + |r| + 0.01 m)).
     pub smape: Interval,
     /// Mean of the image over that of the reference, less 1: what is left of it where seeds grow many is bias.
     pub difference: Interval,

@@ -1,14 +1,13 @@
 //! What every strategy of the estimator is worth in a scene (LW96 sec. 4; Veach 1997, sec. 10.3): its image weighted
 //! and alone, its share of energy, variance and time; and which kinds of strategies the scene could do without.
 
-pub mod coverage;
 pub mod pilot;
 mod sheet;
 mod table;
 
 pub use table::table;
 
-use super::outcome::Interval;
+use super::{coverage::Traits, outcome::Interval};
 use crate::{
     error::{Error, Result},
     film::{self, Channel, Film, accumulator::Accumulator, format::Format},
@@ -22,7 +21,6 @@ use crate::{
     scene::build::Setup,
     transport::{Options, Strategies, record::StrategyKind},
 };
-use coverage::Traits;
 use serde::Serialize;
 use sheet::Row;
 use std::{
@@ -160,7 +158,7 @@ pub fn examine(
     let times = bench.times(cells, timed, &mut |done| tell(plan.passes + done, total));
     let mut report = report(setup, &options, &parts, &times, timed);
     let seen = parts.luminance_of(Some(1)) > 0.0;
-    let traits = Traits::of(&setup.scene, &options, seen);
+    let traits = Traits::of(&setup.scene, (&options).into(), seen);
     let (lacking, able): (Vec<_>, Vec<_>) = subsets
         .into_iter()
         .map(|set| (set, traits.missing(set, options.strategies)))

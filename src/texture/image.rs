@@ -7,7 +7,7 @@ mod tests;
 pub use exr::check as check_exr;
 
 use crate::error::{Error, Result};
-use crate::math::{Spectrum, srgb, vec3};
+use crate::math::{Spectrum, srgb::Srgb as _, vec3};
 use ::image::{
     DynamicImage, ImageDecoder, ImageFormat, ImageReader, ImageResult, Limits, codecs::hdr::HdrDecoder,
 };
@@ -84,7 +84,7 @@ pub fn undecodable(path: &Path, error: impl std::fmt::Display) -> Error {
 fn linear(image: DynamicImage, raw: bool) -> Image {
     let is_linear = raw || matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
     let buffer = image.into_rgb32f();
-    let decode = |x: f32| if is_linear { x } else { srgb::decode(x) };
+    let decode = |x: f32| if is_linear { x } else { x.srgb_decoded() };
     let pixels = buffer.pixels().map(|p| vec3(decode(p[0]), decode(p[1]), decode(p[2]))).collect();
     Image { width: buffer.width() as usize, height: buffer.height() as usize, pixels }
 }

@@ -124,7 +124,7 @@ fn contender(folder: &str, series: usize, name: &str, budgets: usize) -> Contend
         slope: (budgets > 2).then_some(Interval { mean: -1.0, low: -1.1, high: -0.9 }),
         efficiency: about(1.0 / (0.05 * (1.0 + series as f64))),
         variance: format!("{folder}/variance.exr").into(),
-        ratio: None,
+        ratio: (series > 0).then(|| about(1.0 / (1.0 + series as f64))),
         notes: Vec::new(),
     }
 }

@@ -3,7 +3,7 @@
 use crate::common::studies::{self, Study};
 use scraper::{ElementRef, Html, Selector};
 use std::{fs, path::Path, process::Command};
-use tyndall::study::{outcome::Interval, page};
+use tyndall::study::page;
 
 /// The page of a study, refused unless it is well-formed and stands alone.
 fn page_of(study: &Study) -> Html {
@@ -124,31 +124,43 @@ fn every_number_can_be_drawn() {
 }
 
 #[test]
-fn what_is_known_of_reference_and_ratios_is_said_once() {
-    let mut study = Study::new(&["room"], &["a", "b", "c"], 3);
-    let says = |study: &Study| {
-        study.rewrite();
-        let html = page_of(study);
-        (texts(&html, "#scene-0 header").concat(), texts(&html, "footer").concat())
-    };
-    study.outcome.scenes[0].reference.own_relmse = Some(1.0);
-    let (header, footer) = says(&study);
-    assert_eq!(header.matches("own error").count(), 3, "{header}");
-    assert!(footer.contains("as independent") && !footer.contains("paired"), "{footer}");
-    let ratio = Some(Interval { mean: 2.0, low: 1.9, high: 2.1 });
-    study.outcome.scenes[0].contenders[1].ratio = ratio;
-    // As `tyndall study` says it.
+fn notes_and_ratios_are_shown() {
+    let mut study = Study::new(&["room"], &["a", "b"], 3);
+    study.outcome.scenes[0].notes = vec!["lt cannot render it: why".to_owned()];
     study.outcome.scenes[0].contenders[1].notes = vec!["only 1.2 times the reference's own: some".to_owned()];
-    let (header, footer) = says(&study);
-    assert!(header.matches("own error").count() == 2 && header.contains("only 1.2 times"), "{header}");
-    assert!(footer.contains("as independent") && footer.contains("paired"), "{footer}");
-    study.outcome.scenes[0].contenders[2].ratio = ratio;
-    study.outcome.scenes[0].reference.own_relmse = None;
-    let (header, footer) = says(&study);
-    assert!(header.contains("is not known"), "{header}");
-    assert!(!footer.contains("as independent") && footer.contains("paired"), "{footer}");
-    study.outcome.scenes[0].notes = vec!["nobody knows the reference's own error".to_owned()];
-    assert!(!says(&study).0.contains("is not known"));
+    study.rewrite();
+    let html = page_of(&study);
+    let header = texts(&html, "#scene-0 header").concat();
+    assert!(header.contains("lt cannot render it: why.") && header.contains("b: only 1.2 times"), "{header}");
+    let shown = texts(&html, "#scene-0 .legend td");
+    assert!(shown.contains(&"1".to_owned()) && shown.contains(&"0.500×".to_owned()), "{shown:?}");
+}
+
+/// What a README shows is what the page shows.
+#[test]
+fn the_record_has_all_curves_and_images() {
+    let study = Study::new(&["room", "church <&>"], &["bdpt", "<pt>", "volpath"], 4);
+    let to = study.folder.path().join("record");
+    let paths = page::record(study.folder.path(), &to).unwrap();
+    let text = |name: &str| fs::read_to_string(to.join(name)).unwrap();
+    assert_eq!(paths.len(), 3);
+    let (table, curves, strips) =
+        (text("convergence.md"), text("convergence.svg"), text("convergence_strips.svg"));
+    for said in [&study.outcome.command, &study.outcome.machine, "church <&>", "](convergence.svg)"] {
+        assert!(table.contains(said), "{said}: {table}");
+    }
+    for svg in [&curves, &strips] {
+        let svg = roxmltree::Document::parse(svg).unwrap();
+        let texts: Vec<&str> = svg.descendants().filter_map(|node| node.text()).collect();
+        assert!(
+            ["room", "church <&>", "<pt>", "volpath"].iter().all(|name| texts.contains(name)),
+            "{texts:?}"
+        );
+    }
+    let count = |svg: &str, name: &str| svg.matches(name).count();
+    assert_eq!(count(&curves, "class=\"chart\""), 2);
+    // A reference and an image of each contender, of each scene.
+    assert_eq!(count(&strips, "href=\"data:image/png;base64,"), 2 * 4);
 }
 
 #[test]

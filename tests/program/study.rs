@@ -12,7 +12,7 @@ use std::{
 };
 use tempfile::TempDir;
 use tyndall::{
-    math::Spectrum,
+    math::{Spectrum, SpectrumExt},
     study::picture::{self, Picture},
 };
 
@@ -237,7 +237,9 @@ fn points_are_renders_and_measures_are_against_the_reference() {
     // By hand, for the first seed's last image.
     let (image, truth) = (desk.pixels("a.exr"), desk.pixels("out/images/room/reference.exr"));
     let pairs = image.iter().zip(&truth).flat_map(|(x, r)| x.to_array().into_iter().zip(r.to_array()));
-    let relative = pairs.map(|(x, r)| (f64::from(x - r)).powi(2) / (f64::from(r).powi(2) + 0.01));
+    let luminance: f64 = truth.iter().map(|r| f64::from(r.luminance())).sum::<f64>() / truth.len() as f64;
+    let floor = 0.01 * luminance.powi(2);
+    let relative = pairs.map(|(x, r)| (f64::from(x - r)).powi(2) / (f64::from(r).powi(2) + floor));
     let relmse = relative.sum::<f64>() / 192.0;
     let csv = fs::read_to_string(desk.path("out/study.csv")).unwrap();
     let row: Vec<&str> = csv.lines().nth(3).unwrap().split(',').collect();
@@ -361,9 +363,11 @@ fn several_scenes_and_what_a_contender_cannot_show() {
     ];
     let more = ["--contender", "narrow, \"joined\": --strategies hit,join --max-depth 3"];
     let told = desk.study(&[&["room.json", "mirror.json", "-o", "out"], &words[..], &more].concat());
-    for hint in
-        ["lt: its variance is infinite", "lt: leaves out anything seen in or through smooth", "lt: its mean"]
-    {
+    for hint in [
+        "lt: its variance is infinite",
+        "lt: leaves out light of area, sky or medium seen in or through smooth",
+        "lt: its mean",
+    ] {
         assert!(told.contains(hint), "{hint}: {told}");
     }
     let outcome = desk.json("out/study.json");
@@ -385,6 +389,126 @@ fn several_scenes_and_what_a_contender_cannot_show() {
     }
     let csv = fs::read_to_string(desk.path("out/study.csv")).unwrap();
     assert!(csv.contains("\nroom,\"narrow, \"\"joined\"\"\",1,0,"), "{csv}");
+}
+
+/// A renderer of which only a command line is known: this program, seen from outside.
+fn outside(words: &str) -> String {
+    let (command, rest) = words.split_once(' ').unwrap();
+    format!("{} {command} --integrator pt {rest}", env!("CARGO_BIN_EXE_tyndall"))
+}
+
+/// Another renderer takes its turns, is measured like any other and has its part in the reference.
+#[test]
+fn another_renderer_competes_by_its_command_line() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let words =
+        ["--integrators", "pt", "--spp", "16", "--doublings", "3", "--seeds", "3", "--reference-spp", "512"];
+    let once = outside(
+        "render {scene} {definitions} -o {out} --size {size} --spp {spp} --seed {seed} --threads {threads}",
+    );
+    // One start for all budgets, which reports its times.
+    fs::write(
+        desk.path("script.sh"),
+        format!(
+            "for n in $(echo $1 | tr , ' '); do {} || exit 7; echo chatter; \
+             echo '{{\"spp\": '$n', \"seconds\": '$n'e-3, \"load_seconds\": 0.25}}'; done",
+            outside("render $3 -o $2/$n.exr --spp $n --seed $4 > /dev/null")
+        ),
+    )
+    .unwrap();
+    let many = "at once: sh script.sh {budgets} {folder} {scene} {seed}";
+    let externals = ["--external", &format!("one by one: {once}"), "--external", many];
+    let told = desk.study(&[&["room.json", "-o", "out"], &words[..], &externals].concat());
+    let outcome = desk.json("out/study.json");
+    let scene = &outcome["scenes"][0];
+    let names: Vec<&str> =
+        scene["contenders"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["one by one", "at once", "pt"]);
+    // The same samples, so the same errors; times as reported, or else as seen from outside, which is told.
+    let points = |contender: usize| scene["contenders"][contender]["points"].as_array().unwrap();
+    for budget in 0..3 {
+        let relmse = |contender: usize| number(&points(contender)[budget]["relmse"]["mean"]);
+        assert!((relmse(0) / relmse(2) - 1.0).abs() < 1e-9 && (relmse(1) / relmse(2) - 1.0).abs() < 1e-9);
+        assert_eq!(
+            number(&points(1)[budget]["seconds"]["mean"]),
+            1e-3 * number(&points(1)[budget]["samples"])
+        );
+    }
+    assert_eq!(scene["contenders"][1]["load_seconds"], json!(0.25));
+    assert!(told.contains("one by one: its seconds are those of the whole command"), "{told}");
+    assert!(!told.contains("at once: its seconds"), "{told}");
+    let how = scene["reference"]["how"].as_str().unwrap();
+    assert!(
+        how.starts_with("pooled by precision") && how.contains("one by one") && how.contains("bdpt"),
+        "{how}"
+    );
+    // It goes on where it was, and nothing is rendered again.
+    assert_eq!(desk.study(&[&["room.json", "-o", "out"], &words[..], &externals].concat()), told);
+    // A reference by those who are named.
+    let by = ["--reference-by", "at once"];
+    desk.study(&[&["room.json", "-o", "by"], &words[..], &externals, &by].concat());
+    let how = desk.json("by/study.json")["scenes"][0]["reference"]["how"].as_str().unwrap().to_owned();
+    assert!(how.starts_with("at once: 512 samples per pixel"), "{how}");
+}
+
+#[test]
+fn what_another_renderer_cannot_do_is_said() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let words = [
+        "room.json",
+        "-o",
+        "out",
+        "--integrators",
+        "pt",
+        "--spp",
+        "2",
+        "--seeds",
+        "2",
+        "--reference-spp",
+        "4",
+    ];
+    for (command, hints) in [
+        ("sh -c 'echo no fog here >&2; exit 3' {scene} {seed} {spp} {out}", "exit status: 3: no fog here"),
+        ("no_such_program {scene} {seed} {spp} {out}", "a program that can be started"),
+        ("true {scene} {seed} {spp} {out}", "an image of 8 x 8 pixels"),
+        ("true {scene} {seed} {budgets} {folder}", "on standard output"),
+        (&outside("render {scene} -o {out} --size 4x4 --spp {spp} --seed {seed}"), "found 4 x 4"),
+    ] {
+        let external = format!("other: {command}");
+        let told = desk.study(&[&words[..], &["--restart", "--external", &external]].concat());
+        assert!(told.contains("other cannot render it") && told.contains(hints), "{command}: {told}");
+        assert_eq!(desk.json("out/study.json")["scenes"][0]["contenders"].as_array().unwrap().len(), 1);
+    }
+    desk.refuses(&[&words[..], &["--external", "other: r {scene}"]].concat(), &["{budgets} and {folder}"]);
+}
+
+/// The same picture at any brightness is as noisy, and its errors are as large.
+#[test]
+fn nothing_depends_on_the_unit_of_radiance() {
+    let found = [1e-3, 1.0, 1e3].map(|unit| {
+        let mut room = foggy_room();
+        room["lamp"]["emitter"]["radiance"] =
+            json!({"type": "rgb", "value": [2.0 * unit, 2.0 * unit, 2.0 * unit]});
+        let desk = Desk::new(&[("room.json", room)]);
+        let mut render = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+        render.current_dir(desk.folder.path()).args(["render", "room.json", "-o", "a.exr", "--spp", "32"]);
+        assert!(render.args(["--report", "report.json"]).output().unwrap().status.success());
+        desk.study(&["room.json", "-o", "out", "--spp", "4", "--seeds", "2", "--reference-spp", "64"]);
+        let last = &desk.json("out/study.json")["scenes"][0]["contenders"][1]["points"][2];
+        let of = |name: &str| number(&last[name]["mean"]);
+        [
+            number(&desk.json("report.json")["relative_error"]),
+            of("relmse"),
+            of("trimmed_relmse"),
+            of("mape"),
+            of("smape"),
+        ]
+    });
+    for one in &found {
+        for (one, middle) in one.iter().zip(&found[1]) {
+            assert!((one / middle - 1.0).abs() < 1e-3, "{found:?}");
+        }
+    }
 }
 
 #[test]

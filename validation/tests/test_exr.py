@@ -7,7 +7,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from validation import exr, png
+from validation import exr, picture
 from validation.failure import Failure
 
 RANDOM = np.random.default_rng(7)
@@ -68,6 +68,6 @@ def test_what_is_no_image_is_refused(tmp_path: Path) -> None:
 
 def test_png_files_are_what_mitsuba_reads(tmp_path: Path) -> None:
     pixels = RANDOM.integers(0, 256, (5, 7, 3)).astype(np.uint8)
-    (tmp_path / "image.png").write_bytes(png.encoded(pixels))
+    picture.write_png(tmp_path / "image.png", pixels)
     mi.set_variant("scalar_rgb")
     assert (np.array(mi.Bitmap(str(tmp_path / "image.png"))) == pixels).all()

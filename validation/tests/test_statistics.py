@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from validation.statistics import bootstrap_median, estimate, exact, sidak_limit, standard_score
+from validation.statistics import estimate, exact, sidak_limit, standard_score
 
 
 def test_scores_have_the_tails_of_welchs_test() -> None:
@@ -32,8 +32,3 @@ def test_the_limit_of_many_tests_is_exceeded_as_rarely_as_it_says() -> None:
     inside = 1 - 2 * stats.norm.sf(sidak_limit(500, 0.01))
     assert inside**500 == pytest.approx(0.99)
 
-
-def test_the_bootstraps_median_lies_in_its_interval() -> None:
-    values = np.random.default_rng(6).gamma(2, size=51)
-    middle, low, high = bootstrap_median(values)
-    assert low < middle < high and middle == np.median(values)

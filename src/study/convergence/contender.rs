@@ -1,16 +1,33 @@
-//! Who takes part in a study.
+//! Who takes part in a study: ways of rendering of this program, and other renderers.
 
-use crate::{error::Result, render::Settings, scene::build::Setup};
+use super::external::External;
+use crate::{
+    error::Result,
+    render::Settings,
+    scene::{Scene, build::Setup},
+    transport::{Options, Strategies},
+};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// One way of rendering, as it was asked for.
+/// A contender as it was requested.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Contender {
     /// As shown.
     pub name: String,
-    /// Options of `tyndall render` that say how paths are made.
-    pub words: String,
+    /// What renders.
+    #[serde(flatten)]
+    pub how: How,
+}
+
+/// What renders a scene.
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum How {
+    /// This program, by options of `tyndall render` that say how paths are made.
+    Options(String),
+    /// Another renderer, by its command line (see [`super::external`]).
+    Command(String),
 }
 
 impl Contender {
@@ -32,16 +49,48 @@ pub fn slug(name: &str) -> String {
 pub struct Entry {
     /// The scene, which contenders share where they can.
     pub setup: Arc<Setup>,
-    /// How it is rendered; the study sets budget and seed.
-    pub settings: Settings,
-    /// Time of reading and building the scene [s].
-    pub load_seconds: f64,
+    /// What renders it.
+    pub renderer: Renderer,
     /// What must be said of it.
     pub notes: Vec<String>,
 }
 
-/// Makes an entry for a scene (by its index) of a contender's words. An error says why it cannot render that scene.
-pub type Enter<'a> = dyn FnMut(usize, &str) -> Result<Entry> + Send + 'a;
+/// What renders a scene, ready to do so.
+#[derive(Clone)]
+pub enum Renderer {
+    /// This program.
+    Own {
+        /// How; the study sets budget and seed.
+        settings: Settings,
+        /// Time of reading and building the scene [s].
+        load_seconds: f64,
+    },
+    /// Another one.
+    External(External),
+}
+
+impl Entry {
+    /// Width and height of its images [pixels].
+    pub fn size(&self) -> (usize, usize) {
+        (self.setup.film.width as usize, self.setup.film.height as usize)
+    }
+
+    /// The scene and how this program makes its paths; none of other renderers, of which nothing is known.
+    pub fn estimator(&self) -> Option<(&Scene, &Options)> {
+        match &self.renderer {
+            Renderer::Own { settings, .. } => Some((&self.setup.scene, &settings.options)),
+            Renderer::External(_) => None,
+        }
+    }
+
+    /// Strategies that make its paths, where that is known.
+    pub fn strategies(&self) -> Option<Strategies> {
+        self.estimator().map(|(_, options)| options.strategies)
+    }
+}
+
+/// Makes an entry for a scene (by its index). An error says why it cannot render that scene.
+pub type Enter<'a> = dyn FnMut(usize, &How) -> Result<Entry> + Send + 'a;
 
 #[cfg(test)]
 mod tests {

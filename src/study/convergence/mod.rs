@@ -4,6 +4,7 @@
 //! keeps what is done, so that a study that was stopped goes on; `summary` and `table` tell what came of it.
 
 pub mod contender;
+pub mod external;
 pub mod plan;
 pub mod question;
 pub mod reference;

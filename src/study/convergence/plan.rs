@@ -2,11 +2,11 @@
 //! written down: from then on only the measured times depend on chance of the machine.
 
 use super::{
-    contender::Entry,
+    contender::{Entry, How, Renderer},
     question::{Effort, Question},
     unit,
 };
-use crate::render::{self, budget::Budget};
+use crate::{error::Result, render::budget::Budget};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -24,8 +24,8 @@ pub struct Plan {
 pub struct ScenePlan {
     /// Every contender's part.
     pub contenders: Vec<Part>,
-    /// How the reference is made; none where it is read from a file.
-    pub reference: Option<Batches>,
+    /// How the reference is made, by one renderer or several; none where it is read from a file.
+    pub reference: Vec<Batches>,
 }
 
 /// A contender's part.
@@ -38,12 +38,12 @@ pub enum Part {
     Refused(String),
 }
 
-/// A reference in independent batches.
+/// A reference, or its part by one renderer, in independent batches.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Batches {
-    /// Who makes it, in options of `tyndall render`.
-    pub words: String,
-    /// The contender that has the same strategies, if any.
+    /// What renders it.
+    pub how: How,
+    /// The contender that has the same strategies or is the same renderer, if any.
     pub like: Option<String>,
     /// How many, two at least.
     pub count: u64,
@@ -75,28 +75,49 @@ const PILOT_SEED: u64 = 1 << 62;
 /// No pilot needs more samples per pixel.
 const PILOT_SAMPLES: u64 = 1 << 20;
 
-/// Samples per pixel that `effort` buys `entry`: as many as are asked for, or measured by a pilot of a quarter of the
-/// time.
-pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> u64 {
-    let seconds = match effort {
-        Effort::Samples(samples) => return samples.max(1),
-        Effort::Seconds(seconds) => seconds,
+/// The part of the wanted time that a pilot takes at most.
+const PILOT_PART: f64 = 0.25;
+
+/// Samples per pixel that `effort` buys `entry`: as many as are requested, or measured by a pilot of a quarter of the
+/// time. Another renderer always shows first that it can render the scene.
+pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> Result<u64> {
+    let seed = first_seed ^ PILOT_SEED;
+    let (seconds, is_timed) = match effort {
+        Effort::Samples(_) => (0.0, false),
+        Effort::Seconds(seconds) => (seconds, true),
     };
-    let time = Some(Duration::from_secs_f64((0.25 * seconds).clamp(1e-3, 60.0)));
-    let budget = Budget { samples_per_pixel: Some(PILOT_SAMPLES), time };
-    let settings = unit::settled(entry, first_seed ^ PILOT_SEED, budget);
-    let image = render::render(&entry.setup.scene, &unit::plain_film(entry), &settings, &mut |_| {});
-    let each = image.elapsed.as_secs_f64() / image.samples_per_pixel as f64;
-    (seconds / each).round().max(1.0) as u64
+    let each = match &entry.renderer {
+        Renderer::Own { .. } if !is_timed => 0.0,
+        Renderer::Own { .. } => {
+            let time = Some(Duration::from_secs_f64((PILOT_PART * seconds).clamp(1e-3, 60.0)));
+            let budget = Budget { samples_per_pixel: Some(PILOT_SAMPLES), time };
+            let image = unit::pilot(entry, seed, budget);
+            image.map_or(f64::INFINITY, |image| image.elapsed.as_secs_f64() / image.samples_per_pixel as f64)
+        }
+        Renderer::External(external) => {
+            let mut spp = 1;
+            loop {
+                let rendered = external.render(seed, &[spp])?;
+                let taken = rendered.snapshots[0].elapsed.as_secs_f64().max(1e-6);
+                if taken >= PILOT_PART * PILOT_PART * seconds || spp >= PILOT_SAMPLES {
+                    break taken / spp as f64;
+                }
+                spp = (2 * spp).max((spp as f64 * PILOT_PART * seconds / taken) as u64).min(PILOT_SAMPLES);
+            }
+        }
+    };
+    Ok(match effort {
+        Effort::Samples(samples) => samples.max(1),
+        Effort::Seconds(seconds) => (seconds / each).round().max(1.0) as u64,
+    })
 }
 
 /// Relative variance of few samples of `entry`, the same number for everybody; NaN if unknown.
 pub fn variance(entry: &Entry, first_seed: u64) -> f64 {
     const SAMPLES: u64 = 16;
     let budget = Budget { samples_per_pixel: Some(SAMPLES), time: None };
-    let settings = unit::settled(entry, first_seed ^ PILOT_SEED, budget);
-    let image = render::render(&entry.setup.scene, &unit::plain_film(entry), &settings, &mut |_| {});
-    image.noise.map_or(f64::NAN, |noise| noise * noise)
+    let image = unit::pilot(entry, first_seed ^ PILOT_SEED, budget);
+    image.and_then(|image| image.noise).map_or(f64::NAN, |noise| noise * noise)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What is asked of a study: written down first, so that what goes on later is the same study.
 
-use super::contender::Contender;
+use super::contender::{Contender, How};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -58,6 +58,14 @@ impl Effort {
             Self::Seconds(seconds) => Self::Seconds(seconds * factor as f64),
         }
     }
+
+    /// So many times less.
+    pub fn over(self, divisor: u64) -> Self {
+        match self {
+            Self::Samples(samples) => Self::Samples(samples.div_ceil(divisor)),
+            Self::Seconds(seconds) => Self::Seconds(seconds / divisor as f64),
+        }
+    }
 }
 
 /// A reference as it is asked for.
@@ -69,8 +77,8 @@ pub enum Wanted {
     /// Made here.
     Made {
         /// By the first of these that is not among the contenders and covers the scene.
-        others: Vec<String>,
-        /// True if the first of them is taken whatever it is.
+        others: Vec<How>,
+        /// True if all of them make it together, whatever they are.
         is_given: bool,
         /// For how long, all batches together; none for several times a contender's whole effort.
         effort: Option<Effort>,
@@ -121,7 +129,8 @@ pub(super) mod tests {
     use super::*;
 
     pub fn question() -> Question {
-        let contender = |name: &str| Contender { name: name.into(), words: format!("--integrator {name}") };
+        let contender =
+            |name: &str| Contender { name: name.into(), how: How::Options(format!("--integrator {name}")) };
         Question {
             program: "tyndall".into(),
             scenes: vec![SceneQuestion { name: "fog".into(), fingerprint: fingerprint(b"fog") }],
@@ -133,7 +142,11 @@ pub(super) mod tests {
             doublings: 3,
             effort: Effort::Samples(4),
             threads: 1,
-            reference: Wanted::Made { others: vec!["--integrator lt".into()], is_given: false, effort: None },
+            reference: Wanted::Made {
+                others: vec![How::Options("--integrator lt".into())],
+                is_given: false,
+                effort: None,
+            },
         }
     }
 
@@ -142,9 +155,9 @@ pub(super) mod tests {
         let old = question();
         assert_eq!(first_difference(&old, &old), None);
         let mut new = question();
-        new.contenders[1].words += " --max-depth 3";
+        new.contenders[1].how = How::Options("--integrator pt --max-depth 3".into());
         let (place, before, after) = first_difference(&old, &new).unwrap();
-        assert_eq!(place, "contenders[1].words");
+        assert_eq!(place, "contenders[1].options");
         assert!(before.ends_with("pt\"") && after.ends_with("3\""), "{before} {after}");
         new = Question { effort: Effort::Seconds(4.0), ..question() };
         assert_eq!(first_difference(&old, &new).unwrap().0, "effort");

@@ -1,7 +1,7 @@
 //! A whole study: plan, reference, turns, sums; scene by scene, from wherever it was stopped.
 
 use super::{
-    contender::{Contender, Enter, Entry},
+    contender::{Contender, Enter, Entry, How},
     plan::{self, Part, Plan, ScenePlan},
     question::{Effort, Question, Wanted},
     reference::{self, Truth},
@@ -141,19 +141,20 @@ impl Study<'_> {
             .collect();
         let Some(first) = players.first() else {
             let why = entries.into_iter().find_map(Result::err);
-            return Err(why.unwrap_or_else(|| nobody(name)));
+            return Err(why.unwrap_or_else(|| nobody(name, &plan.contenders)));
         };
-        let film = &first.entry.setup.film;
-        let (width, height) = (film.width as usize, film.height as usize);
+        let (width, height) = first.entry.size();
         let truth = self.truth(index, &question, &plan, (width, height), enter)?;
         let image = Path::new("images").join(name).join("reference.exr");
         self.store.write_image(&image, &truth.picture)?;
         self.take_turns(name, &question, &players, &truth)?;
-        let named = question.contenders.iter().zip(&entries);
-        let mut notes: Vec<String> =
-            named.filter_map(|(c, entry)| Some(refused(&c.name, entry.as_ref().err()?))).collect();
+        let refused = plan.contenders.iter().filter_map(|part| match part {
+            Part::Refused(why) => Some(why.clone()),
+            Part::Budgets(_) => None,
+        });
+        let mut notes: Vec<String> = refused.chain(truth.notes.iter().cloned()).collect();
         if truth.own_relmse.is_none() {
-            notes.push("nobody knows the reference's own error: --reference-error tells it".to_owned());
+            notes.push("the reference's own error is not known: give it by --reference-error".to_owned());
         }
         let contenders = self.sum_up(name, &question, &players, &truth)?;
         let reference = Reference { image, how: truth.how, own_relmse: truth.own_relmse };
@@ -163,7 +164,7 @@ impl Study<'_> {
     /// Everybody who can render the scene, and why others cannot.
     fn entries(&mut self, scene: usize, question: &Question, enter: &mut Enter<'_>) -> Vec<Result<Entry>> {
         self.ledger.tell(0.0, 0.0, &format!("{}: loading", question.scenes[scene].name), true);
-        question.contenders.iter().map(|contender| enter(scene, &contender.words)).collect()
+        question.contenders.iter().map(|contender| enter(scene, &contender.how)).collect()
     }
 
     /// The scene's plan; made and written down where there is none yet.
@@ -181,20 +182,23 @@ impl Study<'_> {
         let mut contenders = Vec::new();
         for (contender, entry) in question.contenders.iter().zip(entries) {
             self.ledger.tell(0.0, 0.0, &format!("{name}: {}, pilot", contender.name), true);
-            contenders.push(match entry {
-                Err(why) => Part::Refused(refused(&contender.name, why)),
-                Ok(entry) => {
-                    let largest = plan::samples(entry, question.effort, question.first_seed);
-                    let exact = matches!(question.effort, Effort::Samples(_));
-                    Part::Budgets(plan::budgets(largest, question.doublings, exact))
-                }
+            let samples = |entry: &Entry| plan::samples(entry, question.effort, question.first_seed);
+            let exact = matches!(question.effort, Effort::Samples(_));
+            contenders.push(match entry.as_ref().map_err(Error::clone).and_then(samples) {
+                Err(why) => Part::Refused(refused(&contender.name, &why)),
+                Ok(largest) => Part::Budgets(plan::budgets(largest, question.doublings, exact)),
             });
         }
         self.ledger.tell(0.0, 0.0, &format!("{name}: reference, pilot"), true);
         let reference = match &question.reference {
-            Wanted::Files(_) => None,
+            Wanted::Files(_) => Vec::new(),
             Wanted::Made { others, is_given, effort } => {
-                Some(reference::plan(question, scene, (others, *is_given, *effort), entries, enter)?)
+                let able: Vec<Option<&Entry>> = entries
+                    .iter()
+                    .zip(&contenders)
+                    .map(|(entry, part)| entry.as_ref().ok().filter(|_| matches!(part, Part::Budgets(_))))
+                    .collect();
+                reference::plan(question, scene, (others, *is_given, *effort), &able, enter)?
             }
         };
         let planned = ScenePlan { contenders, reference };
@@ -211,17 +215,15 @@ impl Study<'_> {
         (width, height): (usize, usize),
         enter: &mut Enter<'_>,
     ) -> Result<Truth> {
-        let batches = match (&question.reference, &plan.reference) {
-            (Wanted::Files(files), _) => return reference::read(&files[scene], width, height),
-            (_, Some(batches)) => batches,
-            (_, None) => return Err(nobody(&question.scenes[scene].name)),
-        };
+        if let Wanted::Files(files) = &question.reference {
+            return reference::read(&files[scene], width, height);
+        }
         let name = &question.scenes[scene].name;
         let (work, doing) = (self.ledger.reference, format!("{name}: reference"));
         let ledger = &mut self.ledger;
-        let entry = &mut || enter(scene, &batches.words);
+        let entry = &mut |how: &How| enter(scene, how);
         let tell = &mut |share: f64, is_old: bool| ledger.tell(work, share, &doing, is_old);
-        let truth = reference::make(&self.store, name, batches, question.first_seed, entry, tell);
+        let truth = reference::make(&self.store, name, &plan.reference, question.first_seed, entry, tell);
         self.ledger.finish(work, &doing, false);
         truth
     }
@@ -267,9 +269,11 @@ impl Study<'_> {
             let units: Vec<Unit> = seeds(question).map(unit).collect::<Result<_>>()?;
             let turns = Turns { name: &contender.name, first: slot(question.first_seed), units: &units };
             let mut notes = entry.notes.clone();
-            notes.extend(coverage::notes(&entry.setup.scene, &entry.settings.options));
-            let (load, confidence) = (Some(entry.load_seconds), self.signature.confidence);
-            outcomes.push(summary::contender(&turns, first.as_deref(), truth, load, notes, confidence));
+            if let Some((scene, options)) = entry.estimator() {
+                notes.extend(coverage::notes(scene, options));
+            }
+            let confidence = self.signature.confidence;
+            outcomes.push(summary::contender(&turns, first.as_deref(), truth, notes, confidence));
             let images = seeds(question).map(|seed| self.store.read_image(slot(seed).last_image()));
             let variance = variance(&images.collect::<Result<Vec<_>>>()?);
             self.store.write_image(summary::variance_image(scene, slug), &variance)?;
@@ -301,11 +305,11 @@ fn refused(name: &str, Error { place, expected, found, .. }: &Error) -> String {
     format!("{name} cannot render it: {place}: expected {expected}, found {found}")
 }
 
-fn nobody(scene: &str) -> Error {
-    Error::new(
-        scene,
-        "a contender that can render the scene",
-        "none",
-        "name others by --contender or --integrators",
-    )
+fn nobody(scene: &str, parts: &[Part]) -> Error {
+    let why = parts.iter().find_map(|part| match part {
+        Part::Refused(why) => Some(why.clone()),
+        Part::Budgets(_) => None,
+    });
+    let remedy = "name others by --contender, --external or --integrators";
+    Error::new(scene, "a contender that can render the scene", why.unwrap_or_else(|| "none".into()), remedy)
 }

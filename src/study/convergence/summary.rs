@@ -25,19 +25,21 @@ pub fn contender(
     turns: &Turns<'_>,
     first: Option<&[Unit]>,
     truth: &Truth,
-    load_seconds: Option<f64>,
     mut notes: Vec<String>,
     confidence: f64,
 ) -> ContenderOutcome {
     let units = turns.units;
     let count = units.first().map_or(0, |unit| unit.points.len());
     let points: Vec<Point> = (0..count).map(|index| point(turns, index, confidence)).collect();
+    if units.iter().any(|unit| unit.is_timed_outside) {
+        notes.push("its seconds are those of the whole command, start included: it reports none".to_owned());
+    }
     if let Some(last) = points.last() {
         notes.extend(doubts(&last_of(units), last, truth));
     }
     ContenderOutcome {
         name: turns.name.to_owned(),
-        load_seconds,
+        load_seconds: units.first().and_then(|unit| unit.load_seconds),
         slope: slope(units, confidence),
         efficiency: interval::bootstrap(units.len(), confidence, |picks| 1.0 / cost(units, picks)),
         ratio: first.map(|first| ratio(units, first, confidence)),
@@ -147,17 +149,19 @@ mod tests {
         let noise = |seed: u64| 1.0 + 0.1 * (seed as f64 - 1.5);
         let at = |seed: u64, n: u64| measured(n, scale * noise(seed) / n as f64, bias * noise(seed));
         let points = |seed| [1, 2, 4, 8].map(|n| at(seed, n)).to_vec();
-        (0..4).map(|seed| Unit { seed, points: points(seed) }).collect()
+        (0..4)
+            .map(|seed| Unit { seed, load_seconds: None, is_timed_outside: false, points: points(seed) })
+            .collect()
     }
 
     fn truth(own: f64) -> Truth {
         let picture = Picture::new(1, 1, vec![Spectrum::ONE]);
-        Truth { picture, how: String::new(), own_relmse: Some(own), mean_error: Some(0.0) }
+        Truth { picture, how: String::new(), own_relmse: Some(own), mean_error: Some(0.0), notes: Vec::new() }
     }
 
     fn sum_up(units: &[Unit], first: Option<&[Unit]>, own: f64) -> ContenderOutcome {
         let slot = Slot { scene: "a", contender: "b", seed: 0 };
-        contender(&Turns { name: "b", first: slot, units }, first, &truth(own), None, Vec::new(), 0.95)
+        contender(&Turns { name: "b", first: slot, units }, first, &truth(own), Vec::new(), 0.95)
     }
 
     #[test]

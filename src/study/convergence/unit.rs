@@ -1,6 +1,9 @@
 //! One render of one contender, looked at on its way: all budgets of a seed share their samples.
 
-use super::{contender::Entry, store::Store};
+use super::{
+    contender::{Entry, Renderer},
+    store::Store,
+};
 use crate::study::{
     metrics::{Measures, measures},
     outcome::number,
@@ -10,7 +13,7 @@ use crate::{
     error::Result,
     film::{Film, format::Format},
     math::Spectrum,
-    render::{self, Settings, Snapshot, budget::Budget},
+    render::{self, Image, Settings, Snapshot, budget::Budget},
 };
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -20,6 +23,11 @@ use std::path::PathBuf;
 pub struct Unit {
     /// The seed.
     pub seed: u64,
+    /// Seconds of starting, reading and compiling that are in no point; none if not known.
+    pub load_seconds: Option<f64>,
+    /// The times are those of a whole command, start included.
+    #[serde(default)]
+    pub is_timed_outside: bool,
     /// By growing budgets.
     pub points: Vec<Measured>,
 }
@@ -102,33 +110,49 @@ impl Slot<'_> {
     }
 }
 
-/// Renders `entry` with `seed` up to the last of `marks`, and shows it at each. `tell` hears what share is done.
+/// Renders `entry` with `seed` up to the last of `marks`, and shows it at each. `tell` hears what share is done. What is
+/// known of the times, without any points.
 pub fn shoot(
     entry: &Entry,
     seed: u64,
     marks: &[u64],
     tell: &mut dyn FnMut(f64),
     show: &mut dyn FnMut(Snapshot),
-) {
-    let last = marks.last().copied().unwrap_or(1);
-    let settings = settled(entry, seed, Budget { samples_per_pixel: Some(last), time: None });
-    let film = plain_film(entry);
-    let all = last as f64 * film.len() as f64;
-    let progress = &mut |progress: render::Progress| tell(progress.samples as f64 / all);
-    render::render_in_steps(&entry.setup.scene, &film, &settings, marks, progress, show);
+) -> Result<Unit> {
+    let unit = |load_seconds| Unit { seed, load_seconds, is_timed_outside: false, points: Vec::new() };
+    match &entry.renderer {
+        Renderer::Own { settings, load_seconds } => {
+            let last = marks.last().copied().unwrap_or(1);
+            let settings = settled(settings, seed, Budget { samples_per_pixel: Some(last), time: None });
+            let film = plain_film(entry);
+            let all = last as f64 * film.len() as f64;
+            let progress = &mut |progress: render::Progress| tell(progress.samples as f64 / all);
+            render::render_in_steps(&entry.setup.scene, &film, &settings, marks, progress, show);
+            Ok(unit(Some(*load_seconds)))
+        }
+        Renderer::External(external) => {
+            let rendered = external.render(seed, marks)?;
+            rendered.snapshots.into_iter().for_each(show);
+            Ok(Unit { is_timed_outside: rendered.is_timed_outside, ..unit(rendered.load_seconds) })
+        }
+    }
 }
 
-/// The settings of an entry for one render.
-pub fn settled(entry: &Entry, seed: u64, budget: Budget) -> Settings {
-    let mut settings = entry.settings;
-    settings.seed = seed;
+/// An image of this program's, with what it says of its own noise; none of other renderers.
+pub fn pilot(entry: &Entry, seed: u64, budget: Budget) -> Option<Image> {
+    let Renderer::Own { settings, .. } = &entry.renderer else { return None };
+    let settings = settled(settings, seed, budget);
+    Some(render::render(&entry.setup.scene, &plain_film(entry), &settings, &mut |_| {}))
+}
+
+fn settled(settings: &Settings, seed: u64, budget: Budget) -> Settings {
+    let mut settings = Settings { seed, budget, ..*settings };
     settings.options.seed = seed;
-    settings.budget = budget;
     settings
 }
 
 /// The film without alpha, which would cost rays that no measure looks at.
-pub fn plain_film(entry: &Entry) -> Film {
+fn plain_film(entry: &Entry) -> Film {
     let mut film = entry.setup.film.clone();
     film.format = Format::default();
     film
@@ -145,13 +169,13 @@ pub fn run(
     tell: &mut dyn FnMut(f64),
 ) -> Result<()> {
     let (mut points, mut snapshots) = (Vec::new(), Vec::new());
-    shoot(entry, slot.seed, marks, tell, &mut |snapshot| {
+    let unit = shoot(entry, slot.seed, marks, tell, &mut |snapshot| {
         points.push(Measured::of(&snapshot, &reference.pixels));
         if !shown {
             snapshots.clear();
         }
         snapshots.push(Picture { pixels: snapshot.pixels, ..*reference });
-    });
+    })?;
     if shown {
         for (index, image) in snapshots.iter().enumerate() {
             store.write_image(slot.shown_image(index), image)?;
@@ -160,7 +184,7 @@ pub fn run(
     if let Some(last) = snapshots.last() {
         store.write_image(slot.last_image(), last)?;
     }
-    store.write_json(slot.numbers(), &Unit { seed: slot.seed, points })
+    store.write_json(slot.numbers(), &Unit { points, ..unit })
 }
 
 #[cfg(test)]

@@ -3,11 +3,13 @@
 //! numbers are those of the paper; the planes of images are row by row from the top.
 
 use crate::{
-    film::{
-        format::{XYZ_ROWS, to_xyz},
-        png::byte,
+    film::format::{XYZ_ROWS, to_xyz},
+    math::{
+        Spectrum, Vec3,
+        colour::xyz_to_rgb,
+        srgb::{Srgb as _, byte},
+        vec3,
     },
-    math::{Spectrum, Vec3, colour::xyz_to_rgb, srgb, vec3},
 };
 use rayon::prelude::*;
 use std::f32::consts::PI;
@@ -170,7 +172,7 @@ fn white() -> Vec3 {
 
 /// YCxCz of an encoded pixel, rounded to 8 bits (sec. 4.1.1).
 fn opponent(encoded: Spectrum) -> Vec3 {
-    let rounded = encoded.to_array().map(|c| srgb::decode(f32::from(byte(c)) / 255.0));
+    let rounded = encoded.to_array().map(|c| (f32::from(byte(c)) / 255.0).srgb_decoded());
     let Vec3 { x, y, z } = to_xyz(Spectrum::from_array(rounded)) / white();
     vec3(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
 }

@@ -2,14 +2,14 @@
 
 use super::Difference;
 use crate::{
-    math::Spectrum,
-    study::{metrics, picture::Picture},
+    math::{Spectrum, relative::Relative},
+    study::picture::Picture,
 };
 
 /// What a map shows of every pixel.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum MapOf {
-    /// Mean over its channels of (x - r)^2 / (r^2 + 0.01).
+    /// Mean over its channels of (x - r)^2 / (r^2 + 0.01 m^2), m the mean luminance of r.
     Relative,
     /// Mean over its channels of |x - r|.
     Absolute,
@@ -40,14 +40,15 @@ pub fn map(
     difference: &Difference,
     most: Option<f32>,
 ) -> Option<Mapped> {
-    let of_pixels = |value: fn(f64, f64) -> f64| -> Vec<f32> {
+    let of_pixels = |value: &dyn Fn(f64, f64) -> f64| -> Vec<f32> {
         let pairs = image.pixels.iter().zip(&reference.pixels);
         pairs.map(|(x, r)| mean(*x, *r, difference.channels, value)).collect()
     };
+    let to = Relative::to(&reference.pixels, difference.channels);
     let values = match of {
-        MapOf::Relative => of_pixels(metrics::relative_square),
-        MapOf::Absolute => of_pixels(|x, r| (x - r).abs()),
-        MapOf::Signed => of_pixels(|x, r| x - r),
+        MapOf::Relative => of_pixels(&|x, r| to.square((x - r).powi(2), r)),
+        MapOf::Absolute => of_pixels(&|x, r| (x - r).abs()),
+        MapOf::Signed => of_pixels(&|x, r| x - r),
         MapOf::Flip => difference.display.as_ref()?.flip.clone(),
     };
     let most = most.unwrap_or_else(|| if of == MapOf::Flip { 1.0 } else { end(&values) });
@@ -55,7 +56,7 @@ pub fn map(
     Some(Mapped { values, range })
 }
 
-fn mean(x: Spectrum, r: Spectrum, channels: usize, value: fn(f64, f64) -> f64) -> f32 {
+fn mean(x: Spectrum, r: Spectrum, channels: usize, value: &dyn Fn(f64, f64) -> f64) -> f32 {
     let sum: f64 = (0..channels).map(|c| value(f64::from(x[c]), f64::from(r[c]))).sum();
     (sum / channels as f64) as f32
 }

@@ -56,16 +56,6 @@ pub fn count(value: u64) -> String {
     groups.join("\u{202f}")
 }
 
-/// `a` over `b`, of independent estimates: the half widths of their logarithms add up as squares. Where an interval
-/// reaches 0 its logarithm has no end, and neither has the ratio's.
-pub fn ratio(a: Interval, b: Interval) -> Interval {
-    let mean = a.mean / b.mean;
-    let spread = |up: f64, down: f64| up.ln().hypot(down.ln()).exp();
-    let low = mean / spread(a.mean / a.low.max(0.0), b.high / b.mean);
-    let high = mean * spread(a.high / a.mean, b.mean / b.low.max(0.0));
-    Interval { mean, low, high }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,17 +81,5 @@ mod tests {
             assert_eq!(number(value), text, "{value:e}");
         }
         assert_eq!((count(7), count(1_234_567)), ("7".into(), "1\u{202f}234\u{202f}567".into()));
-    }
-
-    #[test]
-    fn a_ratio_is_sure_where_both_are() {
-        let sure = |mean| Interval { mean, low: mean, high: mean };
-        assert_eq!(ratio(sure(6.0), sure(2.0)), sure(3.0));
-        let wide = Interval { mean: 2.0, low: 1.0, high: 4.0 };
-        let found = ratio(sure(4.0), wide);
-        assert!((found.low - 1.0).abs() < 1e-12 && (found.high - 4.0).abs() < 1e-12, "{found:?}");
-        let twice = ratio(wide, wide);
-        assert!((twice.high - 2f64.powf(2f64.sqrt())).abs() < 1e-12, "{twice:?}");
-        assert_eq!(ratio(Interval { low: -1.0, ..wide }, sure(1.0)).low, 0.0);
     }
 }

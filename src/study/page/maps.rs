@@ -1,10 +1,7 @@
 //! False colours of what went wrong: relative squared errors, and relative variances, on one logarithmic scale.
 
 use super::figures::power_of_ten;
-use crate::{
-    math::Spectrum,
-    study::metrics::{FLOOR, relative_square},
-};
+use crate::math::{Spectrum, relative::Relative};
 use colorgrad::Gradient as _;
 
 /// No number: no colour of the scale.
@@ -12,12 +9,14 @@ const BROKEN: [u8; 3] = [0, 255, 255];
 
 /// The squared error of each pixel over the reference's square: its mean over the image is relMSE.
 pub fn errors(image: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
-    means(image, reference, relative_square)
+    let to = Relative::to(reference, 3);
+    means(image, reference, |x, r| to.square((x - r).powi(2), r))
 }
 
 /// The variance of each pixel over the reference's square: what [`errors`] are in the mean, but for bias.
 pub fn variances(variance: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
-    means(variance, reference, |variance, r| variance / (r * r + FLOOR))
+    let to = Relative::to(reference, 3);
+    means(variance, reference, |variance, r| to.square(variance, r))
 }
 
 /// Means over channels of what `of` makes of values and those of the reference.
@@ -103,8 +102,8 @@ mod tests {
     #[test]
     fn errors_are_those_of_relmse() {
         let (image, reference) = ([Spectrum::splat(0.3)], [Spectrum::splat(0.1)]);
-        assert!((errors(&image, &reference)[0] - 0.04 / 0.02).abs() < 1e-6);
-        assert!((variances(&image, &reference)[0] - 0.3 / 0.02).abs() < 1e-6);
+        assert!((errors(&image, &reference)[0] - 0.04 / 0.0101).abs() < 1e-5);
+        assert!((variances(&image, &reference)[0] - 0.3 / 0.0101).abs() < 1e-4);
         assert_eq!(errors(&[Spectrum::ZERO], &[Spectrum::ZERO]), [0.0]);
     }
 

@@ -21,7 +21,7 @@ pub const MEASURES: [Measure; 5] = [
     Measure {
         key: "relmse",
         name: "relMSE",
-        meaning: "mean of (x − r)² / (r² + 0.01)",
+        meaning: "mean of (x − r)² / (r² + 0.01 m²), m the mean luminance of r",
         of: |point| point.relmse,
         slope: -1.0,
     },
@@ -36,14 +36,14 @@ pub const MEASURES: [Measure; 5] = [
     Measure {
         key: "mape",
         name: "MAPE",
-        meaning: "mean of |x − r| / (|r| + 0.01)",
+        meaning: "mean of |x − r| / (|r| + 0.01 m), m the mean luminance of r",
         of: |point| point.mape,
         slope: -0.5,
     },
     Measure {
         key: "smape",
         name: "SMAPE",
-        meaning: "mean of 2 |x − r| / (|x| + |r| + 0.01)",
+        meaning: "mean of 2 |x − r| / (|x| + |r| + 0.01 m), m the mean luminance of r",
         of: |point| point.smape,
         slope: -0.5,
     },

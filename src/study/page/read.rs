@@ -45,8 +45,14 @@ fn gap_in_scene(scene: &SceneOutcome) -> Option<(&'static str, String)> {
     if scene.contenders.is_empty() {
         return Some(("at least one contender in every scene", format!("none in {name}")));
     }
-    let idle = scene.contenders.iter().find(|contender| contender.points.is_empty())?;
-    Some(("at least one budget for every contender", format!("none for {} in {name}", idle.name)))
+    if let Some(idle) = scene.contenders.iter().find(|contender| contender.points.is_empty()) {
+        return Some((
+            "at least one budget for every contender",
+            format!("none for {} in {name}", idle.name),
+        ));
+    }
+    let alone = scene.contenders.iter().skip(1).find(|contender| contender.ratio.is_none())?;
+    Some(("a ratio to the first contender for every other", format!("none for {} in {name}", alone.name)))
 }
 
 /// The pixels of an image that has the size of `scene`, of any values.

@@ -19,11 +19,11 @@ use std::path::Path;
 #[template(path = "page.html", config = "src/study/page/askama.toml")]
 pub struct Page<'a> {
     outcome: &'a Outcome,
-    scenes: Vec<SceneView<'a>>,
+    pub(super) scenes: Vec<SceneView<'a>>,
     contenders: Vec<&'a str>,
     measures: &'static [Measure],
     axes: &'static [Axis],
-    tones: String,
+    pub(super) tones: String,
     data: String,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Page<'a> {
     }
 
     fn style(&self) -> &'static str {
-        include_str!("style.css")
+        concat!(include_str!("curves.css"), include_str!("style.css"))
     }
 
     fn script(&self) -> &'static str {
@@ -75,20 +75,6 @@ impl<'a> Page<'a> {
 
     fn hue(&self, series: &usize) -> usize {
         chart::hue(*series)
-    }
-
-    /// Where the intervals of ratios come from.
-    fn pairing(&self) -> &'static str {
-        let others = || self.outcome.scenes.iter().flat_map(|scene| scene.contenders.iter().skip(1));
-        let paired = others().filter(|contender| contender.ratio.is_some()).count();
-        match others().count() - paired {
-            _ if paired == 0 => "A ratio’s interval takes both efficiencies as independent.",
-            0 => "A ratio’s interval is over paired seeds.",
-            _ => {
-                "A ratio’s interval is over paired seeds where the study tells it so, \
-                 and else takes both efficiencies as independent."
-            }
-        }
     }
 
     /// How much there is to see.
@@ -133,12 +119,7 @@ impl Share {
     fn of(scene: &SceneOutcome, contender: &ContenderOutcome) -> Self {
         let efficiency = |contender: &ContenderOutcome| contender.efficiency.mean;
         let best = scene.contenders.iter().map(efficiency).fold(f64::MIN, f64::max);
-        let first = &scene.contenders[0];
-        let other = !std::ptr::eq(first, contender);
-        // Seeds that are paired tell more than two intervals.
-        let unpaired = || figures::ratio(contender.efficiency, first.efficiency);
-        let ratio = other.then(|| contender.ratio.unwrap_or_else(unpaired));
-        Self { ratio, best: efficiency(contender) >= best }
+        Self { ratio: contender.ratio, best: efficiency(contender) >= best }
     }
 
     fn text(&self) -> String {
@@ -155,12 +136,12 @@ impl Share {
 }
 
 /// A scene.
-struct SceneView<'a> {
+pub(super) struct SceneView<'a> {
     index: usize,
-    scene: &'a SceneOutcome,
-    rows: Vec<Row<'a>>,
-    charts: Vec<ChartView>,
-    strips: Strips,
+    pub(super) scene: &'a SceneOutcome,
+    pub(super) rows: Vec<Row<'a>>,
+    pub(super) charts: Vec<ChartView>,
+    pub(super) strips: Strips,
     notes: Vec<String>,
 }
 
@@ -191,43 +172,14 @@ fn notes(scene: &SceneOutcome) -> Vec<String> {
         .contenders
         .iter()
         .flat_map(|contender| contender.notes.iter().map(|note| format!("{}: {note}.", contender.name)));
-    let told = scene.notes.iter().map(|note| format!("{note}.")).chain(told);
-    own_error(scene).into_iter().chain(told).collect()
-}
-
-/// True if one of `notes` is about the reference's own error already.
-fn tell_of_reference(notes: &[String]) -> bool {
-    notes.iter().any(|note| note.contains("the reference's own"))
-}
-
-/// What the reference's own error means for theirs, where the study does not say it itself.
-fn own_error(scene: &SceneOutcome) -> Vec<String> {
-    let Some(own) = scene.reference.own_relmse else {
-        if tell_of_reference(&scene.notes) {
-            return Vec::new();
-        }
-        return vec!["How far the reference itself is from the truth is not known.".into()];
-    };
-    let near =
-        |contender: &&ContenderOutcome| last(contender).is_some_and(|point| own > 0.1 * point.relmse.mean);
-    let silent = |contender: &&ContenderOutcome| !tell_of_reference(&contender.notes);
-    let share = |contender: &ContenderOutcome| {
-        let share = last(contender).map_or(0.0, |point| 100.0 * own / point.relmse.mean);
-        let name = &contender.name;
-        format!("The reference's own error is {} % of the last relMSE of {name}.", figures::number(share))
-    };
-    scene.contenders.iter().filter(near).filter(silent).map(share).collect()
-}
-
-fn last(contender: &ContenderOutcome) -> Option<&Point> {
-    contender.points.last()
+    scene.notes.iter().map(|note| format!("{note}.")).chain(told).collect()
 }
 
 /// Curves by one measure over one axis.
-struct ChartView {
+pub(super) struct ChartView {
     measure: &'static Measure,
     axis: &'static Axis,
-    svg: String,
+    pub(super) svg: String,
 }
 
 fn charts(scene: &SceneOutcome) -> Result<Vec<ChartView>> {
@@ -249,9 +201,9 @@ impl ChartView {
 }
 
 /// A contender's row of the table.
-struct Row<'a> {
+pub(super) struct Row<'a> {
     series: usize,
-    contender: &'a ContenderOutcome,
+    pub(super) contender: &'a ContenderOutcome,
     last: &'a Point,
     share: Share,
 }
@@ -262,7 +214,7 @@ impl<'a> Row<'a> {
         Self { series, contender, last, share: Share::of(scene, contender) }
     }
 
-    fn hue(&self) -> usize {
+    pub(super) fn hue(&self) -> usize {
         chart::hue(self.series)
     }
 
@@ -283,7 +235,7 @@ impl<'a> Row<'a> {
     }
 
     /// The mark of the curve, as the inside of an SVG element around (0, 0).
-    fn mark(&self) -> String {
+    pub(super) fn mark(&self) -> String {
         match chart::outline(self.series) {
             None => "<circle r=\"13\"/>".into(),
             Some(corners) => {

@@ -2,13 +2,9 @@
 //! upon all of them, and what their passes say of error and time.
 
 use crate::{
-    math::Spectrum,
+    math::{Spectrum, relative::Relative},
     render::bench::Bench,
-    study::{
-        interval::{self, Mean},
-        metrics::FLOOR,
-        outcome::Interval,
-    },
+    study::{interval, outcome::Interval},
 };
 
 /// Confidence of every interval.
@@ -21,7 +17,7 @@ const PASSES: usize = 2;
 /// What one turn of one contender told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
-    /// relMSE of one pass: mean over pixels and channels of the variance between passes over (r^2 + 0.01), as
+    /// relMSE of one pass: mean over pixels and channels of the variance between passes over (r^2 + 0.01 m^2), as
     /// [`crate::study::outcome::Point::relmse`].
     pub relmse: f64,
     /// Time of one pass [s].
@@ -67,30 +63,27 @@ fn take_turn(contender: &Bench<'_>, reference: &[Spectrum], passes: std::ops::Ra
             }
         }
     });
+    let to = Relative::to(reference, 3);
     let relative = moments.iter().zip(reference).flat_map(|(moments, r)| {
         moments.iter().zip(r.to_array()).map(move |([sum, square], r)| {
             let variance = ((square - sum * sum / count) / (count - 1.0)).max(0.0);
-            variance / (f64::from(r).powi(2) + FLOOR)
+            to.square(variance, f64::from(r))
         })
     });
     let relmse = relative.sum::<f64>() / (3 * reference.len()) as f64;
     Turn { relmse, seconds: time.as_secs_f64() / count }
 }
 
-/// relMSE x seconds of `full` over that of `other`, turn by turn: how many times less error `other` makes in the same
-/// time. The interval is the jackknife's, of the logarithm. None where nothing is noisy or nothing took any time.
+/// relMSE x seconds of `full` over that of `other`: how many times less error `other` makes in the same time. None where
+/// nothing is noisy or nothing took any time.
 pub fn gain(full: &[Turn], other: &[Turn]) -> Option<Interval> {
-    let product = |turns: &[Turn], without: Option<usize>| {
-        let kept = || turns.iter().enumerate().filter(|(i, _)| Some(*i) != without).map(|(_, turn)| turn);
-        kept().map(|turn| turn.relmse).sum::<f64>() * kept().map(|turn| turn.seconds).sum::<f64>()
+    let product = |turns: &[Turn], picks: &[usize]| {
+        let sum = |of: fn(&Turn) -> f64| picks.iter().map(|pick| of(&turns[*pick])).sum::<f64>();
+        sum(|turn| turn.relmse) * sum(|turn| turn.seconds)
     };
-    let log = |without| (product(full, without) / product(other, without)).ln();
-    let (n, all) = (full.len() as f64, log(None));
-    let values: Vec<f64> = (0..full.len()).map(|turn| n * all - (n - 1.0) * log(Some(turn))).collect();
-    let Mean { error, freedom, .. } = Mean::of(&values);
-    let half = interval::quantile(freedom, CONFIDENCE) * error;
-    let found = all.is_finite() && half.is_finite();
-    found.then(|| Interval { mean: all.exp(), low: (all - half).exp(), high: (all + half).exp() })
+    let found =
+        interval::bootstrap(full.len(), CONFIDENCE, |picks| product(full, picks) / product(other, picks));
+    (found.low > 0.0 && found.high.is_finite()).then_some(found)
 }
 
 #[cfg(test)]

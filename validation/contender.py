@@ -1,0 +1,134 @@
+"""Mitsuba as a contender of `tyndall study`, by the protocol of its option --external:
+
+    tyndall study scene.xml -o out --external "volpath: python3 -m validation.contender {scene} {definitions}
+        --integrator volpath --variant llvm_ad_rgb --seed {seed} --spp {budgets} --folder {folder} --size {size} --threads {threads}"
+
+Writes an image for each number of samples, each going on from the one before, and reports on a line for each the seconds of
+rendering, and those of starting, loading and compiling."""
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from validation.failure import Failure
+
+STARTED = time.perf_counter()
+INTEGRATORS = ("volpath", "volpathmis")
+VARIANTS = ("llvm_ad_rgb", "scalar_rgb")
+WAVEFRONT = 4_000_000
+"""Compiled variants hold all samples of a pass at once; more of them would only cost memory."""
+
+
+def main(arguments: list[str]) -> None:
+    """Renders one scene with one seed."""
+    options = parser().parse_args(arguments)
+    import drjit as dr  # only importable inside the environment
+
+    from validation import mitsuba
+    from validation.scene import open_scene
+
+    dr.set_thread_count(options.threads)
+    scene = open_scene(options.scene, dict(pair.split("=", 1) for pair in options.D))
+    loaded = mitsuba.load(scene, options.variant, options.size)
+    import mitsuba as mi
+
+    integrator = mi.load_dict(integrator_like(tree(scene), options.integrator))
+    if options.variant.startswith("llvm"):
+        for spp in (2, 3):  # a kernel for powers of two, and one for other numbers
+            mitsuba.image(loaded, spp, 0, integrator)
+        dr.sync_thread()
+    render(loaded, integrator, options)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    command = argparse.ArgumentParser(prog="python3 -m validation.contender", description="Mitsuba as a contender of tyndall study.")
+    command.add_argument("scene", type=Path)
+    command.add_argument("--integrator", choices=INTEGRATORS, default=INTEGRATORS[0])
+    command.add_argument("--variant", choices=VARIANTS, default=VARIANTS[0])
+    command.add_argument("--seed", type=int, required=True)
+    command.add_argument("--spp", type=lambda text: [int(spp) for spp in text.split(",")], required=True, help="growing numbers, separated by commas")
+    command.add_argument("--folder", type=Path, required=True, help="to write SPP.exr to")
+    command.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), help="WxH instead of the scene's own")
+    command.add_argument("--threads", type=int, default=1)
+    command.add_argument("-D", metavar="NAME=VALUE", action="append", default=[], help="a parameter of the scene")
+    return command
+
+
+def render(loaded: Any, integrator: Any, options: argparse.Namespace) -> None:
+    """All numbers of samples, one after the other."""
+    import drjit as dr
+    import numpy as np
+
+    from validation import exr, mitsuba
+
+    load_seconds = time.perf_counter() - STARTED
+    width, height = loaded.sensors()[0].film().crop_size()
+    most = max(1, WAVEFRONT // (int(width) * int(height))) if options.variant.startswith("llvm") else max(options.spp)
+    total, done, passes, seconds = np.zeros((int(height), int(width), 3)), 0, 0, 0.0
+    for spp in options.spp:
+        start = time.perf_counter()
+        while done < spp:
+            part = min(most, spp - done)
+            total += part * mitsuba.image(loaded, part, seed_of(options.seed, passes), integrator)
+            done, passes = done + part, passes + 1
+        dr.sync_thread()
+        seconds += time.perf_counter() - start
+        exr.write_image(options.folder / f"{spp}.exr", total / done)
+        print(json.dumps({"spp": spp, "seconds": seconds, "load_seconds": load_seconds}), flush=True)
+
+
+def seed_of(seed: int, number: int) -> int:
+    """Of a pass, in the 32 bits that Mitsuba's seeds have."""
+    import numpy as np
+
+    return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
+
+
+def tree(scene: Any) -> dict[str, Any]:
+    """The scene as one dictionary, parameters filled in, in whichever format it is written."""
+    from validation import tyndall
+
+    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
+        source, target = tyndall.scene_file(scene, Path(folder)), Path(folder, "converted.json")
+        given = tyndall.definitions(scene.parameters)
+        tyndall.call([str(tyndall.binary()), "convert", "--fill", *given, str(source), str(target)])
+        return json.loads(target.read_text())
+
+
+def objects(whole: Any) -> Iterator[dict[str, Any]]:
+    """Everything in a scene that has a type, outer things first."""
+    if isinstance(whole, dict) and "type" in whole:
+        yield whole
+    for child in whole.values() if isinstance(whole, dict) else whole if isinstance(whole, list) else ():
+        yield from objects(child)
+
+
+OURS = ("bdpt", "pt", "lt", "fog")
+ALL = (*OURS, "path", "volpath", "volpathmis", "ptracer")
+
+
+def integrator_like(whole: dict[str, Any], kind: str) -> dict[str, Any]:
+    """Mitsuba's integrator `kind` with the depths that the scene's own has. Where that is one of Tyndall's, which has no
+    Russian roulette, Mitsuba's begins late, which makes it less noisy than by its default."""
+    from validation.mitsuba import ROULETTE
+
+    own: dict[str, Any] = next((o for o in objects(whole) if o["type"] in ALL), {"type": "path"})
+    kept: dict[str, Any] = {key: own[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in own}
+    late: dict[str, Any] = {"rr_depth": ROULETTE[own.get("max_depth", -1) < 0]} if own["type"] in OURS else {}
+    return {"type": kind, **late, **kept}
+
+
+if __name__ == "__main__":
+    from validation import environment
+
+    try:
+        environment.enter("validation.contender")
+        main(sys.argv[1:])
+    except Failure as failure:
+        sys.exit(" ".join(failure.problem.split()))
