@@ -484,7 +484,7 @@ fn paths_out_of_reach_are_told_of_every_set_that_does_not_cover() {
     ] {
         let stage = Stage::new(&scene);
         let reach = |set: Strategies| {
-            coverage::unreachable(&stage.setup.scene, set, stage.setup.integrator.hide_emitters)
+            coverage::unreachable(&stage.setup.scene, set, stage.setup.integrator.options.hide_emitters)
         };
         for set in (1..16).map(|set: u32| [1, 2, 4, 8].map(|bit| set & bit > 0)) {
             let [hit, next_event, join, lens] = set;

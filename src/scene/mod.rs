@@ -11,6 +11,7 @@ pub mod heuristic;
 pub mod integrator;
 mod json;
 pub mod lights;
+pub mod options;
 mod origins;
 mod parameters;
 mod plugins;

@@ -122,7 +122,6 @@ pub fn shoot(
 pub fn settled(entry: &Entry, seed: u64, budget: Budget) -> Settings {
     let mut settings = entry.settings;
     settings.seed = seed;
-    settings.options.seed = seed;
     settings.budget = budget;
     settings
 }
