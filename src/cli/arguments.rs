@@ -1,8 +1,11 @@
 //! What can be asked on the command line.
 
-use super::study::Study;
-use crate::{medium::Choice, scene::heuristic::Heuristic};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use super::{estimator::Estimator, study::Study};
+use crate::medium::Choice;
+use clap::{
+    Args, Parser, Subcommand,
+    builder::{PossibleValuesParser, TypedValueParser},
+};
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 
 /// A bidirectional path tracer for fog, smoke and fire.
@@ -150,57 +153,6 @@ pub struct Render {
     pub size: Option<Size>,
 }
 
-/// How paths are made and weighed.
-#[derive(Args, Clone, Debug, PartialEq)]
-pub struct Estimator {
-    /// How flights through media that vary are sampled [default: as each medium says]
-    #[arg(long, value_enum, value_name = "NAME")]
-    pub tracker: Option<Tracker>,
-
-    /// Light transport algorithm [default: the scene's integrator]
-    ///
-    /// In scenes with the integrator single_scattering or non_scattering, media stay restricted as it says.
-    #[arg(long, value_enum, value_name = "NAME")]
-    pub integrator: Option<Integrator>,
-
-    /// Ways of making paths that may be used, separated by commas [default: all that the integrator has]
-    #[arg(long, value_enum, value_name = "LIST", value_delimiter = ',', num_args = 1)]
-    pub strategies: Vec<Strategy>,
-
-    /// How strategies that can make the same path share it: balance, power, maximum, cutoff (or cutoff:ALPHA, 0.1
-    /// unless given; it needs a --max-depth of at most 32) or uniform [default: the scene's, else balance]
-    ///
-    /// The image is the same within noise; the noise differs. All but balance run on the profile everything.
-    #[arg(long, value_name = "NAME", value_parser = heuristic)]
-    pub heuristic: Option<Heuristic>,
-
-    /// Most edges of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 is without limit
-    /// [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
-    pub max_depth: Option<MaxDepth>,
-
-    /// How random numbers are spread over the samples of a pixel and over light walks [default: the scene's sampler]
-    ///
-    /// With sobol, noise is estimated as if samples were independent, and said to be below that.
-    #[arg(long, value_enum, value_name = "NAME")]
-    pub sampler: Option<Sampler>,
-
-    /// Follow every primary ray that crosses media twice: from a collision forced in them, and from what lies behind
-    /// [default: the scene's forced_interaction]
-    ///
-    /// Less noise in thin media, where few rays collide by chance; the image is the same within noise.
-    #[arg(long, overrides_with = "no_forced_interaction")]
-    pub forced_interaction: bool,
-
-    /// Leave primary rays to chance, whatever the scene says
-    #[arg(long, overrides_with = "forced_interaction")]
-    pub no_forced_interaction: bool,
-
-    /// Which code renders; the image is the same within noise, only the time differs
-    #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]
-    pub profile: Profile,
-}
-
 /// Say what a scene holds.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Info {
@@ -209,8 +161,8 @@ pub struct Info {
     pub scene: Scene,
 
     /// How flights through media that vary are sampled [default: as each medium says]
-    #[arg(long, value_enum, value_name = "NAME")]
-    pub tracker: Option<Tracker>,
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Choice::NAMES))]
+    pub tracker: Option<Choice>,
 }
 
 /// Spell a scene anew.
@@ -257,49 +209,6 @@ pub struct Scene {
     pub definitions: Vec<(String, String)>,
 }
 
-/// Light transport algorithms.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
-pub enum Integrator {
-    /// Bidirectional path tracing
-    Bdpt,
-    /// Path tracing from the eye
-    Pt,
-    /// Light tracing (particle tracing) from the lamps
-    Lt,
-    /// A preview: first surfaces without shadows, behind fog of one radiance; 4 samples per pixel are enough
-    Fog,
-}
-
-/// How flights through media that vary are sampled.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
-pub enum Tracker {
-    /// The cheapest that is unbiased
-    Auto,
-    /// Optical depths in closed form; not for every density
-    #[value(name = "closed_form")]
-    ClosedForm,
-    /// Grids, exactly, cell by cell
-    Exact,
-    /// Ray marching, biased by its step
-    March,
-    /// Delta and ratio tracking
-    #[value(name = "null_collision")]
-    NullCollision,
-}
-
-impl Tracker {
-    /// What it is called elsewhere.
-    pub fn choice(self) -> Choice {
-        match self {
-            Self::Auto => Choice::Auto,
-            Self::ClosedForm => Choice::ClosedForm,
-            Self::Exact => Choice::Exact,
-            Self::March => Choice::March,
-            Self::NullCollision => Choice::NullCollision,
-        }
-    }
-}
-
 /// Frames of an animation, both included.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Frames {
@@ -307,46 +216,6 @@ pub struct Frames {
     pub first: u32,
     /// The last.
     pub last: u32,
-}
-
-/// Ways of making a path from a light subpath and an eye subpath.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
-pub enum Strategy {
-    /// The eye path hits a light
-    Hit,
-    /// The eye path connects to a point chosen on a light
-    NextEvent,
-    /// A vertex of the eye path connects to one of the light path
-    Join,
-    /// The light path connects to the lens
-    Lens,
-}
-
-/// How random numbers are spread.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
-pub enum Sampler {
-    /// All independent
-    Independent,
-    /// Evenly: the first numbers of every walk are points of an Owen-scrambled Sobol sequence
-    Sobol,
-}
-
-/// How far the rendering code is specialised.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
-pub enum Profile {
-    /// Code without what the scene does not hold (media, colour, ...)
-    Fitted,
-    /// The general code, for comparison
-    Everything,
-}
-
-/// A bound on the length of paths.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum MaxDepth {
-    /// At most so many edges.
-    Edges(u32),
-    /// No bound (-1, as in Mitsuba).
-    Unbounded,
 }
 
 /// Width and height of an image in pixels, both positive.
@@ -407,16 +276,14 @@ pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
         .ok_or_else(|| "expected at most 4096 threads".into())
 }
 
-fn max_depth(text: &str) -> Result<MaxDepth, String> {
-    match text.parse::<i64>().map(u32::try_from) {
-        Ok(Ok(edges)) => Ok(MaxDepth::Edges(edges)),
-        _ if text == "-1" => Ok(MaxDepth::Unbounded),
-        _ => Err("expected a number of edges from 0 to 4294967295, or -1 for no limit".into()),
-    }
-}
-
-fn heuristic(text: &str) -> Result<Heuristic, String> {
-    Heuristic::parse(text).map_err(|expected| format!("expected {expected}"))
+/// Reads a name of a table as what it stands for.
+pub(super) fn one_of<T: Copy + Send + Sync + 'static>(
+    table: &'static [(&'static str, T)],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(table.iter().map(|(name, _)| *name)).try_map(|name| {
+        let found = table.iter().find(|(known, _)| *known == name);
+        found.map(|(_, value)| *value).ok_or("unknown name")
+    })
 }
 
 pub(super) fn size(text: &str) -> Result<Size, String> {
@@ -459,7 +326,14 @@ fn image_file(text: &str) -> Result<PathBuf, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{
+        super::estimator::{MaxDepth, Profile},
+        *,
+    };
+    use crate::{
+        sampling::Sampler,
+        transport::{Strategies, record::StrategyKind},
+    };
     use clap::CommandFactory;
 
     fn parse(words: &str) -> Result<Command, String> {
@@ -490,7 +364,7 @@ mod tests {
         assert_eq!((r.spp, r.seed, r.time_limit), (Some(8), 3, Some(Duration::from_secs(300))));
         assert_eq!(
             (r.threads.map(NonZeroUsize::get), r.estimator.integrator),
-            (Some(2), Some(Integrator::Lt))
+            (Some(2), Some(Strategies::LT))
         );
         let definitions = [("res".to_owned(), "48".to_owned()), ("t".to_owned(), "a=b".to_owned())];
         assert_eq!(r.scene.definitions, definitions);
@@ -499,7 +373,7 @@ mod tests {
             (r.estimator.profile, r.estimator.max_depth),
             (Profile::Everything, Some(MaxDepth::Unbounded))
         );
-        assert_eq!(r.estimator.strategies, [Strategy::Hit, Strategy::NextEvent]);
+        assert_eq!(r.estimator.strategies, [StrategyKind::Hit, StrategyKind::NextEvent]);
         assert_eq!((r.estimator.sampler, r.estimator.forced_interaction), (Some(Sampler::Sobol), true));
     }
 
@@ -536,10 +410,7 @@ mod tests {
         assert_eq!((render("--frames 1").fps, render("--frames 1 --fps 29.97").fps), (None, Some(29.97)));
         assert_eq!((render("").frames, render("").estimator.tracker), (None, None));
         for (name, choice) in Choice::NAMES {
-            assert_eq!(
-                render(&format!("--tracker {name}")).estimator.tracker.map(Tracker::choice),
-                Some(choice)
-            );
+            assert_eq!(render(&format!("--tracker {name}")).estimator.tracker, Some(choice));
         }
     }
 

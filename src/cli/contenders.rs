@@ -1,7 +1,7 @@
 //! Contenders of a study out of words: whatever says how `tyndall render` makes paths can be one, and can be an axis.
 
 use super::{
-    arguments::{Estimator, MaxDepth},
+    estimator::{Estimator, MaxDepth},
     study::Study,
 };
 use crate::{

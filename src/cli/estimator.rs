@@ -1,140 +1,206 @@
-//! How paths are made, as the command line asks for it of a scene.
+//! How paths are made: the options of the command line, put over what the scene says.
 
-use super::arguments;
+use super::arguments::one_of;
 use crate::{
     error::{Error, Result},
+    medium::Choice,
     render::{Settings, budget::Budget},
     sampling::Sampler,
-    scene::{
-        build::Setup,
-        heuristic::Heuristic,
-        integrator::{Method, Restriction},
-    },
+    scene::{build::Setup, integrator::Restriction},
     transport::{
-        Options, Strategies,
+        Heuristic, Options, Strategies,
         profile::{Needs, ProfileName},
+        record::StrategyKind,
     },
 };
+use clap::{Args, ValueEnum};
 
-/// A render of `setup` with `budget`, its paths made as asked.
-pub fn settings(asked: &arguments::Estimator, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
-    let options = options(asked, setup, seed)?;
-    Ok(Settings { options, budget, seed, profile: profile(asked, setup) })
+/// How paths are made and weighed.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Estimator {
+    /// How flights through media that vary are sampled [default: as each medium says]
+    ///
+    /// auto: the cheapest that is unbiased; closed_form: optical depths in closed form, not for every density; exact:
+    /// grids, cell by cell; march: ray marching, biased by its step; null_collision: delta and ratio tracking.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Choice::NAMES))]
+    pub tracker: Option<Choice>,
+
+    /// Light transport algorithm [default: the scene's integrator]
+    ///
+    /// bdpt: bidirectional path tracing; pt: path tracing from the camera; lt: light tracing (particle tracing) from the
+    /// emitters; fog: a preview of first surfaces without shadows, behind fog of one radiance, for which 4 samples per
+    /// pixel are enough. In scenes with the integrator single_scattering or non_scattering, media stay restricted as it
+    /// says.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Strategies::INTEGRATORS))]
+    pub integrator: Option<Strategies>,
+
+    /// Ways of making paths that may be used, separated by commas [default: all that the integrator has]
+    ///
+    /// hit: the camera subpath hits an emitter; next-event: it connects to a point sampled on an emitter; join: one of its
+    /// vertices connects to one of a light subpath; lens: a light subpath connects to the lens.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1, value_parser = one_of(&StrategyKind::NAMES))]
+    pub strategies: Vec<StrategyKind>,
+
+    /// How strategies that can make the same path share it: balance, power, maximum, cutoff (or cutoff:ALPHA, 0.1
+    /// unless given; it needs a --max-depth of at most 32) or uniform [default: the scene's, else balance]
+    ///
+    /// The image is the same within noise; the noise differs. All but balance run on the profile everything.
+    #[arg(long, value_name = "NAME", value_parser = heuristic)]
+    pub heuristic: Option<Heuristic>,
+
+    /// Most edges of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 is without limit
+    /// [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
+    pub max_depth: Option<MaxDepth>,
+
+    /// How random numbers are spread over the samples of a pixel and over light walks [default: the scene's sampler]
+    ///
+    /// independent: not at all; sobol: evenly, the first numbers of every walk being points of an Owen-scrambled Sobol
+    /// sequence. With sobol, noise is estimated as if samples were independent, and said to be below that.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Sampler::NAMES))]
+    pub sampler: Option<Sampler>,
+
+    /// Follow every primary ray that crosses media twice: from a collision forced in them, and from what lies behind
+    /// [default: the scene's forced_interaction]
+    ///
+    /// Less noise in thin media, where few rays collide by chance; the image is the same within noise.
+    #[arg(long, overrides_with = "no_forced_interaction")]
+    pub forced_interaction: bool,
+
+    /// Leave primary rays to chance, whatever the scene says
+    #[arg(long, overrides_with = "forced_interaction")]
+    pub no_forced_interaction: bool,
+
+    /// Which code renders; the image is the same within noise, only the time differs
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]
+    pub profile: Profile,
 }
 
-/// The compiled estimator.
-fn profile(asked: &arguments::Estimator, setup: &Setup) -> ProfileName {
-    let profile = match asked.profile {
-        arguments::Profile::Everything => ProfileName::Everything,
-        arguments::Profile::Fitted => {
-            ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.hide_emitters))
+/// How far the rendering code is specialised.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Profile {
+    /// Code without what the scene does not hold (media, colour, ...)
+    Fitted,
+    /// The general code, for comparison
+    Everything,
+}
+
+/// A bound on the length of paths.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum MaxDepth {
+    /// At most so many edges.
+    Edges(u32),
+    /// No bound (-1, as in Mitsuba).
+    Unbounded,
+}
+
+fn max_depth(text: &str) -> std::result::Result<MaxDepth, String> {
+    match text.parse::<i64>().map(u32::try_from) {
+        Ok(Ok(edges)) => Ok(MaxDepth::Edges(edges)),
+        _ if text == "-1" => Ok(MaxDepth::Unbounded),
+        _ => Err("expected a number of edges from 0 to 4294967295, or -1 for no limit".into()),
+    }
+}
+
+fn heuristic(text: &str) -> std::result::Result<Heuristic, String> {
+    Heuristic::parse(text).map_err(|expected| format!("expected {expected}"))
+}
+
+impl Estimator {
+    /// A render of `setup`, its paths made as these options say, or else as the scene says.
+    pub fn settings(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
+        let options = self.options(setup)?;
+        let profile = match self.profile {
+            Profile::Everything => ProfileName::Everything,
+            Profile::Fitted => ProfileName::leanest(Needs::of(&setup.scene, options.hide_emitters)),
+        };
+        let (sampler, profile) = (self.sampler.unwrap_or(setup.sampler), profile.weighing(options.heuristic));
+        Ok(Settings { options, sampler, budget, seed, profile })
+    }
+
+    fn options(&self, setup: &Setup) -> Result<Options> {
+        let scene = setup.integrator.options;
+        let strategies = self.strategies(scene.strategies)?;
+        let max_depth = self.max_depth(setup)?;
+        let heuristic = self.heuristic.unwrap_or(scene.heuristic);
+        if strategies == Strategies::NONE {
+            self.warn_of_preview();
+        } else {
+            self.check_depth(heuristic, max_depth)?;
         }
-    };
-    profile.weighing(heuristic(asked, setup))
-}
+        let forced_interaction = self.forced_interaction(setup, strategies);
+        Ok(Options { strategies, heuristic, max_depth, forced_interaction, ..scene })
+    }
 
-fn heuristic(asked: &arguments::Estimator, setup: &Setup) -> Heuristic {
-    asked.heuristic.unwrap_or(setup.integrator.heuristic)
-}
+    fn warn_of_preview(&self) {
+        for (is_given, flag) in
+            [(self.max_depth.is_some(), "--max-depth"), (self.heuristic.is_some(), "--heuristic")]
+        {
+            if is_given {
+                let text = "has no effect: the integrator fog makes no paths";
+                super::complain(&format!("warning: {flag} {text}"));
+            }
+        }
+    }
 
-/// What the estimator does; where nothing is asked for, as the scene says.
-fn options(asked: &arguments::Estimator, setup: &Setup, seed: u64) -> Result<Options> {
-    let strategies = strategies(asked, setup.integrator.method)?;
-    if strategies == Strategies::NONE && asked.max_depth.is_some() {
-        super::complain("warning: --max-depth has no effect: the integrator fog makes no paths");
+    /// Some heuristics need a bound on the length of paths.
+    fn check_depth(&self, heuristic: Heuristic, edges: Option<u32>) -> Result<()> {
+        let too_deep = |most: &u32| edges.is_none_or(|edges| edges > *most);
+        let Some(most) = heuristic.most_edges().filter(too_deep) else { return Ok(()) };
+        let place = if self.max_depth.is_some() { "--max-depth" } else { "the scene's max_depth" };
+        Err(Error::new(
+            place,
+            format!("a number from 0 to {most}, for the heuristic {heuristic}"),
+            edges.map_or("-1 (no limit)".to_owned(), |edges| edges.to_string()),
+            format!(
+                "give --max-depth {most}, or choose another --heuristic: balance, power, maximum or uniform"
+            ),
+        ))
     }
-    if strategies == Strategies::NONE && asked.heuristic.is_some() {
-        super::complain("warning: --heuristic has no effect: the integrator fog makes no paths");
-    }
-    let (max_depth, hide_emitters) = (max_depth(asked, setup)?, setup.integrator.hide_emitters);
-    let heuristic = heuristic(asked, setup);
-    if strategies != Strategies::NONE {
-        check_depth(asked, heuristic, max_depth)?;
-    }
-    let (sampler, forced_interaction) = (sampler(asked, setup), forced_interaction(asked, setup, strategies));
-    Ok(Options { strategies, heuristic, max_depth, hide_emitters, seed, sampler, forced_interaction })
-}
 
-/// Some heuristics need a bound on the length of paths.
-fn check_depth(asked: &arguments::Estimator, heuristic: Heuristic, edges: Option<u32>) -> Result<()> {
-    let Some(most) = heuristic.most_edges().filter(|most| edges.is_none_or(|edges| edges > *most)) else {
-        return Ok(());
-    };
-    let place = if asked.max_depth.is_some() { "--max-depth" } else { "the scene's max_depth" };
-    Err(Error::new(
-        place,
-        format!("a number from 0 to {most}, for the heuristic {heuristic}"),
-        edges.map_or("-1 (no limit)".to_owned(), |edges| edges.to_string()),
-        format!("give --max-depth {most}, or choose another --heuristic: balance, power, maximum or uniform"),
-    ))
-}
+    fn forced_interaction(&self, setup: &Setup, strategies: Strategies) -> bool {
+        let by_eye = strategies.hit || strategies.next_event || strategies.join;
+        if self.forced_interaction && !(by_eye && Needs::of(&setup.scene, false).media) {
+            let why = if by_eye { "the scene has no media" } else { "no strategy in use walks from the eye" };
+            super::complain(&format!("warning: --forced-interaction has no effect: {why}"));
+        }
+        let forced = self.forced_interaction || setup.integrator.options.forced_interaction;
+        by_eye && forced && !self.no_forced_interaction
+    }
 
-fn forced_interaction(asked: &arguments::Estimator, setup: &Setup, strategies: Strategies) -> bool {
-    let by_eye = strategies.hit || strategies.next_event || strategies.join;
-    if asked.forced_interaction && !(by_eye && Needs::of(&setup.scene, false).media) {
-        let why = if by_eye { "the scene has no media" } else { "no strategy in use walks from the eye" };
-        super::complain(&format!("warning: --forced-interaction has no effect: {why}"));
+    fn max_depth(&self, setup: &Setup) -> Result<Option<u32>> {
+        let edges = match self.max_depth {
+            Some(MaxDepth::Edges(edges)) => Some(edges),
+            Some(MaxDepth::Unbounded) => None,
+            None => setup.integrator.options.max_depth,
+        };
+        let single = matches!(setup.integrator.restriction, Restriction::SingleScattering { .. });
+        if single && edges.is_none_or(|edges| edges > Restriction::SINGLE) {
+            return Err(Error::new(
+                "--max-depth",
+                "0, 1 or 2, for the scene's integrator single_scattering",
+                edges.map_or("-1".to_owned(), |edges| edges.to_string()),
+                "replace the integrator in the scene, by volpath for example",
+            ));
+        }
+        Ok(edges)
     }
-    let forced = asked.forced_interaction || setup.integrator.forced_interaction;
-    by_eye && forced && !asked.no_forced_interaction
-}
 
-fn sampler(asked: &arguments::Estimator, setup: &Setup) -> Sampler {
-    match asked.sampler {
-        Some(arguments::Sampler::Independent) => Sampler::Independent,
-        Some(arguments::Sampler::Sobol) => Sampler::Sobol,
-        None => setup.sampler,
+    /// Those of the integrator, or the ones of them that are named.
+    fn strategies(&self, scene: Strategies) -> Result<Strategies> {
+        let all = self.integrator.unwrap_or(scene);
+        if self.strategies.is_empty() {
+            return Ok(all);
+        }
+        if !self.strategies.iter().all(|kind| all.has(*kind)) {
+            return Err(Error::new(
+                "--strategies",
+                "strategies that the integrator has",
+                "one that it leaves out",
+                "choose among those of --integrator bdpt: hit, next-event, join, lens",
+            ));
+        }
+        let unnamed = StrategyKind::ALL.into_iter().filter(|kind| !self.strategies.contains(kind));
+        Ok(unnamed.fold(all, Strategies::without))
     }
-}
-
-fn max_depth(asked: &arguments::Estimator, setup: &Setup) -> Result<Option<u32>> {
-    let edges = match asked.max_depth {
-        Some(arguments::MaxDepth::Edges(edges)) => Some(edges),
-        Some(arguments::MaxDepth::Unbounded) => None,
-        None => setup.integrator.max_depth,
-    };
-    let single = matches!(setup.integrator.restriction, Restriction::SingleScattering { .. });
-    if single && edges.is_none_or(|edges| edges > Restriction::SINGLE) {
-        return Err(Error::new(
-            "--max-depth",
-            "0, 1 or 2, for the scene's integrator single_scattering",
-            edges.map_or("-1".to_owned(), |edges| edges.to_string()),
-            "replace the integrator in the scene, by volpath for example",
-        ));
-    }
-    Ok(edges)
-}
-
-fn strategies(asked: &arguments::Estimator, scene_method: Method) -> Result<Strategies> {
-    let all = match (asked.integrator, scene_method) {
-        (Some(arguments::Integrator::Bdpt), _) | (None, Method::Bdpt) => Strategies::BDPT,
-        (Some(arguments::Integrator::Pt), _) | (None, Method::Pt) => Strategies::PT,
-        (Some(arguments::Integrator::Lt), _) | (None, Method::Lt) => Strategies::LT,
-        (Some(arguments::Integrator::Fog), _) | (None, Method::Fog) => Strategies::NONE,
-    };
-    if asked.strategies.is_empty() {
-        return Ok(all);
-    }
-    let named = |strategy| asked.strategies.contains(&strategy);
-    let chosen = Strategies {
-        hit: named(arguments::Strategy::Hit),
-        next_event: named(arguments::Strategy::NextEvent),
-        join: named(arguments::Strategy::Join),
-        lens: named(arguments::Strategy::Lens),
-    };
-    let kept = Strategies {
-        hit: chosen.hit && all.hit,
-        next_event: chosen.next_event && all.next_event,
-        join: chosen.join && all.join,
-        lens: chosen.lens && all.lens,
-    };
-    if kept == chosen {
-        return Ok(kept);
-    }
-    Err(Error::new(
-        "--strategies",
-        "strategies that the integrator has",
-        "one that it leaves out",
-        "choose among those of --integrator bdpt: hit, next-event, join, lens",
-    ))
 }

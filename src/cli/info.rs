@@ -14,12 +14,12 @@ use crate::{
     scene::{
         Infinity, Scene,
         build::Setup,
-        integrator::{Integrator, Method, Restriction},
+        integrator::{Integrator, Restriction},
         lights::Light,
     },
-    study::coverage::{self, Paths},
+    study::coverage,
     transport::{
-        Strategies,
+        Options, Strategies,
         profile::{Needs, ProfileName},
     },
 };
@@ -33,8 +33,8 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
 
 fn describe(setup: &Setup) -> String {
     let Setup { scene, film, integrator, samples_per_pixel, .. } = setup;
-    let profile =
-        ProfileName::leanest(Needs::of(scene, integrator.hide_emitters)).weighing(integrator.heuristic);
+    let profile = ProfileName::leanest(Needs::of(scene, integrator.options.hide_emitters))
+        .weighing(integrator.options.heuristic);
     let left_out = profile.left_out();
     let mut lines = vec![
         format!("image       {}", describe_film(film)),
@@ -91,22 +91,22 @@ fn describe_layers(layers: &[Layer]) -> String {
 }
 
 fn describe_integrator(integrator: &Integrator) -> String {
-    let method = match integrator.method {
-        Method::Bdpt => "bdpt",
-        Method::Pt => "pt",
-        Method::Lt => "lt",
-        Method::Fog => return "fog, a preview of first surfaces".to_owned(),
-    };
+    let Options { strategies, heuristic, max_depth, .. } = integrator.options;
+    if strategies == Strategies::NONE {
+        return "fog, a preview of first surfaces".to_owned();
+    }
+    let named = Strategies::INTEGRATORS.iter().find(|(_, known)| *known == strategies);
+    let method = named.map_or("", |(name, _)| name);
     let media = match integrator.restriction {
         Restriction::None => "",
         Restriction::SingleScattering { .. } => ", single scattering",
         Restriction::NonScattering => ", media that absorb and emit only",
     };
-    let length = match integrator.max_depth {
+    let length = match max_depth {
         Some(depth) => format!("at most {depth} segments"),
         None => "any length".to_owned(),
     };
-    format!("{method}, paths of {length}{media}, weighed by the {} heuristic", integrator.heuristic)
+    format!("{method}, paths of {length}{media}, weighed by the {heuristic} heuristic")
 }
 
 fn describe_shapes(scene: &Scene) -> String {
@@ -176,12 +176,6 @@ fn describe_tracker(setup: &Setup, varying: &Heterogeneous) -> String {
 
 /// Kinds of paths that no strategy of the integrator can make: they are black, not noisy.
 fn unreachable(scene: &Scene, integrator: &Integrator) -> Vec<String> {
-    let strategies = match integrator.method {
-        Method::Bdpt => Strategies::BDPT,
-        Method::Pt => Strategies::PT,
-        Method::Lt => Strategies::LT,
-        Method::Fog => Strategies::NONE,
-    };
-    let Integrator { max_depth, hide_emitters, .. } = *integrator;
-    coverage::unreachable(scene, strategies, Paths { max_depth, hide_emitters })
+    let options = &integrator.options;
+    coverage::unreachable(scene, options.strategies, options.into())
 }

@@ -16,6 +16,7 @@ mod study;
 
 use crate::{
     error::{Error, Result},
+    medium::Choice,
     scene::{
         self,
         build::{Overrides, Setup},
@@ -56,16 +57,9 @@ fn judged(outcome: Result<bool>) -> ExitCode {
 }
 
 /// Reads and builds a scene; warnings go to standard error.
-fn load(
-    scene: &arguments::Scene,
-    size: Option<arguments::Size>,
-    tracker: Option<arguments::Tracker>,
-) -> Result<Setup> {
+fn load(scene: &arguments::Scene, size: Option<arguments::Size>, tracker: Option<Choice>) -> Result<Setup> {
     let root = scene::read(&scene.file, &scene.definitions)?;
-    let overrides = Overrides {
-        size: size.map(|size| (size.width, size.height)),
-        tracker: tracker.map(arguments::Tracker::choice),
-    };
+    let overrides = Overrides { size: size.map(|size| (size.width, size.height)), tracker };
     let setup = scene::build::build(&root, overrides)?;
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));

@@ -1,8 +1,9 @@
 //! `tyndall pixel`: the paths of one pixel's samples.
 
 use super::{
-    arguments::{Estimator, Scene, Size, positive_u32, size, threads},
-    estimator, load, say,
+    arguments::{Scene, Size, positive_u32, size, threads},
+    estimator::Estimator,
+    load, say,
 };
 use crate::{error::Result, film, render::budget::Budget, study::pixel};
 use clap::Args;
@@ -56,7 +57,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let budget = Budget { samples_per_pixel: None, time: None };
-    let settings = estimator::settings(&arguments.estimator, &setup, arguments.seed, budget)?;
+    let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
     let at = [arguments.x, arguments.y];
     let pool = super::threads(arguments.threads)?;
     let found =

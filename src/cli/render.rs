@@ -1,6 +1,6 @@
 //! `tyndall render`: a scene file in, an image and its PNG preview out.
 
-use super::{arguments, estimator, load, threads};
+use super::{arguments, load, threads};
 use crate::{
     error::{Error, Result},
     film::{
@@ -11,7 +11,7 @@ use crate::{
     render::{self, Image, Progress, Settings, adaptive::Precision, budget::Budget},
     sampling::Sampler,
     scene::build::Setup,
-    transport::{Options, Strategies},
+    transport::Strategies,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
@@ -25,7 +25,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
     let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let settings = settings(arguments, &setup)?;
-    let precision = precision(arguments, &setup, &settings.options)?;
+    let precision = precision(arguments, &setup, &settings)?;
     let task = Task { settings, precision, batches: arguments.batches };
     let goal = Goal::new(arguments, &setup)?;
     let load_time = started.elapsed().as_secs_f64();
@@ -88,19 +88,19 @@ struct Task {
 }
 
 /// What every pixel is to be known with.
-fn precision(arguments: &arguments::Render, setup: &Setup, options: &Options) -> Result<Option<Precision>> {
+fn precision(arguments: &arguments::Render, setup: &Setup, settings: &Settings) -> Result<Option<Precision>> {
     let Some(error) = arguments.error else { return Ok(None) };
     let refuse = |found: &str, remedy: &str| {
         let expected = "an image of independent samples, without layers of moments";
         Err(Error::new("--error", expected, found, remedy))
     };
-    if options.sampler == Sampler::Sobol {
+    if settings.sampler == Sampler::Sobol {
         return refuse(
             "samples that are spread evenly (sobol, or what in the scene means it)",
             "leave --error out, or give --sampler independent",
         );
     }
-    if options.strategies == Strategies::NONE {
+    if settings.options.strategies == Strategies::NONE {
         return refuse("the preview fog", "leave --error out, or choose another --integrator");
     }
     if setup.integrator.layers.iter().any(|layer| layer.needs_squares() || layer.content == Content::Mean) {
@@ -139,7 +139,6 @@ fn batches(setup: &Setup, task: &Task, format: Format, count: u32, label: Option
     let one = |k: u32| {
         let mut settings = task.settings;
         settings.seed = settings.seed.wrapping_add(k.into());
-        settings.options.seed = settings.options.seed.wrapping_add(k.into());
         let label =
             format!("{}batch {} of {count}", label.map_or(String::new(), |l| format!("{l}, ")), k + 1);
         watched(setup, &Task { settings, ..*task }, Some(&label))
@@ -181,7 +180,7 @@ fn figures(image: &Image, task: &Task) -> serde_json::Value {
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
     let endless = Budget { samples_per_pixel: None, time: None };
-    let settings = estimator::settings(&arguments.estimator, setup, arguments.seed, endless)?;
+    let settings = arguments.estimator.settings(setup, arguments.seed, endless)?;
     let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
     Ok(Settings { budget, ..settings })
 }
@@ -287,7 +286,7 @@ impl Bar {
             bar.set_style(style);
         }
         bar.set_prefix(label.map_or(String::new(), |label| format!("{label}  ")));
-        Self { bar, by, sampler: task.settings.options.sampler }
+        Self { bar, by, sampler: task.settings.sampler }
     }
 
     fn tell(&self, progress: &Progress) {
@@ -335,7 +334,7 @@ fn percent(relative: f64) -> String {
 }
 
 fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, label: Option<&str>) {
-    let told = |noise| format!(", {}", told(noise, task.settings.options.sampler));
+    let told = |noise| format!(", {}", told(noise, task.settings.sampler));
     let noise = image.noise.map_or(String::new(), told);
     let noise = match (&image.reached, task.precision) {
         (Some(reached), Some(Precision { error, .. })) => {

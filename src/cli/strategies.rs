@@ -1,8 +1,9 @@
 //! `tyndall strategies`: what every strategy is worth in a scene.
 
 use super::{
-    arguments::{Estimator, Scene, Size, positive_u32, size, threads},
-    estimator, load, say,
+    arguments::{Scene, Size, positive_u32, size, threads},
+    estimator::Estimator,
+    load, say,
 };
 use crate::{
     error::{Error, Result},
@@ -58,7 +59,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let budget = Budget { samples_per_pixel: None, time: None };
-    let settings = estimator::settings(&arguments.estimator, &setup, arguments.seed, budget)?;
+    let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
     let passes = arguments.spp.map_or(setup.samples_per_pixel, u64::from) as usize;
     let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);
     let plan = Plan { depth: arguments.depth, passes, pilots };

@@ -1,12 +1,13 @@
 //! `tyndall study`: error against run time.
 
 use super::{
-    arguments::{Size, Tracker, confidence, definition, duration, positive_u32, size, threads as threads_of},
-    complain, contenders, estimator, say, threads,
+    arguments::{Size, confidence, definition, duration, positive_u32, size, threads as threads_of},
+    complain, contenders, say, threads,
 };
 use crate::{
     description::Object,
     error::{Error, Result},
+    medium::Choice,
     render::budget::Budget,
     scene::{
         self, Sources,
@@ -294,7 +295,7 @@ struct Stage<'a> {
     arguments: &'a Study,
     threads: usize,
     scene: Option<(usize, Object, f64)>,
-    setups: Vec<(Option<Tracker>, Arc<Setup>, f64)>,
+    setups: Vec<(Option<Choice>, Arc<Setup>, f64)>,
 }
 
 impl<'a> Stage<'a> {
@@ -308,7 +309,7 @@ impl<'a> Stage<'a> {
     }
 
     /// The scene with `tracker`, and the time that reading and building it took [s].
-    fn setup(&mut self, scene: usize, tracker: Option<Tracker>) -> Result<(Arc<Setup>, f64)> {
+    fn setup(&mut self, scene: usize, tracker: Option<Choice>) -> Result<(Arc<Setup>, f64)> {
         let started = Instant::now();
         let (root, reading) = match self.scene.take() {
             Some((index, root, reading)) if index == scene => (root, reading),
@@ -324,7 +325,7 @@ impl<'a> Stage<'a> {
         }
         let started = Instant::now();
         let size = self.arguments.size.map(|size| (size.width, size.height));
-        let overrides = Overrides { size, tracker: tracker.map(Tracker::choice) };
+        let overrides = Overrides { size, tracker };
         let setup = Arc::new(build::build(root, overrides)?);
         let seconds = reading + started.elapsed().as_secs_f64();
         self.setups.push((tracker, setup.clone(), seconds));
@@ -352,7 +353,7 @@ impl<'a> Stage<'a> {
         let asked = contenders::parse("contender", words)?;
         let (setup, load_seconds) = self.setup(scene, asked.tracker)?;
         let budget = Budget { samples_per_pixel: Some(1), time: None };
-        let settings = estimator::settings(&asked, &setup, 0, budget)?;
+        let settings = asked.settings(&setup, 0, budget)?;
         if settings.options.strategies == Strategies::NONE {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));

@@ -54,9 +54,9 @@ pub(super) struct Ready<'a, P: Profile> {
 
 impl<'a, P: Profile> Ready<'a, P> {
     fn prepare(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
-        let blocks = Blocks::new(film.len(), P::Lanes::COUNT, settings.options.sampler);
+        let blocks = Blocks::new(film.len(), P::Lanes::COUNT, settings.sampler);
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
-        let estimator = Estimator::<P>::new(scene, settings.options, per_pass, per_block);
+        let estimator = Estimator::<P>::new(scene, settings.options, settings.seed, per_pass, per_block);
         Box::new(Self { estimator, blocks, scene, film, seed: settings.seed })
     }
 }

@@ -27,6 +27,7 @@ use crate::{
         layer::{Content, Layer},
     },
     math::{Spectrum, Vec3},
+    sampling::Sampler,
     scene::{Scene, integrator::Look},
     transport::{Heuristic, Options, Strategies, profile::ProfileName},
 };
@@ -42,6 +43,8 @@ use watch::{Clock, Watch};
 pub struct Settings {
     /// Strategies, depth, visibility of emitters.
     pub options: Options,
+    /// Where the random numbers of walks come from.
+    pub sampler: Sampler,
     /// When to stop.
     pub budget: Budget,
     /// The same seed gives the same image, bit for bit.
@@ -172,9 +175,8 @@ fn dispatch(
             return finish(&bench, &clock, found, layers);
         }
         Mode::Preview(look) => {
-            let Options { hide_emitters, seed, .. } = settings.options;
-            let rays = bench.compiled.blocks().pilot_rays(scene, film, seed);
-            Some(Preview::new(scene, look, hide_emitters, rays))
+            let rays = bench.compiled.blocks().pilot_rays(scene, film, settings.seed);
+            Some(Preview::new(scene, look, settings.options.hide_emitters, rays))
         }
         Mode::Budget => None,
     };

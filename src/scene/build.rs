@@ -108,7 +108,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
 /// Mitsuba's `path` counts the passage through a null surface, a mask or a thin pane as a bounce; its volumetric
 /// integrators do not, and neither does anything here.
 fn warn_of_counted_nulls(object: &Object, integrator: &Integrator, scene: &Scene, library: &Library) {
-    let limited = integrator.max_depth.is_some() || integrator.hide_emitters;
+    let limited = integrator.options.max_depth.is_some() || integrator.options.hide_emitters;
     let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
     if object.plugin == "path" && limited && nulls {
         let text = "a passage through a null surface, a mask or a thin pane is no bounce here, as in volpath; \

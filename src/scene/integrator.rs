@@ -2,27 +2,17 @@
 //! another one and ask for more channels. `fog` is a preview that makes no paths; `single_scattering` and
 //! `non_scattering` restrict what media do.
 
+use super::{
+    heuristic::Heuristic,
+    options::{Options, Strategies},
+};
 use crate::{
     description::{Build, Library, Object, Params, Registry, nearest, params::Child},
     error::{Error, Result},
     film::layer::{Content, Layer, QUANTITIES},
     math::Spectrum,
     medium::{Choice, Treatment},
-    scene::heuristic::Heuristic,
 };
-
-/// How paths are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Bidirectional path tracing.
-    Bdpt,
-    /// Eye walks with next-event estimation.
-    Pt,
-    /// Light walks joined to the lens.
-    Lt,
-    /// First surfaces behind a constant veil (BMA02 eq. 5).
-    Fog,
-}
 
 /// What light does in media.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,18 +61,10 @@ pub struct Look {
 }
 
 /// An integrator as a scene file asks for it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Integrator {
     /// How paths are made.
-    pub method: Method,
-    /// Most segments of a path, null boundaries not counted; none for no limit.
-    pub max_depth: Option<u32>,
-    /// The camera does not see emitters, but what is behind them.
-    pub hide_emitters: bool,
-    /// By which strategies share paths.
-    pub heuristic: Heuristic,
-    /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
-    pub forced_interaction: bool,
+    pub options: Options,
     /// What light does in media.
     pub restriction: Restriction,
     /// How a preview looks.
@@ -91,30 +73,15 @@ pub struct Integrator {
     pub layers: Vec<Layer>,
 }
 
-impl Default for Integrator {
-    fn default() -> Self {
-        Self {
-            method: Method::Bdpt,
-            max_depth: None,
-            hide_emitters: false,
-            heuristic: Heuristic::default(),
-            forced_interaction: false,
-            restriction: Restriction::None,
-            look: Look::default(),
-            layers: Vec::new(),
-        }
-    }
-}
-
 /// Every integrator.
 pub const ROWS: Registry<Build<Integrator>> = Registry::new(
     "an integrator",
     &[
-        ("bdpt", |p| build_as(p, Method::Bdpt)),
-        ("path", |p| build_as(p, Method::Pt)),
-        ("volpath", |p| build_as(p, Method::Pt)),
-        ("volpathmis", |p| build_as(p, Method::Pt)),
-        ("ptracer", |p| build_as(p, Method::Lt)),
+        ("bdpt", |p| build_as(p, Strategies::BDPT)),
+        ("path", |p| build_as(p, Strategies::PT)),
+        ("volpath", |p| build_as(p, Strategies::PT)),
+        ("volpathmis", |p| build_as(p, Strategies::PT)),
+        ("ptracer", |p| build_as(p, Strategies::LT)),
         ("fog", build_fog),
         ("single_scattering", build_single_scattering),
         ("non_scattering", build_non_scattering),
@@ -148,7 +115,7 @@ fn check_names(object: &Object, layers: &[Layer]) -> Result<()> {
     }
 }
 
-fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
+fn build_as(params: &Params<'_>, strategies: Strategies) -> Result<Integrator> {
     let depth = params.integer("max_depth", -1)?;
     let max_depth = match depth {
         -1 => None,
@@ -158,19 +125,13 @@ fn build_as(params: &Params<'_>, method: Method) -> Result<Integrator> {
     params.accept_unused(&["rr_depth"], "walks end by absorption, which is exact at any depth");
     accept_division(params);
     let hide_emitters = params.boolean("hide_emitters", false)?;
-    if method == Method::Lt {
+    if strategies == Strategies::LT {
         params.accept_unused(&["forced_interaction"], "light walks have no primary rays");
     }
     let forced_interaction = params.boolean("forced_interaction", false)?;
     let heuristic = heuristic(params)?;
-    Ok(Integrator {
-        method,
-        max_depth,
-        hide_emitters,
-        heuristic,
-        forced_interaction,
-        ..Integrator::default()
-    })
+    let options = Options { strategies, heuristic, max_depth, hide_emitters, forced_interaction };
+    Ok(Integrator { options, ..Integrator::default() })
 }
 
 /// `heuristic`: as [`Heuristic::parse`] reads it.
@@ -198,7 +159,8 @@ fn build_fog(params: &Params<'_>) -> Result<Integrator> {
     let (color, ambient) = (params.optional_emission("fog_color")?, params.optional_emission("ambient")?);
     let look = Look { color, ambient, threshold };
     let hide_emitters = params.boolean("hide_emitters", false)?;
-    Ok(Integrator { method: Method::Fog, hide_emitters, look, ..Integrator::default() })
+    let options = Options { strategies: Strategies::NONE, hide_emitters, ..Options::default() };
+    Ok(Integrator { options, look, ..Integrator::default() })
 }
 
 /// `single_scattering`: path tracing of at most two segments, with marching by `step` [m] or within `march_error`.
@@ -219,14 +181,15 @@ fn build_single_scattering(params: &Params<'_>) -> Result<Integrator> {
         };
     let step = within("step", "a length above 0", f64::MIN_POSITIVE..=f64::MAX)?;
     let march_error = within("march_error", "a number from 1e-7 to 1", 1e-7..=1.0)?;
-    let integrator = build_as(params, Method::Pt)?;
+    let integrator = build_as(params, Strategies::PT)?;
     let restriction = Restriction::SingleScattering { step, march_error };
-    Ok(Integrator { restriction, max_depth: Some(depth as u32), ..integrator })
+    let options = Options { max_depth: Some(depth as u32), ..integrator.options };
+    Ok(Integrator { options, restriction, ..integrator })
 }
 
 /// `non_scattering`: media that absorb and emit only, among surfaces as they are.
 fn build_non_scattering(params: &Params<'_>) -> Result<Integrator> {
-    let integrator = build_as(params, Method::Bdpt)?;
+    let integrator = build_as(params, Strategies::BDPT)?;
     Ok(Integrator { restriction: Restriction::NonScattering, ..integrator })
 }
 
@@ -238,7 +201,10 @@ fn accept_division(params: &Params<'_>) {
 /// black.
 fn build_aov(params: &Params<'_>) -> Result<Integrator> {
     let mut built = match nested(params)? {
-        None => Integrator { method: Method::Pt, max_depth: Some(0), ..Integrator::default() },
+        None => {
+            let options = Options { strategies: Strategies::PT, max_depth: Some(0), ..Options::default() };
+            Integrator { options, ..Integrator::default() }
+        }
         Some(child) => {
             let name = name_of(&child);
             let inner = ROWS.build(child.object, params.library)?;

@@ -11,6 +11,7 @@ pub mod integrator;
 mod json;
 pub mod lights;
 mod locate;
+pub mod options;
 mod origins;
 mod parameters;
 mod placement;

@@ -26,76 +26,20 @@ pub use vertex::{Site, Vertex};
 pub use walk::Departure;
 pub use weight::Sums;
 
-pub use crate::scene::heuristic::Heuristic;
+pub use crate::scene::{
+    heuristic::Heuristic,
+    options::{Options, Strategies},
+};
 
 use crate::{
     math::{Lanes, Spectrum, Vec2},
-    sampling::{Sampler, Stream, stream::Purpose},
+    sampling::{Stream, stream::Purpose},
     scene::Scene,
     shape::Ray,
 };
 use profile::Profile;
 use record::{Meeting, Recorder};
 use weight::Strategy;
-
-/// Which strategies run. Their weights sum to one over those that do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Strategies {
-    /// s = 0: eye walks meet emitters.
-    pub hit: bool,
-    /// s = 1, t >= 2: next-event estimation.
-    pub next_event: bool,
-    /// s >= 2, t >= 2: joins of eye and light walks.
-    pub join: bool,
-    /// t = 1: light walks join the lens.
-    pub lens: bool,
-}
-
-impl Strategies {
-    /// None at all: an estimator that is asked about primary rays only.
-    pub const NONE: Self = Self { hit: false, next_event: false, join: false, lens: false };
-    /// Bidirectional path tracing.
-    pub const BDPT: Self = Self { hit: true, next_event: true, join: true, lens: true };
-    /// Path tracing with next-event estimation.
-    pub const PT: Self = Self { hit: true, next_event: true, join: false, lens: false };
-    /// Light tracing.
-    pub const LT: Self = Self { hit: false, next_event: false, join: false, lens: true };
-}
-
-/// What an estimator is asked to do.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Which strategies run.
-    pub strategies: Strategies,
-    /// By which they share the paths that several of them can make. All but [`Heuristic::Balance`] run on the profile
-    /// that [`profile::ProfileName::weighing`] names.
-    pub heuristic: Heuristic,
-    /// Most segments of a path, null boundaries not counted; none for no limit. Paths beyond
-    /// [`Heuristic::most_edges`] are never made.
-    pub max_depth: Option<u32>,
-    /// The camera does not see emitters, but what is behind them.
-    pub hide_emitters: bool,
-    /// Seed of the pilot walks.
-    pub seed: u64,
-    /// Where the random numbers of walks come from.
-    pub sampler: Sampler,
-    /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
-    pub forced_interaction: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            strategies: Strategies::BDPT,
-            heuristic: Heuristic::default(),
-            max_depth: None,
-            hide_emitters: false,
-            seed: 0,
-            sampler: Sampler::default(),
-            forced_interaction: false,
-        }
-    }
-}
 
 /// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
 #[derive(Clone, Copy, Debug)]
@@ -129,10 +73,15 @@ pub struct Estimator<'a, P: Profile> {
 
 impl<'a, P: Profile> Estimator<'a, P> {
     /// Prepares to render `scene` with `walks_per_pass` light walks for each sample of all pixels together and
-    /// `walks_per_block` of them behind one cache.
-    pub fn new(scene: &'a Scene, options: Options, walks_per_pass: u64, walks_per_block: u64) -> Self {
-        let Options { strategies, heuristic, max_depth, hide_emitters, seed, forced_interaction, .. } =
-            options;
+    /// `walks_per_block` of them behind one cache; `seed` is that of its pilot walks.
+    pub fn new(
+        scene: &'a Scene,
+        options: Options,
+        seed: u64,
+        walks_per_pass: u64,
+        walks_per_block: u64,
+    ) -> Self {
+        let Options { strategies, heuristic, max_depth, hide_emitters, forced_interaction } = options;
         let lit = !scene.lights.is_empty();
         let count = |on: bool, n: f32| if on && lit { n } else { 0.0 };
         let mut estimator = Self {

@@ -37,13 +37,12 @@ impl StrategyKind {
     }
 
     /// As printed and as typed.
+    pub const NAMES: [(&'static str, Self); 4] =
+        [("hit", Self::Hit), ("next-event", Self::NextEvent), ("join", Self::Join), ("lens", Self::Lens)];
+
+    /// As printed and as typed.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Hit => "hit",
-            Self::NextEvent => "next-event",
-            Self::Join => "join",
-            Self::Lens => "lens",
-        }
+        Self::NAMES[self as usize].0
     }
 }
 

@@ -14,7 +14,6 @@ use tyndall::{
     scene::{
         self,
         build::{self, Overrides, Setup},
-        integrator::Integrator,
     },
     transport::{
         Options, Strategies,
@@ -46,7 +45,7 @@ impl Stage {
         std::fs::write(&path, scene.to_string()).unwrap();
         let root = scene::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
         let setup = build::build(&root, Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
-        let profile = ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.hide_emitters));
+        let profile = ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.options.hide_emitters));
         Self { setup, profile }
     }
 
@@ -69,13 +68,10 @@ impl Stage {
 
     /// How it is rendered.
     pub fn settings(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Settings {
-        let integrator = &self.setup.integrator;
-        let &Integrator { heuristic, max_depth, hide_emitters, forced_interaction, .. } = integrator;
+        let options = Options { strategies, ..self.setup.integrator.options };
         let sampler = self.setup.sampler;
-        let options =
-            Options { strategies, heuristic, max_depth, hide_emitters, seed, sampler, forced_interaction };
         let budget = Budget { samples_per_pixel: Some(samples_per_pixel), time: None };
-        Settings { options, budget, seed, profile: self.profile }
+        Settings { options, sampler, budget, seed, profile: self.profile }
     }
 
     /// Renders one image per seed.

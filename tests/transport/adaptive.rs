@@ -10,6 +10,7 @@ use std::time::Duration;
 use tyndall::{
     math::Spectrum,
     render::{self, Image, Settings, adaptive::Precision, budget::Budget},
+    sampling::Sampler,
     scene::build::Setup,
     transport::{Options, Strategies},
 };
@@ -17,9 +18,9 @@ use tyndall::{
 /// Renders to a relative error, and to no more than some samples.
 fn to_precision(stage: &Stage, strategies: Strategies, error: f64, most: Option<u64>, seed: u64) -> Image {
     let Setup { scene, film, integrator, .. } = &stage.setup;
-    let options = Options { strategies, max_depth: integrator.max_depth, seed, ..Options::default() };
+    let options = Options { strategies, max_depth: integrator.options.max_depth, ..Options::default() };
     let budget = Budget { samples_per_pixel: most, time: most.map(|_| Duration::from_secs(600)) };
-    let settings = Settings { options, budget, seed, profile: stage.profile };
+    let settings = Settings { options, sampler: Sampler::Independent, budget, seed, profile: stage.profile };
     let precision = Precision { error, confidence: 0.95 };
     render::render_to_precision(scene, film, &settings, precision, &[], &mut |_| {})
 }

@@ -9,7 +9,7 @@ use crate::common::{
     strategies,
 };
 use serde_json::{Value, json};
-use tyndall::{scene::integrator::Integrator, study::coverage, transport::Strategies};
+use tyndall::{study::coverage, transport::Strategies};
 
 /// What decides which strategies can make all paths of a scene.
 #[derive(Clone, Copy, Default)]
@@ -482,8 +482,7 @@ fn paths_out_of_reach_are_told_of_every_set_that_does_not_cover() {
     ] {
         let stage = Stage::new(&scene);
         let reach = |set: Strategies| {
-            let Integrator { max_depth, hide_emitters, .. } = stage.setup.integrator;
-            coverage::unreachable(&stage.setup.scene, set, coverage::Paths { max_depth, hide_emitters })
+            coverage::unreachable(&stage.setup.scene, set, (&stage.setup.integrator.options).into())
         };
         for set in (1..16).map(|set: u32| [1, 2, 4, 8].map(|bit| set & bit > 0)) {
             let [hit, next_event, join, lens] = set;

@@ -12,7 +12,7 @@ use tyndall::{math::Spectrum, transport::Strategies};
 /// A scene whose primary rays force an interaction.
 fn forced(scene: &Value) -> Stage {
     let mut stage = Stage::new(scene);
-    stage.setup.integrator.forced_interaction = true;
+    stage.setup.integrator.options.forced_interaction = true;
     stage
 }
 
@@ -21,7 +21,7 @@ fn a_scene_may_ask_for_it() {
     let asked = |more: Value| {
         let parts =
             [("sensor", camera([0.0, 1.0, 3.0], [0.0; 3], 8)), ("sky", sky(1.0)), ("integrator", more)];
-        Stage::new(&scene(&parts)).setup.integrator.forced_interaction
+        Stage::new(&scene(&parts)).setup.integrator.options.forced_interaction
     };
     assert!(asked(json!({"type": "volpath", "forced_interaction": true})));
     assert!(!asked(json!({"type": "bdpt"})));

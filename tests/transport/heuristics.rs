@@ -24,7 +24,7 @@ fn measure(parts: &[(&str, Value)], heuristic: &str, set: Strategies, samples: u
     let integrator = json!({"type": "bdpt", "max_depth": 24, "heuristic": heuristic});
     let parts = [parts, &[("integrator", integrator)]].concat();
     let stage = Stage::new(&scene(&parts));
-    assert_eq!(Heuristic::parse(heuristic), Ok(stage.setup.integrator.heuristic));
+    assert_eq!(Heuristic::parse(heuristic), Ok(stage.setup.integrator.options.heuristic));
     Sample::of(&stage.renders(set, samples, first..first + SEEDS), stage.width())
 }
 

@@ -286,7 +286,7 @@ fn nested_integrators_name_their_channels_as_mitsuba_does() {
     let inner = json!({"type": "moment", "my": {"type": "volpath", "max_depth": 3}});
     let nested = json!({"type": "aov", "aovs": "dd.y:depth, nn:sh_normal", "m": inner});
     let stage = Stage::new(&with(lit_room(&[]), &[("integrator", nested)]));
-    assert_eq!(stage.setup.integrator.max_depth, Some(3));
+    assert_eq!(stage.setup.integrator.options.max_depth, Some(3));
     let names: Vec<String> = image(&stage, 2, 0).layers.into_iter().map(|channel| channel.name).collect();
     let expected = "m.R m.G m.B m.A m.my.X m.my.Y m.my.Z m.m2_my.X m.m2_my.Y m.m2_my.Z m.variance.R \
                     m.variance.G m.variance.B dd.y.T nn.X nn.Y nn.Z";

@@ -71,18 +71,9 @@ const FOG: Spectrum = Spectrum::new(0.1, 0.4, 0.9);
 /// The preview of a scene, as its integrator describes it.
 fn preview(scene: &Value) -> Vec<Spectrum> {
     let Stage { setup, profile } = Stage::new(scene);
-    let hide_emitters = setup.integrator.hide_emitters;
-    let options = Options {
-        strategies: Strategies::NONE,
-        heuristic: Heuristic::Balance,
-        max_depth: None,
-        hide_emitters,
-        seed: 0,
-        sampler: setup.sampler,
-        forced_interaction: false,
-    };
+    let options = Options { heuristic: Heuristic::Balance, max_depth: None, ..setup.integrator.options };
     let budget = Budget { samples_per_pixel: Some(2), time: None };
-    let settings = Settings { options, budget, seed: 1, profile };
+    let settings = Settings { options, sampler: setup.sampler, budget, seed: 1, profile };
     render::preview(&setup.scene, &setup.film, &settings, &setup.integrator.look, &[], &mut |_| {}).pixels
 }
 

@@ -146,8 +146,9 @@ pub fn pilot(entry: &Entry, seed: u64, budget: Budget) -> Option<Image> {
 }
 
 fn settled(settings: &Settings, seed: u64, budget: Budget) -> Settings {
-    let mut settings = Settings { seed, budget, ..*settings };
-    settings.options.seed = seed;
+    let mut settings = *settings;
+    settings.seed = seed;
+    settings.budget = budget;
     settings
 }
 

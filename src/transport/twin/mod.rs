@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     math::{Lanes, vec2, vec3},
-    sampling::{Sampler, Stream, stream::Purpose},
+    sampling::{Stream, stream::Purpose},
     scene::build::Setup,
 };
 use density::Twin;
@@ -35,15 +35,14 @@ const ALL: Options = Options {
     heuristic: Heuristic::Balance,
     max_depth: None,
     hide_emitters: false,
-    seed: 1,
-    sampler: Sampler::Independent,
     forced_interaction: false,
 };
 const PIXELS: u64 = 16 * 12;
+const SEED: u64 = 1;
 
 /// Compares all paths that `pairs` eye and light walks make.
 fn examine<P: Profile>(name: &'static str, setup: &Setup, options: Options, pairs: u64) -> Report {
-    let estimator = Estimator::<P>::new(&setup.scene, options, PIXELS, PIXELS);
+    let estimator = Estimator::<P>::new(&setup.scene, options, SEED, PIXELS, PIXELS);
     let twin = Twin::new(&estimator);
     let mut report = Report::new(name);
     for pair in 0..pairs {
@@ -304,7 +303,7 @@ fn joins_across_a_hundred_mean_free_paths() {
 #[test]
 fn paths_through_the_dark() {
     let setup = build(&[TUNNEL]);
-    let estimator = Estimator::<Fog>::new(&setup.scene, ALL, PIXELS, PIXELS);
+    let estimator = Estimator::<Fog>::new(&setup.scene, ALL, SEED, PIXELS, PIXELS);
     let (twin, mut report) = (Twin::new(&estimator), Report::new("dark"));
     for index in 0..300 {
         let mut stream = Stream::new(5, index, 0, Purpose::Study);
@@ -329,7 +328,7 @@ fn paths_through_the_dark() {
 fn walks_of_ten_thousand_vertices() {
     let setup = build(&[FURNACE, INSIDE, POINT]);
     let options = Options { max_depth: Some(10_001), ..ALL };
-    let estimator = Estimator::<Fog>::new(&setup.scene, options, PIXELS, PIXELS);
+    let estimator = Estimator::<Fog>::new(&setup.scene, options, SEED, PIXELS, PIXELS);
     let twin = Twin::new(&estimator);
     let mut stream = Stream::new(5, 0, 0, Purpose::Study);
     let mut weighed = 0;
@@ -352,7 +351,7 @@ fn joins_are_counted_as_often_as_they_come() {
         [(build(&[FOG, INSIDE, ROOM, LAMP]), false), (build(&[FURNACE, INSIDE, LAMP]), true)]
     {
         let options = Options { max_depth: Some(200), ..ALL };
-        let estimator = Estimator::<Fog>::new(&setup.scene, options, 1024, 1024);
+        let estimator = Estimator::<Fog>::new(&setup.scene, options, SEED, 1024, 1024);
         assert_eq!(estimator.keep < 1.0, thinned);
         let mut cache = LightCache::new(1);
         for walk in 0..20_000 {
