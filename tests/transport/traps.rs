@@ -291,7 +291,8 @@ fn no_light_arrives_from_infinity_through_fog_without_end() {
             let stage = Stage::new(&scene(&parts));
             let stage = if everything { stage.with_everything() } else { stage };
             for (method, set) in METHODS {
-                let image = stage.render(set, 32, 1);
+                // Few samples: light that came through would be in every one of them.
+                let image = stage.render(set, 8, 1);
                 assert!(image.iter().all(|v| *v == Spectrum::ZERO), "{name} fog, {method}: {image:?}");
             }
         }
