@@ -70,7 +70,7 @@ fn load(
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
     }
-    if tracker.is_some() && setup.scene.media.iter().all(|medium| medium.varying.is_none()) {
+    if tracker.is_some() && setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none()) {
         complain("warning: --tracker has no effect: no medium of this scene varies");
     }
     Ok(setup)

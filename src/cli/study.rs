@@ -327,7 +327,7 @@ impl<'a> Stage<'a> {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));
         }
-        let still = setup.scene.media.iter().all(|medium| medium.varying.is_none());
+        let still = setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none());
         let idle = (asked.tracker.is_some() && still).then(|| IDLE_TRACKER.to_owned());
         Ok(Entry { setup, settings, load_seconds, notes: idle.into_iter().collect() })
     }

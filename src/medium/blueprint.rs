@@ -1,7 +1,7 @@
 //! From a description to a medium: parameters are read first; where coefficients vary, what they are like within the
 //! medium's bounds is looked at once those are known.
 
-use super::{Choice, Heterogeneous, Medium, Treatment, emission::Given, heterogeneous::Fields};
+use super::{Choice, Heterogeneous, Matter, Medium, Treatment, emission::Given, heterogeneous::Fields};
 use crate::{
     density::{self, Place, Volume},
     description::{Library, Location, Object, Params, find_row},
@@ -88,11 +88,9 @@ impl Blueprint {
 
 /// What `treatment` makes of a homogeneous medium.
 fn treated(medium: Medium, treatment: &Treatment) -> Medium {
-    let Medium { sigma_t, albedo, .. } = medium;
-    match treatment.absorbing {
-        false => medium,
-        true => Medium { sigma_t: sigma_t * (Spectrum::ONE - albedo), albedo: Spectrum::ZERO, ..medium },
-    }
+    let Matter { sigma_t, albedo } = medium.bound();
+    let absorbing = Matter { sigma_t: sigma_t * (Spectrum::ONE - albedo), albedo: Spectrum::ZERO };
+    if treatment.absorbing { Medium::homogeneous(absorbing, medium.phase) } else { medium }
 }
 
 /// `sigma_t` [1/m], `albedo`, `scale`, the phase function, with Mitsuba's defaults, and what it emits.
@@ -106,8 +104,7 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     if albedo.max_element() > 1.0 {
         return Err(params.complain("albedo", "values from 0 to 1", format!("{albedo}")));
     }
-    let phase = common(params)?;
-    let medium = Medium { sigma_t, albedo, phase, ..Medium::vacuum() };
+    let medium = Medium::homogeneous(Matter { sigma_t, albedo }, common(params)?);
     Ok(Blueprint { medium, fields: None, emission: Given::read(params, place)? })
 }
 
@@ -131,7 +128,7 @@ fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     if fields.step.is_some_and(|step| !(step > 0.0 && step < f64::INFINITY)) {
         return Err(params.complain("step", "a length above 0", format!("{:?}", fields.step)));
     }
-    let medium = Medium { phase: common(params)?, ..Medium::vacuum() };
+    let medium = Medium::homogeneous(Matter::NOTHING, common(params)?);
     Ok(Blueprint { medium, fields: Some(fields), emission: Given::read(params, place)? })
 }
 

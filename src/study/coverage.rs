@@ -61,11 +61,11 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
     let missing = unreachable(scene, options.strategies, options.hide_emitters);
     let mut notes: Vec<String> = missing.into_iter().map(|kind| format!("leaves out {kind}")).collect();
     let around = &scene.media[scene.sensor_medium.0 as usize];
-    if lens && !hit && !next_event && around.sigma_t != Spectrum::ZERO {
+    if lens && !hit && !next_event && around.bound().sigma_t != Spectrum::ZERO {
         let why = "light scattered close to the camera, which only joins with the lens bring";
         notes.push(format!("its variance is infinite: {why}; errors grow with luck"));
     }
-    let mut trackers = scene.media.iter().filter_map(|medium| Some(medium.varying.as_ref()?.tracker()));
+    let mut trackers = scene.media.iter().filter_map(|medium| Some(medium.heterogeneous()?.tracker()));
     if trackers.any(|tracker| matches!(tracker, Tracker::March(_))) {
         notes.push("is biased by the step of its ray marching".to_owned());
     }

@@ -7,6 +7,7 @@ use crate::{
     bsdf::BsdfModel,
     emitter::Kind,
     math::{Spectrum, Vec2, Vec3},
+    medium::Medium,
     scene::Scene,
     transport::{Options, Strategies, record::StrategyKind},
 };
@@ -59,7 +60,8 @@ impl Traits {
             }
         }
         let bsdfs = || scene.surfaces.iter().map(|surface| &scene.bsdfs[surface.bsdf as usize]);
-        let scatters = scene.media.iter().any(|m| m.sigma_t != Spectrum::ZERO && m.albedo != Spectrum::ZERO);
+        let mut bounds = scene.media.iter().map(Medium::bound);
+        let scatters = bounds.any(|m| m.sigma_t != Spectrum::ZERO && m.albedo != Spectrum::ZERO);
         Self {
             emitters,
             smooth: bsdfs().any(|bsdf| bsdf.has_dirac() && bsdf.survival(Vec2::ZERO, Vec3::Z) > 0.0),
