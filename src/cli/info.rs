@@ -141,17 +141,16 @@ fn describe_emitter(setup: &Setup, light: &Light) -> String {
 
 fn describe_medium(setup: &Setup, index: usize) -> String {
     let medium = &setup.scene.media[index];
-    let [r, g, b] = medium.sigma_t.to_array();
-    let [ar, ag, ab] = medium.albedo.to_array();
+    let [r, g, b] = medium.bound().sigma_t.to_array();
+    let [ar, ag, ab] = medium.bound().albedo.to_array();
     let (kind, most) =
-        if medium.varying.is_some() { ("heterogeneous", "at most ") } else { ("homogeneous", "") };
+        if medium.heterogeneous().is_some() { ("heterogeneous", "at most ") } else { ("homogeneous", "") };
     format!(
         "{}: {kind}, sigma_t {most}{r} {g} {b} /m, albedo {most}{ar} {ag} {ab}, mean cosine {:.3}; {}",
         medium_name(setup, index as u32),
         medium.phase.mean_cosine(),
         medium
-            .varying
-            .as_ref()
+            .heterogeneous()
             .map_or("closed-form tracker".into(), |varying| describe_tracker(setup, varying))
     )
 }

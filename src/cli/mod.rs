@@ -64,7 +64,7 @@ fn load(scene: &arguments::Scene, size: Option<arguments::Size>, tracker: Option
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
     }
-    if tracker.is_some() && setup.scene.media.iter().all(|medium| medium.varying.is_none()) {
+    if tracker.is_some() && setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none()) {
         complain("warning: --tracker has no effect: no medium of this scene varies");
     }
     Ok(setup)

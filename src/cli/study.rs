@@ -358,7 +358,7 @@ impl<'a> Stage<'a> {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));
         }
-        let still = setup.scene.media.iter().all(|medium| medium.varying.is_none());
+        let still = setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none());
         let idle = (asked.tracker.is_some() && still).then(|| IDLE_TRACKER.to_owned());
         let renderer = Renderer::Own { settings, load_seconds };
         Ok(Entry { setup, renderer, notes: idle.into_iter().collect() })

@@ -1,7 +1,7 @@
 //! From a description to a medium: parameters are read first; where coefficients vary, what they are like within the
 //! medium's bounds is looked at once those are known.
 
-use super::{Choice, Heterogeneous, Medium, Treatment, emission::Given, heterogeneous::Fields};
+use super::{Choice, Heterogeneous, Matter, Medium, Treatment, emission::Given, heterogeneous::Fields};
 use crate::{
     density::{self, Place, Volume},
     description::{Library, Location, Object, Params, Registry},
@@ -64,7 +64,7 @@ impl Blueprint {
 
     /// True if nothing arrives through it from infinity.
     pub fn extinguishes_without_end(&self) -> bool {
-        !self.varies() && self.medium.sigma_t.min_element() > 0.0
+        self.medium.transmittance_from_infinity() == Spectrum::ZERO
     }
 
     /// The medium, which lies `around` where its volumes do not say so themselves.
@@ -84,11 +84,9 @@ impl Blueprint {
 
 /// What `treatment` makes of a homogeneous medium.
 fn treated(medium: Medium, treatment: &Treatment) -> Medium {
-    let Medium { sigma_t, albedo, .. } = medium;
-    match treatment.absorbing {
-        false => medium,
-        true => Medium { sigma_t: sigma_t * (Spectrum::ONE - albedo), albedo: Spectrum::ZERO, ..medium },
-    }
+    let Matter { sigma_t, albedo } = medium.bound();
+    let absorbing = Matter { sigma_t: sigma_t * (Spectrum::ONE - albedo), albedo: Spectrum::ZERO };
+    if treatment.absorbing { Medium::homogeneous(absorbing, medium.phase) } else { medium }
 }
 
 /// `sigma_t` [1/m], `albedo`, `scale`, the phase function, with Mitsuba's defaults, and what it emits.
@@ -102,8 +100,7 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     if albedo.max_element() > 1.0 {
         return Err(params.complain("albedo", "values from 0 to 1", format!("{albedo}")));
     }
-    let phase = common(params)?;
-    let medium = Medium { sigma_t, albedo, phase, ..Medium::vacuum() };
+    let medium = Medium::homogeneous(Matter { sigma_t, albedo }, common(params)?);
     Ok(Blueprint { medium, fields: None, emission: Given::read(params, place)? })
 }
 
@@ -127,7 +124,7 @@ fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<Blueprint> {
     if fields.step.is_some_and(|step| !(step > 0.0 && step < f64::INFINITY)) {
         return Err(params.complain("step", "a length above 0", format!("{:?}", fields.step)));
     }
-    let medium = Medium { phase: common(params)?, ..Medium::vacuum() };
+    let medium = Medium::homogeneous(Matter::NOTHING, common(params)?);
     Ok(Blueprint { medium, fields: Some(fields), emission: Given::read(params, place)? })
 }
 

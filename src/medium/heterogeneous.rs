@@ -1,7 +1,7 @@
 //! A medium whose extinction and albedo vary in space.
 
 use super::{
-    Choice, Extinction, Leg, Matter, Treatment,
+    Choice, DistanceSample, Extinction, Matter, Treatment, Unforced,
     emission::Within,
     tracker::{self, Tracker},
 };
@@ -172,34 +172,45 @@ impl Heterogeneous {
         self.tracker.ratio(&self.extinction, section, depth, hero, stream)
     }
 
-    /// See [`Tracker::fly`].
+    /// See [`Tracker::sample_distance`].
     #[inline]
-    pub fn fly<L: Lanes>(
+    pub fn sample_distance<L: Lanes>(
         &self,
         section: &Section,
         hero: usize,
         remaining: f32,
         stream: &mut Stream,
-    ) -> Leg<L> {
-        self.tracker.fly(&self.extinction, section, hero, remaining, stream)
+    ) -> DistanceSample<L> {
+        self.tracker.sample_distance(&self.extinction, section, hero, remaining, stream)
     }
 
-    /// See [`Tracker::forced_depth`].
-    pub fn forced_depth<L: Lanes>(&self, section: &Section, depth: L, hero: usize) -> f32 {
-        self.tracker.forced_depth(&self.extinction, section, depth, hero)
+    /// See [`super::Medium::unforced`].
+    pub fn unforced<L: Lanes>(
+        &self,
+        section: &Section,
+        depth: L,
+        hero: usize,
+        stream: &mut Stream,
+    ) -> Unforced<L> {
+        let transmittance = self.transmittance(section, depth, stream);
+        let depth = self.tracker.forced_depth(&self.extinction, section, depth, hero);
+        Unforced { transmittance, depth, ratio: transmittance.scaled(depth.min(DEEPEST).exp()) }
     }
 
     /// See [`Tracker::force`].
-    pub fn force<L: Lanes>(
+    pub fn force_collision<L: Lanes>(
         &self,
         section: &Section,
         hero: usize,
         remaining: f32,
         stream: &mut Stream,
-    ) -> Option<Leg<L>> {
+    ) -> Option<DistanceSample<L>> {
         self.tracker.force(&self.extinction, section, hero, remaining, stream)
     }
 }
+
+/// A ratio of transmittances is looked at no deeper than this: exponential depths are less, whatever lies beyond.
+const DEEPEST: f32 = 80.0;
 
 /// A bound may lie this far above what it bounds, relative to it: volumes widen theirs by their rounding.
 const ROUNDING: f32 = 1e-6;

@@ -4,21 +4,24 @@ mod blueprint;
 mod emission;
 mod extinction;
 mod heterogeneous;
+mod homogeneous;
 pub mod tracker;
 mod treatment;
 
 use crate::{
     error::Result,
-    math::{Spectrum, SpectrumExt},
+    math::{Lanes, Section, Spectrum, SpectrumExt, Vec3},
     phase::{self, Phase},
+    sampling::Stream,
 };
 pub use blueprint::{Around, Blueprint, ROWS, build};
 pub use emission::Emission;
 use emission::{Given, Within};
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;
+use homogeneous::Homogeneous;
 use std::sync::Arc;
-pub use tracker::{Choice, Leg};
+pub use tracker::{Choice, DistanceSample};
 pub use treatment::Treatment;
 
 /// Index of a medium in its scene. Vacuum is a medium like any other, with nothing in it.
@@ -30,21 +33,37 @@ impl MediumIndex {
     pub const VACUUM: Self = Self(0);
 }
 
-/// A medium: the same everywhere, or varying in space.
+/// A medium: the same everywhere, or varying in space. Which of the two it is concerns nobody but this page: light
+/// transport samples distances, and finds transmittances and properties, by the methods below.
 #[derive(Clone, Debug)]
 pub struct Medium {
-    /// Extinction coefficient, kappa in LW96 [1/m], >= 0; where it varies, a bound on it.
-    pub sigma_t: Spectrum,
-    /// sigma_s / sigma_t, in [0, 1]; where it varies, a bound on it.
-    pub albedo: Spectrum,
     /// Directions after scattering.
     pub phase: Phase,
-    /// What varies; none in a homogeneous medium, whose transmittance is exp(-sigma_t d).
-    pub varying: Option<Box<Heterogeneous>>,
     /// What it emits.
     pub emission: Option<Arc<Emission>>,
-    /// What that was made of, to be made anew for another time.
+    /// A homogeneous medium is its own bound: what was compiled without heterogeneous media looks no further than
+    /// this, and what was compiled with them asks `coefficients` first.
+    bound: Homogeneous,
+    coefficients: Coefficients,
+    /// What the emission was made of, to be made again for another time.
     given: Option<Box<(Given, Around)>>,
+}
+
+/// The models of extinction and albedo.
+#[derive(Clone, Debug)]
+enum Coefficients {
+    /// The same everywhere: the medium's bound.
+    Homogeneous,
+    /// Varying, below the medium's bound.
+    Heterogeneous(Box<Heterogeneous>),
+}
+
+/// Which media an estimator is compiled for. What it does not know is not tested for.
+pub trait MediaProfile: Copy + Send + Sync + 'static {
+    /// Extinction per lane.
+    type Lanes: Lanes;
+    /// Some medium's coefficients vary in space.
+    const HETEROGENEOUS: bool;
 }
 
 /// What a medium is made of at a point.
@@ -67,22 +86,61 @@ impl Matter {
     }
 }
 
+/// A stretch of a ray within one medium.
+#[derive(Clone, Copy, Debug)]
+pub struct MediumInterval {
+    /// The stretch.
+    pub section: Section,
+    /// How far before it the medium begins [m], 0 but behind a boundary: a ray starts a rounding error off the surface.
+    /// In a homogeneous medium that counts, for a mean free path may be as short. Where coefficients vary it does not.
+    pub skipped: f32,
+}
+
+impl MediumInterval {
+    /// All of `section`, and nothing before it.
+    pub fn of(section: Section) -> Self {
+        Self { section, skipped: 0.0 }
+    }
+
+    #[inline]
+    fn length(&self) -> f32 {
+        self.section.length + self.skipped
+    }
+}
+
+/// What light that crosses an interval beside forced collisions has left (see [`Medium::unforced`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Unforced<L> {
+    /// Transmittance, or an unbiased estimate of it.
+    pub transmittance: L,
+    /// The optical depth by which forced collisions are drawn.
+    pub depth: f32,
+    /// The transmittance over exp(-`depth`).
+    pub ratio: L,
+}
+
 impl Medium {
     /// Nothing: no extinction.
     pub fn vacuum() -> Self {
-        Self {
-            sigma_t: Spectrum::ZERO,
-            albedo: Spectrum::ZERO,
-            phase: Phase::Isotropic(phase::Isotropic),
-            varying: None,
-            emission: None,
-            given: None,
-        }
+        Self::homogeneous(Matter::NOTHING, Phase::Isotropic(phase::Isotropic))
+    }
+
+    /// The same everywhere.
+    fn homogeneous(matter: Matter, phase: Phase) -> Self {
+        let (bound, coefficients) = (Homogeneous(matter), Coefficients::Homogeneous);
+        Self { phase, emission: None, bound, coefficients, given: None }
+    }
+
+    /// The medium with coefficients that vary.
+    fn with(self, varying: Heterogeneous) -> Self {
+        let (sigma_t, albedo) = varying.bounds();
+        let bound = Homogeneous(Matter { sigma_t, albedo });
+        Self { bound, coefficients: Coefficients::Heterogeneous(Box::new(varying)), ..self }
     }
 
     /// The medium as it is at `time` [s]; none where it is the same at all times.
     pub fn at_time(&self, time: f64) -> Result<Option<Self>> {
-        let varying = self.varying.as_ref().map(|varying| varying.at_time(time)).transpose()?.flatten();
+        let varying = self.heterogeneous().map(|varying| varying.at_time(time)).transpose()?.flatten();
         let given = self.given.as_ref().and_then(|given| given.0.at_time(time));
         if varying.is_none() && given.is_none() {
             return Ok(None);
@@ -97,38 +155,158 @@ impl Medium {
 
     /// The medium with an emission.
     fn shining(self, given: Given, around: Around) -> Result<Self> {
-        let within = match &self.varying {
-            Some(varying) => varying.within(),
-            None => Within::Uniform(self.matter()),
-        };
+        let within = self.heterogeneous().map_or(Within::Uniform(self.bound()), Heterogeneous::within);
         let emission = Emission::new(given.clone(), within, &around)?.map(Arc::new);
         Ok(Self { emission, given: Some(Box::new((given, around))), ..self })
     }
 
-    /// The medium with coefficients that vary.
-    fn with(self, varying: Heterogeneous) -> Self {
-        let (sigma_t, albedo) = varying.bounds();
-        Self { sigma_t, albedo, varying: Some(Box::new(varying)), ..self }
+    /// What describes a medium that varies; none of a homogeneous one. For reports.
+    pub fn heterogeneous(&self) -> Option<&Heterogeneous> {
+        match &self.coefficients {
+            Coefficients::Homogeneous => None,
+            Coefficients::Heterogeneous(varying) => Some(varying),
+        }
     }
 
-    /// What a homogeneous medium is made of, and a bound on a varying one.
-    #[inline]
-    pub fn matter(&self) -> Matter {
-        Matter { sigma_t: self.sigma_t, albedo: self.albedo }
+    /// The same for what was compiled for `M`.
+    #[inline(always)]
+    fn varying<M: MediaProfile>(&self) -> Option<&Heterogeneous> {
+        if M::HETEROGENEOUS { self.heterogeneous() } else { None }
     }
 
-    /// What remains of light along an infinite way through it: 1 where it varies, for then it ends somewhere.
+    /// What a homogeneous medium is made of; of a heterogeneous one, a bound on what it is made of anywhere.
     #[inline]
-    pub fn from_infinity(&self) -> Spectrum {
-        let lane = |sigma_t: f32| if sigma_t > 0.0 && self.varying.is_none() { 0.0 } else { 1.0 };
-        Spectrum::new(lane(self.sigma_t.x), lane(self.sigma_t.y), lane(self.sigma_t.z))
+    pub fn bound(&self) -> Matter {
+        self.bound.0
     }
 
     /// True if extinction differs between channels, so that flights need a hero channel.
     pub fn is_chromatic(&self) -> bool {
-        match &self.varying {
-            None => !self.sigma_t.is_grey(),
-            Some(varying) => varying.is_chromatic(),
+        self.heterogeneous().map_or(!self.bound.0.sigma_t.is_grey(), Heterogeneous::is_chromatic)
+    }
+
+    /// The box outside of which there is nothing of it; none where it has no end of its own.
+    pub fn extent(&self) -> Option<[Vec3; 2]> {
+        self.heterogeneous().map(|varying| [varying.extinction().low, varying.extinction().high])
+    }
+
+    /// What remains of light that comes from infinitely far through it: all where it varies, for then it ends
+    /// somewhere.
+    #[inline]
+    pub fn transmittance_from_infinity(&self) -> Spectrum {
+        if self.extent().is_some() { Spectrum::ONE } else { self.bound.transmittance_from_infinity() }
+    }
+
+    /// What it is made of at a world position.
+    #[inline]
+    pub fn properties_at<M: MediaProfile>(&self, position: Vec3) -> Matter {
+        self.varying::<M>().map_or(self.bound.0, |varying| varying.at::<M::Lanes>(position))
+    }
+
+    /// Deterministic optical depth per lane, the same from either end: what weights know.
+    ///
+    /// LW96 eq. 7: P_surface = e^-depth.
+    #[inline(always)]
+    pub fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Lanes {
+        match self.varying::<M>() {
+            Some(varying) => varying.depth(&interval.section),
+            None => self.bound.optical_depth(interval.length()),
         }
+    }
+
+    /// The transmittance of an interval whose optical depth is `depth`, or an unbiased random estimate of it.
+    #[inline(always)]
+    pub fn transmittance<M: MediaProfile>(
+        &self,
+        interval: &MediumInterval,
+        depth: M::Lanes,
+        stream: &mut Stream,
+    ) -> M::Lanes {
+        match self.varying::<M>() {
+            Some(varying) => varying.transmittance(&interval.section, depth, stream),
+            None => depth.exp_neg(),
+        }
+    }
+
+    /// The transmittance of every lane over the hero's, or an unbiased random estimate of that.
+    #[inline]
+    pub fn transmittance_ratio<M: MediaProfile>(
+        &self,
+        interval: &MediumInterval,
+        depth: M::Lanes,
+        hero: usize,
+        stream: &mut Stream,
+    ) -> M::Lanes {
+        match self.varying::<M>() {
+            Some(varying) => varying.ratio(&interval.section, depth, hero, stream),
+            None => depth.flight_ratio(M::Lanes::splat(1.0), hero),
+        }
+    }
+
+    /// How far along a ray [m] that left a boundary `skipped` metres before a distance of the optical depth `remaining`
+    /// may lie: no need to look for surfaces beyond. Infinite where that has to be searched for.
+    #[inline(always)]
+    pub fn reach<M: MediaProfile>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
+        match self.varying::<M>() {
+            Some(_) => f32::INFINITY,
+            None => self.bound.collision::<M::Lanes>(skipped, hero, remaining),
+        }
+    }
+
+    /// A distance by the `hero` lane: where its optical depth is `remaining` (an exponential variate; random methods
+    /// draw their own).
+    ///
+    /// LW96 eq. 6: p_medium = sigma_t e^-depth.
+    #[inline(always)]
+    pub fn sample_distance<M: MediaProfile>(
+        &self,
+        interval: &MediumInterval,
+        hero: usize,
+        remaining: f32,
+        stream: &mut Stream,
+    ) -> DistanceSample<M::Lanes> {
+        match self.varying::<M>() {
+            Some(varying) => varying.sample_distance(&interval.section, hero, remaining, stream),
+            None => self.bound.sample_distance(interval, hero, remaining),
+        }
+    }
+
+    /// What crosses an interval whose optical depth is `depth` while collisions in it are forced.
+    pub fn unforced<M: MediaProfile>(
+        &self,
+        interval: &MediumInterval,
+        depth: M::Lanes,
+        hero: usize,
+        stream: &mut Stream,
+    ) -> Unforced<M::Lanes> {
+        match self.varying::<M>() {
+            Some(varying) => varying.unforced(&interval.section, depth, hero, stream),
+            None => Unforced {
+                transmittance: depth.exp_neg(),
+                depth: depth.hero(hero),
+                ratio: depth.flight_ratio(M::Lanes::splat(1.0), hero),
+            },
+        }
+    }
+
+    /// A collision where the depth of [`Self::unforced`] is `remaining`, no more than that of the interval; none where
+    /// there is nothing to collide with. The ratio is over a density of exp(-`remaining`) times the hero's sigma_t.
+    pub fn force_collision<M: MediaProfile>(
+        &self,
+        interval: &MediumInterval,
+        hero: usize,
+        remaining: f32,
+        stream: &mut Stream,
+    ) -> Option<DistanceSample<M::Lanes>> {
+        match self.varying::<M>() {
+            Some(varying) => varying.force_collision(&interval.section, hero, remaining, stream),
+            None => Some(self.bound.force_collision(interval, hero, remaining)),
+        }
+    }
+
+    /// Optical depth for a picture that need not be exact but must not be noisy.
+    pub fn quick_depth(&self, section: &Section) -> Spectrum {
+        self.heterogeneous()
+            .map_or_else(|| self.bound.optical_depth(section.length), |varying| varying.quick_depth(section))
     }
 }

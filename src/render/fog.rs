@@ -4,11 +4,11 @@
 use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{Environment, Kind},
-    math::{Lanes, Section, Spectrum, Vec3, measure, offset},
-    medium::MediumIndex,
+    math::{Lanes, Spectrum, Vec3, offset},
     sampling::Stream,
-    scene::{Scene, integrator::Look, lights::Link},
+    scene::{Scene, integrator::Look, lights::EmitterSample},
     shape::{Ray, SurfacePoint},
+    transport::{NullCrossing, Segment},
 };
 use std::f32::consts::PI;
 
@@ -87,45 +87,49 @@ impl<'a> Preview<'a> {
     }
 
     /// Follows a ray to the first surface that scatters light; what is smooth or not there it passes as light does.
-    fn follow(&self, mut ray: Ray, stream: &mut Stream) -> Sight {
+    fn follow(&self, ray: Ray, stream: &mut Stream) -> Sight {
         let scene = self.scene;
         let (mut through, mut veiled) = (Spectrum::ONE, Spectrum::ZERO);
-        let (mut medium, mut hidden) = (scene.sensor_medium, self.hide_emitters);
+        let mut segment = Segment::along(scene, ray, scene.sensor_medium, self.hide_emitters);
         let mut left = self.threshold;
         for _ in 0..MOST_LEGS {
-            let far = ray.t_max;
-            ray.t_max = far.min(left);
-            let hit = scene.geometry.closest(&ray);
-            if hit.is_none() && left < far {
+            let Ray { direction, t_max, .. } = *segment.ray();
+            let (interval, hit) = segment.next(left);
+            if hit.is_none() && left < t_max {
                 // Beyond the threshold there is fog alone.
                 let end = End::Radiance(Spectrum::ZERO);
                 return Sight { through: Spectrum::ZERO, veiled: veiled + through, end };
             }
-            let length = hit.map_or(ray.t_max, |hit| hit.t);
-            let remains = self.transmittance(medium, &ray, length);
+            // f of BMA02 eq. 6.
+            let remains = segment.medium().quick_depth(&interval.section).exp_neg();
             veiled += through * (Spectrum::ONE - remains);
             through *= remains;
             let Some(hit) = hit else {
-                let link = scene.lights.met_at_infinity(ray.direction).filter(|_| !hidden);
-                let sky = link.map_or(Spectrum::ZERO, |link| link.value);
+                let sample = scene.lights.infinity_hit(direction).filter(|_| !segment.is_hidden());
+                let sky = sample.map_or(Spectrum::ZERO, |sample| sample.value);
                 return Sight { through, veiled, end: End::Radiance(sky) };
             };
-            left -= length;
-            let point = scene.geometry.surface(&ray, &hit);
-            let Some(turned) = self.pass(&point, &ray, hidden, stream) else {
-                let own = self.emitted(&point, &ray);
-                return Sight { through, veiled, end: End::Surface(Box::new(point), -ray.direction, own) };
+            left -= interval.section.length;
+            let point = segment.surface(&hit);
+            let weight = match segment.sample_crossing(&point, stream) {
+                NullCrossing::Passed(passed, probability) => {
+                    segment.cross(&point);
+                    passed / probability
+                }
+                NullCrossing::Stopped(probability) => {
+                    let Some((beyond, weight)) = self.deflect(&segment, &point, stream) else {
+                        let own = self.emitted(&point, segment.ray());
+                        return Sight {
+                            through,
+                            veiled,
+                            end: End::Surface(Box::new(point), -direction, own),
+                        };
+                    };
+                    segment = beyond;
+                    weight / probability
+                }
             };
-            let (direction, weight, straight) = turned;
             through *= weight;
-            let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
-            let t_max = if straight { far - (origin - ray.origin).dot(direction) } else { f32::INFINITY };
-            ray = Ray { origin, direction, t_max };
-            medium = match straight {
-                true => scene.medium_beyond(&point, &ray, medium),
-                false => scene.medium_towards(&point, direction, medium),
-            };
-            hidden &= straight;
             if through.max_element() <= 0.0 {
                 break;
             }
@@ -133,61 +137,33 @@ impl<'a> Preview<'a> {
         Sight { through: Spectrum::ZERO, veiled, end: End::Radiance(Spectrum::ZERO) }
     }
 
-    /// The direction beyond a surface that is passed or smooth, its factor, and whether it is the old one; none where
-    /// the ray ends.
-    fn pass(
+    /// The segment beyond a smooth surface, and its factor; none where the ray ends.
+    fn deflect(
         &self,
+        segment: &Segment<'a>,
         point: &SurfacePoint,
-        ray: &Ray,
-        hidden: bool,
         stream: &mut Stream,
-    ) -> Option<(Vec3, Spectrum, bool)> {
-        let surface = self.scene.surface(point.shape);
-        if hidden && surface.emitter.is_some() {
-            return Some((ray.direction, Spectrum::ONE, true));
-        }
-        let passed = self.scene.null_transmission(point, ray.direction);
-        let passing = passed.max_element();
-        if passing >= 1.0 || (passing > 0.0 && stream.uniform() < passing) {
-            return Some((ray.direction, passed / passing, true));
-        }
+    ) -> Option<(Segment<'a>, Spectrum)> {
+        let (scene, surface) = (self.scene, self.scene.surface(point.shape));
         if surface.connectible || surface.emitter.is_some() {
             return None;
         }
-        let wi = point.shading.to_local(-ray.direction);
-        let bsdf = self.scene.bsdf(point.shape);
-        let unpassed = if passing > 0.0 { 1.0 / (1.0 - passing) } else { 1.0 };
-        match bsdf.sample(point.uv, wi, Transport::Radiance, stream) {
-            Some(sample) => {
-                let direction = point.shading.to_world(sample.wo).normalize();
-                Some((direction, sample.weight * unpassed, false))
-            }
-            None => Some((ray.direction, Spectrum::ZERO, false)),
-        }
-    }
-
-    /// What remains of light along `length` of `ray`: f of BMA02 eq. 6.
-    fn transmittance(&self, medium: MediumIndex, ray: &Ray, length: f32) -> Spectrum {
-        let medium = &self.scene.media[medium.0 as usize];
-        let section = Section { origin: ray.origin, direction: ray.direction, length };
-        let depth = match &medium.varying {
-            Some(varying) => varying.quick_depth::<Spectrum>(&section),
-            // Nothing, times infinity, is nothing.
-            None => Spectrum::select(
-                medium.sigma_t.cmpgt(Spectrum::ZERO),
-                medium.sigma_t * length,
-                Spectrum::ZERO,
-            ),
+        let wi = point.shading.to_local(-segment.ray().direction);
+        let Some(sample) = scene.bsdf(point.shape).sample(point.uv, wi, Transport::Radiance, stream) else {
+            return Some((*segment, Spectrum::ZERO));
         };
-        depth.exp_neg()
+        let direction = point.shading.to_world(sample.wo).normalize();
+        let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        Some((segment.deflected(point, ray), sample.weight))
     }
 
     /// Radiance that the surface itself emits along the ray.
     fn emitted(&self, point: &SurfacePoint, ray: &Ray) -> Spectrum {
         let Scene { lights, geometry, .. } = self.scene;
         let light = self.scene.surface(point.shape).emitter;
-        let link = light.and_then(|light| lights.met(geometry, light, point, ray.origin));
-        link.map_or(Spectrum::ZERO, |link| link.value / link.cosine)
+        let sample = light.and_then(|light| lights.surface_hit(geometry, light, point, ray.origin));
+        sample.map_or(Spectrum::ZERO, |sample| sample.value / sample.cosine)
     }
 
     /// Light of all emitters reflected at a point, as if nothing stood in its way. The same sky everywhere is not
@@ -197,31 +173,28 @@ impl<'a> Preview<'a> {
         let reference = point.position;
         if lights.all.len() > LIGHTS_PER_POINT {
             let mut draw = |_| {
-                let link = lights.sample_link(geometry, reference, stream)?;
-                (!is_even_sky(&lights.all[link.light as usize].emitter.kind)).then_some(link)
+                let sample = lights.sample_emitter(geometry, reference, stream)?;
+                (!is_even_sky(&lights.all[sample.light as usize].emitter.kind)).then_some(sample)
             };
-            let links = (0..LIGHTS_PER_POINT).filter_map(&mut draw);
-            let sum: Spectrum = links.map(|link| self.reflected(point, incoming, &link)).sum();
+            let samples = (0..LIGHTS_PER_POINT).filter_map(&mut draw);
+            let sum: Spectrum = samples.map(|sample| self.reflected(point, incoming, &sample)).sum();
             return sum / LIGHTS_PER_POINT as f32;
         }
         let others = lights.all.iter().enumerate().filter(|(_, light)| !is_even_sky(&light.emitter.kind));
-        let links = others.filter_map(|(index, _)| lights.link_to(geometry, index, 1.0, reference, stream));
-        links.map(|link| self.reflected(point, incoming, &link)).sum()
+        let samples =
+            others.filter_map(|(index, _)| lights.sample_point_of(geometry, index, 1.0, reference, stream));
+        samples.map(|sample| self.reflected(point, incoming, &sample)).sum()
     }
 
     /// Light of one emitter point reflected at a surface point.
-    fn reflected(&self, point: &SurfacePoint, incoming: Vec3, link: &Link) -> Spectrum {
-        let towards = match link.infinite {
-            true => Some((link.position, 1.0)),
-            false => {
-                measure::between(point.position, link.position).map(|(direction, _, d2)| (direction, d2))
-            }
+    fn reflected(&self, point: &SurfacePoint, incoming: Vec3, sample: &EmitterSample) -> Spectrum {
+        let Some((direction, distance_squared)) = sample.point.seen_from(point.position) else {
+            return Spectrum::ZERO;
         };
-        let Some((direction, distance_squared)) = towards else { return Spectrum::ZERO };
         let (wi, wo) = (point.shading.to_local(incoming), point.shading.to_local(direction));
         let bsdf = self.scene.bsdf(point.shape);
         let value = bsdf.evaluate(point.uv, wi, wo, Transport::Radiance).value * wo.z.abs();
-        value * link.value / (link.connect * distance_squared)
+        value * sample.value / (sample.pdf * distance_squared)
     }
 
     /// Ambient light reflected at a point.

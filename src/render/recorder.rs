@@ -2,9 +2,9 @@
 
 use crate::{
     math::Vec2,
-    scene::lights::Start,
+    scene::lights::EmissionSample,
     transport::{
-        Departure, Joined, Sums, Vertex,
+        Departure, Joined, Subpath, Sums, Vertex,
         record::{Meeting, Recorder},
     },
 };
@@ -22,7 +22,7 @@ impl<S: Sums> Recorder<S> for &mut (dyn Recorder<S> + '_) {
     fn stop(&mut self, s: u32, t: u32) {
         (**self).stop(s, t);
     }
-    fn emit(&mut self, start: &Start) {
+    fn emit(&mut self, start: &EmissionSample) {
         (**self).emit(start);
     }
     fn depart(&mut self, departure: &Departure<S>) {
@@ -31,8 +31,8 @@ impl<S: Sums> Recorder<S> for &mut (dyn Recorder<S> + '_) {
     fn arrive(&mut self, vertex: &Vertex<S>) {
         (**self).arrive(vertex);
     }
-    fn escape(&mut self, vertex: &Vertex<S>) {
-        (**self).escape(vertex);
+    fn escape(&mut self, subpath: &Subpath<S>) {
+        (**self).escape(subpath);
     }
     fn keep(&mut self) {
         (**self).keep();

@@ -5,9 +5,9 @@ use crate::{
     film::Film,
     math::{Lanes, Spectrum, Vec2, Vec3},
     medium::MediumIndex,
-    scene::lights::{Link, Start},
+    scene::lights::{EmissionSample, EmitterSample},
     transport::{
-        Departure, Joined, LightCache, Site, Sums, Vertex,
+        Departure, Interaction, Joined, LightCache, Subpath, Sums, Vertex,
         profile::Profile,
         record::{Meeting, Recorder},
     },
@@ -41,7 +41,7 @@ pub struct PixelSample {
 #[derive(Clone, Debug)]
 pub struct Walk {
     /// The emitter that a light walk starts at.
-    pub emitter: Option<Start>,
+    pub emitter: Option<EmissionSample>,
     /// Where it sets out from; none where nothing left the emitter.
     pub start: Option<Leg>,
     /// Its vertices after the start.
@@ -67,21 +67,27 @@ pub struct Leg {
     pub throughput: Spectrum,
 }
 
-/// A vertex of a walk.
+/// How a walk came to a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Stop {
-    /// Where it is.
-    pub position: Vec3,
-    /// On what or in what.
-    pub site: Site,
+pub struct Arrival {
     /// The medium of the segment that ended here.
     pub medium: MediumIndex,
     /// Unit direction towards the vertex before.
     pub incoming: Vec3,
-    /// Its density by the hero channel: per volume in media [1/m^3], per area on surfaces [1/m^2].
+    /// Density of the point by the hero channel: per volume in media [1/m^3], per area on surfaces [1/m^2], per solid
+    /// angle at infinity [1/sr].
     pub density: f32,
     /// Contribution over density of all before its own scattering.
     pub throughput: Spectrum,
+}
+
+/// A vertex of a walk.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop {
+    /// Where, and what is there.
+    pub interaction: Interaction,
+    /// How the walk came here.
+    pub arrival: Arrival,
     /// How the walk went on; none where it ended here.
     pub onward: Option<Leg>,
 }
@@ -105,9 +111,9 @@ pub struct Try {
 #[derive(Clone, Debug)]
 pub enum Partner {
     /// The eye walk met an emitter here.
-    Met(Stop, Link),
+    Met(Arrival, EmitterSample),
     /// A point of an emitter.
-    Emitter(Link),
+    Emitter(EmitterSample),
     /// A vertex of light walk `walk`, `edges` segments from its start.
     Light {
         /// Number of the walk in its pass.
@@ -271,7 +277,7 @@ impl<S: Sums> Recorder<S> for Trail<'_> {
         self.film.is_none_or(|all| all.covers(film))
     }
     fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Joined>) {}
-    fn emit(&mut self, start: &Start) {
+    fn emit(&mut self, start: &EmissionSample) {
         self.walk.emitter = Some(*start);
     }
     fn depart(&mut self, departure: &Departure<S>) {
@@ -289,16 +295,17 @@ impl<S: Sums> Recorder<S> for Trail<'_> {
         }
     }
     fn arrive(&mut self, vertex: &Vertex<S>) {
-        self.walk.stops.push(stop(vertex));
+        let Vertex { interaction, subpath, .. } = vertex;
+        self.walk.stops.push(Stop { interaction: *interaction, arrival: arrival(subpath), onward: None });
     }
-    fn escape(&mut self, vertex: &Vertex<S>) {
-        self.walk.escaped = Some(-vertex.incoming);
+    fn escape(&mut self, subpath: &Subpath<S>) {
+        self.walk.escaped = Some(-subpath.incoming);
     }
 }
 
-fn stop<S: Sums>(vertex: &Vertex<S>) -> Stop {
-    let Vertex { position, site, medium, incoming, throughput, inverse, .. } = *vertex;
-    Stop { position, site, medium, incoming, density: 1.0 / inverse, throughput, onward: None }
+fn arrival<S: Sums>(subpath: &Subpath<S>) -> Arrival {
+    let Subpath { medium, incoming, throughput, inverse, .. } = *subpath;
+    Arrival { medium, incoming, density: 1.0 / inverse, throughput }
 }
 
 /// Sees the eye walk.
@@ -313,11 +320,11 @@ struct OfEye<'a> {
 impl<S: Sums> Recorder<S> for OfEye<'_> {
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, joined: Option<&Joined>) {
         let partner = match meeting {
-            Meeting::Met(vertex, link) => Partner::Met(stop(vertex), *link),
-            Meeting::Emitter(link) => Partner::Emitter(*link),
+            Meeting::Met(subpath, sample) => Partner::Met(arrival(subpath), *sample),
+            Meeting::Emitter(sample) => Partner::Emitter(*sample),
             Meeting::Light(index, vertex) => {
                 let (walk, edges) = self.kept[index];
-                Partner::Light { walk, edges, position: vertex.position }
+                Partner::Light { walk, edges, position: vertex.position() }
             }
             Meeting::Lens(_) => return,
         };
@@ -333,8 +340,8 @@ impl<S: Sums> Recorder<S> for OfEye<'_> {
     fn arrive(&mut self, vertex: &Vertex<S>) {
         self.trail.arrive(vertex);
     }
-    fn escape(&mut self, vertex: &Vertex<S>) {
-        self.trail.escape(vertex);
+    fn escape(&mut self, subpath: &Subpath<S>) {
+        self.trail.escape(subpath);
     }
 }
 
@@ -370,7 +377,7 @@ impl<S: Sums> Recorder<S> for OfLight<'_> {
         });
     }
     fn arrive(&mut self, vertex: &Vertex<S>) {
-        self.edges = vertex.edges;
+        self.edges = vertex.subpath.edges;
     }
     fn keep(&mut self) {
         self.kept.push(self.edges);

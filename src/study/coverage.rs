@@ -7,7 +7,7 @@ use crate::{
     bsdf::BsdfModel,
     emitter::Kind,
     math::{Spectrum, Vec2, Vec3},
-    medium::tracker::Tracker,
+    medium::{Medium, tracker::Tracker},
     scene::Scene,
     transport::{Options, Strategies, record::StrategyKind},
 };
@@ -75,7 +75,8 @@ impl Traits {
             }
         }
         let bsdfs = || scene.surfaces.iter().map(|surface| &scene.bsdfs[surface.bsdf as usize]);
-        let scatters = scene.media.iter().any(|m| m.sigma_t != Spectrum::ZERO && m.albedo != Spectrum::ZERO);
+        let mut bounds = scene.media.iter().map(Medium::bound);
+        let scatters = bounds.any(|m| m.sigma_t != Spectrum::ZERO && m.albedo != Spectrum::ZERO);
         Self {
             emitters,
             smooth: bsdfs().any(|bsdf| bsdf.has_dirac() && bsdf.survival(Vec2::ZERO, Vec3::Z) > 0.0),
@@ -169,11 +170,11 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
     let missing = unreachable(scene, options.strategies, options.into());
     let mut notes: Vec<String> = missing.into_iter().map(|kind| format!("leaves out {kind}")).collect();
     let around = &scene.media[scene.sensor_medium.0 as usize];
-    if lens && !hit && !next_event && around.sigma_t != Spectrum::ZERO {
+    if lens && !hit && !next_event && around.bound().sigma_t != Spectrum::ZERO {
         let why = "light scattered close to the camera, which only joins with the lens bring";
         notes.push(format!("its variance is infinite: {why}; errors grow with luck"));
     }
-    let mut trackers = scene.media.iter().filter_map(|medium| Some(medium.varying.as_ref()?.tracker()));
+    let mut trackers = scene.media.iter().filter_map(|medium| Some(medium.heterogeneous()?.tracker()));
     if trackers.any(|tracker| matches!(tracker, Tracker::March(_))) {
         notes.push("is biased by the step of its ray marching".to_owned());
     }

@@ -8,14 +8,14 @@ use crate::{
     render::{
         Settings,
         bench::Bench,
-        sample::{Leg, Partner, PixelSample, Splat, Stop, Try, Walk},
+        sample::{Arrival, Leg, Partner, PixelSample, Splat, Stop, Try, Walk},
     },
     scene::{
         build::Setup,
-        lights::{Link, Start},
+        lights::{EmitterPoint, EmitterSample},
     },
     shape::SurfacePoint,
-    transport::{Site, Strategies, record::StrategyKind},
+    transport::{Interaction, Strategies, record::StrategyKind},
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -177,7 +177,7 @@ pub struct Contribution {
     pub eye_walk: usize,
     /// The last eye vertex, by its number in the walk. For s = 0 it is on the emitter.
     pub eye_vertex: u32,
-    /// For s = 0 in a medium or at infinity, where the walk met it: on its way, at no vertex of its own.
+    /// For s = 0, how the walk came to the emitter: in a medium and at infinity that is at no vertex of its own.
     pub met: Option<VertexText>,
     /// For s < 2, the point of the emitter.
     pub emitter: Option<PointText>,
@@ -371,41 +371,61 @@ impl Text<'_> {
     }
 
     fn vertex(&self, stop: &Stop) -> VertexText {
-        let (kind, measure, surface, matter) = match &stop.site {
-            Site::Surface(point) => ("surface", "1/m^2", Some(self.surface(point)), None),
-            Site::Medium(matter) => ("medium", "1/m^3", None, Some(matter)),
-        };
-        VertexText {
-            kind,
-            position: Some(self.position(stop.position)),
-            incoming: stop.incoming.to_array(),
-            density: stop.density,
-            measure,
-            throughput: stop.throughput.to_array(),
-            medium: self.medium(stop.medium),
-            surface,
-            sigma_t: matter.map(|matter| matter.sigma_t.to_array()),
-            albedo: matter.map(|matter| matter.albedo.to_array()),
-            onward: stop.onward.as_ref().map(|leg| self.onward(leg)),
+        let position = Some(stop.interaction.position());
+        let onward = stop.onward.as_ref().map(|leg| self.onward(leg));
+        match &stop.interaction {
+            Interaction::Surface(point) => VertexText {
+                surface: Some(self.surface(point)),
+                onward,
+                ..self.arrival(&stop.arrival, "surface", position)
+            },
+            Interaction::Medium(_, matter) => VertexText {
+                sigma_t: Some(matter.sigma_t.to_array()),
+                albedo: Some(matter.albedo.to_array()),
+                onward,
+                ..self.arrival(&stop.arrival, "medium", position)
+            },
         }
     }
 
-    /// A direction in which a walk left the scene.
-    fn escape(&self, stop: &Stop) -> VertexText {
-        let at_infinity = VertexText { kind: "escape", position: None, measure: "1/sr", ..self.vertex(stop) };
-        VertexText { surface: None, sigma_t: None, albedo: None, ..at_infinity }
+    /// Where a walk met an emitter.
+    fn met(&self, arrival: &Arrival, point: &EmitterPoint) -> VertexText {
+        let kind = match point {
+            EmitterPoint::Surface(_) | EmitterPoint::Point(_) => "surface",
+            EmitterPoint::Volume { .. } => "medium",
+            EmitterPoint::Direction(_) => "escape",
+        };
+        self.arrival(arrival, kind, point.position())
+    }
+
+    fn arrival(&self, arrival: &Arrival, kind: &'static str, position: Option<Vec3>) -> VertexText {
+        let measure = match kind {
+            "surface" => "1/m^2",
+            "medium" => "1/m^3",
+            _ => "1/sr",
+        };
+        VertexText {
+            kind,
+            position: position.map(|position| self.position(position)),
+            incoming: arrival.incoming.to_array(),
+            density: arrival.density,
+            measure,
+            throughput: arrival.throughput.to_array(),
+            medium: self.medium(arrival.medium),
+            surface: None,
+            sigma_t: None,
+            albedo: None,
+            onward: None,
+        }
     }
 
     fn walk(&self, walk: &Walk, longest: u32) -> WalkText {
-        let start =
-            walk.start.as_ref().map(|leg| StartText {
-                position: self.position(walk.emitter.map_or(leg.position, |start| {
-                    if start.infinite { start.origin } else { start.position }
-                })),
-                emitter: walk.emitter.map(|start| self.emitter(start.light)),
-                density: walk.emitter.map(|Start { start, .. }| start),
-                onward: self.onward(leg),
-            });
+        let start = walk.start.as_ref().map(|leg| StartText {
+            position: self.position(walk.emitter.map_or(leg.position, |start| start.position())),
+            emitter: walk.emitter.map(|start| self.emitter(start.light)),
+            density: walk.emitter.map(|start| start.pdf),
+            onward: self.onward(leg),
+        });
         let left = walk.stops.last().map_or(walk.start.is_some(), |stop| stop.onward.is_some());
         let end = match () {
             () if left => "left the scene",
@@ -415,25 +435,24 @@ impl Text<'_> {
         WalkText { start, vertices: walk.stops.iter().map(|stop| self.vertex(stop)).collect(), end }
     }
 
-    fn point(&self, link: &Link) -> PointText {
+    fn point(&self, sample: &EmitterSample) -> PointText {
+        let direction =
+            if let EmitterPoint::Direction(towards) = sample.point { Some(towards) } else { None };
         PointText {
-            emitter: self.emitter(link.light),
-            position: (!link.infinite).then(|| self.position(link.position)),
-            direction: link.infinite.then(|| link.position.to_array()),
-            connect_density: link.connect,
-            start_density: link.start,
+            emitter: self.emitter(sample.light),
+            position: sample.point.position().map(|position| self.position(position)),
+            direction: direction.map(|towards| towards.to_array()),
+            connect_density: sample.pdf,
+            start_density: sample.pdf_start,
         }
     }
 
     fn contribution(&self, one: &Try, factor: f32) -> Contribution {
         let (emitter, met, light) = match &one.partner {
-            Partner::Met(stop, link) if link.infinite => {
-                (Some(self.point(link)), Some(self.escape(stop)), None)
+            Partner::Met(arrival, sample) => {
+                (Some(self.point(sample)), Some(self.met(arrival, &sample.point)), None)
             }
-            Partner::Met(stop, link) if link.point.is_none() => {
-                (Some(self.point(link)), Some(self.vertex(stop)), None)
-            }
-            Partner::Met(_, link) | Partner::Emitter(link) => (Some(self.point(link)), None, None),
+            Partner::Emitter(sample) => (Some(self.point(sample)), None, None),
             Partner::Light { walk, edges, .. } => {
                 (None, None, Some(LightVertex { walk: *walk, vertex: *edges }))
             }

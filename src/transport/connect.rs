@@ -12,7 +12,10 @@ use crate::{
     math::{Lanes, Spectrum, Vec3, measure, offset},
     medium::MediumIndex,
     sampling::Stream,
-    scene::{Scene, lights::Link},
+    scene::{
+        Scene,
+        lights::{EmitterPoint, EmitterSample},
+    },
     shape::Ray,
 };
 use std::ops::{Div, Mul};
@@ -26,66 +29,69 @@ pub fn vertex_end<S: Sums>(
     transport: Transport,
 ) -> Option<End<S>> {
     let scattering = vertex.scatter_towards(scene, towards, transport);
-    let value = vertex.throughput * scattering.value;
+    let value = vertex.subpath.throughput * scattering.value;
     if value.max_element() <= 0.0 {
         return None;
     }
     let (origin, medium) = vertex.depart(scene, towards);
     Some(End {
-        origin,
+        origin: Some(origin),
         lift: vertex.lift(towards),
         medium,
         within: false,
         value,
         forward: scattering.forward,
         cosine: vertex.cosine(towards),
-        inverse: vertex.inverse,
+        inverse: vertex.subpath.inverse,
         sigma_t: vertex.sigma_t(),
-        reach: vertex.reach,
+        reach: vertex.subpath.reach,
         tail: vertex.tail(scattering.backward),
     })
 }
 
 /// The end at an emitter point picked by next-event estimation, for a join of strategy s = 1; `hits` is n of
-/// s = 0. In units of the density of s = 1, a light walk starts here `start / connect` times as densely.
+/// s = 0. In units of the density of s = 1, a light walk starts here `pdf_start / pdf` times as densely.
 #[inline]
-pub fn link_end<P: Profile>(
+pub fn emitter_end<P: Profile>(
     scene: &Scene,
-    link: &Link,
+    sample: &EmitterSample,
     medium: MediumIndex,
     towards: Vec3,
     hits: f32,
 ) -> End<P::Sums> {
-    let shines = P::EMISSIVE && link.rate.is_some();
+    let light = &scene.lights.all[sample.light as usize];
+    let within = P::EMISSIVE && sample.point.is_volume();
+    let hits = if light.emitter.is_hittable() { hits } else { 0.0 };
     End {
-        origin: link_origin(link, towards),
-        lift: link.point.map_or(Vec3::ZERO, |point| offset::side_of(point.normal, towards)),
-        medium: if shines { scene.lights.all[link.light as usize].medium } else { medium },
-        within: shines,
-        value: link.value / link.connect,
-        forward: link.forward * link.start / link.connect,
-        cosine: link.cosine,
-        inverse: 1.0 / link.connect,
-        sigma_t: rate_of::<P>(link.rate),
+        origin: sample.point.ray_origin(towards),
+        lift: lift(&sample.point, towards),
+        medium: if within { light.medium } else { medium },
+        within,
+        value: sample.value / sample.pdf,
+        forward: sample.pdf_direction * sample.pdf_start / sample.pdf,
+        cosine: sample.cosine,
+        inverse: 1.0 / sample.pdf,
+        sigma_t: rate_at::<P>(&sample.point),
         reach: P::Lanes::splat(1.0),
-        tail: P::Sums::of(P::Lanes::splat(if link.hittable { hits } else { 0.0 })),
+        tail: P::Sums::of(P::Lanes::splat(hits)),
     }
 }
 
-/// What stands for sigma_t at an emitter's point: `rate` in a medium, 1 elsewhere.
+/// What stands for sigma_t at an emitter's point: how often emission is met in a medium, 1 elsewhere.
 #[inline]
-pub fn rate_of<P: Profile>(rate: Option<Spectrum>) -> P::Lanes {
-    match rate {
-        Some(rate) if P::EMISSIVE => P::Lanes::from_spectrum(rate),
+pub fn rate_at<P: Profile>(point: &EmitterPoint) -> P::Lanes {
+    match point {
+        EmitterPoint::Volume { rate, .. } if P::EMISSIVE => P::Lanes::from_spectrum(*rate),
         _ => P::Lanes::splat(1.0),
     }
 }
 
+/// See [`End::lift`].
 #[inline]
-fn link_origin(link: &Link, towards: Vec3) -> Vec3 {
-    match &link.point {
-        Some(point) => offset::leave_surface(point.position, point.error, point.normal, towards),
-        None => link.position,
+fn lift(point: &EmitterPoint, towards: Vec3) -> Vec3 {
+    match point {
+        EmitterPoint::Surface(point) => offset::side_of(point.normal, towards),
+        _ => Vec3::ZERO,
     }
 }
 
@@ -153,14 +159,17 @@ pub fn join<P: Profile>(
     hidden: bool,
     stream: &mut Stream,
 ) -> Option<Joined> {
-    let end = offset::clear_of_end(a.origin, b.origin, b.lift);
-    let (direction, distance, _) = measure::between(a.origin, end)?;
-    let ray = Ray { origin: a.origin, direction, t_max: distance };
-    let cut = (b.origin - end).dot(direction);
+    let (origin, other) = (a.origin?, b.origin?);
+    let end = offset::clear_of_end(origin, other, b.lift);
+    let (direction, distance, _) = measure::between(origin, end)?;
+    let ray = Ray { origin, direction, t_max: distance };
+    let cut = (other - end).dot(direction);
     join_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, strategy, stream)
 }
 
 /// The same along a given span that starts at `a`: for ends at infinity.
+///
+/// LW96 eq. 10 over eq. 11, times eq. 14: each end holds what its own walk contributed over its density.
 #[inline(always)]
 pub fn join_along<P: Profile>(
     scene: &Scene,
@@ -171,14 +180,14 @@ pub fn join_along<P: Profile>(
     stream: &mut Stream,
 ) -> Option<Joined> {
     let Span { ray, cut, distance_squared, hidden } = *span;
-    let passage = segment::pass::<P>(scene, ray, cut, a.medium, hidden, stream)?;
-    if P::EMISSIVE && b.within && passage.medium != b.medium {
+    let between = segment::transmittance::<P>(scene, ray, cut, a.medium, hidden, stream)?;
+    if P::EMISSIVE && b.within && between.medium != b.medium {
         return None;
     }
     let geometry = 1.0 / distance_squared;
-    let weight = weight::join(a, b, passage.density, geometry, strategy);
-    let value = a.value * b.value * passage.transmittance * (geometry * weight);
+    let weight = weight::join(a, b, between.density, geometry, strategy);
+    let value = a.value * b.value * between.transmittance * (geometry * weight);
     let weight_alone = weight::alone(a.reach * b.reach);
-    let alone = a.value * b.value * passage.transmittance * (geometry * weight_alone);
-    Some(Joined { value, weight, alone, weight_alone, transmittance: passage.transmittance })
+    let alone = a.value * b.value * between.transmittance * (geometry * weight_alone);
+    Some(Joined { value, weight, alone, weight_alone, transmittance: between.transmittance })
 }

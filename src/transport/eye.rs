@@ -7,17 +7,16 @@ use super::{
     connect::{self, Joined, Span},
     profile::Profile,
     record::{Meeting, Recorder},
-    segment::Flown,
-    vertex::{Site, Vertex},
-    walk::{Departure, Kind, Visitor, land, walk},
+    segment::{FlightPart, Interaction},
+    vertex::{Subpath, Vertex},
+    walk::{Arrival, Departure, Kind, Visitor, arrive, walk},
     weight::{self, Sums},
 };
 use crate::{
     bsdf::Transport,
     math::{Lanes, Spectrum, Vec2, Vec3, measure},
-    medium::Matter,
     sampling::Stream,
-    scene::lights::Link,
+    scene::{Scene, lights::EmitterSample},
     sensor::SensorRay,
     shape::Ray,
 };
@@ -84,56 +83,43 @@ impl<P: Profile, R: Recorder<P::Sums>> Visitor<P> for Eye<'_, P, R> {
     #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
         self.recorder.arrive(vertex);
-        if let Site::Surface(point) = &vertex.site
+        if let Interaction::Surface(point) = &vertex.interaction
             && let Some(light) = self.estimator.scene.surface(point.shape).emitter
-            && self.estimator.counts.hit > 0.0
         {
-            let scene = self.estimator.scene;
-            self.recorder.start();
-            if let Some(link) = scene.lights.met(&scene.geometry, light, point, self.previous) {
-                let hit = self.hit(vertex, &link);
-                self.recorder.contribute(0, vertex.edges + 1, Meeting::Met(vertex, &link), hit.as_ref());
-            }
-            self.recorder.stop(0, vertex.edges + 1);
+            let Scene { lights, geometry, .. } = self.estimator.scene;
+            let found = |eye: &Self| lights.surface_hit(geometry, light, point, eye.previous);
+            self.emission(&vertex.subpath, found);
         }
-        if vertex.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
+        if vertex.subpath.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
             if self.estimator.counts.next_event > 0.0 {
                 self.next_event(vertex, stream);
             }
             self.join(vertex, stream);
         }
-        self.previous = vertex.position;
+        self.previous = vertex.position();
     }
 
     /// s = 0 in a medium: of all points of a flight one is taken, by where it may shine most. That a flight comes as far
     /// as a point as often as radiance does is what makes up for the transmittance up to there.
     #[inline]
-    fn pass(&mut self, departure: &Departure<P::Sums>, flown: &Flown<P::Lanes>, stream: &mut Stream) {
-        let Some((light, emission)) = self.estimator.scene.lights.of_medium(flown.medium) else { return };
+    fn pass(&mut self, departure: &Departure<P::Sums>, part: &FlightPart<P::Lanes>, stream: &mut Stream) {
+        let Some((light, emission)) = self.estimator.scene.lights.of_medium(part.medium) else { return };
         if self.estimator.counts.hit <= 0.0 {
             return;
         }
         self.recorder.start();
-        if let Some((t, density)) = emission.sample_along(&flown.section, stream)
-            && let Some((vertex, link)) = self.meet(departure, flown, light, t, stream)
+        if let Some((t, density)) = emission.sample_along(&part.interval.section, stream)
+            && let Some((subpath, sample)) = self.meet(departure, part, light, t, stream)
         {
-            let hit = self.hit(&vertex, &link).map(|hit| hit / density);
-            self.recorder.contribute(0, vertex.edges + 1, Meeting::Met(&vertex, &link), hit.as_ref());
+            let hit = self.hit(&subpath, &sample).map(|hit| hit / density);
+            self.recorder.contribute(0, subpath.edges + 1, Meeting::Met(&subpath, &sample), hit.as_ref());
         }
         self.recorder.stop(0, departure.edges + 2);
     }
 
-    fn escape(&mut self, vertex: &Vertex<P::Sums>) {
-        self.recorder.escape(vertex);
-        if self.estimator.counts.hit <= 0.0 {
-            return;
-        }
-        self.recorder.start();
-        if let Some(link) = self.estimator.scene.lights.met_at_infinity(-vertex.incoming) {
-            let hit = self.hit(vertex, &link);
-            self.recorder.contribute(0, vertex.edges + 1, Meeting::Met(vertex, &link), hit.as_ref());
-        }
-        self.recorder.stop(0, vertex.edges + 1);
+    fn escape(&mut self, subpath: &Subpath<P::Sums>) {
+        self.recorder.escape(subpath);
+        self.emission(subpath, |eye| eye.estimator.scene.lights.infinity_hit(-subpath.incoming));
     }
 }
 
@@ -159,53 +145,70 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Eye<'a, P, R> {
         self.recorder
     }
 
+    /// s = 0: the walk has come to an emitter, a point of which is `found` if it emits this way.
+    #[inline]
+    fn emission(&mut self, subpath: &Subpath<P::Sums>, found: impl FnOnce(&Self) -> Option<EmitterSample>) {
+        if self.estimator.counts.hit <= 0.0 {
+            return;
+        }
+        self.recorder.start();
+        if let Some(sample) = found(self) {
+            let hit = self.hit(subpath, &sample);
+            self.recorder.contribute(0, subpath.edges + 1, Meeting::Met(subpath, &sample), hit.as_ref());
+        }
+        self.recorder.stop(0, subpath.edges + 1);
+    }
+
     /// The end of a walk at a point of a medium that shines, as the emitter `light`; none where it is dark there.
     pub fn meet(
         &self,
         departure: &Departure<P::Sums>,
-        flown: &Flown<P::Lanes>,
+        part: &FlightPart<P::Lanes>,
         light: u32,
         t: f32,
         stream: &mut Stream,
-    ) -> Option<(Vertex<P::Sums>, Link)> {
-        let scene = self.estimator.scene;
-        let link = scene.lights.link_within(light, flown.section.at(t))?;
-        let matter = Matter { sigma_t: link.rate?, albedo: Spectrum::ZERO };
-        let flight = flown.until(scene, t, matter, self.hero, stream);
-        Some((land::<P>(departure, &flight, self.hero, self)?, link))
+    ) -> Option<(Subpath<P::Sums>, EmitterSample)> {
+        let (scene, position) = (self.estimator.scene, part.interval.section.at(t));
+        let sample = scene.lights.volume_sample(light, position)?;
+        let state = part.until::<P>(scene, t, self.hero, stream);
+        let sigma_t = connect::rate_at::<P>(&sample.point);
+        let at = Arrival { position: Some(position), cosine: 1.0, sigma_t };
+        Some((arrive::<P>(departure, &state, part.medium, &at, self.hero)?, sample))
     }
 
     /// s = 0: the walk has met an emitter.
+    ///
+    /// LW96 eq. 3: the term L_e, weighted by eq. 14.
     #[inline]
-    pub fn hit(&self, vertex: &Vertex<P::Sums>, link: &Link) -> Option<Joined> {
+    pub fn hit(&self, subpath: &Subpath<P::Sums>, sample: &EmitterSample) -> Option<Joined> {
         let counts = &self.estimator.counts;
         // Media are no emitters that can be hidden: what is behind them is seen through them.
-        let hidden = self.estimator.hide_emitters && !(P::EMISSIVE && link.rate.is_some());
-        if counts.hit <= 0.0 || (vertex.edges == 1 && hidden) {
+        let hidden = self.estimator.hide_emitters && !(P::EMISSIVE && sample.point.is_volume());
+        if counts.hit <= 0.0 || (subpath.edges == 1 && hidden) {
             return None;
         }
         // Both ends of the segment before must be able to join; across it joins s = 1, which from the sensor is
         // a light walk's first vertex and from anywhere else next-event estimation. Parallel rays meet what is
         // at infinity in one direction, which no light walk starts in.
-        let unseen = P::INFINITE && link.infinite && self.estimator.scene.sensor.is_parallel();
-        let joins = match (vertex.after_dirac, vertex.edges) {
+        let unseen = P::INFINITE && sample.point.is_infinite() && self.estimator.scene.sensor.is_parallel();
+        let joins = match (subpath.after_dirac, subpath.edges) {
             (true, _) => 0.0,
             (false, 1) if unseen => 0.0,
-            (false, 1) => counts.lens * link.start,
-            (false, _) => counts.next_event * link.connect,
+            (false, 1) => counts.lens * sample.pdf_start,
+            (false, _) => counts.next_event * sample.pdf,
         };
-        let unit = vertex.inverse / counts.hit;
-        let by_light = vertex.partial.scaled(link.forward * link.start * unit);
-        let others = P::Sums::of(vertex.reach_before.scaled(joins * unit)).and(by_light);
+        let unit = subpath.inverse / counts.hit;
+        let by_light = subpath.partial.scaled(sample.pdf_direction * sample.pdf_start * unit);
+        let others = P::Sums::of(subpath.reach_before.scaled(joins * unit)).and(by_light);
         // `value` is radiance x cosine on shapes: the walk's density already contains that cosine. The rate of media is
         // for weights alone.
-        let radiance = link.value / link.cosine;
-        let weight = weight::hit(vertex.reach, others, self.estimator.heuristic);
-        let weight_alone = weight::alone(vertex.reach);
+        let radiance = sample.value / sample.cosine;
+        let weight = weight::hit(subpath.reach, others, self.estimator.heuristic);
+        let weight_alone = weight::alone(subpath.reach);
         Some(Joined {
-            value: vertex.throughput * radiance * (weight / counts.hit),
+            value: subpath.throughput * radiance * (weight / counts.hit),
             weight,
-            alone: vertex.throughput * radiance * (weight_alone / counts.hit),
+            alone: subpath.throughput * radiance * (weight_alone / counts.hit),
             weight_alone,
             transmittance: Spectrum::ONE,
         })
@@ -214,31 +217,32 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Eye<'a, P, R> {
     /// s = 1: a freshly sampled emitter point.
     #[inline]
     fn next_event(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream) {
-        let scene = self.estimator.scene;
+        let Scene { lights, geometry, .. } = self.estimator.scene;
+        let t = vertex.subpath.edges + 1;
         self.recorder.start();
-        if let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream) {
-            let joined = self.link(vertex, &link, stream);
-            self.recorder.contribute(1, vertex.edges + 1, Meeting::Emitter(&link), joined.as_ref());
+        if let Some(sample) = lights.sample_emitter(geometry, vertex.position(), stream) {
+            let joined = self.join_emitter(vertex, &sample, stream);
+            self.recorder.contribute(1, t, Meeting::Emitter(&sample), joined.as_ref());
         }
-        self.recorder.stop(1, vertex.edges + 1);
+        self.recorder.stop(1, t);
     }
 
     /// The join with an emitter point picked by next-event estimation.
     #[inline]
-    pub fn link(&self, vertex: &Vertex<P::Sums>, link: &Link, stream: &mut Stream) -> Option<Joined> {
+    pub fn join_emitter(
+        &self,
+        vertex: &Vertex<P::Sums>,
+        sample: &EmitterSample,
+        stream: &mut Stream,
+    ) -> Option<Joined> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
-        let (direction, distance_squared) = if P::INFINITE && link.infinite {
-            (link.position, 1.0)
-        } else {
-            let (direction, _, d2) = measure::between(vertex.position, link.position)?;
-            (direction, d2)
-        };
+        let (direction, distance_squared) = sample.point.seen_from(vertex.position())?;
         let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
-        let light = connect::link_end::<P>(scene, link, eye.medium, -direction, counts.hit);
+        let light = connect::emitter_end::<P>(scene, sample, eye.medium, -direction, counts.hit);
         let strategy = self.estimator.strategy(1.0);
-        if P::INFINITE && link.infinite {
-            let ray = Ray { origin: eye.origin, direction, t_max: f32::INFINITY };
-            let span = Span { ray, cut: 0.0, distance_squared: 1.0, hidden: false };
+        if P::INFINITE && sample.point.is_infinite() {
+            let ray = Ray { origin: eye.origin?, direction, t_max: f32::INFINITY };
+            let span = Span { ray, cut: 0.0, distance_squared, hidden: false };
             connect::join_along::<P>(scene, &span, &eye, &light, strategy, stream)
         } else {
             connect::join::<P>(scene, &eye, &light, distance_squared, strategy, false, stream)
@@ -253,8 +257,8 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Eye<'a, P, R> {
         for _ in 0..estimator.joins_per_vertex {
             let index = stream.below(pool.len());
             let other = &pool[index];
-            if vertex.edges + other.edges < estimator.max_edges {
-                let (s, t) = (other.edges + 1, vertex.edges + 1);
+            if vertex.subpath.edges + other.subpath.edges < estimator.max_edges {
+                let (s, t) = (other.subpath.edges + 1, vertex.subpath.edges + 1);
                 self.recorder.start();
                 let joined = self.join_with(vertex, other, stream).map(|joined| joined * scale);
                 self.recorder.contribute(s, t, Meeting::Light(index, other), joined.as_ref());
@@ -272,7 +276,7 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Eye<'a, P, R> {
         stream: &mut Stream,
     ) -> Option<Joined> {
         let scene = self.estimator.scene;
-        let (direction, _, distance_squared) = measure::between(vertex.position, other.position)?;
+        let (direction, _, distance_squared) = measure::between(vertex.position(), other.position())?;
         let eye = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
         let light = connect::vertex_end(scene, other, -direction, Transport::Importance)?;
         let strategy = self.estimator.strategy(self.estimator.counts.join);

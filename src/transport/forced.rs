@@ -13,8 +13,8 @@ use super::{
     eye::{Eye, depart},
     profile::Profile,
     record::Recorder,
-    segment::{self, Flown, Landing},
-    walk::{Kind, Visitor, land, visit, walk},
+    segment::{self, FlightPart, ForcedEnd, Interaction, Segment},
+    walk::{Kind, Visitor, go_on, walk},
 };
 use crate::{
     bsdf::Transport,
@@ -40,20 +40,20 @@ pub fn sample<P: Profile, R: Recorder<P::Sums>>(
     if max_edges == 0 {
         return eye.into_recorder();
     }
-    let mut along = |flown: &Flown<P::Lanes>, stream: &mut Stream| eye.pass(&departure, flown, stream);
-    let (ray, medium, hidden) = (departure.ray, departure.medium, departure.hidden);
-    let forced = segment::force::<P>(scene, ray, medium, hidden, hero, stream, &mut along);
-    for end in forced.ends.into_iter().flatten() {
+    let mut along = |part: &FlightPart<P::Lanes>, stream: &mut Stream| eye.pass(&departure, part, stream);
+    let forced = segment::force::<P>(departure.segment(scene), hero, stream, &mut along);
+    for ForcedEnd { flight, share } in forced.ends.into_iter().flatten() {
         eye.restart(departure.position);
         eye.depart(&departure);
-        let Some(mut vertex) = land::<P>(&departure, &end.flight, hero, &eye) else { continue };
-        vertex.throughput = departure.throughput * end.share;
-        if let Landing::Medium(..) = end.flight.landing {
-            let gain = gain_of(forced.sure_depth);
-            vertex.inverse /= gain.hero(hero);
-            vertex.reach = vertex.reach * gain.scaled(1.0 / gain.hero(hero));
-        }
-        if let Some(next) = visit(scene, kind, &end.flight.landing, &vertex, &mut eye, stream) {
+        let next = go_on(scene, kind, &departure, &flight, &mut eye, stream, |subpath| {
+            subpath.throughput = departure.throughput * share;
+            if let Some(Interaction::Medium(..)) = flight.interaction {
+                let gain = gain_of(forced.sure_depth);
+                subpath.inverse /= gain.hero(hero);
+                subpath.reach = subpath.reach * gain.scaled(1.0 / gain.hero(hero));
+            }
+        });
+        if let Some(next) = next {
             walk(scene, kind, next, &mut eye, stream);
         }
     }
@@ -64,7 +64,7 @@ pub fn sample<P: Profile, R: Recorder<P::Sums>>(
 /// sees it.
 pub fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Lanes {
     let Estimator { scene, hide_emitters, .. } = *estimator;
-    gain_of(segment::sure_depth::<P>(scene, ray, scene.sensor_medium, hide_emitters))
+    gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.sensor_medium, hide_emitters)))
 }
 
 /// No gain is taken to be more than this: thinner media are seen by eye walks alone as it is.

@@ -7,15 +7,19 @@ use super::{
     forced,
     profile::Profile,
     record::{Meeting, Recorder},
-    vertex::{Site, Vertex},
+    segment::Interaction,
+    vertex::Vertex,
     walk::{Departure, Kind, Visitor, walk},
     weight::{End, Sums},
 };
 use crate::{
     bsdf::Transport,
-    math::{Lanes, Spectrum, Vec2, Vec3, offset},
+    math::{Lanes, Spectrum, Vec2, Vec3},
     sampling::Stream,
-    scene::{Scene, lights::Start},
+    scene::{
+        Scene,
+        lights::{EmissionSample, EmitterPoint},
+    },
     sensor::Projection,
     shape::Ray,
 };
@@ -25,7 +29,7 @@ pub struct Light<'a, P: Profile, R> {
     estimator: &'a Estimator<'a, P>,
     cache: &'a mut LightCache<P::Sums>,
     recorder: &'a mut R,
-    start: Start,
+    start: EmissionSample,
     hero: usize,
 }
 
@@ -55,37 +59,39 @@ pub fn trace<P: Profile>(
 }
 
 /// Where a light walk starts; none where nothing leaves.
-pub fn begin<P: Profile>(scene: &Scene, stream: &mut Stream) -> Option<Start> {
-    let start = scene.lights.sample_start(&scene.geometry, stream)?;
+pub fn begin<P: Profile>(scene: &Scene, stream: &mut Stream) -> Option<EmissionSample> {
+    let start = scene.lights.sample_emission(&scene.geometry, stream)?;
     // Points are sampled in the box around a medium that shines: not all lie in it.
-    let astray = P::EMISSIVE && start.rate.is_some() && {
+    let astray = P::EMISSIVE && start.point.is_volume() && {
         let medium = scene.lights.all[start.light as usize].medium;
-        !scene.is_within(medium, start.position, start.direction)
+        !scene.is_within(medium, start.ray.origin, start.ray.direction)
     };
     (!astray).then_some(start)
 }
 
 /// Leaves the emitter. Before it only an eye walk that meets it can join.
-pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &Start) -> Departure<P::Sums> {
-    let hits = if start.hittable { estimator.counts.hit } else { 0.0 };
+pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) -> Departure<P::Sums> {
     let scene = estimator.scene;
-    let medium = scene.emission_medium(start.light, start.origin, start.direction);
-    let arriving = if P::INFINITE && start.infinite {
-        scene.media[medium.0 as usize].from_infinity()
+    let emitter = &scene.lights.all[start.light as usize].emitter;
+    let hits = if emitter.is_hittable() { estimator.counts.hit } else { 0.0 };
+    let Ray { origin, direction, .. } = start.ray;
+    let medium = scene.emission_medium(start.light, origin, direction);
+    let arriving = if P::INFINITE && start.point.is_infinite() {
+        scene.media[medium.0 as usize].transmittance_from_infinity()
     } else {
         Spectrum::ONE
     };
     Departure {
-        position: start.position,
-        ray: Ray { origin: start.origin, direction: start.direction, t_max: f32::INFINITY },
+        position: start.position(),
+        ray: start.ray,
         medium,
-        from_infinity: start.infinite,
+        from_infinity: start.point.is_infinite(),
         edges: 0,
         hidden: false,
-        dirac: start.dirac,
+        dirac: !emitter.is_connectible(),
         throughput: start.throughput * arriving,
-        forward: start.forward,
-        carried: P::Sums::of(connect::rate_of::<P>(start.rate).scaled(hits * start.cosine / start.start)),
+        forward: start.pdf_direction,
+        carried: P::Sums::of(connect::rate_at::<P>(&start.point).scaled(hits * start.cosine / start.pdf)),
         reach: P::Lanes::splat(1.0),
     }
 }
@@ -116,7 +122,7 @@ impl<P: Profile, R: Recorder<P::Sums>> Visitor<P> for Light<'_, P, R> {
             let aperture = self.estimator.scene.sensor.sample_aperture(stream);
             self.recorder.start();
             let joined = self.join_to_lens(vertex, aperture, stream);
-            self.splat(vertex.edges + 1, joined);
+            self.splat(vertex.subpath.edges + 1, joined);
         }
         let keep = self.estimator.keep;
         if keep > 0.0 && (keep >= 1.0 || stream.uniform() < keep) {
@@ -124,8 +130,6 @@ impl<P: Profile, R: Recorder<P::Sums>> Visitor<P> for Light<'_, P, R> {
             self.recorder.keep();
         }
     }
-
-    fn escape(&mut self, _: &Vertex<P::Sums>) {}
 }
 
 impl<'a, P: Profile, R: Recorder<P::Sums>> Light<'a, P, R> {
@@ -134,7 +138,7 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Light<'a, P, R> {
         estimator: &'a Estimator<'a, P>,
         cache: &'a mut LightCache<P::Sums>,
         recorder: &'a mut R,
-        start: Start,
+        start: EmissionSample,
         hero: usize,
     ) -> Self {
         Self { estimator, cache, recorder, start, hero }
@@ -158,13 +162,16 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Light<'a, P, R> {
         stream: &mut Stream,
     ) -> Option<(Vec2, Joined)> {
         let scene = self.estimator.scene;
-        let seen = scene.sensor.project(vertex.position, aperture)?;
+        let seen = scene.sensor.project(vertex.position(), aperture)?;
         let hidden = self.estimator.hide_emitters && vertex.is_on_emitter(scene);
         if hidden || !self.recorder.covers(seen.film) {
             return None;
         }
         let mut end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
-        if P::MEDIA && self.estimator.forced_interaction && matches!(vertex.site, Site::Medium(_)) {
+        if P::MEDIA
+            && self.estimator.forced_interaction
+            && matches!(vertex.interaction, Interaction::Medium(..))
+        {
             end.tail = end.tail.times(forced::gain(self.estimator, seen.ray));
         }
         let joined = self.join_end(&end, &seen, false, stream)?;
@@ -174,20 +181,20 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Light<'a, P, R> {
     /// s = 1, t = 1: the emitter itself as the sensor sees it, where an eye walk could have met it.
     pub fn join_start_to_lens(&self, aperture: Vec2, stream: &mut Stream) -> Option<(Vec2, Joined)> {
         let (estimator, start) = (self.estimator, &self.start);
-        let hidden = estimator.hide_emitters && !(P::EMISSIVE && start.rate.is_some());
+        let scene = estimator.scene;
+        let hidden = estimator.hide_emitters && !(P::EMISSIVE && start.point.is_volume());
         let seen_directly = estimator.max_edges > 0 && !hidden;
-        if estimator.counts.lens <= 0.0 || !start.hittable || !seen_directly {
+        let hittable = scene.lights.all[start.light as usize].emitter.is_hittable();
+        if estimator.counts.lens <= 0.0 || !hittable || !seen_directly {
             return None;
         }
-        let scene = estimator.scene;
-        let seen = if start.infinite {
-            scene.sensor.project_direction(start.position, aperture)
-        } else {
-            scene.sensor.project(start.position, aperture)
+        let seen = match start.point {
+            EmitterPoint::Direction(towards) => scene.sensor.project_direction(towards, aperture),
+            _ => scene.sensor.project(start.position(), aperture),
         };
         let seen = seen.filter(|seen| self.recorder.covers(seen.film))?;
         let end = start_end::<P>(estimator, start, -seen.ray.direction)?;
-        let joined = self.join_end(&end, &seen, start.infinite, stream)?;
+        let joined = self.join_end(&end, &seen, start.point.is_infinite(), stream)?;
         Some((seen.film, joined))
     }
 
@@ -203,7 +210,7 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Light<'a, P, R> {
         let Projection { ray, density, distance_squared, .. } = *seen;
         let hidden = self.estimator.hide_emitters;
         let lens = End {
-            origin: ray.origin,
+            origin: Some(ray.origin),
             lift: Vec3::ZERO,
             medium: scene.sensor_medium,
             within: false,
@@ -227,23 +234,25 @@ impl<'a, P: Profile, R: Recorder<P::Sums>> Light<'a, P, R> {
 
 /// The emitter point of a light walk as the end of a join in unit direction `towards`; none where it does not
 /// emit that way.
-fn start_end<P: Profile>(estimator: &Estimator<'_, P>, start: &Start, towards: Vec3) -> Option<End<P::Sums>> {
+fn start_end<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    start: &EmissionSample,
+    towards: Vec3,
+) -> Option<End<P::Sums>> {
     let emission = estimator.scene.lights.emission(start, towards)?;
-    let origin = match &start.point {
-        Some(point) => offset::leave_surface(point.position, point.error, point.normal, towards),
-        None => start.origin,
-    };
+    let origin = start.point.ray_origin(towards);
+    let leaving = origin.unwrap_or(start.ray.origin);
     Some(End {
         origin,
         // Never the far end of a join: the lens is.
         lift: Vec3::ZERO,
-        medium: estimator.scene.emission_medium(start.light, origin, towards),
+        medium: estimator.scene.emission_medium(start.light, leaving, towards),
         within: false,
-        value: emission.value / start.start,
-        forward: emission.forward,
+        value: emission.value / start.pdf,
+        forward: emission.pdf_direction,
         cosine: emission.cosine,
-        inverse: 1.0 / start.start,
-        sigma_t: connect::rate_of::<P>(start.rate),
+        inverse: 1.0 / start.pdf,
+        sigma_t: connect::rate_at::<P>(&start.point),
         reach: P::Lanes::splat(1.0),
         tail: P::Sums::of(P::Lanes::splat(estimator.counts.hit)),
     })

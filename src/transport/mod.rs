@@ -1,10 +1,63 @@
 //! The estimator on one page (LW96 sec. 4).
 //!
-//! A pixel sample is one eye walk. At each of its vertices: emitters met (s = 0), next-event estimation
-//! (s = 1), and joins with a fixed number of vertices drawn from a cache of light walks (s >= 2). Light walks
-//! also join the lens (t = 1). Every contribution is weighted by a heuristic, the balance heuristic unless another is
-//! asked for, over all strategies that could have made its path, flight densities included. `pt` and `lt` are the same
-//! with strategies left out.
+//! # The path and what it contributes
+//! A path x_0 x_1 .. x_k leads from a point of an emitter, or a direction to one at infinity, over points that scatter,
+//! on surfaces or in media, to the lens x_k. Index-matched boundaries are no vertices: they only change the medium along a
+//! segment. The pixel measures the integral over all paths of
+//!
+//! ```text
+//! C(x_0 .. x_k) = L_e(x_0 -> x_1) |cos_0| G(x_0, x_1) g(x_1) G(x_1, x_2) g(x_2) .. G(x_k-1, x_k) W(x_k-1 -> x_k)
+//!
+//! G(x, y) = T(x, y) / d^2          T: transmittance, 0 where a surface is in the way; d: the distance, 1 at infinity
+//! g(x)    = sigma_t albedo phase   in a medium
+//!           bsdf |cos| |cos'|      on a surface
+//! ```
+//! (LW96 eq. 10, with the sigma_s that it leaves out of g in a medium). L_e is the radiance emitted, in an emissive medium
+//! the radiance gained per metre, of a point light its intensity; W is the pixel's filter over the film.
+//!
+//! # The sum over (s, t)
+//! A light walk makes x_0 .. x_s-1, an eye walk x_k .. x_s (t = k + 1 - s vertices), and a segment connects the two. With
+//! p> and p< the densities by which the walks make a vertex (LW96 eq. 13), strategy (s, t) makes a path with the density
+//!
+//! ```text
+//! p_s = p>(x_0) p>(x_1) .. p>(x_s-1)  p<(x_s) .. p<(x_k-1) p<(x_k)                                        LW96 eq. 11, 12
+//! ```
+//! and n_s expected samples a pixel sample ([`Counts`]). The estimate is
+//!
+//! ```text
+//! sum over s >= 0, t >= 1 of   w_s C / (n_s p_s)      for each sample of the strategy
+//! w_s = n_s p_s / sum_i n_i p_i                       over all strategies i that can make the path       LW96 eq. 14
+//! ```
+//! | s, t | what happens | where |
+//! |---|---|---|
+//! | s = 0 | the eye walk meets an emitter | [`eye::Eye::hit`] |
+//! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`eye::Eye::join_emitter`] |
+//! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache | [`eye::Eye::join_with`] |
+//! | s >= 1, t = 1 | the light walk is seen by the lens, through any pixel | [`light::Light::join_to_lens`] |
+//!
+//! A pixel sample is one eye walk; the light walks of a block of pixels fill the cache. `pt` and `lt` are the same with
+//! strategies left out ([`Strategies`]), other heuristics than eq. 14 sum n p otherwise ([`Sums`]), and the flight densities
+//! are part of p in all of them.
+//!
+//! # From equation to function
+//! | equation | function |
+//! |---|---|
+//! | LW96 eq. 3, L_e at the end of an eye walk | [`eye::Eye::hit`] |
+//! | LW96 eq. 4, one random walk through media and surfaces | [`walk::walk`], [`segment::sample_free_flight`] |
+//! | LW96 eq. 5 and 8, scattering in a medium | [`walk::collide`] |
+//! | LW96 eq. 6, p_medium | [`Medium::sample_distance`](crate::medium::Medium::sample_distance) |
+//! | LW96 eq. 7, P_surface | [`segment::transmittance`], [`Medium::optical_depth`](crate::medium::Medium::optical_depth) |
+//! | LW96 eq. 9, reflection | [`walk::reflect`] |
+//! | LW96 eq. 10, the contribution | [`connect::join_along`]; its g is [`vertex::Vertex::scatter_towards`] |
+//! | LW96 eq. 11 and 12, densities of paths | [`vertex::Subpath`]: as ratios, by [`walk::arrive`] and [`walk::set_out`] |
+//! | LW96 eq. 13, density of a vertex | [`walk::arrive`] |
+//! | LW96 eq. 14, the weight | [`weight::join`], [`weight::hit`], [`weight::Balance`] |
+//! | LW96 sec. 5, media that vary | [`crate::medium::tracker`] |
+//! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], met in [`eye::Eye::meet`] |
+//! | P03T eq. 2.9, media that only absorb | [`crate::medium::Treatment`] |
+//! | P03T sec. A.2.2, forced interactions | [`forced::sample`], [`segment::force`] |
+//! | BMA02 eq. 5 and 6, the fog blend | `render::fog` |
+//! | BMA02 eq. 7, extinction as a sum | `density::sum` |
 
 mod cache;
 mod connect;
@@ -22,7 +75,8 @@ mod weight;
 
 pub use cache::LightCache;
 pub use connect::Joined;
-pub use vertex::{Site, Vertex};
+pub use segment::{Interaction, NullCrossing, Segment};
+pub use vertex::{Subpath, Vertex};
 pub use walk::Departure;
 pub use weight::Sums;
 
@@ -149,15 +203,10 @@ impl<'a, P: Profile> Estimator<'a, P> {
 
     /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
     pub fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
-        let passage = segment::pass::<P>(
-            self.scene,
-            primary,
-            0.0,
-            self.scene.sensor_medium,
-            self.hide_emitters,
-            stream,
-        );
-        passage.map_or(Spectrum::ZERO, |passage| passage.transmittance)
+        let Scene { sensor_medium, .. } = *self.scene;
+        let passed =
+            segment::transmittance::<P>(self.scene, primary, 0.0, sensor_medium, self.hide_emitters, stream);
+        passed.map_or(Spectrum::ZERO, |passed| passed.transmittance)
     }
 
     /// One eye walk of channel `hero` through `film` [pixels] and a point of the aperture; what it brings goes to

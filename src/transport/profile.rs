@@ -5,22 +5,22 @@ use super::{
     Heuristic,
     weight::{Balance, Cutoff, Maximum, Power, Sums, Uniform},
 };
-use crate::math::Lanes;
-use crate::{bsdf::BsdfModel, math::Spectrum, medium::Medium, scene::Scene};
+use crate::{
+    bsdf::BsdfModel,
+    math::{Lanes, Spectrum},
+    medium::{MediaProfile, Medium},
+    scene::Scene,
+};
 use std::marker::PhantomData;
 
 /// Compile-time constants that remove code.
-pub trait Profile: Copy + Send + Sync + 'static {
-    /// Extinction per lane.
-    type Lanes: Lanes;
+pub trait Profile: MediaProfile {
     /// What walks carry for the weights of strategies.
     type Sums: Sums<Lanes = Self::Lanes>;
     /// Some medium has extinction.
     const MEDIA: bool;
     /// Rays can pass surfaces undeflected, so segments cross boundaries.
     const NULLS: bool;
-    /// Some medium's coefficients vary in space.
-    const HETEROGENEOUS: bool;
     /// Some emitter is at infinity, or the sensor is: its rays are parallel.
     const INFINITE: bool;
     /// Some medium shines.
@@ -35,12 +35,14 @@ macro_rules! profile {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         pub struct $name;
-        impl Profile for $name {
+        impl MediaProfile for $name {
             type Lanes = $lanes;
+            const HETEROGENEOUS: bool = $heterogeneous;
+        }
+        impl Profile for $name {
             type Sums = Balance<$lanes>;
             const MEDIA: bool = $media;
             const NULLS: bool = $nulls;
-            const HETEROGENEOUS: bool = $heterogeneous;
             const INFINITE: bool = $infinite;
             const EMISSIVE: bool = $emissive;
             const NAME: &'static str = $text;
@@ -83,12 +85,15 @@ profile! {
 #[derive(Clone, Copy, Debug)]
 pub struct Everything<S = Balance<Spectrum>>(PhantomData<S>);
 
-impl<S: Sums<Lanes = Spectrum>> Profile for Everything<S> {
+impl<S: Sums<Lanes = Spectrum>> MediaProfile for Everything<S> {
     type Lanes = Spectrum;
+    const HETEROGENEOUS: bool = true;
+}
+
+impl<S: Sums<Lanes = Spectrum>> Profile for Everything<S> {
     type Sums = S;
     const MEDIA: bool = true;
     const NULLS: bool = true;
-    const HETEROGENEOUS: bool = true;
     const INFINITE: bool = true;
     const EMISSIVE: bool = true;
     const NAME: &'static str = "everything";
@@ -126,9 +131,9 @@ impl Needs {
         let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
         let passed = hide_emitters && scene.surfaces.iter().any(|surface| surface.emitter.is_some());
         Self {
-            media: scene.media.iter().any(|medium| medium.sigma_t != Spectrum::ZERO),
+            media: scene.media.iter().any(|medium| medium.bound().sigma_t != Spectrum::ZERO),
             chromatic: scene.media.iter().any(Medium::is_chromatic),
-            heterogeneous: scene.media.iter().any(|medium| medium.varying.is_some()),
+            heterogeneous: scene.media.iter().any(|medium| medium.heterogeneous().is_some()),
             nulls: nulls || passed,
             infinite: scene.lights.has_infinite() || scene.sensor.is_parallel(),
             emissive: scene.lights.has_media(),

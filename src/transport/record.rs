@@ -2,10 +2,16 @@
 //! made with, and instruments look at the walks with. The estimator is compiled for its recorder: what a recorder
 //! does not want to know costs nothing.
 
-use super::{Strategies, connect::Joined, vertex::Vertex, walk::Departure, weight::Sums};
+use super::{
+    Strategies,
+    connect::Joined,
+    vertex::{Subpath, Vertex},
+    walk::Departure,
+    weight::Sums,
+};
 use crate::{
     math::{Spectrum, Vec2},
-    scene::lights::{Link, Start},
+    scene::lights::{EmissionSample, EmitterSample},
 };
 
 /// The kinds of strategies, as [`super::Strategies`] switches them on and off.
@@ -72,10 +78,10 @@ impl Strategies {
 /// What the last vertex of one walk was joined with.
 #[derive(Clone, Copy, Debug)]
 pub enum Meeting<'a, S: Sums> {
-    /// s = 0: the eye walk came to this vertex, a point of the emitter.
-    Met(&'a Vertex<S>, &'a Link),
+    /// s = 0: the eye walk came to this point of an emitter.
+    Met(&'a Subpath<S>, &'a EmitterSample),
     /// s = 1: a point of an emitter, picked for the last vertex.
-    Emitter(&'a Link),
+    Emitter(&'a EmitterSample),
     /// s >= 2: a vertex of a light walk, and its place in the pool of the hero channel.
     Light(usize, &'a Vertex<S>),
     /// t = 1: the lens, through this film position [pixels].
@@ -104,7 +110,7 @@ pub trait Recorder<S: Sums> {
 
     /// A light walk begins at an emitter.
     #[inline]
-    fn emit(&mut self, _start: &Start) {}
+    fn emit(&mut self, _start: &EmissionSample) {}
 
     /// A walk leaves its start or a vertex.
     #[inline]
@@ -114,9 +120,9 @@ pub trait Recorder<S: Sums> {
     #[inline]
     fn arrive(&mut self, _vertex: &Vertex<S>) {}
 
-    /// An eye walk left the scene: the `incoming` of `vertex`, reversed, is the direction it left in.
+    /// An eye walk left the scene: the `incoming` of `subpath`, reversed, is the direction it left in.
     #[inline]
-    fn escape(&mut self, _vertex: &Vertex<S>) {}
+    fn escape(&mut self, _subpath: &Subpath<S>) {}
 
     /// The last vertex of the light walk at hand was added to the cache.
     #[inline]

@@ -1,49 +1,141 @@
-//! Segments between path vertices: `flight` samples one, `passage` goes along a given one. They own distances, optical
-//! depths and boundary crossings; media enter transport here and nowhere else.
+//! The segments of a path, and the walk along one through index-matched boundaries: `free_flight` samples where a
+//! segment ends, `transmittance` finds what remains along one whose ends are given, `forced` ends one in two ways at
+//! once. Media, and the boundaries between them, enter light transport here and nowhere else.
 
-pub mod flight;
-pub mod forced;
-pub mod passage;
+mod forced;
+mod free_flight;
+mod transmittance;
 
-pub use flight::{Flight, Flown, Landing, fly};
-pub use forced::{force, sure_depth};
-pub use passage::pass;
+pub use forced::{ForcedEnd, force, sure_depth};
+pub use free_flight::{FlightPart, FlightState, FreeFlight, Interaction, sample_free_flight};
+pub use transmittance::transmittance;
 
 use crate::{
-    math::{Lanes, Spectrum, Vec3, offset},
+    math::{Section, Spectrum, Vec3, measure, offset},
+    medium::{Medium, MediumIndex, MediumInterval},
+    sampling::Stream,
     scene::Scene,
-    shape::{Ray, SurfacePoint},
+    shape::{Hit, Ray, SurfacePoint},
 };
 
-/// Optical depth of a distance that may be infinite: nothing times infinity is nothing.
-#[inline]
-fn depth_of<L: Lanes>(sigma_t: L, distance: f32) -> L {
-    if distance < f32::INFINITY {
-        return sigma_t.scaled(distance);
-    }
-    let sigma_t = sigma_t.to_spectrum();
-    let lane = |s: f32| if s > 0.0 { f32::INFINITY } else { 0.0 };
-    L::from_spectrum(Spectrum::new(lane(sigma_t.x), lane(sigma_t.y), lane(sigma_t.z)))
+/// A segment that is being followed: what lies ahead of it, from its start or the boundary that it crossed last.
+#[derive(Clone, Copy)]
+pub struct Segment<'a> {
+    scene: &'a Scene,
+    ray: Ray,
+    /// Where it has to end, if that is given.
+    end: Option<Vec3>,
+    /// The medium that the ray starts in.
+    medium: MediumIndex,
+    /// How far behind the boundary the ray starts [m]: what was skipped to be clear of the surface still counts as way
+    /// through a homogeneous medium there. In media whose mean free path is some hundreds of rounding errors, light
+    /// would otherwise always start too deep.
+    skipped: f32,
+    /// Emitters do not stand in the way: before a camera that does not see them.
+    hidden: bool,
 }
 
-/// The part of light that passes a surface point undeflected.
-#[inline]
-fn passed(scene: &Scene, point: &SurfacePoint, direction: Vec3, hidden: bool) -> Spectrum {
-    if hidden && scene.surface(point.shape).emitter.is_some() {
-        return Spectrum::ONE;
+impl<'a> Segment<'a> {
+    /// Along `ray` to wherever it ends, starting in `medium`; emitters that are `hidden` are passed.
+    #[inline(always)]
+    pub fn along(scene: &'a Scene, ray: Ray, medium: MediumIndex, hidden: bool) -> Self {
+        Self { scene, ray, end: None, medium, skipped: 0.0, hidden }
     }
-    scene.null_transmission(point, direction)
+
+    /// To the end of `ray`, which may be at infinity.
+    #[inline]
+    fn to_end(scene: &'a Scene, ray: Ray, medium: MediumIndex, hidden: bool) -> Self {
+        let end = (ray.t_max < f32::INFINITY).then(|| ray.origin + ray.direction * ray.t_max);
+        Self { end, ..Self::along(scene, ray, medium, hidden) }
+    }
+
+    /// What lies ahead.
+    #[inline]
+    pub fn ray(&self) -> &Ray {
+        &self.ray
+    }
+
+    /// The medium that it is in.
+    #[inline(always)]
+    pub fn medium(&self) -> &'a Medium {
+        &self.scene.media[self.medium.0 as usize]
+    }
+
+    /// True if emitters are passed.
+    pub fn is_hidden(&self) -> bool {
+        self.hidden
+    }
+
+    /// The next surface within `reach` metres, and what lies before it in the medium; all that is left of the segment
+    /// where there is none.
+    #[inline(always)]
+    pub fn next(&self, reach: f32) -> (MediumInterval, Option<Hit>) {
+        let Ray { origin, direction, t_max } = self.ray;
+        let hit = self.scene.geometry.closest(&Ray { t_max: reach.min(t_max), ..self.ray });
+        let section = Section { origin, direction, length: hit.map_or(t_max, |hit| hit.t) };
+        (MediumInterval { section, skipped: self.skipped }, hit)
+    }
+
+    /// The point of the next surface.
+    #[inline(always)]
+    pub fn surface(&self, hit: &Hit) -> SurfacePoint {
+        self.scene.geometry.surface(&self.ray, hit)
+    }
+
+    /// The part of light that passes a surface point undeflected.
+    #[inline]
+    fn transmission(&self, point: &SurfacePoint) -> Spectrum {
+        if self.hidden && self.scene.surface(point.shape).emitter.is_some() {
+            return Spectrum::ONE;
+        }
+        self.scene.null_transmission(point, self.ray.direction)
+    }
+
+    /// A segment that comes to a surface passes or stops.
+    #[inline]
+    pub fn sample_crossing(&self, point: &SurfacePoint, stream: &mut Stream) -> NullCrossing {
+        let through = self.transmission(point);
+        let passing = through.max_element();
+        if passing <= 0.0 || (passing < 1.0 && stream.uniform() >= passing) {
+            return NullCrossing::Stopped(1.0 - passing.max(0.0));
+        }
+        NullCrossing::Passed(through, passing)
+    }
+
+    /// The segment along `ray`, which leaves `point` in another direction.
+    pub fn deflected(&self, point: &SurfacePoint, ray: Ray) -> Self {
+        let medium = self.scene.medium_towards(point, ray.direction, self.medium);
+        Self::along(self.scene, ray, medium, false)
+    }
+
+    /// Goes on beyond `point`, in the medium there. Crossings are rounded: a segment whose end is given is aimed at it
+    /// again, so that it ends where it should and not in the surface beyond.
+    pub fn cross(&mut self, point: &SurfacePoint) {
+        let Ray { origin, direction, t_max } = self.ray;
+        let beyond = offset::leave_surface(point.position, point.error, point.normal, direction);
+        let t_max = t_max - (beyond - origin).dot(direction);
+        self.skipped = (beyond - point.position).dot(direction).max(0.0);
+        self.ray = Ray { origin: beyond, direction, t_max };
+        self.medium = self.scene.medium_beyond(point, &self.ray, self.medium);
+        if let Some(end) = self.end {
+            let (aim, t_max, _) = measure::between(beyond, end).unwrap_or((direction, 0.0, 0.0));
+            // An end so near to the boundary that the step across passed it has been reached.
+            let overshot = aim.dot(direction) <= 0.0;
+            self.ray = match overshot {
+                true => Ray { t_max: 0.0, ..self.ray },
+                false => Ray { direction: aim, t_max, ..self.ray },
+            };
+        }
+    }
 }
 
-/// The rest of a ray beyond a surface point that it crosses, and how far beyond the surface it starts [m]: what was
-/// skipped to be clear of the surface still counts as way through a homogeneous medium there. In media whose mean free
-/// path is some hundreds of rounding errors, light would otherwise always start too deep.
-#[inline]
-fn past(ray: &Ray, point: &SurfacePoint) -> (Ray, f32) {
-    let origin = offset::leave_surface(point.position, point.error, point.normal, ray.direction);
-    let t_max = ray.t_max - (origin - ray.origin).dot(ray.direction);
-    let skipped = (origin - point.position).dot(ray.direction).max(0.0);
-    (Ray { origin, direction: ray.direction, t_max }, skipped)
+/// What became of a sampled segment at a surface.
+pub enum NullCrossing {
+    /// It ends there, which had this probability from either side: it takes the place of sigma_t at a collision, cancels
+    /// in every ratio of densities, and divides the throughput.
+    Stopped(f32),
+    /// It goes on, tinted by the first, which had the probability of the second.
+    Passed(Spectrum, f32),
 }
 
 #[cfg(test)]
@@ -75,8 +167,9 @@ mod tests {
         for index in 0..FLIGHTS {
             let mut stream = Stream::new(3, index, 0, Purpose::Study);
             let outside = scene.sensor_medium;
-            let flight = fly::<Bounded>(scene, INTO, outside, false, 0, &mut stream, &mut |_, _| ());
-            let Landing::Medium(position, _) = flight.landing else { panic!("{flight:?}") };
+            let into = Segment::along(scene, INTO, outside, false);
+            let flight = sample_free_flight::<Bounded>(into, 0, &mut stream, &mut |_, _| ());
+            let Some(Interaction::Medium(position, _)) = flight.interaction else { panic!("{flight:?}") };
             assert!(position.z < -1.0, "a collision before the boundary");
             sum += f64::from(-1.0 - position.z);
         }
@@ -84,9 +177,10 @@ mod tests {
         assert!((free_paths - 1.0).abs() < 0.06, "{free_paths} mean free paths");
         let ray = Ray { t_max: 1.0 + 4e-6, ..INTO };
         let mut stream = Stream::new(3, 0, 0, Purpose::Study);
-        let passage = pass::<Bounded>(scene, ray, 0.0, scene.sensor_medium, false, &mut stream).unwrap();
+        let passed =
+            transmittance::<Bounded>(scene, ray, 0.0, scene.sensor_medium, false, &mut stream).unwrap();
         let expected = -f64::from(ray.t_max - 1.0) * 1e6;
-        let found = f64::from(passage.density).ln();
+        let found = f64::from(passed.density).ln();
         assert!((found - expected).abs() < 0.07, "ln T {found}, not {expected}");
     }
 }

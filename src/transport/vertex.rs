@@ -1,24 +1,14 @@
 //! A path vertex: where it is, how it scatters, and what the balance heuristic needs of the walk behind it.
 
-use super::weight::Sums;
-use crate::math::Lanes;
+use super::{segment::Interaction, weight::Sums};
 use crate::{
     bsdf::{BsdfModel, Transport},
-    math::{Spectrum, Vec3, offset},
-    medium::{Matter, MediumIndex},
+    math::{Lanes, Spectrum, Vec3, offset},
+    medium::MediumIndex,
     phase::{Deflection, PhaseModel},
     scene::Scene,
     shape::SurfacePoint,
 };
-
-/// What a scattering vertex lies on or in.
-#[derive(Clone, Copy, Debug)]
-pub enum Site {
-    /// On a surface.
-    Surface(SurfacePoint),
-    /// In the medium that the segment before it ran through, made of this.
-    Medium(Matter),
-}
 
 /// Scattering at a vertex between two given directions.
 #[derive(Clone, Copy, Debug)]
@@ -32,9 +22,10 @@ pub struct Scattering {
     pub backward: f32,
 }
 
-/// A vertex of an eye or light walk, i segments after its start.
+/// A subpath of an eye or light walk: all that is known of it when it comes to its i-th point after the start, before
+/// anything happens there.
 ///
-/// The last three fields are the running sums of the weights. With p>_i the density by which this
+/// The last four fields are the running sums of the weights. With p>_i the density by which this
 /// walk makes vertex i (flight, direction and geometry, LW96 eq. 13) and p<_i that of the opposite walk, for
 /// lane c and hero h:
 ///   reach_i   = product over j <= i of p>^c_j / p>^h_j
@@ -44,11 +35,7 @@ pub struct Scattering {
 /// needs of the vertices beyond i is not known yet, so `partial` is D_{i-1} without the direction density at
 /// vertex i, and `inverse` is 1/p>^h_i.
 #[derive(Clone, Copy, Debug)]
-pub struct Vertex<S: Sums> {
-    /// World position.
-    pub position: Vec3,
-    /// Surface or medium.
-    pub site: Site,
+pub struct Subpath<S: Sums> {
     /// Unit direction towards the vertex before.
     pub incoming: Vec3,
     /// The medium of the segment that ended here.
@@ -57,47 +44,56 @@ pub struct Vertex<S: Sums> {
     pub edges: u32,
     /// True if the vertex before scattered by a Dirac lobe: the segment before cannot be a join.
     pub after_dirac: bool,
-    /// Contribution over density of everything before this vertex's own scattering.
+    /// Contribution over density of everything before this point's own scattering.
     pub throughput: Spectrum,
-    /// n_i: expected samples of the strategy that joins across the segment before; 0 where none can.
-    pub joins: f32,
     /// 1/p>^h_i.
     pub inverse: f32,
     /// reach_{i-1}.
     pub reach_before: S::Lanes,
     /// reach_i.
     pub reach: S::Lanes,
-    /// D_{i-1} over the direction density at this vertex towards the one before.
+    /// D_{i-1} over the direction density at this point towards the one before.
     pub partial: S,
 }
 
+/// A vertex of an eye or light walk: what scatters at the end of a subpath.
+#[derive(Clone, Copy, Debug)]
+pub struct Vertex<S: Sums> {
+    /// Surface or medium.
+    pub interaction: Interaction,
+    /// n_i: expected samples of the strategy that joins across the segment before; 0 where none can.
+    pub joins: f32,
+    /// How the walk came here.
+    pub subpath: Subpath<S>,
+}
+
 impl<S: Sums> Vertex<S> {
+    /// World position.
+    #[inline]
+    pub fn position(&self) -> Vec3 {
+        self.interaction.position()
+    }
+
     /// sigma_t per lane in a medium, 1 on a surface.
     #[inline]
     pub fn sigma_t(&self) -> S::Lanes {
-        match self.site {
-            Site::Surface(_) => S::Lanes::splat(1.0),
-            Site::Medium(matter) => S::Lanes::from_spectrum(matter.sigma_t),
-        }
+        self.interaction.sigma_t()
     }
 
     /// |cos| to the geometric normal on a surface, 1 in a medium.
     #[inline]
     pub fn cosine(&self, direction: Vec3) -> f32 {
-        match &self.site {
-            Site::Surface(point) => point.normal.dot(direction).abs(),
-            Site::Medium(_) => 1.0,
-        }
+        self.interaction.cosine(direction)
     }
 
     /// Where a ray towards unit `direction` starts, and in which medium.
     #[inline]
     pub fn depart(&self, scene: &Scene, direction: Vec3) -> (Vec3, MediumIndex) {
-        match &self.site {
-            Site::Medium(_) => (self.position, self.medium),
-            Site::Surface(point) => {
+        match &self.interaction {
+            Interaction::Medium(position, _) => (*position, self.subpath.medium),
+            Interaction::Surface(point) => {
                 let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
-                (origin, scene.medium_towards(point, direction, self.medium))
+                (origin, scene.medium_towards(point, direction, self.subpath.medium))
             }
         }
     }
@@ -105,9 +101,9 @@ impl<S: Sums> Vertex<S> {
     /// See [`super::weight::End::lift`].
     #[inline]
     pub fn lift(&self, direction: Vec3) -> Vec3 {
-        match &self.site {
-            Site::Medium(_) => Vec3::ZERO,
-            Site::Surface(point) => offset::side_of(point.normal, direction),
+        match &self.interaction {
+            Interaction::Medium(..) => Vec3::ZERO,
+            Interaction::Surface(point) => offset::side_of(point.normal, direction),
         }
     }
 
@@ -115,35 +111,37 @@ impl<S: Sums> Vertex<S> {
     /// vertex before is known: reach_{i-1} n_i + D_{i-1}.
     #[inline]
     pub fn tail(&self, backward: f32) -> S {
-        S::of(self.reach_before.scaled(self.joins)).and(self.partial.scaled(backward))
+        S::of(self.subpath.reach_before.scaled(self.joins)).and(self.subpath.partial.scaled(backward))
     }
 
     /// True on a shape that emits.
     #[inline]
     pub fn is_on_emitter(&self, scene: &Scene) -> bool {
-        matches!(&self.site, Site::Surface(point) if scene.surface(point.shape).emitter.is_some())
+        matches!(&self.interaction, Interaction::Surface(point) if scene.surface(point.shape).emitter.is_some())
     }
 
     /// True if something of its scattering is not Dirac.
     #[inline]
     pub fn is_connectible(&self, scene: &Scene) -> bool {
-        match &self.site {
-            Site::Surface(point) => scene.surface(point.shape).connectible,
-            Site::Medium(_) => true,
+        match &self.interaction {
+            Interaction::Surface(point) => scene.surface(point.shape).connectible,
+            Interaction::Medium(..) => true,
         }
     }
 
     /// Scattering between the vertex before and unit `outgoing`.
+    ///
+    /// LW96 eq. 10: g, without the cosine that the density of the vertex contains.
     #[inline]
     pub fn scatter_towards(&self, scene: &Scene, outgoing: Vec3, transport: Transport) -> Scattering {
-        match &self.site {
-            Site::Medium(matter) => {
-                let medium = &scene.media[self.medium.0 as usize];
-                let phase = medium.phase.density(Deflection::between(-self.incoming, outgoing));
+        match &self.interaction {
+            Interaction::Medium(_, matter) => {
+                let medium = &scene.media[self.subpath.medium.0 as usize];
+                let phase = medium.phase.density(Deflection::between(-self.subpath.incoming, outgoing));
                 let density = phase * matter.survival();
                 Scattering { value: matter.albedo * phase, forward: density, backward: density }
             }
-            Site::Surface(point) => self.reflect_towards(scene, point, outgoing, transport),
+            Interaction::Surface(point) => self.reflect_towards(scene, point, outgoing, transport),
         }
     }
 
@@ -155,10 +153,11 @@ impl<S: Sums> Vertex<S> {
         transport: Transport,
     ) -> Scattering {
         let bsdf = scene.bsdf(point.shape);
-        let (wi, wo) = (point.shading.to_local(self.incoming), point.shading.to_local(outgoing));
+        let (wi, wo) = (point.shading.to_local(self.subpath.incoming), point.shading.to_local(outgoing));
         let f = bsdf.evaluate(point.uv, wi, wo, transport);
         let survival = bsdf.survival(point.uv, wi);
-        let cosine = wo.z.abs() * shading_correction(point, self.incoming, outgoing, wi, wo, transport);
+        let cosine =
+            wo.z.abs() * shading_correction(point, self.subpath.incoming, outgoing, wi, wo, transport);
         Scattering { value: f.value * cosine, forward: f.forward * survival, backward: f.backward * survival }
     }
 }

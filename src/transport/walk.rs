@@ -3,8 +3,8 @@
 
 use super::{
     profile::Profile,
-    segment::{self, Flight, Flown, Landing},
-    vertex::{Site, Vertex, shading_correction},
+    segment::{FlightPart, FlightState, FreeFlight, Interaction, Segment, sample_free_flight},
+    vertex::{Subpath, Vertex, shading_correction},
     weight::Sums,
 };
 use crate::{
@@ -44,6 +44,14 @@ pub struct Departure<S: Sums> {
     pub reach: S::Lanes,
 }
 
+impl<S: Sums> Departure<S> {
+    /// The segment ahead, which has no end yet.
+    #[inline(always)]
+    pub fn segment<'a>(&self, scene: &'a Scene) -> Segment<'a> {
+        Segment::along(scene, self.ray, self.medium, self.hidden)
+    }
+}
+
 /// What happens at the vertices of a walk.
 pub trait Visitor<P: Profile> {
     /// n of the strategy that joins across the segment to the vertex at `position`, `edges` segments from the
@@ -58,11 +66,11 @@ pub trait Visitor<P: Profile> {
     fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream);
 
     /// A part of a flight from `departure` lies behind; only in profiles where media shine.
-    fn pass(&mut self, _departure: &Departure<P::Sums>, _flown: &Flown<P::Lanes>, _stream: &mut Stream) {}
+    fn pass(&mut self, _departure: &Departure<P::Sums>, _part: &FlightPart<P::Lanes>, _stream: &mut Stream) {}
 
-    /// The walk left the scene: `vertex` stands for the direction it left in (its `incoming` reversed), its
-    /// density per solid angle.
-    fn escape(&mut self, vertex: &Vertex<P::Sums>);
+    /// The walk left the scene, in the direction that the `incoming` of `subpath` is the reverse of; its density is per
+    /// solid angle.
+    fn escape(&mut self, _subpath: &Subpath<P::Sums>) {}
 }
 
 /// Which walk this is and how far it may go.
@@ -77,6 +85,8 @@ pub struct Kind {
 }
 
 /// Walks from `departure` until absorption, escape or the depth limit, showing every vertex to `visitor`.
+///
+/// LW96 eq. 4: the recursion by which L is estimated.
 #[inline]
 pub fn walk<P: Profile>(
     scene: &Scene,
@@ -87,38 +97,42 @@ pub fn walk<P: Profile>(
 ) {
     while departure.edges < kind.max_edges {
         visitor.depart(&departure);
-        let Departure { ray, medium, .. } = departure;
         let mut along =
-            |flown: &Flown<P::Lanes>, stream: &mut Stream| visitor.pass(&departure, flown, stream);
-        let flight = segment::fly::<P>(scene, ray, medium, departure.hidden, kind.hero, stream, &mut along);
-        let Some(vertex) = land::<P>(&departure, &flight, kind.hero, visitor) else { return };
-        let Some(next) = visit(scene, kind, &flight.landing, &vertex, visitor, stream) else { return };
+            |part: &FlightPart<P::Lanes>, stream: &mut Stream| visitor.pass(&departure, part, stream);
+        let flight = sample_free_flight::<P>(departure.segment(scene), kind.hero, stream, &mut along);
+        let Some(next) = go_on(scene, kind, &departure, &flight, visitor, stream, |_| ()) else { return };
         departure = next;
     }
 }
 
-/// Shows the end of a flight to `visitor`; how the walk goes on from there, if it does.
+/// Shows the end of a flight to `visitor`, the subpath as `adjusted`; how the walk goes on from there, if it does.
 #[inline(always)]
-pub fn visit<P: Profile>(
+pub fn go_on<P: Profile>(
     scene: &Scene,
     kind: Kind,
-    landing: &Landing,
-    vertex: &Vertex<P::Sums>,
+    departure: &Departure<P::Sums>,
+    flight: &FreeFlight<P::Lanes>,
     visitor: &mut impl Visitor<P>,
     stream: &mut Stream,
+    adjusted: impl FnOnce(&mut Subpath<P::Sums>),
 ) -> Option<Departure<P::Sums>> {
-    if matches!(landing, Landing::Escape) {
+    let Some(interaction) = flight.interaction else {
         if P::INFINITE {
-            visitor.escape(vertex);
+            let mut subpath =
+                arrive::<P>(departure, &flight.state, flight.medium, &Arrival::at_infinity(), kind.hero)?;
+            adjusted(&mut subpath);
+            visitor.escape(&subpath);
         }
         return None;
-    }
-    visitor.arrive(vertex, stream);
-    if vertex.edges == kind.max_edges {
+    };
+    let mut vertex = land::<P>(departure, flight, interaction, kind.hero, visitor)?;
+    adjusted(&mut vertex.subpath);
+    visitor.arrive(&vertex, stream);
+    if vertex.subpath.edges == kind.max_edges {
         return None;
     }
-    let next = scatter(scene, vertex, kind.transport, stream)?;
-    if vertex.edges < LONG { Some(next) } else { thinned(next, stream) }
+    let next = scatter(scene, &vertex, kind.transport, stream)?;
+    if vertex.subpath.edges < LONG { Some(next) } else { thinned(next, stream) }
 }
 
 /// Walks of more segments end by chance: where nothing absorbs and nothing is left to leave, in white fog without end,
@@ -134,61 +148,89 @@ fn thinned<S: Sums>(next: Departure<S>, stream: &mut Stream) -> Option<Departure
     (stream.uniform() < LONG_SURVIVAL).then_some(Departure { throughput, ..next })
 }
 
+/// Where a flight comes to, as far as densities depend on it.
+pub struct Arrival<L> {
+    /// World position; none at infinity.
+    pub position: Option<Vec3>,
+    /// |cos| on a surface, 1 elsewhere.
+    pub cosine: f32,
+    /// sigma_t per lane at a collision, the rate of [`crate::medium::Emission::rate`] where emission is met in a medium,
+    /// 1 elsewhere.
+    pub sigma_t: L,
+}
+
+impl<L: Lanes> Arrival<L> {
+    /// In no place, but from a direction.
+    fn at_infinity() -> Self {
+        Self { position: None, cosine: 1.0, sigma_t: L::splat(1.0) }
+    }
+}
+
 /// The vertex at the end of a flight; none if its density is no number.
 #[inline]
 pub fn land<P: Profile>(
     departure: &Departure<P::Sums>,
-    flight: &Flight<P::Lanes>,
+    flight: &FreeFlight<P::Lanes>,
+    interaction: Interaction,
     hero: usize,
     visitor: &impl Visitor<P>,
 ) -> Option<Vertex<P::Sums>> {
-    let direction = departure.ray.direction;
-    let (position, site) = match flight.landing {
-        Landing::Surface(point) => (point.position, Site::Surface(point)),
-        Landing::Medium(position, matter) => (position, Site::Medium(matter)),
-        Landing::Escape => (direction, Site::Medium(Matter::NOTHING)),
+    let position = interaction.position();
+    let at = Arrival {
+        position: Some(position),
+        cosine: interaction.cosine(departure.ray.direction),
+        sigma_t: interaction.sigma_t(),
     };
-    let escaped = matches!(flight.landing, Landing::Escape);
-    let distance_squared = if (P::INFINITE && departure.from_infinity) || escaped {
-        1.0
-    } else {
-        squared_distance(position, departure.position)
+    let subpath = arrive::<P>(departure, &flight.state, flight.medium, &at, hero)?;
+    let joins = if departure.dirac { 0.0 } else { visitor.joins(subpath.edges, position) };
+    Some(Vertex { interaction, joins, subpath })
+}
+
+/// The subpath that a flight extends to `at`; none if its density is no number.
+///
+/// LW96 eq. 13: p' p'' / d^2, the density of the direction (`departure.forward`), that of the flight (eq. 6 in a
+/// medium, eq. 7 on a surface) and the geometry; its inverse is what weights need.
+#[inline]
+pub fn arrive<P: Profile>(
+    departure: &Departure<P::Sums>,
+    state: &FlightState<P::Lanes>,
+    medium: MediumIndex,
+    at: &Arrival<P::Lanes>,
+    hero: usize,
+) -> Option<Subpath<P::Sums>> {
+    let distance_squared = match at.position {
+        Some(position) if !(P::INFINITE && departure.from_infinity) => {
+            squared_distance(position, departure.position)
+        }
+        _ => 1.0,
     };
-    let mut vertex = Vertex {
-        position,
-        site,
-        incoming: -direction,
-        medium: flight.medium,
-        edges: departure.edges + 1,
-        after_dirac: departure.dirac,
-        throughput: departure.throughput,
-        joins: 0.0,
-        inverse: 0.0,
-        reach_before: departure.reach,
-        reach: departure.reach,
-        partial: departure.carried,
-    };
-    let sigma_t = if escaped { P::Lanes::splat(1.0) } else { vertex.sigma_t() };
     let one = P::Lanes::splat(1.0);
     let attenuates = P::MEDIA || P::NULLS;
-    let ratio = if attenuates { flight.depth.flight_ratio(sigma_t, hero) } else { one };
-    let transmitted = if attenuates { flight.depth.exp_neg() } else { one };
-    let geometry = measure::solid_angle_to_vertex(vertex.cosine(direction), distance_squared);
-    let density = departure.forward * transmitted.hero(hero) * sigma_t.hero(hero) * geometry;
-    vertex.inverse = 1.0 / density;
+    let ratio = if attenuates { state.depth.flight_ratio(at.sigma_t, hero) } else { one };
+    let transmitted = if attenuates { state.depth.exp_neg() } else { one };
+    let geometry = measure::solid_angle_to_vertex(at.cosine, distance_squared);
+    let density = departure.forward * transmitted.hero(hero) * at.sigma_t.hero(hero) * geometry;
+    let inverse = 1.0 / density;
     // A density of 0, infinite, or so great or small that its inverse is: no walk in a real scene comes here.
-    if !(vertex.inverse > 0.0 && vertex.inverse < f32::INFINITY) {
+    if !(inverse > 0.0 && inverse < f32::INFINITY) {
         return None;
     }
-    vertex.partial = departure.carried.times(transmitted).scaled(1.0 / distance_squared);
-    vertex.reach = departure.reach * ratio;
-    let sampled = if P::HETEROGENEOUS { flight.ratio } else { ratio };
-    vertex.throughput *= sampled.to_spectrum();
+    let sampled = if P::HETEROGENEOUS { state.ratio } else { ratio };
+    let mut throughput = departure.throughput * sampled.to_spectrum();
     if P::NULLS {
-        vertex.throughput *= flight.tint;
+        throughput *= state.tint;
     }
-    vertex.joins = if departure.dirac { 0.0 } else { visitor.joins(vertex.edges, position) };
-    Some(vertex)
+    Some(Subpath {
+        incoming: -departure.ray.direction,
+        medium,
+        edges: departure.edges + 1,
+        after_dirac: departure.dirac,
+        throughput,
+        inverse,
+        reach_before: departure.reach,
+        reach: departure.reach * ratio,
+        partial: departure.carried.times(transmitted).scaled(1.0 / distance_squared),
+    })
 }
 
 /// Squared distance of two vertices one flight apart, never 0. In dense media many a flight is shorter than a rounding
@@ -219,7 +261,7 @@ pub struct Turn {
     pub dirac: bool,
 }
 
-/// Scatters at `vertex`; none if the walk is absorbed there (LW96 eq. 8 and 9).
+/// Scatters at `vertex`; none if the walk is absorbed there (LW96 eq. 8 and 9 are subcritical).
 #[inline]
 fn scatter<S: Sums>(
     scene: &Scene,
@@ -227,46 +269,51 @@ fn scatter<S: Sums>(
     transport: Transport,
     stream: &mut Stream,
 ) -> Option<Departure<S>> {
-    let turn = match &vertex.site {
-        Site::Medium(matter) => collide(scene, vertex, matter, stream)?,
-        Site::Surface(point) => reflect(scene, vertex, point, transport, stream)?,
+    let turn = match &vertex.interaction {
+        Interaction::Medium(_, matter) => collide(scene, vertex, matter, stream)?,
+        Interaction::Surface(point) => reflect(scene, vertex, point, transport, stream)?,
     };
     Some(set_out(scene, vertex, &turn))
 }
 
 /// Leaves `vertex` in the direction of `turn`.
+///
+/// LW96 eq. 12: the densities of the subpath, with p'(x_i+1) of the next vertex.
 #[inline]
 pub fn set_out<S: Sums>(scene: &Scene, vertex: &Vertex<S>, turn: &Turn) -> Departure<S> {
+    let subpath = &vertex.subpath;
     let (origin, medium) = vertex.depart(scene, turn.direction);
-    let tail = if turn.dirac { vertex.partial.scaled(turn.backward) } else { vertex.tail(turn.backward) };
+    let tail = if turn.dirac { subpath.partial.scaled(turn.backward) } else { vertex.tail(turn.backward) };
     Departure {
-        position: vertex.position,
+        position: vertex.position(),
         ray: Ray { origin, direction: turn.direction, t_max: f32::INFINITY },
         medium,
         from_infinity: false,
-        edges: vertex.edges,
+        edges: subpath.edges,
         hidden: false,
         dirac: turn.dirac,
-        throughput: vertex.throughput * turn.weight,
+        throughput: subpath.throughput * turn.weight,
         forward: turn.forward,
-        carried: tail.times(vertex.sigma_t()).scaled(vertex.cosine(turn.direction) * vertex.inverse),
-        reach: vertex.reach,
+        carried: tail.times(vertex.sigma_t()).scaled(vertex.cosine(turn.direction) * subpath.inverse),
+        reach: subpath.reach,
     }
 }
 
+/// LW96 eq. 8: p_scattering, sigma/kappa being the probability of survival.
 #[inline]
 fn collide<S: Sums>(scene: &Scene, vertex: &Vertex<S>, matter: &Matter, stream: &mut Stream) -> Option<Turn> {
-    let medium = &scene.media[vertex.medium.0 as usize];
+    let medium = &scene.media[vertex.subpath.medium.0 as usize];
     let survival = matter.survival();
     if stream.uniform() >= survival {
         return None;
     }
-    let direction = medium.phase.sample(-vertex.incoming, stream);
-    let density = medium.phase.density(Deflection::between(-vertex.incoming, direction)) * survival;
+    let direction = medium.phase.sample(-vertex.subpath.incoming, stream);
+    let density = medium.phase.density(Deflection::between(-vertex.subpath.incoming, direction)) * survival;
     let weight = matter.albedo / survival;
     Some(Turn { direction, weight, forward: density, backward: density, dirac: false })
 }
 
+/// LW96 eq. 9: p_reflection, or whatever the bsdf samples by.
 #[inline]
 fn reflect<S: Sums>(
     scene: &Scene,
@@ -276,14 +323,14 @@ fn reflect<S: Sums>(
     stream: &mut Stream,
 ) -> Option<Turn> {
     let bsdf = scene.bsdf(point.shape);
-    let wi = point.shading.to_local(vertex.incoming);
+    let wi = point.shading.to_local(vertex.subpath.incoming);
     let survival = bsdf.survival(point.uv, wi);
     if stream.uniform() >= survival {
         return None;
     }
     let sample = bsdf.sample(point.uv, wi, transport, stream)?;
     let direction = point.shading.to_world(sample.wo).normalize();
-    let correction = shading_correction(point, vertex.incoming, direction, wi, sample.wo, transport);
+    let correction = shading_correction(point, vertex.subpath.incoming, direction, wi, sample.wo, transport);
     let weight = sample.weight * (correction / survival);
     if weight.max_element() <= 0.0 {
         return None;

@@ -24,8 +24,8 @@ use crate::scene::heuristic::Heuristic;
 /// One end of a join: a vertex with its scattering towards the other end evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct End<S: Sums> {
-    /// Where the joining ray starts.
-    pub origin: Vec3,
+    /// Where the joining ray starts; none at infinity.
+    pub origin: Option<Vec3>,
     /// Unit normal on the side of `origin`; zero where it lies on no surface.
     pub lift: Vec3,
     /// The medium it starts in.
@@ -69,6 +69,8 @@ pub struct Strategy {
 
 /// Weight of the join of `a` and `b` by `strategy`, times the number of lanes; for the balance heuristic
 /// n p^h / ((1/C) sum_c sum_j n_j p_j^c). `density` is the surface flight density of the joining segment.
+///
+/// LW96 eq. 14, all densities in units of the strategy's own.
 #[inline]
 pub fn join<S: Sums>(
     a: &End<S>,
@@ -85,6 +87,8 @@ pub fn join<S: Sums>(
 
 /// The same where an eye walk has met the emitter itself (s = 0): `others` are all other strategies in units of
 /// the walk's own density, whose lanes are `reach`.
+///
+/// LW96 eq. 14.
 #[inline]
 pub fn hit<S: Sums>(reach: S::Lanes, others: S, heuristic: Heuristic) -> f32 {
     others.weight(heuristic, reach)

@@ -79,7 +79,11 @@ fn assert_consistent(what: &str, sample: &PixelSample) {
         }
         if let Partner::Light { walk, edges, position } = &one.partner {
             assert_eq!(one.s, edges + 1, "{what}");
-            assert_eq!(sample.light[walk].stops[*edges as usize - 1].position, *position, "{what}");
+            assert_eq!(
+                sample.light[walk].stops[*edges as usize - 1].interaction.position(),
+                *position,
+                "{what}"
+            );
         }
         let Some(joined) = &one.joined else { continue };
         sum += joined.value * sample.factor;

@@ -343,7 +343,7 @@ fn a_scene_at_another_time_is_the_scene_of_that_time() {
     let of = |volume: Value| of_time(volume, 0.0);
     let (mut later, there, now) = (of(drifting), of(blob(&[("to_world", moved)])), of(blob(&[])));
     let depths = |scene: &tyndall::scene::Scene| -> Vec<f32> {
-        let varying = scene.media[1].varying.as_ref().unwrap();
+        let varying = scene.media[1].heterogeneous().unwrap();
         let section = |i: u16| {
             let (a, b) = (Vec3::new(0.1 * f32::from(i) - 1.0, -1.5, -4.0), Vec3::new(0.3, 1.2, -6.0));
             Section { origin: a, direction: (b - a).normalize(), length: a.distance(b) }
@@ -383,9 +383,9 @@ fn a_grid_drifts() {
     let wind = json!({"type": "wind", "velocity": [1, -2, 0.5], "a": grid(vec![turn.clone()])});
     let (mut later, there) = (of(wind), of(grid(vec![turn, step])));
     assert!(later.set_time(0.5).unwrap());
-    let [a, b] = [&later, &there].map(|scene| scene.media[1].varying.as_ref().unwrap());
+    let [a, b] = [&later, &there].map(|scene| scene.media[1].heterogeneous().unwrap());
     let bounds = |scene: &tyndall::scene::Scene| {
-        let extinction = scene.media[1].varying.as_ref().unwrap().extinction();
+        let extinction = scene.media[1].heterogeneous().unwrap().extinction();
         (extinction.low, extinction.high)
     };
     let ((low, high), (still_low, still_high)) = (bounds(&later), bounds(&there));

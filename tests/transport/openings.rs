@@ -76,7 +76,7 @@ fn dusty_room(hole: f64, lamp: Value) -> Value {
 fn agree(claims: &mut Claims, what: &str, stage: &Stage, samples_per_pixel: u64, seeds: u64) {
     let around = &stage.setup.scene.media[stage.setup.scene.sensor_medium.0 as usize];
     let sky = stage.setup.scene.lights.environment.is_some();
-    let methods = if around.matter().sigma_t == Spectrum::ZERO && !sky {
+    let methods = if around.bound().sigma_t == Spectrum::ZERO && !sky {
         &METHODS[..]
     } else {
         &[METHODS[0], METHODS[2]]

@@ -1,6 +1,6 @@
 //! Closed form: the volume integrates itself, and a bracketed Newton iteration inverts the integral.
 
-use super::{Extinction, Leg};
+use super::{DistanceSample, Extinction};
 use crate::math::{Lanes, Section};
 
 /// Newton steps, each halving the bracket at least: enough for the last bit of an f32.
@@ -17,15 +17,20 @@ pub fn depth<L: Lanes>(medium: &Extinction, section: &Section) -> L {
 
 /// A flight to where the `hero` lane's depth is `remaining`.
 #[inline]
-pub fn fly<L: Lanes>(medium: &Extinction, section: &Section, hero: usize, remaining: f32) -> Leg<L> {
-    let Some([first, last]) = medium.clip(section) else { return Leg::empty() };
+pub fn sample_distance<L: Lanes>(
+    medium: &Extinction,
+    section: &Section,
+    hero: usize,
+    remaining: f32,
+) -> DistanceSample<L> {
+    let Some([first, last]) = medium.clip(section) else { return DistanceSample::empty() };
     let whole: L = medium.depth_between(section, first, last);
     if whole.hero(hero) <= remaining {
-        return Leg::exact(None, whole, hero);
+        return DistanceSample::exact(None, whole, hero);
     }
     let t = invert::<L>(medium, section, [first, last], hero, remaining, whole.hero(hero));
     let depth: L = medium.depth_between(section, first, t);
-    Leg { spent: remaining, ..Leg::exact(Some(t), depth, hero) }
+    DistanceSample { spent: remaining, ..DistanceSample::exact(Some(t), depth, hero) }
 }
 
 /// Where the depth from `first` on is `remaining`, which lies below `whole`, that up to `last`.

@@ -1,6 +1,6 @@
 //! Exact grids: along a ray the interpolant is a cubic in every cell; its depth is found and inverted cell by cell.
 
-use super::{Extinction, Leg, closed_form};
+use super::{DistanceSample, Extinction, closed_form};
 use crate::{
     density::{VolumeModel, grid::Reached},
     math::{Lanes, Section},
@@ -14,10 +14,19 @@ pub fn depth<L: Lanes>(medium: &Extinction, section: &Section) -> L {
 
 /// A flight to where the `hero` lane's depth is `remaining`.
 #[inline]
-pub fn fly<L: Lanes>(medium: &Extinction, section: &Section, hero: usize, remaining: f32) -> Leg<L> {
-    let Some(grid) = medium.volume.grid() else { return closed_form::fly(medium, section, hero, remaining) };
+pub fn sample_distance<L: Lanes>(
+    medium: &Extinction,
+    section: &Section,
+    hero: usize,
+    remaining: f32,
+) -> DistanceSample<L> {
+    let Some(grid) = medium.volume.grid() else {
+        return closed_form::sample_distance(medium, section, hero, remaining);
+    };
     match grid.invert(section, L::splat(medium.scale), hero, remaining) {
-        Reached::Within { t, depth, .. } => Leg { spent: remaining, ..Leg::exact(Some(t), depth, hero) },
-        Reached::Beyond { depth } => Leg::exact(None, depth, hero),
+        Reached::Within { t, depth, .. } => {
+            DistanceSample { spent: remaining, ..DistanceSample::exact(Some(t), depth, hero) }
+        }
+        Reached::Beyond { depth } => DistanceSample::exact(None, depth, hero),
     }
 }

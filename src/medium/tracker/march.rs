@@ -5,7 +5,7 @@
 //! depths that joins are given. What is biased is the transmittance alone: at vertices the medium has its own
 //! coefficients.
 
-use super::{Extinction, Leg};
+use super::{DistanceSample, Extinction};
 use crate::math::{Lanes, Section, Vec3, boxes};
 
 /// Intervals of at most this length [m].
@@ -76,14 +76,14 @@ impl March {
 
     /// A flight to where the `hero` lane's depth is `remaining`.
     #[inline]
-    pub fn fly<L: Lanes>(
+    pub fn sample_distance<L: Lanes>(
         &self,
         medium: &Extinction,
         section: &Section,
         hero: usize,
         remaining: f32,
-    ) -> Leg<L> {
-        let Some(intervals) = self.intervals(medium, section) else { return Leg::empty() };
+    ) -> DistanceSample<L> {
+        let Some(intervals) = self.intervals(medium, section) else { return DistanceSample::empty() };
         let mut depth = L::splat(0.0);
         for interval in intervals {
             let sigma_t = medium.at::<L>(section.at(interval.middle));
@@ -96,7 +96,7 @@ impl March {
             }
             depth = beyond;
         }
-        Leg::exact(None, depth, hero)
+        DistanceSample::exact(None, depth, hero)
     }
 }
 
@@ -109,10 +109,10 @@ fn landed<L: Lanes>(
     depth: L,
     sigma_t: L,
     hero: usize,
-) -> Leg<L> {
+) -> DistanceSample<L> {
     let own = medium.at::<L>(section.at(t)).hero(hero);
-    let leg = Leg::exact(Some(t), depth, hero);
-    Leg { ratio: leg.ratio.scaled(own / sigma_t.hero(hero)), ..leg }
+    let sample = DistanceSample::exact(Some(t), depth, hero);
+    DistanceSample { ratio: sample.ratio.scaled(own / sigma_t.hero(hero)), ..sample }
 }
 
 /// The range of t, before 0 and beyond the section's end too, in which its line is in the box; at least `within`.

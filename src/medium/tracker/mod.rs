@@ -18,9 +18,9 @@ use crate::{
     sampling::Stream,
 };
 
-/// A flight through a medium, as far as a section goes.
+/// A distance sampled along a section: where it ended in a collision, or that it passed.
 #[derive(Clone, Copy, Debug)]
-pub struct Leg<L> {
+pub struct DistanceSample<L> {
     /// Where it collided [m]; none where it passed the section.
     pub collision: Option<f32>,
     /// Deterministic optical depth up to there: what the weights know (the stand-in where transmittance is random).
@@ -135,19 +135,21 @@ impl Tracker {
     /// Flies along `section` until the `hero` lane's optical depth is `remaining` (an exponential variate; random
     /// methods draw their own).
     #[inline]
-    pub fn fly<L: Lanes>(
+    pub fn sample_distance<L: Lanes>(
         &self,
         medium: &Extinction,
         section: &Section,
         hero: usize,
         remaining: f32,
         stream: &mut Stream,
-    ) -> Leg<L> {
+    ) -> DistanceSample<L> {
         match self {
-            Self::ClosedForm => closed_form::fly(medium, section, hero, remaining),
-            Self::Exact => exact::fly(medium, section, hero, remaining),
-            Self::March(march) => march.fly(medium, section, hero, remaining),
-            Self::NullCollision(coarse) => null_collision::fly(medium, coarse, section, hero, stream),
+            Self::ClosedForm => closed_form::sample_distance(medium, section, hero, remaining),
+            Self::Exact => exact::sample_distance(medium, section, hero, remaining),
+            Self::March(march) => march.sample_distance(medium, section, hero, remaining),
+            Self::NullCollision(coarse) => {
+                null_collision::sample_distance(medium, coarse, section, hero, stream)
+            }
         }
     }
 
@@ -167,7 +169,7 @@ impl Tracker {
     }
 
     /// A collision of the `hero` lane in `section` where its [`Self::forced_depth`] is `remaining`; none where there is
-    /// nothing to collide with. Leg's ratio is that of the contribution to a density of exp(-`remaining`) times the
+    /// nothing to collide with. DistanceSample's ratio is that of the contribution to a density of exp(-`remaining`) times the
     /// hero's sigma_t.
     pub fn force<L: Lanes>(
         &self,
@@ -176,14 +178,14 @@ impl Tracker {
         hero: usize,
         remaining: f32,
         stream: &mut Stream,
-    ) -> Option<Leg<L>> {
+    ) -> Option<DistanceSample<L>> {
         match self {
             Self::NullCollision(coarse) => {
                 null_collision::force(medium, coarse, section, hero, remaining, stream)
             }
-            _ => Some(self.fly(medium, section, hero, remaining, stream)),
+            _ => Some(self.sample_distance(medium, section, hero, remaining, stream)),
         }
-        .filter(|leg| leg.collision.is_some())
+        .filter(|sample| sample.collision.is_some())
     }
 
     /// Which method it is.
@@ -197,10 +199,10 @@ impl Tracker {
     }
 }
 
-impl<L: Lanes> Leg<L> {
-    /// A leg of a method that knows depths exactly.
+impl<L: Lanes> DistanceSample<L> {
+    /// A sample of a method that knows depths exactly.
     #[inline]
-    fn exact(collision: Option<f32>, depth: L, hero: usize) -> Self {
+    pub(super) fn exact(collision: Option<f32>, depth: L, hero: usize) -> Self {
         Self { collision, depth, ratio: depth.flight_ratio(L::splat(1.0), hero), spent: depth.hero(hero) }
     }
 

@@ -4,7 +4,7 @@
 //! Unbiased for any bounded medium, and random: the weights of the balance heuristic use the depth of the lattice's
 //! means instead, the same for every strategy.
 
-use super::{Extinction, Leg};
+use super::{DistanceSample, Extinction};
 use crate::{
     density::{Coarse, Piece},
     math::{Lanes, Section},
@@ -88,13 +88,13 @@ fn product<L: Lanes>(
 
 /// Delta tracking by the `hero` lane.
 #[inline]
-pub fn fly<L: Lanes>(
+pub fn sample_distance<L: Lanes>(
     medium: &Extinction,
     coarse: &Coarse,
     section: &Section,
     hero: usize,
     stream: &mut Stream,
-) -> Leg<L> {
+) -> DistanceSample<L> {
     let mut collision = None;
     collisions(medium, coarse, section, stream, |t, majorant, stream| {
         let real = stream.uniform() * majorant < medium.at::<L>(section.at(t)).hero(hero);
@@ -106,7 +106,7 @@ pub fn fly<L: Lanes>(
     let flown = Section { length: collision.unwrap_or(section.length), ..*section };
     let depth = stand_in(medium, coarse, &flown);
     let ratio = transmittance_ratio(medium, coarse, &flown, hero, stream);
-    Leg { collision, depth, ratio, spent: 0.0 }
+    DistanceSample { collision, depth, ratio, spent: 0.0 }
 }
 
 /// Forced collisions come at no less than this part of the majorant: what the means of cells miss is found too.
@@ -133,7 +133,7 @@ pub fn force<L: Lanes>(
     hero: usize,
     remaining: f32,
     stream: &mut Stream,
-) -> Option<Leg<L>> {
+) -> Option<DistanceSample<L>> {
     let mut left = remaining;
     let (t, rate) = coarse.pieces(section).find_map(|piece| {
         let rate = forced_rate::<L>(medium, coarse, piece.cell, hero);
@@ -150,7 +150,12 @@ pub fn force<L: Lanes>(
     let flown = Section { length: t, ..*section };
     let transmittance: L = transmittance(medium, coarse, &flown, stream);
     let ratio = transmittance.scaled(remaining.exp() * own / rate);
-    Some(Leg { collision: Some(t), depth: stand_in(medium, coarse, &flown), ratio, spent: remaining })
+    Some(DistanceSample {
+        collision: Some(t),
+        depth: stand_in(medium, coarse, &flown),
+        ratio,
+        spent: remaining,
+    })
 }
 
 /// An unbiased estimate of every lane's transmittance over the hero's: exp of the integral of the difference, which

@@ -59,8 +59,9 @@ fn collisions_come_as_their_density_says() {
         for index in 0..n {
             let mut stream = Stream::new(3, index, 0, Purpose::Study);
             let remaining = stream.exponential();
-            let leg: Leg<f32> = tracker.fly(&medium, &section, 0, remaining, &mut stream);
-            let cell = leg.collision.map_or(cells, |t| (t / section.length * cells as f32) as usize);
+            let sample: DistanceSample<f32> =
+                tracker.sample_distance(&medium, &section, 0, remaining, &mut stream);
+            let cell = sample.collision.map_or(cells, |t| (t / section.length * cells as f32) as usize);
             counts[cell.min(cells)] += 1;
         }
         let survival = |i: usize| {
@@ -143,9 +144,10 @@ fn the_ratio_of_lanes_is_that_of_their_transmittances() {
         for index in 0..n {
             let mut stream = Stream::new(6, index, 0, Purpose::Study);
             let remaining = stream.exponential();
-            let leg: Leg<Spectrum> = tracker.fly(&medium, &section, hero, remaining, &mut stream);
-            if leg.collision.is_none() {
-                let ratio = leg.ratio.as_dvec3();
+            let sample: DistanceSample<Spectrum> =
+                tracker.sample_distance(&medium, &section, hero, remaining, &mut stream);
+            if sample.collision.is_none() {
+                let ratio = sample.ratio.as_dvec3();
                 sums[0] += ratio;
                 sums[1] += ratio * ratio;
             }
@@ -165,8 +167,8 @@ fn nothing_is_met_where_there_is_nothing() {
     let beside = Section { origin: Vec3::splat(5.0), direction: Vec3::X, length: f32::INFINITY };
     for tracker in trackers(&medium) {
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
-        let leg: Leg<f32> = tracker.fly(&medium, &beside, 0, 1e-7, &mut stream);
-        assert_eq!((leg.collision, leg.depth, leg.spent), (None, 0.0, 0.0));
+        let sample: DistanceSample<f32> = tracker.sample_distance(&medium, &beside, 0, 1e-7, &mut stream);
+        assert_eq!((sample.collision, sample.depth, sample.spent), (None, 0.0, 0.0));
         assert_eq!(tracker.depth::<f32>(&medium, &beside), 0.0);
         assert_eq!(tracker.transmittance::<f32>(&medium, &beside, 0.0, &mut stream), 1.0);
     }

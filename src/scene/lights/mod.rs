@@ -1,17 +1,19 @@
 //! All emitters of a scene: which one is chosen, where its light starts, how a point is joined to it.
 //!
-//! Two densities stand for the same emitter point: `start` by which light walks begin there, and `connect` by
+//! Two densities stand for the same emitter point: that by which light walks begin there, and that by
 //! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
 //! emitter and are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle
 //! [1/sr] for emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for media that shine. What
 //! eye walks make of a point of those, and so the density of s = 0, see [`Emission::rate`].
 
-mod link;
-mod start;
+mod emission_sample;
+mod emitter_sample;
+mod point;
 mod volume;
 
-pub use link::Link;
-pub use start::{Leaving, Start};
+pub use emission_sample::{EmissionSample, Emitted};
+pub use emitter_sample::EmitterSample;
+pub use point::EmitterPoint;
 pub(super) use volume::emissive;
 
 use super::accel::Geometry;
@@ -71,7 +73,7 @@ impl Lights {
     /// Arranges `all` emitters of a scene within a sphere around `geometry` and what varies of the medium `outside`.
     pub fn new(all: Vec<Light>, geometry: &Geometry, outside: &Medium) -> Self {
         let (centre, radius) = sphere_around(geometry, outside);
-        let from_infinity = outside.from_infinity();
+        let from_infinity = outside.transmittance_from_infinity();
         let weight = |light: &Light| {
             let area = light.shape.map_or(0.0, |shape| geometry.area(shape));
             let arriving = if light.emitter.is_infinite() { from_infinity.max_element() } else { 1.0 };
@@ -144,8 +146,8 @@ fn of_media(all: &[Light]) -> Vec<Option<u32>> {
 /// Centre and radius of a sphere that holds everything.
 fn sphere_around(geometry: &Geometry, outside: &Medium) -> (Vec3, f32) {
     let (mut low, mut high) = geometry.bounds();
-    if let Some(varying) = &outside.varying {
-        (low, high) = (low.min(varying.extinction().low), high.max(varying.extinction().high));
+    if let Some([least, most]) = outside.extent() {
+        (low, high) = (low.min(least), high.max(most));
     }
     if !(low.is_finite() && high.is_finite()) {
         return (Vec3::ZERO, 1.0);

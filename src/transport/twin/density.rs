@@ -13,7 +13,7 @@ use crate::{
     sampling::{Stream, stream::Purpose},
     scene::{
         Scene,
-        lights::{Link, Start},
+        lights::{EmissionSample, EmitterPoint, EmitterSample},
     },
     shape::SurfacePoint,
     transport::{Counts, Estimator, Heuristic, profile::Profile},
@@ -30,7 +30,7 @@ pub struct Twin<'a> {
     pub channels: usize,
     /// A sampled start on every emitter: those of one emitter have equal densities, but for environments
     /// and media.
-    pub starts: Vec<Option<Start>>,
+    pub starts: Vec<Option<EmissionSample>>,
 }
 
 /// ln p>_i and ln p<_i of every vertex of a path, per channel.
@@ -46,7 +46,7 @@ impl<'a> Twin<'a> {
         let mut starts = vec![None; scene.lights.all.len()];
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
         for _ in 0..10_000 {
-            if let Some(start) = scene.lights.sample_start(&scene.geometry, &mut stream) {
+            if let Some(start) = scene.lights.sample_emission(&scene.geometry, &mut stream) {
                 starts[start.light as usize].get_or_insert(start);
             }
         }
@@ -106,7 +106,9 @@ impl<'a> Twin<'a> {
     fn first(&self, path: &Path, s: usize) -> f64 {
         match s {
             0 => 0.0,
-            1 if path.nodes.len() > 2 => self.link(path).map_or(0.0, |link| f64::from(link.connect)).ln(),
+            1 if path.nodes.len() > 2 => {
+                self.emitter_sample(path).map_or(0.0, |sample| f64::from(sample.pdf)).ln()
+            }
             _ => self.start(path).ln(),
         }
     }
@@ -115,12 +117,20 @@ impl<'a> Twin<'a> {
     pub fn start(&self, path: &Path) -> f64 {
         if let (Kind::Environment(_), Place::Sky(direction)) = (&self.emitter(path).kind, path.nodes[0].place)
         {
-            return self.scene.lights.met_at_infinity(direction).map_or(0.0, |link| f64::from(link.start));
+            return self
+                .scene
+                .lights
+                .infinity_hit(direction)
+                .map_or(0.0, |sample| f64::from(sample.pdf_start));
         }
         if let Place::Glow(position, light) = path.nodes[0].place {
-            return self.scene.lights.link_within(light, position).map_or(0.0, |link| f64::from(link.start));
+            return self
+                .scene
+                .lights
+                .volume_sample(light, position)
+                .map_or(0.0, |sample| f64::from(sample.pdf_start));
         }
-        self.starts[path.light as usize].as_ref().map_or(0.0, |start| f64::from(start.start))
+        self.starts[path.light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf))
     }
 
     fn write(&self, path: &Path) -> Written {
@@ -174,7 +184,7 @@ impl<'a> Twin<'a> {
             Kind::Point(point) => f64::from(point.density(direction.as_vec3())),
             Kind::Medium(_) => 0.25 / std::f64::consts::PI,
             Kind::Directional(_) | Kind::Environment(_) => {
-                self.starts[light as usize].as_ref().map_or(0.0, |start| f64::from(start.forward))
+                self.starts[light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf_direction))
             }
         }
     }
@@ -195,22 +205,24 @@ impl<'a> Twin<'a> {
     }
 
     /// The emitter's vertex as next-event estimation finds it from the next vertex.
-    pub fn link(&self, path: &Path) -> Option<Link> {
+    pub fn emitter_sample(&self, path: &Path) -> Option<EmitterSample> {
         let (lights, geometry) = (&self.scene.lights, &self.scene.geometry);
         let reference = path.nodes[1].position();
         match (&self.emitter(path).kind, path.nodes[0].place) {
-            (Kind::Area(_), Place::Surface(point)) => lights.met(geometry, path.light, &point, reference),
-            (Kind::Environment(_), Place::Sky(direction)) => lights.met_at_infinity(direction),
-            (Kind::Medium(_), Place::Glow(position, light)) => lights.link_within(light, position),
+            (Kind::Area(_), Place::Surface(point)) => {
+                lights.surface_hit(geometry, path.light, &point, reference)
+            }
+            (Kind::Environment(_), Place::Sky(direction)) => lights.infinity_hit(direction),
+            (Kind::Medium(_), Place::Glow(position, light)) => lights.volume_sample(light, position),
             (_, place) => {
                 // Single points and directions come up as often as their emitter is chosen.
                 let mut stream = Stream::new(11, 0, 0, Purpose::Study);
-                let found = |link: &Link| {
-                    link.point.is_none()
-                        && link.position == path.nodes[0].position()
-                        && link.infinite == matches!(place, Place::Sky(_))
+                let found = |sample: &EmitterSample| match (sample.point, place) {
+                    (EmitterPoint::Point(found), Place::Point(wanted)) => found == wanted,
+                    (EmitterPoint::Direction(found), Place::Sky(wanted)) => found == wanted,
+                    _ => false,
                 };
-                (0..4_096).filter_map(|_| lights.sample_link(geometry, reference, &mut stream)).find(found)
+                (0..4_096).filter_map(|_| lights.sample_emitter(geometry, reference, &mut stream)).find(found)
             }
         }
     }

@@ -307,8 +307,8 @@ fn paths_through_the_dark() {
     let (twin, mut report) = (Twin::new(&estimator), Report::new("dark"));
     for index in 0..300 {
         let mut stream = Stream::new(5, index, 0, Purpose::Study);
-        let start = setup.scene.lights.sample_start(&setup.scene.geometry, &mut stream).unwrap();
-        let mut nodes = vec![Node::emitter(&setup.scene, 0, Place::Surface(start.point.unwrap()))];
+        let start = setup.scene.lights.sample_emission(&setup.scene.geometry, &mut stream).unwrap();
+        let mut nodes = vec![Node::emitter(&setup.scene, 0, Place::of(0, &start.point))];
         let count = 1 + index % 3;
         for step in (1..=count).rev() {
             let aside = (stream.square() - 0.5) * 8.0;
@@ -360,7 +360,7 @@ fn joins_are_counted_as_often_as_they_come() {
         }
         // Every walk has a first vertex here, so of the draws this part are first vertices:
         let (pool, _) = cache.pool(0, 1).unwrap();
-        let first = pool.iter().filter(|vertex| vertex.edges == 1).count() as f32 / pool.len() as f32;
+        let first = pool.iter().filter(|vertex| vertex.subpath.edges == 1).count() as f32 / pool.len() as f32;
         let count = estimator.counts.join;
         assert!((count / first - 1.0).abs() < 0.1, "{count} counted, {first} came");
     }

@@ -4,8 +4,9 @@ use crate::{
     emitter::Kind,
     math::{DVec3, Section, Spectrum, Vec2, Vec3, offset, vec2},
     medium::{Choice, Heterogeneous, Matter, MediumIndex},
-    scene::Scene,
+    scene::{Scene, lights::EmitterPoint},
     shape::{Ray, SurfacePoint},
+    transport::profile::Everything,
 };
 
 /// What a vertex lies on or in.
@@ -23,6 +24,18 @@ pub enum Place {
     Sky(Vec3),
     /// The pinhole, or the point [`APERTURE`] of a lens.
     Lens(Vec3),
+}
+
+impl Place {
+    /// That of a point of the emitter `light`.
+    pub fn of(light: u32, point: &EmitterPoint) -> Self {
+        match *point {
+            EmitterPoint::Point(position) => Self::Point(position),
+            EmitterPoint::Surface(point) => Self::Surface(point),
+            EmitterPoint::Volume { position, .. } => Self::Glow(position, light),
+            EmitterPoint::Direction(towards) => Self::Sky(towards),
+        }
+    }
 }
 
 /// The one point of the aperture that the twin looks through: which one it is cancels in every weight.
@@ -203,9 +216,9 @@ impl Way {
         reach: f64,
     ) {
         let medium = &scene.media[medium.0 as usize];
-        let sigma_t = medium.sigma_t;
+        let sigma_t = medium.bound().sigma_t;
         self.rounding += ULP * reach * f64::from(sigma_t.max_element());
-        if let Some(varying) = &medium.varying {
+        if let Some(varying) = medium.heterogeneous() {
             // Ends that are rounded sideways shift the whole leg to where extinction differs.
             let extent = f64::from((varying.extinction().high - varying.extinction().low).length());
             let shifted = STEEPNESS * distance.clamp(0.0, extent);
@@ -223,7 +236,7 @@ impl Way {
 
     /// The nearer to grazing a boundary is met, the less certain is where.
     fn cross(&mut self, scene: &Scene, medium: MediumIndex, point: &SurfacePoint, direction: DVec3) {
-        let sigma_t = f64::from(scene.media[medium.0 as usize].sigma_t.max_element());
+        let sigma_t = f64::from(scene.media[medium.0 as usize].bound().sigma_t.max_element());
         let cosine = point.normal.as_dvec3().dot(direction).abs();
         self.rounding += ULP * f64::from(point.position.abs().max_element()) * sigma_t / cosine;
     }
@@ -252,8 +265,7 @@ const POINTS: u32 = 4_000;
 
 /// What a medium is made of at `position`.
 pub fn matter(scene: &Scene, medium: MediumIndex, position: Vec3) -> Matter {
-    let medium = &scene.media[medium.0 as usize];
-    medium.varying.as_ref().map_or(medium.matter(), |varying| varying.at::<Spectrum>(position))
+    scene.media[medium.0 as usize].properties_at::<Everything>(position)
 }
 
 /// How often an eye walk that passes `position` meets what the emitter `light` emits there [1/m].

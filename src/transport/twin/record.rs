@@ -7,7 +7,7 @@ use crate::{
     sampling::Stream,
     scene::{
         Scene,
-        lights::{Link, Start},
+        lights::{EmissionSample, EmitterSample},
     },
     transport::{
         Estimator, LightCache,
@@ -16,8 +16,8 @@ use crate::{
         light::{self, Light},
         profile::Profile,
         record::{Meeting, Recorder, Sum},
-        segment::Flown,
-        vertex::{Site, Vertex},
+        segment::{FlightPart, Interaction},
+        vertex::{Subpath, Vertex},
         walk::{Departure, Kind, Visitor, walk},
         weight::Sums,
     },
@@ -46,14 +46,14 @@ impl<S: Sums> Recorder<S> for WideFilm {
 pub struct Trail<V, S: Sums> {
     visitor: V,
     pub vertices: Vec<Vertex<S>>,
-    pub escaped: Option<Vertex<S>>,
+    pub escaped: Option<Subpath<S>>,
     /// What media were flown through, after how many vertices.
-    flown: Vec<(usize, Departure<S>, Flown<S::Lanes>)>,
+    parts: Vec<(usize, Departure<S>, FlightPart<S::Lanes>)>,
 }
 
 impl<V, S: Sums> Trail<V, S> {
     fn new(visitor: V) -> Self {
-        Self { visitor, vertices: Vec::new(), escaped: None, flown: Vec::new() }
+        Self { visitor, vertices: Vec::new(), escaped: None, parts: Vec::new() }
     }
 }
 
@@ -64,11 +64,11 @@ impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::Sums> {
     fn arrive(&mut self, vertex: &Vertex<P::Sums>, _: &mut Stream) {
         self.vertices.push(*vertex);
     }
-    fn pass(&mut self, departure: &Departure<P::Sums>, flown: &Flown<P::Lanes>, _: &mut Stream) {
-        self.flown.push((self.vertices.len(), *departure, *flown));
+    fn pass(&mut self, departure: &Departure<P::Sums>, part: &FlightPart<P::Lanes>, _: &mut Stream) {
+        self.parts.push((self.vertices.len(), *departure, *part));
     }
-    fn escape(&mut self, vertex: &Vertex<P::Sums>) {
-        self.escaped = Some(*vertex);
+    fn escape(&mut self, subpath: &Subpath<P::Sums>) {
+        self.escaped = Some(*subpath);
     }
 }
 
@@ -91,7 +91,7 @@ pub fn eye_walk<'a, P: Profile>(
 fn light_walk<'a, P: Profile>(
     visitor: Light<'a, P, WideFilm>,
     estimator: &Estimator<'_, P>,
-    start: &Start,
+    start: &EmissionSample,
     hero: usize,
     stream: &mut Stream,
 ) -> Trail<Light<'a, P, WideFilm>, P::Sums> {
@@ -127,17 +127,22 @@ pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, strea
     let scene = estimator.scene;
     let (cache, mut kept) = (LightCache::new(P::Lanes::COUNT), LightCache::new(P::Lanes::COUNT));
     let eye = eye_walk(estimator, &cache, vec2(8.0, 6.0), 0, stream);
-    let start = scene.lights.sample_start(&scene.geometry, stream).unwrap();
+    let start = scene.lights.sample_emission(&scene.geometry, stream).unwrap();
     let mut film = WideFilm;
     let light =
         light_walk(Light::new(estimator, &mut kept, &mut film, start, 0), estimator, &start, 0, stream);
     let mut cases = Cases { scene, hidden: estimator.hide_emitters, hero: 0, all: Vec::new() };
     let last = &eye.vertices[length - 1];
-    let link =
-        (0..100).find_map(|_| scene.lights.sample_link(&scene.geometry, last.position, stream)).unwrap();
+    let sample =
+        (0..100).find_map(|_| scene.lights.sample_emitter(&scene.geometry, last.position(), stream)).unwrap();
     let of_eye = |count| chain(&eye.vertices[..count], false);
     let of_light = |count| chain(&light.vertices[..count], false);
-    cases.add(emitter_of(&link), Vec::new(), of_eye(length), eye.visitor.link(last, &link, stream));
+    cases.add(
+        emitter_of(&sample),
+        Vec::new(),
+        of_eye(length),
+        eye.visitor.join_emitter(last, &sample, stream),
+    );
     let half = length / 2;
     let joined = eye.visitor.join_with(&eye.vertices[half - 1], &light.vertices[half - 1], stream);
     cases.add(start_of(&start), of_light(half), of_eye(half), joined);
@@ -179,12 +184,12 @@ impl Cases<'_> {
 /// The vertices of a walk; `dirac` tells of the last one how it scatters.
 fn chain<S: Sums>(vertices: &[Vertex<S>], dirac: bool) -> Vec<Node> {
     let node = |(index, vertex): (usize, &Vertex<S>)| Node {
-        place: match vertex.site {
-            Site::Surface(point) => Place::Surface(point),
-            Site::Medium(_) => Place::Volume(vertex.position),
+        place: match vertex.interaction {
+            Interaction::Surface(point) => Place::Surface(point),
+            Interaction::Medium(position, _) => Place::Volume(position),
         },
-        medium: vertex.medium,
-        dirac: vertices.get(index + 1).map_or(dirac, |next| next.after_dirac),
+        medium: vertex.subpath.medium,
+        dirac: vertices.get(index + 1).map_or(dirac, |next| next.subpath.after_dirac),
     };
     vertices.iter().enumerate().map(node).collect()
 }
@@ -198,28 +203,28 @@ fn of_eye<P: Profile>(
     let scene = estimator.scene;
     let mut previous = Node::lens(scene).position();
     for (index, vertex) in eye.vertices.iter().enumerate() {
-        if let Site::Surface(point) = vertex.site
+        if let Interaction::Surface(point) = vertex.interaction
             && let Some(light) = scene.surface(point.shape).emitter
-            && let Some(link) = scene.lights.met(&scene.geometry, light, &point, previous)
+            && let Some(sample) = scene.lights.surface_hit(&scene.geometry, light, &point, previous)
         {
-            let before = chain(&eye.vertices[..index], vertex.after_dirac);
-            cases.add_hit((light, Place::Surface(point)), before, eye.visitor.hit(vertex, &link));
+            let before = chain(&eye.vertices[..index], vertex.subpath.after_dirac);
+            cases.add_hit((light, Place::Surface(point)), before, eye.visitor.hit(&vertex.subpath, &sample));
         }
         if can_join(estimator, vertex)
             && estimator.counts.next_event > 0.0
-            && let Some(link) = scene.lights.sample_link(&scene.geometry, vertex.position, stream)
+            && let Some(sample) = scene.lights.sample_emitter(&scene.geometry, vertex.position(), stream)
         {
-            let joined = eye.visitor.link(vertex, &link, stream);
-            cases.add(emitter_of(&link), Vec::new(), chain(&eye.vertices[..=index], false), joined);
+            let joined = eye.visitor.join_emitter(vertex, &sample, stream);
+            cases.add(emitter_of(&sample), Vec::new(), chain(&eye.vertices[..=index], false), joined);
         }
-        previous = vertex.position;
+        previous = vertex.position();
     }
     of_flights(estimator, eye, cases, stream);
-    if let Some(vertex) = &eye.escaped
-        && let Some(link) = scene.lights.met_at_infinity(-vertex.incoming)
+    if let Some(subpath) = &eye.escaped
+        && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming)
     {
-        let before = chain(&eye.vertices, vertex.after_dirac);
-        cases.add_hit(emitter_of(&link), before, eye.visitor.hit(vertex, &link));
+        let before = chain(&eye.vertices, subpath.after_dirac);
+        cases.add_hit(emitter_of(&sample), before, eye.visitor.hit(subpath, &sample));
     }
 }
 
@@ -230,24 +235,24 @@ fn of_flights<P: Profile>(
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
-    for (count, departure, flown) in &eye.flown {
-        if let Some((light, emission)) = estimator.scene.lights.of_medium(flown.medium)
-            && let Some((t, _)) = emission.sample_along(&flown.section, stream)
-            && let Some((vertex, link)) = eye.visitor.meet(departure, flown, light, t, stream)
+    for (count, departure, part) in &eye.parts {
+        if let Some((light, emission)) = estimator.scene.lights.of_medium(part.medium)
+            && let Some((t, _)) = emission.sample_along(&part.interval.section, stream)
+            && let Some((subpath, sample)) = eye.visitor.meet(departure, part, light, t, stream)
         {
             let before = chain(&eye.vertices[..*count], departure.dirac);
-            cases.add_hit(emitter_of(&link), before, eye.visitor.hit(&vertex, &link));
+            cases.add_hit(emitter_of(&sample), before, eye.visitor.hit(&subpath, &sample));
         }
     }
 }
 
 fn can_join<P: Profile>(estimator: &Estimator<'_, P>, vertex: &Vertex<P::Sums>) -> bool {
-    vertex.edges < estimator.max_edges && vertex.is_connectible(estimator.scene)
+    vertex.subpath.edges < estimator.max_edges && vertex.is_connectible(estimator.scene)
 }
 
 fn of_light<P: Profile>(
     estimator: &Estimator<'_, P>,
-    start: &Start,
+    start: &EmissionSample,
     light: &Trail<Light<'_, P, WideFilm>, P::Sums>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
@@ -268,7 +273,7 @@ fn of_light<P: Profile>(
 fn of_both<P: Profile>(
     estimator: &Estimator<'_, P>,
     eye: &Trail<Eye<'_, P, Sum>, P::Sums>,
-    start: &Start,
+    start: &EmissionSample,
     light: &[Vertex<P::Sums>],
     cases: &mut Cases<'_>,
     stream: &mut Stream,
@@ -279,7 +284,7 @@ fn of_both<P: Profile>(
     for (index, vertex) in eye.vertices.iter().enumerate() {
         let other = stream.below(light.len());
         let (ours, theirs) = (can_join(estimator, vertex), light[other].is_connectible(estimator.scene));
-        if ours && theirs && vertex.edges + light[other].edges < estimator.max_edges {
+        if ours && theirs && vertex.subpath.edges + light[other].subpath.edges < estimator.max_edges {
             let joined = eye.visitor.join_with(vertex, &light[other], stream);
             let (eye, light) = (chain(&eye.vertices[..=index], false), chain(&light[..=other], false));
             cases.add(start_of(start), light, eye, joined);
@@ -287,23 +292,11 @@ fn of_both<P: Profile>(
     }
 }
 
-fn start_of(start: &Start) -> (u32, Place) {
-    let place = match start.point {
-        Some(point) => Place::Surface(point),
-        None if start.infinite => Place::Sky(start.position),
-        None if start.rate.is_some() => Place::Glow(start.position, start.light),
-        None => Place::Point(start.position),
-    };
-    (start.light, place)
+fn start_of(start: &EmissionSample) -> (u32, Place) {
+    (start.light, Place::of(start.light, &start.point))
 }
 
-/// The emitter of a link and its vertex.
-fn emitter_of(link: &Link) -> (u32, Place) {
-    let place = match link.point {
-        Some(point) => Place::Surface(point),
-        None if link.infinite => Place::Sky(link.position),
-        None if link.rate.is_some() => Place::Glow(link.position, link.light),
-        None => Place::Point(link.position),
-    };
-    (link.light, place)
+/// The emitter of a sample and its vertex.
+fn emitter_of(sample: &EmitterSample) -> (u32, Place) {
+    (sample.light, Place::of(sample.light, &sample.point))
 }

@@ -9,18 +9,18 @@ use super::{
 use crate::{
     bsdf::Transport,
     math::{Lanes, Spectrum, vec3},
-    medium::Matter,
     sampling::{Stream, stream::Purpose},
-    scene::lights::Start,
+    scene::lights::{EmissionSample, EmitterPoint},
+    shape::Ray,
     transport::{
         Estimator, LightCache,
         eye::{self, Eye},
         light::{self, Light},
         profile::Profile,
         record::Sum,
-        segment::{Flight, Landing},
-        vertex::Vertex,
-        walk::{Departure, Turn, Visitor, land, set_out},
+        segment::{FlightState, FreeFlight, Interaction},
+        vertex::{Subpath, Vertex},
+        walk::{Arrival, Departure, Turn, Visitor, arrive, land, set_out},
         weight::Sums,
     },
 };
@@ -33,6 +33,13 @@ struct Lead<'a> {
     /// In walking order, the start included.
     nodes: Vec<Node>,
     depths: Vec<[f64; 3]>,
+}
+
+/// A walk that was led along a path.
+struct Led<S: Sums> {
+    vertices: Vec<Vertex<S>>,
+    /// The subpath to the last of its nodes, if it came there.
+    end: Option<Subpath<S>>,
 }
 
 /// The fast weights (over the number of lanes) of all strategies of `path` by channel `hero`: none where the way
@@ -51,8 +58,8 @@ pub fn weights<P: Profile>(
     let by_light = by_light(estimator, twin, path, &start, hero, &light);
     let by_eye = by_eye(estimator, twin, path, hero, &eye);
     let last = path.nodes.len() - 1;
-    let lens_side = |i: usize| by_eye.get(last - 1 - i);
-    let emitter_side = |i: usize| by_light.get(i - 1);
+    let lens_side = |i: usize| by_eye.vertices.get(last - 1 - i);
+    let emitter_side = |i: usize| by_light.vertices.get(i - 1);
     let one = |s: usize| {
         // Estimates of transmittance are of no concern to weights.
         let stream = &mut Stream::new(17, 0, 0, Purpose::Study);
@@ -60,15 +67,15 @@ pub fn weights<P: Profile>(
             return Some(0.0);
         }
         let joined = match s {
-            0 => lens_side(0).map(|vertex| eye.hit(vertex, &twin.link(path)?)),
+            0 => by_eye.end.as_ref().map(|end| eye.hit(end, &twin.emitter_sample(path)?)),
             1 if last == 1 => Some(light.join_start_to_lens(APERTURE, stream).map(|(_, joined)| joined)),
             _ if s == last => {
                 emitter_side(s - 1).map(|v| light.join_to_lens(v, APERTURE, stream).map(|(_, joined)| joined))
             }
             1 => twin
-                .link(path)
-                .filter(|link| link.connect > 0.0)
-                .and_then(|link| lens_side(1).map(|vertex| eye.link(vertex, &link, stream))),
+                .emitter_sample(path)
+                .filter(|sample| sample.pdf > 0.0)
+                .and_then(|sample| lens_side(1).map(|vertex| eye.join_emitter(vertex, &sample, stream))),
             _ => lens_side(s)
                 .zip(emitter_side(s - 1))
                 .map(|(ours, theirs)| eye.join_with(ours, theirs, stream)),
@@ -84,10 +91,10 @@ fn by_light<P: Profile>(
     estimator: &Estimator<'_, P>,
     twin: &Twin<'_>,
     path: &Path,
-    start: &Start,
+    start: &EmissionSample,
     hero: usize,
     visitor: &impl Visitor<P>,
-) -> Vec<Vertex<P::Sums>> {
+) -> Led<P::Sums> {
     let last = path.nodes.len() - 1;
     let lead = Lead {
         twin,
@@ -105,7 +112,7 @@ fn by_eye<P: Profile>(
     path: &Path,
     hero: usize,
     visitor: &impl Visitor<P>,
-) -> Vec<Vertex<P::Sums>> {
+) -> Led<P::Sums> {
     let hittable = estimator.scene.lights.all[path.light as usize].emitter.is_hittable();
     let lead = Lead {
         twin,
@@ -119,27 +126,29 @@ fn by_eye<P: Profile>(
         Place::Sky(direction) => estimator.scene.sensor.project_direction(direction, APERTURE),
         _ => estimator.scene.sensor.project(seen.position(), APERTURE),
     };
-    let Some(projection) = projection else { return Vec::new() };
+    let Some(projection) = projection else { return Led { vertices: Vec::new(), end: None } };
     lead.along::<P>(eye::depart(estimator, projection.film, APERTURE), visitor)
 }
 
 /// The start of a light walk at the first vertex of `path`.
-fn start(twin: &Twin<'_>, path: &Path) -> Start {
-    let (node, direction) = (&path.nodes[0], path.nodes[0].towards(&path.nodes[1]));
-    Start {
-        position: node.position(),
-        point: if let Place::Surface(point) = node.place { Some(point) } else { None },
-        origin: node.position(),
-        direction: direction.as_vec3(),
-        cosine: node.cosine(direction) as f32,
-        start: twin.start(path) as f32,
-        forward: twin.emission(path.light, node, direction) as f32,
-        throughput: Spectrum::ONE,
-        rate: match node.place {
-            Place::Glow(position, light) => Some(rate(twin.scene, light, position)),
-            _ => None,
+fn start(twin: &Twin<'_>, path: &Path) -> EmissionSample {
+    let (node, towards) = (&path.nodes[0], path.nodes[0].towards(&path.nodes[1]));
+    let (origin, direction) = (node.position(), towards.as_vec3());
+    EmissionSample {
+        light: path.light,
+        point: match node.place {
+            Place::Surface(point) => EmitterPoint::Surface(point),
+            Place::Sky(towards) => EmitterPoint::Direction(towards),
+            Place::Glow(position, light) => {
+                EmitterPoint::Volume { position, rate: rate(twin.scene, light, position) }
+            }
+            _ => EmitterPoint::Point(origin),
         },
-        ..twin.starts[path.light as usize].unwrap()
+        ray: Ray { origin, direction, t_max: f32::INFINITY },
+        cosine: node.cosine(towards) as f32,
+        pdf: twin.start(path) as f32,
+        pdf_direction: twin.emission(path.light, node, towards) as f32,
+        throughput: Spectrum::ONE,
     }
 }
 
@@ -148,36 +157,52 @@ impl Lead<'_> {
         &self,
         mut departure: Departure<P::Sums>,
         visitor: &impl Visitor<P>,
-    ) -> Vec<Vertex<P::Sums>> {
+    ) -> Led<P::Sums> {
         let scene = self.twin.scene;
-        let mut made = Vec::new();
+        let mut led = Led { vertices: Vec::new(), end: None };
         if let [first, second, ..] = self.nodes.as_slice() {
             departure.ray.direction = first.towards(second).as_vec3();
         }
         for i in 1..self.nodes.len() {
-            let flight = self.flight(i);
-            let Some(vertex) = land::<P>(&departure, &flight, self.hero, visitor) else { break };
-            made.push(vertex);
-            if i + 1 < self.nodes.len() {
+            let (node, is_last) = (&self.nodes[i], i + 1 == self.nodes.len());
+            let state = self.state(i);
+            let interaction = match node.place {
+                Place::Surface(point) => Interaction::Surface(point),
+                Place::Volume(position) => {
+                    Interaction::Medium(position, matter(scene, node.medium, position))
+                }
+                _ => {
+                    led.end = arrive::<P>(&departure, &state, node.medium, &self.emission(node), self.hero);
+                    break;
+                }
+            };
+            let flight = FreeFlight { interaction: Some(interaction), medium: node.medium, state };
+            let Some(vertex) = land::<P>(&departure, &flight, interaction, self.hero, visitor) else { break };
+            if is_last {
+                led.end = Some(vertex.subpath);
+            } else {
                 departure = set_out(scene, &vertex, &self.turn(i, &vertex));
             }
+            led.vertices.push(vertex);
         }
-        made
+        led
     }
 
-    fn flight<L: Lanes>(&self, i: usize) -> Flight<L> {
-        let (node, depth) = (&self.nodes[i], self.depths[i - 1].map(|depth| depth as f32));
-        let landing = match node.place {
-            Place::Surface(point) => Landing::Surface(point),
-            Place::Sky(_) => Landing::Escape,
-            Place::Glow(position, light) => {
-                let sigma_t = rate(self.twin.scene, light, position);
-                Landing::Medium(position, Matter { sigma_t, albedo: Spectrum::ZERO })
-            }
-            _ => Landing::Medium(node.position(), matter(self.twin.scene, node.medium, node.position())),
-        };
+    fn state<L: Lanes>(&self, i: usize) -> FlightState<L> {
+        let depth = self.depths[i - 1].map(|depth| depth as f32);
         let depth = L::from_spectrum(vec3(depth[0], depth[1], depth[2]));
-        Flight { landing, medium: node.medium, depth, ratio: L::splat(1.0), tint: Spectrum::ONE }
+        FlightState { depth, ..FlightState::none() }
+    }
+
+    /// An emitter that is no surface.
+    fn emission<L: Lanes>(&self, node: &Node) -> Arrival<L> {
+        let (position, sigma_t) = match node.place {
+            Place::Glow(position, light) => {
+                (Some(position), L::from_spectrum(rate(self.twin.scene, light, position)))
+            }
+            _ => (None, L::splat(1.0)),
+        };
+        Arrival { position, cosine: 1.0, sigma_t }
     }
 
     fn turn<S: Sums>(&self, i: usize, vertex: &Vertex<S>) -> Turn {

@@ -94,7 +94,7 @@ fn nanoseconds_per_query() {
         });
         let flight = time(&sections, |section, stream| {
             let remaining = stream.exponential();
-            tracker.fly::<f32>(&medium, section, 0, remaining, stream).depth
+            tracker.sample_distance::<f32>(&medium, section, 0, remaining, stream).depth
         });
         let [bias, error, off, worst] = errors(&tracker, &medium, &sought);
         let step = match &tracker {

@@ -1,0 +1,195 @@
+//! Where light walks start.
+
+use super::{EmitterPoint, Geometry, Lights, front};
+use crate::{
+    emitter::{Area, DirectionalArea, Glow, Kind, PointKind},
+    math::{Frame, Spectrum, Vec3, offset, warp},
+    sampling::Stream,
+    shape::{Ray, SurfacePoint},
+};
+
+/// The first vertex of a light walk, its direction sampled.
+#[derive(Clone, Copy, Debug)]
+pub struct EmissionSample {
+    /// The emitter.
+    pub light: u32,
+    /// Its point.
+    pub point: EmitterPoint,
+    /// The first ray; from infinity it starts on the disk that faces the emitter.
+    pub ray: Ray,
+    /// |cos| at the emitter; 1 where it is not a shape.
+    pub cosine: f32,
+    /// Density of the point: per area of a shape [1/m^2], per volume of a medium [1/m^3], per solid angle at infinity
+    /// [1/sr]; a probability where the emitter is a point or a direction.
+    pub pdf: f32,
+    /// Density of the direction [1/sr], or of the origin on the disk [1/m^2]; 1 of the only direction there is.
+    pub pdf_direction: f32,
+    /// Emitted radiance x cosine (or intensity) over both densities.
+    pub throughput: Spectrum,
+}
+
+/// What leaves an emitter point in a given direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Emitted {
+    /// Radiance x cosine [W/(m^2 sr)], or radiance gained per metre [W/(m^3 sr)].
+    pub value: Spectrum,
+    /// Density of the direction by a light walk [1/sr] ([1/m^2] at infinity).
+    pub pdf_direction: f32,
+    /// |cos| at the emitter; 1 at infinity.
+    pub cosine: f32,
+}
+
+impl EmissionSample {
+    /// Where light leaves: the point, or that on the disk.
+    pub fn position(&self) -> Vec3 {
+        self.point.position().unwrap_or(self.ray.origin)
+    }
+}
+
+impl Lights {
+    /// Samples an emitter by power, a point on it and a direction; none where nothing leaves.
+    pub fn sample_emission(&self, geometry: &Geometry, stream: &mut Stream) -> Option<EmissionSample> {
+        if self.starts.is_empty() {
+            return None;
+        }
+        let (index, chosen) = self.starts.sample_precisely(stream.uniform_precisely());
+        let chosen = chosen as f32;
+        let start = match &self.all[index].emitter.kind {
+            Kind::Area(area) => self.start_on_area(index, area, chosen, geometry, stream)?,
+            Kind::DirectionalArea(area) => self.start_along_normal(index, area, chosen, geometry, stream)?,
+            Kind::Point(point) => self.start_at_point(index, point, chosen, stream),
+            Kind::Directional(sun) => {
+                self.start_at_infinity(index, -sun.direction, chosen, sun.irradiance, stream)
+            }
+            Kind::Environment(sky) => {
+                let towards = sky.sample(stream);
+                let density = chosen * sky.density(towards);
+                self.start_at_infinity(index, towards, density, sky.radiance(towards), stream)
+            }
+            Kind::Medium(glow) => self.start_within(index, glow, chosen, stream),
+        };
+        (start.throughput.is_finite() && start.throughput.max_element() > 0.0).then_some(start)
+    }
+
+    fn start_on_area(
+        &self,
+        index: usize,
+        area: &Area,
+        chosen: f32,
+        geometry: &Geometry,
+        stream: &mut Stream,
+    ) -> Option<EmissionSample> {
+        let shape = self.all[index].shape?;
+        let point = geometry.sample_area(shape, stream);
+        let front = front(&point);
+        let direction = Frame::around(front).to_world(area.sample(stream)).normalize();
+        let cosine = front.dot(direction);
+        let (pdf, pdf_direction) = (chosen / geometry.area(shape), area.density(cosine));
+        let throughput = area.radiance(point.uv, cosine) * (cosine / (pdf * pdf_direction));
+        let (point, ray) = (EmitterPoint::Surface(point), leaving(&point, direction));
+        Some(EmissionSample { light: index as u32, point, ray, cosine, pdf, pdf_direction, throughput })
+    }
+
+    fn start_along_normal(
+        &self,
+        index: usize,
+        area: &DirectionalArea,
+        chosen: f32,
+        geometry: &Geometry,
+        stream: &mut Stream,
+    ) -> Option<EmissionSample> {
+        let shape = self.all[index].shape?;
+        let point = geometry.sample_area(shape, stream);
+        let pdf = chosen / geometry.area(shape);
+        let throughput = area.exitance_at(point.uv) / pdf;
+        let (point, ray) = (EmitterPoint::Surface(point), leaving(&point, point.shading.normal));
+        let (light, cosine, pdf_direction) = (index as u32, 1.0, 1.0);
+        Some(EmissionSample { light, point, ray, cosine, pdf, pdf_direction, throughput })
+    }
+
+    fn start_at_point(
+        &self,
+        index: usize,
+        point: &PointKind,
+        pdf: f32,
+        stream: &mut Stream,
+    ) -> EmissionSample {
+        let direction = point.sample(stream);
+        let pdf_direction = point.density(direction);
+        let throughput = point.intensity(direction) / (pdf * pdf_direction);
+        let position = self.all[index].position;
+        let (point, ray) = (EmitterPoint::Point(position), endless(position, direction));
+        EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
+    }
+
+    fn start_at_infinity(
+        &self,
+        index: usize,
+        towards: Vec3,
+        pdf: f32,
+        radiance: Spectrum,
+        stream: &mut Stream,
+    ) -> EmissionSample {
+        let disk = warp::to_disk(stream.square()) * self.radius;
+        let origin = self.centre + Frame::around(towards).to_world(disk.extend(self.radius));
+        let pdf_direction = self.disk_density();
+        let throughput = radiance * self.from_infinity / (pdf * pdf_direction);
+        let (point, ray) = (EmitterPoint::Direction(towards), endless(origin, -towards));
+        EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
+    }
+
+    /// In the medium's box; whether it is in the medium, who knows its boundaries has to ask.
+    fn start_within(&self, index: usize, glow: &Glow, chosen: f32, stream: &mut Stream) -> EmissionSample {
+        let emission = &glow.emission;
+        let position = emission.sample(stream);
+        let ray = endless(position, warp::to_sphere(stream.square()));
+        let (pdf, pdf_direction) = (chosen * emission.density(position), Glow::DENSITY);
+        let throughput = emission.at(position) / (pdf * pdf_direction);
+        let point = EmitterPoint::Volume { position, rate: emission.rate(position) };
+        EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
+    }
+
+    /// What the emitter point of a light walk sends towards unit `towards`; none where it does not emit that way or
+    /// cannot be met.
+    pub fn emission(&self, start: &EmissionSample, towards: Vec3) -> Option<Emitted> {
+        match (&self.all[start.light as usize].emitter.kind, &start.point) {
+            (Kind::Area(area), EmitterPoint::Surface(point)) => {
+                let cosine = front(point).dot(towards);
+                let (value, pdf_direction) = (area.radiance(point.uv, cosine) * cosine, area.density(cosine));
+                (value.max_element() > 0.0).then_some(Emitted { value, pdf_direction, cosine })
+            }
+            (Kind::Environment(sky), EmitterPoint::Direction(direction)) => {
+                let value = sky.radiance(*direction) * self.from_infinity;
+                Some(Emitted { value, pdf_direction: self.disk_density(), cosine: 1.0 })
+            }
+            (Kind::Medium(glow), EmitterPoint::Volume { position, .. }) => {
+                let value = glow.emission.at(*position);
+                Some(Emitted { value, pdf_direction: Glow::DENSITY, cosine: 1.0 })
+            }
+            _ => None,
+        }
+    }
+
+    /// Next-event density over start density of the point a light walk started from, as seen from its second
+    /// vertex: the ratio by which strategy s = 1 stands for s = 2 in the weights.
+    #[inline]
+    pub fn connect_over_start(&self, geometry: &Geometry, start: &EmissionSample, reference: Vec3) -> f32 {
+        let index = start.light as usize;
+        let chosen = self.connections.probability(index);
+        match &start.point {
+            EmitterPoint::Surface(point) => {
+                chosen * geometry.density_toward(point.shape, reference, point) / start.pdf
+            }
+            _ => chosen / self.starts.probability(index),
+        }
+    }
+}
+
+/// The ray that leaves `point` in unit `direction`.
+fn leaving(point: &SurfacePoint, direction: Vec3) -> Ray {
+    endless(offset::leave_surface(point.position, point.error, point.normal, direction), direction)
+}
+
+fn endless(origin: Vec3, direction: Vec3) -> Ray {
+    Ray { origin, direction, t_max: f32::INFINITY }
+}

@@ -1,0 +1,178 @@
+//! Emitter points as seen from a reference: sampled by next-event estimation or met by an eye walk.
+
+use super::{EmitterPoint, Geometry, Lights, front};
+use crate::{
+    emitter::{Glow, Kind, PointKind},
+    math::{Spectrum, Vec3, measure},
+    sampling::Stream,
+    shape::SurfacePoint,
+};
+
+/// An emitter point sampled for (or met from) a reference point.
+#[derive(Clone, Copy, Debug)]
+pub struct EmitterSample {
+    /// The emitter.
+    pub light: u32,
+    /// Its point.
+    pub point: EmitterPoint,
+    /// Radiance x cosine, intensity, irradiance x (delta), or radiance gained per metre: what arrives per 1/d^2 [d = 1
+    /// at infinity].
+    pub value: Spectrum,
+    /// |cos| at the emitter; 1 where it is not a shape.
+    pub cosine: f32,
+    /// Density of this point by next-event estimation from the reference: per area of a shape [1/m^2], per volume of a
+    /// medium [1/m^3], per solid angle at infinity [1/sr]; a probability where the emitter is a point or a direction.
+    pub pdf: f32,
+    /// Density of this point as the start of a light walk, in the same measure.
+    pub pdf_start: f32,
+    /// Density of the direction to the reference by a light walk [1/sr] ([1/m^2] at infinity).
+    pub pdf_direction: f32,
+}
+
+impl Lights {
+    /// Samples an emitter point for next-event estimation from `reference`; none where nothing can arrive.
+    pub fn sample_emitter(
+        &self,
+        geometry: &Geometry,
+        reference: Vec3,
+        stream: &mut Stream,
+    ) -> Option<EmitterSample> {
+        if self.connections.is_empty() {
+            return None;
+        }
+        let (index, chosen) = self.connections.sample_precisely(stream.uniform_precisely());
+        self.sample_point_of(geometry, index, chosen as f32, reference, stream)
+    }
+
+    /// Samples a point of the emitter `index`, which is chosen with probability `chosen`.
+    pub fn sample_point_of(
+        &self,
+        geometry: &Geometry,
+        index: usize,
+        chosen: f32,
+        reference: Vec3,
+        stream: &mut Stream,
+    ) -> Option<EmitterSample> {
+        let light = &self.all[index];
+        match &light.emitter.kind {
+            Kind::Area(_) => {
+                let (point, density) = geometry.sample_toward(light.shape?, reference, stream)?;
+                self.surface_sample(geometry, index, point, chosen * density, reference)
+            }
+            Kind::DirectionalArea(_) => None,
+            Kind::Point(point) => self.point_sample(index, point, chosen, reference),
+            Kind::Directional(sun) => {
+                Some(self.direction_sample(index, -sun.direction, chosen, sun.irradiance))
+            }
+            Kind::Environment(sky) => {
+                let towards = sky.sample(stream);
+                let pdf = chosen * sky.density(towards);
+                (pdf > 0.0).then(|| self.direction_sample(index, towards, pdf, sky.radiance(towards)))
+            }
+            Kind::Medium(glow) => {
+                let sample = self.volume_sample(index as u32, glow.emission.sample(stream))?;
+                let by_chance = self.connections.probability(index);
+                Some(EmitterSample { pdf: sample.pdf * (chosen / by_chance), ..sample })
+            }
+        }
+    }
+
+    fn surface_sample(
+        &self,
+        geometry: &Geometry,
+        index: usize,
+        point: SurfacePoint,
+        pdf: f32,
+        reference: Vec3,
+    ) -> Option<EmitterSample> {
+        let Kind::Area(area) = &self.all[index].emitter.kind else { return None };
+        let (direction, _, _) = measure::between(point.position, reference)?;
+        let cosine = front(&point).dot(direction);
+        let value = area.radiance(point.uv, cosine) * cosine;
+        (value.max_element() > 0.0 && pdf > 0.0).then(|| EmitterSample {
+            light: index as u32,
+            point: EmitterPoint::Surface(point),
+            value,
+            cosine,
+            pdf,
+            pdf_start: self.starts.probability(index) / geometry.area(point.shape),
+            pdf_direction: area.density(cosine),
+        })
+    }
+
+    fn point_sample(
+        &self,
+        index: usize,
+        point: &PointKind,
+        chosen: f32,
+        reference: Vec3,
+    ) -> Option<EmitterSample> {
+        let position = self.all[index].position;
+        let (direction, _, _) = measure::between(position, reference)?;
+        let value = point.intensity(direction);
+        (value.max_element() > 0.0).then(|| EmitterSample {
+            light: index as u32,
+            point: EmitterPoint::Point(position),
+            value,
+            cosine: 1.0,
+            pdf: chosen,
+            pdf_start: self.starts.probability(index),
+            pdf_direction: point.density(direction),
+        })
+    }
+
+    fn direction_sample(&self, index: usize, towards: Vec3, pdf: f32, value: Spectrum) -> EmitterSample {
+        EmitterSample {
+            light: index as u32,
+            point: EmitterPoint::Direction(towards),
+            value,
+            cosine: 1.0,
+            pdf,
+            pdf_start: pdf * self.starts.probability(index) / self.connections.probability(index),
+            pdf_direction: self.disk_density(),
+        }
+    }
+
+    /// A point of an emissive medium, by whatever way it was found; none where it is dark there.
+    pub fn volume_sample(&self, light: u32, position: Vec3) -> Option<EmitterSample> {
+        let index = light as usize;
+        let Kind::Medium(Glow { emission, .. }) = &self.all[index].emitter.kind else { return None };
+        let (value, density) = (emission.at(position), emission.density(position));
+        (value.max_element() > 0.0 && density > 0.0).then(|| EmitterSample {
+            light,
+            point: EmitterPoint::Volume { position, rate: emission.rate(position) },
+            value,
+            cosine: 1.0,
+            pdf: self.connections.probability(index) * density,
+            pdf_start: self.starts.probability(index) * density,
+            pdf_direction: Glow::DENSITY,
+        })
+    }
+
+    /// What an eye walk from `reference` found by hitting `point` of an emitting shape; none where it
+    /// does not emit towards the reference.
+    pub fn surface_hit(
+        &self,
+        geometry: &Geometry,
+        light: u32,
+        point: &SurfacePoint,
+        reference: Vec3,
+    ) -> Option<EmitterSample> {
+        let index = light as usize;
+        let pdf =
+            self.connections.probability(index) * geometry.density_toward(point.shape, reference, point);
+        // Next-event estimation may be unable to find this point from there (a density of 0): the walk can.
+        let mut sample =
+            self.surface_sample(geometry, index, *point, pdf.max(f32::MIN_POSITIVE), reference)?;
+        sample.pdf = pdf;
+        Some(sample)
+    }
+
+    /// What an eye walk found by leaving the scene in unit `direction`; none where nothing is there.
+    pub fn infinity_hit(&self, direction: Vec3) -> Option<EmitterSample> {
+        let index = self.environment? as usize;
+        let Kind::Environment(sky) = &self.all[index].emitter.kind else { return None };
+        let pdf = self.connections.probability(index) * sky.density(direction);
+        (pdf > 0.0).then(|| self.direction_sample(index, direction, pdf, sky.radiance(direction)))
+    }
+}

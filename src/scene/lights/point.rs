@@ -1,0 +1,72 @@
+//! The first vertex of every light path: a point of an emitter, or a direction to one at infinity.
+
+use crate::{
+    math::{Spectrum, Vec3, measure, offset},
+    shape::SurfacePoint,
+};
+
+/// A point of an emitter.
+#[derive(Clone, Copy, Debug)]
+pub enum EmitterPoint {
+    /// Where a point light or a spotlight stands.
+    Point(Vec3),
+    /// A point on a shape that emits.
+    Surface(SurfacePoint),
+    /// A point in an emissive medium.
+    Volume {
+        /// World position.
+        position: Vec3,
+        /// How often eye walks meet emission there [1/m], see [`crate::medium::Emission::rate`].
+        rate: Spectrum,
+    },
+    /// The unit direction towards an emitter at infinity.
+    Direction(Vec3),
+}
+
+impl EmitterPoint {
+    /// World position; none at infinity.
+    #[inline]
+    pub fn position(&self) -> Option<Vec3> {
+        match self {
+            Self::Point(position) | Self::Volume { position, .. } => Some(*position),
+            Self::Surface(point) => Some(point.position),
+            Self::Direction(_) => None,
+        }
+    }
+
+    /// The unit direction to it from `reference`, and the squared distance, which is 1 at infinity; none where the two
+    /// are the same point.
+    #[inline]
+    pub fn seen_from(&self, reference: Vec3) -> Option<(Vec3, f32)> {
+        let position = match self {
+            Self::Direction(towards) => return Some((*towards, 1.0)),
+            Self::Point(position) | Self::Volume { position, .. } => *position,
+            Self::Surface(point) => point.position,
+        };
+        measure::between(reference, position)
+            .map(|(direction, _, distance_squared)| (direction, distance_squared))
+    }
+
+    /// Where a ray leaves it towards unit `direction`; none at infinity.
+    #[inline]
+    pub fn ray_origin(&self, direction: Vec3) -> Option<Vec3> {
+        match self {
+            Self::Surface(point) => {
+                Some(offset::leave_surface(point.position, point.error, point.normal, direction))
+            }
+            _ => self.position(),
+        }
+    }
+
+    /// True at infinity.
+    #[inline]
+    pub fn is_infinite(&self) -> bool {
+        matches!(self, Self::Direction(_))
+    }
+
+    /// True in an emissive medium.
+    #[inline]
+    pub fn is_volume(&self) -> bool {
+        matches!(self, Self::Volume { .. })
+    }
+}

@@ -1,0 +1,228 @@
+//! The free flight: a segment sampled from one end (LW96 eq. 4-7).
+
+use super::{NullCrossing, Segment};
+use crate::{
+    math::{Lanes, Spectrum, Vec3},
+    medium::{Matter, Medium, MediumIndex, MediumInterval, tracker::collision_ratio},
+    sampling::Stream,
+    scene::Scene,
+    shape::SurfacePoint,
+    transport::profile::Profile,
+};
+
+/// What scatters, or absorbs, at the end of a free flight.
+#[derive(Clone, Copy, Debug)]
+pub enum Interaction {
+    /// A surface.
+    Surface(SurfacePoint),
+    /// The medium, by a collision at this point, and what it is made of there.
+    Medium(Vec3, Matter),
+}
+
+impl Interaction {
+    /// World position.
+    #[inline]
+    pub fn position(&self) -> Vec3 {
+        match self {
+            Self::Surface(point) => point.position,
+            Self::Medium(position, _) => *position,
+        }
+    }
+
+    /// sigma_t per lane in a medium, 1 on a surface.
+    #[inline]
+    pub fn sigma_t<L: Lanes>(&self) -> L {
+        match self {
+            Self::Surface(_) => L::splat(1.0),
+            Self::Medium(_, matter) => L::from_spectrum(matter.sigma_t),
+        }
+    }
+
+    /// |cos| to the geometric normal on a surface, 1 in a medium.
+    #[inline]
+    pub fn cosine(&self, direction: Vec3) -> f32 {
+        match self {
+            Self::Surface(point) => point.normal.dot(direction).abs(),
+            Self::Medium(..) => 1.0,
+        }
+    }
+}
+
+/// A sampled segment.
+#[derive(Clone, Copy, Debug)]
+pub struct FreeFlight<L> {
+    /// Where it ended; none where it left the scene.
+    pub interaction: Option<Interaction>,
+    /// The medium at its end.
+    pub medium: MediumIndex,
+    /// What lies behind it.
+    pub state: FlightState<L>,
+}
+
+/// What a flight has passed, as its contribution and the weights know it.
+#[derive(Clone, Copy, Debug)]
+pub struct FlightState<L> {
+    /// Optical depth per lane, the logarithms of null-passing probabilities included: the flight density that weights
+    /// know is exp(-depth), times sigma_t at a collision.
+    pub depth: L,
+    /// Contribution over the density by which the flight was really sampled, per lane. Profiles without varying media
+    /// have it from `depth`.
+    pub ratio: L,
+    /// Null transmittances over their passing probabilities; 1 where none was tinted.
+    pub tint: Spectrum,
+}
+
+impl<L: Lanes> FlightState<L> {
+    /// Of a flight that has not begun.
+    #[inline]
+    pub fn none() -> Self {
+        Self { depth: L::splat(0.0), ratio: L::splat(1.0), tint: Spectrum::ONE }
+    }
+}
+
+/// A part of a flight that lies in one medium.
+#[derive(Clone, Copy, Debug)]
+pub struct FlightPart<L> {
+    /// The medium.
+    pub medium: MediumIndex,
+    /// The part, as long as it was really flown; infinite where it was never left.
+    pub interval: MediumInterval,
+    /// What lies before it.
+    pub before: FlightState<L>,
+    /// True where it is not left to chance whether a flight comes as far as this: `before.ratio` is transmittance.
+    pub certain: bool,
+}
+
+impl<L: Lanes> FlightPart<L> {
+    /// The state of a flight that would have ended `t` metres into this part.
+    pub fn until<P: Profile<Lanes = L>>(
+        &self,
+        scene: &Scene,
+        t: f32,
+        hero: usize,
+        stream: &mut Stream,
+    ) -> FlightState<L> {
+        let mut interval = MediumInterval::of(self.interval.section);
+        interval.section.length = t;
+        let medium = &scene.media[self.medium.0 as usize];
+        let depth = medium.optical_depth::<P>(&interval);
+        let ratio = match self.certain {
+            false => medium.transmittance_ratio::<P>(&interval, depth, hero, stream),
+            true => medium.transmittance::<P>(&interval, depth, stream),
+        };
+        let FlightState { depth: before, ratio: ratio_before, tint } = self.before;
+        FlightState { depth: before + depth, ratio: ratio_before * ratio, tint }
+    }
+}
+
+/// Samples where `segment` ends: at an exponential optical depth by the `hero` channel, or before, on a surface. Only
+/// profiles with nulls can pass boundaries. In profiles where media shine, `along` is shown every part of it.
+///
+/// LW96 eq. 4: the distance is that of a free flight; its density is eq. 6 in a medium, and that it reaches a surface
+/// has the probability of eq. 7.
+#[inline(always)]
+pub fn sample_free_flight<P: Profile>(
+    segment: Segment<'_>,
+    hero: usize,
+    stream: &mut Stream,
+    along: &mut impl FnMut(&FlightPart<P::Lanes>, &mut Stream),
+) -> FreeFlight<P::Lanes> {
+    let remaining = if P::MEDIA { stream.exponential() } else { 0.0 };
+    if P::NULLS {
+        return fly_across_boundaries::<P>(segment, hero, remaining, stream, along);
+    }
+    let Leg { interaction, state, .. } = fly_to_surface::<P>(&segment, hero, remaining, stream);
+    FreeFlight { interaction, medium: segment.medium, state }
+}
+
+/// A flight as far as the next surface.
+struct Leg<L> {
+    interaction: Option<Interaction>,
+    state: FlightState<L>,
+    /// What it used up of the optical depth to go.
+    spent: f32,
+    /// The part of the medium that it crossed.
+    interval: MediumInterval,
+}
+
+/// A flight to the next surface, in one medium.
+#[inline(always)]
+fn fly_to_surface<P: Profile>(
+    segment: &Segment<'_>,
+    hero: usize,
+    remaining: f32,
+    stream: &mut Stream,
+) -> Leg<P::Lanes> {
+    if !P::MEDIA {
+        let (interval, hit) = segment.next(f32::INFINITY);
+        let interaction = hit.map(|hit| Interaction::Surface(segment.surface(&hit)));
+        return Leg { interaction, state: FlightState::none(), spent: 0.0, interval };
+    }
+    let medium = segment.medium();
+    let reach = medium.reach::<P>(segment.skipped, hero, remaining);
+    let (mut interval, hit) = segment.next(reach);
+    let sample = medium.sample_distance::<P>(&interval, hero, remaining, stream);
+    let mut state = FlightState { depth: sample.depth, ratio: sample.ratio, tint: Spectrum::ONE };
+    let interaction = match (sample.collision, hit) {
+        (Some(t), _) => {
+            interval.section.length = t;
+            Some(collide::<P>(medium, &interval, hero, &mut state))
+        }
+        (None, Some(hit)) => Some(Interaction::Surface(segment.surface(&hit))),
+        (None, None) => None,
+    };
+    Leg { interaction, state, spent: sample.spent, interval }
+}
+
+/// A collision at the end of `interval`.
+#[inline(always)]
+fn collide<P: Profile>(
+    medium: &Medium,
+    interval: &MediumInterval,
+    hero: usize,
+    state: &mut FlightState<P::Lanes>,
+) -> Interaction {
+    let position = interval.section.at(interval.section.length);
+    let matter = medium.properties_at::<P>(position);
+    if P::HETEROGENEOUS {
+        state.ratio = state.ratio * collision_ratio(matter.sigma_t, hero);
+    }
+    Interaction::Medium(position, matter)
+}
+
+/// A flight that may pass surfaces: each crossing switches the medium, and takes its share where the surface
+/// lets only a part through.
+fn fly_across_boundaries<P: Profile>(
+    mut segment: Segment<'_>,
+    hero: usize,
+    mut remaining: f32,
+    stream: &mut Stream,
+    along: &mut impl FnMut(&FlightPart<P::Lanes>, &mut Stream),
+) -> FreeFlight<P::Lanes> {
+    let mut state = FlightState::none();
+    loop {
+        let Leg { interaction, state: leg, spent, interval } =
+            fly_to_surface::<P>(&segment, hero, remaining, stream);
+        let medium = segment.medium;
+        if P::EMISSIVE {
+            along(&FlightPart { medium, interval, before: state, certain: false }, stream);
+        }
+        state.depth = state.depth + leg.depth;
+        state.ratio = state.ratio * leg.ratio;
+        let Some(Interaction::Surface(point)) = interaction else {
+            return FreeFlight { interaction, medium, state };
+        };
+        match segment.sample_crossing(&point, stream) {
+            NullCrossing::Stopped(probability) => {
+                state.tint /= probability;
+                return FreeFlight { interaction, medium, state };
+            }
+            NullCrossing::Passed(through, probability) => {
+                state.tint *= through / probability;
+                state.depth = state.depth + P::Lanes::splat(-probability.ln());
+            }
+        }
+        remaining = (remaining - spent).max(0.0);
+        segment.cross(&point);
+    }
+}

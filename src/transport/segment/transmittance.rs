@@ -1,0 +1,117 @@
+//! What remains along a segment whose ends are given.
+
+use super::Segment;
+use crate::{
+    math::{Lanes, Section, Spectrum},
+    medium::{Medium, MediumIndex, MediumInterval},
+    sampling::Stream,
+    scene::Scene,
+    shape::Ray,
+    transport::profile::Profile,
+};
+
+/// A given segment that nothing blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct SegmentTransmittance<L> {
+    /// exp(-depth) per lane as weights know it: the density of a flight that ends on a surface (LW96 eq. 7), see
+    /// [`super::FreeFlight::depth`].
+    pub density: L,
+    /// The fraction of radiance that arrives; where a medium's tracker is random, an unbiased estimate of it.
+    pub transmittance: Spectrum,
+    /// The medium at its end.
+    pub medium: MediumIndex,
+}
+
+/// What remains of radiance along `ray` (its `t_max` is the segment's length, infinite for an emitter at
+/// infinity), starting in `medium`; none where a surface blocks it. The ray stops `cut` short of the segment's
+/// end to be clear of the surface there: the medium reaches on to the end. Emitters that are `hidden` do not block.
+///
+/// LW96 eq. 10: T and the visibility in g(x, y).
+#[inline]
+pub fn transmittance<P: Profile>(
+    scene: &Scene,
+    ray: Ray,
+    cut: f32,
+    medium: MediumIndex,
+    hidden: bool,
+    stream: &mut Stream,
+) -> Option<SegmentTransmittance<P::Lanes>> {
+    if P::NULLS {
+        return across_boundaries::<P>(Segment::to_end(scene, ray, medium, hidden), cut, stream);
+    }
+    if scene.geometry.occluded(&ray) {
+        return None;
+    }
+    let mut product = Product::<P>::new();
+    let Ray { origin, direction, t_max } = ray;
+    let interval = MediumInterval::of(Section { origin, direction, length: t_max + cut });
+    product.add(&scene.media[medium.0 as usize], &interval, stream);
+    Some(product.ending_in(medium))
+}
+
+fn across_boundaries<P: Profile>(
+    mut segment: Segment<'_>,
+    cut: f32,
+    stream: &mut Stream,
+) -> Option<SegmentTransmittance<P::Lanes>> {
+    let mut product = Product::<P>::new();
+    loop {
+        let (mut interval, hit) = segment.next(f32::INFINITY);
+        let Some(hit) = hit else {
+            interval.section.length += cut;
+            product.add(segment.medium(), &interval, stream);
+            return Some(product.ending_in(segment.medium));
+        };
+        let point = segment.surface(&hit);
+        let through = segment.transmission(&point);
+        if through.max_element() <= 0.0 {
+            return None;
+        }
+        product.passing *= through.max_element();
+        product.tint *= through;
+        product.add(segment.medium(), &interval, stream);
+        segment.cross(&point);
+    }
+}
+
+/// What lies behind while a segment is followed.
+struct Product<P: Profile> {
+    depth: P::Lanes,
+    /// Product of the transmittances of all intervals, some of them estimates; where nothing varies, left at 1.
+    estimate: P::Lanes,
+    /// Product of the probabilities of passing half-transparent surfaces.
+    passing: f32,
+    /// Product of what they let through.
+    tint: Spectrum,
+}
+
+impl<P: Profile> Product<P> {
+    #[inline]
+    fn new() -> Self {
+        let (zero, one) = (P::Lanes::splat(0.0), P::Lanes::splat(1.0));
+        Self { depth: zero, estimate: one, passing: 1.0, tint: Spectrum::ONE }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, medium: &Medium, interval: &MediumInterval, stream: &mut Stream) {
+        if !P::MEDIA {
+            return;
+        }
+        let depth = medium.optical_depth::<P>(interval);
+        self.depth = self.depth + depth;
+        if P::HETEROGENEOUS {
+            self.estimate = self.estimate * medium.transmittance::<P>(interval, depth, stream);
+        }
+    }
+
+    #[inline(always)]
+    fn ending_in(&self, medium: MediumIndex) -> SegmentTransmittance<P::Lanes> {
+        let density = if P::MEDIA { self.depth.exp_neg() } else { P::Lanes::splat(1.0) };
+        let transmittance = if P::HETEROGENEOUS { self.estimate } else { density };
+        SegmentTransmittance {
+            density: density.scaled(self.passing),
+            transmittance: transmittance.to_spectrum() * self.tint,
+            medium,
+        }
+    }
+}
