@@ -8,9 +8,9 @@ pub mod sampling;
 
 pub mod description;
 
-pub mod density;
 pub mod phase;
 pub mod texture;
+pub mod volume;
 
 pub mod bsdf;
 pub mod emitter;
@@ -19,13 +19,18 @@ pub mod sensor;
 pub mod shape;
 
 pub mod film;
+
+pub mod settings;
+
+pub mod format;
+
 pub mod scene;
 
 pub mod transport;
 
 pub mod render;
 
-pub mod study;
+pub mod analysis;
 
 pub mod cli;
 

@@ -1,8 +1,8 @@
 //! What the tests of several rooms share: descriptions by hand and the chi-square test.
 
 use crate::{
+    analysis::chi_square,
     description::{Location, Object, Position, Property, Value},
-    study::chi_square,
 };
 use std::sync::Arc;
 

@@ -5,7 +5,7 @@ Paths have two edges, so that every sample makes one query: the connection of a 
 through the plume. Mitsuba's time for it is the difference between this render and the same one with next to no smoke. Its own
 loop over the medium, compiled alone, is timed on the same connections besides; that is what a query costs without rays
 against boundaries. The connections, cut to the plume's box, are written to a file, and Tyndall's trackers are timed on
-them by a test of theirs (src/medium/tracker/tests/plume.rs).
+them by a test of theirs (src/medium/distance/tests/plume.rs).
 
 Times differ, and so does what is got for them: a random query's standard deviation is told too, and its variance times
 its time.
@@ -264,7 +264,7 @@ def ratio_tracked(medium: Any, origin: Any, target: Any, seed: int) -> Any:
 
 # Tyndall's times
 
-TEST = "medium::tracker::tests::plume"
+TEST = "medium::distance::tests::plume"
 COMMAND = ["cargo", "test", "--release", "--lib", TEST, "--", "--ignored", "--nocapture"]
 MARK = "plume {"
 """What the test has to tell stands on lines that begin with this."""

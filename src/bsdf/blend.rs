@@ -110,11 +110,11 @@ impl BsdfModel for Blend {
         let weights = self.weights(uv);
         let (there, back) = (self.choices(uv, wi), self.choices(uv, wo));
         let part = |i: usize| {
-            let BsdfValue { value, forward, backward } = self.parts[i].evaluate(uv, wi, wo, transport);
-            (value * weights[i], forward * there[i], backward * back[i])
+            let BsdfValue { value, pdf_fwd, pdf_rev } = self.parts[i].evaluate(uv, wi, wo, transport);
+            (value * weights[i], pdf_fwd * there[i], pdf_rev * back[i])
         };
         let (first, second) = (part(0), part(1));
-        BsdfValue { value: first.0 + second.0, forward: first.1 + second.1, backward: first.2 + second.2 }
+        BsdfValue { value: first.0 + second.0, pdf_fwd: first.1 + second.1, pdf_rev: first.2 + second.2 }
     }
 
     /// A Dirac lobe belongs to its part alone; of the rest either part could have made the sample.
@@ -133,8 +133,8 @@ impl BsdfModel for Blend {
         let (choice, back) = (choices[chosen], self.choices(uv, sample.wo)[chosen]);
         Some(BsdfSample {
             weight: sample.weight * (self.weights(uv)[chosen] / choice),
-            forward: sample.forward * choice,
-            backward: sample.backward * back,
+            pdf_fwd: sample.pdf_fwd * choice,
+            pdf_rev: sample.pdf_rev * back,
             ..sample
         })
     }

@@ -121,8 +121,8 @@ impl BsdfModel for Conductor {
         (wi.z > 0.0).then(|| BsdfSample {
             wo: mirror(wi),
             weight: self.metal.reflectance(uv, wi.z),
-            forward: 1.0,
-            backward: 1.0,
+            pdf_fwd: 1.0,
+            pdf_rev: 1.0,
             dirac: true,
         })
     }

@@ -95,7 +95,7 @@ impl BsdfModel for Dielectric {
         let (reflect, transmit) = choose(fresnel, reflectance, transmittance)?;
         // Fresnel's reflectance is the same on the way back, so the probabilities are too.
         let lobe =
-            |wo, weight, chance| BsdfSample { wo, weight, forward: chance, backward: chance, dirac: true };
+            |wo, weight, chance| BsdfSample { wo, weight, pdf_fwd: chance, pdf_rev: chance, dirac: true };
         if stream.uniform() < reflect {
             return Some(lobe(mirror(wi), reflectance * (fresnel / reflect), reflect));
         }

@@ -36,8 +36,8 @@ impl BsdfModel for DiffuseTransmitter {
         }
         BsdfValue {
             value: self.transmittance.eval(uv) * FRAC_1_PI,
-            forward: warp::cosine_hemisphere_density(wo.z.abs()),
-            backward: warp::cosine_hemisphere_density(wi.z.abs()),
+            pdf_fwd: warp::cosine_hemisphere_pdf(wo.z.abs()),
+            pdf_rev: warp::cosine_hemisphere_pdf(wi.z.abs()),
         }
     }
 

@@ -40,8 +40,8 @@ impl BsdfModel for Diffuse {
         }
         BsdfValue {
             value: self.reflectance.eval(uv) * FRAC_1_PI,
-            forward: warp::cosine_hemisphere_density(wo.z),
-            backward: warp::cosine_hemisphere_density(wi.z),
+            pdf_fwd: warp::cosine_hemisphere_pdf(wo.z),
+            pdf_rev: warp::cosine_hemisphere_pdf(wi.z),
         }
     }
 
@@ -51,8 +51,8 @@ impl BsdfModel for Diffuse {
         (wi.z > 0.0 && wo.z > 0.0).then(|| BsdfSample {
             wo,
             weight: self.reflectance.eval(uv),
-            forward: warp::cosine_hemisphere_density(wo.z),
-            backward: warp::cosine_hemisphere_density(wi.z),
+            pdf_fwd: warp::cosine_hemisphere_pdf(wo.z),
+            pdf_rev: warp::cosine_hemisphere_pdf(wi.z),
             dirac: false,
         })
     }

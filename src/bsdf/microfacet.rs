@@ -119,18 +119,18 @@ impl Microfacets {
 
     /// D(m) [1/sr] of the unit normal `m`; 0 unless m.z > 0.
     #[inline]
-    pub fn density(&self, m: Vec3) -> f32 {
-        self.density_as(self.kind, m)
+    pub fn distribution(&self, m: Vec3) -> f32 {
+        self.distribution_as(self.kind, m)
     }
 
     /// D(m) [1/sr] of the distribution that `sample_visible` draws from.
     #[inline]
-    pub fn sampled_density(&self, m: Vec3) -> f32 {
-        self.density_as(Kind::Ggx, m)
+    pub fn sampled_distribution(&self, m: Vec3) -> f32 {
+        self.distribution_as(Kind::Ggx, m)
     }
 
     #[inline]
-    fn density_as(&self, kind: Kind, m: Vec3) -> f32 {
+    fn distribution_as(&self, kind: Kind, m: Vec3) -> f32 {
         if m.z <= 0.0 {
             return 0.0;
         }
@@ -174,8 +174,8 @@ impl Microfacets {
     /// Density [1/sr] of `sample_visible` at the normal `m` seen from `v`, divided by their cosine v.m
     /// (Heitz 2018, eq. 3).
     #[inline]
-    pub fn visible_density_over_cosine(&self, v: Vec3, m: Vec3) -> f32 {
-        2.0 * self.sampled_density(m) / (v.z + self.stretched_length(v))
+    pub fn visible_pdf_over_cosine(&self, v: Vec3, m: Vec3) -> f32 {
+        2.0 * self.sampled_distribution(m) / (v.z + self.stretched_length(v))
     }
 
     /// A normal that `v` (z > 0) sees, distributed as the visible normals of GGX (Heitz 2018, sec. 4).
@@ -216,7 +216,7 @@ mod tests {
         for kind in [Kind::Beckmann, Kind::Ggx] {
             for (u, v) in [(0.3, 0.3), (0.2, 0.7), (1.0, 1.0)] {
                 let microfacets = Microfacets::new(kind, u, v);
-                let area = integral(|m| microfacets.density(m) * m.z);
+                let area = integral(|m| microfacets.distribution(m) * m.z);
                 assert!((area - 1.0).abs() < 2e-3, "{microfacets:?}: {area}");
             }
         }
@@ -228,9 +228,8 @@ mod tests {
             let microfacets = Microfacets::new(Kind::Ggx, u, v);
             for cosine in [1.0, 0.5, 0.1] {
                 let from = warp::spherical(cosine, 0.7);
-                let density =
-                    |m: Vec3| microfacets.visible_density_over_cosine(from, m) * from.dot(m).max(0.0);
-                let total = integral(density);
+                let pdf = |m: Vec3| microfacets.visible_pdf_over_cosine(from, m) * from.dot(m).max(0.0);
+                let total = integral(pdf);
                 assert!((total - 1.0).abs() < 2e-3, "{microfacets:?} from {from}: {total}");
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! Conventions. Directions are unit vectors in the shading frame, z the shading normal, both pointing away
 //! from the surface. `wi` is where the walk came from, `wo` where it goes on to. Densities are per solid
-//! angle [1/sr]: `forward` is that of `wo` given `wi`, `backward` that of `wi` given `wo`. For a Dirac lobe
+//! angle [1/sr]: `pdf_fwd` is that of `wo` given `wi`, `pdf_rev` that of `wi` given `wo`. For a Dirac lobe
 //! they are the discrete probabilities of choosing that lobe.
 
 mod blend;
@@ -50,9 +50,9 @@ use std::f32::consts::PI;
 /// What a walk carries: it decides whether refraction scales by the squared index ratio (radiance) or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transport {
-    /// Eye walks: `wi` points towards the eye.
+    /// Camera subpaths: `wi` points towards the eye.
     Radiance,
-    /// Light walks: `wi` points towards the light.
+    /// Light subpaths: `wi` points towards the light.
     Importance,
 }
 
@@ -62,21 +62,21 @@ pub struct BsdfValue {
     /// f(wi, wo) [1/sr], without any cosine.
     pub value: Spectrum,
     /// Density of `wo` given `wi` [1/sr].
-    pub forward: f32,
+    pub pdf_fwd: f32,
     /// Density of `wi` given `wo` [1/sr].
-    pub backward: f32,
+    pub pdf_rev: f32,
 }
 
 impl BsdfValue {
     /// No scattering between the two directions.
-    pub const ZERO: Self = Self { value: Spectrum::ZERO, forward: 0.0, backward: 0.0 };
+    pub const ZERO: Self = Self { value: Spectrum::ZERO, pdf_fwd: 0.0, pdf_rev: 0.0 };
 
     /// The sample of `wo` that has this value and these densities; none where it cannot have been drawn.
     #[inline]
     fn sampled(self, wo: Vec3) -> Option<BsdfSample> {
-        let Self { value, forward, backward } = self;
-        let weight = value * (wo.z.abs() / forward);
-        (forward > 0.0).then_some(BsdfSample { wo, weight, forward, backward, dirac: false })
+        let Self { value, pdf_fwd, pdf_rev } = self;
+        let weight = value * (wo.z.abs() / pdf_fwd);
+        (pdf_fwd > 0.0).then_some(BsdfSample { wo, weight, pdf_fwd, pdf_rev, dirac: false })
     }
 }
 
@@ -88,9 +88,9 @@ pub struct BsdfSample {
     /// f |cos wo| / forward; for a Dirac lobe its coefficient / its probability.
     pub weight: Spectrum,
     /// Density of `wo` given `wi` [1/sr], or the probability of the Dirac lobe.
-    pub forward: f32,
+    pub pdf_fwd: f32,
     /// Density of `wi` given `wo` [1/sr], or the probability of the Dirac lobe on the way back.
-    pub backward: f32,
+    pub pdf_rev: f32,
     /// True where a Dirac lobe was sampled.
     pub dirac: bool,
 }

@@ -128,8 +128,8 @@ impl Plastic {
         let [into, out] = [wi, wo].map(|w| 1.0 - self.coat.reflectance(w.z));
         BsdfValue {
             value: shares.base * (into * out),
-            forward: into * shares.of_base * warp::cosine_hemisphere_density(wo.z),
-            backward: out * shares.of_base * warp::cosine_hemisphere_density(wi.z),
+            pdf_fwd: into * shares.of_base * warp::cosine_hemisphere_pdf(wo.z),
+            pdf_rev: out * shares.of_base * warp::cosine_hemisphere_pdf(wi.z),
         }
     }
 
@@ -170,8 +170,8 @@ impl BsdfModel for Plastic {
             return Some(BsdfSample {
                 wo: mirror(wi),
                 weight,
-                forward: reflect,
-                backward: reflect,
+                pdf_fwd: reflect,
+                pdf_rev: reflect,
                 dirac: true,
             });
         }

@@ -28,9 +28,9 @@ impl RoughConductor {
         }
         let masking = microfacets.masking_over_cosine(wi) * microfacets.masking_over_cosine(wo);
         BsdfValue {
-            value: self.metal.reflectance(uv, wi.dot(m)) * (0.25 * microfacets.density(m) * masking),
-            forward: 0.25 * microfacets.visible_density_over_cosine(wi, m),
-            backward: 0.25 * microfacets.visible_density_over_cosine(wo, m),
+            value: self.metal.reflectance(uv, wi.dot(m)) * (0.25 * microfacets.distribution(m) * masking),
+            pdf_fwd: 0.25 * microfacets.visible_pdf_over_cosine(wi, m),
+            pdf_rev: 0.25 * microfacets.visible_pdf_over_cosine(wo, m),
         }
     }
 

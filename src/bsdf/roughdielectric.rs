@@ -23,7 +23,7 @@ const LEAST_SPREAD: f32 = 1e-5;
 struct Facet {
     wi: Vec3,
     wo: Vec3,
-    /// The normal of the facets that join the two, z > 0.
+    /// The normal of the facets that connect the two, z > 0.
     m: Vec3,
     interface: Interface,
     /// Squared length of the half vector before it was made unit.
@@ -70,9 +70,9 @@ impl RoughDielectric {
         };
         let scale = if transport == Transport::Radiance { 1.0 } else { widening };
         Some(BsdfValue {
-            value: tint * (scale * part * spread * masking * microfacets.density(m)),
-            forward: chance * spread * widening * microfacets.visible_density_over_cosine(wi, m),
-            backward: chance * spread * microfacets.visible_density_over_cosine(above, m),
+            value: tint * (scale * part * spread * masking * microfacets.distribution(m)),
+            pdf_fwd: chance * spread * widening * microfacets.visible_pdf_over_cosine(wi, m),
+            pdf_rev: chance * spread * microfacets.visible_pdf_over_cosine(above, m),
         })
     }
 

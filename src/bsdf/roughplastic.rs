@@ -41,7 +41,7 @@ fn average(microfacets: &Microfacets, i: usize, f: impl Fn(f32, Vec3, Vec3) -> f
     for j in 0..rings * spokes {
         let u = vec2(((j / spokes) as f32 + 0.5) / rings as f32, ((j % spokes) as f32 + 0.5) / spokes as f32);
         let m = microfacets.sample_visible(w, u);
-        let weight = f64::from(microfacets.density(m) / microfacets.sampled_density(m));
+        let weight = f64::from(microfacets.distribution(m) / microfacets.sampled_distribution(m));
         sum += weight * f64::from(f(w.dot(m).max(0.0), m, w));
         total += weight;
     }
@@ -116,17 +116,17 @@ impl RoughPlastic {
         }
         let facets = &self.microfacets;
         let masking = facets.masking_over_cosine(wi) * facets.masking_over_cosine(wo);
-        let reflected = 0.25 * facets.density(m) * masking * self.coat.reflectance(wi.dot(m).min(1.0));
+        let reflected = 0.25 * facets.distribution(m) * masking * self.coat.reflectance(wi.dot(m).min(1.0));
         let [into, out] = [wi, wo].map(|w| self.transmittance(w.z));
-        let density = |from: Vec3, into: f32, to: Vec3| {
-            let coat = 0.25 * facets.visible_density_over_cosine(from, m);
-            let base = warp::cosine_hemisphere_density(to.z);
+        let pdf = |from: Vec3, into: f32, to: Vec3| {
+            let coat = 0.25 * facets.visible_pdf_over_cosine(from, m);
+            let base = warp::cosine_hemisphere_pdf(to.z);
             (1.0 - into) * shares.of_coat * coat + into * shares.of_base * base
         };
         BsdfValue {
             value: shares.specular * reflected + shares.base * (into * out),
-            forward: density(wi, into, wo),
-            backward: density(wo, out, wi),
+            pdf_fwd: pdf(wi, into, wo),
+            pdf_rev: pdf(wo, out, wi),
         }
     }
 

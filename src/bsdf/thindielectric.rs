@@ -48,7 +48,7 @@ impl BsdfModel for ThinDielectric {
     #[inline]
     fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, _: &mut Stream) -> Option<BsdfSample> {
         let weight = self.tints.reflectance.eval(uv) * self.reflected(wi.z);
-        (wi.z != 0.0).then(|| BsdfSample { wo: mirror(wi), weight, forward: 1.0, backward: 1.0, dirac: true })
+        (wi.z != 0.0).then(|| BsdfSample { wo: mirror(wi), weight, pdf_fwd: 1.0, pdf_rev: 1.0, dirac: true })
     }
 
     /// Of what does not pass straight through, the tint of the reflection is what is not absorbed.

@@ -105,8 +105,8 @@ impl BsdfModel for Translucent {
         let scattered = 1.0 / (diffuse + directional);
         BsdfValue {
             value: self.transmittance.eval(uv) * (diffuse * FRAC_1_PI + lobe / larger),
-            forward: scattered * (diffuse * warp::cosine_hemisphere_density(cos_o) + lobe),
-            backward: scattered * (diffuse * warp::cosine_hemisphere_density(cos_i) + lobe),
+            pdf_fwd: scattered * (diffuse * warp::cosine_hemisphere_pdf(cos_o) + lobe),
+            pdf_rev: scattered * (diffuse * warp::cosine_hemisphere_pdf(cos_i) + lobe),
         }
     }
 

@@ -1,7 +1,7 @@
 //! What can be asked on the command line.
 
 use super::{estimator::Estimator, study::Study};
-use crate::medium::Choice;
+use crate::medium::DistanceMethod;
 use clap::{
     Args, Parser, Subcommand,
     builder::{PossibleValuesParser, TypedValueParser},
@@ -35,7 +35,7 @@ pub enum Command {
     Pixel(super::pixel::Arguments),
     /// Say what a scene holds, without rendering it
     Info(Info),
-    /// Spell a scene anew: Mitsuba 3 XML as JSON, or JSON as XML
+    /// Spell a scene again: Mitsuba 3 XML as JSON, or JSON as XML
     ///
     /// Kept: plugins, names, ids, references, order, every number to the last bit, colours, spectra, transforms step
     /// by step, and parameters with their defaults (XML's <default> is JSON's "$defaults"). Included files come into
@@ -44,7 +44,7 @@ pub enum Command {
     /// which stay where they are. Where a parameter stands in a place that the other spelling has no words for, its
     /// value is written instead, and a note on standard error says where.
     Convert(Convert),
-    /// Make the page of a study, study.html, anew from its numbers and images
+    /// Make the page of a study, study.html, again from its numbers and images
     Report(Report),
     /// Measure error against run time: contenders render scenes side by side, against a reference
     ///
@@ -161,11 +161,11 @@ pub struct Info {
     pub scene: Scene,
 
     /// How flights through media that vary are sampled [default: as each medium says]
-    #[arg(long, value_name = "NAME", value_parser = one_of(&Choice::NAMES))]
-    pub tracker: Option<Choice>,
+    #[arg(long, value_name = "NAME", value_parser = one_of(&DistanceMethod::NAMES))]
+    pub tracker: Option<DistanceMethod>,
 }
 
-/// Spell a scene anew.
+/// Spell a scene again.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Convert {
     /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json)
@@ -332,7 +332,7 @@ mod tests {
     };
     use crate::{
         sampling::Sampler,
-        transport::{Strategies, record::StrategyKind},
+        transport::{Strategies, observer::StrategyKind},
     };
     use clap::CommandFactory;
 
@@ -373,7 +373,7 @@ mod tests {
             (r.estimator.profile, r.estimator.max_depth),
             (Profile::Everything, Some(MaxDepth::Unbounded))
         );
-        assert_eq!(r.estimator.strategies, [StrategyKind::Hit, StrategyKind::NextEvent]);
+        assert_eq!(r.estimator.strategies, [StrategyKind::EmitterHit, StrategyKind::NextEvent]);
         assert_eq!((r.estimator.sampler, r.estimator.forced_interaction), (Some(Sampler::Sobol), true));
     }
 
@@ -409,7 +409,7 @@ mod tests {
         assert_eq!(render("--frames 3..3").frames, frames(3, 3));
         assert_eq!((render("--frames 1").fps, render("--frames 1 --fps 29.97").fps), (None, Some(29.97)));
         assert_eq!((render("").frames, render("").estimator.tracker), (None, None));
-        for (name, choice) in Choice::NAMES {
+        for (name, choice) in DistanceMethod::NAMES {
             assert_eq!(render(&format!("--tracker {name}")).estimator.tracker, Some(choice));
         }
     }

@@ -5,11 +5,11 @@ use super::{
     study::Study,
 };
 use crate::{
-    error::{Error, Result},
-    study::convergence::{
+    analysis::study::{
         contender::{Contender, How, slug},
         external,
     },
+    error::{Error, Result},
 };
 use clap::{CommandFactory, Parser};
 
@@ -26,9 +26,10 @@ pub fn parse(place: &str, words: &str) -> Result<Estimator> {
     let parsed = Words::try_parse_from(words.split_whitespace());
     parsed.map(|words| words.estimator).map_err(|error| {
         let text = error.to_string();
-        let told = text.split("\n\nUsage").next().unwrap_or_default().trim_start_matches("error: ").trim();
+        let reported =
+            text.split("\n\nUsage").next().unwrap_or_default().trim_start_matches("error: ").trim();
         let expected = "options of tyndall render that say how paths are made";
-        Error::new(place, expected, told.replace('\n', " "), "see tyndall render --help")
+        Error::new(place, expected, reported.replace('\n', " "), "see tyndall render --help")
     })
 }
 

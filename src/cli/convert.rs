@@ -1,18 +1,14 @@
 //! `tyndall convert`: a scene in one spelling in, the same scene in the other out.
 
 use super::{arguments, complain};
-use crate::{
-    error::Result,
-    film,
-    scene::{self, Naming},
-};
+use crate::{error::Result, film, format, format::Naming};
 use std::io::Write as _;
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Convert) -> Result<()> {
     let arguments::Convert { input, output, definitions, fill } = arguments;
     let naming = if *fill { Naming::Fill } else { Naming::Keep };
-    let conversion = scene::convert(input, output, definitions, naming)?;
+    let conversion = format::convert(input, output, definitions, naming)?;
     film::output::write(output, |file| file.write_all(conversion.text.as_bytes()))?;
     for note in &conversion.notes {
         complain(&format!("note: {note}"));

@@ -2,12 +2,12 @@
 
 use super::{complain, say};
 use crate::{
-    error::{Error, Result},
-    film::{self, png::ToneCurve},
-    study::{
-        difference::{self, Comparison, Difference, MEASURES, MapOf, Mapped, Tolerance, View},
+    analysis::{
+        diff::{self, Comparison, Difference, MEASURES, MapOf, Mapped, Tolerance, View},
         picture::{self, Picture},
     },
+    error::{Error, Result},
+    film::{self, png::ToneCurve},
 };
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -153,7 +153,7 @@ pub fn run(arguments: &Diff) -> Result<bool> {
         curve: arguments.exposure.map(|stops| ToneCurve::Scale(stops.exp2())),
         pixels_per_degree: arguments.pixels_per_degree,
     };
-    let difference = difference::compare(&image, &reference, files, &view)?;
+    let difference = diff::compare(&image, &reference, files, &view)?;
     let values = measured(arguments, &difference)?;
     say(&table(arguments, &image, &difference));
     if let Some(path) = &arguments.map {
@@ -195,7 +195,7 @@ fn judge(limits: &[Limit], values: &[f64]) -> bool {
 }
 
 fn mapped(arguments: &Diff, image: &Picture, reference: &Picture, difference: &Difference) -> Result<Mapped> {
-    let mapped = difference::map(arguments.map_of.of(), image, reference, difference, arguments.map_to);
+    let mapped = diff::map(arguments.map_of.of(), image, reference, difference, arguments.map_to);
     mapped.ok_or_else(|| unknown("--map-of", "FLIP"))
 }
 
@@ -316,7 +316,7 @@ fn figures(arguments: &Diff, image: &Picture, difference: &Difference) -> Value 
             ToneCurve::White(white) => json!({ "white": white }),
             ToneCurve::Scale(scale) => json!({ "scale": scale }),
         }),
-        "flip": shown.map(difference::Shown::mean_flip),
+        "flip": shown.map(diff::Shown::mean_flip),
         "pixels_per_degree": arguments.pixels_per_degree,
     })
 }

@@ -3,14 +3,15 @@
 use super::arguments::one_of;
 use crate::{
     error::{Error, Result},
-    medium::Choice,
+    medium::DistanceMethod,
     render::{Settings, budget::Budget},
     sampling::Sampler,
-    scene::{build::Setup, integrator::Restriction},
+    scene::build::Setup,
+    settings::integrator::Restriction,
     transport::{
         Heuristic, Options, Strategies,
+        observer::StrategyKind,
         profile::{Needs, ProfileName},
-        record::StrategyKind,
     },
 };
 use clap::{Args, ValueEnum};
@@ -22,8 +23,8 @@ pub struct Estimator {
     ///
     /// auto: the cheapest that is unbiased; closed_form: optical depths in closed form, not for every density; exact:
     /// grids, cell by cell; march: ray marching, biased by its step; null_collision: delta and ratio tracking.
-    #[arg(long, value_name = "NAME", value_parser = one_of(&Choice::NAMES))]
-    pub tracker: Option<Choice>,
+    #[arg(long, value_name = "NAME", value_parser = one_of(&DistanceMethod::NAMES))]
+    pub tracker: Option<DistanceMethod>,
 
     /// Light transport algorithm [default: the scene's integrator]
     ///
@@ -53,7 +54,8 @@ pub struct Estimator {
     #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
     pub max_depth: Option<MaxDepth>,
 
-    /// How random numbers are spread over the samples of a pixel and over light walks [default: the scene's sampler]
+    /// How random numbers are spread over the samples of a pixel and over light subpaths [default: the scene's
+    /// sampler]
     ///
     /// independent: not at all; sobol: evenly, the first numbers of every walk being points of an Owen-scrambled Sobol
     /// sequence. With sobol, noise is estimated as if samples were independent, and said to be below that.
@@ -159,7 +161,7 @@ impl Estimator {
     }
 
     fn forced_interaction(&self, setup: &Setup, strategies: Strategies) -> bool {
-        let by_eye = strategies.hit || strategies.next_event || strategies.join;
+        let by_eye = strategies.emitter_hit || strategies.next_event || strategies.connection;
         if self.forced_interaction && !(by_eye && Needs::of(&setup.scene, false).media) {
             let why = if by_eye { "the scene has no media" } else { "no strategy in use walks from the eye" };
             super::complain(&format!("warning: --forced-interaction has no effect: {why}"));

@@ -2,16 +2,16 @@
 
 use super::say;
 use crate::{
-    error::{Error, Result},
-    film::output,
-    study::{
+    analysis::{
         flights::{
             self, Effort, Experiment, Found, Study, drawing,
             law::{FreePath, Law},
             tally::{ABSORBED, DIRECT, Estimate, QUANTITIES, REFLECTED, SCATTERED, SCATTERINGS, TRANSMITTED},
         },
-        scatter::described,
+        phase::described,
     },
+    error::{Error, Result},
+    film::output,
 };
 use clap::{Args, ValueEnum};
 use serde_json::json;
@@ -140,12 +140,12 @@ const MOST_STEPS: f64 = 1e6;
 
 fn steps(arguments: &Flights, experiment: &Experiment) -> Result<Vec<f64>> {
     let mean_free_path = 1.0 / (experiment.sigma_a + experiment.sigma_s);
-    let asked = match arguments.steps.is_empty() {
+    let requested = match arguments.steps.is_empty() {
         true => [1.0, 0.5, 0.25, 0.125].map(|part| part * mean_free_path).to_vec(),
         false => arguments.steps.clone(),
     };
-    match asked.iter().find(|step| experiment.size > MOST_STEPS * **step) {
-        None => Ok(asked),
+    match requested.iter().find(|step| experiment.size > MOST_STEPS * **step) {
+        None => Ok(requested),
         Some(step) => {
             let expected =
                 format!("steps of at least {} m, a millionth of the size", experiment.size / MOST_STEPS);

@@ -2,6 +2,7 @@
 
 use super::{arguments, load, say};
 use crate::{
+    analysis::coverage,
     emitter::Kind,
     error::Result,
     film::{
@@ -9,15 +10,10 @@ use crate::{
         format::{Component, FileKind},
         layer::Layer,
     },
-    medium::{Choice, Heterogeneous, tracker::Tracker},
+    medium::{DistanceMethod, Heterogeneous, distance::DistanceSampler},
     phase::PhaseModel,
-    scene::{
-        Infinity, Scene,
-        build::Setup,
-        integrator::{Integrator, Restriction},
-        lights::Light,
-    },
-    study::coverage,
+    scene::{Infinity, Scene, build::Setup, lights::Light},
+    settings::integrator::{Integrator, Restriction},
     transport::{
         Options, Strategies,
         profile::{Needs, ProfileName},
@@ -159,15 +155,15 @@ fn describe_medium(setup: &Setup, index: usize) -> String {
 fn describe_tracker(setup: &Setup, varying: &Heterogeneous) -> String {
     let tracker = varying.tracker();
     let march = match tracker {
-        Tracker::March(march) => format!(" by steps of at most {} m", march.step),
+        DistanceSampler::RayMarching(march) => format!(" by steps of at most {} m", march.step),
         _ => String::new(),
     };
-    let restricted = setup.integrator.restriction.treatment().tracker;
-    let why = match (varying.forced(), varying.asked()) {
-        (Some(Choice::Auto), _) | (None, Choice::Auto) => "chosen by cost",
+    let restricted = setup.integrator.restriction.medium_overrides().tracker;
+    let why = match (varying.forced(), varying.requested()) {
+        (Some(DistanceMethod::Auto), _) | (None, DistanceMethod::Auto) => "chosen by cost",
         (Some(forced), _) if restricted == Some(forced) => "as the integrator demands",
         (Some(_), _) => "forced by --tracker",
-        (None, asked) if asked == tracker.choice() => "asked for by the scene",
+        (None, requested) if requested == tracker.choice() => "asked for by the scene",
         (None, _) => "chosen by cost",
     };
     format!("tracker {}{march}, {why}", tracker.choice().name())

@@ -16,11 +16,10 @@ mod study;
 
 use crate::{
     error::{Error, Result},
-    medium::Choice,
-    scene::{
-        self,
-        build::{Overrides, Setup},
-    },
+    format,
+    medium::DistanceMethod,
+    scene::{self, build::Setup},
+    settings::Overrides,
 };
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -57,8 +56,12 @@ fn judged(outcome: Result<bool>) -> ExitCode {
 }
 
 /// Reads and builds a scene; warnings go to standard error.
-fn load(scene: &arguments::Scene, size: Option<arguments::Size>, tracker: Option<Choice>) -> Result<Setup> {
-    let root = scene::read(&scene.file, &scene.definitions)?;
+fn load(
+    scene: &arguments::Scene,
+    size: Option<arguments::Size>,
+    tracker: Option<DistanceMethod>,
+) -> Result<Setup> {
+    let root = format::read(&scene.file, &scene.definitions)?;
     let overrides = Overrides { size: size.map(|size| (size.width, size.height)), tracker };
     let setup = scene::build::build(&root, overrides)?;
     for warning in &setup.warnings {

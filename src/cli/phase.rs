@@ -2,9 +2,9 @@
 
 use super::say;
 use crate::{
+    analysis::phase::{self, Check, Division, described, drawing, mesh::Lobe},
     error::Result,
     film::output,
-    study::scatter::{self, Check, Division, described, drawing, mesh::Lobe},
 };
 use clap::Args;
 use std::{io::Write as _, path::PathBuf};
@@ -57,7 +57,7 @@ fn significance(text: &str) -> std::result::Result<f64, String> {
 pub fn run(arguments: &Phase) -> Result<bool> {
     let phase = described::build(&arguments.name, &arguments.parameters)?;
     let division = Division { parallels: arguments.parallels.into(), meridians: arguments.meridians.into() };
-    let check = scatter::check(&phase, &phase, division, arguments.samples, arguments.seed);
+    let check = phase::check(&phase, &phase, division, arguments.samples, arguments.seed);
     let failures = check.failures(arguments.significance);
     say(&describe(arguments, &check, &failures));
     let title = std::iter::once(&arguments.name).chain(&arguments.parameters).cloned().collect::<Vec<_>>();
@@ -79,7 +79,7 @@ fn describe(arguments: &Phase, check: &Check, failures: &[&str]) -> String {
         format!("normalisation      {:.6} (integral of the density over the sphere)", check.normalisation),
         format!(
             "mean cosine        {:.6} of the density, {:.6} told by the phase function",
-            check.mean_cosine, check.told_mean_cosine
+            check.mean_cosine, check.stated_mean_cosine
         ),
         format!(
             "                   {:.6} +- {:.6} of {} samples, {:+.2} standard errors off",

@@ -5,7 +5,7 @@ use super::{
     estimator::Estimator,
     load, say,
 };
-use crate::{error::Result, film, render::budget::Budget, study::pixel};
+use crate::{analysis::pixel, error::Result, film, render::budget::Budget};
 use clap::Args;
 use std::{io::Write as _, num::NonZeroUsize, path::PathBuf};
 

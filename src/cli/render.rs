@@ -66,10 +66,10 @@ fn animate(
         let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };
         let task = Task { settings, ..*task };
         let label = format!("frame {frame} of {first}..{last}");
-        let mut told = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
-        told["frame"] = frame.into();
-        told["time"] = time.into();
-        figures.push(told);
+        let mut noise_text = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
+        noise_text["frame"] = frame.into();
+        noise_text["time"] = time.into();
+        figures.push(noise_text);
     }
     Ok(figures)
 }
@@ -129,7 +129,7 @@ fn shoot(setup: &Setup, task: &Task, goal: &Goal, label: Option<&str>) -> Result
 /// Renders one image under a progress bar.
 fn watched(setup: &Setup, task: &Task, label: Option<&str>) -> Image {
     let bar = Bar::new(task, setup.film.len(), label);
-    let image = render(setup, task, &mut |progress| bar.tell(&progress));
+    let image = render(setup, task, &mut |progress| bar.show(&progress));
     bar.bar.finish_and_clear();
     image
 }
@@ -147,15 +147,15 @@ fn batches(setup: &Setup, task: &Task, format: Format, count: u32, label: Option
     Image::mean_of(&images, &setup.integrator.layers, format)
 }
 
-fn render(setup: &Setup, task: &Task, tell: &mut dyn FnMut(Progress)) -> Image {
+fn render(setup: &Setup, task: &Task, show: &mut dyn FnMut(Progress)) -> Image {
     let Setup { scene, film, integrator, .. } = setup;
     let (layers, settings) = (&integrator.layers, &task.settings);
     match task.precision {
         _ if settings.options.strategies == Strategies::NONE => {
-            render::preview(scene, film, settings, &integrator.look, layers, tell)
+            render::preview(scene, film, settings, &integrator.fog, layers, show)
         }
-        Some(precision) => render::render_to_precision(scene, film, settings, precision, layers, tell),
-        None => render::render_layers(scene, film, settings, layers, tell),
+        Some(precision) => render::render_to_precision(scene, film, settings, precision, layers, show),
+        None => render::render_layers(scene, film, settings, layers, show),
     }
 }
 
@@ -289,15 +289,15 @@ impl Bar {
         Self { bar, by, sampler: task.settings.sampler }
     }
 
-    fn tell(&self, progress: &Progress) {
+    fn show(&self, progress: &Progress) {
         let state = match self.by {
             By::Pixels { within, .. } => {
                 let share = 100.0 * progress.within.unwrap_or(0.0);
                 format!("{share:.1} % of the pixels within {}", percent(within))
             }
             _ => {
-                let told = |noise| told(noise, self.sampler);
-                progress.noise.map_or("noise not known yet".to_owned(), told)
+                let noise_text = |noise| noise_text(noise, self.sampler);
+                progress.noise.map_or("noise not known yet".to_owned(), noise_text)
             }
         };
         self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
@@ -314,7 +314,7 @@ fn milliseconds(time: Duration) -> u64 {
 }
 
 /// The noise of an image; where its samples are spread evenly, there is less than their variance says.
-fn told(noise: f64, sampler: Sampler) -> String {
+fn noise_text(noise: f64, sampler: Sampler) -> String {
     match sampler {
         Sampler::Independent => format!("noise {}", percent(noise)),
         Sampler::Sobol => format!("noise below {}", percent(noise)),
@@ -334,8 +334,8 @@ fn percent(relative: f64) -> String {
 }
 
 fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, label: Option<&str>) {
-    let told = |noise| format!(", {}", told(noise, task.settings.sampler));
-    let noise = image.noise.map_or(String::new(), told);
+    let noise_text = |noise| format!(", {}", noise_text(noise, task.settings.sampler));
+    let noise = image.noise.map_or(String::new(), noise_text);
     let noise = match (&image.reached, task.precision) {
         (Some(reached), Some(Precision { error, .. })) => {
             let share = 100.0 * reached.share;

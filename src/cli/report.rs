@@ -1,7 +1,7 @@
 //! `tyndall report`: a study's folder in, a page for people out.
 
 use super::arguments;
-use crate::{error::Result, study::page};
+use crate::{analysis::study::page, error::Result};
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Report) -> Result<()> {

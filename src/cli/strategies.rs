@@ -6,9 +6,9 @@ use super::{
     load, say,
 };
 use crate::{
+    analysis::strategies::{self, Plan},
     error::{Error, Result},
     render::budget::Budget,
-    study::strategies::{self, Plan},
 };
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -68,12 +68,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left") {
         bar.set_style(style);
     }
-    let mut tell = |done: usize, total: usize| {
+    let mut show = |done: usize, total: usize| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
     };
     let pool = super::threads(arguments.threads)?;
-    let findings = pool.install(|| strategies::examine(&setup, &settings, &plan, &mut tell))?;
+    let findings = pool.install(|| strategies::examine(&setup, &settings, &plan, &mut show))?;
     bar.finish_and_clear();
     let files = findings.write(&folder)?;
     say(&strategies::table(&findings.report));

@@ -5,25 +5,23 @@ use super::{
     complain, contenders, say, threads,
 };
 use crate::{
+    analysis::study::{
+        contender::{Contender, Entry, How, Renderer},
+        external::{self, External},
+        page,
+        question::{Effort, Question, ReferenceFile, SceneQuestion, Wanted, fingerprint},
+        reference,
+        run::{self, Progress, Signature},
+        table,
+    },
     description::Object,
     error::{Error, Result},
-    medium::Choice,
+    format,
+    format::Sources,
+    medium::DistanceMethod,
     render::budget::Budget,
-    scene::{
-        self, Sources,
-        build::{self, Overrides, Setup},
-    },
-    study::{
-        convergence::{
-            contender::{Contender, Entry, How, Renderer},
-            external::{self, External},
-            question::{Effort, Question, ReferenceFile, SceneQuestion, Wanted, fingerprint},
-            reference,
-            run::{self, Progress, Signature},
-            table,
-        },
-        page,
-    },
+    scene::build::{self, Setup},
+    settings::Overrides,
     transport::Strategies,
 };
 use clap::Args;
@@ -178,9 +176,9 @@ pub fn run(arguments: &Study) -> Result<()> {
     };
     let mut bar = Bar::new();
     let enter = &mut |scene: usize, how: &How| stage.enter(scene, how);
-    let tell = &mut |progress: &Progress| bar.tell(progress);
+    let show = &mut |progress: &Progress| bar.show(progress);
     let outcome =
-        pool.install(|| run::run(&arguments.output, arguments.restart, &question, &signature, enter, tell));
+        pool.install(|| run::run(&arguments.output, arguments.restart, &question, &signature, enter, show));
     bar.bar.finish_and_clear();
     say(table::text(&outcome?).trim_end());
     let page = page::write(&arguments.output)?;
@@ -196,7 +194,7 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
     let scene = |(name, file): (String, &PathBuf)| {
         Ok(SceneQuestion {
             name,
-            fingerprint: fingerprint_of(&scene::sources(file, &arguments.definitions)?)?,
+            fingerprint: fingerprint_of(&format::sources(file, &arguments.definitions)?)?,
         })
     };
     let effort = match (arguments.spp, arguments.seconds) {
@@ -295,7 +293,7 @@ struct Stage<'a> {
     arguments: &'a Study,
     threads: usize,
     scene: Option<(usize, Object, f64)>,
-    setups: Vec<(Option<Choice>, Arc<Setup>, f64)>,
+    setups: Vec<(Option<DistanceMethod>, Arc<Setup>, f64)>,
 }
 
 impl<'a> Stage<'a> {
@@ -309,13 +307,13 @@ impl<'a> Stage<'a> {
     }
 
     /// The scene with `tracker`, and the time that reading and building it took [s].
-    fn setup(&mut self, scene: usize, tracker: Option<Choice>) -> Result<(Arc<Setup>, f64)> {
+    fn setup(&mut self, scene: usize, tracker: Option<DistanceMethod>) -> Result<(Arc<Setup>, f64)> {
         let started = Instant::now();
         let (root, reading) = match self.scene.take() {
             Some((index, root, reading)) if index == scene => (root, reading),
             _ => {
                 self.setups.clear();
-                let root = scene::read(&self.arguments.scenes[scene], &self.arguments.definitions)?;
+                let root = format::read(&self.arguments.scenes[scene], &self.arguments.definitions)?;
                 (root, started.elapsed().as_secs_f64())
             }
         };
@@ -350,16 +348,16 @@ impl<'a> Stage<'a> {
     }
 
     fn own(&mut self, scene: usize, words: &str) -> Result<Entry> {
-        let asked = contenders::parse("contender", words)?;
-        let (setup, load_seconds) = self.setup(scene, asked.tracker)?;
+        let requested = contenders::parse("contender", words)?;
+        let (setup, load_seconds) = self.setup(scene, requested.tracker)?;
         let budget = Budget { samples_per_pixel: Some(1), time: None };
-        let settings = asked.settings(&setup, 0, budget)?;
+        let settings = requested.settings(&setup, 0, budget)?;
         if settings.options.strategies == Strategies::NONE {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));
         }
         let still = setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none());
-        let idle = (asked.tracker.is_some() && still).then(|| IDLE_TRACKER.to_owned());
+        let idle = (requested.tracker.is_some() && still).then(|| IDLE_TRACKER.to_owned());
         let renderer = Renderer::Own { settings, load_seconds };
         Ok(Entry { setup, renderer, notes: idle.into_iter().collect() })
     }
@@ -403,7 +401,7 @@ impl Bar {
         Self { bar, is_hidden, tenths: 0 }
     }
 
-    fn tell(&mut self, progress: &Progress) {
+    fn show(&mut self, progress: &Progress) {
         let Progress { share, doing, is_old } = progress;
         self.bar.set_message(doing.clone());
         self.bar.set_position((share * STEPS) as u64);

@@ -29,14 +29,14 @@ pub struct Params<'a> {
     /// References, files, warnings.
     pub library: &'a Library,
     used: RefCell<Vec<bool>>,
-    asked: RefCell<Vec<&'static str>>,
+    requested: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Params<'a> {
     /// Nothing read yet.
     pub fn new(object: &'a Object, library: &'a Library) -> Self {
         let used = RefCell::new(vec![false; object.properties.len()]);
-        Self { object, library, used, asked: RefCell::default() }
+        Self { object, library, used, requested: RefCell::default() }
     }
 
     /// Where the object stands.
@@ -46,7 +46,7 @@ impl<'a> Params<'a> {
 
     /// The property called `name`, marked as read.
     pub fn property(&self, name: &'static str) -> Option<&'a Property> {
-        self.asked.borrow_mut().push(name);
+        self.requested.borrow_mut().push(name);
         self.take(name)
     }
 
@@ -273,7 +273,7 @@ impl<'a> Params<'a> {
         let used = self.used.borrow();
         let Some(index) = used.iter().position(|used| !used) else { return Ok(()) };
         let property = &self.object.properties[index];
-        let mut known = self.asked.borrow().clone();
+        let mut known = self.requested.borrow().clone();
         known.sort_unstable();
         known.dedup();
         let mut found = property.value.describe();

@@ -47,10 +47,10 @@ impl Area {
 
     /// Density of `sample` [1/sr].
     #[inline]
-    pub fn density(&self, cosine: f32) -> f32 {
+    pub fn pdf_sr(&self, cosine: f32) -> f32 {
         match &self.profile {
-            None => warp::cosine_hemisphere_density(cosine),
-            Some(profile) => profile.density_from_surface(cosine),
+            None => warp::cosine_hemisphere_pdf(cosine),
+            Some(profile) => profile.pdf_sr_from_surface(cosine),
         }
     }
 

@@ -28,7 +28,7 @@ impl Constant {
 
     /// Density of `sample` [1/sr].
     #[inline]
-    pub fn density(&self) -> f32 {
-        warp::SPHERE_DENSITY
+    pub fn pdf_sr(&self) -> f32 {
+        warp::SPHERE_PDF
     }
 }

@@ -91,7 +91,7 @@ impl EnvMap {
 
     /// Density of `sample` [1/sr].
     #[inline]
-    pub fn density(&self, towards: Vec3) -> f32 {
+    pub fn pdf_sr(&self, towards: Vec3) -> f32 {
         let Spot { column, row, .. } = self.map.spot(self.to_local * towards);
         self.map.cells.probability(column, row) / self.map.solid_angle(row) as f32
     }

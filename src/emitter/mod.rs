@@ -6,24 +6,24 @@ mod constant;
 mod directional;
 mod directionalarea;
 mod envmap;
-mod glow;
 mod point;
 mod profile;
 mod projector;
 mod spot;
 #[cfg(test)]
 mod tests;
+mod volume;
 
 pub use area::Area;
 pub use constant::Constant;
 pub use directional::Directional;
 pub use directionalarea::DirectionalArea;
 pub use envmap::EnvMap;
-pub use glow::Glow;
 pub use point::Point;
 pub use profile::Profile;
 pub use projector::Projector;
 pub use spot::Spot;
+pub use volume::VolumeEmitter;
 
 use crate::{
     description::{Build, Library, Object, Params, Registry},
@@ -58,8 +58,8 @@ pub enum Kind {
     Directional(Directional),
     /// Light from all around at infinity.
     Environment(Environment),
-    /// A medium that shines. Its description is the medium's own.
-    Medium(Glow),
+    /// An emissive medium. Its description is the medium's own.
+    Medium(VolumeEmitter),
 }
 
 /// Emitters that stand at a point.
@@ -110,9 +110,9 @@ pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
 }
 
 impl Emitter {
-    /// A medium that shines.
-    pub fn of_medium(glow: Glow) -> Self {
-        Self { name: "medium", kind: Kind::Medium(glow), sampling_weight: 1.0 }
+    /// An emissive medium.
+    pub fn of_medium(volume: VolumeEmitter) -> Self {
+        Self { name: "medium", kind: Kind::Medium(volume), sampling_weight: 1.0 }
     }
 
     /// True for emitters that stand on a shape.
@@ -196,11 +196,11 @@ impl PointKind {
 
     /// Density of `sample` [1/sr].
     #[inline]
-    pub fn density(&self, direction: Vec3) -> f32 {
+    pub fn pdf_sr(&self, direction: Vec3) -> f32 {
         match self {
-            Self::Point(e) => e.density(direction),
-            Self::Spot(e) => e.density(direction),
-            Self::Projector(e) => e.density(direction),
+            Self::Point(e) => e.pdf_sr(direction),
+            Self::Spot(e) => e.pdf_sr(direction),
+            Self::Projector(e) => e.pdf_sr(direction),
         }
     }
 
@@ -235,10 +235,10 @@ impl Environment {
 
     /// Density of `sample` [1/sr].
     #[inline]
-    pub fn density(&self, towards: Vec3) -> f32 {
+    pub fn pdf_sr(&self, towards: Vec3) -> f32 {
         match self {
-            Self::Constant(e) => e.density(),
-            Self::EnvMap(e) => e.density(towards),
+            Self::Constant(e) => e.pdf_sr(),
+            Self::EnvMap(e) => e.pdf_sr(towards),
         }
     }
 

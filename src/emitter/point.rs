@@ -56,10 +56,10 @@ impl Point {
 
     /// Density of `sample` [1/sr].
     #[inline]
-    pub fn density(&self, direction: Vec3) -> f32 {
+    pub fn pdf_sr(&self, direction: Vec3) -> f32 {
         match &self.profile {
-            None => warp::SPHERE_DENSITY,
-            Some((profile, axis)) => profile.density_around(axis.normal.dot(direction)),
+            None => warp::SPHERE_PDF,
+            Some((profile, axis)) => profile.pdf_sr_around(axis.normal.dot(direction)),
         }
     }
 

@@ -82,7 +82,7 @@ impl Profile {
 
     /// Density of `sample_around` [1/sr].
     #[inline]
-    pub fn density_around(&self, cosine: f32) -> f32 {
+    pub fn pdf_sr_around(&self, cosine: f32) -> f32 {
         let (low, high, probability) = self.around.ring(cosine);
         (probability / (2.0 * PI * (one_minus_cos(high) - one_minus_cos(low)))) as f32
     }
@@ -101,7 +101,7 @@ impl Profile {
 
     /// Density of `sample_from_surface` [1/sr].
     #[inline]
-    pub fn density_from_surface(&self, cosine: f32) -> f32 {
+    pub fn pdf_sr_from_surface(&self, cosine: f32) -> f32 {
         if cosine <= 0.0 || self.surface.chosen.is_empty() {
             return 0.0;
         }

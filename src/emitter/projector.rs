@@ -93,10 +93,10 @@ impl Projector {
 
     /// Density of `sample` [1/sr].
     #[inline]
-    pub fn density(&self, direction: Vec3) -> f32 {
+    pub fn pdf_sr(&self, direction: Vec3) -> f32 {
         let Some((uv, cosine)) = self.through(direction) else { return 0.0 };
         let area = 4.0 * self.half.x * self.half.y;
-        self.cells.density(uv) / (area * cosine.powi(3))
+        self.cells.pdf(uv) / (area * cosine.powi(3))
     }
 
     /// Emitted power [W]: the mean of the texture counts. At distance 1 it falls on an area of `area`.
@@ -132,7 +132,7 @@ impl Cells {
 
     /// Density over the unit square.
     #[inline]
-    fn density(&self, uv: Vec2) -> f32 {
+    fn pdf(&self, uv: Vec2) -> f32 {
         if self.grid.is_empty() {
             return 1.0;
         }

@@ -92,9 +92,9 @@ impl Spot {
 
     /// Density of `sample` [1/sr].
     #[inline]
-    pub fn density(&self, direction: Vec3) -> f32 {
+    pub fn pdf_sr(&self, direction: Vec3) -> f32 {
         if angle(direction, self.axis.normal) < self.cutoff {
-            warp::cone_density(self.one_minus_cos())
+            warp::cone_pdf(self.one_minus_cos())
         } else {
             0.0
         }

@@ -38,10 +38,10 @@ fn cell_of(d: Vec3) -> usize {
 fn check(
     name: &str,
     sample: impl Fn(&mut Stream) -> Vec3,
-    density: impl Fn(Vec3) -> f32,
+    pdf: impl Fn(Vec3) -> f32,
     value: impl Fn(Vec3) -> Spectrum,
 ) {
-    let expected = integrals(&density);
+    let expected = integrals(&pdf);
     let total: f64 = expected.iter().sum();
     assert!((total - 1.0).abs() < 5e-3, "{name}: the density integrates to {total}");
     let mut stream = Stream::new(3, 0, 0, Purpose::Study);
@@ -57,7 +57,7 @@ fn check(
     assert!(p > significance(10), "{name}: p = {p}");
     for i in 0..BANDS * BANDS {
         let d = direction((i / BANDS) as f32 + 0.37, (i % BANDS) as f32 + 0.61);
-        assert!(density(d) > 0.0 || value(d) == Spectrum::ZERO, "{name}: {} from nowhere at {d}", value(d));
+        assert!(pdf(d) > 0.0 || value(d) == Spectrum::ZERO, "{name}: {} from nowhere at {d}", value(d));
     }
 }
 
@@ -129,8 +129,8 @@ fn directions_follow_their_densities() {
     let folder = desk();
     for emitter in examples(folder.path()) {
         match &emitter.kind {
-            Kind::Point(e) => check(emitter.name, |s| e.sample(s), |d| e.density(d), |d| e.intensity(d)),
-            Kind::Environment(e) => check(emitter.name, |s| e.sample(s), |d| e.density(d), |d| e.radiance(d)),
+            Kind::Point(e) => check(emitter.name, |s| e.sample(s), |d| e.pdf_sr(d), |d| e.intensity(d)),
+            Kind::Environment(e) => check(emitter.name, |s| e.sample(s), |d| e.pdf_sr(d), |d| e.radiance(d)),
             other => panic!("{other:?}"),
         }
     }
@@ -140,14 +140,14 @@ fn directions_follow_their_densities() {
 fn power_is_what_leaves() {
     let folder = desk();
     for emitter in examples(folder.path()) {
-        let (found, told) = match &emitter.kind {
+        let (found, reported) = match &emitter.kind {
             Kind::Point(PointKind::Spot(_)) => continue, // of a slide the mean counts, and its corners do not
             Kind::Point(e) => (integrals(|d| e.intensity(d).z), e.power().z),
             Kind::Environment(e) => (integrals(|d| e.radiance(d).z), e.fluence().z),
             other => panic!("{other:?}"),
         };
         let found: f64 = found.iter().sum();
-        assert!((found / told - 1.0).abs() < 1e-2, "{}: {found}, told {told}", emitter.name);
+        assert!((found / reported - 1.0).abs() < 1e-2, "{}: {found}, told {reported}", emitter.name);
     }
 }
 
@@ -157,7 +157,7 @@ fn a_profile_leaves_surfaces_as_it_says() {
         let area = built("area", &[("profile", Value::String(text.into()))]).unwrap();
         let Kind::Area(area) = area.kind else { panic!() };
         let radiance = |d: Vec3| area.radiance(vec2(0.5, 0.5), d.z);
-        check(text, |s| area.sample(s), |d| area.density(d.z), radiance);
+        check(text, |s| area.sample(s), |d| area.pdf_sr(d.z), radiance);
         let leaving: f64 = integrals(|d| radiance(d).x * d.z.max(0.0)).iter().sum();
         assert!((leaving / area.exitance().x - 1.0).abs() < 1e-2, "{text}: {leaving}");
     }

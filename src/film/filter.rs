@@ -1,7 +1,7 @@
-//! Reconstruction filters. Eye walks are distributed by the filter, so every sample counts fully for one
-//! pixel; what light walks bring is spread over the pixels that the filter reaches.
+//! Reconstruction filters. Camera subpaths are distributed by the filter, so every sample counts fully for one
+//! pixel; what light subpaths bring is spread over the pixels that the filter reaches.
 //!
-//! Where a filter has negative lobes, eye walks are distributed by its magnitude and carry its sign, times
+//! Where a filter has negative lobes, camera subpaths are distributed by its magnitude and carry its sign, times
 //! what the lobes cancel: the integral of |f| over that of f.
 
 use super::lobes::{self, Lobes};
@@ -227,7 +227,7 @@ impl Plain {
     }
 }
 
-/// A filter along one axis of a film: where samples end it is cut off, and normalised anew.
+/// A filter along one axis of a film: where samples end it is cut off, and normalised again.
 #[derive(Clone, Debug)]
 pub struct Axis {
     filter: Filter,
@@ -392,14 +392,14 @@ mod tests {
                 let mut stream = Stream::new(7, pixel as u64, 0, Purpose::Study);
                 let (n, width) = (200_000, f64::from(size + 2 * border) / CELLS as f64);
                 // Of the magnitude, per cell; the weight of every sample.
-                let density = |x: f64| {
+                let pdf = |x: f64| {
                     let weight = axis.weights(x as f32).find(|(i, _)| *i == pixel).map_or(0.0, |(_, w)| w);
                     f64::from(weight)
                 };
                 let start = |cell: usize| cell as f64 * width - f64::from(border);
                 let mass = |cell: usize| {
                     (0..400)
-                        .map(|k| density(start(cell) + (f64::from(k) + 0.5) / 400.0 * width).abs())
+                        .map(|k| pdf(start(cell) + (f64::from(k) + 0.5) / 400.0 * width).abs())
                         .sum::<f64>()
                         * width
                         / 400.0
@@ -410,9 +410,9 @@ mod tests {
                 for _ in 0..n {
                     let (x, weight) = axis.sample(pixel, &mut stream);
                     observed[((f64::from(x) + f64::from(border)) / width) as usize] += 1;
-                    let expected = magnitude.copysign(density(f64::from(x)));
+                    let expected = magnitude.copysign(pdf(f64::from(x)));
                     // At a root rounding decides the sign.
-                    let at_root = density(f64::from(x)).abs() < 1e-5;
+                    let at_root = pdf(f64::from(x)).abs() < 1e-5;
                     assert!(
                         at_root || (f64::from(weight) - expected).abs() < 2e-3 * magnitude,
                         "{filter:?} at {x}: {weight}, not {expected}"

@@ -70,7 +70,7 @@ impl Quantity {
 /// Moments are those of one pass over the image, which for the path tracer is one sample per pixel. With box,
 /// tent and Gaussian filters, E of the squared pass is the filtered square of a sample's radiance: Mitsuba's
 /// second moment. A filter with negative lobes makes it larger (a sample's signed weight is squared too), and
-/// what light walks bring adds to the pass before it is squared, so that with `bdpt` and `ptracer` the moment
+/// what light subpaths bring adds to the pass before it is squared, so that with `bdpt` and `ptracer` the moment
 /// is that of the estimator, not of one path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {

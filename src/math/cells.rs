@@ -1,6 +1,6 @@
 //! The cells of a lattice that a straight line crosses, in order (Amanatides & Woo 1987).
 
-use super::{Section, Vec3};
+use super::{RaySegment, Vec3};
 
 /// A cell that is crossed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Crossing {
     pub last: f32,
 }
 
-/// Iterates over the unit cells of the lattice 0..size that `section` crosses from `first` to `last`. Each
+/// Iterates over the unit cells of the lattice 0..size that `segment` crosses from `first` to `last`. Each
 /// crossing begins where the one before it ended: nothing is left out and nothing counted twice, whatever the
 /// rounding.
 #[derive(Clone, Debug)]
@@ -33,11 +33,11 @@ pub struct Cells {
 impl Cells {
     /// Starts at `first`; cells beyond the lattice are taken for those at its border.
     #[inline]
-    pub fn new(section: &Section, first: f32, last: f32, size: [u32; 3]) -> Self {
-        let (start, direction) = (section.at(first), section.direction);
+    pub fn new(segment: &RaySegment, first: f32, last: f32, size: [u32; 3]) -> Self {
+        let (start, direction) = (segment.at(first), segment.direction);
         let cell = std::array::from_fn(|i| (start[i].floor() as i32).clamp(0, size[i] as i32 - 1));
         let step = std::array::from_fn(|i| if direction[i] < 0.0 { -1 } else { 1 });
-        let (origin, next) = (section.origin, [0.0; 3]);
+        let (origin, next) = (segment.origin, [0.0; 3]);
         let mut cells =
             Self { cell, size, step, next, origin, direction, at: first, last, done: first >= last };
         (0..3).for_each(|axis| cells.next[axis] = cells.boundary(axis));
@@ -98,15 +98,15 @@ mod tests {
             // Some along an axis, some exactly between cells.
             let a = if index % 3 == 0 { a.round() } else { a };
             let b = if index % 5 == 0 { vec3(b.x, a.y, a.z) } else { b };
-            let section =
-                Section { origin: a, direction: (b - a).normalize_or_zero(), length: (b - a).length() };
-            let Some([first, last]) = section.within(low, high) else { continue };
+            let segment =
+                RaySegment { origin: a, direction: (b - a).normalize_or_zero(), length: (b - a).length() };
+            let Some([first, last]) = segment.within(low, high) else { continue };
             let mut at = first;
-            for Crossing { cell, first, last } in Cells::new(&section, first, last, size) {
+            for Crossing { cell, first, last } in Cells::new(&segment, first, last, size) {
                 assert_eq!(first, at);
                 assert!(last >= first);
                 at = last;
-                let inside = section.at(0.5 * (first + last));
+                let inside = segment.at(0.5 * (first + last));
                 let corner = vec3(cell[0] as f32, cell[1] as f32, cell[2] as f32);
                 let off = (inside - corner - 0.5).abs().max_element();
                 assert!(last - first < 1e-4 || off <= 0.5 + 1e-4, "{off}");

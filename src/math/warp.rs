@@ -4,7 +4,7 @@ use super::{Vec2, Vec3, vec2, vec3};
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// Density of `to_sphere` [1/sr].
-pub const SPHERE_DENSITY: f32 = FRAC_1_PI * 0.25;
+pub const SPHERE_PDF: f32 = FRAC_1_PI * 0.25;
 
 /// Uniform on the unit disc, by concentric squares (Shirley & Chiu 1997). Density 1/pi.
 #[inline]
@@ -30,7 +30,7 @@ pub fn to_cosine_hemisphere(u: Vec2) -> Vec3 {
 
 /// Density of `to_cosine_hemisphere` [1/sr]; 0 below the horizon.
 #[inline]
-pub fn cosine_hemisphere_density(cosine: f32) -> f32 {
+pub fn cosine_hemisphere_pdf(cosine: f32) -> f32 {
     cosine.max(0.0) * FRAC_1_PI
 }
 
@@ -65,7 +65,7 @@ pub fn to_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
 
 /// Density of `to_cone` inside the cone [1/sr].
 #[inline]
-pub fn cone_density(one_minus_cos: f32) -> f32 {
+pub fn cone_pdf(one_minus_cos: f32) -> f32 {
     1.0 / (2.0 * PI * one_minus_cos)
 }
 

@@ -4,13 +4,13 @@
 //! L_e), times the absorption, with the sign that eq. 11 ought to have; or as the temperature of a black body, whose
 //! radiance that is by Kirchhoff's law.
 
-use super::{Around, Extinction, Matter};
+use super::{Extinction, MediumBounds, MediumProperties};
 use crate::{
-    density::{self, Coarse, Place, Volume, VolumeModel, check_non_negative},
     description::{Location, Params, Value},
     error::{Error, Result},
-    math::{Affine3A, DVec3, Section, Spectrum, SpectrumExt, Vec3, black_body, vec3},
+    math::{Affine3A, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3, black_body, vec3},
     sampling::{Discrete, Stream},
+    volume::{self, Coarse, Place, Volume, VolumeModel, check_non_negative},
 };
 use std::f64::consts::PI;
 
@@ -30,7 +30,7 @@ const QUANTITIES: [(&str, Quantity); 3] =
 
 /// Emission as the description gives it.
 #[derive(Clone, Debug)]
-pub struct Given {
+pub struct EmissionDescription {
     name: &'static str,
     quantity: Quantity,
     volume: Volume,
@@ -40,7 +40,7 @@ pub struct Given {
     pub(super) location: Location,
 }
 
-impl Given {
+impl EmissionDescription {
     /// Reads `emission`, `radiance` or `temperature`, one of them at most, and `emission_scale`.
     pub fn read(params: &Params<'_>, place: &Place) -> Result<Option<Self>> {
         let scale = params.float_within("emission_scale", 1.0, 0.0, f64::from(f32::MAX))? as f32;
@@ -85,12 +85,12 @@ fn volume(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Opti
     let Some(property) = params.property(name) else { return Ok(None) };
     if matches!(property.value, Value::Object(_) | Value::Reference(_))
         && let Some(child) = params.child(name)?
-        && density::ROWS.has(child.object)
+        && volume::ROWS.has(child.object)
     {
-        return density::build(child.object, params.library, place).map(Some);
+        return volume::build(child.object, params.library, place).map(Some);
     }
     params.emission(name, 0.0).map(|colour| {
-        Some(Volume::Constant(density::Constant::new(colour, [Vec3::NEG_INFINITY, Vec3::INFINITY])))
+        Some(Volume::Constant(volume::Constant::new(colour, [Vec3::NEG_INFINITY, Vec3::INFINITY])))
     })
 }
 
@@ -98,39 +98,39 @@ fn volume(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Opti
 #[derive(Clone, Debug)]
 pub enum Within {
     /// A homogeneous medium.
-    Uniform(Matter),
+    Uniform(MediumProperties),
     /// One that varies: its extinction and albedo.
     Varying(Box<(Extinction, Volume)>),
 }
 
 impl Within {
     #[inline]
-    fn at(&self, position: Vec3) -> Matter {
+    fn at(&self, position: Vec3) -> MediumProperties {
         match self {
-            Self::Uniform(matter) => *matter,
+            Self::Uniform(properties) => *properties,
             Self::Varying(varying) => {
                 let (extinction, albedo) = &**varying;
-                Matter { sigma_t: extinction.at(position), albedo: albedo.eval(position) }
+                MediumProperties { sigma_t: extinction.at(position), albedo: albedo.eval(position) }
             }
         }
     }
 
     /// The most extinction and the least albedo within a box.
-    fn bounds(&self, low: Vec3, high: Vec3) -> Matter {
+    fn bounds(&self, low: Vec3, high: Vec3) -> MediumProperties {
         match self {
-            Self::Uniform(matter) => *matter,
+            Self::Uniform(properties) => *properties,
             Self::Varying(varying) => {
                 let (extinction, albedo) = &**varying;
                 let sigma_t = extinction.volume.range(low, high)[1] * extinction.scale;
-                Matter { sigma_t, albedo: albedo.range(low, high)[0] }
+                MediumProperties { sigma_t, albedo: albedo.range(low, high)[0] }
             }
         }
     }
 }
 
 /// How much of what arrives a medium absorbs per metre [1/m].
-fn absorption(matter: Matter) -> Spectrum {
-    matter.sigma_t * (Spectrum::ONE - matter.albedo).max(Spectrum::ZERO)
+fn absorption(properties: MediumProperties) -> Spectrum {
+    properties.sigma_t * (Spectrum::ONE - properties.albedo).max(Spectrum::ZERO)
 }
 
 /// Radiance gained per metre, at every point.
@@ -193,7 +193,7 @@ impl Field {
 const BRIGHTEST: f32 = 1e30;
 
 /// The box that holds all that shines.
-fn extent(given: &Given, within: &Within, around: &Around) -> [Vec3; 2] {
+fn extent(given: &EmissionDescription, within: &Within, around: &MediumBounds) -> [Vec3; 2] {
     let of_matter = match within {
         Within::Varying(varying) if given.quantity != Quantity::Gain => Some([varying.0.low, varying.0.high]),
         _ => None,
@@ -224,7 +224,7 @@ pub struct Emission {
 impl Emission {
     /// Looks at what is `given` where it is and matter is as `within`, `around` where neither says where that is; none
     /// where nothing shines.
-    pub fn new(given: Given, within: Within, around: &Around) -> Result<Option<Self>> {
+    pub fn new(given: EmissionDescription, within: Within, around: &MediumBounds) -> Result<Option<Self>> {
         let [low, high] = extent(&given, &within, around);
         if !low.cmplt(high).all() {
             return Ok(None);
@@ -235,7 +235,7 @@ impl Emission {
             return Err(given.complain("one number a point", "a colour", "give a temperature in Kelvin"));
         }
         let most = given.volume.range(low, high)[1];
-        let Given { quantity, volume, scale, .. } = given.clone();
+        let EmissionDescription { quantity, volume, scale, .. } = given.clone();
         let field = Field { quantity, volume, scale, within, low, high };
         if !(most.is_finite() && field.most(low, high) <= BRIGHTEST) {
             let found = format!("up to {:e}", field.most(low, high).max(most.max_element()));
@@ -292,13 +292,13 @@ impl Emission {
 
     /// Density of `sample` [1/m^3].
     #[inline]
-    pub fn density(&self, position: Vec3) -> f32 {
+    pub fn pdf_vol(&self, position: Vec3) -> f32 {
         let chosen = |cell| self.cells.probability_precisely(cell as usize) / self.coarse.cell_volume();
         self.coarse.cell_at(position).map_or(0.0, |cell| chosen(cell) as f32)
     }
 
-    /// How often an eye walk that passes `position` is taken to meet emission there [1/m]: what weights know, per
-    /// channel of extinction.
+    /// How often a camera subpath that passes `position` is taken to meet emission there [1/m]: what weights
+    /// know, per channel of extinction.
     ///
     /// A walk really meets one point on each of its flights, which are as long as chance makes them. In thin matter
     /// that is the density of `sample_along` on a whole line, here that of a mean line; in thick matter the flights
@@ -309,19 +309,19 @@ impl Emission {
         self.field.within.at(position).sigma_t + self.per_line * most
     }
 
-    /// A point of `section`, in proportion to the maxima of the cells it crosses: t [m] and the density [1/m]; none
+    /// A point of `segment`, in proportion to the maxima of the cells it crosses: t [m] and the density [1/m]; none
     /// where nothing shines.
     #[inline]
-    pub fn sample_along(&self, section: &Section, stream: &mut Stream) -> Option<(f32, f32)> {
-        let most = |piece: &density::Piece| self.coarse.most(piece.cell);
+    pub fn sample_along(&self, segment: &RaySegment, stream: &mut Stream) -> Option<(f32, f32)> {
+        let most = |piece: &volume::Piece| self.coarse.most(piece.cell);
         let total: f32 =
-            self.coarse.pieces(section).map(|piece| most(&piece) * (piece.last - piece.first)).sum();
+            self.coarse.pieces(segment).map(|piece| most(&piece) * (piece.last - piece.first)).sum();
         if !(total > 0.0 && total < f32::INFINITY) {
             return None;
         }
         let mut remaining = stream.uniform() * total;
         let mut met = None;
-        for piece in self.coarse.pieces(section).filter(|piece| most(piece) > 0.0) {
+        for piece in self.coarse.pieces(segment).filter(|piece| most(piece) > 0.0) {
             let (length, most) = (piece.last - piece.first, most(&piece));
             met = Some((piece.first + (remaining / most).min(length), most / total));
             if remaining < most * length {

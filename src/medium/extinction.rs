@@ -1,8 +1,8 @@
 //! Extinction that varies: a volume, a factor, and the box that it fills.
 
 use crate::{
-    density::{Volume, VolumeModel},
-    math::{Lanes, Section, Spectrum, Vec3},
+    math::{Channels, RaySegment, Spectrum, Vec3},
+    volume::{Volume, VolumeModel},
 };
 
 /// sigma_t in space [1/m]: `scale` times `volume`, nothing outside the volume and the box from `low` to `high`.
@@ -21,23 +21,24 @@ pub struct Extinction {
 impl Extinction {
     /// sigma_t at `position` [1/m].
     #[inline]
-    pub fn at<L: Lanes>(&self, position: Vec3) -> L {
+    pub fn at<L: Channels>(&self, position: Vec3) -> L {
         let inside = position.cmpge(self.low).all() && position.cmple(self.high).all();
         if inside { self.volume.inside::<L>(position).scaled(self.scale) } else { L::splat(0.0) }
     }
 
-    /// Optical depth along the part of `section` from `first` to `last` [m], both within the box: by the volume's own
+    /// Optical depth along the part of `segment` from `first` to `last` [m], both within the box: by the volume's own
     /// integral, which must exist.
     #[inline]
-    pub fn depth_between<L: Lanes>(&self, section: &Section, first: f32, last: f32) -> L {
-        let part = Section { origin: section.at(first), direction: section.direction, length: last - first };
+    pub fn depth_between<L: Channels>(&self, segment: &RaySegment, first: f32, last: f32) -> L {
+        let part =
+            RaySegment { origin: segment.at(first), direction: segment.direction, length: last - first };
         self.volume.integral::<L>(&part).scaled(self.scale)
     }
 
-    /// The part of `section` within the box; none where they do not meet.
+    /// The part of `segment` within the box; none where they do not meet.
     #[inline]
-    pub fn clip(&self, section: &Section) -> Option<[f32; 2]> {
-        section.within(self.low, self.high)
+    pub fn clip(&self, segment: &RaySegment) -> Option<[f32; 2]> {
+        segment.within(self.low, self.high)
     }
 
     /// The largest sigma_t of every channel, or a little more [1/m].

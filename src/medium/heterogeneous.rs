@@ -1,16 +1,16 @@
 //! A medium whose extinction and albedo vary in space.
 
 use super::{
-    Choice, DistanceSample, Extinction, Matter, Treatment, Unforced,
+    DistanceMethod, DistanceSample, Extinction, MediumOverrides, MediumProperties, Unforced,
+    distance::{self, DistanceSampler},
     emission::Within,
-    tracker::{self, Tracker},
 };
 use crate::{
-    density::{Place, Volume, VolumeModel, check_non_negative},
     description::Location,
     error::{Error, Result},
-    math::{DVec3, Lanes, Section, Spectrum, Vec3},
+    math::{Channels, DVec3, RaySegment, Spectrum, Vec3},
     sampling::Stream,
+    volume::{Place, Volume, VolumeModel, check_non_negative},
 };
 
 /// What is given.
@@ -23,7 +23,7 @@ pub struct Fields {
     /// sigma_s / sigma_t.
     pub albedo: Volume,
     /// Asked for.
-    pub tracker: Choice,
+    pub tracker: DistanceMethod,
     /// Longest interval of ray marching [m], if asked for.
     pub step: Option<f64>,
     /// Error of transmittance that ray marching may make where no step is asked for.
@@ -35,10 +35,10 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// The extinction that `treatment` makes of them, before its factor; the factor; and the albedo.
-    fn treated(&self, treatment: &Treatment) -> (Volume, f32, Volume) {
+    /// The extinction that `overrides` makes of them, before its factor; the factor; and the albedo.
+    fn overridden(&self, overrides: &MediumOverrides) -> (Volume, f32, Volume) {
         let Self { sigma_t, scale, albedo, .. } = self;
-        if !treatment.absorbing {
+        if !overrides.absorbing {
             return (sigma_t.clone(), *scale, albedo.clone());
         }
         let range = albedo.range(Vec3::ZERO, Vec3::ZERO);
@@ -67,42 +67,44 @@ impl Fields {
 pub struct Heterogeneous {
     extinction: Extinction,
     albedo: Volume,
-    tracker: Tracker,
-    /// What it was made of, to be made anew for another time.
+    tracker: DistanceSampler,
+    /// What it was made of, to be made again for another time.
     fields: Fields,
     around: [Vec3; 2],
-    treatment: Treatment,
+    overrides: MediumOverrides,
 }
 
 impl Heterogeneous {
     /// Looks at `fields` within their own bounds, or the box `around` where they have none, and chooses a tracker.
-    pub fn new(fields: Fields, around: [Vec3; 2], treatment: Treatment) -> Result<Self> {
+    pub fn new(fields: Fields, around: [Vec3; 2], overrides: MediumOverrides) -> Result<Self> {
         let location = &fields.location;
         let [low, high] = fields.sigma_t.fills().unwrap_or(around);
         check(&fields, [low, high])?;
-        let (volume, scale, albedo) = fields.treated(&treatment);
-        let choice = match (treatment.tracker, fields.tracker) {
+        let (volume, scale, albedo) = fields.overridden(&overrides);
+        let choice = match (overrides.tracker, fields.tracker) {
             (Some(forced), _) => forced,
             // What is left of extinction may not be the kind of volume that its tracker was named for.
-            (None, asked) if treatment.absorbing && !asked.applies_to(&volume) => Choice::Auto,
-            (None, asked) => asked,
+            (None, requested) if overrides.absorbing && !requested.applies_to(&volume) => {
+                DistanceMethod::Auto
+            }
+            (None, requested) => requested,
         };
         if !choice.applies_to(&volume) {
             return Err(inapplicable(choice, &volume, location));
         }
-        let (step, error) = match treatment {
-            Treatment { step: None, march_error: None, .. } => (fields.step, fields.march_error),
-            Treatment { step, march_error, .. } => (step, march_error.unwrap_or(fields.march_error)),
+        let (step, error) = match overrides {
+            MediumOverrides { step: None, march_error: None, .. } => (fields.step, fields.march_error),
+            MediumOverrides { step, march_error, .. } => (step, march_error.unwrap_or(fields.march_error)),
         };
         let extinction = Extinction { volume, scale, low, high };
-        let tracker = tracker::choose(&extinction, choice, step, error);
-        Ok(Self { extinction, albedo, tracker, fields, around, treatment })
+        let tracker = distance::choose(&extinction, choice, step, error);
+        Ok(Self { extinction, albedo, tracker, fields, around, overrides })
     }
 
     /// The same at `time` [s]; none where it is the same at all times.
     pub fn at_time(&self, time: f64) -> Result<Option<Self>> {
         let fields = self.fields.at_time(time);
-        fields.map(|fields| Self::new(fields, self.around, self.treatment)).transpose()
+        fields.map(|fields| Self::new(fields, self.around, self.overrides)).transpose()
     }
 
     /// Bounds on extinction [1/m] and albedo.
@@ -122,31 +124,31 @@ impl Heterogeneous {
     }
 
     /// The tracker that its description asks for.
-    pub fn asked(&self) -> Choice {
+    pub fn requested(&self) -> DistanceMethod {
         self.fields.tracker
     }
 
     /// The tracker that goes before that, if any.
-    pub fn forced(&self) -> Option<Choice> {
-        self.treatment.tracker
+    pub fn forced(&self) -> Option<DistanceMethod> {
+        self.overrides.tracker
     }
 
     /// Optical depth for a picture that need not be exact but must not be noisy: in closed form where there is one,
     /// the deterministic stand-in where there is none and the tracker is random.
-    pub fn quick_depth<L: Lanes>(&self, section: &Section) -> L {
-        tracker::quick_depth(&self.tracker, &self.extinction, section)
+    pub fn quick_depth<L: Channels>(&self, segment: &RaySegment) -> L {
+        distance::quick_depth(&self.tracker, &self.extinction, segment)
     }
 
     /// How its flights are sampled.
-    pub fn tracker(&self) -> &Tracker {
+    pub fn tracker(&self) -> &DistanceSampler {
         &self.tracker
     }
 
     /// What it is made of at a world position.
     #[inline]
-    pub fn at<L: Lanes>(&self, position: Vec3) -> Matter {
+    pub fn at<L: Channels>(&self, position: Vec3) -> MediumProperties {
         let sigma_t = self.extinction.at::<L>(position).to_spectrum();
-        Matter { sigma_t, albedo: self.albedo.eval::<Spectrum>(position) }
+        MediumProperties { sigma_t, albedo: self.albedo.eval::<Spectrum>(position) }
     }
 
     /// What absorbs, for what shines there.
@@ -154,58 +156,58 @@ impl Heterogeneous {
         Within::Varying(Box::new((self.extinction.clone(), self.albedo.clone())))
     }
 
-    /// See [`Tracker::depth`].
+    /// See [`DistanceSampler::depth`].
     #[inline]
-    pub fn depth<L: Lanes>(&self, section: &Section) -> L {
-        self.tracker.depth(&self.extinction, section)
+    pub fn depth<L: Channels>(&self, segment: &RaySegment) -> L {
+        self.tracker.depth(&self.extinction, segment)
     }
 
-    /// See [`Tracker::transmittance`].
+    /// See [`DistanceSampler::transmittance`].
     #[inline]
-    pub fn transmittance<L: Lanes>(&self, section: &Section, depth: L, stream: &mut Stream) -> L {
-        self.tracker.transmittance(&self.extinction, section, depth, stream)
+    pub fn transmittance<L: Channels>(&self, segment: &RaySegment, depth: L, stream: &mut Stream) -> L {
+        self.tracker.transmittance(&self.extinction, segment, depth, stream)
     }
 
-    /// See [`Tracker::ratio`].
+    /// See [`DistanceSampler::ratio`].
     #[inline]
-    pub fn ratio<L: Lanes>(&self, section: &Section, depth: L, hero: usize, stream: &mut Stream) -> L {
-        self.tracker.ratio(&self.extinction, section, depth, hero, stream)
+    pub fn ratio<L: Channels>(&self, segment: &RaySegment, depth: L, hero: usize, stream: &mut Stream) -> L {
+        self.tracker.ratio(&self.extinction, segment, depth, hero, stream)
     }
 
-    /// See [`Tracker::sample_distance`].
+    /// See [`DistanceSampler::sample_distance`].
     #[inline]
-    pub fn sample_distance<L: Lanes>(
+    pub fn sample_distance<L: Channels>(
         &self,
-        section: &Section,
+        segment: &RaySegment,
         hero: usize,
         remaining: f32,
         stream: &mut Stream,
     ) -> DistanceSample<L> {
-        self.tracker.sample_distance(&self.extinction, section, hero, remaining, stream)
+        self.tracker.sample_distance(&self.extinction, segment, hero, remaining, stream)
     }
 
     /// See [`super::Medium::unforced`].
-    pub fn unforced<L: Lanes>(
+    pub fn unforced<L: Channels>(
         &self,
-        section: &Section,
+        segment: &RaySegment,
         depth: L,
         hero: usize,
         stream: &mut Stream,
     ) -> Unforced<L> {
-        let transmittance = self.transmittance(section, depth, stream);
-        let depth = self.tracker.forced_depth(&self.extinction, section, depth, hero);
+        let transmittance = self.transmittance(segment, depth, stream);
+        let depth = self.tracker.forced_depth(&self.extinction, segment, depth, hero);
         Unforced { transmittance, depth, ratio: transmittance.scaled(depth.min(DEEPEST).exp()) }
     }
 
-    /// See [`Tracker::force`].
-    pub fn force_collision<L: Lanes>(
+    /// See [`DistanceSampler::force`].
+    pub fn force_collision<L: Channels>(
         &self,
-        section: &Section,
+        segment: &RaySegment,
         hero: usize,
         remaining: f32,
         stream: &mut Stream,
     ) -> Option<DistanceSample<L>> {
-        self.tracker.force(&self.extinction, section, hero, remaining, stream)
+        self.tracker.force(&self.extinction, segment, hero, remaining, stream)
     }
 }
 
@@ -236,11 +238,14 @@ fn check(fields: &Fields, [low, high]: [Vec3; 2]) -> Result<()> {
     Ok(())
 }
 
-fn inapplicable(choice: Choice, volume: &Volume, location: &Location) -> Error {
-    let fitting: Vec<_> =
-        Choice::NAMES.iter().filter(|(_, other)| other.applies_to(volume)).map(|(name, _)| *name).collect();
+fn inapplicable(choice: DistanceMethod, volume: &Volume, location: &Location) -> Error {
+    let fitting: Vec<_> = DistanceMethod::NAMES
+        .iter()
+        .filter(|(_, other)| other.applies_to(volume))
+        .map(|(name, _)| *name)
+        .collect();
     let expected = match choice {
-        Choice::Exact => "a gridvolume for sigma_t, which the exact tracker needs",
+        DistanceMethod::RegularTracking => "a gridvolume for sigma_t, which the exact tracker needs",
         _ => "a sigma_t with an integral in closed form",
     };
     let remedy = format!("choose a tracker that works here: {}", fitting.join(", "));
@@ -262,14 +267,14 @@ mod tests {
         let fields = Fields {
             sigma_t: Volume::constant(1.0, &place),
             scale: 1.0,
-            albedo: crate::density::build(&noise, &crate::description::Library::default(), &place)?,
-            tracker: Choice::Auto,
+            albedo: crate::volume::build(&noise, &crate::description::Library::default(), &place)?,
+            tracker: DistanceMethod::Auto,
             step: None,
             march_error: 1e-3,
             recentre: place.recentre,
             location: nowhere(),
         };
-        Heterogeneous::new(fields, [Vec3::ZERO, Vec3::ONE], Treatment::default())
+        Heterogeneous::new(fields, [Vec3::ZERO, Vec3::ONE], MediumOverrides::default())
     }
 
     #[test]

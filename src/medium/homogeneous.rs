@@ -1,15 +1,15 @@
 //! A medium that is the same everywhere: optical depth is a product, and its inverse a quotient.
 
-use super::{DistanceSample, Matter, MediumInterval};
-use crate::math::{Lanes, Spectrum};
+use super::{DistanceSample, MediumInterval, MediumProperties};
+use crate::math::{Channels, Spectrum};
 
 /// Coefficients that are the same everywhere.
 #[derive(Clone, Copy, Debug)]
-pub struct Homogeneous(pub Matter);
+pub struct Homogeneous(pub MediumProperties);
 
 impl Homogeneous {
     #[inline]
-    fn sigma_t<L: Lanes>(&self) -> L {
+    fn sigma_t<L: Channels>(&self) -> L {
         L::from_spectrum(self.0.sigma_t)
     }
 
@@ -17,49 +17,50 @@ impl Homogeneous {
     ///
     /// LW96 eq. 7: kappa d, whose e^-(kappa d) is P_surface.
     #[inline]
-    pub fn optical_depth<L: Lanes>(&self, distance: f32) -> L {
+    pub fn optical_depth<L: Channels>(&self, distance: f32) -> L {
         if distance < f32::INFINITY {
             return self.sigma_t::<L>().scaled(distance);
         }
-        let lane = |sigma_t: f32| if sigma_t > 0.0 { f32::INFINITY } else { 0.0 };
-        L::from_spectrum(self.0.sigma_t.map(lane))
+        let channel = |sigma_t: f32| if sigma_t > 0.0 { f32::INFINITY } else { 0.0 };
+        L::from_spectrum(self.0.sigma_t.map(channel))
     }
 
-    /// Where the `hero` lane's optical depth is `remaining` [m from the start of the medium].
+    /// Where the `hero` channel's optical depth is `remaining` [m from the start of the medium].
     #[inline]
-    fn free_path<L: Lanes>(&self, hero: usize, remaining: f32) -> f32 {
+    fn free_path<L: Channels>(&self, hero: usize, remaining: f32) -> f32 {
         remaining / self.sigma_t::<L>().hero(hero)
     }
 
     /// The same, from where the ray starts. A collision in what was `skipped` happens there: nearer to the surface it
     /// might be behind it.
     #[inline]
-    pub fn collision<L: Lanes>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
+    pub fn collision<L: Channels>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
         let path = self.free_path::<L>(hero, remaining);
         if path < skipped { 0.0 } else { path - skipped }
     }
 
-    /// A collision where the `hero` lane's optical depth is `remaining`, if the interval is as long.
+    /// A collision where the `hero` channel's optical depth is `remaining`, if the interval is as long.
     ///
     /// LW96 eq. 6: p_medium, inverted.
     #[inline]
-    pub fn sample_distance<L: Lanes>(
+    pub fn sample_distance<L: Channels>(
         &self,
         interval: &MediumInterval,
         hero: usize,
         remaining: f32,
     ) -> DistanceSample<L> {
         let collision = self.collision::<L>(interval.skipped, hero, remaining);
-        if collision < interval.section.length {
+        if collision < interval.segment.length {
             let path = self.free_path::<L>(hero, remaining);
             return DistanceSample::exact(Some(collision), self.optical_depth(path), hero);
         }
         DistanceSample::exact(None, self.optical_depth(interval.length()), hero)
     }
 
-    /// A collision where the `hero` lane's optical depth is `remaining`, which is no more than that of the interval.
+    /// A collision where the `hero` channel's optical depth is `remaining`, which is no more than that of the
+    /// interval.
     #[inline]
-    pub fn force_collision<L: Lanes>(
+    pub fn force_collision<L: Channels>(
         &self,
         interval: &MediumInterval,
         hero: usize,

@@ -1,28 +1,28 @@
 //! Participating media: coefficients, a phase function, what they emit, and where they vary, how flights are sampled.
 
-mod blueprint;
+mod description;
+pub mod distance;
 mod emission;
 mod extinction;
 mod heterogeneous;
 mod homogeneous;
-pub mod tracker;
-mod treatment;
+mod overrides;
 
 use crate::{
     error::Result,
-    math::{Lanes, Section, Spectrum, SpectrumExt, Vec3},
+    math::{Channels, RaySegment, Spectrum, SpectrumExt, Vec3},
     phase::{self, Phase},
     sampling::Stream,
 };
-pub use blueprint::{Around, Blueprint, ROWS, build};
+pub use description::{MediumBounds, MediumDescription, ROWS, build};
+pub use distance::{DistanceMethod, DistanceSample};
 pub use emission::Emission;
-use emission::{Given, Within};
+use emission::{EmissionDescription, Within};
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;
 use homogeneous::Homogeneous;
+pub use overrides::MediumOverrides;
 use std::sync::Arc;
-pub use tracker::{Choice, DistanceSample};
-pub use treatment::Treatment;
 
 /// Index of a medium in its scene. Vacuum is a medium like any other, with nothing in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -46,7 +46,7 @@ pub struct Medium {
     bound: Homogeneous,
     coefficients: Coefficients,
     /// What the emission was made of, to be made again for another time.
-    given: Option<Box<(Given, Around)>>,
+    given: Option<Box<(EmissionDescription, MediumBounds)>>,
 }
 
 /// The models of extinction and albedo.
@@ -60,22 +60,22 @@ enum Coefficients {
 
 /// Which media an estimator is compiled for. What it does not know is not tested for.
 pub trait MediaProfile: Copy + Send + Sync + 'static {
-    /// Extinction per lane.
-    type Lanes: Lanes;
+    /// Extinction per channel.
+    type Channels: Channels;
     /// Some medium's coefficients vary in space.
     const HETEROGENEOUS: bool;
 }
 
 /// What a medium is made of at a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Matter {
+pub struct MediumProperties {
     /// Extinction coefficient [1/m].
     pub sigma_t: Spectrum,
     /// sigma_s / sigma_t, in [0, 1].
     pub albedo: Spectrum,
 }
 
-impl Matter {
+impl MediumProperties {
     /// None.
     pub const NOTHING: Self = Self { sigma_t: Spectrum::ZERO, albedo: Spectrum::ZERO };
 
@@ -90,21 +90,21 @@ impl Matter {
 #[derive(Clone, Copy, Debug)]
 pub struct MediumInterval {
     /// The stretch.
-    pub section: Section,
+    pub segment: RaySegment,
     /// How far before it the medium begins [m], 0 but behind a boundary: a ray starts a rounding error off the surface.
     /// In a homogeneous medium that counts, for a mean free path may be as short. Where coefficients vary it does not.
     pub skipped: f32,
 }
 
 impl MediumInterval {
-    /// All of `section`, and nothing before it.
-    pub fn of(section: Section) -> Self {
-        Self { section, skipped: 0.0 }
+    /// All of `segment`, and nothing before it.
+    pub fn of(segment: RaySegment) -> Self {
+        Self { segment, skipped: 0.0 }
     }
 
     #[inline]
     fn length(&self) -> f32 {
-        self.section.length + self.skipped
+        self.segment.length + self.skipped
     }
 }
 
@@ -122,19 +122,19 @@ pub struct Unforced<L> {
 impl Medium {
     /// Nothing: no extinction.
     pub fn vacuum() -> Self {
-        Self::homogeneous(Matter::NOTHING, Phase::Isotropic(phase::Isotropic))
+        Self::homogeneous(MediumProperties::NOTHING, Phase::Isotropic(phase::Isotropic))
     }
 
     /// The same everywhere.
-    fn homogeneous(matter: Matter, phase: Phase) -> Self {
-        let (bound, coefficients) = (Homogeneous(matter), Coefficients::Homogeneous);
+    fn homogeneous(properties: MediumProperties, phase: Phase) -> Self {
+        let (bound, coefficients) = (Homogeneous(properties), Coefficients::Homogeneous);
         Self { phase, emission: None, bound, coefficients, given: None }
     }
 
     /// The medium with coefficients that vary.
     fn with(self, varying: Heterogeneous) -> Self {
         let (sigma_t, albedo) = varying.bounds();
-        let bound = Homogeneous(Matter { sigma_t, albedo });
+        let bound = Homogeneous(MediumProperties { sigma_t, albedo });
         Self { bound, coefficients: Coefficients::Heterogeneous(Box::new(varying)), ..self }
     }
 
@@ -150,11 +150,11 @@ impl Medium {
             None => self.clone(),
         };
         let Some(before) = &self.given else { return Ok(Some(medium)) };
-        medium.shining(given.unwrap_or_else(|| before.0.clone()), before.1).map(Some)
+        medium.with_emission(given.unwrap_or_else(|| before.0.clone()), before.1).map(Some)
     }
 
     /// The medium with an emission.
-    fn shining(self, given: Given, around: Around) -> Result<Self> {
+    fn with_emission(self, given: EmissionDescription, around: MediumBounds) -> Result<Self> {
         let within = self.heterogeneous().map_or(Within::Uniform(self.bound()), Heterogeneous::within);
         let emission = Emission::new(given.clone(), within, &around)?.map(Arc::new);
         Ok(Self { emission, given: Some(Box::new((given, around))), ..self })
@@ -176,7 +176,7 @@ impl Medium {
 
     /// What a homogeneous medium is made of; of a heterogeneous one, a bound on what it is made of anywhere.
     #[inline]
-    pub fn bound(&self) -> Matter {
+    pub fn bound(&self) -> MediumProperties {
         self.bound.0
     }
 
@@ -199,17 +199,17 @@ impl Medium {
 
     /// What it is made of at a world position.
     #[inline]
-    pub fn properties_at<M: MediaProfile>(&self, position: Vec3) -> Matter {
-        self.varying::<M>().map_or(self.bound.0, |varying| varying.at::<M::Lanes>(position))
+    pub fn properties_at<M: MediaProfile>(&self, position: Vec3) -> MediumProperties {
+        self.varying::<M>().map_or(self.bound.0, |varying| varying.at::<M::Channels>(position))
     }
 
-    /// Deterministic optical depth per lane, the same from either end: what weights know.
+    /// Deterministic optical depth per channel, the same from either end: what weights know.
     ///
     /// LW96 eq. 7: P_surface = e^-depth.
     #[inline(always)]
-    pub fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Lanes {
+    pub fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Channels {
         match self.varying::<M>() {
-            Some(varying) => varying.depth(&interval.section),
+            Some(varying) => varying.depth(&interval.segment),
             None => self.bound.optical_depth(interval.length()),
         }
     }
@@ -219,27 +219,27 @@ impl Medium {
     pub fn transmittance<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
-        depth: M::Lanes,
+        depth: M::Channels,
         stream: &mut Stream,
-    ) -> M::Lanes {
+    ) -> M::Channels {
         match self.varying::<M>() {
-            Some(varying) => varying.transmittance(&interval.section, depth, stream),
+            Some(varying) => varying.transmittance(&interval.segment, depth, stream),
             None => depth.exp_neg(),
         }
     }
 
-    /// The transmittance of every lane over the hero's, or an unbiased random estimate of that.
+    /// The transmittance of every channel over the hero's, or an unbiased random estimate of that.
     #[inline]
     pub fn transmittance_ratio<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
-        depth: M::Lanes,
+        depth: M::Channels,
         hero: usize,
         stream: &mut Stream,
-    ) -> M::Lanes {
+    ) -> M::Channels {
         match self.varying::<M>() {
-            Some(varying) => varying.ratio(&interval.section, depth, hero, stream),
-            None => depth.flight_ratio(M::Lanes::splat(1.0), hero),
+            Some(varying) => varying.ratio(&interval.segment, depth, hero, stream),
+            None => depth.flight_ratio(M::Channels::splat(1.0), hero),
         }
     }
 
@@ -249,12 +249,12 @@ impl Medium {
     pub fn reach<M: MediaProfile>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
         match self.varying::<M>() {
             Some(_) => f32::INFINITY,
-            None => self.bound.collision::<M::Lanes>(skipped, hero, remaining),
+            None => self.bound.collision::<M::Channels>(skipped, hero, remaining),
         }
     }
 
-    /// A distance by the `hero` lane: where its optical depth is `remaining` (an exponential variate; random methods
-    /// draw their own).
+    /// A distance by the `hero` channel: where its optical depth is `remaining` (an exponential variate; random
+    /// methods draw their own).
     ///
     /// LW96 eq. 6: p_medium = sigma_t e^-depth.
     #[inline(always)]
@@ -264,9 +264,9 @@ impl Medium {
         hero: usize,
         remaining: f32,
         stream: &mut Stream,
-    ) -> DistanceSample<M::Lanes> {
+    ) -> DistanceSample<M::Channels> {
         match self.varying::<M>() {
-            Some(varying) => varying.sample_distance(&interval.section, hero, remaining, stream),
+            Some(varying) => varying.sample_distance(&interval.segment, hero, remaining, stream),
             None => self.bound.sample_distance(interval, hero, remaining),
         }
     }
@@ -275,16 +275,16 @@ impl Medium {
     pub fn unforced<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
-        depth: M::Lanes,
+        depth: M::Channels,
         hero: usize,
         stream: &mut Stream,
-    ) -> Unforced<M::Lanes> {
+    ) -> Unforced<M::Channels> {
         match self.varying::<M>() {
-            Some(varying) => varying.unforced(&interval.section, depth, hero, stream),
+            Some(varying) => varying.unforced(&interval.segment, depth, hero, stream),
             None => Unforced {
                 transmittance: depth.exp_neg(),
                 depth: depth.hero(hero),
-                ratio: depth.flight_ratio(M::Lanes::splat(1.0), hero),
+                ratio: depth.flight_ratio(M::Channels::splat(1.0), hero),
             },
         }
     }
@@ -297,16 +297,16 @@ impl Medium {
         hero: usize,
         remaining: f32,
         stream: &mut Stream,
-    ) -> Option<DistanceSample<M::Lanes>> {
+    ) -> Option<DistanceSample<M::Channels>> {
         match self.varying::<M>() {
-            Some(varying) => varying.force_collision(&interval.section, hero, remaining, stream),
+            Some(varying) => varying.force_collision(&interval.segment, hero, remaining, stream),
             None => Some(self.bound.force_collision(interval, hero, remaining)),
         }
     }
 
     /// Optical depth for a picture that need not be exact but must not be noisy.
-    pub fn quick_depth(&self, section: &Section) -> Spectrum {
+    pub fn quick_depth(&self, segment: &RaySegment) -> Spectrum {
         self.heterogeneous()
-            .map_or_else(|| self.bound.optical_depth(section.length), |varying| varying.quick_depth(section))
+            .map_or_else(|| self.bound.optical_depth(segment.length), |varying| varying.quick_depth(segment))
     }
 }

@@ -81,9 +81,9 @@ impl Blend {
 
 impl PhaseModel for Blend {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         let [first, second] = &*self.parts;
-        first.density(turn) * (1.0 - self.weight) + second.density(turn) * self.weight
+        first.pdf_sr(turn) * (1.0 - self.weight) + second.pdf_sr(turn) * self.weight
     }
 
     #[inline]

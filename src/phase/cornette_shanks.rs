@@ -32,9 +32,9 @@ impl CornetteShanks {
 
 impl PhaseModel for CornetteShanks {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         let (g, cosine) = (self.g, turn.cosine());
-        self.peak.density(turn) * (1.5 * (1.0 + cosine * cosine) / (2.0 + g * g))
+        self.peak.pdf_sr(turn) * (1.5 * (1.0 + cosine * cosine) / (2.0 + g * g))
     }
 
     /// Turns of the peak are kept with probability (1 + cos^2) / 2: two of three at least.

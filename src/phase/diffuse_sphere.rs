@@ -37,7 +37,7 @@ fn crescent(x: f32) -> f32 {
 
 impl PhaseModel for DiffuseSphere {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         const SCALE: f32 = 2.0 / (3.0 * PI * PI);
         SCALE * crescent(turn.angle())
     }

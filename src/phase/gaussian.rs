@@ -63,7 +63,7 @@ fn integral(gamma: f64, power: i32) -> f64 {
 
 impl PhaseModel for Gaussian {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         let angle = turn.angle();
         self.peak * (-self.gamma * angle * angle).exp()
     }

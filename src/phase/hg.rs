@@ -49,10 +49,10 @@ impl HenyeyGreenstein {
 
 impl PhaseModel for HenyeyGreenstein {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         let Self { size: g, complement, sign } = *self;
         let squared = complement * complement + 2.0 * g * turn.from_peak(sign);
-        warp::SPHERE_DENSITY * complement * (1.0 + g) / (squared * squared.sqrt())
+        warp::SPHERE_PDF * complement * (1.0 + g) / (squared * squared.sqrt())
     }
 
     #[inline]
@@ -95,7 +95,7 @@ mod tests {
         for g in [0.9f64, 0.999, 0.999_999_9] {
             let exact = (1.0 + g) / (4.0 * std::f64::consts::PI * (1.0 - g) * (1.0 - g));
             for (g, sign) in [(g, 1.0), (-g, -1.0)] {
-                let found = f64::from(HenyeyGreenstein::new(g).density(Deflection::of(0.0, sign)));
+                let found = f64::from(HenyeyGreenstein::new(g).pdf_sr(Deflection::of(0.0, sign)));
                 assert!((found / exact - 1.0).abs() < 1e-6, "g {g}: {found} for {exact}");
             }
         }

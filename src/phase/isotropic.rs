@@ -23,8 +23,8 @@ impl Isotropic {
 
 impl PhaseModel for Isotropic {
     #[inline]
-    fn density(&self, _: Deflection) -> f32 {
-        warp::SPHERE_DENSITY
+    fn pdf_sr(&self, _: Deflection) -> f32 {
+        warp::SPHERE_PDF
     }
 
     #[inline]

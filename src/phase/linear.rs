@@ -31,8 +31,8 @@ impl Linear {
 
 impl PhaseModel for Linear {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
-        warp::SPHERE_DENSITY * (1.0 + self.g * turn.cosine())
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
+        warp::SPHERE_PDF * (1.0 + self.g * turn.cosine())
     }
 
     #[inline]

@@ -43,10 +43,10 @@ impl Mie {
 
 impl PhaseModel for Mie {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         let half_angle_cosine_square = 0.5 * turn.from_peak(-1.0);
         let lobe = (self.exponent + 1) as f32 * half_angle_cosine_square.powi(self.exponent);
-        warp::SPHERE_DENSITY * (1.0 - self.share + self.share * lobe)
+        warp::SPHERE_PDF * (1.0 - self.share + self.share * lobe)
     }
 
     #[inline]

@@ -44,9 +44,9 @@ use crate::sampling::Stream;
 /// What every phase function can do.
 pub trait PhaseModel {
     /// Value and sampling density [1/sr] of a turn from an old to a new direction of flight.
-    fn density(&self, turn: Deflection) -> f32;
+    fn pdf_sr(&self, turn: Deflection) -> f32;
 
-    /// A new direction of flight after `direction`, with exactly `density`.
+    /// A new direction of flight after `direction`, with exactly `pdf`.
     fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3;
 
     /// The mean cosine, g, in [-1, 1].
@@ -73,8 +73,8 @@ macro_rules! phases {
 
         impl PhaseModel for Phase {
             #[inline]
-            fn density(&self, turn: Deflection) -> f32 {
-                match self { $(Self::$model(model) => model.density(turn),)* }
+            fn pdf_sr(&self, turn: Deflection) -> f32 {
+                match self { $(Self::$model(model) => model.pdf_sr(turn),)* }
             }
             #[inline]
             fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {

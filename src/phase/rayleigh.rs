@@ -34,7 +34,7 @@ impl Rayleigh {
 
 impl PhaseModel for Rayleigh {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         const SCALE: f32 = 3.0 / (16.0 * PI);
         let cosine = turn.cosine();
         SCALE * (1.0 + cosine * cosine)

@@ -42,8 +42,8 @@ impl Sakas {
 
 impl PhaseModel for Sakas {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
-        warp::SPHERE_DENSITY * ((1.0 + self.n) / (2.0 + self.n)) * (1.0 + self.power(turn))
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
+        warp::SPHERE_PDF * ((1.0 + self.n) / (2.0 + self.n)) * (1.0 + self.power(turn))
     }
 
     /// The lobes together scatter 1 / (2 + n), the constant the rest.

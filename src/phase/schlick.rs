@@ -45,10 +45,10 @@ impl Schlick {
 
 impl PhaseModel for Schlick {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         let Self { size: k, complement, sign } = *self;
         let base = complement + k * turn.from_peak(sign);
-        warp::SPHERE_DENSITY * complement * (1.0 + k) / (base * base)
+        warp::SPHERE_PDF * complement * (1.0 + k) / (base * base)
     }
 
     #[inline]

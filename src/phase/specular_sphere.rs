@@ -68,7 +68,7 @@ impl SpecularSphere {
         let interface = Interfaces::new(eta, 1.0).outside;
         let average = interface.diffuse_reflectance();
         Self {
-            scale: (f64::from(warp::SPHERE_DENSITY) / average) as f32,
+            scale: (f64::from(warp::SPHERE_PDF) / average) as f32,
             mean_cosine: (1.0 - 2.0 * interface.moment(1) / average) as f32,
             envelope: Arc::new(Envelope::new(&interface)),
             interface,
@@ -97,7 +97,7 @@ impl SpecularSphere {
 
 impl PhaseModel for SpecularSphere {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         self.scale * self.reflectance(0.5 * turn.from_peak(1.0))
     }
 

@@ -77,7 +77,7 @@ pub(super) fn linear(a: f32, b: f32, u: f32) -> f32 {
 
 impl PhaseModel for Table {
     #[inline]
-    fn density(&self, turn: Deflection) -> f32 {
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
         let values = &self.0.values;
         let position = 0.5 * (turn.cosine() + 1.0) * (values.len() - 1) as f32;
         let index = (position as usize).min(values.len() - 2);

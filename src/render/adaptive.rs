@@ -4,15 +4,15 @@
 //! biased for it. Hence two halves of independent passes: a pixel's mean over one half ends where the *other* half's
 //! samples say that the error is small enough, so that what ends it knows nothing of what it is the mean of.
 //!
-//! What light walks bring to the film is a mean over passes too, of every pixel at once: it ends for a half where the
-//! last pixel of the other half is content.
+//! What light subpaths bring to the film is a mean over passes too, of every pixel at once: it ends for a
+//! half where the last pixel of the other half is content.
 
 use super::{
     Progress,
-    bench::{BLOCKS_AT_ONCE, Bench},
     block::Outcome,
     budget::Budget,
-    watch::Clock,
+    instrument::{BLOCKS_AT_ONCE, Instrument},
+    monitor::Stopwatch,
 };
 use crate::math::{DVec3, Spectrum, spectrum::LUMINANCE};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ pub struct Precision {
 pub struct Reached {
     /// The part of the pixels that are within the error, by what their samples say.
     pub share: f64,
-    /// Samples taken of each pixel by eye walks.
+    /// Samples taken of each pixel by camera subpaths.
     pub samples: Vec<u32>,
 }
 
@@ -63,8 +63,8 @@ const RAREST: f64 = 1e-3;
 struct Half {
     passes: u64,
     /// Sums over passes while a pixel is active.
-    eye: Vec<DVec3>,
-    /// Of squares of what a pass brings, light walks included.
+    camera: Vec<DVec3>,
+    /// Of squares of what a pass brings, light subpaths included.
     squares: Vec<DVec3>,
     /// Sums over all passes.
     light: Vec<DVec3>,
@@ -74,9 +74,9 @@ struct Half {
     content: Vec<bool>,
     /// What errors are relative to at least.
     floor: f64,
-    /// Means of eye walks, where the other half has ended them.
+    /// Means of camera subpaths, where the other half has ended them.
     ended: Vec<Option<DVec3>>,
-    /// The same of light walks.
+    /// The same of light subpaths.
     ended_light: Option<Vec<DVec3>>,
 }
 
@@ -85,7 +85,7 @@ impl Half {
         let zeros = || vec![DVec3::ZERO; pixels];
         Self {
             passes: 0,
-            eye: zeros(),
+            camera: zeros(),
             squares: zeros(),
             light: zeros(),
             errors: vec![f64::INFINITY; pixels],
@@ -96,13 +96,13 @@ impl Half {
         }
     }
 
-    fn add(&mut self, eye: &[DVec3], light: &[DVec3], active: &[bool]) {
+    fn add(&mut self, camera: &[DVec3], light: &[DVec3], active: &[bool]) {
         self.passes += 1;
-        for (pixel, (eye, light)) in eye.iter().zip(light).enumerate() {
+        for (pixel, (camera, light)) in camera.iter().zip(light).enumerate() {
             self.light[pixel] += *light;
             if active[pixel] {
-                let both = *eye + *light;
-                self.eye[pixel] += *eye;
+                let both = *camera + *light;
+                self.camera[pixel] += *camera;
                 self.squares[pixel] += both * both;
             }
         }
@@ -111,7 +111,7 @@ impl Half {
     /// Mean and variance of a pass at a pixel that is active.
     fn moments(&self, pixel: usize) -> (DVec3, DVec3) {
         let n = self.passes as f64;
-        let mean = (self.eye[pixel] + self.light[pixel]) / n;
+        let mean = (self.camera[pixel] + self.light[pixel]) / n;
         let variance = (self.squares[pixel] / n - mean * mean) * (n / (n - 1.0));
         (mean, variance.max(DVec3::ZERO))
     }
@@ -119,10 +119,10 @@ impl Half {
     /// Looks at the samples of the active pixels.
     fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
         if self.floor == 0.0 {
-            let luminances = (0..self.eye.len()).map(|pixel| luminance(self.moments(pixel).0));
+            let luminances = (0..self.camera.len()).map(|pixel| luminance(self.moments(pixel).0));
             // One broken sample must not decide for all pixels.
             let sum: f64 = luminances.filter(|luminance| luminance.is_finite()).sum();
-            self.floor = FLOOR * sum / self.eye.len() as f64;
+            self.floor = FLOOR * sum / self.camera.len() as f64;
         }
         for pixel in (0..active.len()).filter(|pixel| active[*pixel]) {
             if !self.content[pixel] {
@@ -190,7 +190,7 @@ impl Half {
         let n = self.passes as f64;
         for (pixel, ended) in self.ended.iter_mut().enumerate() {
             if ended.is_none() && other.content[pixel] {
-                *ended = Some(self.eye[pixel] / n);
+                *ended = Some(self.camera[pixel] / n);
             }
         }
         if self.ended_light.is_none() && other.content.iter().all(|content| *content) {
@@ -202,7 +202,7 @@ impl Half {
     fn value(&self, pixel: usize) -> DVec3 {
         let n = self.passes as f64;
         let light = self.ended_light.as_ref().map_or(self.light[pixel] / n, |light| light[pixel]);
-        self.ended[pixel].unwrap_or(self.eye[pixel] / n) + light
+        self.ended[pixel].unwrap_or(self.camera[pixel] / n) + light
     }
 }
 
@@ -229,8 +229,8 @@ impl Limits {
 
 /// The two halves at work.
 pub(super) struct Adaptive<'a> {
-    bench: &'a Bench<'a>,
-    clock: &'a Clock,
+    bench: &'a Instrument<'a>,
+    stopwatch: &'a Stopwatch,
     precision: Precision,
     halves: [Half; 2],
     active: Vec<bool>,
@@ -240,10 +240,10 @@ pub(super) struct Adaptive<'a> {
 
 impl<'a> Adaptive<'a> {
     /// Nothing done yet.
-    pub fn new(bench: &'a Bench<'a>, precision: Precision, clock: &'a Clock) -> Self {
+    pub fn new(bench: &'a Instrument<'a>, precision: Precision, stopwatch: &'a Stopwatch) -> Self {
         let pixels = bench.film.len();
         let halves = [Half::new(pixels), Half::new(pixels)];
-        Self { bench, clock, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
+        Self { bench, stopwatch, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
     }
 
     /// Renders until every pixel is content or the budget is spent.
@@ -265,30 +265,30 @@ impl<'a> Adaptive<'a> {
         let count = self.bench.compiled.blocks().count();
         let Budget { samples_per_pixel, time } = self.bench.settings.budget;
         let end = samples_per_pixel.unwrap_or(u64::MAX).min(2 * goal);
-        let mut eye = vec![DVec3::ZERO; self.active.len()];
-        let mut light = eye.clone();
+        let mut camera = vec![DVec3::ZERO; self.active.len()];
+        let mut light = camera.clone();
         let (mut next, end_task) = (self.passes() as usize * count, end as usize * count);
         while next < end_task {
             let tasks = next..end_task.min(next + BLOCKS_AT_ONCE);
             for (task, outcome) in tasks.clone().zip(self.work(tasks.clone())) {
-                outcome.add_eye_to(&mut eye);
+                outcome.add_eye_to(&mut camera);
                 outcome.add_light_to(&mut light);
                 if (task + 1) % count == 0 {
-                    self.take(&eye, &light);
-                    eye.fill(DVec3::ZERO);
+                    self.take(&camera, &light);
+                    camera.fill(DVec3::ZERO);
                     light.fill(DVec3::ZERO);
                 }
             }
             next = tasks.end;
             progress(self.progress(next));
-            if time.is_some_and(|limit| self.clock.elapsed() >= limit) && self.passes() >= 2 {
+            if time.is_some_and(|limit| self.stopwatch.elapsed() >= limit) && self.passes() >= 2 {
                 return false;
             }
         }
         end == 2 * goal
     }
 
-    /// Renders the active pixels of blocks, and their light walks.
+    /// Renders the active pixels of blocks, and their light subpaths.
     fn work(&self, tasks: std::ops::Range<usize>) -> Vec<Outcome> {
         let wants = |pixel: usize| self.active[pixel];
         self.bench.work(tasks, |pass, block| self.bench.compiled.render(pass, block, &wants))
@@ -299,9 +299,9 @@ impl<'a> Adaptive<'a> {
     }
 
     /// Passes take turns: even ones belong to the first half.
-    fn take(&mut self, eye: &[DVec3], light: &[DVec3]) {
+    fn take(&mut self, camera: &[DVec3], light: &[DVec3]) {
         let half = (self.passes() % 2) as usize;
-        self.halves[half].add(eye, light, &self.active);
+        self.halves[half].add(camera, light, &self.active);
         self.samples.iter_mut().zip(&self.active).for_each(|(n, active)| *n += u32::from(*active));
     }
 
@@ -331,7 +331,7 @@ impl<'a> Adaptive<'a> {
 
     fn progress(&self, tasks: usize) -> Progress {
         let samples = (tasks as u64 * self.active.len() as u64) / self.bench.compiled.blocks().count() as u64;
-        let (passes, elapsed) = (self.passes(), self.clock.elapsed());
+        let (passes, elapsed) = (self.passes(), self.stopwatch.elapsed());
         Progress { samples, passes, elapsed, noise: None, within: Some(self.share()) }
     }
 

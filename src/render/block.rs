@@ -6,19 +6,19 @@ use super::{
 };
 use crate::{
     film::Film,
-    math::{DVec3, Lanes, Spectrum, Vec2},
+    math::{Channels, DVec3, Spectrum, Vec2},
     sampling::{Sampler, Stream, stream::Purpose},
     scene::Scene,
     shape::Ray,
     transport::{
-        Estimator, Joined, LightCache, Sums,
+        Contribution, Estimator, LightCache, MisSums,
+        observer::{Meeting, Observer, Sum},
         profile::Profile,
-        record::{Meeting, Recorder, Sum},
     },
 };
 use std::ops::Range;
 
-/// Pixels (and light walks) of a block: a cache of this many walks still fits near the processor, and its
+/// Pixels (and light subpaths) of a block: a cache of this many walks still fits near the processor, and its
 /// noise is shared by few enough pixels.
 const PIXELS_PER_BLOCK: usize = 1024;
 
@@ -34,8 +34,8 @@ pub struct Blocks {
     sampler: Sampler,
 }
 
-/// How an eye walk starts.
-pub struct EyeStart {
+/// How a camera subpath starts.
+pub struct CameraStart {
     /// Its random numbers.
     pub stream: Stream,
     /// The channel that samples distances.
@@ -50,24 +50,24 @@ pub struct EyeStart {
 
 /// What a block adds to its pass.
 pub struct Outcome {
-    eye: Vec<(u32, Spectrum)>,
+    camera: Vec<(u32, Spectrum)>,
     light: Vec<(u32, Spectrum)>,
 }
 
 impl Outcome {
-    /// Adds what eye walks brought.
+    /// Adds what camera subpaths brought.
     pub fn add_eye_to(&self, pass: &mut [DVec3]) {
-        self.eye.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
+        self.camera.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
     }
 
-    /// Adds what light walks brought, in a fixed order.
+    /// Adds what light subpaths brought, in a fixed order.
     pub fn add_light_to(&self, pass: &mut [DVec3]) {
         self.light.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
     }
 
     /// Adds it, in a fixed order.
     pub fn add_to(&self, pass: &mut [Spectrum]) {
-        for (pixel, value) in self.eye.iter().chain(&self.light) {
+        for (pixel, value) in self.camera.iter().chain(&self.light) {
             pass[*pixel as usize] += *value;
         }
     }
@@ -89,12 +89,12 @@ impl Blocks {
         self.count
     }
 
-    /// Light walks of one block, a multiple of the number of hero channels.
+    /// Light subpaths of one block, a multiple of the number of hero channels.
     pub fn walks_per_block(&self) -> u64 {
         self.walks_per_block
     }
 
-    /// Light walks of one pass.
+    /// Light subpaths of one pass.
     pub fn walks_per_pass(&self) -> u64 {
         self.walks_per_block * self.count as u64
     }
@@ -105,18 +105,25 @@ impl Blocks {
         (low..high).map(|i| (i as u128 * self.stride as u128 % self.pixels as u128) as usize)
     }
 
-    /// Where the eye walk of `pixel` in `pass` starts.
+    /// Where the camera subpath of `pixel` in `pass` starts.
     #[inline]
-    pub fn eye_start(&self, scene: &Scene, film: &Film, seed: u64, pass: usize, pixel: usize) -> EyeStart {
-        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, Purpose::Eye);
+    pub fn camera_start(
+        &self,
+        scene: &Scene,
+        film: &Film,
+        seed: u64,
+        pass: usize,
+        pixel: usize,
+    ) -> CameraStart {
+        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, Purpose::Camera);
         let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
         let (position, weight) = film.sample(pixel, &mut stream);
         let aperture = scene.sensor.sample_aperture(&mut stream);
-        EyeStart { stream, hero, position, aperture, weight }
+        CameraStart { stream, hero, position, aperture, weight }
     }
 
-    /// The random numbers of light walk `walk` of a pass. All walks of a block bring light to the same pixels: where they
-    /// are spread evenly, it is all of them together, pass after pass.
+    /// The random numbers of light subpath `walk` of a pass. All walks of a block bring light to the same pixels:
+    /// where they are spread evenly, it is all of them together, pass after pass.
     #[inline]
     pub fn light_stream(&self, seed: u64, pass: usize, walk: u64) -> Stream {
         let (pass, per_block) = (pass as u64, self.walks_per_block);
@@ -138,15 +145,15 @@ impl Blocks {
         let Ready { estimator, scene, film, seed, .. } = ready;
         let mut light = Splatted { film, values: Vec::new() };
         let cache = self.trace_light(estimator, *seed, pass, block, &mut light);
-        let eye = self.pixels(block).filter(|pixel| wants(*pixel)).map(|pixel| {
-            let start = self.eye_start(scene, film, *seed, pass, pixel);
+        let camera = self.pixels(block).filter(|pixel| wants(*pixel)).map(|pixel| {
+            let start = self.camera_start(scene, film, *seed, pass, pixel);
             let (weight, sum) = (start.weight, start.trace(estimator, &cache, Sum::default()));
             (pixel as u32, sum.radiance * weight)
         });
-        Outcome { eye: eye.collect(), light: light.values }
+        Outcome { camera: camera.collect(), light: light.values }
     }
 
-    /// Traces the light walks of `block`, which `recorder` sees; their cache.
+    /// Traces the light subpaths of `block`, which `observer` sees; their cache.
     #[inline]
     pub fn trace_light<P: Profile>(
         &self,
@@ -154,53 +161,53 @@ impl Blocks {
         seed: u64,
         pass: usize,
         block: usize,
-        recorder: &mut impl Recorder<P::Sums>,
-    ) -> LightCache<P::Sums> {
-        let mut cache = LightCache::new(P::Lanes::COUNT);
+        observer: &mut impl Observer<P::MisSums>,
+    ) -> LightCache<P::MisSums> {
+        let mut cache = LightCache::new(P::Channels::COUNT);
         if estimator.needs_light_walks() {
-            for walk in self.light_walks(block) {
+            for walk in self.light_paths(block) {
                 let mut stream = self.light_stream(seed, pass, walk);
-                estimator.trace_light(&mut cache, recorder, self.hero(walk), &mut stream);
+                estimator.trace_light(&mut cache, observer, self.hero(walk), &mut stream);
             }
         }
         cache
     }
 
-    /// Numbers of the light walks of `block` in a pass.
-    pub fn light_walks(&self, block: usize) -> Range<u64> {
+    /// Numbers of the light subpaths of `block` in a pass.
+    pub fn light_paths(&self, block: usize) -> Range<u64> {
         let first = block as u64 * self.walks_per_block;
         first..first + self.walks_per_block
     }
 
-    /// The channel that samples the distances of a light walk: all equally often in every block.
+    /// The channel that samples the distances of a light subpath: all equally often in every block.
     pub fn hero(&self, walk: u64) -> usize {
         (walk % self.walks_per_block % self.heroes) as usize
     }
 }
 
-impl EyeStart {
-    /// The eye walk from here, which `recorder` sees, joined with the light walks of `cache`.
+impl CameraStart {
+    /// The camera subpath from here, which `observer` sees, joined with the light subpaths of `cache`.
     #[inline]
-    pub fn trace<P: Profile, R: Recorder<P::Sums>>(
+    pub fn trace<P: Profile, R: Observer<P::MisSums>>(
         mut self,
         estimator: &Estimator<'_, P>,
-        cache: &LightCache<P::Sums>,
-        recorder: R,
+        cache: &LightCache<P::MisSums>,
+        observer: R,
     ) -> R {
         let Self { position, aperture, hero, .. } = self;
-        estimator.sample_pixel(cache, position, aperture, hero, recorder, &mut self.stream)
+        estimator.sample_pixel(cache, position, aperture, hero, observer, &mut self.stream)
     }
 }
 
 impl Blocks {
     /// Shows one sample of every pixel of `block` as a preview.
     pub fn show(&self, preview: &Preview<'_>, film: &Film, seed: u64, pass: usize, block: usize) -> Outcome {
-        let eye = self.pixels(block).map(|pixel| {
-            let mut start = self.eye_start(preview.scene, film, seed, pass, pixel);
+        let camera = self.pixels(block).map(|pixel| {
+            let mut start = self.camera_start(preview.scene, film, seed, pass, pixel);
             let ray = preview.scene.sensor.ray(start.position, start.aperture).ray;
             (pixel as u32, preview.radiance(ray, &mut start.stream) * start.weight)
         });
-        Outcome { eye: eye.collect(), light: Vec::new() }
+        Outcome { camera: camera.collect(), light: Vec::new() }
     }
 
     /// Rays through pixels all over the film, with random numbers of their own.
@@ -220,23 +227,23 @@ impl Blocks {
     }
 }
 
-/// What light walks brought to the film.
+/// What light subpaths brought to the film.
 struct Splatted<'a> {
     film: &'a Film,
     values: Vec<(u32, Spectrum)>,
 }
 
-impl<S: Sums> Recorder<S> for Splatted<'_> {
+impl<S: MisSums> Observer<S> for Splatted<'_> {
     #[inline]
     fn covers(&self, film: Vec2) -> bool {
         self.film.covers(film)
     }
 
     #[inline]
-    fn contribute(&mut self, _: u32, _: u32, meeting: Meeting<'_, S>, joined: Option<&Joined>) {
+    fn contribute(&mut self, _: u32, _: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
         let values = &mut self.values;
-        if let (Meeting::Lens(film), Some(joined)) = (meeting, joined) {
-            self.film.spread(film, joined.value, |pixel, value| values.push((pixel as u32, value)));
+        if let (Meeting::Lens(film), Some(contribution)) = (meeting, contribution) {
+            self.film.spread(film, contribution.value, |pixel, value| values.push((pixel as u32, value)));
         }
     }
 }

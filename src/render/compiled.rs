@@ -4,13 +4,13 @@
 use super::{
     Settings,
     block::{Blocks, Outcome},
-    clock::{self, Times},
-    parts::{self, Cells, Part},
-    sample::{self, EyeSample, Splat, Walk},
+    pixel_sample::{self, EyeSample, Splat, Walk},
+    strategy_images::{self, CellContribution, StrategyTable},
+    timing::{self, Times},
 };
 use crate::{
     film::Film,
-    math::{Lanes, Spectrum},
+    math::{Channels, Spectrum},
     sampling::Stream,
     scene::Scene,
     shape::Ray,
@@ -31,15 +31,15 @@ pub(super) trait Compiled: Sync {
     fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome;
     /// See [`Estimator::transmittance`].
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum;
-    /// See [`parts::block`].
-    fn parts(&self, cells: Cells, pass: usize, block: usize) -> Vec<Part>;
-    /// See [`clock::block`].
-    fn time(&self, cells: Cells, pass: usize, block: usize) -> Times;
-    /// See [`sample::eye`].
+    /// See [`strategy_images::block`].
+    fn parts(&self, table: StrategyTable, pass: usize, block: usize) -> Vec<CellContribution>;
+    /// See [`timing::block`].
+    fn time(&self, table: StrategyTable, pass: usize, block: usize) -> Times;
+    /// See [`pixel_sample::camera`].
     fn eye_sample(&self, pass: usize, block: usize, pixel: usize) -> EyeSample;
-    /// See [`sample::splats`].
+    /// See [`pixel_sample::splats`].
     fn splats(&self, pass: usize, block: usize, pixel: usize) -> Vec<Splat>;
-    /// See [`sample::light_walk`].
+    /// See [`pixel_sample::light_walk`].
     fn light_walk(&self, pass: usize, walk: u64) -> Walk;
 }
 
@@ -54,7 +54,7 @@ pub(super) struct Ready<'a, P: Profile> {
 
 impl<'a, P: Profile> Ready<'a, P> {
     fn prepare(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
-        let blocks = Blocks::new(film.len(), P::Lanes::COUNT, settings.sampler);
+        let blocks = Blocks::new(film.len(), P::Channels::COUNT, settings.sampler);
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let estimator = Estimator::<P>::new(scene, settings.options, settings.seed, per_pass, per_block);
         Box::new(Self { estimator, blocks, scene, film, seed: settings.seed })
@@ -71,20 +71,20 @@ impl<P: Profile> Compiled for Ready<'_, P> {
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
         self.estimator.transmittance(primary, stream)
     }
-    fn parts(&self, cells: Cells, pass: usize, block: usize) -> Vec<Part> {
-        parts::block(self, cells, pass, block)
+    fn parts(&self, table: StrategyTable, pass: usize, block: usize) -> Vec<CellContribution> {
+        strategy_images::block(self, table, pass, block)
     }
-    fn time(&self, cells: Cells, pass: usize, block: usize) -> Times {
-        clock::block(self, cells, pass, block)
+    fn time(&self, table: StrategyTable, pass: usize, block: usize) -> Times {
+        timing::block(self, table, pass, block)
     }
     fn eye_sample(&self, pass: usize, block: usize, pixel: usize) -> EyeSample {
-        sample::eye(self, pass, block, pixel)
+        pixel_sample::camera(self, pass, block, pixel)
     }
     fn splats(&self, pass: usize, block: usize, pixel: usize) -> Vec<Splat> {
-        sample::light(self, pass, block, pixel).splats
+        pixel_sample::light(self, pass, block, pixel).splats
     }
     fn light_walk(&self, pass: usize, walk: u64) -> Walk {
-        sample::light_walk(self, pass, walk)
+        pixel_sample::light_walk(self, pass, walk)
     }
 }
 

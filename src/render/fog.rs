@@ -4,9 +4,10 @@
 use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{Environment, Kind},
-    math::{Lanes, Spectrum, Vec3, offset},
+    math::{Channels, Spectrum, Vec3, offset},
     sampling::Stream,
-    scene::{Scene, integrator::Look, lights::EmitterSample},
+    scene::{Scene, lights::EmitterSample},
+    settings::integrator::FogSettings,
     shape::{Ray, SurfacePoint},
     transport::{NullCrossing, Segment},
 };
@@ -47,18 +48,18 @@ enum End {
 }
 
 impl<'a> Preview<'a> {
-    /// Prepares to show `scene`. Where `look` leaves it open, radiance is measured along `rays`.
+    /// Prepares to show `scene`. Where `fog` leaves it open, radiance is measured along `rays`.
     pub fn new(
         scene: &'a Scene,
-        look: &Look,
+        fog: &FogSettings,
         hide_emitters: bool,
         rays: impl Iterator<Item = (Ray, Stream)>,
     ) -> Self {
-        let threshold = look.threshold.unwrap_or(f32::INFINITY);
+        let threshold = fog.threshold.unwrap_or(f32::INFINITY);
         let dark = Self { scene, hide_emitters, threshold, veil: Spectrum::ZERO, ambient: Spectrum::ZERO };
         let sky = surroundings(scene);
-        let veil = look.color.or(sky).unwrap_or_else(|| dark.brightness(rays));
-        let ambient = look.ambient.unwrap_or(if sky.is_some() { Spectrum::ZERO } else { veil });
+        let veil = fog.color.or(sky).unwrap_or_else(|| dark.brightness(rays));
+        let ambient = fog.ambient.unwrap_or(if sky.is_some() { Spectrum::ZERO } else { veil });
         Self { veil, ambient: ambient + even_sky(scene), ..dark }
     }
 
@@ -101,7 +102,7 @@ impl<'a> Preview<'a> {
                 return Sight { through: Spectrum::ZERO, veiled: veiled + through, end };
             }
             // f of BMA02 eq. 6.
-            let remains = segment.medium().quick_depth(&interval.section).exp_neg();
+            let remains = segment.medium().quick_depth(&interval.segment).exp_neg();
             veiled += through * (Spectrum::ONE - remains);
             through *= remains;
             let Some(hit) = hit else {
@@ -109,7 +110,7 @@ impl<'a> Preview<'a> {
                 let sky = sample.map_or(Spectrum::ZERO, |sample| sample.value);
                 return Sight { through, veiled, end: End::Radiance(sky) };
             };
-            left -= interval.section.length;
+            left -= interval.segment.length;
             let point = segment.surface(&hit);
             let weight = match segment.sample_crossing(&point, stream) {
                 NullCrossing::Passed(passed, probability) => {

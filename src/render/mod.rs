@@ -5,19 +5,19 @@
 
 pub mod adaptive;
 mod batches;
-pub mod bench;
 mod block;
 pub mod budget;
-pub mod clock;
 mod compiled;
 mod fog;
-pub mod parts;
+pub mod instrument;
+mod monitor;
+mod observer;
+pub mod pixel_sample;
 mod primary;
-mod recorder;
-pub mod sample;
-mod watch;
+pub mod strategy_images;
+pub mod timing;
 
-pub use watch::Snapshot;
+pub use monitor::Snapshot;
 
 use crate::{
     film::{
@@ -28,15 +28,16 @@ use crate::{
     },
     math::{Spectrum, Vec3},
     sampling::Sampler,
-    scene::{Scene, integrator::Look},
+    scene::Scene,
+    settings::integrator::FogSettings,
     transport::{Heuristic, Options, Strategies, profile::ProfileName},
 };
 use adaptive::{Adaptive, Developed, Precision, Reached};
-use bench::{BLOCKS_AT_ONCE, Bench};
 use budget::Budget;
 use fog::Preview;
+use instrument::{BLOCKS_AT_ONCE, Instrument};
+use monitor::{Monitor, Stopwatch};
 use std::time::Duration;
-use watch::{Clock, Watch};
 
 /// What to render and for how long.
 #[derive(Clone, Copy, Debug)]
@@ -102,8 +103,8 @@ pub fn render_layers(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    let mut watch = Watch { progress, marks: &[], show: &mut |_| {} };
-    dispatch(scene, film, settings, Mode::Budget, layers, &mut watch)
+    let mut monitor = Monitor { progress, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, settings, Mode::Budget, layers, &mut monitor)
 }
 
 /// Renders `scene` onto `film`, and shows the image after each of `marks` (samples per pixel, in growing order, none
@@ -116,7 +117,7 @@ pub fn render_in_steps(
     progress: &mut dyn FnMut(Progress),
     show: &mut dyn FnMut(Snapshot),
 ) -> Image {
-    dispatch(scene, film, settings, Mode::Budget, &[], &mut Watch { progress, marks, show })
+    dispatch(scene, film, settings, Mode::Budget, &[], &mut Monitor { progress, marks, show })
 }
 
 /// Renders `scene` onto `film`, and `layers` with it, until every pixel is known with `precision` or the budget of
@@ -129,23 +130,23 @@ pub fn render_to_precision(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    let mut watch = Watch { progress, marks: &[], show: &mut |_| {} };
-    dispatch(scene, film, settings, Mode::Precision(precision), layers, &mut watch)
+    let mut monitor = Monitor { progress, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, settings, Mode::Precision(precision), layers, &mut monitor)
 }
 
-/// Shows `scene` on `film` as a preview that looks like `look`, and `layers` with it. Of the options only the
+/// Shows `scene` on `film` as a preview that looks like `fog`, and `layers` with it. Of the options only the
 /// visibility of emitters counts.
 pub fn preview(
     scene: &Scene,
     film: &Film,
     settings: &Settings,
-    look: &Look,
+    fog: &FogSettings,
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
     let options = Options { strategies: Strategies::NONE, heuristic: Heuristic::Balance, ..settings.options };
-    let mut watch = Watch { progress, marks: &[], show: &mut |_| {} };
-    dispatch(scene, film, &Settings { options, ..*settings }, Mode::Preview(look), layers, &mut watch)
+    let mut monitor = Monitor { progress, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, &Settings { options, ..*settings }, Mode::Preview(fog), layers, &mut monitor)
 }
 
 /// What is made of samples.
@@ -156,7 +157,7 @@ enum Mode<'a> {
     /// An image that is good enough everywhere.
     Precision(Precision),
     /// A preview.
-    Preview(&'a Look),
+    Preview(&'a FogSettings),
 }
 
 fn dispatch(
@@ -165,34 +166,35 @@ fn dispatch(
     settings: &Settings,
     mode: Mode<'_>,
     layers: &[Layer],
-    watch: &mut Watch<'_>,
+    monitor: &mut Monitor<'_>,
 ) -> Image {
-    let clock = Clock::start();
-    let bench = Bench::new(scene, film, settings);
+    let stopwatch = Stopwatch::start();
+    let bench = Instrument::new(scene, film, settings);
     let preview = match mode {
         Mode::Precision(precision) => {
-            let found = Adaptive::new(&bench, precision, &clock).run(watch.progress);
-            return finish(&bench, &clock, found, layers);
+            let found = Adaptive::new(&bench, precision, &stopwatch).run(monitor.progress);
+            return finish(&bench, &stopwatch, found, layers);
         }
-        Mode::Preview(look) => {
+        Mode::Preview(fog) => {
             let rays = bench.compiled.blocks().pilot_rays(scene, film, settings.seed);
-            Some(Preview::new(scene, look, settings.options.hide_emitters, rays))
+            Some(Preview::new(scene, fog, settings.options.hide_emitters, rays))
         }
         Mode::Budget => None,
     };
     let squares = layers.iter().any(Layer::needs_squares);
     let accumulator = if squares { Accumulator::with_products } else { Accumulator::new }(film.len());
-    let (accumulator, noise, clock) = accumulate(&bench, preview.as_ref(), accumulator, clock, watch);
+    let (accumulator, noise, stopwatch) =
+        accumulate(&bench, preview.as_ref(), accumulator, stopwatch, monitor);
     let passes = accumulator.passes();
     let seen = primary::Pass::new(film, layers).run(&bench, passes);
     let pixels = accumulator.mean();
     let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
-    let elapsed = clock.elapsed();
+    let elapsed = stopwatch.elapsed();
     Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers, reached: None }
 }
 
 /// The image of an adaptive render, with a layer that tells how many samples its pixels took.
-fn finish(bench: &Bench<'_>, clock: &Clock, found: Developed, layers: &[Layer]) -> Image {
+fn finish(bench: &Instrument<'_>, stopwatch: &Stopwatch, found: Developed, layers: &[Layer]) -> Image {
     let Developed { pixels, passes, noise, reached } = found;
     let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
     let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes);
@@ -201,26 +203,26 @@ fn finish(bench: &Bench<'_>, clock: &Clock, found: Developed, layers: &[Layer]) 
     let mut layers: Vec<_> = layers.iter().flat_map(|layer| develop(layer, &pixels, &none, &seen)).collect();
     let values = reached.samples.iter().map(|n| *n as f32).collect();
     layers.push(Channel { name: "samples.N".to_owned(), values });
-    let (elapsed, reached) = (clock.elapsed(), Some(reached));
+    let (elapsed, reached) = (stopwatch.elapsed(), Some(reached));
     Image { pixels, samples_per_pixel: mean, elapsed, noise, alpha: seen.alpha, layers, reached }
 }
 
 /// Adds up passes until the budget is spent; with the noise of their mean. A preview is shown in place of what the
 /// estimator says.
 fn accumulate(
-    bench: &Bench<'_>,
+    bench: &Instrument<'_>,
     preview: Option<&Preview<'_>>,
     mut accumulator: Accumulator,
-    mut clock: Clock,
-    watch: &mut Watch<'_>,
-) -> (Accumulator, Option<f64>, Clock) {
-    let Bench { film, settings: Settings { budget, seed, .. }, compiled, .. } = bench;
+    mut stopwatch: Stopwatch,
+    monitor: &mut Monitor<'_>,
+) -> (Accumulator, Option<f64>, Stopwatch) {
+    let Instrument { film, settings: Settings { budget, seed, .. }, compiled, .. } = bench;
     let (blocks, count) = (compiled.blocks(), compiled.blocks().count());
     let mut pass = vec![Spectrum::ZERO; film.len()];
     let (mut next, mut noise) = (0, None);
     loop {
         let wanted = budget.limit_tasks(next + BLOCKS_AT_ONCE, count);
-        let tasks = next..watch.limit_tasks(wanted, accumulator.passes(), count);
+        let tasks = next..monitor.limit_tasks(wanted, accumulator.passes(), count);
         let outcomes = bench.work(tasks.clone(), |pass, block| match preview {
             None => compiled.render(pass, block, &|_| true),
             Some(preview) => blocks.show(preview, film, *seed, pass, block),
@@ -236,16 +238,17 @@ fn accumulate(
             noise = accumulator.noise();
         }
         next = tasks.end;
-        let (elapsed, passes) = (clock.elapsed(), accumulator.passes());
-        if next.is_multiple_of(count) && watch.is_mark(passes) {
-            let show =
-                || (watch.show)(Snapshot { pixels: accumulator.mean(), samples_per_pixel: passes, elapsed });
-            clock.hold(show);
+        let (elapsed, passes) = (stopwatch.elapsed(), accumulator.passes());
+        if next.is_multiple_of(count) && monitor.is_mark(passes) {
+            let show = || {
+                (monitor.show)(Snapshot { pixels: accumulator.mean(), samples_per_pixel: passes, elapsed })
+            };
+            stopwatch.hold(show);
         }
         let samples = (next as u64 * film.len() as u64) / count as u64;
-        (watch.progress)(Progress { samples, passes, elapsed, noise, within: None });
+        (monitor.progress)(Progress { samples, passes, elapsed, noise, within: None });
         if budget.is_spent(next, count, elapsed) {
-            return (accumulator, noise, clock);
+            return (accumulator, noise, stopwatch);
         }
     }
 }

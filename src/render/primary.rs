@@ -1,7 +1,7 @@
 //! What primary rays see: alpha, and the layers that tell of the first surface. A cheap pass of its own, only
-//! where something asks for it, through the same film positions as the eye walks.
+//! where something asks for it, through the same film positions as the camera subpaths.
 
-use super::{bench::Bench, block::EyeStart};
+use super::{block::CameraStart, instrument::Instrument};
 use crate::{
     bsdf::BsdfModel,
     film::{
@@ -53,8 +53,8 @@ impl Pass {
     }
 
     /// Traces as many primary rays per pixel as there were `passes`.
-    pub fn run(&self, bench: &Bench<'_>, passes: u64) -> Seen {
-        let Bench { scene, film, settings, compiled } = bench;
+    pub fn run(&self, bench: &Instrument<'_>, passes: u64) -> Seen {
+        let Instrument { scene, film, settings, compiled } = bench;
         let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
             return Seen { alpha: Vec::new(), planes: Vec::new() };
@@ -65,7 +65,7 @@ impl Pass {
             let mut sums = vec![[0f64; 3]; width];
             for pass in 0..passes {
                 let blocks = compiled.blocks();
-                let mut start = blocks.eye_start(scene, film, settings.seed, pass as usize, pixel);
+                let mut start = blocks.camera_start(scene, film, settings.seed, pass as usize, pixel);
                 let view = View::new(bench, environment, &start, passes);
                 let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
                 let values = self.quantities.iter().map(|quantity| view.quantity(*quantity));
@@ -92,7 +92,7 @@ impl Pass {
 /// A primary ray and what it meets first; nulls and boundaries of media count, as in Mitsuba.
 struct View<'a> {
     scene: &'a Scene,
-    bench: &'a Bench<'a>,
+    bench: &'a Instrument<'a>,
     film: Vec2,
     aperture: Vec2,
     ray: Ray,
@@ -104,9 +104,9 @@ struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    fn new(bench: &'a Bench<'a>, environment: bool, start: &EyeStart, passes: u64) -> Self {
+    fn new(bench: &'a Instrument<'a>, environment: bool, start: &CameraStart, passes: u64) -> Self {
         let scene = bench.scene;
-        let EyeStart { position: film, aperture, .. } = *start;
+        let CameraStart { position: film, aperture, .. } = *start;
         let ray = scene.sensor.ray(film, aperture).ray;
         let hit = scene.geometry.closest(&ray).map(|hit| (hit, scene.geometry.surface(&ray, &hit)));
         Self { scene, bench, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }

@@ -9,7 +9,7 @@ use sobol_burley::parts::{Int4, owen_scramble_int4_rev, owen_scramble_rev, sobol
 /// numbers (each +- 0.05, the worst 2 % of pixels left out).
 pub const DIMENSIONS: u32 = 32;
 
-/// Points of one sequence; further ones belong to another, scrambled anew.
+/// Points of one sequence; further ones belong to another, scrambled again.
 const LENGTH_LOG2: u32 = 16;
 
 /// A point, as far as its coordinates have not been drawn.

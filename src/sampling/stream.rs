@@ -9,9 +9,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// What a stream is for: two purposes at the same index never share numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// Eye walks.
-    Eye = 1,
-    /// Light walks.
+    /// Camera subpaths.
+    Camera = 1,
+    /// Light subpaths.
     Light = 2,
     /// Measurements before the render (pilot walks, medium detection).
     Pilot = 3,
@@ -150,9 +150,10 @@ mod tests {
     #[test]
     fn equal_keys_give_equal_numbers_and_any_other_key_others() {
         let draw = |seed, index, sample, purpose| Stream::new(seed, index, sample, purpose).uniform();
-        let base = draw(1, 2, 3, Purpose::Eye);
-        assert_eq!(base, draw(1, 2, 3, Purpose::Eye));
-        for other in [draw(2, 2, 3, Purpose::Eye), draw(1, 3, 2, Purpose::Eye), draw(1, 2, 3, Purpose::Light)]
+        let base = draw(1, 2, 3, Purpose::Camera);
+        assert_eq!(base, draw(1, 2, 3, Purpose::Camera));
+        for other in
+            [draw(2, 2, 3, Purpose::Camera), draw(1, 3, 2, Purpose::Camera), draw(1, 2, 3, Purpose::Light)]
         {
             assert_ne!(base, other);
         }
@@ -249,13 +250,13 @@ mod tests {
     /// What follows the coordinates is independent: a stream goes on for ever.
     #[test]
     fn streams_go_on_beyond_their_point() {
-        let mut stream = Stream::sobol(1, 2, 3, Purpose::Eye);
-        let mut other = Stream::sobol(1, 2, 3 + (1 << 16), Purpose::Eye);
+        let mut stream = Stream::sobol(1, 2, 3, Purpose::Camera);
+        let mut other = Stream::sobol(1, 2, 3 + (1 << 16), Purpose::Camera);
         let drawn: Vec<_> = (0..3 * DIMENSIONS).map(|_| stream.uniform()).collect();
         assert!(drawn.iter().all(|u| (0.0..1.0).contains(u)));
         assert!(drawn.iter().all(|u| *u != other.uniform()));
         // Squares cut in two by the end of the point are squares still.
-        let mut stream = Stream::sobol(1, 2, 3, Purpose::Eye);
+        let mut stream = Stream::sobol(1, 2, 3, Purpose::Camera);
         stream.uniform();
         (0..DIMENSIONS).for_each(|_| assert!(stream.square().min_element() >= 0.0));
     }

@@ -98,13 +98,13 @@ impl Geometry {
         reference: Vec3,
         stream: &mut Stream,
     ) -> Option<(SurfacePoint, f32)> {
-        let (point, density) = self.shapes[shape as usize].sample_toward(reference, stream)?;
-        Some((SurfacePoint { shape, ..point }, density))
+        let (point, pdf) = self.shapes[shape as usize].sample_toward(reference, stream)?;
+        Some((SurfacePoint { shape, ..point }, pdf))
     }
 
     /// The density with which `sample_toward` gives `point` [1/m^2].
-    pub fn density_toward(&self, shape: u32, reference: Vec3, point: &SurfacePoint) -> f32 {
-        self.shapes[shape as usize].density_toward(reference, point)
+    pub fn pdf_area_toward(&self, shape: u32, reference: Vec3, point: &SurfacePoint) -> f32 {
+        self.shapes[shape as usize].pdf_area_toward(reference, point)
     }
 }
 

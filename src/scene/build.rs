@@ -6,27 +6,30 @@ use super::{
     accel::Geometry,
     boundary::{self, Boundary},
     extents::Extents,
-    film,
-    integrator::{self, Integrator},
     lights::{Light, Lights, emissive},
     locate::{Infinity, Known, Locator},
     placement::{Names, Placement, place_camera},
-    plugins,
-    sampler::{self, Sampling},
     sections::Sections,
 };
 use crate::{
     bsdf::{self, Bsdf, BsdfModel},
-    density::Place,
     description::{Library, Location, Object, Params, Position, Property, Value, params::Child},
     emitter::{self, Emitter},
     error::{Error, Result},
     film::Film,
+    format::plugins,
     math::{DVec3, Vec2, Vec3},
-    medium::{self, Blueprint, Choice, MediumIndex, Treatment},
+    medium::{self, MediumDescription, MediumIndex, MediumOverrides},
     sampling::Sampler,
     sensor::{self, Crop, Sensor},
+    settings::{
+        Overrides, film,
+        integrator::{self, Integrator},
+        only_one,
+        sampler::{self, Sampling},
+    },
     shape::{self, Shape},
+    volume::Place,
 };
 use std::collections::HashMap;
 
@@ -54,15 +57,6 @@ pub struct Setup {
     pub time: f64,
 }
 
-/// What the caller asks of the film instead of the file's word.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Overrides {
-    /// Width and height [pixels].
-    pub size: Option<(u32, u32)>,
-    /// How flights through media that vary are sampled.
-    pub tracker: Option<Choice>,
-}
-
 /// Builds the scene that `root` describes.
 pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     plugins::check(root)?;
@@ -83,11 +77,12 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     };
     let medium_names = builder.medium_names.clone();
     let (shape_names, bsdf_names) = (builder.shape_names.clone(), builder.bsdf_names.clone());
-    let treatment = integrator.restriction.treatment();
-    let treatment = Treatment { tracker: overrides.tracker.or(treatment.tracker), ..treatment };
+    let medium_overrides = integrator.restriction.medium_overrides();
+    let medium_overrides =
+        MediumOverrides { tracker: overrides.tracker.or(medium_overrides.tracker), ..medium_overrides };
     let time = builder.place.time;
     let scene =
-        builder.finish(view.sensor, view.start, view.medium, &sections.sensor.location, &treatment)?;
+        builder.finish(view.sensor, view.start, view.medium, &sections.sensor.location, &medium_overrides)?;
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }
@@ -115,10 +110,6 @@ fn warn_of_counted_nulls(object: &Object, integrator: &Integrator, scene: &Scene
                     Mitsuba's path counts it in max_depth";
         library.warn(&object.location, text);
     }
-}
-
-pub(super) fn only_one(second: &Child<'_>, what: &str) -> Error {
-    Error::new(second.location, format!("one {what}"), format!("a second {what}"), "remove one of them")
 }
 
 /// The camera with its film.
@@ -156,7 +147,7 @@ struct Builder<'a> {
     bsdf_names: Vec<String>,
     bsdf_index: HashMap<*const Object, u32>,
     place: Place,
-    media: Vec<Blueprint>,
+    media: Vec<MediumDescription>,
     medium_names: Vec<String>,
     medium_ids: Vec<Option<String>>,
     medium_index: HashMap<*const Object, MediumIndex>,
@@ -178,7 +169,7 @@ impl<'a> Builder<'a> {
             bsdf_names: Vec::new(),
             bsdf_index: HashMap::new(),
             place,
-            media: vec![Blueprint::vacuum()],
+            media: vec![MediumDescription::vacuum()],
             medium_names: Vec::new(),
             medium_ids: Vec::new(),
             medium_index: HashMap::new(),
@@ -327,7 +318,7 @@ impl<'a> Builder<'a> {
         start: Vec3,
         stated: Option<MediumIndex>,
         sensor_location: &Location,
-        treatment: &Treatment,
+        medium_overrides: &MediumOverrides,
     ) -> Result<Scene> {
         let geometry = Geometry::build(std::mem::take(&mut self.shapes));
         let touching = boundary::touching(&geometry, &self.surfaces);
@@ -355,7 +346,7 @@ impl<'a> Builder<'a> {
         let viewpoint = sensor.position();
         let extents =
             Extents { geometry: &geometry, surfaces: &self.surfaces, viewpoint, outside, survey: &survey };
-        let media = extents.finish(self.media, treatment)?;
+        let media = extents.finish(self.media, medium_overrides)?;
         let locator = Locator { geometry: &geometry, surfaces: &self.surfaces, known: &known };
         let placement = Placement { locator, names: &names, ambient: sensor_medium };
         let recentre = self.recentre;

@@ -5,7 +5,7 @@ use super::{Surface, accel::Geometry, locate::Survey};
 use crate::{
     error::Result,
     math::Vec3,
-    medium::{Around, Blueprint, Medium, MediumIndex, Treatment},
+    medium::{Medium, MediumBounds, MediumDescription, MediumIndex, MediumOverrides},
 };
 
 /// Boxes reach beyond shapes by this part of their size: the boundary itself lies within.
@@ -27,10 +27,14 @@ pub struct Extents<'a> {
 
 impl Extents<'_> {
     /// Finishes all media.
-    pub fn finish(&self, media: Vec<Blueprint>, treatment: &Treatment) -> Result<Vec<Medium>> {
-        let finish = |(index, blueprint): (usize, Blueprint)| {
+    pub fn finish(
+        &self,
+        media: Vec<MediumDescription>,
+        medium_overrides: &MediumOverrides,
+    ) -> Result<Vec<Medium>> {
+        let finish = |(index, description): (usize, MediumDescription)| {
             let (is_bound, [low, high]) = self.of(MediumIndex(index as u32));
-            blueprint.finish(Around { low, high, is_bound }, treatment)
+            description.finish(MediumBounds { low, high, is_bound }, medium_overrides)
         };
         media.into_iter().enumerate().map(finish).collect()
     }

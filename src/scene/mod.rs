@@ -4,32 +4,11 @@ pub mod accel;
 pub mod boundary;
 pub mod build;
 mod extents;
-mod files;
-mod film;
-pub mod heuristic;
-pub mod integrator;
-mod json;
 pub mod lights;
 mod locate;
-pub mod options;
-mod origins;
-mod parameters;
 mod placement;
-mod plugins;
-mod read;
-mod references;
-mod sampler;
 mod sections;
-mod steps;
-mod tags;
-mod text;
 mod time;
-mod write;
-mod xml;
-
-pub use files::{Sources, sources};
-pub use read::{Spelling, read};
-pub use write::{Conversion, Naming, convert, write};
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},

@@ -9,7 +9,7 @@ use crate::{
     description::{Library, Location, Position},
     emitter::Emitter,
     math::{DVec3, Vec3, offset},
-    medium::{Blueprint, MediumIndex},
+    medium::{MediumDescription, MediumIndex},
     sampling::{Stream, stream::Purpose},
     shape::SurfacePoint,
 };
@@ -126,15 +126,15 @@ impl Names<'_> {
     }
 
     /// Of the medium around everything, light has to end somewhere, and none comes in from infinity.
-    pub fn warn_of_endless(&self, outside: MediumIndex, media: &[Blueprint], sky: Option<&Location>) {
-        let blueprint = &media[outside.0 as usize];
-        if let Some(location) = blueprint.endless_emission() {
+    pub fn warn_of_endless(&self, outside: MediumIndex, media: &[MediumDescription], sky: Option<&Location>) {
+        let description = &media[outside.0 as usize];
+        if let Some(location) = description.endless_emission() {
             let text = "this medium lies around the whole scene and emits without end; it is taken to emit only in the box \
                         around all shapes and the camera. Put it into a shape to say where it ends";
             self.library.warn(location, text);
         }
         if let Some(location) = sky
-            && blueprint.extinguishes_without_end()
+            && description.extinguishes_without_end()
         {
             let text = format!(
                 "no light of this emitter arrives: {} lies around the whole scene without end. If it should fill a \

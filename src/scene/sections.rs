@@ -1,14 +1,16 @@
 //! The children of a scene by kind.
 
-use super::{build::only_one, integrator, plugins, references, tags};
 use crate::{
     bsdf,
-    density::{self, Place},
     description::{Library, Object, Params, Position, params::Child},
     emitter,
     error::{Error, Result},
+    format::{plugins, references, tags},
     math::DVec3,
-    medium, sensor, shape,
+    medium, sensor,
+    settings::{integrator, only_one},
+    shape,
+    volume::{self, Place},
 };
 
 /// The scene's children by kind.
@@ -32,7 +34,7 @@ fn is_definition(object: &Object) -> bool {
         || medium::ROWS.has(object)
         || crate::phase::ROWS.has(object)
         || crate::texture::ROWS.has(object)
-        || density::ROWS.has(object)
+        || volume::ROWS.has(object)
 }
 
 fn is_shape(object: &Object) -> bool {
@@ -89,8 +91,8 @@ fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()>
         medium::build(object, library, &place).map(drop)
     } else if crate::phase::ROWS.has(object) {
         crate::phase::build(object, library).map(drop)
-    } else if density::ROWS.has(object) {
-        density::build(object, library, &place).map(drop)
+    } else if volume::ROWS.has(object) {
+        volume::build(object, library, &place).map(drop)
     } else {
         crate::texture::build(object, library).map(drop)
     }

@@ -8,7 +8,7 @@ use crate::{emitter::Kind, error::Result};
 
 impl Scene {
     /// Moves the scene to `time` [s]; false where nothing in it depends on time. Media that change are looked at
-    /// anew, and so is where light starts, for how far they reach and how they shine may have changed.
+    /// again, and so is where light starts, for how far they reach and how they shine may have changed.
     pub fn set_time(&mut self, time: f64) -> Result<bool> {
         let mut changed = false;
         for medium in &mut self.media {

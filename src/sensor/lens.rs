@@ -62,7 +62,7 @@ impl Lens {
     /// [pixels/sr]: scale^2 / cos^3. It holds through any point of a lens: what a lens in focus at distance F
     /// spreads over F^2 times the area lies F^2 times further away.
     #[inline(always)]
-    pub fn density(&self, cosine: f32) -> f32 {
+    pub fn pdf(&self, cosine: f32) -> f32 {
         self.scale * self.scale / (cosine * cosine * cosine)
     }
 

@@ -1,8 +1,9 @@
-//! Sensors: where eye walks start and what light walks are joined to. Camera space: +z forwards, +y up, +x to
-//! the image's left, as in Mitsuba. Film positions are in pixels, (0, 0) the top left corner of the image.
+//! Sensors: where camera subpaths start and what light subpaths are joined to. Camera space: +z forwards, +y
+//! up, +x to the image's left, as in Mitsuba. Film positions are in pixels, (0, 0) the top left corner of the
+//! image.
 //!
-//! An eye walk starts by a film position and a point of the aperture, both sampled with densities that do not
-//! depend on the path; a join with the sensor samples the aperture likewise and finds the film position. What
+//! A camera subpath starts by a film position and a point of the aperture, both sampled with densities that do not
+//! depend on the path; a connection with the sensor samples the aperture likewise and finds the film position. What
 //! remains of either is one density: of directions per film area of a pixel, or, for parallel rays, of
 //! positions.
 
@@ -46,7 +47,7 @@ pub struct Crop {
     pub offset: [u32; 2],
 }
 
-/// The first ray of an eye walk.
+/// The first ray of a camera subpath.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorRay {
     /// The point of the sensor.
@@ -55,7 +56,7 @@ pub struct SensorRay {
     pub ray: Ray,
     /// Density of the direction per film area of a pixel [pixels/sr]; of parallel rays that of their positions
     /// [pixels/m^2].
-    pub density: f32,
+    pub pdf: f32,
 }
 
 /// A point as a sensor sees it.
@@ -68,8 +69,8 @@ pub struct Projection {
     /// 1 over this turns a density per solid angle at the sensor into one per area across the ray at the point
     /// [m^2]; 1 for points at infinity and for parallel rays.
     pub distance_squared: f32,
-    /// As in [`SensorRay::density`].
-    pub density: f32,
+    /// As in [`SensorRay::pdf`].
+    pub pdf: f32,
 }
 
 /// Reads the parameters of one kind of sensor (except film, sampler and medium); the point `recentre` of the

@@ -23,7 +23,7 @@ pub struct Orthographic {
     /// Distance from the near to the far clip plane along `direction` [m].
     reach: f32,
     /// Pixels per area across the rays [pixels/m^2].
-    density: f32,
+    pdf: f32,
     /// The middle of the film.
     position: Vec3,
 }
@@ -51,7 +51,7 @@ impl Orthographic {
             direction: direction.as_vec3(),
             to_film: DMat3::from_cols(across, down, direction).inverse().as_mat3(),
             reach: clip.far - clip.near,
-            density: (1.0 / area) as f32,
+            pdf: (1.0 / area) as f32,
             position: film(0.5 * width, 0.5 * height).as_vec3(),
         })
     }
@@ -66,7 +66,7 @@ impl Orthographic {
     pub fn ray(&self, film: Vec2) -> SensorRay {
         let position = self.corner + self.steps[0] * film.x + self.steps[1] * film.y;
         let ray = Ray { origin: position, direction: self.direction, t_max: self.reach };
-        SensorRay { position, ray, density: self.density }
+        SensorRay { position, ray, pdf: self.pdf }
     }
 
     /// How `point` is seen; none where it lies outside the clip planes.
@@ -78,6 +78,6 @@ impl Orthographic {
         }
         let origin = point - self.direction * seen.z;
         let ray = Ray { origin, direction: self.direction, t_max: self.reach };
-        Some(Projection { film: vec2(seen.x, seen.y), ray, distance_squared: 1.0, density: self.density })
+        Some(Projection { film: vec2(seen.x, seen.y), ray, distance_squared: 1.0, pdf: self.pdf })
     }
 }

@@ -29,7 +29,7 @@ impl Perspective {
         let Self(lens) = self;
         let local = Lens::through(lens.plane(film));
         let ray = lens.clip.ray(lens.position, lens.frame.to_world(local), local.z);
-        SensorRay { position: lens.position, ray, density: lens.density(local.z) }
+        SensorRay { position: lens.position, ray, pdf: lens.pdf(local.z) }
     }
 
     /// How `point` is seen; none where it lies outside the clip distances.
@@ -54,7 +54,7 @@ impl Perspective {
             film: lens.film(local.truncate() / local.z),
             ray: lens.clip.ray(lens.position, lens.frame.to_world(local), local.z),
             distance_squared,
-            density: lens.density(local.z),
+            pdf: lens.pdf(local.z),
         }
     }
 }

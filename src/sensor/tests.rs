@@ -43,14 +43,14 @@ const APERTURE: Vec2 = vec2(0.05, -0.13);
 fn a_point_on_a_ray_is_seen_where_the_ray_starts() {
     for sensor in examples() {
         for film in FILMS {
-            let SensorRay { ray, density, position } = sensor.ray(film, APERTURE);
+            let SensorRay { ray, pdf, position } = sensor.ray(film, APERTURE);
             for t in [0.1, 3.0, 100.0] {
                 let point = ray.origin + ray.direction * t;
                 let seen = sensor.project(point, APERTURE).unwrap();
                 assert!((seen.film - film).length() < 2e-2, "{} {film}: {}", sensor.name(), seen.film);
                 assert!((seen.ray.direction - ray.direction).length() < 1e-4);
                 assert!((seen.ray.origin - ray.origin).length() < 1e-3);
-                assert!((seen.density / density - 1.0).abs() < 1e-3);
+                assert!((seen.pdf / pdf - 1.0).abs() < 1e-3);
                 let squared = if sensor.is_parallel() { 1.0 } else { point.distance_squared(position) };
                 assert!((seen.distance_squared / squared - 1.0).abs() < 1e-3);
             }
@@ -71,9 +71,9 @@ fn densities_are_those_of_the_projection() {
                 if sensor.is_parallel() { ray.origin } else { ray.direction }.as_dvec3()
             };
             let (across, down) = (at(0.5, 0.0) - at(-0.5, 0.0), at(0.0, 0.5) - at(0.0, -0.5));
-            let SensorRay { ray, density, .. } = sensor.ray(film, APERTURE);
+            let SensorRay { ray, pdf, .. } = sensor.ray(film, APERTURE);
             let area = across.cross(down).dot(ray.direction.as_dvec3()).abs();
-            assert!((area * f64::from(density) - 1.0).abs() < 2e-3, "{} {film}", sensor.name());
+            assert!((area * f64::from(pdf) - 1.0).abs() < 2e-3, "{} {film}", sensor.name());
         }
     }
 }

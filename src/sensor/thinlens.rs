@@ -56,7 +56,7 @@ impl ThinLens {
         let local = Lens::through(lens.plane(film) - aperture / self.focus);
         let position = lens.at(aperture);
         let ray = lens.clip.ray(position, lens.frame.to_world(local), local.z);
-        SensorRay { position, ray, density: lens.density(local.z) }
+        SensorRay { position, ray, pdf: lens.pdf(local.z) }
     }
 
     /// How `point` is seen through a point of the lens; none where it lies outside the clip distances.
@@ -82,7 +82,7 @@ impl ThinLens {
             film: lens.film(local.truncate() / local.z + aperture / self.focus),
             ray: lens.clip.ray(lens.at(aperture), lens.frame.to_world(local), local.z),
             distance_squared,
-            density: lens.density(local.z),
+            pdf: lens.pdf(local.z),
         }
     }
 }

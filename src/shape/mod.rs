@@ -238,21 +238,21 @@ impl Shape {
     /// A point for light to come from to `reference`, and its density [1/m^2]; none where that has no use
     /// (the point is seen edge-on).
     pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> Option<(SurfacePoint, f32)> {
-        let (point, density) = match self {
+        let (point, pdf) = match self {
             Self::Parallelograms(p) => p.sample_toward(reference, stream),
             Self::Sphere(s) => s.sample_toward(reference, stream),
             Self::Disk(_) | Self::Cylinder(_) | Self::Mesh(_) => {
                 (self.sample_area(stream), 1.0 / self.area())
             }
         };
-        (density > 0.0 && density.is_finite()).then_some((point, density))
+        (pdf > 0.0 && pdf.is_finite()).then_some((point, pdf))
     }
 
     /// Density of `sample_toward` at `point` [1/m^2].
-    pub fn density_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
+    pub fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
         match self {
-            Self::Parallelograms(p) => p.density_toward(reference, point),
-            Self::Sphere(s) => s.density_toward(reference, point),
+            Self::Parallelograms(p) => p.pdf_area_toward(reference, point),
+            Self::Sphere(s) => s.pdf_area_toward(reference, point),
             Self::Disk(_) | Self::Cylinder(_) | Self::Mesh(_) => 1.0 / self.area(),
         }
     }

@@ -163,13 +163,13 @@ impl Parallelograms {
         };
         let at = seen.sample(stream.square());
         let point = self.faces[0].point(at.x, at.y);
-        (point, solid_angle_density(&seen, reference, &point))
+        (point, pdf_area_from_solid_angle(&seen, reference, &point))
     }
 
     /// Density of `sample_toward` [1/m^2].
-    pub fn density_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
+    pub fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
         match self.seen_from(reference) {
-            Some(seen) => solid_angle_density(&seen, reference, point),
+            Some(seen) => pdf_area_from_solid_angle(&seen, reference, point),
             None => 1.0 / self.area(),
         }
     }
@@ -180,7 +180,7 @@ impl Parallelograms {
 }
 
 /// Uniform in solid angle, as a density per area [1/m^2].
-fn solid_angle_density(seen: &Seen, reference: Vec3, point: &SurfacePoint) -> f32 {
+fn pdf_area_from_solid_angle(seen: &Seen, reference: Vec3, point: &SurfacePoint) -> f32 {
     let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
-    measure::solid_angle_to_vertex(direction.dot(point.normal), squared) * seen.density()
+    measure::solid_angle_to_vertex(direction.dot(point.normal), squared) * seen.pdf_sr()
 }

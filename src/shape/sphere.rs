@@ -146,24 +146,24 @@ impl Sphere {
         let cos_alpha = sine_squared / sine_max + cosine * (1.0 - ratio).sqrt();
         let out = warp::spherical(cos_alpha.clamp(-1.0, 1.0), TAU * u.y);
         let point = self.point(Frame::around(to_reference / distance).to_world(out));
-        (point, self.cone_density(one_minus_cos, reference, &point))
+        (point, self.cone_pdf_area(one_minus_cos, reference, &point))
     }
 
     /// Density of `sample_toward` [1/m^2].
-    pub fn density_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
+    pub fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
         match self.cone(reference) {
-            Some(one_minus_cos) => self.cone_density(one_minus_cos, reference, point),
+            Some(one_minus_cos) => self.cone_pdf_area(one_minus_cos, reference, point),
             None => 1.0 / self.area(),
         }
     }
 
     /// Uniform in the cone, as a density per area [1/m^2]; 0 on the far side.
-    fn cone_density(&self, one_minus_cos: f32, reference: Vec3, point: &SurfacePoint) -> f32 {
+    fn cone_pdf_area(&self, one_minus_cos: f32, reference: Vec3, point: &SurfacePoint) -> f32 {
         let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
         let cosine = direction.dot(point.normal) * self.facing;
         if cosine <= 0.0 {
             return 0.0;
         }
-        measure::solid_angle_to_vertex(cosine, squared) * warp::cone_density(one_minus_cos)
+        measure::solid_angle_to_vertex(cosine, squared) * warp::cone_pdf(one_minus_cos)
     }
 }

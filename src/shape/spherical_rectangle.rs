@@ -86,7 +86,7 @@ impl Seen {
     }
 
     /// Density of the directions to the samples [1/sr].
-    pub fn density(&self) -> f32 {
+    pub fn pdf_sr(&self) -> f32 {
         (1.0 / self.solid_angle) as f32
     }
 

@@ -1,22 +1,23 @@
-//! The cache of light walks that the eye walks of a block are joined with: joining every eye vertex with a
-//! fixed number of its vertices, drawn uniformly, bounds the cost of a pixel sample linearly in its length.
+//! The cache of light subpaths that the camera subpaths of a block are joined with: joining every camera
+//! vertex with a fixed number of its vertices, drawn uniformly, bounds the cost of a pixel sample linearly in
+//! its length.
 
-use super::{vertex::Vertex, weight::Sums};
+use super::{mis::MisSums, vertex::Vertex};
 
-/// Vertices of light walks, those of one hero channel together.
+/// Vertices of light subpaths, those of one hero channel together.
 #[derive(Clone, Debug)]
-pub struct LightCache<S: Sums> {
+pub struct LightCache<S: MisSums> {
     pools: Vec<Pool<S>>,
 }
 
 #[derive(Clone, Debug)]
-struct Pool<S: Sums> {
+struct Pool<S: MisSums> {
     vertices: Vec<Vertex<S>>,
-    /// Light walks that could have left vertices here, times the probability that a vertex was kept.
+    /// Light subpaths that could have left vertices here, times the probability that a vertex was kept.
     walks: f32,
 }
 
-impl<S: Sums> LightCache<S> {
+impl<S: MisSums> LightCache<S> {
     /// No walks, for `heroes` hero channels.
     pub fn new(heroes: usize) -> Self {
         Self { pools: (0..heroes).map(|_| Pool { vertices: Vec::new(), walks: 0.0 }).collect() }
@@ -33,15 +34,15 @@ impl<S: Sums> LightCache<S> {
         self.pools[hero].vertices.push(vertex);
     }
 
-    /// The vertices for eye walks of `hero`, and the factor that makes `joins` uniform draws from them an
-    /// estimate of the sum over all vertices of one light walk: vertices / (joins x walks).
+    /// The vertices for camera subpaths of `hero`, and the factor that makes `connections` uniform draws from them an
+    /// estimate of the sum over all vertices of one light subpath: vertices / (joins x walks).
     #[inline]
-    pub fn pool(&self, hero: usize, joins: u32) -> Option<(&[Vertex<S>], f32)> {
+    pub fn pool(&self, hero: usize, connections: u32) -> Option<(&[Vertex<S>], f32)> {
         let pool = &self.pools[hero];
-        if pool.vertices.is_empty() || joins == 0 {
+        if pool.vertices.is_empty() || connections == 0 {
             return None;
         }
-        Some((&pool.vertices, pool.vertices.len() as f32 / (joins as f32 * pool.walks)))
+        Some((&pool.vertices, pool.vertices.len() as f32 / (connections as f32 * pool.walks)))
     }
 
     /// Vertices kept in all.

@@ -1,15 +1,15 @@
-//! Joins: the segment between the end of an eye walk and the end of a light walk, with contribution
+//! Joins: the segment between the end of a camera subpath and the end of a light subpath, with contribution
 //! (LW96 eq. 10) and weight (eq. 14).
 
 use super::{
+    mis::{self, End, MisSums, Strategy},
     profile::Profile,
     segment,
     vertex::Vertex,
-    weight::{self, End, Strategy, Sums},
 };
 use crate::{
     bsdf::Transport,
-    math::{Lanes, Spectrum, Vec3, measure, offset},
+    math::{Channels, Spectrum, Vec3, measure, offset},
     medium::MediumIndex,
     sampling::Stream,
     scene::{
@@ -22,7 +22,7 @@ use std::ops::{Div, Mul};
 
 /// The end of a walk at `vertex`, looking in unit direction `towards`; none where nothing scatters that way.
 #[inline]
-pub fn vertex_end<S: Sums>(
+pub fn vertex_end<S: MisSums>(
     scene: &Scene,
     vertex: &Vertex<S>,
     towards: Vec3,
@@ -40,49 +40,50 @@ pub fn vertex_end<S: Sums>(
         medium,
         within: false,
         value,
-        forward: scattering.forward,
+        pdf_fwd: scattering.pdf_fwd,
         cosine: vertex.cosine(towards),
-        inverse: vertex.subpath.inverse,
+        inv_pdf: vertex.subpath.inv_pdf,
         sigma_t: vertex.sigma_t(),
-        reach: vertex.subpath.reach,
-        tail: vertex.tail(scattering.backward),
+        pdf_over_hero: vertex.subpath.pdf_over_hero,
+        others_before: vertex.others_before(scattering.pdf_rev),
     })
 }
 
-/// The end at an emitter point picked by next-event estimation, for a join of strategy s = 1; `hits` is n of
-/// s = 0. In units of the density of s = 1, a light walk starts here `pdf_start / pdf` times as densely.
+/// The end at an emitter point picked by next-event estimation, for a connection of strategy s = 1;
+/// `emitter_hits` is n of s = 0. In units of the density of s = 1, a light subpath starts here `pdf_start /
+/// pdf` times as densely.
 #[inline]
 pub fn emitter_end<P: Profile>(
     scene: &Scene,
     sample: &EmitterSample,
     medium: MediumIndex,
     towards: Vec3,
-    hits: f32,
-) -> End<P::Sums> {
+    emitter_hits: f32,
+) -> End<P::MisSums> {
     let light = &scene.lights.all[sample.light as usize];
     let within = P::EMISSIVE && sample.point.is_volume();
-    let hits = if light.emitter.is_hittable() { hits } else { 0.0 };
+    let emitter_hits = if light.emitter.is_hittable() { emitter_hits } else { 0.0 };
     End {
         origin: sample.point.ray_origin(towards),
         lift: lift(&sample.point, towards),
         medium: if within { light.medium } else { medium },
         within,
         value: sample.value / sample.pdf,
-        forward: sample.pdf_direction * sample.pdf_start / sample.pdf,
+        pdf_fwd: sample.pdf_direction * sample.pdf_start / sample.pdf,
         cosine: sample.cosine,
-        inverse: 1.0 / sample.pdf,
+        inv_pdf: 1.0 / sample.pdf,
         sigma_t: rate_at::<P>(&sample.point),
-        reach: P::Lanes::splat(1.0),
-        tail: P::Sums::of(P::Lanes::splat(hits)),
+        pdf_over_hero: P::Channels::splat(1.0),
+        others_before: P::MisSums::of(P::Channels::splat(emitter_hits)),
     }
 }
 
 /// What stands for sigma_t at an emitter's point: how often emission is met in a medium, 1 elsewhere.
 #[inline]
-pub fn rate_at<P: Profile>(point: &EmitterPoint) -> P::Lanes {
+pub fn rate_at<P: Profile>(point: &EmitterPoint) -> P::Channels {
     match point {
-        EmitterPoint::Volume { rate, .. } if P::EMISSIVE => P::Lanes::from_spectrum(*rate),
-        _ => P::Lanes::splat(1.0),
+        EmitterPoint::Volume { rate, .. } if P::EMISSIVE => P::Channels::from_spectrum(*rate),
+        _ => P::Channels::splat(1.0),
     }
 }
 
@@ -97,20 +98,20 @@ fn lift(point: &EmitterPoint, towards: Vec3) -> Vec3 {
 
 /// What a strategy brings for one path.
 #[derive(Clone, Copy, Debug)]
-pub struct Joined {
+pub struct Contribution {
     /// The weighted contribution, of which the caller takes as many samples as it has.
     pub value: Spectrum,
-    /// The weight in it, times the number of lanes.
+    /// The weight in it, times the number of channels.
     pub weight: f32,
     /// What the strategy would bring if it ran alone: [`Self::share`] of it is `value`.
     pub alone: Spectrum,
     /// The weight that it would then have.
     pub weight_alone: f32,
-    /// What remains of radiance along the joining segment; 1 where there is none.
+    /// What remains of radiance along the connecting segment; 1 where there is none.
     pub transmittance: Spectrum,
 }
 
-impl Joined {
+impl Contribution {
     /// The weight among all strategies, in [0, 1]: over those that run the weights of one path sum to 1.
     #[inline]
     pub fn share(&self) -> f32 {
@@ -118,7 +119,7 @@ impl Joined {
     }
 }
 
-impl Mul<f32> for Joined {
+impl Mul<f32> for Contribution {
     type Output = Self;
     #[inline]
     fn mul(self, factor: f32) -> Self {
@@ -126,7 +127,7 @@ impl Mul<f32> for Joined {
     }
 }
 
-impl Div<f32> for Joined {
+impl Div<f32> for Contribution {
     type Output = Self;
     #[inline]
     fn div(self, divisor: f32) -> Self {
@@ -134,7 +135,7 @@ impl Div<f32> for Joined {
     }
 }
 
-/// The segment of a join.
+/// The segment of a connection.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
     /// From the first end, to just before the second.
@@ -150,44 +151,44 @@ pub struct Span {
 /// Joins `a` and `b` by `strategy`; none where the way is blocked, which emitters
 /// that are `hidden` do not. The caller divides by the number of samples it took.
 #[inline(always)]
-pub fn join<P: Profile>(
+pub fn connect<P: Profile>(
     scene: &Scene,
-    a: &End<P::Sums>,
-    b: &End<P::Sums>,
+    a: &End<P::MisSums>,
+    b: &End<P::MisSums>,
     distance_squared: f32,
     strategy: Strategy,
     hidden: bool,
     stream: &mut Stream,
-) -> Option<Joined> {
+) -> Option<Contribution> {
     let (origin, other) = (a.origin?, b.origin?);
     let end = offset::clear_of_end(origin, other, b.lift);
     let (direction, distance, _) = measure::between(origin, end)?;
     let ray = Ray { origin, direction, t_max: distance };
     let cut = (other - end).dot(direction);
-    join_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, strategy, stream)
+    connect_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, strategy, stream)
 }
 
 /// The same along a given span that starts at `a`: for ends at infinity.
 ///
 /// LW96 eq. 10 over eq. 11, times eq. 14: each end holds what its own walk contributed over its density.
 #[inline(always)]
-pub fn join_along<P: Profile>(
+pub fn connect_along<P: Profile>(
     scene: &Scene,
     span: &Span,
-    a: &End<P::Sums>,
-    b: &End<P::Sums>,
+    a: &End<P::MisSums>,
+    b: &End<P::MisSums>,
     strategy: Strategy,
     stream: &mut Stream,
-) -> Option<Joined> {
+) -> Option<Contribution> {
     let Span { ray, cut, distance_squared, hidden } = *span;
     let between = segment::transmittance::<P>(scene, ray, cut, a.medium, hidden, stream)?;
     if P::EMISSIVE && b.within && between.medium != b.medium {
         return None;
     }
     let geometry = 1.0 / distance_squared;
-    let weight = weight::join(a, b, between.density, geometry, strategy);
+    let weight = mis::connection_weight(a, b, between.pdf, geometry, strategy);
     let value = a.value * b.value * between.transmittance * (geometry * weight);
-    let weight_alone = weight::alone(a.reach * b.reach);
+    let weight_alone = mis::weight_alone(a.pdf_over_hero * b.pdf_over_hero);
     let alone = a.value * b.value * between.transmittance * (geometry * weight_alone);
-    Some(Joined { value, weight, alone, weight_alone, transmittance: between.transmittance })
+    Some(Contribution { value, weight, alone, weight_alone, transmittance: between.transmittance })
 }

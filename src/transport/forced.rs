@@ -4,74 +4,75 @@
 //! Forcing makes collisions in thin media denser by 1 / (1 - T), T the transmittance of all media that the ray crosses.
 //! The balance heuristic is told: that factor multiplies the density of every strategy that makes the first segment from
 //! the eye, which all but the lens joins do. It depends on the primary ray alone, so that it is the same function of
-//! the path in every strategy, and the weights sum to one. On surfaces and where media shine the factor is left at 1:
+//! the path in every strategy, and the weights sum to one. On surfaces and where media emit the factor is left at 1:
 //! the weights there are not the best, but right.
 
 use super::{
     Estimator,
     cache::LightCache,
-    eye::{Eye, depart},
+    camera_path::{CameraPath, depart},
+    observer::Observer,
     profile::Profile,
-    record::Recorder,
     segment::{self, FlightPart, ForcedEnd, Interaction, Segment},
     walk::{Kind, Visitor, go_on, walk},
 };
 use crate::{
     bsdf::Transport,
-    math::{Lanes, Vec2},
+    math::{Channels, Vec2},
     sampling::Stream,
     shape::Ray,
 };
 
-/// One eye sample with a forced interaction; the rest as in [`super::eye::sample`].
-pub fn sample<P: Profile, R: Recorder<P::Sums>>(
+/// One eye sample with a forced interaction; the rest as in [`super::camera_path::sample`].
+pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     estimator: &Estimator<'_, P>,
-    cache: &LightCache<P::Sums>,
+    cache: &LightCache<P::MisSums>,
     film: Vec2,
     aperture: Vec2,
     hero: usize,
-    recorder: R,
+    observer: R,
     stream: &mut Stream,
 ) -> R {
     let (scene, max_edges) = (estimator.scene, estimator.max_edges);
     let kind = Kind { transport: Transport::Radiance, hero, max_edges };
     let departure = depart(estimator, film, aperture);
-    let mut eye = Eye::new(estimator, cache, hero, departure.position, recorder);
+    let mut camera = CameraPath::new(estimator, cache, hero, departure.position, observer);
     if max_edges == 0 {
-        return eye.into_recorder();
+        return camera.into_observer();
     }
-    let mut along = |part: &FlightPart<P::Lanes>, stream: &mut Stream| eye.pass(&departure, part, stream);
+    let mut along =
+        |part: &FlightPart<P::Channels>, stream: &mut Stream| camera.pass(&departure, part, stream);
     let forced = segment::force::<P>(departure.segment(scene), hero, stream, &mut along);
     for ForcedEnd { flight, share } in forced.ends.into_iter().flatten() {
-        eye.restart(departure.position);
-        eye.depart(&departure);
-        let next = go_on(scene, kind, &departure, &flight, &mut eye, stream, |subpath| {
+        camera.restart(departure.position);
+        camera.depart(&departure);
+        let next = go_on(scene, kind, &departure, &flight, &mut camera, stream, |subpath| {
             subpath.throughput = departure.throughput * share;
             if let Some(Interaction::Medium(..)) = flight.interaction {
                 let gain = gain_of(forced.sure_depth);
-                subpath.inverse /= gain.hero(hero);
-                subpath.reach = subpath.reach * gain.scaled(1.0 / gain.hero(hero));
+                subpath.inv_pdf /= gain.hero(hero);
+                subpath.pdf_over_hero = subpath.pdf_over_hero * gain.scaled(1.0 / gain.hero(hero));
             }
         });
         if let Some(next) = next {
-            walk(scene, kind, next, &mut eye, stream);
+            walk(scene, kind, next, &mut camera, stream);
         }
     }
-    eye.into_recorder()
+    camera.into_observer()
 }
 
-/// By how much more densely forcing makes the first vertex from the eye in a medium, per lane, where primary ray `ray`
-/// sees it.
-pub fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Lanes {
+/// By how much more densely forcing makes the first vertex from the eye in a medium, per channel, where
+/// primary ray `ray` sees it.
+pub fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Channels {
     let Estimator { scene, hide_emitters, .. } = *estimator;
     gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.sensor_medium, hide_emitters)))
 }
 
-/// No gain is taken to be more than this: thinner media are seen by eye walks alone as it is.
+/// No gain is taken to be more than this: thinner media are seen by camera subpaths alone as it is.
 const MOST: f32 = 1e4;
 
 /// 1 / (1 - exp(-depth)); where nothing is sure to be crossed nothing is known, and nothing gained.
-fn gain_of<L: Lanes>(depth: L) -> L {
-    let lane = |depth: f32| if depth > 0.0 { (-1.0 / (-depth).exp_m1()).min(MOST) } else { 1.0 };
-    L::from_spectrum(depth.to_spectrum().map(lane))
+fn gain_of<L: Channels>(depth: L) -> L {
+    let channel = |depth: f32| if depth > 0.0 { (-1.0 / (-depth).exp_m1()).min(MOST) } else { 1.0 };
+    L::from_spectrum(depth.to_spectrum().map(channel))
 }

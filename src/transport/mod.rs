@@ -16,8 +16,9 @@
 //! the radiance gained per metre, of a point light its intensity; W is the pixel's filter over the film.
 //!
 //! # The sum over (s, t)
-//! A light walk makes x_0 .. x_s-1, an eye walk x_k .. x_s (t = k + 1 - s vertices), and a segment connects the two. With
-//! p> and p< the densities by which the walks make a vertex (LW96 eq. 13), strategy (s, t) makes a path with the density
+//! A light subpath makes x_0 .. x_s-1, a camera subpath x_k .. x_s (t = k + 1 - s vertices), and a segment
+//! connects the two. With p> and p< the densities by which the walks make a vertex (LW96 eq. 13), strategy
+//! (s, t) makes a path with the density
 //!
 //! ```text
 //! p_s = p>(x_0) p>(x_1) .. p>(x_s-1)  p<(x_s) .. p<(x_k-1) p<(x_k)                                        LW96 eq. 11, 12
@@ -30,85 +31,85 @@
 //! ```
 //! | s, t | what happens | where |
 //! |---|---|---|
-//! | s = 0 | the eye walk meets an emitter | [`eye::Eye::hit`] |
-//! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`eye::Eye::join_emitter`] |
-//! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache | [`eye::Eye::join_with`] |
-//! | s >= 1, t = 1 | the light walk is seen by the lens, through any pixel | [`light::Light::join_to_lens`] |
+//! | s = 0 | the camera subpath meets an emitter | [`camera_path::Eye::emitter_hit`] |
+//! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`camera_path::Eye::join_emitter`] |
+//! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache | [`camera_path::Eye::connect_with`] |
+//! | s >= 1, t = 1 | the light subpath is seen by the lens, through any pixel | [`light_path::Light::connect_to_lens`] |
 //!
-//! A pixel sample is one eye walk; the light walks of a block of pixels fill the cache. `pt` and `lt` are the same with
-//! strategies left out ([`Strategies`]), other heuristics than eq. 14 sum n p otherwise ([`Sums`]), and the flight densities
-//! are part of p in all of them.
+//! A pixel sample is one camera subpath; the light subpaths of a block of pixels fill the cache. `pt` and
+//! `lt` are the same with strategies left out ([`Strategies`]), other heuristics than eq. 14 sum n p
+//! otherwise ([`MisSums`]), and the flight densities are part of p in all of them.
 //!
 //! # From equation to function
 //! | equation | function |
 //! |---|---|
-//! | LW96 eq. 3, L_e at the end of an eye walk | [`eye::Eye::hit`] |
+//! | LW96 eq. 3, L_e at the end of a camera subpath | [`camera_path::Eye::emitter_hit`] |
 //! | LW96 eq. 4, one random walk through media and surfaces | [`walk::walk`], [`segment::sample_free_flight`] |
 //! | LW96 eq. 5 and 8, scattering in a medium | [`walk::collide`] |
 //! | LW96 eq. 6, p_medium | [`Medium::sample_distance`](crate::medium::Medium::sample_distance) |
 //! | LW96 eq. 7, P_surface | [`segment::transmittance`], [`Medium::optical_depth`](crate::medium::Medium::optical_depth) |
 //! | LW96 eq. 9, reflection | [`walk::reflect`] |
-//! | LW96 eq. 10, the contribution | [`connect::join_along`]; its g is [`vertex::Vertex::scatter_towards`] |
+//! | LW96 eq. 10, the contribution | [`connect::connect_along`]; its g is [`vertex::Vertex::scatter_towards`] |
 //! | LW96 eq. 11 and 12, densities of paths | [`vertex::Subpath`]: as ratios, by [`walk::arrive`] and [`walk::set_out`] |
 //! | LW96 eq. 13, density of a vertex | [`walk::arrive`] |
-//! | LW96 eq. 14, the weight | [`weight::join`], [`weight::hit`], [`weight::Balance`] |
-//! | LW96 sec. 5, media that vary | [`crate::medium::tracker`] |
-//! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], met in [`eye::Eye::meet`] |
-//! | P03T eq. 2.9, media that only absorb | [`crate::medium::Treatment`] |
+//! | LW96 eq. 14, the weight | [`mis::connection_weight`], [`mis::emitter_hit_weight`], [`mis::Balance`] |
+//! | LW96 sec. 5, media that vary | [`crate::medium::distance`] |
+//! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], met in [`camera_path::Eye::meet`] |
+//! | P03T eq. 2.9, media that only absorb | [`crate::medium::MediumOverrides`] |
 //! | P03T sec. A.2.2, forced interactions | [`forced::sample`], [`segment::force`] |
 //! | BMA02 eq. 5 and 6, the fog blend | `render::fog` |
-//! | BMA02 eq. 7, extinction as a sum | `density::sum` |
+//! | BMA02 eq. 7, extinction as a sum | `pdf::sum` |
 
 mod cache;
+mod camera_path;
 mod connect;
-mod eye;
 mod forced;
-mod light;
+mod light_path;
+mod mis;
+pub mod observer;
 pub mod profile;
-pub mod record;
 mod segment;
 #[cfg(test)]
-mod twin;
+mod tests;
 mod vertex;
 mod walk;
-mod weight;
 
 pub use cache::LightCache;
-pub use connect::Joined;
+pub use connect::Contribution;
+pub use mis::MisSums;
 pub use segment::{Interaction, NullCrossing, Segment};
 pub use vertex::{Subpath, Vertex};
 pub use walk::Departure;
-pub use weight::Sums;
 
-pub use crate::scene::{
-    heuristic::Heuristic,
-    options::{Options, Strategies},
+pub use crate::{
+    settings::heuristic::Heuristic,
+    settings::options::{Options, Strategies},
 };
 
 use crate::{
-    math::{Lanes, Spectrum, Vec2},
+    math::{Channels, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
     scene::Scene,
     shape::Ray,
 };
+use mis::Strategy;
+use observer::{Meeting, Observer};
 use profile::Profile;
-use record::{Meeting, Recorder};
-use weight::Strategy;
 
 /// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
 #[derive(Clone, Copy, Debug)]
 pub struct Counts {
-    hit: f32,
+    emitter_hit: f32,
     next_event: f32,
-    join: f32,
+    connection: f32,
     lens: f32,
 }
 
-/// Draws from the light cache at every eye vertex.
-const JOINS_PER_VERTEX: u32 = 1;
+/// Draws from the light cache at every camera vertex.
+const CONNECTIONS_PER_VERTEX: u32 = 1;
 /// Vertices that the cache of a block should hold at most, on average: it has to stay near the processor.
 const CACHE_VERTICES: f32 = 16_384.0;
-/// Light walks that measure how many vertices a light walk leaves.
+/// Light subpaths that measure how many vertices a light subpath leaves.
 const PILOT_WALKS: u64 = 2_048;
 
 /// The estimator for one scene, compiled for profile `P`.
@@ -116,7 +117,7 @@ pub struct Estimator<'a, P: Profile> {
     scene: &'a Scene,
     counts: Counts,
     heuristic: Heuristic,
-    joins_per_vertex: u32,
+    connections_per_vertex: u32,
     /// Probability that a light vertex is kept for joins.
     keep: f32,
     max_edges: u32,
@@ -126,7 +127,7 @@ pub struct Estimator<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Estimator<'a, P> {
-    /// Prepares to render `scene` with `walks_per_pass` light walks for each sample of all pixels together and
+    /// Prepares to render `scene` with `walks_per_pass` light subpaths for each sample of all pixels together and
     /// `walks_per_block` of them behind one cache; `seed` is that of its pilot walks.
     pub fn new(
         scene: &'a Scene,
@@ -141,42 +142,42 @@ impl<'a, P: Profile> Estimator<'a, P> {
         let mut estimator = Self {
             scene,
             counts: Counts {
-                hit: count(strategies.hit, 1.0),
+                emitter_hit: count(strategies.emitter_hit, 1.0),
                 next_event: count(strategies.next_event, 1.0),
-                join: 0.0,
+                connection: 0.0,
                 lens: count(strategies.lens, walks_per_pass as f32),
             },
             heuristic,
-            joins_per_vertex: 0,
+            connections_per_vertex: 0,
             keep: 0.0,
-            max_edges: max_depth.unwrap_or(u32::MAX).min(P::Sums::MOST_EDGES),
+            max_edges: max_depth.unwrap_or(u32::MAX).min(P::MisSums::MOST_EDGES),
             hide_emitters,
             forced_interaction: P::MEDIA && forced_interaction,
             profile: std::marker::PhantomData,
         };
-        if strategies.join && lit {
-            estimator.plan_joins(seed, walks_per_block);
+        if strategies.connection && lit {
+            estimator.plan_connections(seed, walks_per_block);
         }
         estimator
     }
 
-    /// Measures how many vertices a light walk leaves: n of a join is draws over vertices per walk, however many
-    /// of them are kept. The weights need a constant that does not depend on the very walks they weight, hence a
-    /// measurement beforehand.
-    fn plan_joins(&mut self, seed: u64, walks_per_block: u64) {
+    /// Measures how many vertices a light subpath leaves: n of a connection is draws over vertices per walk,
+    /// however many of them are kept. The weights need a constant that does not depend on the very walks they
+    /// weight, hence a measurement beforehand.
+    fn plan_connections(&mut self, seed: u64, walks_per_block: u64) {
         self.keep = 1.0;
-        let mut cache = LightCache::new(P::Lanes::COUNT);
+        let mut cache = LightCache::new(P::Channels::COUNT);
         // Compiled for instruments anyhow; pilot walks are few.
-        let mut recorder: &mut dyn Recorder<P::Sums> = &mut Nowhere;
+        let mut observer: &mut dyn Observer<P::MisSums> = &mut Nowhere;
         for walk in 0..PILOT_WALKS {
             let mut stream = Stream::new(seed, walk, 0, Purpose::Pilot);
-            let hero = walk as usize % P::Lanes::COUNT;
-            light::trace(self, &mut cache, &mut recorder, hero, &mut stream);
+            let hero = walk as usize % P::Channels::COUNT;
+            light_path::trace(self, &mut cache, &mut observer, hero, &mut stream);
         }
         let per_walk = (cache.len() as f32 / PILOT_WALKS as f32).max(1.0 / PILOT_WALKS as f32);
         self.keep = (CACHE_VERTICES / (per_walk * walks_per_block as f32)).min(1.0);
-        self.joins_per_vertex = JOINS_PER_VERTEX;
-        self.counts.join = JOINS_PER_VERTEX as f32 / per_walk;
+        self.connections_per_vertex = CONNECTIONS_PER_VERTEX;
+        self.counts.connection = CONNECTIONS_PER_VERTEX as f32 / per_walk;
     }
 
     /// The strategy of `count` expected samples.
@@ -185,20 +186,20 @@ impl<'a, P: Profile> Estimator<'a, P> {
         Strategy { count, heuristic: self.heuristic }
     }
 
-    /// True if light walks have something to do.
+    /// True if light subpaths have something to do.
     pub fn needs_light_walks(&self) -> bool {
-        self.joins_per_vertex > 0 || self.counts.lens > 0.0
+        self.connections_per_vertex > 0 || self.counts.lens > 0.0
     }
 
-    /// Traces one light walk of channel `hero` into `cache`; what it brings goes to `recorder`.
+    /// Traces one light subpath of channel `hero` into `cache`; what it brings goes to `observer`.
     pub fn trace_light(
         &self,
-        cache: &mut LightCache<P::Sums>,
-        recorder: &mut impl Recorder<P::Sums>,
+        cache: &mut LightCache<P::MisSums>,
+        observer: &mut impl Observer<P::MisSums>,
         hero: usize,
         stream: &mut Stream,
     ) {
-        light::trace(self, cache, recorder, hero, stream);
+        light_path::trace(self, cache, observer, hero, stream);
     }
 
     /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
@@ -209,30 +210,31 @@ impl<'a, P: Profile> Estimator<'a, P> {
         passed.map_or(Spectrum::ZERO, |passed| passed.transmittance)
     }
 
-    /// One eye walk of channel `hero` through `film` [pixels] and a point of the aperture; what it brings goes to
-    /// `recorder`.
-    pub fn sample_pixel<R: Recorder<P::Sums>>(
+    /// One camera subpath of channel `hero` through `film` [pixels] and a point of the aperture; what it brings
+    /// goes to
+    /// `observer`.
+    pub fn sample_pixel<R: Observer<P::MisSums>>(
         &self,
-        cache: &LightCache<P::Sums>,
+        cache: &LightCache<P::MisSums>,
         film: Vec2,
         aperture: Vec2,
         hero: usize,
-        recorder: R,
+        observer: R,
         stream: &mut Stream,
     ) -> R {
         if P::MEDIA && self.forced_interaction {
-            return forced::sample(self, cache, film, aperture, hero, recorder, stream);
+            return forced::sample(self, cache, film, aperture, hero, observer, stream);
         }
-        eye::sample(self, cache, film, aperture, hero, recorder, stream)
+        camera_path::sample(self, cache, film, aperture, hero, observer, stream)
     }
 }
 
 /// A film that nothing reaches, for pilot walks.
 struct Nowhere;
 
-impl<S: Sums> Recorder<S> for Nowhere {
+impl<S: MisSums> Observer<S> for Nowhere {
     fn covers(&self, _: Vec2) -> bool {
         false
     }
-    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Joined>) {}
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Contribution>) {}
 }

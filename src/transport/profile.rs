@@ -3,11 +3,11 @@
 
 use super::{
     Heuristic,
-    weight::{Balance, Cutoff, Maximum, Power, Sums, Uniform},
+    mis::{Balance, Cutoff, Maximum, MisSums, Power, Uniform},
 };
 use crate::{
     bsdf::BsdfModel,
-    math::{Lanes, Spectrum},
+    math::{Channels, Spectrum},
     medium::{MediaProfile, Medium},
     scene::Scene,
 };
@@ -16,7 +16,7 @@ use std::marker::PhantomData;
 /// Compile-time constants that remove code.
 pub trait Profile: MediaProfile {
     /// What walks carry for the weights of strategies.
-    type Sums: Sums<Lanes = Self::Lanes>;
+    type MisSums: MisSums<Channels = Self::Channels>;
     /// Some medium has extinction.
     const MEDIA: bool;
     /// Rays can pass surfaces undeflected, so segments cross boundaries.
@@ -30,17 +30,17 @@ pub trait Profile: MediaProfile {
 }
 
 macro_rules! profile {
-    ($(#[$doc:meta])* $name:ident, $text:literal, lanes: $lanes:ty, media: $media:literal, nulls: $nulls:literal,
+    ($(#[$doc:meta])* $name:ident, $text:literal, channels: $channels:ty, media: $media:literal, nulls: $nulls:literal,
      heterogeneous: $heterogeneous:literal, infinite: $infinite:literal, emissive: $emissive:literal) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         pub struct $name;
         impl MediaProfile for $name {
-            type Lanes = $lanes;
+            type Channels = $channels;
             const HETEROGENEOUS: bool = $heterogeneous;
         }
         impl Profile for $name {
-            type Sums = Balance<$lanes>;
+            type MisSums = Balance<$channels>;
             const MEDIA: bool = $media;
             const NULLS: bool = $nulls;
             const INFINITE: bool = $infinite;
@@ -52,32 +52,32 @@ macro_rules! profile {
 
 profile! {
     /// Surfaces only.
-    Vacuum, "vacuum", lanes: f32, media: false, nulls: false,
+    Vacuum, "vacuum", channels: f32, media: false, nulls: false,
     heterogeneous: false, infinite: true, emissive: false
 }
 profile! {
     /// Grey media behind surfaces that scatter, all light from within the scene: a closed room in fog.
-    Fog, "fog", lanes: f32, media: true, nulls: false,
+    Fog, "fog", channels: f32, media: true, nulls: false,
     heterogeneous: false, infinite: false, emissive: false
 }
 profile! {
     /// Grey media with index-matched boundaries, under any emitter.
-    Bounded, "bounded", lanes: f32, media: true, nulls: true,
+    Bounded, "bounded", channels: f32, media: true, nulls: true,
     heterogeneous: false, infinite: true, emissive: false
 }
 profile! {
     /// Grey media, some of which vary in space.
-    Smoke, "smoke", lanes: f32, media: true, nulls: true,
+    Smoke, "smoke", channels: f32, media: true, nulls: true,
     heterogeneous: true, infinite: true, emissive: false
 }
 profile! {
-    /// Grey media that shine, and may vary in space.
-    Fire, "fire", lanes: f32, media: true, nulls: true,
+    /// Grey emissive media, and may vary in space.
+    Fire, "fire", channels: f32, media: true, nulls: true,
     heterogeneous: true, infinite: true, emissive: true
 }
 profile! {
     /// Homogeneous media of any colour under emitters within the scene, no index-matched boundaries.
-    ChromaticFog, "chromatic-fog", lanes: Spectrum, media: true, nulls: false,
+    ChromaticFog, "chromatic-fog", channels: Spectrum, media: true, nulls: false,
     heterogeneous: false, infinite: false, emissive: false
 }
 
@@ -85,13 +85,13 @@ profile! {
 #[derive(Clone, Copy, Debug)]
 pub struct Everything<S = Balance<Spectrum>>(PhantomData<S>);
 
-impl<S: Sums<Lanes = Spectrum>> MediaProfile for Everything<S> {
-    type Lanes = Spectrum;
+impl<S: MisSums<Channels = Spectrum>> MediaProfile for Everything<S> {
+    type Channels = Spectrum;
     const HETEROGENEOUS: bool = true;
 }
 
-impl<S: Sums<Lanes = Spectrum>> Profile for Everything<S> {
-    type Sums = S;
+impl<S: MisSums<Channels = Spectrum>> Profile for Everything<S> {
+    type MisSums = S;
     const MEDIA: bool = true;
     const NULLS: bool = true;
     const INFINITE: bool = true;
@@ -201,7 +201,7 @@ impl ProfileName {
             let parts = [
                 (P::MEDIA, "media"),
                 (P::HETEROGENEOUS, "varying media"),
-                (P::Lanes::COUNT > 1, "chromatic extinction"),
+                (P::Channels::COUNT > 1, "chromatic extinction"),
                 (P::NULLS, "index-matched boundaries"),
                 (P::INFINITE, "infinite emitters"),
                 (P::EMISSIVE, "media that shine"),

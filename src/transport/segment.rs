@@ -11,7 +11,7 @@ pub use free_flight::{FlightPart, FlightState, FreeFlight, Interaction, sample_f
 pub use transmittance::transmittance;
 
 use crate::{
-    math::{Section, Spectrum, Vec3, measure, offset},
+    math::{RaySegment, Spectrum, Vec3, measure, offset},
     medium::{Medium, MediumIndex, MediumInterval},
     sampling::Stream,
     scene::Scene,
@@ -66,14 +66,14 @@ impl<'a> Segment<'a> {
         self.hidden
     }
 
-    /// The next surface within `reach` metres, and what lies before it in the medium; all that is left of the segment
-    /// where there is none.
+    /// The next surface within `pdf_over_hero` metres, and what lies before it in the medium; all that is left of
+    /// the segment where there is none.
     #[inline(always)]
-    pub fn next(&self, reach: f32) -> (MediumInterval, Option<Hit>) {
+    pub fn next(&self, pdf_over_hero: f32) -> (MediumInterval, Option<Hit>) {
         let Ray { origin, direction, t_max } = self.ray;
-        let hit = self.scene.geometry.closest(&Ray { t_max: reach.min(t_max), ..self.ray });
-        let section = Section { origin, direction, length: hit.map_or(t_max, |hit| hit.t) };
-        (MediumInterval { section, skipped: self.skipped }, hit)
+        let hit = self.scene.geometry.closest(&Ray { t_max: pdf_over_hero.min(t_max), ..self.ray });
+        let segment = RaySegment { origin, direction, length: hit.map_or(t_max, |hit| hit.t) };
+        (MediumInterval { segment, skipped: self.skipped }, hit)
     }
 
     /// The point of the next surface.
@@ -144,7 +144,7 @@ mod tests {
     use crate::{
         sampling::{Stream, stream::Purpose},
         scene::build::Setup,
-        transport::{profile::Bounded, twin::scenes},
+        transport::{profile::Bounded, tests::scenes},
     };
 
     /// A cube of the mean free path 1e-6, its face one metre from the camera, which is the origin: 16 steps of what
@@ -180,7 +180,7 @@ mod tests {
         let passed =
             transmittance::<Bounded>(scene, ray, 0.0, scene.sensor_medium, false, &mut stream).unwrap();
         let expected = -f64::from(ray.t_max - 1.0) * 1e6;
-        let found = f64::from(passed.density).ln();
+        let found = f64::from(passed.pdf).ln();
         assert!((found - expected).abs() < 0.07, "ln T {found}, not {expected}");
     }
 }

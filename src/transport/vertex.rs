@@ -1,9 +1,9 @@
 //! A path vertex: where it is, how it scatters, and what the balance heuristic needs of the walk behind it.
 
-use super::{segment::Interaction, weight::Sums};
+use super::{mis::MisSums, segment::Interaction};
 use crate::{
     bsdf::{BsdfModel, Transport},
-    math::{Lanes, Spectrum, Vec3, offset},
+    math::{Channels, Spectrum, Vec3, offset},
     medium::MediumIndex,
     phase::{Deflection, PhaseModel},
     scene::Scene,
@@ -17,66 +17,65 @@ pub struct Scattering {
     /// in a medium (sigma_t stands with the flight), BSDF x cosine on a surface, shading normals accounted for.
     pub value: Spectrum,
     /// Density of the outgoing direction given the incoming one, survival included [1/sr].
-    pub forward: f32,
+    pub pdf_fwd: f32,
     /// Density of the incoming direction given the outgoing one, survival included [1/sr].
-    pub backward: f32,
+    pub pdf_rev: f32,
 }
 
-/// A subpath of an eye or light walk: all that is known of it when it comes to its i-th point after the start, before
-/// anything happens there.
+/// A subpath of a camera or light subpath: all that is known of it when it comes to its i-th point after the
+/// start, before anything happens there.
 ///
 /// The last four fields are the running sums of the weights. With p>_i the density by which this
 /// walk makes vertex i (flight, direction and geometry, LW96 eq. 13) and p<_i that of the opposite walk, for
-/// lane c and hero h:
-///   reach_i   = product over j <= i of p>^c_j / p>^h_j
-///   D_i       = (p<^c_i / p>^h_i) (reach_{i-1} n_i + D_{i-1})
-/// sums n_j p_j (as [`Sums`] do for the heuristic at hand) over all strategies that join before vertex i, in units
-/// of this walk's own density. What p<_i
-/// needs of the vertices beyond i is not known yet, so `partial` is D_{i-1} without the direction density at
-/// vertex i, and `inverse` is 1/p>^h_i.
+/// channel c and hero h:
+///   pdf_over_hero_i   = product over j <= i of p>^c_j / p>^h_j
+///   D_i       = (p<^c_i / p>^h_i) (pdf_over_hero_{i-1} n_i + D_{i-1})
+/// sums n_j p_j (as [`MisSums`] do for the heuristic at hand) over all strategies that connect before vertex
+/// i, in units of this walk's own density. What p<_i needs of the vertices beyond i is not known yet, so
+/// `others_over_pdf_rev` is D_{i-1} without the direction density at vertex i, and `inv_pdf` is 1/p>^h_i.
 #[derive(Clone, Copy, Debug)]
-pub struct Subpath<S: Sums> {
+pub struct Subpath<S: MisSums> {
     /// Unit direction towards the vertex before.
     pub incoming: Vec3,
     /// The medium of the segment that ended here.
     pub medium: MediumIndex,
     /// Segments since the start of the walk, from 1.
     pub edges: u32,
-    /// True if the vertex before scattered by a Dirac lobe: the segment before cannot be a join.
+    /// True if the vertex before scattered by a Dirac lobe: the segment before cannot be a connection.
     pub after_dirac: bool,
     /// Contribution over density of everything before this point's own scattering.
     pub throughput: Spectrum,
     /// 1/p>^h_i.
-    pub inverse: f32,
-    /// reach_{i-1}.
-    pub reach_before: S::Lanes,
-    /// reach_i.
-    pub reach: S::Lanes,
+    pub inv_pdf: f32,
+    /// pdf_over_hero_{i-1}.
+    pub pdf_over_hero_before: S::Channels,
+    /// pdf_over_hero_i.
+    pub pdf_over_hero: S::Channels,
     /// D_{i-1} over the direction density at this point towards the one before.
-    pub partial: S,
+    pub others_over_pdf_rev: S,
 }
 
-/// A vertex of an eye or light walk: what scatters at the end of a subpath.
+/// A vertex of a camera or light subpath: what scatters at the end of a subpath.
 #[derive(Clone, Copy, Debug)]
-pub struct Vertex<S: Sums> {
+pub struct Vertex<S: MisSums> {
     /// Surface or medium.
     pub interaction: Interaction,
     /// n_i: expected samples of the strategy that joins across the segment before; 0 where none can.
-    pub joins: f32,
+    pub connections: f32,
     /// How the walk came here.
     pub subpath: Subpath<S>,
 }
 
-impl<S: Sums> Vertex<S> {
+impl<S: MisSums> Vertex<S> {
     /// World position.
     #[inline]
     pub fn position(&self) -> Vec3 {
         self.interaction.position()
     }
 
-    /// sigma_t per lane in a medium, 1 on a surface.
+    /// sigma_t per channel in a medium, 1 on a surface.
     #[inline]
-    pub fn sigma_t(&self) -> S::Lanes {
+    pub fn sigma_t(&self) -> S::Channels {
         self.interaction.sigma_t()
     }
 
@@ -98,7 +97,7 @@ impl<S: Sums> Vertex<S> {
         }
     }
 
-    /// See [`super::weight::End::lift`].
+    /// See [`super::mis::End::lift`].
     #[inline]
     pub fn lift(&self, direction: Vec3) -> Vec3 {
         match &self.interaction {
@@ -107,11 +106,12 @@ impl<S: Sums> Vertex<S> {
         }
     }
 
-    /// The sum over the strategies that join before this vertex, once the direction density back to the
-    /// vertex before is known: reach_{i-1} n_i + D_{i-1}.
+    /// The sum over the strategies that connect before this vertex, once the direction density back to the
+    /// vertex before is known: pdf_over_hero_{i-1} n_i + D_{i-1}.
     #[inline]
-    pub fn tail(&self, backward: f32) -> S {
-        S::of(self.subpath.reach_before.scaled(self.joins)).and(self.subpath.partial.scaled(backward))
+    pub fn others_before(&self, pdf_rev: f32) -> S {
+        S::of(self.subpath.pdf_over_hero_before.scaled(self.connections))
+            .and(self.subpath.others_over_pdf_rev.scaled(pdf_rev))
     }
 
     /// True on a shape that emits.
@@ -135,11 +135,11 @@ impl<S: Sums> Vertex<S> {
     #[inline]
     pub fn scatter_towards(&self, scene: &Scene, outgoing: Vec3, transport: Transport) -> Scattering {
         match &self.interaction {
-            Interaction::Medium(_, matter) => {
+            Interaction::Medium(_, properties) => {
                 let medium = &scene.media[self.subpath.medium.0 as usize];
-                let phase = medium.phase.density(Deflection::between(-self.subpath.incoming, outgoing));
-                let density = phase * matter.survival();
-                Scattering { value: matter.albedo * phase, forward: density, backward: density }
+                let phase = medium.phase.pdf_sr(Deflection::between(-self.subpath.incoming, outgoing));
+                let pdf = phase * properties.survival();
+                Scattering { value: properties.albedo * phase, pdf_fwd: pdf, pdf_rev: pdf }
             }
             Interaction::Surface(point) => self.reflect_towards(scene, point, outgoing, transport),
         }
@@ -158,12 +158,12 @@ impl<S: Sums> Vertex<S> {
         let survival = bsdf.survival(point.uv, wi);
         let cosine =
             wo.z.abs() * shading_correction(point, self.subpath.incoming, outgoing, wi, wo, transport);
-        Scattering { value: f.value * cosine, forward: f.forward * survival, backward: f.backward * survival }
+        Scattering { value: f.value * cosine, pdf_fwd: f.pdf_fwd * survival, pdf_rev: f.pdf_rev * survival }
     }
 }
 
-/// By what a light walk's scattering differs where the shading normal is not the geometric one (Veach 1997,
-/// eq. 5.19): |wi.ns| |wo.ng| / (|wi.ng| |wo.ns|). Eye walks and media have no such factor.
+/// By what a light subpath's scattering differs where the shading normal is not the geometric one (Veach 1997,
+/// eq. 5.19): |wi.ns| |wo.ng| / (|wi.ng| |wo.ns|). Camera subpaths and media have no such factor.
 #[inline]
 pub fn shading_correction(
     point: &SurfacePoint,

@@ -1,16 +1,16 @@
-//! The random walk (LW96 sec. 3), one for eye and light: flights, collisions, reflections, absorption, and the
+//! The random walk (LW96 sec. 3), one for camera and light: flights, collisions, reflections, absorption, and the
 //! running sums of the weights.
 
 use super::{
+    mis::MisSums,
     profile::Profile,
     segment::{FlightPart, FlightState, FreeFlight, Interaction, Segment, sample_free_flight},
     vertex::{Subpath, Vertex, shading_correction},
-    weight::Sums,
 };
 use crate::{
     bsdf::{BsdfModel, Transport},
-    math::{Lanes, Spectrum, Vec3, measure, offset},
-    medium::{Matter, MediumIndex},
+    math::{Channels, Spectrum, Vec3, measure, offset},
+    medium::{MediumIndex, MediumProperties},
     phase::{Deflection, PhaseModel},
     sampling::Stream,
     scene::Scene,
@@ -19,7 +19,7 @@ use crate::{
 
 /// A walk about to fly: everything known before the next vertex is.
 #[derive(Clone, Copy, Debug)]
-pub struct Departure<S: Sums> {
+pub struct Departure<S: MisSums> {
     /// The vertex left behind.
     pub position: Vec3,
     /// The ray out of it.
@@ -37,14 +37,14 @@ pub struct Departure<S: Sums> {
     /// Contribution over density, this vertex's scattering included.
     pub throughput: Spectrum,
     /// Density of the direction, survival included [1/sr] (or of the start on the disk [1/m^2]).
-    pub forward: f32,
-    /// This vertex's D without what the next segment completes: tail x sigma_t x |cos| / p>^h.
-    pub carried: S,
-    /// reach of this vertex.
-    pub reach: S::Lanes,
+    pub pdf_fwd: f32,
+    /// This vertex's D without what the next segment completes: others_before x sigma_t x |cos| / p>^h.
+    pub others_before_segment: S,
+    /// pdf_over_hero of this vertex.
+    pub pdf_over_hero: S::Channels,
 }
 
-impl<S: Sums> Departure<S> {
+impl<S: MisSums> Departure<S> {
     /// The segment ahead, which has no end yet.
     #[inline(always)]
     pub fn segment<'a>(&self, scene: &'a Scene) -> Segment<'a> {
@@ -56,27 +56,33 @@ impl<S: Sums> Departure<S> {
 pub trait Visitor<P: Profile> {
     /// n of the strategy that joins across the segment to the vertex at `position`, `edges` segments from the
     /// start.
-    fn joins(&self, edges: u32, position: Vec3) -> f32;
+    fn connections(&self, edges: u32, position: Vec3) -> f32;
 
     /// The walk sets out for the next vertex.
     #[inline]
-    fn depart(&mut self, _departure: &Departure<P::Sums>) {}
+    fn depart(&mut self, _departure: &Departure<P::MisSums>) {}
 
     /// A vertex was reached; it may scatter on.
-    fn arrive(&mut self, vertex: &Vertex<P::Sums>, stream: &mut Stream);
+    fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream);
 
-    /// A part of a flight from `departure` lies behind; only in profiles where media shine.
-    fn pass(&mut self, _departure: &Departure<P::Sums>, _part: &FlightPart<P::Lanes>, _stream: &mut Stream) {}
+    /// A part of a flight from `departure` lies behind; only in profiles where media emit.
+    fn pass(
+        &mut self,
+        _departure: &Departure<P::MisSums>,
+        _part: &FlightPart<P::Channels>,
+        _stream: &mut Stream,
+    ) {
+    }
 
     /// The walk left the scene, in the direction that the `incoming` of `subpath` is the reverse of; its density is per
     /// solid angle.
-    fn escape(&mut self, _subpath: &Subpath<P::Sums>) {}
+    fn escape(&mut self, _subpath: &Subpath<P::MisSums>) {}
 }
 
 /// Which walk this is and how far it may go.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
-    /// Eye or light.
+    /// Camera or light.
     pub transport: Transport,
     /// The channel that samples distances.
     pub hero: usize,
@@ -91,14 +97,14 @@ pub struct Kind {
 pub fn walk<P: Profile>(
     scene: &Scene,
     kind: Kind,
-    mut departure: Departure<P::Sums>,
+    mut departure: Departure<P::MisSums>,
     visitor: &mut impl Visitor<P>,
     stream: &mut Stream,
 ) {
     while departure.edges < kind.max_edges {
         visitor.depart(&departure);
         let mut along =
-            |part: &FlightPart<P::Lanes>, stream: &mut Stream| visitor.pass(&departure, part, stream);
+            |part: &FlightPart<P::Channels>, stream: &mut Stream| visitor.pass(&departure, part, stream);
         let flight = sample_free_flight::<P>(departure.segment(scene), kind.hero, stream, &mut along);
         let Some(next) = go_on(scene, kind, &departure, &flight, visitor, stream, |_| ()) else { return };
         departure = next;
@@ -110,12 +116,12 @@ pub fn walk<P: Profile>(
 pub fn go_on<P: Profile>(
     scene: &Scene,
     kind: Kind,
-    departure: &Departure<P::Sums>,
-    flight: &FreeFlight<P::Lanes>,
+    departure: &Departure<P::MisSums>,
+    flight: &FreeFlight<P::Channels>,
     visitor: &mut impl Visitor<P>,
     stream: &mut Stream,
-    adjusted: impl FnOnce(&mut Subpath<P::Sums>),
-) -> Option<Departure<P::Sums>> {
+    adjusted: impl FnOnce(&mut Subpath<P::MisSums>),
+) -> Option<Departure<P::MisSums>> {
     let Some(interaction) = flight.interaction else {
         if P::INFINITE {
             let mut subpath =
@@ -143,7 +149,7 @@ const LONG_SURVIVAL: f32 = 0.9999;
 
 /// Roulette that no density knows of, the same for all strategies.
 #[cold]
-fn thinned<S: Sums>(next: Departure<S>, stream: &mut Stream) -> Option<Departure<S>> {
+fn thinned<S: MisSums>(next: Departure<S>, stream: &mut Stream) -> Option<Departure<S>> {
     let throughput = next.throughput / LONG_SURVIVAL;
     (stream.uniform() < LONG_SURVIVAL).then_some(Departure { throughput, ..next })
 }
@@ -154,12 +160,12 @@ pub struct Arrival<L> {
     pub position: Option<Vec3>,
     /// |cos| on a surface, 1 elsewhere.
     pub cosine: f32,
-    /// sigma_t per lane at a collision, the rate of [`crate::medium::Emission::rate`] where emission is met in a medium,
-    /// 1 elsewhere.
+    /// sigma_t per channel at a collision, the rate of [`crate::medium::Emission::rate`] where emission is met in
+    /// a medium, 1 elsewhere.
     pub sigma_t: L,
 }
 
-impl<L: Lanes> Arrival<L> {
+impl<L: Channels> Arrival<L> {
     /// In no place, but from a direction.
     fn at_infinity() -> Self {
         Self { position: None, cosine: 1.0, sigma_t: L::splat(1.0) }
@@ -169,12 +175,12 @@ impl<L: Lanes> Arrival<L> {
 /// The vertex at the end of a flight; none if its density is no number.
 #[inline]
 pub fn land<P: Profile>(
-    departure: &Departure<P::Sums>,
-    flight: &FreeFlight<P::Lanes>,
+    departure: &Departure<P::MisSums>,
+    flight: &FreeFlight<P::Channels>,
     interaction: Interaction,
     hero: usize,
     visitor: &impl Visitor<P>,
-) -> Option<Vertex<P::Sums>> {
+) -> Option<Vertex<P::MisSums>> {
     let position = interaction.position();
     let at = Arrival {
         position: Some(position),
@@ -182,37 +188,37 @@ pub fn land<P: Profile>(
         sigma_t: interaction.sigma_t(),
     };
     let subpath = arrive::<P>(departure, &flight.state, flight.medium, &at, hero)?;
-    let joins = if departure.dirac { 0.0 } else { visitor.joins(subpath.edges, position) };
-    Some(Vertex { interaction, joins, subpath })
+    let connections = if departure.dirac { 0.0 } else { visitor.connections(subpath.edges, position) };
+    Some(Vertex { interaction, connections, subpath })
 }
 
 /// The subpath that a flight extends to `at`; none if its density is no number.
 ///
-/// LW96 eq. 13: p' p'' / d^2, the density of the direction (`departure.forward`), that of the flight (eq. 6 in a
+/// LW96 eq. 13: p' p'' / d^2, the density of the direction (`departure.pdf_fwd`), that of the flight (eq. 6 in a
 /// medium, eq. 7 on a surface) and the geometry; its inverse is what weights need.
 #[inline]
 pub fn arrive<P: Profile>(
-    departure: &Departure<P::Sums>,
-    state: &FlightState<P::Lanes>,
+    departure: &Departure<P::MisSums>,
+    state: &FlightState<P::Channels>,
     medium: MediumIndex,
-    at: &Arrival<P::Lanes>,
+    at: &Arrival<P::Channels>,
     hero: usize,
-) -> Option<Subpath<P::Sums>> {
+) -> Option<Subpath<P::MisSums>> {
     let distance_squared = match at.position {
         Some(position) if !(P::INFINITE && departure.from_infinity) => {
             squared_distance(position, departure.position)
         }
         _ => 1.0,
     };
-    let one = P::Lanes::splat(1.0);
+    let one = P::Channels::splat(1.0);
     let attenuates = P::MEDIA || P::NULLS;
     let ratio = if attenuates { state.depth.flight_ratio(at.sigma_t, hero) } else { one };
     let transmitted = if attenuates { state.depth.exp_neg() } else { one };
     let geometry = measure::solid_angle_to_vertex(at.cosine, distance_squared);
-    let density = departure.forward * transmitted.hero(hero) * at.sigma_t.hero(hero) * geometry;
-    let inverse = 1.0 / density;
+    let pdf = departure.pdf_fwd * transmitted.hero(hero) * at.sigma_t.hero(hero) * geometry;
+    let inv_pdf = 1.0 / pdf;
     // A density of 0, infinite, or so great or small that its inverse is: no walk in a real scene comes here.
-    if !(inverse > 0.0 && inverse < f32::INFINITY) {
+    if !(inv_pdf > 0.0 && inv_pdf < f32::INFINITY) {
         return None;
     }
     let sampled = if P::HETEROGENEOUS { state.ratio } else { ratio };
@@ -226,10 +232,13 @@ pub fn arrive<P: Profile>(
         edges: departure.edges + 1,
         after_dirac: departure.dirac,
         throughput,
-        inverse,
-        reach_before: departure.reach,
-        reach: departure.reach * ratio,
-        partial: departure.carried.times(transmitted).scaled(1.0 / distance_squared),
+        inv_pdf,
+        pdf_over_hero_before: departure.pdf_over_hero,
+        pdf_over_hero: departure.pdf_over_hero * ratio,
+        others_over_pdf_rev: departure
+            .others_before_segment
+            .times(transmitted)
+            .scaled(1.0 / distance_squared),
     })
 }
 
@@ -248,80 +257,91 @@ fn squared_distance(a: Vec3, b: Vec3) -> f32 {
 }
 
 /// A direction after scattering.
-pub struct Turn {
+pub struct ScatterSample {
     /// Where the walk goes on to, unit.
     pub direction: Vec3,
     /// Factor on the throughput.
     pub weight: Spectrum,
     /// Density of `direction`, survival included [1/sr], or the probability of the Dirac lobe.
-    pub forward: f32,
+    pub pdf_fwd: f32,
     /// The same for the way back.
-    pub backward: f32,
+    pub pdf_rev: f32,
     /// True if a Dirac lobe was sampled.
     pub dirac: bool,
 }
 
 /// Scatters at `vertex`; none if the walk is absorbed there (LW96 eq. 8 and 9 are subcritical).
 #[inline]
-fn scatter<S: Sums>(
+fn scatter<S: MisSums>(
     scene: &Scene,
     vertex: &Vertex<S>,
     transport: Transport,
     stream: &mut Stream,
 ) -> Option<Departure<S>> {
-    let turn = match &vertex.interaction {
-        Interaction::Medium(_, matter) => collide(scene, vertex, matter, stream)?,
+    let scattered = match &vertex.interaction {
+        Interaction::Medium(_, properties) => collide(scene, vertex, properties, stream)?,
         Interaction::Surface(point) => reflect(scene, vertex, point, transport, stream)?,
     };
-    Some(set_out(scene, vertex, &turn))
+    Some(set_out(scene, vertex, &scattered))
 }
 
-/// Leaves `vertex` in the direction of `turn`.
+/// Leaves `vertex` in the direction of `scattered`.
 ///
 /// LW96 eq. 12: the densities of the subpath, with p'(x_i+1) of the next vertex.
 #[inline]
-pub fn set_out<S: Sums>(scene: &Scene, vertex: &Vertex<S>, turn: &Turn) -> Departure<S> {
+pub fn set_out<S: MisSums>(scene: &Scene, vertex: &Vertex<S>, scattered: &ScatterSample) -> Departure<S> {
     let subpath = &vertex.subpath;
-    let (origin, medium) = vertex.depart(scene, turn.direction);
-    let tail = if turn.dirac { subpath.partial.scaled(turn.backward) } else { vertex.tail(turn.backward) };
+    let (origin, medium) = vertex.depart(scene, scattered.direction);
+    let others_before = if scattered.dirac {
+        subpath.others_over_pdf_rev.scaled(scattered.pdf_rev)
+    } else {
+        vertex.others_before(scattered.pdf_rev)
+    };
     Departure {
         position: vertex.position(),
-        ray: Ray { origin, direction: turn.direction, t_max: f32::INFINITY },
+        ray: Ray { origin, direction: scattered.direction, t_max: f32::INFINITY },
         medium,
         from_infinity: false,
         edges: subpath.edges,
         hidden: false,
-        dirac: turn.dirac,
-        throughput: subpath.throughput * turn.weight,
-        forward: turn.forward,
-        carried: tail.times(vertex.sigma_t()).scaled(vertex.cosine(turn.direction) * subpath.inverse),
-        reach: subpath.reach,
+        dirac: scattered.dirac,
+        throughput: subpath.throughput * scattered.weight,
+        pdf_fwd: scattered.pdf_fwd,
+        others_before_segment: others_before
+            .times(vertex.sigma_t())
+            .scaled(vertex.cosine(scattered.direction) * subpath.inv_pdf),
+        pdf_over_hero: subpath.pdf_over_hero,
     }
 }
 
 /// LW96 eq. 8: p_scattering, sigma/kappa being the probability of survival.
 #[inline]
-fn collide<S: Sums>(scene: &Scene, vertex: &Vertex<S>, matter: &Matter, stream: &mut Stream) -> Option<Turn> {
+fn collide<S: MisSums>(
+    scene: &Scene,
+    vertex: &Vertex<S>,
+    properties: &MediumProperties,
+    stream: &mut Stream,
+) -> Option<ScatterSample> {
     let medium = &scene.media[vertex.subpath.medium.0 as usize];
-    let survival = matter.survival();
+    let survival = properties.survival();
     if stream.uniform() >= survival {
         return None;
     }
     let direction = medium.phase.sample(-vertex.subpath.incoming, stream);
-    let density = medium.phase.density(Deflection::between(-vertex.subpath.incoming, direction)) * survival;
-    let weight = matter.albedo / survival;
-    Some(Turn { direction, weight, forward: density, backward: density, dirac: false })
+    let pdf = medium.phase.pdf_sr(Deflection::between(-vertex.subpath.incoming, direction)) * survival;
+    let weight = properties.albedo / survival;
+    Some(ScatterSample { direction, weight, pdf_fwd: pdf, pdf_rev: pdf, dirac: false })
 }
 
 /// LW96 eq. 9: p_reflection, or whatever the bsdf samples by.
 #[inline]
-fn reflect<S: Sums>(
+fn reflect<S: MisSums>(
     scene: &Scene,
     vertex: &Vertex<S>,
     point: &SurfacePoint,
     transport: Transport,
     stream: &mut Stream,
-) -> Option<Turn> {
+) -> Option<ScatterSample> {
     let bsdf = scene.bsdf(point.shape);
     let wi = point.shading.to_local(vertex.subpath.incoming);
     let survival = bsdf.survival(point.uv, wi);
@@ -335,8 +355,8 @@ fn reflect<S: Sums>(
     if weight.max_element() <= 0.0 {
         return None;
     }
-    let (forward, backward) = (sample.forward * survival, sample.backward * survival);
-    Some(Turn { direction, weight, forward, backward, dirac: sample.dirac })
+    let (pdf_fwd, pdf_rev) = (sample.pdf_fwd * survival, sample.pdf_rev * survival);
+    Some(ScatterSample { direction, weight, pdf_fwd, pdf_rev, dirac: sample.dirac })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::fmt::Write as _;
 use tyndall::math::Spectrum;
 
-/// Chance that a test fails although all its claims hold, had its seeds been drawn anew.
+/// Chance that a test fails although all its claims hold, had its seeds been drawn again.
 const SIGNIFICANCE: f64 = 1e-3;
 
 /// Results are in single precision, so that even an estimate without variance is only as good as the rounding

@@ -9,12 +9,11 @@ pub mod studies;
 use serde_json::Value;
 use tempfile::TempDir;
 use tyndall::{
+    format,
     math::Spectrum,
     render::{self, Image, Settings, budget::Budget},
-    scene::{
-        self,
-        build::{self, Overrides, Setup},
-    },
+    scene::build::{self, Setup},
+    settings::Overrides,
     transport::{
         Options, Strategies,
         profile::{Needs, ProfileName},
@@ -43,7 +42,7 @@ impl Stage {
         }
         let path = folder.path().join("scene.json");
         std::fs::write(&path, scene.to_string()).unwrap();
-        let root = scene::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let root = format::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
         let setup = build::build(&root, Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
         let profile = ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.options.hide_emitters));
         Self { setup, profile }
@@ -98,16 +97,20 @@ pub fn render(scene: &Value, strategies: Strategies, samples_per_pixel: u64, see
 /// The strategies named in `names`, such as "hit+lens".
 pub fn strategies(names: &str) -> Strategies {
     let has = |name| names.split('+').any(|n| n == name);
-    let chosen =
-        Strategies { hit: has("hit"), next_event: has("next-event"), join: has("join"), lens: has("lens") };
+    let chosen = Strategies {
+        emitter_hit: has("hit"),
+        next_event: has("next-event"),
+        connection: has("join"),
+        lens: has("lens"),
+    };
     assert_eq!(name_of(chosen).split('+').count(), names.split('+').count(), "misspelt: {names}");
     chosen
 }
 
 /// The reverse of [`strategies`].
 pub fn name_of(strategies: Strategies) -> String {
-    let Strategies { hit, next_event, join, lens } = strategies;
-    let all = [(hit, "hit"), (next_event, "next-event"), (join, "join"), (lens, "lens")];
+    let Strategies { emitter_hit, next_event, connection, lens } = strategies;
+    let all = [(emitter_hit, "hit"), (next_event, "next-event"), (connection, "join"), (lens, "lens")];
     let names: Vec<&str> = all.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
     names.join("+")
 }

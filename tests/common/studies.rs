@@ -3,9 +3,9 @@
 use std::path::Path;
 use tempfile::TempDir;
 use tyndall::{
+    analysis::study::outcome::{ContenderOutcome, Interval, Outcome, Point, Reference, SceneOutcome},
     film::{exr, format::Format},
     math::{Spectrum, vec3},
-    study::outcome::{ContenderOutcome, Interval, Outcome, Point, Reference, SceneOutcome},
 };
 
 /// Size of all images.

@@ -6,7 +6,7 @@ mod common;
 
 use common::studies::Study;
 use std::process::Command;
-use tyndall::study::page;
+use tyndall::analysis::study::page;
 
 /// Runs `python3 -m validation` with these arguments; panics with its table unless everything in it holds.
 fn must_hold(arguments: &[&str]) {

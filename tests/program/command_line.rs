@@ -66,8 +66,8 @@ fn frames_are_numbered_files_and_the_same_alone() {
     sandbox.run("render scene.json -o a.exr --frames 10 --fps 4 --spp 1").ends(0);
     assert_ne!(sandbox.bytes("a.0010.exr"), all);
     let still = Sandbox::with_scene(&foggy_room());
-    let told = still.run("render scene.json --frames 0..1 --spp 1").ends(0).err();
-    assert!(told.contains("warning") && told.contains("wind"), "{told}");
+    let reported = still.run("render scene.json --frames 0..1 --spp 1").ends(0).err();
+    assert!(reported.contains("warning") && reported.contains("wind"), "{reported}");
     assert_eq!(still.files().len(), 5);
     assert_ne!(still.bytes("scene.0000.exr"), still.bytes("scene.0001.exr"));
 }
@@ -82,10 +82,10 @@ fn heuristics_can_be_chosen() {
     }
     sandbox.run("render scene.json --heuristic cutoff").refuses(&["max_depth", "32", "no limit"]);
     sandbox.run("render scene.json --heuristic cutoff --max-depth 33").refuses(&["--max-depth", "32", "33"]);
-    let told = sandbox.run("render scene.json --integrator fog --heuristic power").ends(0).err();
-    assert!(told.contains("--heuristic has no effect"), "{told}");
-    let told = sandbox.run("info scene.json").ends(0).out();
-    assert!(told.contains("weighed by the balance heuristic"), "{told}");
+    let reported = sandbox.run("render scene.json --integrator fog --heuristic power").ends(0).err();
+    assert!(reported.contains("--heuristic has no effect"), "{reported}");
+    let reported = sandbox.run("info scene.json").ends(0).out();
+    assert!(reported.contains("weighed by the balance heuristic"), "{reported}");
 }
 
 /// Every batch is the image of its own seed, the image is their mean, and the error is that of the mean.
@@ -137,15 +137,15 @@ fn batches_are_the_images_of_consecutive_seeds() {
 #[test]
 fn trackers_can_be_forced() {
     let sandbox = Sandbox::with_scene(&drifting());
-    let told = |words: &str| sandbox.run(&format!("info scene.json {words}")).ends(0).out();
-    assert!(told("").contains("tracker closed_form, chosen by cost"), "{}", told(""));
-    let forced = told("--tracker null_collision");
+    let reported = |words: &str| sandbox.run(&format!("info scene.json {words}")).ends(0).out();
+    assert!(reported("").contains("tracker closed_form, chosen by cost"), "{}", reported(""));
+    let forced = reported("--tracker null_collision");
     assert!(forced.contains("tracker null_collision, forced by --tracker"), "{forced}");
     sandbox.run("render scene.json --tracker march --spp 1").ends(0);
     sandbox.run("render scene.json --tracker exact").refuses(&["gridvolume", "closed_form"]);
     let still = Sandbox::with_scene(&foggy_room());
-    let told = still.run("info scene.json --tracker march").ends(0).err();
-    assert!(told.contains("--tracker has no effect"), "{told}");
+    let reported = still.run("info scene.json --tracker march").ends(0).err();
+    assert!(reported.contains("--tracker has no effect"), "{reported}");
 }
 
 #[test]
@@ -162,19 +162,22 @@ fn integrators_that_do_less_say_so() {
     sandbox.run("render scene.json -o full.exr --integrator pt").ends(0);
     assert_ne!(sandbox.bytes("scene.exr"), sandbox.bytes("full.exr"));
     assert!(sandbox.run("info scene.json").ends(0).out().contains("fog, a preview"));
-    let told = sandbox.run("render scene.json --max-depth 3").ends(0).err();
-    assert!(told.contains("--max-depth has no effect"), "{told}");
+    let reported = sandbox.run("render scene.json --max-depth 3").ends(0).err();
+    assert!(reported.contains("--max-depth has no effect"), "{reported}");
     sandbox.run("render scene.json --strategies hit").refuses(&["--strategies"]);
     let sandbox = with_integrator(json!({"type": "single_scattering", "step": 0.05}));
-    let told = sandbox.run("info scene.json").ends(0).out();
+    let reported = sandbox.run("info scene.json").ends(0).out();
     assert!(
-        told.contains("single scattering") && told.contains("march by steps of at most 0.05 m"),
-        "{told}"
+        reported.contains("single scattering") && reported.contains("march by steps of at most 0.05 m"),
+        "{reported}"
     );
     sandbox.run("render scene.json --max-depth 3").refuses(&["--max-depth", "single_scattering"]);
     let sandbox = with_integrator(json!({"type": "non_scattering"}));
-    let told = sandbox.run("info scene.json").ends(0).out();
-    assert!(told.contains("absorb and emit only") && told.contains("albedo at most 0 0 0"), "{told}");
+    let reported = sandbox.run("info scene.json").ends(0).out();
+    assert!(
+        reported.contains("absorb and emit only") && reported.contains("albedo at most 0 0 0"),
+        "{reported}"
+    );
 }
 
 /// A foggy room whose film has more to it.
@@ -201,15 +204,15 @@ fn the_film_or_the_name_decides_the_file() {
     sandbox.run("render scene.json --spp 1").ends(0);
     assert_eq!(sandbox.files(), ["scene.json", "scene.pfm", "scene.png"]);
     assert!(sandbox.bytes("scene.pfm").starts_with(b"Pf\n8 8\n"));
-    let told = sandbox.run("render scene.json --spp 1 -o bright.hdr").ends(0).err();
-    assert!(told.contains("warning") && told.contains("RGB is written"), "{told}");
+    let reported = sandbox.run("render scene.json --spp 1 -o bright.hdr").ends(0).err();
+    assert!(reported.contains("warning") && reported.contains("RGB is written"), "{reported}");
     assert!(sandbox.bytes("bright.hdr").starts_with(b"#?RADIANCE"));
     sandbox.run("render scene.json --spp 1 -o exact.exr").ends(0);
     assert!(sandbox.path("exact.exr").exists());
     let sandbox =
         Sandbox::with_scene(&filmed(&[("file_format", json!("rgbe")), ("pixel_format", json!("rgba"))]));
-    let told = sandbox.run("render scene.json --spp 1").ends(0).err();
-    assert!(told.contains("warning") && told.contains("RGB"), "{told}");
+    let reported = sandbox.run("render scene.json --spp 1").ends(0).err();
+    assert!(reported.contains("warning") && reported.contains("RGB"), "{reported}");
 }
 
 #[test]
@@ -286,7 +289,7 @@ fn a_time_limit_is_kept() {
 #[test]
 fn info_tells_how_a_scene_would_be_rendered() {
     let sandbox = Sandbox::with_scene(&foggy_room());
-    let told = sandbox.run("info scene.json").ends(0).out();
+    let reported = sandbox.run("info scene.json").ends(0).out();
     for what in [
         "8 x 8",
         "bdpt",
@@ -296,7 +299,7 @@ fn info_tells_how_a_scene_would_be_rendered() {
         "camera      in fog",
         "area in fog",
     ] {
-        assert!(told.contains(what), "no \"{what}\" in:\n{told}");
+        assert!(reported.contains(what), "no \"{what}\" in:\n{reported}");
     }
     assert_eq!(sandbox.files(), ["scene.json"]);
 }

@@ -10,13 +10,14 @@ use proptest::{
 use std::{collections::HashSet, fs, path::Path, sync::Arc};
 use tyndall::{
     description::{Location, Object, Position, Property, TransformStep, Value},
-    scene::{self, Naming, Spelling},
+    format,
+    format::{Naming, Spelling},
 };
 
 impl Sandbox {
     /// The tree in a file, without places.
     fn read(&self, name: &str, definitions: &[(&str, &str)]) -> Object {
-        let root = scene::read(&self.path(name), &pairs(definitions)).unwrap_or_else(|error| {
+        let root = format::read(&self.path(name), &pairs(definitions)).unwrap_or_else(|error| {
             panic!("{error}\n{}", fs::read_to_string(self.path(name)).unwrap_or_default())
         });
         without_places(root, &nowhere())
@@ -25,14 +26,14 @@ impl Sandbox {
     /// Converts one file to another and gives its text and the notes.
     fn convert(&self, from: &str, to: &str, definitions: &[(&str, &str)]) -> (String, Vec<String>) {
         let conversion =
-            scene::convert(&self.path(from), &self.path(to), &pairs(definitions), Naming::Keep).unwrap();
+            format::convert(&self.path(from), &self.path(to), &pairs(definitions), Naming::Keep).unwrap();
         fs::write(self.path(to), &conversion.text).unwrap();
         (conversion.text, conversion.notes)
     }
 
     /// What comes back of `root` as a file of this spelling, and the file's text.
     fn through(&self, root: &Object, spelling: Spelling) -> (Object, String) {
-        let text = scene::write(root, spelling, Path::new("nowhere")).unwrap();
+        let text = format::write(root, spelling, Path::new("nowhere")).unwrap();
         let name = if spelling == Spelling::Xml { "scene.xml" } else { "scene.json" };
         fs::write(self.path(name), &text).unwrap();
         (self.read(name, &[]), text)
@@ -220,7 +221,7 @@ proptest! {
         let sandbox = Sandbox::with_files(&[]);
         let (xml, text) = sandbox.through(&tree, Spelling::Xml);
         assert_same(&tree, &xml, &text);
-        prop_assert_eq!(scene::write(&xml, Spelling::Xml, Path::new("nowhere")).unwrap(), text);
+        prop_assert_eq!(format::write(&xml, Spelling::Xml, Path::new("nowhere")).unwrap(), text);
     }
 
     #[test]
@@ -265,7 +266,7 @@ proptest! {
 
     #[test]
     fn parameters_go_both_ways(tree in any_scene(), choices in vec(any::<u8>(), 16)) {
-        let plain = scene::write(&tree, Spelling::Xml, Path::new("nowhere")).unwrap();
+        let plain = format::write(&tree, Spelling::Xml, Path::new("nowhere")).unwrap();
         prop_assume!(plain.lines().count() > 2);
         let (text, settable) = parametrised(&plain, &choices);
         let sandbox = Sandbox::with_files(&[("a.xml", &text)]);
@@ -372,7 +373,7 @@ fn parameters_stay_parameters() {
         format!("{:?}", tidied(sandbox.read("b.json", &[("res", "9")])))
     );
     // Or all parameters go, and their values stay.
-    let filled = scene::convert(
+    let filled = format::convert(
         &sandbox.path("a.xml"),
         &sandbox.path("e.json"),
         &pairs(&[("res", "9")]),
@@ -514,7 +515,7 @@ fn what_a_spelling_cannot_hold_is_an_error() {
         ("told.json", r#"{"type": "scene", "s": {"type": "blob", "$tag": "shape"}}"#),
     ]);
     let refused = |from: &str, to: &str, words: &[&str]| {
-        let error = scene::convert(&sandbox.path(from), &sandbox.path(to), &[], Naming::Keep)
+        let error = format::convert(&sandbox.path(from), &sandbox.path(to), &[], Naming::Keep)
             .unwrap_err()
             .to_string();
         words.iter().for_each(|word| assert!(error.contains(word), "{word}: {error}"));
@@ -544,11 +545,11 @@ fn shipped_scenes_come_back() {
         };
         // Beside the scene, so that names of files stay; nothing is written there.
         let there =
-            scene::convert(&path, &path.with_extension(format!("new.{other}")), &[], Naming::Keep).unwrap();
+            format::convert(&path, &path.with_extension(format!("new.{other}")), &[], Naming::Keep).unwrap();
         let sandbox = Sandbox::with_files(&[(&format!("there.{other}"), &there.text)]);
         let back = sandbox.convert(&format!("there.{other}"), &format!("back.{ours}"), &[]).0;
         let direct =
-            scene::convert(&path, &path.with_extension(format!("new.{ours}")), &[], Naming::Keep).unwrap();
+            format::convert(&path, &path.with_extension(format!("new.{ours}")), &[], Naming::Keep).unwrap();
         assert_eq!(direct.text, back, "{}", path.display());
         assert!(there.notes.is_empty(), "{:?}", there.notes);
         seen.insert(ours);

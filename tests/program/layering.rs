@@ -10,12 +10,15 @@ use std::{
 const LAYERS: &[&[&str]] = &[
     &["error", "math", "sampling"],
     &["description"],
-    &["density", "phase", "texture"],
+    &["phase", "texture", "volume"],
     &["medium", "bsdf", "shape", "emitter", "sensor"],
-    &["film", "scene"],
+    &["film"],
+    &["settings"],
+    &["format"],
+    &["scene"],
     &["transport"],
     &["render"],
-    &["study"],
+    &["analysis"],
     &["cli"],
 ];
 
@@ -127,7 +130,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 /// True for files that only tests compile.
 fn is_test(file: &Path) -> bool {
     file.components()
-        .any(|part| ["tests", "tests.rs", "testing.rs", "twin"].iter().any(|name| part.as_os_str() == *name))
+        .any(|part| ["tests", "tests.rs", "testing.rs"].iter().any(|name| part.as_os_str() == *name))
 }
 
 #[test]

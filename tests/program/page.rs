@@ -3,7 +3,7 @@
 use crate::common::studies::{self, Study};
 use scraper::{ElementRef, Html, Selector};
 use std::{fs, path::Path, process::Command};
-use tyndall::study::page;
+use tyndall::analysis::study::page;
 
 /// The page of a study, refused unless it is well-formed and stands alone.
 fn page_of(study: &Study) -> Html {
@@ -64,9 +64,9 @@ fn what_scripts_read_is_what_stands_in_the_study() {
     let html = page_of(&study);
     let data: serde_json::Value = serde_json::from_str(&texts(&html, "#data").concat()).unwrap();
     let names: Vec<_> = study.outcome.scenes[0].contenders.iter().map(|c| c.name.as_str()).collect();
-    let told: Vec<_> =
+    let reported: Vec<_> =
         data["scenes"][0].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
-    assert_eq!(told, names);
+    assert_eq!(reported, names);
     assert_eq!(data["scenes"][0][0]["points"].as_array().unwrap().len(), 2);
 }
 

@@ -8,15 +8,15 @@ use serde_json::{Value, json};
 use tyndall::{
     math::Spectrum,
     render::{
-        bench::Bench,
-        sample::{Partner, PixelSample},
+        instrument::Instrument,
+        pixel_sample::{Partner, PixelSample},
     },
     transport::Strategies,
 };
 
 const SIZE: u32 = 40;
 
-/// More pixels than one block has, seen through a filter that spreads what light walks bring.
+/// More pixels than one block has, seen through a filter that spreads what light subpaths bring.
 fn foggy_room(fog: Option<Value>, filter: &str) -> Value {
     let mut scene = scene(&[
         ("sensor", camera([5.0, 0.0, 0.9], [5.0, 0.0, -1.0], SIZE)),
@@ -70,7 +70,7 @@ fn assert_consistent(what: &str, sample: &PixelSample) {
     let mut sum = Spectrum::ZERO;
     for one in &sample.tries {
         if !matches!(one.partner, Partner::Met(..)) {
-            let vertices = sample.eye[one.walk].stops.len();
+            let vertices = sample.camera[one.walk].stops.len();
             assert!(
                 (1..=vertices).contains(&(one.t as usize - 1)),
                 "{what}: vertex {} of {vertices}",
@@ -85,7 +85,7 @@ fn assert_consistent(what: &str, sample: &PixelSample) {
                 "{what}"
             );
         }
-        let Some(joined) = &one.joined else { continue };
+        let Some(joined) = &one.contribution else { continue };
         sum += joined.value * sample.factor;
         let (weight, rest) = (joined.share(), joined.alone * joined.share() - joined.value);
         assert!((0.0..=1.00001).contains(&weight), "{what}: {weight}");
@@ -103,7 +103,7 @@ fn a_sample_made_again_is_what_its_pass_adds() {
         let stage = Stage::new(&scene);
         let (mut lit, mut joined, mut splats) = (0, 0, 0);
         for set in [Strategies::BDPT, Strategies::PT, Strategies::LT, strategies("hit+join")] {
-            let bench = Bench::new(&stage.setup.scene, &stage.setup.film, &stage.settings(set, 1, 3));
+            let bench = Instrument::new(&stage.setup.scene, &stage.setup.film, &stage.settings(set, 1, 3));
             let mut passes = Vec::new();
             bench.passes(0..3, &mut |image| passes.push(image.to_vec()));
             let rendered = stage.render(set, 1, 3);
@@ -117,7 +117,8 @@ fn a_sample_made_again_is_what_its_pass_adds() {
                     }
                     assert_consistent(&what, &sample);
                     lit += usize::from(sample.value != Spectrum::ZERO);
-                    joined += sample.tries.iter().filter(|one| one.s >= 2 && one.joined.is_some()).count();
+                    joined +=
+                        sample.tries.iter().filter(|one| one.s >= 2 && one.contribution.is_some()).count();
                     splats += sample.splats.len();
                 }
             }
@@ -128,14 +129,14 @@ fn a_sample_made_again_is_what_its_pass_adds() {
 
 impl Sandbox {
     fn pixel(&self, words: &str) -> Value {
-        let (code, out, err) = self.run(&format!("pixel scene.json {words}")).told();
+        let (code, out, err) = self.run(&format!("pixel scene.json {words}")).reported();
         assert_eq!(code, Some(0), "{words}: {err}");
         serde_json::from_str(&out).unwrap()
     }
 
     /// Pixel (`x`, `y`) of a render.
     fn rendered(&self, words: &str, x: usize, y: usize) -> [f32; 3] {
-        let (code, _, err) = self.run(&format!("render scene.json -o image.pfm {words}")).told();
+        let (code, _, err) = self.run(&format!("render scene.json -o image.pfm {words}")).reported();
         assert_eq!(code, Some(0), "{words}: {err}");
         let bytes = self.bytes("image.pfm");
         let size = SIZE as usize;
@@ -159,16 +160,16 @@ fn the_program_tells_what_a_render_holds() {
     let sandbox = Sandbox::with_scene(&foggy_room(Some(chromatic), "gaussian"));
     for more in ["--seed 5", "--seed 6 --strategies hit,join,lens --max-depth 4", "--integrator pt"] {
         let rendered = sandbox.rendered(&format!("--spp 1 {more}"), 22, 17);
-        let told = sandbox.pixel(&format!("22 17 {more}"));
-        assert_eq!(floats(&told["samples"][0]["value"]), rendered, "{more}");
+        let reported = sandbox.pixel(&format!("22 17 {more}"));
+        assert_eq!(floats(&reported["samples"][0]["value"]), rendered, "{more}");
         // The mean of two is half the sum.
         let mean = sandbox.rendered(&format!("--spp 2 {more}"), 22, 17);
-        let told = sandbox.pixel(&format!("22 17 --samples 2 {more}"));
-        let [a, b] = [0, 1].map(|sample| floats(&told["samples"][sample]["value"]));
+        let reported = sandbox.pixel(&format!("22 17 --samples 2 {more}"));
+        let [a, b] = [0, 1].map(|sample| floats(&reported["samples"][sample]["value"]));
         let halves: [f32; 3] = std::array::from_fn(|c| ((f64::from(a[c]) + f64::from(b[c])) / 2.0) as f32);
         assert_eq!(halves, mean, "{more}");
         let second = sandbox.pixel(&format!("22 17 --sample 1 {more}"));
-        assert_eq!(second["samples"][0], told["samples"][1]);
+        assert_eq!(second["samples"][0], reported["samples"][1]);
     }
 }
 
@@ -178,9 +179,9 @@ fn the_program_tells_what_a_render_holds() {
 fn densities_are_those_of_the_walk() {
     let sandbox =
         Sandbox::with_scene(&foggy_room(Some(with(medium(0.7, 0.8, 0.3), &[("id", json!("mist"))])), "box"));
-    let told = sandbox.pixel("20 20 --samples 40");
+    let reported = sandbox.pixel("20 20 --samples 40");
     let (mut surfaces, mut media) = (0, 0);
-    for sample in told["samples"].as_array().unwrap() {
+    for sample in reported["samples"].as_array().unwrap() {
         let walk = &sample["eye_walks"][0];
         assert_eq!(numbers(&walk["start"]["position"]), [5.0, 0.0, 0.9], "the lens");
         let (mut before, mut leg) = (walk["start"]["position"].clone(), walk["start"]["onward"].clone());
@@ -216,8 +217,8 @@ fn densities_are_those_of_the_walk() {
 #[test]
 fn contributions_are_told_with_their_strategies() {
     let sandbox = Sandbox::with_scene(&foggy_room(Some(medium(0.3, 0.8, 0.3)), "box"));
-    let told = sandbox.pixel("20 20 --samples 30 --strategies hit,next-event,join");
-    let samples = told["samples"].as_array().unwrap();
+    let reported = sandbox.pixel("20 20 --samples 30 --strategies hit,next-event,join");
+    let samples = reported["samples"].as_array().unwrap();
     let all: Vec<&Value> = samples.iter().flat_map(|s| s["contributions"].as_array().unwrap()).collect();
     for one in &all {
         let (s, t) = (one["s"].as_u64().unwrap(), one["t"].as_u64().unwrap());
@@ -240,7 +241,7 @@ fn contributions_are_told_with_their_strategies() {
 #[test]
 fn the_file_holds_what_is_printed_otherwise() {
     let sandbox = Sandbox::with_scene(&cloud_under_sky(json!(1.0)));
-    let (code, out, err) = sandbox.run("pixel scene.json 3 5 -o told.json --threads 1").told();
+    let (code, out, err) = sandbox.run("pixel scene.json 3 5 -o told.json --threads 1").reported();
     assert_eq!((code, out.trim()), (Some(0), "told.json"), "{err}");
     let file: Value =
         serde_json::from_str(&std::fs::read_to_string(sandbox.path("told.json")).unwrap()).unwrap();
@@ -267,7 +268,7 @@ fn what_is_not_there_is_refused() {
         ("pixel scene.json 4 4 --integrator fog", vec!["paths", "--integrator bdpt"]),
         ("pixel scene.json 4 4 -o nowhere/at.json", vec!["nowhere"]),
     ] {
-        let (code, _, err) = sandbox.run(words).told();
+        let (code, _, err) = sandbox.run(words).reported();
         assert_eq!(code, Some(2), "{words}: {err}");
         assert!(hints.iter().all(|hint| err.contains(hint)) && !err.contains("panicked"), "{words}: {err}");
     }

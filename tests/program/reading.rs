@@ -5,13 +5,13 @@ use std::{fs, path::Path};
 use tyndall::{
     description::{Object, TransformStep, Value},
     error::Error,
-    scene,
+    format, scene, settings,
 };
 
 impl Sandbox {
     fn read_scene(&self, name: &str, definitions: &[(&str, &str)]) -> Result<Object, Error> {
         let definitions: Vec<_> = definitions.iter().map(|(n, v)| (n.to_string(), v.to_string())).collect();
-        scene::read(&self.path(name), &definitions)
+        format::read(&self.path(name), &definitions)
     }
 }
 
@@ -72,8 +72,8 @@ fn assert_same(a: &Object, b: &Object) {
 fn both_spellings_of_a_scene_are_one_tree() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes");
     for definitions in [vec![], vec![("res".to_owned(), "7".to_owned())]] {
-        let xml = scene::read(&scenes.join("lampbox_down.xml"), &definitions).unwrap();
-        let json = scene::read(&scenes.join("lampbox_down.json"), &definitions).unwrap();
+        let xml = format::read(&scenes.join("lampbox_down.xml"), &definitions).unwrap();
+        let json = format::read(&scenes.join("lampbox_down.json"), &definitions).unwrap();
         assert_same(&xml, &json);
         let width = property(child(child(&xml, 2), 2), "width");
         assert_eq!(*width, Value::Integer(if definitions.is_empty() { 48 } else { 7 }));
@@ -338,7 +338,7 @@ fn versions_from_2_on_have_no_camel_case() {
              <bsdf type=\"dielectric\"><float name=\"intIOR\" value=\"1.3\"/></bsdf></scene>"
         );
         let scene = Sandbox::with_files(&[("scene.xml", &text)]).read_scene("scene.xml", &[]).unwrap();
-        let Err(error) = scene::build::build(&scene, scene::build::Overrides::default()) else { panic!() };
+        let Err(error) = scene::build::build(&scene, settings::Overrides::default()) else { panic!() };
         assert!(error.found.contains("intIOR") && error.remedy.contains("\"int_ior\""), "{error}");
     }
 }

@@ -90,7 +90,7 @@ pub struct Run {
 
 impl Run {
     /// Exit code, standard output, standard error.
-    pub fn told(&self) -> (Option<i32>, String, String) {
+    pub fn reported(&self) -> (Option<i32>, String, String) {
         (self.output.status.code(), self.out(), self.err())
     }
 

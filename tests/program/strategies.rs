@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 use tyndall::{
     math::Spectrum,
     render::{
-        bench::Bench,
-        parts::{Cell, Cells, Parts},
+        instrument::Instrument,
+        strategy_images::{StrategyCell, StrategyImages, StrategyTable},
     },
-    transport::{Strategies, record::StrategyKind},
+    transport::{Strategies, observer::StrategyKind},
 };
 
 fn foggy_room(fog: Value) -> Value {
@@ -71,9 +71,9 @@ fn scenes() -> Vec<(&'static str, Value)> {
     ]
 }
 
-fn parts(stage: &Stage, set: Strategies, cells: Cells, passes: usize, seed: u64) -> Parts {
+fn parts(stage: &Stage, set: Strategies, cells: StrategyTable, passes: usize, seed: u64) -> StrategyImages {
     let settings = stage.settings(set, passes as u64, seed);
-    Bench::new(&stage.setup.scene, &stage.setup.film, &settings).parts(cells, passes, &mut |_| {})
+    Instrument::new(&stage.setup.scene, &stage.setup.film, &settings).parts(cells, passes, &mut |_| {})
 }
 
 fn sum<'a>(images: impl Iterator<Item = &'a Vec<Spectrum>>, pixels: usize) -> Vec<Spectrum> {
@@ -100,7 +100,7 @@ fn the_weighted_parts_make_the_image() {
             let name = format!("{name}, {}", common::name_of(set));
             let image = stage.render(set, 4, 7);
             for depth in [1, 4] {
-                let parts = parts(&stage, set, Cells { depth }, 4, 7);
+                let parts = parts(&stage, set, StrategyTable { depth }, 4, 7);
                 assert_same(&name, &parts.whole.mean(), &image);
                 let weighted: Vec<_> = parts.images.iter().flatten().map(|i| i.weighted.mean()).collect();
                 assert_same(&name, &sum(weighted.iter(), image.len()), &image);
@@ -122,14 +122,15 @@ fn every_strategy_alone_shows_the_same() {
         let stage = Stage::new(&foggy_room(fog));
         let mut images: BTreeMap<String, Vec<Vec<Spectrum>>> = BTreeMap::new();
         for seed in 0..12 {
-            let parts = parts(&stage, Strategies::BDPT, Cells { depth: DEPTH }, 150, seed);
-            let of = |cell: &Cell, alone: bool| {
-                let index = parts.cells.all().position(|other| other == *cell).unwrap();
+            let parts = parts(&stage, Strategies::BDPT, StrategyTable { depth: DEPTH }, 150, seed);
+            let of = |cell: &StrategyCell, alone: bool| {
+                let index = parts.table.all().position(|other| other == *cell).unwrap();
                 let images = parts.images[index].as_ref().unwrap();
                 if alone { images.alone.mean() } else { images.weighted.mean() }
             };
             for length in 1..=DEPTH {
-                let cells: Vec<Cell> = parts.cells.all().filter(|c| c.length() == Some(length)).collect();
+                let cells: Vec<StrategyCell> =
+                    parts.table.all().filter(|c| c.length() == Some(length)).collect();
                 assert_eq!(cells.len() as u32, length + 1);
                 let weighted: Vec<_> = cells.iter().map(|cell| of(cell, false)).collect();
                 let all = sum(weighted.iter(), weighted[0].len());
@@ -140,7 +141,7 @@ fn every_strategy_alone_shows_the_same() {
             }
         }
         let sample = |name: &str| Sample::of(&images[name], stage.width());
-        for cell in (Cells { depth: DEPTH }).all() {
+        for cell in (StrategyTable { depth: DEPTH }).all() {
             if let Some(length) = cell.length() {
                 let what = format!("{name}: {} alone against all", cell.name());
                 claims.equal_in_pairs(&what, &sample(&cell.name()), &sample(&format!("all{length}")));
@@ -159,7 +160,7 @@ fn shares(cells: &[Value], key: &str) -> f64 {
 fn the_program_writes_tables_layers_and_sheets() {
     let sandbox = Sandbox::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
     let (code, out, err) =
-        sandbox.run("strategies scene.json -o deep/er --spp 6 --pilots 20 --depth 3 --seed 4").told();
+        sandbox.run("strategies scene.json -o deep/er --spp 6 --pilots 20 --depth 3 --seed 4").reported();
     assert_eq!(code, Some(0), "{err}");
     for word in
         ["next-event", "eye walks", "light walks", "covariances", "advice:", "without join,lens", "exposure"]
@@ -203,7 +204,7 @@ fn the_program_writes_tables_layers_and_sheets() {
 fn what_a_scene_needs_is_not_left_out() {
     let sandbox = Sandbox::with_scene(&glass_ball());
     let (code, out, err) =
-        sandbox.run("strategies scene.json --spp 2 --pilots 1 --depth 2 --size 4x4").told();
+        sandbox.run("strategies scene.json --spp 2 --pilots 1 --depth 2 --size 4x4").reported();
     assert_eq!(code, Some(0), "{err}");
     assert!(out.contains("cannot make: light of area, sky or medium that smooth"), "{out}");
     let subsets = sandbox.json("scene-strategies/strategies.json")["subsets"].clone();
@@ -213,7 +214,7 @@ fn what_a_scene_needs_is_not_left_out() {
         assert_eq!(set["gain"].is_null(), without_hit, "{set}");
     }
     let (code, out, err) =
-        sandbox.run("strategies scene.json --spp 1 --pilots 0 --integrator pt --size 4x4").told();
+        sandbox.run("strategies scene.json --spp 1 --pilots 0 --integrator pt --size 4x4").reported();
     assert_eq!(code, Some(0), "{err}");
     assert!(!out.contains("advice") && !out.contains("  join ") && out.contains("next-event"), "{out}");
     assert!(sandbox.json("scene-strategies/strategies.json")["variance"].is_null(), "one pass has none");
@@ -229,7 +230,7 @@ fn what_cannot_be_done_is_refused() {
         ("strategies scene.json --size 12000x12000", vec!["GiB", "--size", "--depth"]),
         ("strategies none.json", vec!["none.json"]),
     ] {
-        let (code, _, err) = sandbox.run(words).told();
+        let (code, _, err) = sandbox.run(words).reported();
         assert_eq!(code, Some(2), "{words}: {err}");
         assert!(hints.iter().all(|hint| err.contains(hint)) && !err.contains("panicked"), "{words}: {err}");
     }
@@ -241,7 +242,7 @@ fn kinds_are_called_as_they_are_typed() {
     let sandbox = Sandbox::with_scene(&foggy_room(medium(1.0, 0.8, 0.3)));
     for kind in StrategyKind::ALL {
         let words = format!("render scene.json --spp 1 --size 2x2 --strategies {}", kind.name());
-        let (code, _, err) = sandbox.run(&words).told();
+        let (code, _, err) = sandbox.run(&words).reported();
         assert_eq!(code, Some(0), "{err}");
     }
 }

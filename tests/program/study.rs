@@ -12,8 +12,8 @@ use std::{
 };
 use tempfile::TempDir;
 use tyndall::{
+    analysis::picture::{self, Picture},
     math::{Spectrum, SpectrumExt},
-    study::picture::{self, Picture},
 };
 
 /// A folder in which the program runs.
@@ -55,12 +55,12 @@ impl Desk {
     /// It ends with code 2, having said all of `hints`.
     fn refuses(&self, words: &[&str], hints: &[&str]) {
         let output = self.run(words);
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{words:?}: {told}");
+        let reported = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {reported}");
         for hint in hints {
-            assert!(told.contains(hint), "{words:?}: no \"{hint}\" in: {told}");
+            assert!(reported.contains(hint), "{words:?}: no \"{hint}\" in: {reported}");
         }
-        assert!(!told.contains("panicked"), "{words:?}: {told}");
+        assert!(!reported.contains("panicked"), "{words:?}: {reported}");
     }
 
     fn json(&self, name: &str) -> Value {
@@ -198,12 +198,12 @@ fn a_finished_study_is_told_again_without_rendering() {
     // Under a name that the study's own files might have had.
     let desk = Desk::new(&[("lock.json", foggy_room())]);
     let words = ["lock.json", "-o", "out", "--spp", "4", "--seeds", "2", "--reference-spp", "32"];
-    let told = desk.study(&words);
+    let reported = desk.study(&words);
     for part in ["lock, 8 x 8", "contender", "bdpt", "pt", "relMSE", "own relMSE", "study.json"] {
-        assert!(told.contains(part), "{part}: {told}");
+        assert!(reported.contains(part), "{part}: {reported}");
     }
     let outcome = desk.json("out/study.json");
-    assert_eq!(desk.study(&words), told);
+    assert_eq!(desk.study(&words), reported);
     let mut again = desk.json("out/study.json");
     for contender in 0..2 {
         let load = "load_seconds";
@@ -254,8 +254,8 @@ fn points_are_renders_and_measures_are_against_the_reference() {
     fs::copy(desk.path("out/images/room/reference.exr"), desk.path("truth.exr")).unwrap();
     fs::rename(desk.path("out"), desk.path("first")).unwrap();
     let file = ["--integrators", "pt", "--reference", "truth.exr", "--reference-error", "0.5"];
-    let told = desk.study(&[&made[..], &file].concat());
-    assert!(told.contains("times the reference's own"), "{told}");
+    let reported = desk.study(&[&made[..], &file].concat());
+    assert!(reported.contains("times the reference's own"), "{reported}");
     let again = fs::read_to_string(desk.path("out/study.csv")).unwrap();
     assert_eq!(timeless_rows(&again), timeless_rows(&csv));
     assert_eq!(desk.json("out/study.json")["scenes"][0]["reference"]["own_relmse"], json!(0.5));
@@ -319,7 +319,7 @@ fn bias_flattens_the_curve_and_shifts_the_mean() {
         "--reference-spp",
         "4096",
     ];
-    let told = desk.study(&[&["cloud.json", "-o", "out"], &words[..]].concat());
+    let reported = desk.study(&[&["cloud.json", "-o", "out"], &words[..]].concat());
     let scene = &desk.json("out/study.json")["scenes"][0];
     let [fair, biased] = [0, 1].map(|i| &scene["contenders"][i]);
     assert_eq!((fair["name"].as_str(), biased["name"].as_str()), (Some("closed_form"), Some("march")));
@@ -329,13 +329,13 @@ fn bias_flattens_the_curve_and_shifts_the_mean() {
     let (low, high) = (number(&difference["low"]), number(&difference["high"]));
     assert!(low * high > 0.0 && low.abs().min(high.abs()) > 0.01, "{difference}");
     for hint in ["march: is biased by the step", "march: its mean differs", "exact cannot render it"] {
-        assert!(told.contains(hint), "{hint}: {told}");
+        assert!(reported.contains(hint), "{hint}: {reported}");
     }
-    assert!(!told.contains("closed_form: its mean differs"), "{told}");
+    assert!(!reported.contains("closed_form: its mean differs"), "{reported}");
     assert_eq!(scene["contenders"].as_array().unwrap().len(), 2);
 }
 
-/// A mirror under a lamp, which light walks cannot show.
+/// A mirror under a lamp, which light subpaths cannot show.
 fn mirror() -> Value {
     let mirror = with(floor(-0.5, 0.6, 0.5), &[("bsdf", json!({"type": "conductor"}))]);
     scene(&[
@@ -362,13 +362,13 @@ fn several_scenes_and_what_a_contender_cannot_show() {
         "1",
     ];
     let more = ["--contender", "narrow, \"joined\": --strategies hit,join --max-depth 3"];
-    let told = desk.study(&[&["room.json", "mirror.json", "-o", "out"], &words[..], &more].concat());
+    let reported = desk.study(&[&["room.json", "mirror.json", "-o", "out"], &words[..], &more].concat());
     for hint in [
         "lt: its variance is infinite",
         "lt: leaves out light of area, sky or medium seen in or through smooth",
         "lt: its mean",
     ] {
-        assert!(told.contains(hint), "{hint}: {told}");
+        assert!(reported.contains(hint), "{hint}: {reported}");
     }
     let outcome = desk.json("out/study.json");
     let scenes = outcome["scenes"].as_array().unwrap();
@@ -418,7 +418,7 @@ fn another_renderer_competes_by_its_command_line() {
     .unwrap();
     let many = "at once: sh script.sh {budgets} {folder} {scene} {seed}";
     let externals = ["--external", &format!("one by one: {once}"), "--external", many];
-    let told = desk.study(&[&["room.json", "-o", "out"], &words[..], &externals].concat());
+    let reported = desk.study(&[&["room.json", "-o", "out"], &words[..], &externals].concat());
     let outcome = desk.json("out/study.json");
     let scene = &outcome["scenes"][0];
     let names: Vec<&str> =
@@ -435,15 +435,15 @@ fn another_renderer_competes_by_its_command_line() {
         );
     }
     assert_eq!(scene["contenders"][1]["load_seconds"], json!(0.25));
-    assert!(told.contains("one by one: its seconds are those of the whole command"), "{told}");
-    assert!(!told.contains("at once: its seconds"), "{told}");
+    assert!(reported.contains("one by one: its seconds are those of the whole command"), "{reported}");
+    assert!(!reported.contains("at once: its seconds"), "{reported}");
     let how = scene["reference"]["how"].as_str().unwrap();
     assert!(
         how.starts_with("pooled by precision") && how.contains("one by one") && how.contains("bdpt"),
         "{how}"
     );
     // It goes on where it was, and nothing is rendered again.
-    assert_eq!(desk.study(&[&["room.json", "-o", "out"], &words[..], &externals].concat()), told);
+    assert_eq!(desk.study(&[&["room.json", "-o", "out"], &words[..], &externals].concat()), reported);
     // A reference by those who are named.
     let by = ["--reference-by", "at once"];
     desk.study(&[&["room.json", "-o", "by"], &words[..], &externals, &by].concat());
@@ -475,8 +475,11 @@ fn what_another_renderer_cannot_do_is_said() {
         (&outside("render {scene} -o {out} --size 4x4 --spp {spp} --seed {seed}"), "found 4 x 4"),
     ] {
         let external = format!("other: {command}");
-        let told = desk.study(&[&words[..], &["--restart", "--external", &external]].concat());
-        assert!(told.contains("other cannot render it") && told.contains(hints), "{command}: {told}");
+        let reported = desk.study(&[&words[..], &["--restart", "--external", &external]].concat());
+        assert!(
+            reported.contains("other cannot render it") && reported.contains(hints),
+            "{command}: {reported}"
+        );
         assert_eq!(desk.json("out/study.json")["scenes"][0]["contenders"].as_array().unwrap().len(), 1);
     }
     desk.refuses(&[&words[..], &["--external", "other: r {scene}"]].concat(), &["{budgets} and {folder}"]);

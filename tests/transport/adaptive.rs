@@ -74,15 +74,15 @@ fn pixels_are_within_the_error_as_often_as_promised() {
         let images: Vec<Image> =
             (0..SEEDS).map(|seed| to_precision(&stage, strategies, error, None, seed)).collect();
         let part = covered(&images, &truth, error as f32);
-        // Pixels of one render share light walks, so their number says little about how sure this is: by 64 pixels that
-        // were one, 12 renders.
+        // Pixels of one render share light subpaths, so their number says little about how sure this is: by 64 pixels
+        // that were one, 12 renders.
         assert!(part > 0.95 - 0.03, "{part} of the pixels are within {error}");
     }
 }
 
 #[test]
 fn black_so_far_is_not_black() {
-    // Eye walks alone must find a lamp that fills a thousandth of what a point of the floor sees.
+    // Camera subpaths alone must find a lamp that fills a thousandth of what a point of the floor sees.
     let scene = scene(&[
         ("integrator", json!({ "type": "path", "max_depth": 2 })),
         ("sensor", camera([0.0, 1.0, 2.0], [0.0, 0.0, 0.0], 8)),
@@ -90,7 +90,7 @@ fn black_so_far_is_not_black() {
         ("lamp", lamp_ball([0.0, 3.0, 0.0], 0.1, 1000.0)),
     ]);
     let stage = Stage::new(&scene);
-    let hits = Strategies { hit: true, ..Strategies::NONE };
+    let hits = Strategies { emitter_hit: true, ..Strategies::NONE };
     let start = to_precision(&stage, hits, 0.5, Some(40), 1);
     let black = start.pixels.iter().filter(|pixel| **pixel == Spectrum::ZERO).count();
     assert!(black > 32 && start.reached.unwrap().share < 0.5, "{black} of 64 pixels are black so far");

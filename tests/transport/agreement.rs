@@ -9,12 +9,12 @@ use crate::common::{
     strategies,
 };
 use serde_json::{Value, json};
-use tyndall::{study::coverage, transport::Strategies};
+use tyndall::{analysis::coverage, transport::Strategies};
 
 /// What decides which strategies can make all paths of a scene.
 #[derive(Clone, Copy, Default)]
 struct Kind {
-    /// There are point, spot or directional emitters, which no eye walk can meet.
+    /// There are point, spot or directional emitters, which no camera subpath can meet.
     points: bool,
     /// An emitter is in view, which next-event estimation cannot show.
     emitter_in_view: bool,
@@ -26,9 +26,9 @@ struct Kind {
 fn covering(kind: Kind) -> Vec<Strategies> {
     let bit = |set: u32, i: u32| set >> i & 1 == 1;
     let sets = (1..16).map(|set| Strategies {
-        hit: bit(set, 0),
+        emitter_hit: bit(set, 0),
         next_event: bit(set, 1),
-        join: bit(set, 2),
+        connection: bit(set, 2),
         lens: bit(set, 3),
     });
     sets.filter(|s| covers(*s, kind)).collect()
@@ -37,11 +37,11 @@ fn covering(kind: Kind) -> Vec<Strategies> {
 fn covers(s: Strategies, kind: Kind) -> bool {
     if kind.smooth {
         // Over smooth surfaces alone only a walk that meets the emitter gets from one to the other.
-        return s.hit;
+        return s.emitter_hit;
     }
-    let emitters_seen = s.hit || s.lens || !kind.emitter_in_view;
+    let emitters_seen = s.emitter_hit || s.lens || !kind.emitter_in_view;
     let light_of_points = s.next_event || s.lens || !kind.points;
-    let any_light = s.hit || s.next_event || s.lens;
+    let any_light = s.emitter_hit || s.next_event || s.lens;
     emitters_seen && light_of_points && any_light
 }
 
@@ -355,8 +355,8 @@ fn within_chromatic_smoke_that_varies() {
     for tracker in ["closed_form", "null_collision"] {
         for inside in [false, true] {
             let scene = smoky(colours.clone(), albedo.clone(), tracker, inside);
-            // From within, a vertex next to the lens counts 1/d^2: without the eye walks that meet the same light, a
-            // dozen images do not show their own error.
+            // From within, a vertex next to the lens counts 1/d^2: without the camera subpaths that meet the same
+            // light, a dozen images do not show their own error.
             let kind = Kind { smooth: inside, ..LAMP_IN_VIEW };
             all_agree(&format!("colours by {tracker}, inside {inside}"), &scene, kind, 64);
         }
@@ -432,7 +432,7 @@ fn around_a_glass_ball_that_glows() {
     all_agree("glowing glass ball", &scene(&parts), Kind { smooth: true, ..LAMP_IN_VIEW }, 128);
 }
 
-/// Light that leaves along a normal only: what no eye walk can find, light walks bring, by either strategy.
+/// Light that leaves along a normal only: what no camera subpath can find, light subpaths bring, by either strategy.
 #[test]
 fn under_a_beam() {
     let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
@@ -485,8 +485,8 @@ fn paths_out_of_reach_are_told_of_every_set_that_does_not_cover() {
             coverage::unreachable(&stage.setup.scene, set, (&stage.setup.integrator.options).into())
         };
         for set in (1..16).map(|set: u32| [1, 2, 4, 8].map(|bit| set & bit > 0)) {
-            let [hit, next_event, join, lens] = set;
-            let set = Strategies { hit, next_event, join, lens };
+            let [emitter_hit, next_event, connection, lens] = set;
+            let set = Strategies { emitter_hit, next_event, connection, lens };
             let missing = reach(set);
             assert_eq!(missing.is_empty(), covers(set, kind), "{}: {missing:?} {scene}", name_of(set));
         }

@@ -97,10 +97,10 @@ fn layers_change_nothing_but_themselves() {
     for (profile, scene) in scenes() {
         let aovs = json!({"type": "moment", "image": {"type": "bdpt"}});
         let aovs = json!({"type": "aov", "aovs": "d:depth,n:sh_normal", "inner": aovs});
-        let (stage, asked) = (Stage::new(&scene), Stage::new(&with(scene, &[("integrator", aovs)])));
+        let (stage, requested) = (Stage::new(&scene), Stage::new(&with(scene, &[("integrator", aovs)])));
         let image = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.expect("threads").install(|| asked.render_layers(Strategies::BDPT, 3, 11))
+            pool.expect("threads").install(|| requested.render_layers(Strategies::BDPT, 3, 11))
         };
         let (one, three) = (image(1), image(3));
         assert!(one.layers.len() == 17 && one.layers == three.layers, "{}", profile.name());

@@ -18,13 +18,13 @@ fn forced(scene: &Value) -> Stage {
 
 #[test]
 fn a_scene_may_ask_for_it() {
-    let asked = |more: Value| {
+    let requested = |more: Value| {
         let parts =
             [("sensor", camera([0.0, 1.0, 3.0], [0.0; 3], 8)), ("sky", sky(1.0)), ("integrator", more)];
         Stage::new(&scene(&parts)).setup.integrator.options.forced_interaction
     };
-    assert!(asked(json!({"type": "volpath", "forced_interaction": true})));
-    assert!(!asked(json!({"type": "bdpt"})));
+    assert!(requested(json!({"type": "volpath", "forced_interaction": true})));
+    assert!(!requested(json!({"type": "bdpt"})));
 }
 
 const SEEDS: u64 = 16;
@@ -70,7 +70,7 @@ fn cloud(interior: Value) -> Vec<(&'static str, Value)> {
 fn in_thin_and_thick_fog() {
     for sigma_t in [0.02, 1.0, 30.0] {
         let fog = medium(sigma_t, 0.8, 0.3);
-        // By chance, thick fog lets no eye walk through to the lamp.
+        // By chance, thick fog lets no camera subpath through to the lamp.
         let alone = [USUAL[0], USUAL[1], strategies("hit+lens"), strategies("hit")];
         let sets = if sigma_t > 10.0 { &alone[..3] } else { &alone };
         agrees(&format!("fog of {sigma_t}"), &scene(&foggy_room(fog)), sets, 48);

@@ -1,4 +1,4 @@
-//! Media that shine, against closed forms: slabs that emit and absorb, and rooms of one temperature.
+//! Emissive media, against closed forms: slabs that emit and absorb, and rooms of one temperature.
 
 use crate::common::{Stage, claims::Claims, name_of, pieces::*, strategies};
 use serde_json::{Value, json};

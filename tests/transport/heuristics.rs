@@ -9,7 +9,7 @@ use crate::common::{
 };
 use serde_json::{Value, json};
 use tyndall::{
-    scene::heuristic::Heuristic,
+    settings::heuristic::Heuristic,
     transport::{Strategies, profile::ProfileName},
 };
 

@@ -10,7 +10,8 @@ use serde_json::{Value, json};
 use tyndall::{
     math::{Spectrum, Vec3, vec3},
     render::Image,
-    scene::build::{Overrides, build},
+    scene::build::build,
+    settings::Overrides,
     transport::Strategies,
 };
 
@@ -173,7 +174,7 @@ fn alpha_is_the_chance_to_meet_something() {
     }
 }
 
-/// Light walks fill the pixels as eye walks do, at the film's border too, whatever the filter.
+/// Light subpaths fill the pixels as camera subpaths do, at the film's border too, whatever the filter.
 #[test]
 fn eye_and_light_walks_filter_alike() {
     for filter in ["gaussian", "mitchell", "lanczos"] {
@@ -268,8 +269,8 @@ fn the_variance_is_that_of_the_mean() {
             let green: Vec<f64> = images.iter().map(|i| f64::from(i.pixels[pixel].y)).collect();
             let mean = green.iter().sum::<f64>() / n;
             let seen = green.iter().map(|g| (g - mean).powi(2)).sum::<f64>() / (n - 1.0);
-            let told = images.iter().map(|i| f64::from(channel(i, "variance.G")[pixel])).sum::<f64>() / n;
-            (told - seen) / told
+            let reported = images.iter().map(|i| f64::from(channel(i, "variance.G")[pixel])).sum::<f64>() / n;
+            (reported - seen) / reported
         });
         let differences: Vec<f64> = differences.collect();
         let mean = differences.iter().sum::<f64>() / 144.0;
@@ -336,7 +337,7 @@ fn films_and_layers_that_cannot_be_are_refused() {
         let folder = tempfile::TempDir::new().unwrap();
         let path = folder.path().join("scene.json");
         std::fs::write(&path, scene.to_string()).unwrap();
-        let built = tyndall::scene::read(&path, &[]).and_then(|root| build(&root, Overrides::default()));
+        let built = tyndall::format::read(&path, &[]).and_then(|root| build(&root, Overrides::default()));
         let error = built.err().unwrap_or_else(|| panic!("accepted, not {hints:?}")).to_string();
         for hint in hints {
             assert!(error.contains(hint), "no {hint} in: {error}");

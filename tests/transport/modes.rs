@@ -5,7 +5,7 @@ use crate::common::{self, Stage, pieces::*};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 use tyndall::{
-    math::{Section, Spectrum, Vec3},
+    math::{RaySegment, Spectrum, Vec3},
     render::{self, Settings, budget::Budget},
     transport::{Heuristic, Options, Strategies},
 };
@@ -74,7 +74,7 @@ fn preview(scene: &Value) -> Vec<Spectrum> {
     let options = Options { heuristic: Heuristic::Balance, max_depth: None, ..setup.integrator.options };
     let budget = Budget { samples_per_pixel: Some(2), time: None };
     let settings = Settings { options, sampler: setup.sampler, budget, seed: 1, profile };
-    render::preview(&setup.scene, &setup.film, &settings, &setup.integrator.look, &[], &mut |_| {}).pixels
+    render::preview(&setup.scene, &setup.film, &settings, &setup.integrator.fog, &[], &mut |_| {}).pixels
 }
 
 /// Every pixel of the preview is `expected`, within a relative `error`.
@@ -305,8 +305,8 @@ fn media_without_scattering_obey_beer_and_lambert() {
     let depth = integral(-1.0, 1.0, |z| wave_at(z) * (1.0 - 0.5 * wave_at(z)));
     seen_through(heterogeneous(wave(), half.clone()), [depth; 3]);
     // A tracker that the scene asks for and that does not fit what is left gives way.
-    let asked = with(heterogeneous(wave(), half), &[("tracker", json!("closed_form"))]);
-    seen_through(asked, [depth; 3]);
+    let requested = with(heterogeneous(wave(), half), &[("tracker", json!("closed_form"))]);
+    seen_through(requested, [depth; 3]);
 }
 
 #[test]
@@ -344,11 +344,11 @@ fn a_scene_at_another_time_is_the_scene_of_that_time() {
     let (mut later, there, now) = (of(drifting), of(blob(&[("to_world", moved)])), of(blob(&[])));
     let depths = |scene: &tyndall::scene::Scene| -> Vec<f32> {
         let varying = scene.media[1].heterogeneous().unwrap();
-        let section = |i: u16| {
+        let segment = |i: u16| {
             let (a, b) = (Vec3::new(0.1 * f32::from(i) - 1.0, -1.5, -4.0), Vec3::new(0.3, 1.2, -6.0));
-            Section { origin: a, direction: (b - a).normalize(), length: a.distance(b) }
+            RaySegment { origin: a, direction: (b - a).normalize(), length: a.distance(b) }
         };
-        (0..20).map(|i| varying.depth::<f32>(&section(i))).collect()
+        (0..20).map(|i| varying.depth::<f32>(&segment(i))).collect()
     };
     let close = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-4 * b.abs());
     let still = depths(&now);
@@ -395,8 +395,8 @@ fn a_grid_drifts() {
         let u = |bits: u8| f32::from(i >> bits & 3) / 3.0;
         let (from, to) = (low + (high - low) * Vec3::new(u(0), u(2), u(4)), low.midpoint(high));
         let length = from.distance(to);
-        let section = Section { origin: from, direction: (to - from) / length, length };
-        let (found, expected): (f32, f32) = (a.depth(&section), b.depth(&section));
+        let segment = RaySegment { origin: from, direction: (to - from) / length, length };
+        let (found, expected): (f32, f32) = (a.depth(&segment), b.depth(&segment));
         assert!((found - expected).abs() <= 1e-3 * expected + 1e-6, "{found} {expected}");
         let at = from.lerp(to, 0.9);
         let (found, expected): (Spectrum, Spectrum) = (a.extinction().at(at), b.extinction().at(at));

@@ -71,8 +71,8 @@ fn dusty_room(hole: f64, lamp: Value) -> Value {
 }
 
 /// `pt`, `lt` and `bdpt` show one image of `scene`; light tracing not where the camera is in a medium, for there its
-/// variance is infinite (light scattered next to the lens), nor where there is a sky: of its light walks too few find
-/// the opening for a test of means. `bdpt` starts the same ones.
+/// variance is infinite (light scattered next to the lens), nor where there is a sky: of its light subpaths
+/// too few find the opening for a test of means. `bdpt` starts the same ones.
 fn agree(claims: &mut Claims, what: &str, stage: &Stage, samples_per_pixel: u64, seeds: u64) {
     let around = &stage.setup.scene.media[stage.setup.scene.sensor_medium.0 as usize];
     let sky = stage.setup.scene.lights.environment.is_some();
@@ -305,7 +305,7 @@ fn infinity_differs_by_direction_where_a_surface_divides_the_world() {
     ];
     let stage = Stage::new(&scene(&parts));
     let Infinity::Directional(_) = stage.setup.scene.known.infinity else { panic!("infinity is uniform") };
-    // Of light walks alone too few come near the ball.
+    // Of light subpaths alone too few come near the ball.
     let [pt, bdpt] = [(Strategies::PT, 0), (Strategies::BDPT, 1000)]
         .map(|(set, first)| Sample::of(&stage.renders(set, 128, first..first + 8), stage.width()));
     let mut claims = Claims::new();

@@ -94,8 +94,8 @@ fn a_scene_says_which_sampler() {
         ("orthogonal", Sampler::Sobol),
         ("stratified", Sampler::Sobol),
     ] {
-        let asked = json!({"type": name, "sample_count": 9});
-        let view = with(camera([0.0, 1.0, 3.0], [0.0; 3], 8), &[("sampler", asked)]);
+        let requested = json!({"type": name, "sample_count": 9});
+        let view = with(camera([0.0, 1.0, 3.0], [0.0; 3], 8), &[("sampler", requested)]);
         let setup = Stage::new(&scene(&[("sensor", view), ("sky", sky(1.0))])).setup;
         assert_eq!((setup.sampler, setup.samples_per_pixel), (sampler, 9), "{name}");
     }

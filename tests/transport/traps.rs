@@ -54,7 +54,7 @@ fn in_the_room() -> (&'static str, Value) {
     ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8))
 }
 
-/// Light walks of lamps without a surface start in the fog around them: a tracer that takes them to start in
+/// Light subpaths of lamps without a surface start in the fog around them: a tracer that takes them to start in
 /// vacuum is too bright.
 #[test]
 fn light_walks_start_in_the_fog_around_their_lamp() {
@@ -206,7 +206,7 @@ f 1//1 3//3 5//5\nf 3//3 2//2 5//5\nf 2//2 4//4 5//5\nf 4//4 1//1 5//5
 f 3//3 1//1 6//6\nf 2//2 3//3 6//6\nf 4//4 2//2 6//6\nf 1//1 4//4 6//6
 ";
 
-/// Shading normals make light walks differ from eye walks at surfaces, and only there.
+/// Shading normals make light subpaths differ from camera subpaths at surfaces, and only there.
 #[test]
 fn shading_normals_stop_at_the_surface() {
     let gem = json!({
@@ -374,8 +374,8 @@ fn contradicting_boundaries_are_told() {
         ("lamp", point([0.2, 0.1, 0.6], 1.0)),
     ];
     let warnings = Stage::new(&scene(&parts)).setup.warnings;
-    let told = |of: &str| warnings.iter().any(|w| w.contains(of) && w.contains("different media"));
-    assert!(told("the camera") && told("an emitter"), "{warnings:?}");
+    let reported = |of: &str| warnings.iter().any(|w| w.contains(of) && w.contains("different media"));
+    assert!(reported("the camera") && reported("an emitter"), "{warnings:?}");
 }
 
 /// Where nothing is absorbed, everything has the radiance around it.
@@ -424,7 +424,7 @@ fn render_once(parts: &[(&str, Value)], set: &str) -> Vec<Spectrum> {
     common::render(&scene(parts), strategies(set), 8, 1)
 }
 
-/// A lamp seen straight through a slab, by walks that meet it and by light walks.
+/// A lamp seen straight through a slab, by walks that meet it and by light subpaths.
 #[test]
 fn a_lamp_behind_a_slab_is_dimmed_exactly() {
     let facing_camera = json!({

@@ -99,12 +99,12 @@ fn smooth_interfaces_are_those_of_mitsuba() {
     };
     let up = warp::spherical(0.8, 0.4);
     let reflected = chance("dielectric", up, Transport::Radiance, |s| s.wo.z > 0.0);
-    assert!(close(reflected.forward, 0.043_894_73, 1e-5) && close(reflected.weight.x, 1.0, 1e-5));
+    assert!(close(reflected.pdf_fwd, 0.043_894_73, 1e-5) && close(reflected.weight.x, 1.0, 1e-5));
     let refracted = chance("dielectric", up, Transport::Radiance, |s| s.wo.z < 0.0);
     assert!(refracted.wo.distance(vec3(-0.368_424, -0.155_767, -0.916_515)) < 1e-5);
     assert!(close(refracted.weight.x, 1.0 / 2.25, 1e-5));
     let from_below = chance("dielectric", -up, Transport::Radiance, |s| s.wo.z > 0.0);
-    assert!(close(from_below.forward, 0.885_858_9, 1e-5) && close(from_below.weight.x, 2.25, 1e-5));
+    assert!(close(from_below.pdf_fwd, 0.885_858_9, 1e-5) && close(from_below.weight.x, 2.25, 1e-5));
     let importance = chance("dielectric", -up, Transport::Importance, |s| s.wo.z > 0.0);
     assert!(close(importance.weight.x, 1.0, 1e-5));
     let pane = built("thindielectric", &index).unwrap();
@@ -165,7 +165,7 @@ fn plastics_are_those_of_mitsuba() {
         let wi = warp::spherical(cosine, 0.4);
         let sample = |_| shiny.sample(UV, wi, Transport::Radiance, &mut stream);
         let found = (0..10_000).filter_map(sample).find(|sample| sample.dirac).unwrap();
-        assert!(close_colors(found.weight * found.forward, Spectrum::splat(reflectance), 1e-5));
+        assert!(close_colors(found.weight * found.pdf_fwd, Spectrum::splat(reflectance), 1e-5));
         assert_eq!(found.wo, mirror(wi));
     }
 }

@@ -57,8 +57,7 @@ fn backward_densities_are_those_of_the_reversed_call() {
         for (wi, wo) in pairs(&bsdf) {
             let there = bsdf.evaluate(UV, wi, wo, Transport::Radiance);
             let back = bsdf.evaluate(UV, wo, wi, Transport::Importance);
-            let agree =
-                close(there.backward, back.forward, 2e-3) && close(there.forward, back.backward, 2e-3);
+            let agree = close(there.pdf_rev, back.pdf_fwd, 2e-3) && close(there.pdf_fwd, back.pdf_rev, 2e-3);
             assert!(agree, "{bsdf:?}, {wi} to {wo}: {there:?}, back {back:?}");
         }
     }
@@ -86,11 +85,17 @@ fn samples_tell_what_evaluation_tells() {
                 let mut stream = stream(number as u64);
                 let samples = (0..200).filter_map(|_| bsdf.sample(UV, wi, transport, &mut stream));
                 for sample in samples.filter(|sample| !sample.dirac) {
-                    let told = bsdf.evaluate(UV, wi, sample.wo, transport);
-                    let flow = told.value * sample.wo.z.abs();
-                    assert!(close(told.forward, sample.forward, 1e-4), "{bsdf:?} {sample:?} {told:?}");
-                    assert!(close(told.backward, sample.backward, 1e-4), "{bsdf:?} {sample:?} {told:?}");
-                    assert!(close_colors(sample.weight * sample.forward, flow, 1e-4), "{bsdf:?} {sample:?}");
+                    let reported = bsdf.evaluate(UV, wi, sample.wo, transport);
+                    let flow = reported.value * sample.wo.z.abs();
+                    assert!(
+                        close(reported.pdf_fwd, sample.pdf_fwd, 1e-4),
+                        "{bsdf:?} {sample:?} {reported:?}"
+                    );
+                    assert!(
+                        close(reported.pdf_rev, sample.pdf_rev, 1e-4),
+                        "{bsdf:?} {sample:?} {reported:?}"
+                    );
+                    assert!(close_colors(sample.weight * sample.pdf_fwd, flow, 1e-4), "{bsdf:?} {sample:?}");
                     assert!((sample.wo.length() - 1.0).abs() < 1e-5);
                 }
             }
@@ -110,8 +115,8 @@ fn dirac_lobes_lead_back_with_the_probability_told() {
                 let mut back = (0..1_000)
                     .filter_map(|_| bsdf.sample(UV, sample.wo, Transport::Importance, &mut other))
                     .filter(|back| back.dirac && back.wo.dot(wi) > 0.999);
-                let rare = sample.backward < 0.02;
-                let found = rare || back.any(|back| close(back.forward, sample.backward, 1e-3));
+                let rare = sample.pdf_rev < 0.02;
+                let found = rare || back.any(|back| close(back.pdf_fwd, sample.pdf_rev, 1e-3));
                 assert!(found, "{bsdf:?} from {wi}: {sample:?} does not lead back");
             }
         }
@@ -176,12 +181,12 @@ fn extreme_directions_give_finite_numbers() {
             for transport in BOTH {
                 let mut stream = stream(5);
                 for s in (0..100).filter_map(|_| bsdf.sample(UV, wi, transport, &mut stream)) {
-                    let finite = s.wo.is_finite() && s.weight.is_finite() && s.backward.is_finite();
-                    assert!(finite && s.forward > 0.0 && s.forward.is_finite(), "{bsdf:?} {wi} {s:?}");
+                    let finite = s.wo.is_finite() && s.weight.is_finite() && s.pdf_rev.is_finite();
+                    assert!(finite && s.pdf_fwd > 0.0 && s.pdf_fwd.is_finite(), "{bsdf:?} {wi} {s:?}");
                 }
                 for wo in extremes() {
                     let v = bsdf.evaluate(UV, wi, wo, transport);
-                    let finite = v.value.is_finite() && v.forward.is_finite() && v.backward.is_finite();
+                    let finite = v.value.is_finite() && v.pdf_fwd.is_finite() && v.pdf_rev.is_finite();
                     assert!(finite && v.value.min_element() >= 0.0, "{bsdf:?} {wi} {wo} {v:?}");
                 }
             }
@@ -200,15 +205,15 @@ fn dirac_lobes_come_with_the_probability_told() {
             let mut lobes: Vec<(Vec3, f32, u32)> = Vec::new();
             for _ in 0..samples {
                 let Some(s) = bsdf.sample(UV, wi, Transport::Radiance, &mut stream) else { continue };
-                let same = |lobe: &&mut (Vec3, f32, u32)| lobe.0 == s.wo && lobe.1 == s.forward;
+                let same = |lobe: &&mut (Vec3, f32, u32)| lobe.0 == s.wo && lobe.1 == s.pdf_fwd;
                 match lobes.iter_mut().find(same) {
                     _ if !s.dirac => {}
                     Some(lobe) => lobe.2 += 1,
-                    None => lobes.push((s.wo, s.forward, 1)),
+                    None => lobes.push((s.wo, s.pdf_fwd, 1)),
                 }
             }
-            for (wo, told, count) in lobes {
-                let (n, p) = (f64::from(samples), f64::from(told));
+            for (wo, reported, count) in lobes {
+                let (n, p) = (f64::from(samples), f64::from(reported));
                 let slack = 5.0 * (n * p * (1.0 - p)).sqrt() + 3.0;
                 assert!((f64::from(count) - n * p).abs() < slack, "{bsdf:?} {wi} to {wo}: {count} for {p}");
             }

@@ -12,16 +12,16 @@ const COLUMNS: usize = 48;
 /// `steps` by `steps` points.
 fn expected_share(bsdf: &Bsdf, wi: Vec3, cell: usize, steps: usize) -> f64 {
     let (row, column) = (cell / COLUMNS, cell % COLUMNS);
-    let density = |i: usize| {
+    let pdf = |i: usize| {
         let along = (row as f32 + ((i / steps) as f32 + 0.5) / steps as f32) / ROWS_OF_CELLS as f32;
         let around = (column as f32 + ((i % steps) as f32 + 0.5) / steps as f32) / COLUMNS as f32;
         // The poles of the grid, where its cells are long and thin, lie in the horizon, away from all lobes.
         let turned = warp::spherical(2.0 * along - 1.0, TAU as f32 * around);
         let wo = vec3(turned.y, turned.z, turned.x);
-        f64::from(bsdf.evaluate(UV, wi, wo, Transport::Radiance).forward)
+        f64::from(bsdf.evaluate(UV, wi, wo, Transport::Radiance).pdf_fwd)
     };
     let area = 2.0 * TAU / (ROWS_OF_CELLS * COLUMNS * steps * steps) as f64;
-    (0..steps * steps).map(density).sum::<f64>() * area
+    (0..steps * steps).map(pdf).sum::<f64>() * area
 }
 
 /// Counts expected of `samples` samples in each cell; where many are, the quadrature is finer than their

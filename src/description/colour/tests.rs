@@ -8,7 +8,7 @@ fn property(value: Value) -> Property {
 }
 
 /// The colour, and whether a warning came with it.
-fn told(value: Value, role: Role) -> Result<(DVec3, bool)> {
+fn reported(value: Value, role: Role) -> Result<(DVec3, bool)> {
     let library = Library::default();
     let color = read(&property(value), &library, role)?;
     Ok((color.as_dvec3(), !library.take_warnings().is_empty()))
@@ -48,7 +48,7 @@ fn spectra_are_other_colours_as_matter_and_as_light() {
         (&SIX, Index, [5.016_083_24, 3.382_034_06, 1.675_119_4], false),
     ];
     for (pairs, role, color, warns) in facts {
-        let (found, warned) = told(Value::Spectrum(pairs.into()), role).unwrap();
+        let (found, warned) = reported(Value::Spectrum(pairs.into()), role).unwrap();
         let color = DVec3::from(color);
         assert!(
             (found - color).abs().max_element() < 3e-6 * color.max_element(),
@@ -61,14 +61,14 @@ fn spectra_are_other_colours_as_matter_and_as_light() {
 #[test]
 fn numbers_and_rgb_are_the_same_in_every_role() {
     for role in [Role::Matter, Role::Index, Role::Light] {
-        assert_eq!(told(Value::Float(0.3), role).unwrap().0, DVec3::splat(f64::from(0.3f32)));
-        assert_eq!(told(Value::Integer(2), role).unwrap().0, DVec3::splat(2.0));
-        assert_eq!(told(Value::Rgb([1.0, 0.5, 0.0]), role).unwrap().0, DVec3::new(1.0, 0.5, 0.0));
+        assert_eq!(reported(Value::Float(0.3), role).unwrap().0, DVec3::splat(f64::from(0.3f32)));
+        assert_eq!(reported(Value::Integer(2), role).unwrap().0, DVec3::splat(2.0));
+        assert_eq!(reported(Value::Rgb([1.0, 0.5, 0.0]), role).unwrap().0, DVec3::new(1.0, 0.5, 0.0));
         for bad in [Value::Float(-1.0), Value::Float(f64::NAN), Value::Float(1e300), Value::Boolean(true)] {
-            assert!(told(bad, role).unwrap_err().expected.contains("\"v\""));
+            assert!(reported(bad, role).unwrap_err().expected.contains("\"v\""));
         }
-        assert!(told(Value::Rgb([-2.0, 0.5, 0.1]), role).is_err());
-        assert!(told(Value::Spectrum(vec![(0.0, -1.0)]), role).is_err());
+        assert!(reported(Value::Rgb([-2.0, 0.5, 0.1]), role).is_err());
+        assert!(reported(Value::Spectrum(vec![(0.0, -1.0)]), role).is_err());
     }
 }
 
@@ -81,7 +81,7 @@ fn float(x: f64) -> Value {
 }
 
 fn plugin(name: &str, properties: &[(&str, Value)], role: Role) -> Result<(DVec3, bool)> {
-    told(Value::Object(object(name, properties)), role)
+    reported(Value::Object(object(name, properties)), role)
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn spectral_plugins_are_as_plain_spectra() {
     let irregular = [("wavelengths", text("400, 450, 700")), ("values", text("0.1, 0.15, 0.4"))];
     let inner = [("value", Value::Spectrum(RAMP.into()))];
     for role in [Role::Matter, Role::Light] {
-        let (plain, _) = told(Value::Spectrum(RAMP.into()), role).unwrap();
+        let (plain, _) = reported(Value::Spectrum(RAMP.into()), role).unwrap();
         for (name, properties) in
             [("regular", &regular[..]), ("irregular", &irregular), ("regular", &inner), ("irregular", &inner)]
         {

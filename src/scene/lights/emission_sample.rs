@@ -1,14 +1,14 @@
-//! Where light walks start.
+//! Where light subpaths start.
 
 use super::{EmitterPoint, Geometry, Lights, front};
 use crate::{
-    emitter::{Area, DirectionalArea, Glow, Kind, PointKind},
+    emitter::{Area, DirectionalArea, Kind, PointKind, VolumeEmitter},
     math::{Frame, Spectrum, Vec3, offset, warp},
     sampling::Stream,
     shape::{Ray, SurfacePoint},
 };
 
-/// The first vertex of a light walk, its direction sampled.
+/// The first vertex of a light subpath, its direction sampled.
 #[derive(Clone, Copy, Debug)]
 pub struct EmissionSample {
     /// The emitter.
@@ -33,7 +33,7 @@ pub struct EmissionSample {
 pub struct Emitted {
     /// Radiance x cosine [W/(m^2 sr)], or radiance gained per metre [W/(m^3 sr)].
     pub value: Spectrum,
-    /// Density of the direction by a light walk [1/sr] ([1/m^2] at infinity).
+    /// Density of the direction by a light subpath [1/sr] ([1/m^2] at infinity).
     pub pdf_direction: f32,
     /// |cos| at the emitter; 1 at infinity.
     pub cosine: f32,
@@ -63,10 +63,10 @@ impl Lights {
             }
             Kind::Environment(sky) => {
                 let towards = sky.sample(stream);
-                let density = chosen * sky.density(towards);
-                self.start_at_infinity(index, towards, density, sky.radiance(towards), stream)
+                let pdf = chosen * sky.pdf_sr(towards);
+                self.start_at_infinity(index, towards, pdf, sky.radiance(towards), stream)
             }
-            Kind::Medium(glow) => self.start_within(index, glow, chosen, stream),
+            Kind::Medium(volume) => self.start_within(index, volume, chosen, stream),
         };
         (start.throughput.is_finite() && start.throughput.max_element() > 0.0).then_some(start)
     }
@@ -84,7 +84,7 @@ impl Lights {
         let front = front(&point);
         let direction = Frame::around(front).to_world(area.sample(stream)).normalize();
         let cosine = front.dot(direction);
-        let (pdf, pdf_direction) = (chosen / geometry.area(shape), area.density(cosine));
+        let (pdf, pdf_direction) = (chosen / geometry.area(shape), area.pdf_sr(cosine));
         let throughput = area.radiance(point.uv, cosine) * (cosine / (pdf * pdf_direction));
         let (point, ray) = (EmitterPoint::Surface(point), leaving(&point, direction));
         Some(EmissionSample { light: index as u32, point, ray, cosine, pdf, pdf_direction, throughput })
@@ -115,7 +115,7 @@ impl Lights {
         stream: &mut Stream,
     ) -> EmissionSample {
         let direction = point.sample(stream);
-        let pdf_direction = point.density(direction);
+        let pdf_direction = point.pdf_sr(direction);
         let throughput = point.intensity(direction) / (pdf * pdf_direction);
         let position = self.all[index].position;
         let (point, ray) = (EmitterPoint::Point(position), endless(position, direction));
@@ -132,45 +132,51 @@ impl Lights {
     ) -> EmissionSample {
         let disk = warp::to_disk(stream.square()) * self.radius;
         let origin = self.centre + Frame::around(towards).to_world(disk.extend(self.radius));
-        let pdf_direction = self.disk_density();
+        let pdf_direction = self.disk_pdf_area();
         let throughput = radiance * self.from_infinity / (pdf * pdf_direction);
         let (point, ray) = (EmitterPoint::Direction(towards), endless(origin, -towards));
         EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
     }
 
     /// In the medium's box; whether it is in the medium, who knows its boundaries has to ask.
-    fn start_within(&self, index: usize, glow: &Glow, chosen: f32, stream: &mut Stream) -> EmissionSample {
-        let emission = &glow.emission;
+    fn start_within(
+        &self,
+        index: usize,
+        volume: &VolumeEmitter,
+        chosen: f32,
+        stream: &mut Stream,
+    ) -> EmissionSample {
+        let emission = &volume.emission;
         let position = emission.sample(stream);
         let ray = endless(position, warp::to_sphere(stream.square()));
-        let (pdf, pdf_direction) = (chosen * emission.density(position), Glow::DENSITY);
+        let (pdf, pdf_direction) = (chosen * emission.pdf_vol(position), VolumeEmitter::PDF_SR);
         let throughput = emission.at(position) / (pdf * pdf_direction);
         let point = EmitterPoint::Volume { position, rate: emission.rate(position) };
         EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
     }
 
-    /// What the emitter point of a light walk sends towards unit `towards`; none where it does not emit that way or
-    /// cannot be met.
+    /// What the emitter point of a light subpath sends towards unit `towards`; none where it does not emit that
+    /// way or cannot be met.
     pub fn emission(&self, start: &EmissionSample, towards: Vec3) -> Option<Emitted> {
         match (&self.all[start.light as usize].emitter.kind, &start.point) {
             (Kind::Area(area), EmitterPoint::Surface(point)) => {
                 let cosine = front(point).dot(towards);
-                let (value, pdf_direction) = (area.radiance(point.uv, cosine) * cosine, area.density(cosine));
+                let (value, pdf_direction) = (area.radiance(point.uv, cosine) * cosine, area.pdf_sr(cosine));
                 (value.max_element() > 0.0).then_some(Emitted { value, pdf_direction, cosine })
             }
             (Kind::Environment(sky), EmitterPoint::Direction(direction)) => {
                 let value = sky.radiance(*direction) * self.from_infinity;
-                Some(Emitted { value, pdf_direction: self.disk_density(), cosine: 1.0 })
+                Some(Emitted { value, pdf_direction: self.disk_pdf_area(), cosine: 1.0 })
             }
-            (Kind::Medium(glow), EmitterPoint::Volume { position, .. }) => {
-                let value = glow.emission.at(*position);
-                Some(Emitted { value, pdf_direction: Glow::DENSITY, cosine: 1.0 })
+            (Kind::Medium(volume), EmitterPoint::Volume { position, .. }) => {
+                let value = volume.emission.at(*position);
+                Some(Emitted { value, pdf_direction: VolumeEmitter::PDF_SR, cosine: 1.0 })
             }
             _ => None,
         }
     }
 
-    /// Next-event density over start density of the point a light walk started from, as seen from its second
+    /// Next-event density over start density of the point a light subpath started from, as seen from its second
     /// vertex: the ratio by which strategy s = 1 stands for s = 2 in the weights.
     #[inline]
     pub fn connect_over_start(&self, geometry: &Geometry, start: &EmissionSample, reference: Vec3) -> f32 {
@@ -178,7 +184,7 @@ impl Lights {
         let chosen = self.connections.probability(index);
         match &start.point {
             EmitterPoint::Surface(point) => {
-                chosen * geometry.density_toward(point.shape, reference, point) / start.pdf
+                chosen * geometry.pdf_area_toward(point.shape, reference, point) / start.pdf
             }
             _ => chosen / self.starts.probability(index),
         }

@@ -1,8 +1,8 @@
-//! Emitter points as seen from a reference: sampled by next-event estimation or met by an eye walk.
+//! Emitter points as seen from a reference: sampled by next-event estimation or met by a camera subpath.
 
 use super::{EmitterPoint, Geometry, Lights, front};
 use crate::{
-    emitter::{Glow, Kind, PointKind},
+    emitter::{Kind, PointKind, VolumeEmitter},
     math::{Spectrum, Vec3, measure},
     sampling::Stream,
     shape::SurfacePoint,
@@ -23,9 +23,9 @@ pub struct EmitterSample {
     /// Density of this point by next-event estimation from the reference: per area of a shape [1/m^2], per volume of a
     /// medium [1/m^3], per solid angle at infinity [1/sr]; a probability where the emitter is a point or a direction.
     pub pdf: f32,
-    /// Density of this point as the start of a light walk, in the same measure.
+    /// Density of this point as the start of a light subpath, in the same measure.
     pub pdf_start: f32,
-    /// Density of the direction to the reference by a light walk [1/sr] ([1/m^2] at infinity).
+    /// Density of the direction to the reference by a light subpath [1/sr] ([1/m^2] at infinity).
     pub pdf_direction: f32,
 }
 
@@ -56,8 +56,8 @@ impl Lights {
         let light = &self.all[index];
         match &light.emitter.kind {
             Kind::Area(_) => {
-                let (point, density) = geometry.sample_toward(light.shape?, reference, stream)?;
-                self.surface_sample(geometry, index, point, chosen * density, reference)
+                let (point, pdf) = geometry.sample_toward(light.shape?, reference, stream)?;
+                self.surface_sample(geometry, index, point, chosen * pdf, reference)
             }
             Kind::DirectionalArea(_) => None,
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
@@ -66,11 +66,11 @@ impl Lights {
             }
             Kind::Environment(sky) => {
                 let towards = sky.sample(stream);
-                let pdf = chosen * sky.density(towards);
+                let pdf = chosen * sky.pdf_sr(towards);
                 (pdf > 0.0).then(|| self.direction_sample(index, towards, pdf, sky.radiance(towards)))
             }
-            Kind::Medium(glow) => {
-                let sample = self.volume_sample(index as u32, glow.emission.sample(stream))?;
+            Kind::Medium(volume) => {
+                let sample = self.volume_sample(index as u32, volume.emission.sample(stream))?;
                 let by_chance = self.connections.probability(index);
                 Some(EmitterSample { pdf: sample.pdf * (chosen / by_chance), ..sample })
             }
@@ -96,7 +96,7 @@ impl Lights {
             cosine,
             pdf,
             pdf_start: self.starts.probability(index) / geometry.area(point.shape),
-            pdf_direction: area.density(cosine),
+            pdf_direction: area.pdf_sr(cosine),
         })
     }
 
@@ -117,7 +117,7 @@ impl Lights {
             cosine: 1.0,
             pdf: chosen,
             pdf_start: self.starts.probability(index),
-            pdf_direction: point.density(direction),
+            pdf_direction: point.pdf_sr(direction),
         })
     }
 
@@ -129,27 +129,27 @@ impl Lights {
             cosine: 1.0,
             pdf,
             pdf_start: pdf * self.starts.probability(index) / self.connections.probability(index),
-            pdf_direction: self.disk_density(),
+            pdf_direction: self.disk_pdf_area(),
         }
     }
 
     /// A point of an emissive medium, by whatever way it was found; none where it is dark there.
     pub fn volume_sample(&self, light: u32, position: Vec3) -> Option<EmitterSample> {
         let index = light as usize;
-        let Kind::Medium(Glow { emission, .. }) = &self.all[index].emitter.kind else { return None };
-        let (value, density) = (emission.at(position), emission.density(position));
-        (value.max_element() > 0.0 && density > 0.0).then(|| EmitterSample {
+        let Kind::Medium(VolumeEmitter { emission, .. }) = &self.all[index].emitter.kind else { return None };
+        let (value, pdf) = (emission.at(position), emission.pdf_vol(position));
+        (value.max_element() > 0.0 && pdf > 0.0).then(|| EmitterSample {
             light,
             point: EmitterPoint::Volume { position, rate: emission.rate(position) },
             value,
             cosine: 1.0,
-            pdf: self.connections.probability(index) * density,
-            pdf_start: self.starts.probability(index) * density,
-            pdf_direction: Glow::DENSITY,
+            pdf: self.connections.probability(index) * pdf,
+            pdf_start: self.starts.probability(index) * pdf,
+            pdf_direction: VolumeEmitter::PDF_SR,
         })
     }
 
-    /// What an eye walk from `reference` found by hitting `point` of an emitting shape; none where it
+    /// What a camera subpath from `reference` found by hitting `point` of an emitting shape; none where it
     /// does not emit towards the reference.
     pub fn surface_hit(
         &self,
@@ -160,7 +160,7 @@ impl Lights {
     ) -> Option<EmitterSample> {
         let index = light as usize;
         let pdf =
-            self.connections.probability(index) * geometry.density_toward(point.shape, reference, point);
+            self.connections.probability(index) * geometry.pdf_area_toward(point.shape, reference, point);
         // Next-event estimation may be unable to find this point from there (a density of 0): the walk can.
         let mut sample =
             self.surface_sample(geometry, index, *point, pdf.max(f32::MIN_POSITIVE), reference)?;
@@ -168,11 +168,11 @@ impl Lights {
         Some(sample)
     }
 
-    /// What an eye walk found by leaving the scene in unit `direction`; none where nothing is there.
+    /// What a camera subpath found by leaving the scene in unit `direction`; none where nothing is there.
     pub fn infinity_hit(&self, direction: Vec3) -> Option<EmitterSample> {
         let index = self.environment? as usize;
         let Kind::Environment(sky) = &self.all[index].emitter.kind else { return None };
-        let pdf = self.connections.probability(index) * sky.density(direction);
+        let pdf = self.connections.probability(index) * sky.pdf_sr(direction);
         (pdf > 0.0).then(|| self.direction_sample(index, direction, pdf, sky.radiance(direction)))
     }
 }

@@ -1,10 +1,10 @@
 //! All emitters of a scene: which one is chosen, where its light starts, how a point is joined to it.
 //!
-//! Two densities stand for the same emitter point: that by which light walks begin there, and that by
+//! Two densities stand for the same emitter point: that by which light subpaths begin there, and that by
 //! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
 //! emitter and are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle
-//! [1/sr] for emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for media that shine. What
-//! eye walks make of a point of those, and so the density of s = 0, see [`Emission::rate`].
+//! [1/sr] for emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for emissive media. What
+//! camera subpaths make of a point of those, and so the density of s = 0, see [`Emission::rate`].
 
 mod emission_sample;
 mod emitter_sample;
@@ -46,7 +46,7 @@ pub struct Light {
 pub struct Lights {
     /// In file order.
     pub all: Vec<Light>,
-    /// By power: where light walks start.
+    /// By power: where light subpaths start.
     starts: Discrete,
     /// Half by power, half uniform: which emitter a point is joined to. A distant strong emitter cannot keep
     /// a near weak one from being found.
@@ -119,13 +119,13 @@ impl Lights {
     #[inline]
     pub fn of_medium(&self, medium: MediumIndex) -> Option<(u32, &Emission)> {
         let index = self.of_media.get(medium.0 as usize).copied().flatten()?;
-        let Kind::Medium(glow) = &self.all[index as usize].emitter.kind else { return None };
-        Some((index, &glow.emission))
+        let Kind::Medium(volume) = &self.all[index as usize].emitter.kind else { return None };
+        Some((index, &volume.emission))
     }
 
     /// Density of starts on the disk that faces an emitter at infinity [1/m^2].
     #[inline]
-    fn disk_density(&self) -> f32 {
+    fn disk_pdf_area(&self) -> f32 {
         1.0 / (PI * self.radius * self.radius)
     }
 }

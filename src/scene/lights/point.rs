@@ -16,7 +16,7 @@ pub enum EmitterPoint {
     Volume {
         /// World position.
         position: Vec3,
-        /// How often eye walks meet emission there [1/m], see [`crate::medium::Emission::rate`].
+        /// How often camera subpaths meet emission there [1/m], see [`crate::medium::Emission::rate`].
         rate: Spectrum,
     },
     /// The unit direction towards an emitter at infinity.

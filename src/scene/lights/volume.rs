@@ -2,7 +2,7 @@
 
 use super::Light;
 use crate::{
-    emitter::{Emitter, Glow},
+    emitter::{Emitter, VolumeEmitter},
     math::{SpectrumExt, Vec3, warp},
     medium::{Emission, Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
@@ -21,7 +21,7 @@ pub fn emissive<'a>(
     (0..).zip(media).filter_map(move |(index, medium)| {
         let (emission, medium) = (medium.emission.clone()?, MediumIndex(index));
         let filled = filled(&emission, medium, locator, outside);
-        let emitter = Emitter::of_medium(Glow { emission, filled });
+        let emitter = Emitter::of_medium(VolumeEmitter { emission, filled });
         Some(Light { emitter, position: Vec3::ZERO, shape: None, medium, straddles: false })
     })
 }
@@ -33,9 +33,9 @@ fn filled(emission: &Emission, medium: MediumIndex, locator: Locator<'_>, outsid
     for _ in 0..POINTS {
         let point = emission.sample(&mut stream);
         let direction = warp::to_sphere(stream.square());
-        let density = emission.density(point);
+        let pdf = emission.pdf_vol(point);
         // Rounding may have put it just outside.
-        let share = if density > 0.0 { f64::from(emission.at(point).luminance() / density) } else { 0.0 };
+        let share = if pdf > 0.0 { f64::from(emission.at(point).luminance() / pdf) } else { 0.0 };
         let found = locator.along(point, direction).unwrap_or(outside);
         sum[0] += share;
         sum[1] += if found == medium { share } else { 0.0 };

@@ -3,8 +3,8 @@
 
 use super::{FlightPart, FlightState, FreeFlight, Interaction, NullCrossing, Segment};
 use crate::{
-    math::{Lanes, Spectrum},
-    medium::{Medium, MediumInterval, tracker::collision_ratio},
+    math::{Channels, Spectrum},
+    medium::{Medium, MediumInterval, distance::collision_ratio},
     sampling::Stream,
     transport::profile::Profile,
 };
@@ -46,13 +46,13 @@ struct Part<'a, L> {
     depth: f32,
 }
 
-impl<L: Lanes> Unforced<L> {
+impl<L: Channels> Unforced<L> {
     fn none() -> Self {
         Self { state: FlightState::none(), through: L::splat(1.0), spent: 0.0 }
     }
 
     /// Goes along `interval` of `medium`.
-    fn add<P: Profile<Lanes = L>>(
+    fn add<P: Profile<Channels = L>>(
         &mut self,
         medium: &Medium,
         interval: &MediumInterval,
@@ -74,17 +74,17 @@ pub fn force<P: Profile>(
     segment: Segment<'_>,
     hero: usize,
     stream: &mut Stream,
-    along: &mut impl FnMut(&FlightPart<P::Lanes>, &mut Stream),
-) -> Forced<P::Lanes> {
+    along: &mut impl FnMut(&FlightPart<P::Channels>, &mut Stream),
+) -> Forced<P::Channels> {
     let Followed { parts, behind, depth, sure_depth } = follow::<P>(segment, hero, stream, along);
     let collision = collide::<P>(&parts, depth, hero, stream);
     Forced { ends: [collision, (behind.share.max_element() > 0.0).then_some(behind)], sure_depth }
 }
 
-/// Optical depth per lane of the media that `segment` crosses before the first surface that holds anything back: what a
-/// forced flight always follows. Never random: the same for all strategies.
-pub fn sure_depth<P: Profile>(mut segment: Segment<'_>) -> P::Lanes {
-    let mut depth = P::Lanes::splat(0.0);
+/// Optical depth per channel of the media that `segment` crosses before the first surface that holds anything
+/// back: what a forced flight always follows. Never random: the same for all strategies.
+pub fn sure_depth<P: Profile>(mut segment: Segment<'_>) -> P::Channels {
+    let mut depth = P::Channels::splat(0.0);
     loop {
         let (interval, hit) = segment.next(f32::INFINITY);
         depth = depth + segment.medium().optical_depth::<P>(&interval);
@@ -112,8 +112,8 @@ fn follow<'a, P: Profile>(
     mut segment: Segment<'a>,
     hero: usize,
     stream: &mut Stream,
-    along: &mut impl FnMut(&FlightPart<P::Lanes>, &mut Stream),
-) -> Followed<'a, P::Lanes> {
+    along: &mut impl FnMut(&FlightPart<P::Channels>, &mut Stream),
+) -> Followed<'a, P::Channels> {
     let (mut parts, mut sure) = (Vec::new(), None);
     let mut unforced = Unforced::none();
     loop {
@@ -141,7 +141,7 @@ fn follow<'a, P: Profile>(
                         sure.get_or_insert(state.depth);
                     }
                     state.tint *= through / probability;
-                    state.depth = state.depth + P::Lanes::splat(-probability.ln());
+                    state.depth = state.depth + P::Channels::splat(-probability.ln());
                     segment.cross(point);
                     continue;
                 }
@@ -156,11 +156,11 @@ fn follow<'a, P: Profile>(
 
 /// A collision in one of `parts`, whose depth is `whole` in all: its depth is exponential, cut off there.
 fn collide<P: Profile>(
-    parts: &[Part<'_, P::Lanes>],
+    parts: &[Part<'_, P::Channels>],
     whole: f32,
     hero: usize,
     stream: &mut Stream,
-) -> Option<ForcedEnd<P::Lanes>> {
+) -> Option<ForcedEnd<P::Channels>> {
     let last = parts.last()?;
     let caught = -f64::from(-whole).exp_m1();
     let spent = -(-stream.uniform_precisely() * caught).ln_1p() as f32;
@@ -168,16 +168,16 @@ fn collide<P: Profile>(
     let Part { segment, interval, before, .. } = part;
     let remaining = (spent - before.spent).clamp(0.0, part.depth);
     let sample = segment.medium().force_collision::<P>(interval, hero, remaining, stream)?;
-    let position = interval.section.at(sample.collision?);
-    let matter = segment.medium().properties_at::<P>(position);
+    let position = interval.segment.at(sample.collision?);
+    let properties = segment.medium().properties_at::<P>(position);
     // Positions are rounded: a collision at the very edge may come to lie outside.
-    if P::Lanes::from_spectrum(matter.sigma_t).hero(hero) <= 0.0 {
+    if P::Channels::from_spectrum(properties.sigma_t).hero(hero) <= 0.0 {
         return None;
     }
     let FlightState { depth, ratio, tint } = before.state;
-    let ratio = ratio * sample.ratio * collision_ratio(matter.sigma_t, hero);
+    let ratio = ratio * sample.ratio * collision_ratio(properties.sigma_t, hero);
     let state = FlightState { depth: depth + sample.depth, ratio, tint };
-    let interaction = Some(Interaction::Medium(position, matter));
+    let interaction = Some(Interaction::Medium(position, properties));
     let flight = FreeFlight { interaction, medium: segment.medium, state };
     Some(ForcedEnd { flight, share: ratio.to_spectrum() * tint * caught as f32 })
 }

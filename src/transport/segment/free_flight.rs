@@ -2,8 +2,8 @@
 
 use super::{NullCrossing, Segment};
 use crate::{
-    math::{Lanes, Spectrum, Vec3},
-    medium::{Matter, Medium, MediumIndex, MediumInterval, tracker::collision_ratio},
+    math::{Channels, Spectrum, Vec3},
+    medium::{Medium, MediumIndex, MediumInterval, MediumProperties, distance::collision_ratio},
     sampling::Stream,
     scene::Scene,
     shape::SurfacePoint,
@@ -16,7 +16,7 @@ pub enum Interaction {
     /// A surface.
     Surface(SurfacePoint),
     /// The medium, by a collision at this point, and what it is made of there.
-    Medium(Vec3, Matter),
+    Medium(Vec3, MediumProperties),
 }
 
 impl Interaction {
@@ -29,12 +29,12 @@ impl Interaction {
         }
     }
 
-    /// sigma_t per lane in a medium, 1 on a surface.
+    /// sigma_t per channel in a medium, 1 on a surface.
     #[inline]
-    pub fn sigma_t<L: Lanes>(&self) -> L {
+    pub fn sigma_t<L: Channels>(&self) -> L {
         match self {
             Self::Surface(_) => L::splat(1.0),
-            Self::Medium(_, matter) => L::from_spectrum(matter.sigma_t),
+            Self::Medium(_, properties) => L::from_spectrum(properties.sigma_t),
         }
     }
 
@@ -62,17 +62,17 @@ pub struct FreeFlight<L> {
 /// What a flight has passed, as its contribution and the weights know it.
 #[derive(Clone, Copy, Debug)]
 pub struct FlightState<L> {
-    /// Optical depth per lane, the logarithms of null-passing probabilities included: the flight density that weights
-    /// know is exp(-depth), times sigma_t at a collision.
+    /// Optical depth per channel, the logarithms of null-passing probabilities included: the flight density that
+    /// weights know is exp(-depth), times sigma_t at a collision.
     pub depth: L,
-    /// Contribution over the density by which the flight was really sampled, per lane. Profiles without varying media
-    /// have it from `depth`.
+    /// Contribution over the density by which the flight was really sampled, per channel. Profiles without
+    /// varying media have it from `depth`.
     pub ratio: L,
     /// Null transmittances over their passing probabilities; 1 where none was tinted.
     pub tint: Spectrum,
 }
 
-impl<L: Lanes> FlightState<L> {
+impl<L: Channels> FlightState<L> {
     /// Of a flight that has not begun.
     #[inline]
     pub fn none() -> Self {
@@ -93,17 +93,17 @@ pub struct FlightPart<L> {
     pub certain: bool,
 }
 
-impl<L: Lanes> FlightPart<L> {
+impl<L: Channels> FlightPart<L> {
     /// The state of a flight that would have ended `t` metres into this part.
-    pub fn until<P: Profile<Lanes = L>>(
+    pub fn until<P: Profile<Channels = L>>(
         &self,
         scene: &Scene,
         t: f32,
         hero: usize,
         stream: &mut Stream,
     ) -> FlightState<L> {
-        let mut interval = MediumInterval::of(self.interval.section);
-        interval.section.length = t;
+        let mut interval = MediumInterval::of(self.interval.segment);
+        interval.segment.length = t;
         let medium = &scene.media[self.medium.0 as usize];
         let depth = medium.optical_depth::<P>(&interval);
         let ratio = match self.certain {
@@ -116,7 +116,7 @@ impl<L: Lanes> FlightPart<L> {
 }
 
 /// Samples where `segment` ends: at an exponential optical depth by the `hero` channel, or before, on a surface. Only
-/// profiles with nulls can pass boundaries. In profiles where media shine, `along` is shown every part of it.
+/// profiles with nulls can pass boundaries. In profiles where media emit, `along` is shown every part of it.
 ///
 /// LW96 eq. 4: the distance is that of a free flight; its density is eq. 6 in a medium, and that it reaches a surface
 /// has the probability of eq. 7.
@@ -125,8 +125,8 @@ pub fn sample_free_flight<P: Profile>(
     segment: Segment<'_>,
     hero: usize,
     stream: &mut Stream,
-    along: &mut impl FnMut(&FlightPart<P::Lanes>, &mut Stream),
-) -> FreeFlight<P::Lanes> {
+    along: &mut impl FnMut(&FlightPart<P::Channels>, &mut Stream),
+) -> FreeFlight<P::Channels> {
     let remaining = if P::MEDIA { stream.exponential() } else { 0.0 };
     if P::NULLS {
         return fly_across_boundaries::<P>(segment, hero, remaining, stream, along);
@@ -152,7 +152,7 @@ fn fly_to_surface<P: Profile>(
     hero: usize,
     remaining: f32,
     stream: &mut Stream,
-) -> Leg<P::Lanes> {
+) -> Leg<P::Channels> {
     if !P::MEDIA {
         let (interval, hit) = segment.next(f32::INFINITY);
         let interaction = hit.map(|hit| Interaction::Surface(segment.surface(&hit)));
@@ -165,7 +165,7 @@ fn fly_to_surface<P: Profile>(
     let mut state = FlightState { depth: sample.depth, ratio: sample.ratio, tint: Spectrum::ONE };
     let interaction = match (sample.collision, hit) {
         (Some(t), _) => {
-            interval.section.length = t;
+            interval.segment.length = t;
             Some(collide::<P>(medium, &interval, hero, &mut state))
         }
         (None, Some(hit)) => Some(Interaction::Surface(segment.surface(&hit))),
@@ -180,14 +180,14 @@ fn collide<P: Profile>(
     medium: &Medium,
     interval: &MediumInterval,
     hero: usize,
-    state: &mut FlightState<P::Lanes>,
+    state: &mut FlightState<P::Channels>,
 ) -> Interaction {
-    let position = interval.section.at(interval.section.length);
-    let matter = medium.properties_at::<P>(position);
+    let position = interval.segment.at(interval.segment.length);
+    let properties = medium.properties_at::<P>(position);
     if P::HETEROGENEOUS {
-        state.ratio = state.ratio * collision_ratio(matter.sigma_t, hero);
+        state.ratio = state.ratio * collision_ratio(properties.sigma_t, hero);
     }
-    Interaction::Medium(position, matter)
+    Interaction::Medium(position, properties)
 }
 
 /// A flight that may pass surfaces: each crossing switches the medium, and takes its share where the surface
@@ -197,8 +197,8 @@ fn fly_across_boundaries<P: Profile>(
     hero: usize,
     mut remaining: f32,
     stream: &mut Stream,
-    along: &mut impl FnMut(&FlightPart<P::Lanes>, &mut Stream),
-) -> FreeFlight<P::Lanes> {
+    along: &mut impl FnMut(&FlightPart<P::Channels>, &mut Stream),
+) -> FreeFlight<P::Channels> {
     let mut state = FlightState::none();
     loop {
         let Leg { interaction, state: leg, spent, interval } =
@@ -219,7 +219,7 @@ fn fly_across_boundaries<P: Profile>(
             }
             NullCrossing::Passed(through, probability) => {
                 state.tint *= through / probability;
-                state.depth = state.depth + P::Lanes::splat(-probability.ln());
+                state.depth = state.depth + P::Channels::splat(-probability.ln());
             }
         }
         remaining = (remaining - spent).max(0.0);

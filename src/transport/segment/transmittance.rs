@@ -2,7 +2,7 @@
 
 use super::Segment;
 use crate::{
-    math::{Lanes, Section, Spectrum},
+    math::{Channels, RaySegment, Spectrum},
     medium::{Medium, MediumIndex, MediumInterval},
     sampling::Stream,
     scene::Scene,
@@ -13,9 +13,9 @@ use crate::{
 /// A given segment that nothing blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct SegmentTransmittance<L> {
-    /// exp(-depth) per lane as weights know it: the density of a flight that ends on a surface (LW96 eq. 7), see
+    /// exp(-depth) per channel as weights know it: the density of a flight that ends on a surface (LW96 eq. 7), see
     /// [`super::FreeFlight::depth`].
-    pub density: L,
+    pub pdf: L,
     /// The fraction of radiance that arrives; where a medium's tracker is random, an unbiased estimate of it.
     pub transmittance: Spectrum,
     /// The medium at its end.
@@ -35,7 +35,7 @@ pub fn transmittance<P: Profile>(
     medium: MediumIndex,
     hidden: bool,
     stream: &mut Stream,
-) -> Option<SegmentTransmittance<P::Lanes>> {
+) -> Option<SegmentTransmittance<P::Channels>> {
     if P::NULLS {
         return across_boundaries::<P>(Segment::to_end(scene, ray, medium, hidden), cut, stream);
     }
@@ -44,7 +44,7 @@ pub fn transmittance<P: Profile>(
     }
     let mut product = Product::<P>::new();
     let Ray { origin, direction, t_max } = ray;
-    let interval = MediumInterval::of(Section { origin, direction, length: t_max + cut });
+    let interval = MediumInterval::of(RaySegment { origin, direction, length: t_max + cut });
     product.add(&scene.media[medium.0 as usize], &interval, stream);
     Some(product.ending_in(medium))
 }
@@ -53,12 +53,12 @@ fn across_boundaries<P: Profile>(
     mut segment: Segment<'_>,
     cut: f32,
     stream: &mut Stream,
-) -> Option<SegmentTransmittance<P::Lanes>> {
+) -> Option<SegmentTransmittance<P::Channels>> {
     let mut product = Product::<P>::new();
     loop {
         let (mut interval, hit) = segment.next(f32::INFINITY);
         let Some(hit) = hit else {
-            interval.section.length += cut;
+            interval.segment.length += cut;
             product.add(segment.medium(), &interval, stream);
             return Some(product.ending_in(segment.medium));
         };
@@ -76,9 +76,9 @@ fn across_boundaries<P: Profile>(
 
 /// What lies behind while a segment is followed.
 struct Product<P: Profile> {
-    depth: P::Lanes,
+    depth: P::Channels,
     /// Product of the transmittances of all intervals, some of them estimates; where nothing varies, left at 1.
-    estimate: P::Lanes,
+    estimate: P::Channels,
     /// Product of the probabilities of passing half-transparent surfaces.
     passing: f32,
     /// Product of what they let through.
@@ -88,7 +88,7 @@ struct Product<P: Profile> {
 impl<P: Profile> Product<P> {
     #[inline]
     fn new() -> Self {
-        let (zero, one) = (P::Lanes::splat(0.0), P::Lanes::splat(1.0));
+        let (zero, one) = (P::Channels::splat(0.0), P::Channels::splat(1.0));
         Self { depth: zero, estimate: one, passing: 1.0, tint: Spectrum::ONE }
     }
 
@@ -105,11 +105,11 @@ impl<P: Profile> Product<P> {
     }
 
     #[inline(always)]
-    fn ending_in(&self, medium: MediumIndex) -> SegmentTransmittance<P::Lanes> {
-        let density = if P::MEDIA { self.depth.exp_neg() } else { P::Lanes::splat(1.0) };
-        let transmittance = if P::HETEROGENEOUS { self.estimate } else { density };
+    fn ending_in(&self, medium: MediumIndex) -> SegmentTransmittance<P::Channels> {
+        let pdf = if P::MEDIA { self.depth.exp_neg() } else { P::Channels::splat(1.0) };
+        let transmittance = if P::HETEROGENEOUS { self.estimate } else { pdf };
         SegmentTransmittance {
-            density: density.scaled(self.passing),
+            pdf: pdf.scaled(self.passing),
             transmittance: transmittance.to_spectrum() * self.tint,
             medium,
         }

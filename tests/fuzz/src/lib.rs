@@ -4,8 +4,11 @@
 use std::{fs, path::PathBuf, sync::OnceLock};
 use tempfile::TempDir;
 use tyndall::{
-    density::files,
-    scene::{self, Spelling, build::Overrides},
+    format,
+    format::Spelling,
+    scene::{self},
+    settings::Overrides,
+    volume::files,
 };
 
 fn path(name: &str) -> PathBuf {
@@ -21,7 +24,7 @@ fn put(name: &str, data: &[u8]) -> PathBuf {
 
 /// Reads and builds the scene at `path`; mistakes in it must have all their parts.
 fn load(path: PathBuf) {
-    let built = scene::read(&path, &[]).and_then(|root| scene::build::build(&root, Overrides::default()));
+    let built = format::read(&path, &[]).and_then(|root| scene::build::build(&root, Overrides::default()));
     if let Err(error) = built {
         for part in [error.place, error.expected, error.found, error.remedy] {
             assert!(!part.is_empty(), "a message without one of its parts");
@@ -32,12 +35,12 @@ fn load(path: PathBuf) {
 /// `data` as a scene file. What can be read can be written in both spellings, and means the same again.
 pub fn scene(name: &str, data: &[u8]) {
     let path = put(name, data);
-    if let Ok(root) = scene::read(&path, &[]) {
+    if let Ok(root) = format::read(&path, &[]) {
         let folder = path.parent().expect("a file has a folder");
         for (spelling, copy) in [(Spelling::Xml, "copy.xml"), (Spelling::Json, "copy.json")] {
-            let Ok(text) = scene::write(&root, spelling, folder) else { continue };
-            let again = scene::read(&put(copy, text.as_bytes()), &[]).expect("what is written can be read");
-            let again = scene::write(&again, spelling, folder).expect("and written again");
+            let Ok(text) = format::write(&root, spelling, folder) else { continue };
+            let again = format::read(&put(copy, text.as_bytes()), &[]).expect("what is written can be read");
+            let again = format::write(&again, spelling, folder).expect("and written again");
             assert_eq!(text, again, "what is written again is the same");
         }
     }

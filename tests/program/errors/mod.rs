@@ -1,7 +1,7 @@
 //! What is said of broken scenes, word for word. Every message is there to be read in `messages.txt`.
 //!
-//! After a change that is meant, `TYNDALL_BLESS=1 cargo test --test program errors` writes that file anew; the difference is
-//! to be read like code.
+//! After a change that is meant, `TYNDALL_BLESS=1 cargo test --test program errors` writes that file again;
+//! the difference is to be read like code.
 
 mod cases;
 
@@ -9,7 +9,9 @@ use cases::{Case, File};
 use std::{fmt::Write as _, fs, path::Path};
 use tyndall::{
     error::{Error, Result},
-    scene::{self, build::Overrides},
+    format,
+    scene::{self},
+    settings::Overrides,
 };
 
 /// Reads and builds the scene of `case`; what is said of it, without the folder that it stood in, and all warnings.
@@ -22,7 +24,7 @@ fn outcome(case: &Case) -> std::result::Result<Vec<String>, Error> {
     }
     let definitions: Vec<_> =
         case.definitions.iter().map(|(n, v)| ((*n).to_owned(), (*v).to_owned())).collect();
-    let built: Result<_> = scene::read(&desk.path().join(case.main()), &definitions)
+    let built: Result<_> = format::read(&desk.path().join(case.main()), &definitions)
         .and_then(|root| scene::build::build(&root, Overrides::default()));
     let folder = format!("{}/", desk.path().display());
     let real = format!("{}/", desk.path().canonicalize().unwrap().display());

@@ -21,11 +21,11 @@ fn check(fact: &Fact) {
     let geometry = Geometry::build(vec![shape_of(fact.plugin, &properties, DVec3::ZERO).unwrap()]);
     let ray = ray(fact.origin.into(), fact.direction.into());
     let point = geometry.surface(&ray, &geometry.closest(&ray).unwrap());
-    let told =
+    let reported =
         format!("{} {:?} flip {} from {:?}: {point:?}", fact.plugin, (fact.steps)(), fact.flip, fact.origin);
-    assert!((point.normal - Vec3::from(fact.normal)).length() < 1e-4, "normal: {told}");
-    assert!((point.uv - Vec2::from(fact.uv)).length() < 1e-4, "uv: {told}");
-    assert!((point.shading.normal - Vec3::from(fact.shading)).length() < 1e-4, "shading: {told}");
+    assert!((point.normal - Vec3::from(fact.normal)).length() < 1e-4, "normal: {reported}");
+    assert!((point.uv - Vec2::from(fact.uv)).length() < 1e-4, "uv: {reported}");
+    assert!((point.shading.normal - Vec3::from(fact.shading)).length() < 1e-4, "shading: {reported}");
 }
 
 const DOWN: [f32; 3] = [0.0, 0.0, -1.0];
@@ -174,17 +174,17 @@ fn check_shape(
     assert!(off.max_element() < 2e-5, "{properties:?}: {low} {high}");
     for ((origin, direction), answer) in rays.iter().zip(answers) {
         let ray = ray((*origin).into(), (*direction).into());
-        let told = format!("{plugin} {properties:?} from {origin:?}");
+        let reported = format!("{plugin} {properties:?} from {origin:?}");
         let (Some(hit), Some((t, normal, uv, tangent))) = (geometry.closest(&ray), answer) else {
-            assert!(geometry.closest(&ray).is_none() && answer.is_none(), "{told}");
+            assert!(geometry.closest(&ray).is_none() && answer.is_none(), "{reported}");
             continue;
         };
         let point = geometry.surface(&ray, &hit);
-        assert!((hit.t - t).abs() < 2e-5, "t: {told}: {hit:?}");
-        assert!((point.normal - Vec3::from(*normal)).length() < 2e-5, "normal: {told}: {point:?}");
-        assert_eq!(point.normal, point.shading.normal, "{told}");
-        assert!((point.uv - Vec2::from(*uv)).length() < 2e-5, "uv: {told}: {point:?}");
-        assert!((point.shading.tangent - Vec3::from(*tangent)).length() < 3e-5, "{told}: {point:?}");
+        assert!((hit.t - t).abs() < 2e-5, "t: {reported}: {hit:?}");
+        assert!((point.normal - Vec3::from(*normal)).length() < 2e-5, "normal: {reported}: {point:?}");
+        assert_eq!(point.normal, point.shading.normal, "{reported}");
+        assert!((point.uv - Vec2::from(*uv)).length() < 2e-5, "uv: {reported}: {point:?}");
+        assert!((point.shading.tangent - Vec3::from(*tangent)).length() < 3e-5, "{reported}: {point:?}");
     }
 }
 

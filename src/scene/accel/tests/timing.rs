@@ -144,9 +144,9 @@ fn report_sampling(geometry: &Geometry, rays: &[Ray]) {
     let (toward, _) = time(rays, |ray| geometry.sample_toward(6, ray.origin, &mut draws).is_some());
     let (area, _) = time(rays, |ray| geometry.sample_area(6, &mut draws).position.x > ray.origin.x);
     let point = geometry.sample_area(6, &mut draws);
-    let (density, _) = time(rays, |ray| geometry.density_toward(6, ray.origin, &point) > 0.0);
+    let (pdf, _) = time(rays, |ray| geometry.pdf_area_toward(6, ray.origin, &point) > 0.0);
     eprintln!(
-        "a rectangle: sample_toward {toward:.1} ns, density_toward {density:.1} ns, sample_area {area:.1} ns"
+        "a rectangle: sample_toward {toward:.1} ns, density_toward {pdf:.1} ns, sample_area {area:.1} ns"
     );
 }
 

@@ -38,11 +38,11 @@ fn deviation(geometry: &Geometry, reference: Vec3, fault: f64) -> f64 {
         let d = reference - p.position;
         f64::from(d.dot(p.normal).abs() / d.length_squared().powf(1.5).max(1e-12))
     };
-    let visible = |p: &SurfacePoint| geometry.density_toward(0, reference, p) > 0.0;
+    let visible = |p: &SurfacePoint| geometry.pdf_area_toward(0, reference, p) > 0.0;
     let (a, ea) = moments_by(geometry, n, |s| {
-        let (p, density) = geometry.sample_toward(0, reference, s)?;
-        assert!((geometry.density_toward(0, reference, &p) / density - 1.0).abs() < 1e-5);
-        Some((p, kernel(&p) / (f64::from(density) * fault)))
+        let (p, pdf) = geometry.sample_toward(0, reference, s)?;
+        assert!((geometry.pdf_area_toward(0, reference, &p) / pdf - 1.0).abs() < 1e-5);
+        Some((p, kernel(&p) / (f64::from(pdf) * fault)))
     });
     let (b, eb) = moments_by(geometry, n, |s| {
         let p = geometry.sample_area(0, s);
@@ -98,9 +98,9 @@ fn rectangles_and_spheres_are_sampled_uniformly_in_solid_angle() {
         let geometry = Geometry::build(vec![placed(plugin, vec![])]);
         let mut stream = stream(3);
         for _ in 0..1000 {
-            let (p, density) = geometry.sample_toward(0, reference, &mut stream).unwrap();
+            let (p, pdf) = geometry.sample_toward(0, reference, &mut stream).unwrap();
             let d = reference - p.position;
-            let weight = d.dot(p.normal) / d.length().powi(3) / density;
+            let weight = d.dot(p.normal) / d.length().powi(3) / pdf;
             assert!((weight - solid_angle).abs() < 1e-3, "{plugin}: {weight}");
         }
     }
@@ -110,12 +110,12 @@ fn rectangles_and_spheres_are_sampled_uniformly_in_solid_angle() {
 fn far_small_and_coplanar_rectangles_fall_back_to_area() {
     let geometry = Geometry::build(vec![placed("rectangle", vec![])]);
     for reference in [vec3(0.0, 0.0, 1e4), vec3(3.0, 0.5, 0.0), vec3(0.2, 0.1, 0.0)] {
-        let (_, density) = geometry.sample_toward(0, reference, &mut stream(1)).unwrap();
-        assert_eq!(density, 0.25);
+        let (_, pdf) = geometry.sample_toward(0, reference, &mut stream(1)).unwrap();
+        assert_eq!(pdf, 0.25);
     }
     for height in [1e-5, 1e-3, 1e2, 1.9e3] {
-        let (p, density) = geometry.sample_toward(0, vec3(0.3, 0.2, height), &mut stream(1)).unwrap();
-        assert!(density.is_finite() && p.position.is_finite() && density != 0.25, "{height}: {density}");
+        let (p, pdf) = geometry.sample_toward(0, vec3(0.3, 0.2, height), &mut stream(1)).unwrap();
+        assert!(pdf.is_finite() && p.position.is_finite() && pdf != 0.25, "{height}: {pdf}");
     }
 }
 

@@ -1,0 +1,467 @@
+//! What every strategy of the estimator is worth in a scene (LW96 sec. 4; Veach 1997, sec. 10.3): its image weighted
+//! and alone, its share of energy, variance and time; and which kinds of strategies the scene could do without.
+
+pub mod pilot;
+mod sheet;
+mod table;
+
+pub use table::table;
+
+use super::coverage::Traits;
+use crate::{
+    analysis::study::outcome::Interval,
+    error::{Error, Result},
+    film::{self, Channel, Film, accumulator::Accumulator, format::Format},
+    math::{Spectrum, SpectrumExt},
+    render::{
+        Settings,
+        instrument::Instrument,
+        strategy_images::{StrategyCell, StrategyImages, StrategyTable},
+        timing::Times,
+    },
+    scene::build::Setup,
+    transport::{Options, Strategies, observer::StrategyKind},
+};
+use serde::Serialize;
+use sheet::Row;
+use std::{
+    io::Write as _,
+    path::{Path, PathBuf},
+};
+
+/// How much is done.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Paths of up to so many segments are told apart strategy by strategy.
+    pub depth: u32,
+    /// Passes that make the images.
+    pub passes: usize,
+    /// Passes, or a few more, of every set of strategies in the comparison; 0 for none.
+    pub pilots: usize,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Which program made it, with its version.
+    pub made_by: String,
+    /// Kinds of strategies that ran.
+    pub strategies: Vec<&'static str>,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Passes that made the images.
+    pub passes: usize,
+    /// Mean luminance of the image.
+    pub luminance: f64,
+    /// Variance of one pass by luminance, summed over pixels; none of a single pass.
+    pub variance: Option<f64>,
+    /// Time of one pass, summed over threads [s].
+    pub seconds: f64,
+    /// Share of time of camera subpaths, without joins.
+    pub eye_walks: f64,
+    /// Share of time of light subpaths, without joins.
+    pub light_walks: f64,
+    /// Share of variance that is none of a single strategy's: covariances between them. Often negative or positive by
+    /// a lot, as strategies share their walks.
+    pub covariances: Option<f64>,
+    /// Rows of the sheets.
+    pub rows: Vec<RowReport>,
+    /// Strategies that ran.
+    pub cells: Vec<CellReport>,
+    /// Sets of strategies that the scene might do with.
+    pub subsets: Vec<SubsetReport>,
+    /// What follows from them; none where none were compared.
+    pub advice: Option<String>,
+}
+
+/// A row of the sheets.
+#[derive(Clone, Debug, Serialize)]
+pub struct RowReport {
+    /// Segments of its paths; none for all longer ones.
+    pub length: Option<u32>,
+    /// Factor on its radiance before it is shown.
+    pub exposure: f64,
+    /// Share of the image's mean luminance.
+    pub energy: f64,
+}
+
+/// One strategy, or all of a kind on longer paths.
+#[derive(Clone, Debug, Serialize)]
+pub struct CellReport {
+    /// As in the image files.
+    pub name: String,
+    /// Segments of its paths; none for longer ones.
+    pub length: Option<u32>,
+    /// Light vertices; none for longer paths.
+    pub s: Option<u32>,
+    /// Camera vertices, the lens among them; none for longer paths.
+    pub t: Option<u32>,
+    /// Its kind.
+    pub kind: &'static str,
+    /// Share of the image's mean luminance.
+    pub energy: f64,
+    /// Mean luminance of what it brings alone, over that of all paths of its length: 1 where it can make all of them;
+    /// none where there is no light on paths of its length, or on longer ones, of which several strategies count
+    /// here.
+    pub alone: Option<f64>,
+    /// Its weighted contribution's variance, by luminance and summed over pixels, over that of the image. Of one pass.
+    pub variance: Option<f64>,
+    /// The same of what it brings alone.
+    pub variance_alone: Option<f64>,
+    /// Share of time.
+    pub time: f64,
+    /// How often it is tried per pixel and pass.
+    pub tries: f64,
+}
+
+/// A set of strategies.
+#[derive(Clone, Debug, Serialize)]
+pub struct SubsetReport {
+    /// As for `--strategies`.
+    pub strategies: String,
+    /// What it leaves out of the full set.
+    pub without: String,
+    /// Paths that the full set can make and this one cannot: it is no choice for this scene.
+    pub lacks: Option<String>,
+    /// relMSE x time of the full set over its own; more than 1 is better.
+    pub gain: Option<Interval>,
+}
+
+/// What was found, and the images of it.
+pub struct Findings {
+    /// The numbers.
+    pub report: Report,
+    parts: StrategyImages,
+    film: [usize; 2],
+}
+
+/// The images of a study may take no more [bytes].
+const MOST_BYTES: usize = 6 << 30;
+
+/// Looks into all strategies of `setup`, rendered by `settings`. Tells how many steps are done of how many.
+pub fn examine(
+    setup: &Setup,
+    settings: &Settings,
+    plan: &Plan,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Findings> {
+    let options = settings.options;
+    let cells = StrategyTable { depth: plan.depth.min(options.max_depth.unwrap_or(u32::MAX)).max(1) };
+    check(&setup.film, cells, &options)?;
+    let subsets = subsets(options.strategies);
+    let timed = plan.passes.div_ceil(4);
+    let pilots = if plan.pilots > 0 { pilot::passes(plan.pilots) } else { 0 };
+    let before = plan.passes + timed;
+    // As many contenders as there can be: which of them can make all paths is not known yet.
+    let total = before + pilots * (subsets.len() + 1);
+    let instrument = Instrument::new(&setup.scene, &setup.film, settings);
+    let parts = instrument.parts(cells, plan.passes, &mut |done| progress(done, total));
+    let times = instrument.times(cells, timed, &mut |done| progress(plan.passes + done, total));
+    let mut report = report(setup, &options, &parts, &times, timed);
+    let seen = parts.luminance_of(Some(1)) > 0.0;
+    let traits = Traits::of(&setup.scene, (&options).into(), seen);
+    let (lacking, able): (Vec<_>, Vec<_>) = subsets
+        .into_iter()
+        .map(|set| (set, traits.missing(set, options.strategies)))
+        .partition(|(_, lacks)| lacks.is_some());
+    if plan.pilots > 0 {
+        let able: Vec<Strategies> = able.into_iter().map(|(set, _)| set).collect();
+        let total = before + pilots * (able.len() + 1);
+        report.subsets = compare(setup, settings, &able, &parts.whole.mean(), plan.pilots, &mut |done| {
+            progress(before + done, total)
+        });
+        report.advice = Some(advice(&report.subsets));
+    }
+    let full = options.strategies;
+    report
+        .subsets
+        .extend(lacking.into_iter().map(|(set, lacks)| SubsetReport { lacks, ..subset(full, set, None) }));
+    let film = [setup.film.width as usize, setup.film.height as usize];
+    Ok(Findings { report, parts, film })
+}
+
+fn check(film: &Film, cells: StrategyTable, options: &Options) -> Result<()> {
+    if options.strategies == Strategies::NONE {
+        let remedy = "choose --integrator bdpt, pt or lt";
+        return Err(Error::new("the scene's integrator", "one that makes paths", "fog, a preview", remedy));
+    }
+    let bytes = film.len().saturating_mul(StrategyImages::bytes_per_pixel(cells));
+    if bytes <= MOST_BYTES {
+        return Ok(());
+    }
+    Err(Error::new(
+        "tyndall strategies",
+        format!("images that take at most {} GiB of memory", MOST_BYTES >> 30),
+        format!(
+            "{} strategies on {} x {} pixels: {} GiB",
+            cells.count(),
+            film.width,
+            film.height,
+            bytes >> 30
+        ),
+        "ask for a smaller --size, or for less --depth",
+    ))
+}
+
+/// The sets worth comparing with `full`: without one kind each, the path tracer's and the light tracer's.
+fn subsets(full: Strategies) -> Vec<Strategies> {
+    let without = StrategyKind::ALL.into_iter().filter(|kind| full.has(*kind)).map(|kind| full.without(kind));
+    let mut sets = Vec::new();
+    for set in without.chain([both(full, Strategies::PT), both(full, Strategies::LT)]) {
+        if set != Strategies::NONE && set != full && !sets.contains(&set) {
+            sets.push(set);
+        }
+    }
+    sets
+}
+
+fn both(a: Strategies, b: Strategies) -> Strategies {
+    StrategyKind::ALL.into_iter().filter(|kind| !b.has(*kind)).fold(a, Strategies::without)
+}
+
+/// The kinds of a set, as for `--strategies`.
+fn names(set: Strategies) -> Vec<&'static str> {
+    StrategyKind::ALL.into_iter().filter(|kind| set.has(*kind)).map(StrategyKind::name).collect()
+}
+
+fn subset(full: Strategies, set: Strategies, gain: Option<Interval>) -> SubsetReport {
+    let left_out = StrategyKind::ALL.into_iter().filter(|kind| full.has(*kind) && !set.has(*kind));
+    let without = left_out.map(StrategyKind::name).collect::<Vec<_>>().join(",");
+    SubsetReport { strategies: names(set).join(","), without, lacks: None, gain }
+}
+
+/// Renders with all strategies and with each of `sets`, in turns.
+fn compare(
+    setup: &Setup,
+    settings: &Settings,
+    sets: &[Strategies],
+    reference: &[Spectrum],
+    passes: usize,
+    progress: &mut dyn FnMut(usize),
+) -> Vec<SubsetReport> {
+    let full = settings.options.strategies;
+    let instrument = |strategies: Strategies| {
+        let options = Options { strategies, ..settings.options };
+        Instrument::new(&setup.scene, &setup.film, &Settings { options, ..*settings })
+    };
+    let contenders: Vec<Instrument<'_>> =
+        std::iter::once(full).chain(sets.iter().copied()).map(instrument).collect();
+    let mut done = 0;
+    let turns = pilot::take_turns(&contenders, reference, passes, &mut |more| {
+        done += more;
+        progress(done);
+    });
+    let gains = turns[1..].iter().map(|turns_of_one| pilot::gain(&turns[0], turns_of_one));
+    sets.iter().zip(gains).map(|(set, gain)| subset(full, *set, gain)).collect()
+}
+
+/// What the comparison comes to.
+fn advice(subsets: &[SubsetReport]) -> String {
+    let gains = subsets.iter().filter_map(|subset| Some((subset, subset.gain?)));
+    let best = gains.filter(|(_, gain)| gain.low > 1.0).max_by(|(_, a), (_, b)| a.mean.total_cmp(&b.mean));
+    match best {
+        Some((subset, gain)) => format!(
+            "leave out {}: {} less error x time; --strategies {}",
+            subset.without,
+            table::times(gain),
+            subset.strategies
+        ),
+        None if subsets.is_empty() => {
+            "keep all strategies: without any of them paths would be missing".to_owned()
+        }
+        None => "keep all strategies: no set without one of them has less error x time that could be told from chance"
+            .to_owned(),
+    }
+}
+
+fn report(setup: &Setup, options: &Options, parts: &StrategyImages, times: &Times, timed: usize) -> Report {
+    let whole = mean_luminance(&parts.whole);
+    let variance = parts.whole.luminance_variance();
+    let total_time = times.total().max(f64::MIN_POSITIVE);
+    let lengths = (1..=parts.table.depth).map(Some).chain([None]);
+    let rows = lengths.map(|length| RowReport {
+        length,
+        exposure: sheet::exposure(&parts.sum_of(length)),
+        energy: share(parts.luminance_of(length), whole).unwrap_or(0.0),
+    });
+    let tried = (timed * setup.film.len()) as f64;
+    let cells = parts.table.all().zip(&parts.images).enumerate().filter_map(|(index, (cell, images))| {
+        let images = images.as_ref()?;
+        let relative = |image: &Accumulator| share(image.luminance_variance()?, variance?);
+        let (s, t) = match cell {
+            StrategyCell::Strategy { s, t } => (Some(s), Some(t)),
+            StrategyCell::Longer(_) => (None, None),
+        };
+        Some(CellReport {
+            name: cell.name(),
+            length: cell.length(),
+            s,
+            t,
+            kind: cell.kind().name(),
+            energy: share(mean_luminance(&images.weighted), whole).unwrap_or(0.0),
+            alone: cell
+                .length()
+                .and_then(|_| share(mean_luminance(&images.alone), parts.luminance_of(cell.length()))),
+            variance: relative(&images.weighted),
+            variance_alone: relative(&images.alone),
+            time: times.connections[index] / total_time,
+            tries: times.tries[index] as f64 / tried,
+        })
+    });
+    let cells: Vec<CellReport> = cells.collect();
+    let own: Option<f64> = cells.iter().map(|cell| cell.variance).sum();
+    Report {
+        made_by: concat!("Tyndall ", env!("CARGO_PKG_VERSION")).to_owned(),
+        strategies: names(options.strategies),
+        size: [setup.film.width, setup.film.height],
+        passes: parts.whole.passes() as usize,
+        luminance: whole,
+        variance,
+        seconds: total_time / timed as f64,
+        eye_walks: times.camera_paths / total_time,
+        light_walks: times.light_paths / total_time,
+        covariances: own.map(|own| 1.0 - own),
+        rows: rows.collect(),
+        cells,
+        subsets: Vec::new(),
+        advice: None,
+    }
+}
+
+/// `part` of `whole`; none where there is nothing.
+fn share(part: f64, whole: f64) -> Option<f64> {
+    (whole != 0.0).then(|| part / whole)
+}
+
+fn mean_luminance(image: &Accumulator) -> f64 {
+    let mean = image.mean();
+    mean.iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / mean.len() as f64
+}
+
+impl StrategyImages {
+    /// The cells of paths of `length` segments, or of longer ones, with their images.
+    fn of(
+        &self,
+        length: Option<u32>,
+    ) -> impl Iterator<Item = (StrategyCell, Option<&crate::render::strategy_images::CellImages>)> {
+        let all = self.table.all().zip(self.images.iter().map(Option::as_ref));
+        all.filter(move |(cell, _)| cell.length() == length)
+    }
+
+    /// Mean luminance of what all strategies bring on paths of `length` segments, or on longer ones.
+    fn luminance_of(&self, length: Option<u32>) -> f64 {
+        self.of(length).filter_map(|(_, images)| Some(mean_luminance(&images?.weighted))).sum()
+    }
+
+    /// The image that they make.
+    fn sum_of(&self, length: Option<u32>) -> Vec<Spectrum> {
+        let mut sum = vec![Spectrum::ZERO; self.whole.len()];
+        for (_, images) in self.of(length) {
+            let mean = images.map_or(Vec::new(), |images| images.weighted.mean());
+            sum.iter_mut().zip(mean).for_each(|(sum, value)| *sum += value);
+        }
+        sum
+    }
+}
+
+/// Which of the two images of a strategy.
+#[derive(Clone, Copy)]
+enum Which {
+    Weighted,
+    Alone,
+}
+
+impl Findings {
+    /// Writes numbers and images into `folder`, which exists; the files.
+    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>> {
+        let file = |name: &str| folder.join(name);
+        let json = serde_json::to_string_pretty(&self.report).unwrap_or_default();
+        let (json_file, csv_file) = (file("strategies.json"), file("strategies.csv"));
+        film::output::write(&json_file, |out| writeln!(out, "{json}"))?;
+        film::output::write(&csv_file, |out| out.write_all(table::csv(&self.report).as_bytes()))?;
+        let mut files = vec![json_file, csv_file];
+        for (which, name) in [(Which::Weighted, "weighted"), (Which::Alone, "unweighted")] {
+            let (exr, png) = (file(&format!("{name}.exr")), file(&format!("{name}.png")));
+            let [width, height] = self.film;
+            film::exr::write(&exr, width, height, self.channels(which), Format::default())?;
+            sheet::write(&png, width, height, &self.rows(which))?;
+            files.extend([exr, png]);
+        }
+        Ok(files)
+    }
+
+    /// The image of a strategy; black where it does not run.
+    fn image(
+        &self,
+        images: Option<&crate::render::strategy_images::CellImages>,
+        which: Which,
+    ) -> Vec<Spectrum> {
+        match (images, which) {
+            (None, _) => vec![Spectrum::ZERO; self.film[0] * self.film[1]],
+            (Some(images), Which::Weighted) => images.weighted.mean(),
+            (Some(images), Which::Alone) => images.alone.mean(),
+        }
+    }
+
+    /// The whole image, and of every strategy a layer.
+    fn channels(&self, which: Which) -> Vec<Channel> {
+        let mut layers = vec![(String::new(), self.parts.whole.mean())];
+        for (cell, images) in self.parts.table.all().zip(&self.parts.images) {
+            if images.is_some() {
+                layers.push((format!("{}.", cell.name()), self.image(images.as_ref(), which)));
+            }
+        }
+        let channel = |(layer, image): &(String, Vec<Spectrum>), at: usize| Channel {
+            name: format!("{layer}{}", ["R", "G", "B"][at]),
+            values: image.iter().map(|pixel| pixel[at]).collect(),
+        };
+        layers.iter().flat_map(|layer| (0..3).map(move |at| channel(layer, at))).collect()
+    }
+
+    fn rows(&self, which: Which) -> Vec<Row> {
+        let row = |report: &RowReport| Row {
+            exposure: report.exposure,
+            images: self.parts.of(report.length).map(|(_, images)| self.image(images, which)).collect(),
+        };
+        self.report.rows.iter().map(row).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_is_left_out_once_and_no_set_comes_twice() {
+        let named = |full: Strategies| -> Vec<String> {
+            subsets(full).into_iter().map(|set| subset(full, set, None).without).collect()
+        };
+        assert_eq!(
+            named(Strategies::BDPT),
+            ["hit", "next-event", "join", "lens", "join,lens", "hit,next-event,join"]
+        );
+        assert_eq!(named(Strategies::PT), ["hit", "next-event"]);
+        assert_eq!(named(Strategies::LT), [""; 0], "nothing is left of it");
+        // What the path tracer leaves out of these is what is left out by one kind already.
+        assert_eq!(
+            named(Strategies::BDPT.without(StrategyKind::Connection)),
+            ["hit", "next-event", "lens", "hit,next-event"]
+        );
+    }
+
+    #[test]
+    fn advice_needs_an_interval_that_lies_above_one() {
+        let one = |kind: StrategyKind, mean: f64, low: f64| {
+            let gain = Interval { mean, low, high: 2.0 * mean };
+            subset(Strategies::BDPT, Strategies::BDPT.without(kind), Some(gain))
+        };
+        let doubtful = one(StrategyKind::Connection, 3.0, 0.9);
+        assert!(advice(std::slice::from_ref(&doubtful)).starts_with("keep all strategies: no set"));
+        assert!(advice(&[]).contains("paths would be missing"));
+        let sure = [doubtful, one(StrategyKind::EmitterHit, 1.1, 1.05), one(StrategyKind::Lens, 1.3, 1.2)];
+        assert_eq!(
+            advice(&sure),
+            "leave out lens: 1.30x [1.20, 2.60] less error x time; --strategies hit,next-event,join"
+        );
+    }
+}

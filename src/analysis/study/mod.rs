@@ -1,0 +1,17 @@
+//! Error against run time: contenders take turns at doubling budgets, against a reference (validation level 6).
+//!
+//! A `question` is what is asked, a `plan` what pilots make of it; `run` does the plan, `unit` by `unit`, and the `store`
+//! keeps what is done, so that a study that was stopped goes on; `summary` and `table` tell what came of it.
+
+pub mod contender;
+pub mod external;
+pub mod outcome;
+pub mod page;
+pub mod plan;
+pub mod question;
+pub mod reference;
+pub mod run;
+pub mod store;
+pub mod summary;
+pub mod table;
+pub mod unit;

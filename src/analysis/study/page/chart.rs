@@ -1,0 +1,194 @@
+//! Error curves on logarithmic scales, as the inside of an SVG element. Colours, strokes and sizes of text are the
+//! page's: everything stands in groups with classes.
+
+use super::{
+    axis::Span,
+    measure::{Axis, Measure},
+};
+use crate::{
+    analysis::study::outcome::SceneOutcome,
+    error::{Error, Result},
+};
+use plotters::{
+    coord::combinators::{LogCoord, WithKeyPoints},
+    prelude::*,
+};
+
+/// Width of the drawing [units of its own].
+pub const WIDTH: u32 = 1600;
+/// Height of the drawing.
+pub const HEIGHT: u32 = 1000;
+/// Room for the numbers at the left and at the bottom.
+const LABELS: [u32; 2] = [130, 64];
+/// Room at the other sides.
+const MARGIN: u32 = 24;
+/// Half the size of a mark.
+const MARK: i32 = 13;
+
+type Coordinate = WithKeyPoints<LogCoord<f64>>;
+type Plane<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Coordinate, Coordinate>>;
+type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
+
+/// Error over an axis, of all contenders of a scene.
+pub struct Chart<'a> {
+    scene: &'a SceneOutcome,
+    measure: &'a Measure,
+    axis: &'a Axis,
+    across: Span,
+    up: Span,
+}
+
+impl<'a> Chart<'a> {
+    /// With scales that hold all of it.
+    pub fn new(scene: &'a SceneOutcome, measure: &'a Measure, axis: &'a Axis) -> Self {
+        let points = || scene.contenders.iter().flat_map(|contender| &contender.points);
+        let across = Span::around(points().map(axis.of));
+        let means: Vec<f64> = points().map(|point| (measure.of)(point).mean).collect();
+        // The ends of wide intervals must not squeeze the curves.
+        let core = Span::around(means.iter().copied());
+        let ends = points().map(measure.of).flat_map(|interval| [interval.low, interval.high]);
+        let ends = ends.filter(|end| core.is_near(*end));
+        let floor = Self::floor_of(scene, measure).filter(|floor| core.is_near(*floor));
+        let up = Span::around(means.iter().copied().chain(ends).chain(floor));
+        Self { scene, measure, axis, across, up }
+    }
+
+    /// What no contender can be seen to fall below: the reference's own error.
+    fn floor_of(scene: &SceneOutcome, measure: &Measure) -> Option<f64> {
+        scene.reference.own_relmse.filter(|own| *own > 0.0 && measure.key == "relmse")
+    }
+
+    /// The inside of the SVG element.
+    pub fn svg(&self) -> Result<String> {
+        let mut parts = vec![group("mesh", &self.layer(|plane| self.draw_mesh(plane))?)];
+        parts.push(group("guide", &self.layer(|plane| self.draw_guide(plane))?));
+        if let Some(floor) = Self::floor_of(self.scene, self.measure) {
+            parts.push(group("floor", &self.layer(|plane| self.draw_level(plane, floor))?));
+        }
+        let all = 0..self.scene.contenders.len();
+        // Below every line, lest one contender's doubt hides another's curve.
+        for series in all.clone() {
+            parts.push(of_series("band", series, &self.layer(|plane| self.draw_band(plane, series))?));
+        }
+        for series in all {
+            let line = group("line", &self.layer(|plane| self.draw_line(plane, series))?);
+            let marks = group("marks", &self.layer(|plane| self.draw_marks(plane, series))?);
+            parts.push(of_series("series", series, &(line + &marks)));
+        }
+        Ok(parts.concat())
+    }
+
+    /// What `draw` draws, without the element around it.
+    fn layer(&self, draw: impl FnOnce(&mut Plane<'_>) -> Drawn) -> Result<String> {
+        let mut text = String::new();
+        let drawn = {
+            let area = SVGBackend::with_string(&mut text, (WIDTH, HEIGHT)).into_drawing_area();
+            ChartBuilder::on(&area)
+                .margin(MARGIN)
+                .margin_bottom(0)
+                .set_label_area_size(LabelAreaPosition::Left, LABELS[0])
+                .set_label_area_size(LabelAreaPosition::Bottom, LABELS[1])
+                .build_cartesian_2d(self.across.coordinate(), self.up.coordinate())
+                .and_then(|mut plane| draw(&mut plane))
+                .and_then(|()| area.present())
+        };
+        drawn.map_err(|error| {
+            Error::new("study.html", "curves that can be drawn", error.to_string(), "report this study.json")
+        })?;
+        let inside = text.split_once('>').and_then(|(_, rest)| rest.rsplit_once("</svg>"));
+        Ok(inside.map_or(String::new(), |(inside, _)| inside.replace('\n', "")))
+    }
+
+    fn draw_mesh(&self, plane: &mut Plane<'_>) -> Drawn {
+        plane
+            .configure_mesh()
+            .bold_line_style(BLACK)
+            .axis_style(BLACK)
+            .label_style(("sans-serif", 32))
+            .x_label_formatter(&|value| self.across.label(*value))
+            .y_label_formatter(&|value| self.up.label(*value))
+            .draw()
+    }
+
+    /// Lines of equal efficiency: an unbiased contender stays on its own, and each is ten times as good as the next.
+    fn draw_guide(&self, plane: &mut Plane<'_>) -> Drawn {
+        for line in self.across.parallels(&self.up, self.measure.slope) {
+            plane.draw_series(LineSeries::new(line, BLACK))?;
+        }
+        Ok(())
+    }
+
+    fn draw_level(&self, plane: &mut Plane<'_>, level: f64) -> Drawn {
+        let y = self.up.clamped(level);
+        let line = [(self.across.low, y), (self.across.high, y)];
+        plane.draw_series(LineSeries::new(line, BLACK)).map(drop)
+    }
+
+    fn draw_band(&self, plane: &mut Plane<'_>, series: usize) -> Drawn {
+        let points = &self.scene.contenders[series].points;
+        let x = |point| self.across.clamped((self.axis.of)(point));
+        let ends = |point| (self.measure.of)(point);
+        let lower = points.iter().map(|point| (x(point), self.up.clamped(ends(point).low)));
+        let upper = points.iter().rev().map(|point| (x(point), self.up.clamped(ends(point).high)));
+        let outline: Vec<(f64, f64)> = lower.chain(upper).collect();
+        // One budget has no area: its interval is a bar.
+        if let [a, b] = outline[..] {
+            return plane.draw_series(LineSeries::new([a, b], BLACK)).map(drop);
+        }
+        plane.draw_series([Polygon::new(outline, BLACK.filled())]).map(drop)
+    }
+
+    fn curve(&self, series: usize) -> Vec<(f64, f64)> {
+        let place = |point| {
+            (self.across.clamped((self.axis.of)(point)), self.up.clamped((self.measure.of)(point).mean))
+        };
+        self.scene.contenders[series].points.iter().map(place).collect()
+    }
+
+    fn draw_line(&self, plane: &mut Plane<'_>, series: usize) -> Drawn {
+        plane.draw_series(LineSeries::new(self.curve(series), BLACK)).map(drop)
+    }
+
+    fn draw_marks(&self, plane: &mut Plane<'_>, series: usize) -> Drawn {
+        let curve = self.curve(series);
+        match outline(series) {
+            None => {
+                plane.draw_series(curve.into_iter().map(|at| Circle::new(at, MARK, BLACK.filled()))).map(drop)
+            }
+            Some(corners) => {
+                let mark = |at| EmptyElement::at(at) + Polygon::new(corners.clone(), BLACK.filled());
+                plane.draw_series(curve.into_iter().map(mark)).map(drop)
+            }
+        }
+    }
+}
+
+fn group(class: &str, inside: &str) -> String {
+    format!("<g class=\"{class}\">{inside}</g>")
+}
+
+/// In a contender's colour, to be hidden with it.
+fn of_series(class: &str, series: usize, inside: &str) -> String {
+    format!("<g class=\"{class} hue{}\" data-series=\"{series}\">{inside}</g>", hue(series))
+}
+
+/// Which of the page's colours a contender has.
+pub fn hue(series: usize) -> usize {
+    series % HUES
+}
+
+/// How many colours the page has.
+const HUES: usize = 7;
+
+/// The corners of a contender's mark around its middle; none for a disc. With the colours of [`hue`], which repeat
+/// earlier than marks do, they tell 35 contenders apart, and the first five in black and white too.
+pub fn outline(series: usize) -> Option<Vec<(i32, i32)>> {
+    let r = MARK;
+    match series % 5 {
+        0 => None,
+        1 => Some(vec![(-r, -r), (r, -r), (r, r), (-r, r)]),
+        2 => Some(vec![(0, -r - 4), (r + 3, r), (-r - 3, r)]),
+        3 => Some(vec![(0, -r - 6), (r + 6, 0), (0, r + 6), (-r - 6, 0)]),
+        _ => Some(vec![(0, r + 4), (r + 3, -r), (-r - 3, -r)]),
+    }
+}

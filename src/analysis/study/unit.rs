@@ -1,0 +1,211 @@
+//! One render of one contender, looked at on its way: all budgets of a seed share their samples.
+
+use super::{
+    contender::{Entry, Renderer},
+    store::Store,
+};
+use crate::{
+    analysis::{
+        metrics::{Measures, measures},
+        picture::Picture,
+        study::outcome::number,
+    },
+    error::Result,
+    film::{Film, format::Format},
+    math::Spectrum,
+    render::{self, Image, Settings, Snapshot, budget::Budget},
+};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// What one seed gave at every budget.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Unit {
+    /// The seed.
+    pub seed: u64,
+    /// Seconds of starting, reading and compiling that are in no point; none if not known.
+    pub load_seconds: Option<f64>,
+    /// The times are those of a whole command, start included.
+    #[serde(default)]
+    pub is_timed_outside: bool,
+    /// By growing budgets.
+    pub points: Vec<Measured>,
+}
+
+/// What one seed gave at one budget; measures as in `outcome.rs`.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Measured {
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Time of rendering [s].
+    pub seconds: f64,
+    /// Mean squared error.
+    #[serde(with = "number")]
+    pub mse: f64,
+    /// Relative mean squared error.
+    #[serde(with = "number")]
+    pub relmse: f64,
+    /// The same, trimmed.
+    #[serde(with = "number")]
+    pub trimmed_relmse: f64,
+    /// Mean absolute relative error.
+    #[serde(with = "number")]
+    pub mape: f64,
+    /// The symmetric one.
+    #[serde(with = "number")]
+    pub smape: f64,
+    /// Mean of the image over that of the reference, less 1.
+    #[serde(with = "number")]
+    pub difference: f64,
+}
+
+impl Measured {
+    fn of(snapshot: &Snapshot, reference: &[Spectrum]) -> Self {
+        let Measures { mse, relmse, trimmed_relmse, mape, smape, difference, .. } =
+            measures(&snapshot.pixels, reference);
+        Self {
+            samples: snapshot.samples_per_pixel,
+            seconds: snapshot.elapsed.as_secs_f64(),
+            mse,
+            relmse,
+            trimmed_relmse,
+            mape,
+            smape,
+            difference,
+        }
+    }
+}
+
+/// Mean over pixels and channels.
+pub fn mean(pixels: &[Spectrum]) -> f64 {
+    let sum: f64 = pixels.iter().flat_map(|pixel| pixel.to_array()).map(f64::from).sum();
+    sum / (3 * pixels.len()).max(1) as f64
+}
+
+/// Where a render's files lie.
+#[derive(Clone, Copy, Debug)]
+pub struct Slot<'a> {
+    /// Scene, as in file names.
+    pub scene: &'a str,
+    /// Contender, as in file names.
+    pub contender: &'a str,
+    /// Its seed.
+    pub seed: u64,
+}
+
+impl Slot<'_> {
+    /// Its numbers.
+    pub fn numbers(&self) -> PathBuf {
+        PathBuf::from(format!("runs/{}/turns/{}/{}.json", self.scene, self.contender, self.seed))
+    }
+
+    /// Its image at the largest budget.
+    pub fn last_image(&self) -> PathBuf {
+        self.numbers().with_extension("exr")
+    }
+
+    /// The image to be shown of budget `index`, kept of the first seed only.
+    pub fn shown_image(&self, index: usize) -> PathBuf {
+        PathBuf::from(format!("images/{}/{}/{index}.exr", self.scene, self.contender))
+    }
+}
+
+/// Renders `entry` with `seed` up to the last of `marks`, and shows it at each. `notify` hears what share is
+/// done. What is known of the times, without any points.
+pub fn shoot(
+    entry: &Entry,
+    seed: u64,
+    marks: &[u64],
+    notify: &mut dyn FnMut(f64),
+    show: &mut dyn FnMut(Snapshot),
+) -> Result<Unit> {
+    let unit = |load_seconds| Unit { seed, load_seconds, is_timed_outside: false, points: Vec::new() };
+    match &entry.renderer {
+        Renderer::Own { settings, load_seconds } => {
+            let last = marks.last().copied().unwrap_or(1);
+            let settings = settled(settings, seed, Budget { samples_per_pixel: Some(last), time: None });
+            let film = plain_film(entry);
+            let all = last as f64 * film.len() as f64;
+            let progress = &mut |progress: render::Progress| notify(progress.samples as f64 / all);
+            render::render_in_steps(&entry.setup.scene, &film, &settings, marks, progress, show);
+            Ok(unit(Some(*load_seconds)))
+        }
+        Renderer::External(external) => {
+            let rendered = external.render(seed, marks)?;
+            rendered.snapshots.into_iter().for_each(show);
+            Ok(Unit { is_timed_outside: rendered.is_timed_outside, ..unit(rendered.load_seconds) })
+        }
+    }
+}
+
+/// An image of this program's, with what it says of its own noise; none of other renderers.
+pub fn pilot(entry: &Entry, seed: u64, budget: Budget) -> Option<Image> {
+    let Renderer::Own { settings, .. } = &entry.renderer else { return None };
+    let settings = settled(settings, seed, budget);
+    Some(render::render(&entry.setup.scene, &plain_film(entry), &settings, &mut |_| {}))
+}
+
+fn settled(settings: &Settings, seed: u64, budget: Budget) -> Settings {
+    let mut settings = *settings;
+    settings.seed = seed;
+    settings.budget = budget;
+    settings
+}
+
+/// The film without alpha, which would cost rays that no measure looks at.
+fn plain_film(entry: &Entry) -> Film {
+    let mut film = entry.setup.film.clone();
+    film.format = Format::default();
+    film
+}
+
+/// Renders a unit and stores it; images of all budgets only if they are to be `shown`.
+pub fn run(
+    store: &Store,
+    slot: Slot<'_>,
+    entry: &Entry,
+    marks: &[u64],
+    reference: &Picture,
+    shown: bool,
+    notify: &mut dyn FnMut(f64),
+) -> Result<()> {
+    let (mut points, mut snapshots) = (Vec::new(), Vec::new());
+    let unit = shoot(entry, slot.seed, marks, notify, &mut |snapshot| {
+        points.push(Measured::of(&snapshot, &reference.pixels));
+        if !shown {
+            snapshots.clear();
+        }
+        snapshots.push(Picture { pixels: snapshot.pixels, ..*reference });
+    })?;
+    if shown {
+        for (index, image) in snapshots.iter().enumerate() {
+            store.write_image(slot.shown_image(index), image)?;
+        }
+    }
+    if let Some(last) = snapshots.last() {
+        store.write_image(slot.last_image(), last)?;
+    }
+    store.write_json(slot.numbers(), &Unit { points, ..unit })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn the_difference_is_that_of_means() {
+        let snapshot = |value| Snapshot {
+            pixels: vec![Spectrum::splat(value), Spectrum::ZERO],
+            samples_per_pixel: 3,
+            elapsed: Duration::from_millis(250),
+        };
+        let found = Measured::of(&snapshot(1.5), &[Spectrum::ONE, Spectrum::ZERO]);
+        assert_eq!((found.samples, found.seconds, found.difference), (3, 0.25, 0.5));
+        assert_eq!(Measured::of(&snapshot(0.0), &[Spectrum::ZERO; 2]).difference, 0.0);
+        let broken = Measured::of(&snapshot(f32::NAN), &[Spectrum::ONE; 2]);
+        assert!(broken.relmse.is_nan() && broken.difference.is_nan());
+        let text = serde_json::to_string(&broken).unwrap();
+        assert!(serde_json::from_str::<Measured>(&text).unwrap().mse.is_nan());
+    }
+}

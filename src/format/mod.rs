@@ -1,0 +1,18 @@
+//! Scene files: every reader and writer of them. JSON and Mitsuba's XML are two spellings of one description.
+
+mod files;
+mod json;
+mod origins;
+mod parameters;
+pub mod plugins;
+mod read;
+pub mod references;
+mod steps;
+pub mod tags;
+mod text;
+mod write;
+mod xml;
+
+pub use files::{Sources, sources};
+pub use read::{Spelling, read};
+pub use write::{Conversion, Naming, convert, write};

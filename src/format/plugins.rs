@@ -1,0 +1,115 @@
+//! Is every plugin of a scene one, and of the kind that its tag or place says? Asked before anything is built, so
+//! that a misspelt name is told as that, with the nearest right one.
+
+use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours, whole_of};
+use crate::{
+    description::{Object, Position, Value, suggest},
+    error::{Error, Result},
+};
+
+/// Every plugin in `root` must be one, and of the kind that its tag says. What is known but of no use where it
+/// stands is for builders to tell.
+pub(crate) fn check(root: &Object) -> Result<()> {
+    check_below(root, "scene")
+}
+
+fn check_below(object: &Object, tag: &str) -> Result<()> {
+    for property in &object.properties {
+        let Value::Object(child) = &property.value else { continue };
+        let derived = || derive(&child.plugin, &property.name, tag);
+        let Some(child_tag) = child.tag.as_deref().or_else(derived) else {
+            // Elsewhere builders know better what can stand there.
+            match tag {
+                "shape" | "sensor" | "film" | "bsdf" | "integrator" => return Err(unknown_in(child, tag)),
+                _ => continue,
+            }
+        };
+        match whole_of(&child.plugin) {
+            Some(whole) if whole == object.plugin && child_tag == "volume" => {}
+            Some(whole) => return Err(astray(child, whole)),
+            None => check_tag(child, child_tag)?,
+        }
+        check_below(child, child_tag)?;
+    }
+    Ok(())
+}
+
+fn check_tag(object: &Object, tag: &str) -> Result<()> {
+    let (tags, ours) = (of_plugin(&object.plugin), ours(tag));
+    if ours.contains(&object.plugin.as_str()) || (ours.is_empty() && tags.contains(&tag)) {
+        return Ok(());
+    }
+    let known = if ours.is_empty() { renderable(tag).to_vec() } else { ours };
+    if tags.contains(&tag) {
+        let found = format!("\"{}\", which only Mitsuba has", object.plugin);
+        let remedy = format!("replace it; Tyndall has: {}", known.join(", "));
+        return Err(Error::new(&object.location, format!("{} of Tyndall", kind(tag)), found, remedy));
+    }
+    match tags.first() {
+        None => Err(unknown(object, Some(tag), &known)),
+        Some(right) => {
+            let found = format!("\"{}\", which is {}", object.plugin, kind(right));
+            let remedy = match object.location.position {
+                Position::Text { .. } => {
+                    format!("write <{right} type=\"{}\">, or name {}", object.plugin, kind(tag))
+                }
+                Position::Path(_) => format!("correct \"$tag\", or name {}", kind(tag)),
+            };
+            Err(Error::new(&object.location, format!("the type of {}", kind(tag)), found, remedy))
+        }
+    }
+}
+
+/// The error for a part that stands elsewhere than in its `whole`.
+fn astray(part: &Object, whole: &str) -> Error {
+    let remedy = format!("put it into a {whole}");
+    Error::new(&part.location, format!("a {} in a {whole}", part.plugin), "it elsewhere", remedy)
+}
+
+fn unknown(object: &Object, tag: Option<&str>, known: &[&str]) -> Error {
+    let expected = tag.map_or("the type of a plugin".into(), |tag| format!("the type of {}", kind(tag)));
+    let found = format!("\"{}\"", object.plugin);
+    Error::new(&object.location, expected, found, suggest(&object.plugin, "known", known))
+}
+
+/// What can be rendered of the kinds that have no registry.
+fn renderable(tag: &str) -> &'static [&'static str] {
+    match tag {
+        "film" => &["hdrfilm"],
+        _ => MITSUBA.iter().find(|(known, _)| *known == tag).map_or(&[], |(_, plugins)| plugins),
+    }
+}
+
+/// A tag as a sentence needs it.
+pub(crate) fn kind(tag: &str) -> &str {
+    match tag {
+        "integrator" => "an integrator",
+        "sensor" => "a sensor",
+        "film" => "a film",
+        "sampler" => "a sampler",
+        "rfilter" => "a reconstruction filter",
+        "shape" => "a shape",
+        "bsdf" => "a bsdf",
+        "texture" => "a texture",
+        "emitter" => "an emitter",
+        "medium" => "a medium",
+        "phase" => "a phase function",
+        "volume" => "a volume",
+        other => other,
+    }
+}
+
+/// The error for a plugin in a `parent` that nobody knows.
+pub(crate) fn unknown_in(object: &Object, parent: &str) -> Error {
+    unknown(object, None, &known_in(parent))
+}
+
+/// All plugins that may stand in a `parent`.
+fn known_in(parent: &str) -> Vec<&'static str> {
+    let inside = INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[][..], |(_, tags)| tags);
+    let known = |tag: &&'static str| match ours(tag) {
+        ours if ours.is_empty() => renderable(tag).to_vec(),
+        ours => ours,
+    };
+    inside.iter().flat_map(known).collect()
+}

@@ -1,0 +1,221 @@
+//! Which XML tag a plugin goes with. XML always says; JSON leaves it to the plugin's name and place.
+
+use crate::{
+    bsdf, emitter,
+    film::filter,
+    medium, phase, sensor,
+    settings::{integrator, sampler},
+    shape, texture, volume,
+};
+
+/// Tags of plugins.
+pub(crate) const TAGS: [&str; 13] = [
+    "scene",
+    "integrator",
+    "sensor",
+    "film",
+    "sampler",
+    "rfilter",
+    "shape",
+    "bsdf",
+    "texture",
+    "emitter",
+    "medium",
+    "phase",
+    "volume",
+];
+
+/// Plugins of Mitsuba 3.9.1, so that scenes which Tyndall cannot render yet can still be converted.
+pub(crate) const MITSUBA: [(&str, &[&str]); 12] = [
+    (
+        "integrator",
+        &["aov", "depth", "direct", "moment", "path", "ptracer", "stokes", "volpath", "volpathmis"],
+    ),
+    (
+        "sensor",
+        &["batch", "distant", "irradiancemeter", "orthographic", "perspective", "radiancemeter", "thinlens"],
+    ),
+    ("film", &["hdrfilm", "specfilm"]),
+    ("sampler", &["independent", "ldsampler", "multijitter", "orthogonal", "stratified"]),
+    ("rfilter", &["box", "catmullrom", "gaussian", "lanczos", "mitchell", "tent"]),
+    (
+        "shape",
+        &[
+            "blender",
+            "bsplinecurve",
+            "cube",
+            "cylinder",
+            "disk",
+            "ellipsoids",
+            "ellipsoidsmesh",
+            "instance",
+            "linearcurve",
+            "merge",
+            "obj",
+            "ply",
+            "rectangle",
+            "sdfgrid",
+            "serialized",
+            "shapegroup",
+            "sphere",
+        ],
+    ),
+    (
+        "bsdf",
+        &[
+            "blendbsdf",
+            "bumpmap",
+            "circular",
+            "conductor",
+            "dielectric",
+            "diffuse",
+            "hair",
+            "mask",
+            "measured",
+            "measured_polarized",
+            "normalmap",
+            "null",
+            "plastic",
+            "polarizer",
+            "pplastic",
+            "principled",
+            "principledthin",
+            "retarder",
+            "roughconductor",
+            "roughdielectric",
+            "roughplastic",
+            "thindielectric",
+            "twosided",
+        ],
+    ),
+    (
+        "texture",
+        &[
+            "bitmap",
+            "blackbody",
+            "checkerboard",
+            "d65",
+            "irregular",
+            "mesh_attribute",
+            "rawconstant",
+            "regular",
+            "srgb",
+            "uniform",
+            "volume",
+        ],
+    ),
+    (
+        "emitter",
+        &[
+            "area",
+            "constant",
+            "directional",
+            "directionalarea",
+            "envmap",
+            "point",
+            "projector",
+            "spot",
+            "sunsky",
+            "timed_sunsky",
+        ],
+    ),
+    ("medium", &["heterogeneous", "homogeneous"]),
+    ("phase", &["blendphase", "hg", "isotropic", "rayleigh", "sggx", "tabphase"]),
+    ("volume", &["constvolume", "gridvolume"]),
+];
+
+/// Which tags may stand in which.
+pub(crate) const INSIDE: [(&str, &[&str]); 13] = [
+    ("scene", &["integrator", "sensor", "shape", "bsdf", "texture", "emitter", "medium", "phase", "volume"]),
+    ("integrator", &["integrator"]),
+    ("sensor", &["film", "sampler", "medium", "texture"]),
+    ("film", &["rfilter", "texture"]),
+    ("sampler", &[]),
+    ("rfilter", &[]),
+    ("shape", &["bsdf", "emitter", "sensor", "medium", "shape", "volume", "texture"]),
+    ("bsdf", &["bsdf", "texture"]),
+    ("texture", &["texture", "volume"]),
+    ("emitter", &["texture", "medium"]),
+    ("medium", &["phase", "volume"]),
+    ("phase", &["phase", "volume", "texture"]),
+    ("volume", &["volume", "texture"]),
+];
+
+/// Plugins that Tyndall itself builds under `tag`; none where there is no registry of them.
+pub(crate) fn ours(tag: &str) -> Vec<&'static str> {
+    match tag {
+        "sensor" => sensor::ROWS.names(),
+        "integrator" => integrator::ROWS.names(),
+        "sampler" => sampler::ROWS.names(),
+        "rfilter" => filter::ROWS.names(),
+        "shape" => shape::ROWS.names(),
+        "bsdf" => bsdf::ROWS.names(),
+        "texture" => texture::ROWS.names(),
+        "emitter" => emitter::ROWS.names(),
+        "medium" => medium::ROWS.names(),
+        "phase" => phase::ROWS.names(),
+        "volume" => volume::ROWS.names(),
+        _ => Vec::new(),
+    }
+}
+
+/// The plugin that `plugin` is a part of; none where it stands for itself.
+pub(crate) fn whole_of(plugin: &str) -> Option<&'static str> {
+    volume::PARTS.iter().find(|(part, _)| *part == plugin).map(|(_, whole)| *whole)
+}
+
+/// All tags under which there is a plugin called `plugin`.
+pub(crate) fn of_plugin(plugin: &str) -> Vec<&'static str> {
+    if whole_of(plugin).is_some() {
+        return vec!["volume"];
+    }
+    let known =
+        |(tag, plugins): &(&'static str, &[&str])| plugins.contains(&plugin) || ours(tag).contains(&plugin);
+    MITSUBA.iter().filter(|row| known(row)).map(|(tag, _)| *tag).collect()
+}
+
+/// The tag of a plugin called `plugin` that stands as `name` in a `parent`; none if that does not tell.
+pub(crate) fn derive(plugin: &str, name: &str, parent: &str) -> Option<&'static str> {
+    let inside = INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[][..], |(_, tags)| tags);
+    let by_plugin = of_plugin(plugin);
+    if let [only] = by_plugin.as_slice() {
+        return Some(only);
+    }
+    let candidates = if by_plugin.is_empty() { inside.to_vec() } else { by_plugin };
+    let fitting: Vec<_> = candidates.into_iter().filter(|tag| inside.contains(tag)).collect();
+    let named = fitting.iter().find(|tag| **tag == by_name(name));
+    named.or(if let [only] = fitting.as_slice() { Some(only) } else { None }).copied()
+}
+
+/// The tag that a name stands for: itself, with or without a number, or the parameter that it is.
+fn by_name(name: &str) -> &str {
+    match name {
+        "interior" | "exterior" => "medium",
+        "sigma_t" | "albedo" => "volume",
+        _ => name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_'),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_place_decides_where_the_name_does_not() {
+        assert_eq!(derive("sphere", "a", "scene"), Some("shape"));
+        assert_eq!(derive("tent", "filter", "film"), Some("rfilter"));
+        assert_eq!(derive("clay", "bsdf_2", "scene"), Some("bsdf"));
+        assert_eq!(derive("clay", "wall", "scene"), None);
+        assert_eq!(derive("smoke", "interior", "shape"), Some("medium"));
+        assert_eq!(derive("turbulence", "sigma_t", "medium"), Some("volume"));
+        assert_eq!(derive("odd", "film", "shape"), None);
+    }
+
+    #[test]
+    fn every_tag_is_in_both_tables() {
+        for tag in TAGS {
+            assert!(tag == "scene" || MITSUBA.iter().any(|(known, _)| *known == tag), "{tag}");
+            assert!(INSIDE.iter().any(|(known, _)| *known == tag), "{tag}");
+        }
+    }
+}

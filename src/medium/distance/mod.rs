@@ -1,0 +1,230 @@
+//! How flights are sampled and optical depths found in a varying medium: one file a method (transport.md, Media).
+
+mod choose;
+mod closed_form;
+mod null_collision;
+mod ray_marching;
+mod regular_tracking;
+#[cfg(test)]
+mod tests;
+
+pub use choose::choose;
+pub use ray_marching::RayMarching;
+
+use super::Extinction;
+use crate::{
+    math::{Channels, RaySegment, Spectrum},
+    sampling::Stream,
+    volume::{Coarse, Volume, VolumeModel},
+};
+
+/// A distance sampled along a segment: where it ended in a collision, or that it passed.
+#[derive(Clone, Copy, Debug)]
+pub struct DistanceSample<L> {
+    /// Where it collided [m]; none where it passed the segment.
+    pub collision: Option<f32>,
+    /// Deterministic optical depth up to there: what the weights know (the stand-in where transmittance is random).
+    pub depth: L,
+    /// Transmittance of every channel over the hero's, and the hero's sigma_t over that by which the collision was
+    /// sampled, were it only in the mean: with sigma_t at the collision over the hero's, the factor of the throughput.
+    pub ratio: L,
+    /// What of the hero's optical depth that was to go is used up.
+    pub spent: f32,
+}
+
+/// A method, forced by name or chosen by cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DistanceMethod {
+    /// The cheapest of those that are unbiased.
+    Auto,
+    /// Closed-form optical depth, inverted by a bracketed Newton step.
+    ClosedForm,
+    /// Exact depth of a grid's interpolant, cell by cell.
+    RegularTracking,
+    /// Ray marching (LW96 sec. 5).
+    RayMarching,
+    /// Delta tracking for distances, ratio tracking for transmittance, by local majorants.
+    DeltaTracking,
+}
+
+impl DistanceMethod {
+    /// As printed and as typed.
+    pub const NAMES: [(&'static str, Self); 5] = [
+        ("auto", Self::Auto),
+        ("closed_form", Self::ClosedForm),
+        ("exact", Self::RegularTracking),
+        ("march", Self::RayMarching),
+        ("null_collision", Self::DeltaTracking),
+    ];
+
+    /// As printed and as typed.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, choice)| *choice == self).map_or("", |(name, _)| name)
+    }
+
+    /// True if the method works for `volume`.
+    pub fn applies_to(self, volume: &Volume) -> bool {
+        match self {
+            Self::Auto | Self::RayMarching | Self::DeltaTracking => true,
+            Self::ClosedForm => volume.has_integral() && volume.grid().is_none(),
+            Self::RegularTracking => volume.grid().is_some(),
+        }
+    }
+}
+
+/// A method at work.
+#[derive(Clone, Debug)]
+pub enum DistanceSampler {
+    /// See [`DistanceMethod::ClosedForm`].
+    ClosedForm,
+    /// See [`DistanceMethod::RegularTracking`].
+    RegularTracking,
+    /// See [`DistanceMethod::RayMarching`].
+    RayMarching(RayMarching),
+    /// See [`DistanceMethod::DeltaTracking`].
+    DeltaTracking(Box<Coarse>),
+}
+
+impl DistanceSampler {
+    /// Deterministic optical depth per channel, the same from either end.
+    #[inline]
+    pub fn depth<L: Channels>(&self, medium: &Extinction, segment: &RaySegment) -> L {
+        match self {
+            Self::ClosedForm => closed_form::depth(medium, segment),
+            Self::RegularTracking => regular_tracking::depth(medium, segment),
+            Self::RayMarching(march) => march.depth(medium, segment),
+            Self::DeltaTracking(coarse) => null_collision::stand_in(medium, coarse, segment),
+        }
+    }
+
+    /// What of radiance remains along `segment`, whose [`Self::depth`] is `depth`: exp(-depth), or an unbiased random
+    /// estimate of what it really is.
+    #[inline]
+    pub fn transmittance<L: Channels>(
+        &self,
+        medium: &Extinction,
+        segment: &RaySegment,
+        depth: L,
+        stream: &mut Stream,
+    ) -> L {
+        match self {
+            Self::DeltaTracking(coarse) => null_collision::transmittance(medium, coarse, segment, stream),
+            _ => depth.exp_neg(),
+        }
+    }
+
+    /// Transmittance of every channel over the hero's along `segment`, whose [`Self::depth`] is `depth`, or an
+    /// unbiased random estimate of that.
+    #[inline]
+    pub fn ratio<L: Channels>(
+        &self,
+        medium: &Extinction,
+        segment: &RaySegment,
+        depth: L,
+        hero: usize,
+        stream: &mut Stream,
+    ) -> L {
+        match self {
+            Self::DeltaTracking(coarse) => {
+                null_collision::transmittance_ratio(medium, coarse, segment, hero, stream)
+            }
+            _ => depth.flight_ratio(L::splat(1.0), hero),
+        }
+    }
+
+    /// Flies along `segment` until the `hero` channel's optical depth is `remaining` (an exponential variate; random
+    /// methods draw their own).
+    #[inline]
+    pub fn sample_distance<L: Channels>(
+        &self,
+        medium: &Extinction,
+        segment: &RaySegment,
+        hero: usize,
+        remaining: f32,
+        stream: &mut Stream,
+    ) -> DistanceSample<L> {
+        match self {
+            Self::ClosedForm => closed_form::sample_distance(medium, segment, hero, remaining),
+            Self::RegularTracking => regular_tracking::sample_distance(medium, segment, hero, remaining),
+            Self::RayMarching(march) => march.sample_distance(medium, segment, hero, remaining),
+            Self::DeltaTracking(coarse) => {
+                null_collision::sample_distance(medium, coarse, segment, hero, stream)
+            }
+        }
+    }
+
+    /// The optical depth along `segment`, whose [`Self::depth`] is `depth`, by which forced collisions are drawn: the
+    /// `hero` channel's, or what stands in for it where it is not known.
+    pub fn forced_depth<L: Channels>(
+        &self,
+        medium: &Extinction,
+        segment: &RaySegment,
+        depth: L,
+        hero: usize,
+    ) -> f32 {
+        match self {
+            Self::DeltaTracking(coarse) => null_collision::forced_depth::<L>(medium, coarse, segment, hero),
+            _ => depth.hero(hero),
+        }
+    }
+
+    /// A collision of the `hero` channel in `segment` where its [`Self::forced_depth`] is `remaining`; none where
+    /// there is nothing to collide with. DistanceSample's ratio is that of the contribution to a density of
+    /// exp(-`remaining`) times the hero's sigma_t.
+    pub fn force<L: Channels>(
+        &self,
+        medium: &Extinction,
+        segment: &RaySegment,
+        hero: usize,
+        remaining: f32,
+        stream: &mut Stream,
+    ) -> Option<DistanceSample<L>> {
+        match self {
+            Self::DeltaTracking(coarse) => {
+                null_collision::force(medium, coarse, segment, hero, remaining, stream)
+            }
+            _ => Some(self.sample_distance(medium, segment, hero, remaining, stream)),
+        }
+        .filter(|sample| sample.collision.is_some())
+    }
+
+    /// Which method it is.
+    pub fn choice(&self) -> DistanceMethod {
+        match self {
+            Self::ClosedForm => DistanceMethod::ClosedForm,
+            Self::RegularTracking => DistanceMethod::RegularTracking,
+            Self::RayMarching(_) => DistanceMethod::RayMarching,
+            Self::DeltaTracking(_) => DistanceMethod::DeltaTracking,
+        }
+    }
+}
+
+impl<L: Channels> DistanceSample<L> {
+    /// A sample of a method that knows depths exactly.
+    #[inline]
+    pub(super) fn exact(collision: Option<f32>, depth: L, hero: usize) -> Self {
+        Self { collision, depth, ratio: depth.flight_ratio(L::splat(1.0), hero), spent: depth.hero(hero) }
+    }
+
+    /// A segment in which there is nothing.
+    #[inline]
+    fn empty() -> Self {
+        Self { collision: None, depth: L::splat(0.0), ratio: L::splat(1.0), spent: 0.0 }
+    }
+}
+
+/// Optical depth along `segment`, to be seen and not to be measured: never random.
+pub fn quick_depth<L: Channels>(tracker: &DistanceSampler, medium: &Extinction, segment: &RaySegment) -> L {
+    match tracker {
+        DistanceSampler::DeltaTracking(_) if medium.volume.has_integral() => {
+            closed_form::depth(medium, segment)
+        }
+        tracker => tracker.depth(medium, segment),
+    }
+}
+
+/// sigma_t of every channel over the hero's, where a collision of the hero happened: its own is not 0.
+#[inline]
+pub fn collision_ratio<L: Channels>(sigma_t: Spectrum, hero: usize) -> L {
+    L::splat(0.0).flight_ratio(L::from_spectrum(sigma_t), hero)
+}

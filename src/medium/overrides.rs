@@ -1,0 +1,16 @@
+//! What an integrator or the command line asks of all media of a scene, whatever their descriptions say.
+
+use super::DistanceMethod;
+
+/// How the media of a scene are to be taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MediumOverrides {
+    /// The tracker of those that vary, in place of their own choice.
+    pub tracker: Option<DistanceMethod>,
+    /// The longest interval of ray marching [m], in place of their own.
+    pub step: Option<f64>,
+    /// The error of transmittance that ray marching may make, in place of their own steps and errors.
+    pub march_error: Option<f64>,
+    /// They absorb as before but do not scatter: sigma_t becomes sigma_a (P03T eq. 2.9).
+    pub absorbing: bool,
+}

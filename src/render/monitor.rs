@@ -1,0 +1,88 @@
+//! Who watches a render: told how far it is, and shown the image at wanted marks.
+
+use super::Progress;
+use crate::math::Spectrum;
+use std::time::{Duration, Instant};
+
+/// The image as it is on its way.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// Row-major radiance, top row first: what a render of so many samples would have been, bit for bit.
+    pub pixels: Vec<Spectrum>,
+    /// Samples per pixel.
+    pub samples_per_pixel: u64,
+    /// Time spent on them, pilot walks included; what earlier snapshots took is not.
+    pub elapsed: Duration,
+}
+
+/// Marks at which the image is wanted, and who gets to know.
+pub(super) struct Monitor<'a> {
+    /// Told now and then.
+    pub progress: &'a mut dyn FnMut(Progress),
+    /// Samples per pixel, in growing order.
+    pub marks: &'a [u64],
+    /// Shown the image at every mark.
+    pub show: &'a mut dyn FnMut(Snapshot),
+}
+
+impl Monitor<'_> {
+    /// `wanted` tasks (blocks of `per_pass` each pass), cut at the next mark after `done` passes: the time of a mark
+    /// must not hold work beyond it.
+    pub fn limit_tasks(&self, wanted: usize, done: u64, per_pass: usize) -> usize {
+        let next = self.marks.iter().find(|mark| **mark > done);
+        next.map_or(wanted, |mark| wanted.min((*mark as usize).saturating_mul(per_pass)))
+    }
+
+    /// True if the image is wanted after `passes`.
+    pub fn is_mark(&self, passes: u64) -> bool {
+        self.marks.contains(&passes)
+    }
+}
+
+/// A clock that can be held.
+pub(super) struct Stopwatch {
+    started: Instant,
+    held: Duration,
+}
+
+impl Stopwatch {
+    /// Starts now.
+    pub fn start() -> Self {
+        Self { started: Instant::now(), held: Duration::ZERO }
+    }
+
+    /// Time since the start, less that of what did not count.
+    pub fn elapsed(&self) -> Duration {
+        self.started.elapsed().saturating_sub(self.held)
+    }
+
+    /// Does something whose time does not count.
+    pub fn hold(&mut self, work: impl FnOnce()) {
+        let started = Instant::now();
+        work();
+        self.held += started.elapsed();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_ends_at_every_mark() {
+        let marks = [1, 4];
+        let monitor = Monitor { progress: &mut |_| {}, marks: &marks, show: &mut |_| {} };
+        assert_eq!(monitor.limit_tasks(64, 0, 10), 10);
+        assert_eq!(monitor.limit_tasks(7, 0, 10), 7);
+        assert_eq!(monitor.limit_tasks(74, 1, 10), 40);
+        assert_eq!(monitor.limit_tasks(104, 4, 10), 104, "no mark is left");
+        assert!(monitor.is_mark(4) && !monitor.is_mark(2));
+    }
+
+    #[test]
+    fn a_held_clock_stands() {
+        let mut stopwatch = Stopwatch::start();
+        stopwatch.hold(|| std::thread::sleep(Duration::from_millis(200)));
+        assert!(stopwatch.elapsed() < Duration::from_millis(150), "{:?}", stopwatch.elapsed());
+    }
+}

@@ -1,0 +1,40 @@
+//! Recorders that are chosen at run time: instruments need not be fast, and share one compiled estimator.
+
+use crate::{
+    math::Vec2,
+    scene::lights::EmissionSample,
+    transport::{
+        Contribution, Departure, MisSums, Subpath, Vertex,
+        observer::{Meeting, Observer},
+    },
+};
+
+impl<S: MisSums> Observer<S> for &mut (dyn Observer<S> + '_) {
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
+        (**self).contribute(s, t, meeting, contribution);
+    }
+    fn covers(&self, film: Vec2) -> bool {
+        (**self).covers(film)
+    }
+    fn start(&mut self) {
+        (**self).start();
+    }
+    fn stop(&mut self, s: u32, t: u32) {
+        (**self).stop(s, t);
+    }
+    fn emit(&mut self, start: &EmissionSample) {
+        (**self).emit(start);
+    }
+    fn depart(&mut self, departure: &Departure<S>) {
+        (**self).depart(departure);
+    }
+    fn arrive(&mut self, vertex: &Vertex<S>) {
+        (**self).arrive(vertex);
+    }
+    fn escape(&mut self, subpath: &Subpath<S>) {
+        (**self).escape(subpath);
+    }
+    fn keep(&mut self) {
+        (**self).keep();
+    }
+}

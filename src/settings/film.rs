@@ -1,0 +1,146 @@
+//! The film as a scene describes it: Mitsuba's `hdrfilm`.
+
+use crate::{
+    description::{Library, Object, Params, params::Child},
+    error::{Error, Result},
+    film::{
+        Film, Window,
+        filter::{self, Filter},
+        format::{COMPONENT_FORMATS, FILE_FORMATS, Format, PIXEL_FORMATS},
+    },
+    settings::{Overrides, only_one},
+};
+
+/// The size of a film that says nothing [pixels].
+const DEFAULT_SIZE: [u32; 2] = [768, 576];
+/// A larger image would take more than 10 GB while it is rendered.
+const MOST_PIXELS: u64 = 1 << 28;
+const DEFAULT_FILTER: Filter = Filter::Gaussian { stddev: 0.5 };
+
+/// True if `child` is meant to be a film.
+pub fn is_film(child: &Child<'_>) -> bool {
+    let plugin = child.object.plugin.as_str();
+    child.object.tag.as_deref() == Some("film") || child.name == "film" || plugin == "hdrfilm"
+}
+
+/// The film of a sensor that has none.
+pub fn default(overrides: Overrides) -> Film {
+    let [width, height] = overrides.size.map_or(DEFAULT_SIZE, |(width, height)| [width, height]);
+    Film::new(Window::whole(width, height), DEFAULT_FILTER, false, Format::default())
+}
+
+/// Builds the film that `object` describes.
+pub fn build(object: &Object, library: &Library, overrides: Overrides) -> Result<Film> {
+    if object.plugin != "hdrfilm" {
+        let remedy = match object.plugin.as_str() {
+            "specfilm" => {
+                "light is carried as linear sRGB, so spectral bands cannot be told apart: use hdrfilm"
+            }
+            _ => "use hdrfilm",
+        };
+        let found = format!("\"{}\"", object.plugin);
+        return Err(Error::new(&object.location, "the film \"hdrfilm\"", found, remedy));
+    }
+    let params = Params::new(object, library);
+    let window = window(&params, overrides)?;
+    let filter = rfilter(&params)?;
+    let sample_border = params.boolean("sample_border", false)?;
+    let format = format(&params)?;
+    params.accept_unused(&["banner", "compensate"], "Mitsuba 3 does not use it either");
+    params.finish()?;
+    Ok(Film::new(window, filter, sample_border, format))
+}
+
+fn window(params: &Params<'_>, overrides: Overrides) -> Result<Window> {
+    let [width, height] = DEFAULT_SIZE;
+    let full_size = [size(params, "width", width)?, size(params, "height", height)?];
+    let offset = [edge(params, "crop_offset_x")?, edge(params, "crop_offset_y")?];
+    let crop = [size(params, "crop_width", full_size[0])?, size(params, "crop_height", full_size[1])?];
+    for (axis, names) in
+        [["crop_offset_x", "crop_width"], ["crop_offset_y", "crop_height"]].iter().enumerate()
+    {
+        if offset[axis] + crop[axis] > full_size[axis] {
+            let name = names.iter().find(|name| params.has(name)).unwrap_or(&names[0]);
+            let found = format!("{} and {} pixels from there", offset[axis], crop[axis]);
+            let expected = format!("a crop window inside the film's {} pixels", full_size[axis]);
+            return Err(params.complain(name, expected, found));
+        }
+    }
+    let window = Window { full_size, offset, size: crop };
+    let [across, down] = overrides.size.map_or(crop, |(width, height)| [width, height]).map(u64::from);
+    if across * down > MOST_PIXELS {
+        let found = format!("{across} x {down}");
+        let remedy = "render it in several crop windows, or smaller";
+        return Err(Error::new(
+            params.location(),
+            format!("an image of at most {MOST_PIXELS} pixels"),
+            found,
+            remedy,
+        ));
+    }
+    match overrides.size {
+        None => Ok(window),
+        Some((width, height)) if window.is_whole() => Ok(Window::whole(width, height)),
+        Some(_) => Err(Error::new(
+            "--size",
+            "a film without a crop window",
+            format!("a window of {} x {} pixels of the film at {}", crop[0], crop[1], params.location()),
+            "leave --size out, or remove the crop window from the scene",
+        )),
+    }
+}
+
+fn size(params: &Params<'_>, name: &'static str, default: u32) -> Result<u32> {
+    pixels(params, name, default, 1)
+}
+
+fn edge(params: &Params<'_>, name: &'static str) -> Result<u32> {
+    pixels(params, name, 0, 0)
+}
+
+fn pixels(params: &Params<'_>, name: &'static str, default: u32, least: i64) -> Result<u32> {
+    let value = params.integer(name, i64::from(default))?;
+    if (least..=65_536).contains(&value) {
+        return Ok(value as u32);
+    }
+    Err(params.complain(name, format!("an integer from {least} to 65536"), value.to_string()))
+}
+
+fn rfilter(params: &Params<'_>) -> Result<Filter> {
+    let is_filter = |child: &Child<'_>| {
+        child.name == "rfilter"
+            || child.object.tag.as_deref() == Some("rfilter")
+            || filter::ROWS.has(child.object)
+    };
+    match params.children(is_filter)?.as_slice() {
+        [] => Ok(DEFAULT_FILTER),
+        [one] => filter::ROWS.build(one.object, params.library),
+        [_, second, ..] => Err(only_one(second, "rfilter")),
+    }
+}
+
+fn format(params: &Params<'_>) -> Result<Format> {
+    let all = Format::default();
+    let (colours, alpha) = choice(params, "pixel_format", (all.colours, all.alpha), PIXEL_FORMATS)?;
+    let component = choice(params, "component_format", all.component, COMPONENT_FORMATS)?;
+    let file = choice(params, "file_format", all.file, FILE_FORMATS)?;
+    let requested = Format { colours, alpha, component, file };
+    let format = requested.in_file(file);
+    if params.has("pixel_format") && (format.colours, format.alpha) != (colours, alpha)
+        || params.has("component_format") && format.component != component
+    {
+        let text = format!("this file_format holds {}; {} is written", file.holds(), format.names().concat());
+        params.library.warn(params.location(), &text);
+    }
+    Ok(format)
+}
+
+/// One of a few words, in capitals or not, as Mitsuba reads them.
+fn choice<T: Copy>(params: &Params<'_>, name: &'static str, default: T, choices: &[(&str, T)]) -> Result<T> {
+    let Some(word) = params.optional_string(name)? else { return Ok(default) };
+    let found = choices.iter().find(|(known, _)| known.eq_ignore_ascii_case(word));
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let words: Vec<_> = choices.iter().map(|(word, _)| *word).collect();
+        params.complain(name, format!("one of {}", words.join(", ")), format!("\"{word}\""))
+    })
+}

@@ -1,0 +1,294 @@
+//! Which integrator a scene asks for. All are one estimator with strategies left out; `aov` and `moment` hold
+//! another one and ask for more channels. `fog` is a preview that makes no paths; `single_scattering` and
+//! `non_scattering` restrict what media do.
+
+use super::heuristic::Heuristic;
+use crate::{
+    description::{Build, Library, Object, Params, Registry, nearest, params::Child},
+    error::{Error, Result},
+    film::layer::{Content, Layer, QUANTITIES},
+    math::Spectrum,
+    medium::{DistanceMethod, MediumOverrides},
+    settings::options::{Options, Strategies},
+};
+
+/// What light does in media.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Restriction {
+    /// All that the media say.
+    #[default]
+    None,
+    /// It is scattered once at most, in media that vary found by ray marching (P03 eq. 18-19).
+    SingleScattering {
+        /// The longest interval [m], in place of the media's own.
+        step: Option<f64>,
+        /// The error of transmittance, in place of the media's own steps and errors.
+        march_error: Option<f64>,
+    },
+    /// It is absorbed and emitted (P03T eq. 2.9).
+    NonScattering,
+}
+
+impl Restriction {
+    /// Most segments of a path that single scattering has.
+    pub const SINGLE: u32 = 2;
+
+    /// What it asks of all media.
+    pub fn medium_overrides(&self) -> MediumOverrides {
+        match *self {
+            Self::None => MediumOverrides::default(),
+            Self::SingleScattering { step, march_error } => MediumOverrides {
+                tracker: Some(DistanceMethod::RayMarching),
+                step,
+                march_error,
+                absorbing: false,
+            },
+            Self::NonScattering => MediumOverrides { absorbing: true, ..MediumOverrides::default() },
+        }
+    }
+}
+
+/// How the preview `fog` looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FogSettings {
+    /// L_fog: radiance of the fog [W/(m^2 sr)]; where none is given, the mean radiance of the surroundings, else the
+    /// mean of the surfaces that are seen.
+    pub color: Option<Spectrum>,
+    /// Radiance that surfaces are lit by from everywhere, besides the emitters [W/(m^2 sr)]; where none is given, that
+    /// of the fog where nothing surrounds the scene, else 0.
+    pub ambient: Option<Spectrum>,
+    /// What is further than this is fog alone [m]; none for no limit.
+    pub threshold: Option<f32>,
+}
+
+/// An integrator as a scene file asks for it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Integrator {
+    /// How paths are made.
+    pub options: Options,
+    /// What light does in media.
+    pub restriction: Restriction,
+    /// How a preview looks.
+    pub fog: FogSettings,
+    /// What is written besides the image.
+    pub layers: Vec<Layer>,
+}
+
+/// Every integrator.
+pub const ROWS: Registry<Build<Integrator>> = Registry::new(
+    "an integrator",
+    &[
+        ("bdpt", |p| build_as(p, Strategies::BDPT)),
+        ("path", |p| build_as(p, Strategies::PT)),
+        ("volpath", |p| build_as(p, Strategies::PT)),
+        ("volpathmis", |p| build_as(p, Strategies::PT)),
+        ("ptracer", |p| build_as(p, Strategies::LT)),
+        ("fog", build_fog),
+        ("single_scattering", build_single_scattering),
+        ("non_scattering", build_non_scattering),
+        ("aov", build_aov),
+        ("moment", build_moment),
+    ],
+);
+
+/// Builds the integrator that `object` describes.
+pub fn build(object: &Object, library: &Library) -> Result<Integrator> {
+    let integrator = ROWS.build(object, library)?;
+    check_names(object, &integrator.layers)?;
+    Ok(integrator)
+}
+
+/// Every channel of a file has a name of its own, which OpenEXR can hold.
+fn check_names(object: &Object, layers: &[Layer]) -> Result<()> {
+    let names: Vec<String> = layers.iter().flat_map(Layer::channel_names).collect();
+    let remedy = "rename one of the layers";
+    if let Some((_, name)) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+        let found = format!("\"{name}\" twice");
+        return Err(Error::new(&object.location, "channels with names of their own", found, remedy));
+    }
+    let fits = |name: &&String| name.len() < 256 && name.chars().all(|c| c.is_ascii_graphic());
+    match names.iter().find(|name| !fits(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let expected = "channel names of ASCII letters, digits and signs, at most 255 of them";
+            Err(Error::new(&object.location, expected, format!("\"{name}\""), remedy))
+        }
+    }
+}
+
+fn build_as(params: &Params<'_>, strategies: Strategies) -> Result<Integrator> {
+    let depth = params.integer("max_depth", -1)?;
+    let max_depth = match depth {
+        -1 => None,
+        0..=0xffff_fffe => Some(depth as u32),
+        _ => return Err(params.complain("max_depth", "-1 (no limit) or an integer >= 0", depth.to_string())),
+    };
+    params.accept_unused(&["rr_depth"], "walks end by absorption, which is exact at any depth");
+    accept_division(params);
+    let hide_emitters = params.boolean("hide_emitters", false)?;
+    if strategies == Strategies::LT {
+        params.accept_unused(&["forced_interaction"], "light walks have no primary rays");
+    }
+    let forced_interaction = params.boolean("forced_interaction", false)?;
+    let heuristic = heuristic(params)?;
+    let options = Options { strategies, heuristic, max_depth, hide_emitters, forced_interaction };
+    Ok(Integrator { options, ..Integrator::default() })
+}
+
+/// `heuristic`: as [`Heuristic::parse`] reads it.
+fn heuristic(params: &Params<'_>) -> Result<Heuristic> {
+    let Some(text) = params.optional_string("heuristic")? else { return Ok(Heuristic::default()) };
+    Heuristic::parse(text).map_err(|expected| {
+        let names = Heuristic::NAMES.map(|(name, _)| name);
+        let name = text.split(':').next().unwrap_or(text);
+        let hint = if names.contains(&name) { String::new() } else { nearest(name, &names) };
+        let error = params.complain("heuristic", expected, format!("\"{text}\""));
+        Error { remedy: format!("{hint}{}", error.remedy), ..error }
+    })
+}
+
+/// `fog`: `fog_color`, `ambient`, `threshold` [m] (BMA02 sec. 3.1 and 4.2).
+fn build_fog(params: &Params<'_>) -> Result<Integrator> {
+    params.accept_unused(&["max_depth", "rr_depth"], "a preview shows the first surfaces only");
+    accept_division(params);
+    let threshold = match params.optional_float("threshold")? {
+        Some(far) if !(far > 0.0 && far <= f64::from(f32::MAX)) => {
+            return Err(params.complain("threshold", "a distance above 0", far.to_string()));
+        }
+        far => far.map(|far| far as f32),
+    };
+    let (color, ambient) = (params.optional_emission("fog_color")?, params.optional_emission("ambient")?);
+    let fog = FogSettings { color, ambient, threshold };
+    let hide_emitters = params.boolean("hide_emitters", false)?;
+    let options = Options { strategies: Strategies::NONE, hide_emitters, ..Options::default() };
+    Ok(Integrator { options, fog, ..Integrator::default() })
+}
+
+/// `single_scattering`: path tracing of at most two segments, with marching by `step` [m] or within `march_error`.
+fn build_single_scattering(params: &Params<'_>) -> Result<Integrator> {
+    let most = Restriction::SINGLE;
+    let depth = params.integer("max_depth", i64::from(most))?;
+    if !(0..=i64::from(most)).contains(&depth) {
+        let error = params.complain("max_depth", "0, 1 or 2", depth.to_string());
+        return Err(Error {
+            remedy: "light scatters once here: use volpath for longer paths".into(),
+            ..error
+        });
+    }
+    let within =
+        |name, expected: &str, range: std::ops::RangeInclusive<f64>| match params.optional_float(name)? {
+            Some(value) if !range.contains(&value) => Err(params.complain(name, expected, value.to_string())),
+            value => Ok(value),
+        };
+    let step = within("step", "a length above 0", f64::MIN_POSITIVE..=f64::MAX)?;
+    let march_error = within("march_error", "a number from 1e-7 to 1", 1e-7..=1.0)?;
+    let integrator = build_as(params, Strategies::PT)?;
+    let restriction = Restriction::SingleScattering { step, march_error };
+    let options = Options { max_depth: Some(depth as u32), ..integrator.options };
+    Ok(Integrator { options, restriction, ..integrator })
+}
+
+/// `non_scattering`: media that absorb and emit only, among surfaces as they are.
+fn build_non_scattering(params: &Params<'_>) -> Result<Integrator> {
+    let integrator = build_as(params, Strategies::BDPT)?;
+    Ok(Integrator { restriction: Restriction::NonScattering, ..integrator })
+}
+
+fn accept_division(params: &Params<'_>) {
+    params.accept_unused(&["samples_per_pass", "block_size", "timeout"], "work is divided by Tyndall itself");
+}
+
+/// `aov`: what the first surface is like, and the image of the integrator inside. Without one the image is
+/// black.
+fn build_aov(params: &Params<'_>) -> Result<Integrator> {
+    let mut built = match nested(params)? {
+        None => {
+            let options = Options { strategies: Strategies::PT, max_depth: Some(0), ..Options::default() };
+            Integrator { options, ..Integrator::default() }
+        }
+        Some(child) => {
+            let name = name_of(&child);
+            let inner = ROWS.build(child.object, params.library)?;
+            let mut layers = vec![Layer { name: name.into(), content: Content::Image }];
+            layers.extend(inner.layers.iter().map(|layer| within(name, layer)));
+            Integrator { layers, ..inner }
+        }
+    };
+    built.layers.extend(surface_layers(params)?);
+    accept_outer(params);
+    Ok(built)
+}
+
+/// `moment`: the integrator inside, with second moments of its image and, beyond Mitsuba, the variance of its
+/// mean.
+fn build_moment(params: &Params<'_>) -> Result<Integrator> {
+    let Some(child) = nested(params)? else { return Err(params.missing("integrator", "an integrator")) };
+    let inner = ROWS.build(child.object, params.library)?;
+    if !inner.layers.is_empty() {
+        let found = format!("\"{}\"", child.object.plugin);
+        let remedy =
+            "put the moment integrator inside the aov integrator, and one that makes paths inside it";
+        return Err(Error::new(child.location, "an integrator that makes paths", found, remedy));
+    }
+    accept_outer(params);
+    let name = name_of(&child);
+    let layers = vec![
+        Layer { name: name.into(), content: Content::Mean },
+        Layer { name: format!("m2_{name}"), content: Content::SecondMoment },
+        Layer { name: "variance".into(), content: Content::Variance },
+    ];
+    Ok(Integrator { layers, ..inner })
+}
+
+fn accept_outer(params: &Params<'_>) {
+    accept_division(params);
+    params.accept_unused(&["hide_emitters"], "the integrator inside decides it");
+}
+
+/// The integrator inside another.
+fn nested<'a>(params: &Params<'a>) -> Result<Option<Child<'a>>> {
+    let children = params
+        .children(|child| ROWS.has(child.object) || child.object.tag.as_deref() == Some("integrator"))?;
+    match children.as_slice() {
+        [] => Ok(None),
+        [one] => Ok(Some(*one)),
+        [_, second, ..] => Err(Error::new(
+            second.location,
+            "one integrator inside",
+            "a second integrator",
+            "remove one of them, and render the scene once for each",
+        )),
+    }
+}
+
+/// Mitsuba's name of a child: its own, or what it calls the first without.
+fn name_of<'a>(child: &Child<'a>) -> &'a str {
+    if child.name.is_empty() { "_arg_0" } else { child.name }
+}
+
+fn within(outer: &str, layer: &Layer) -> Layer {
+    Layer { name: format!("{outer}.{}", layer.name), content: layer.content }
+}
+
+/// The list `aovs`: name:quantity, separated by commas or spaces.
+fn surface_layers(params: &Params<'_>) -> Result<Vec<Layer>> {
+    let Some(text) = params.optional_string("aovs")? else {
+        return Err(params.missing("aovs", "a list such as \"dd:depth,nn:sh_normal\""));
+    };
+    text.split([',', ' ']).filter(|item| !item.is_empty()).map(|item| surface_layer(params, item)).collect()
+}
+
+fn surface_layer(params: &Params<'_>, item: &str) -> Result<Layer> {
+    let expected = "name:quantity, such as dd:depth";
+    let (name, quantity) = match item.split_once(':') {
+        Some((name, quantity)) if !name.is_empty() => (name, quantity),
+        _ => return Err(params.complain("aovs", expected, format!("\"{item}\""))),
+    };
+    let Some(row) = QUANTITIES.iter().find(|row| row.name == quantity) else {
+        let known: Vec<_> = QUANTITIES.iter().map(|row| row.name).collect();
+        let error = params.complain("aovs", "a quantity", format!("\"{quantity}\""));
+        let remedy = format!("{}known: {}", nearest(quantity, &known), known.join(", "));
+        return Err(Error { remedy, ..error });
+    };
+    Ok(Layer { name: name.into(), content: Content::Surface(row.quantity) })
+}

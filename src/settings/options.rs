@@ -1,0 +1,61 @@
+//! How paths are made: what a scene's integrator says, unless the command line says otherwise.
+
+use super::heuristic::Heuristic;
+
+/// Which strategies run. Their weights sum to one over those that do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Strategies {
+    /// s = 0: camera subpaths meet emitters.
+    pub emitter_hit: bool,
+    /// s = 1, t >= 2: next-event estimation.
+    pub next_event: bool,
+    /// s >= 2, t >= 2: connections of camera and light subpaths.
+    pub connection: bool,
+    /// t = 1: light subpaths join the lens.
+    pub lens: bool,
+}
+
+impl Strategies {
+    /// None at all: the preview `fog`, which makes no paths.
+    pub const NONE: Self = Self { emitter_hit: false, next_event: false, connection: false, lens: false };
+    /// Bidirectional path tracing.
+    pub const BDPT: Self = Self { emitter_hit: true, next_event: true, connection: true, lens: true };
+    /// Path tracing with next-event estimation.
+    pub const PT: Self = Self { emitter_hit: true, next_event: true, connection: false, lens: false };
+    /// Light tracing.
+    pub const LT: Self = Self { emitter_hit: false, next_event: false, connection: false, lens: true };
+
+    /// The integrators, as printed and as typed.
+    pub const INTEGRATORS: [(&'static str, Self); 4] =
+        [("bdpt", Self::BDPT), ("pt", Self::PT), ("lt", Self::LT), ("fog", Self::NONE)];
+}
+
+/// How paths are made and weighed. A new option is a field here that an integrator reads (`integrator.rs`), and a flag of
+/// the command line (`cli/estimator.rs`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Which strategies run.
+    pub strategies: Strategies,
+    /// By which they share the paths that several of them can make. All but [`Heuristic::Balance`] run on the profile
+    /// `everything`.
+    pub heuristic: Heuristic,
+    /// Most segments of a path, null boundaries not counted; none for no limit. Paths beyond
+    /// [`Heuristic::most_edges`] are never made.
+    pub max_depth: Option<u32>,
+    /// The camera does not see emitters, but what is behind them.
+    pub hide_emitters: bool,
+    /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
+    pub forced_interaction: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            strategies: Strategies::BDPT,
+            heuristic: Heuristic::default(),
+            max_depth: None,
+            hide_emitters: false,
+            forced_interaction: false,
+        }
+    }
+}

@@ -1,0 +1,307 @@
+//! The camera subpath's side: emitters met and media passed that shine (s = 0), next-event estimation (s =
+//! 1), joins with light subpaths (s >= 2).
+
+use super::{
+    Estimator,
+    cache::LightCache,
+    connect::{self, Contribution, Span},
+    mis::{self, MisSums},
+    observer::{Meeting, Observer},
+    profile::Profile,
+    segment::{FlightPart, Interaction},
+    vertex::{Subpath, Vertex},
+    walk::{Arrival, Departure, Kind, Visitor, arrive, walk},
+};
+use crate::{
+    bsdf::Transport,
+    math::{Channels, Spectrum, Vec2, Vec3, measure},
+    sampling::Stream,
+    scene::{Scene, lights::EmitterSample},
+    sensor::SensorRay,
+    shape::Ray,
+};
+
+/// Gathers the radiance of one pixel sample.
+pub struct CameraPath<'a, P: Profile, R> {
+    estimator: &'a Estimator<'a, P>,
+    cache: &'a LightCache<P::MisSums>,
+    hero: usize,
+    /// The vertex before the current one: where next-event estimation would have been made from.
+    previous: Vec3,
+    observer: R,
+}
+
+/// One camera subpath through `film` [pixels] and a point of the aperture, joined with the light subpaths of
+/// `cache`; its radiance goes to `observer`.
+pub fn sample<P: Profile, R: Observer<P::MisSums>>(
+    estimator: &Estimator<'_, P>,
+    cache: &LightCache<P::MisSums>,
+    film: Vec2,
+    aperture: Vec2,
+    hero: usize,
+    observer: R,
+    stream: &mut Stream,
+) -> R {
+    let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
+    let departure = depart(estimator, film, aperture);
+    let mut camera = CameraPath::new(estimator, cache, hero, departure.position, observer);
+    walk(estimator.scene, kind, departure, &mut camera, stream);
+    camera.observer
+}
+
+/// Leaves the sensor through a film position and a point of its aperture. Nothing can join before the sensor:
+/// its sums are zero.
+pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Vec2) -> Departure<P::MisSums> {
+    let sensor = &estimator.scene.sensor;
+    let SensorRay { position, ray, pdf } = sensor.ray(film, aperture);
+    Departure {
+        position,
+        ray,
+        medium: estimator.scene.sensor_medium,
+        from_infinity: sensor.is_parallel(),
+        edges: 0,
+        hidden: estimator.hide_emitters,
+        dirac: false,
+        throughput: Spectrum::ONE,
+        pdf_fwd: pdf,
+        others_before_segment: P::MisSums::none(),
+        pdf_over_hero: P::Channels::splat(1.0),
+    }
+}
+
+impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
+    #[inline]
+    fn connections(&self, edges: u32, _: Vec3) -> f32 {
+        if edges == 1 { self.estimator.counts.lens } else { self.estimator.counts.connection }
+    }
+
+    #[inline]
+    fn depart(&mut self, departure: &Departure<P::MisSums>) {
+        self.observer.depart(departure);
+    }
+
+    #[inline]
+    fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
+        self.observer.arrive(vertex);
+        if let Interaction::Surface(point) = &vertex.interaction
+            && let Some(light) = self.estimator.scene.surface(point.shape).emitter
+        {
+            let Scene { lights, geometry, .. } = self.estimator.scene;
+            let found = |camera: &Self| lights.surface_hit(geometry, light, point, camera.previous);
+            self.emission(&vertex.subpath, found);
+        }
+        if vertex.subpath.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
+            if self.estimator.counts.next_event > 0.0 {
+                self.next_event(vertex, stream);
+            }
+            self.connect_cached(vertex, stream);
+        }
+        self.previous = vertex.position();
+    }
+
+    /// s = 0 in a medium: of all points of a flight one is taken, by where it may shine most. That a flight comes as far
+    /// as a point as often as radiance does is what makes up for the transmittance up to there.
+    #[inline]
+    fn pass(
+        &mut self,
+        departure: &Departure<P::MisSums>,
+        part: &FlightPart<P::Channels>,
+        stream: &mut Stream,
+    ) {
+        let Some((light, emission)) = self.estimator.scene.lights.of_medium(part.medium) else { return };
+        if self.estimator.counts.emitter_hit <= 0.0 {
+            return;
+        }
+        self.observer.start();
+        if let Some((t, pdf)) = emission.sample_along(&part.interval.segment, stream)
+            && let Some((subpath, sample)) = self.meet(departure, part, light, t, stream)
+        {
+            let contribution = self.emitter_hit(&subpath, &sample).map(|contribution| contribution / pdf);
+            self.observer.contribute(
+                0,
+                subpath.edges + 1,
+                Meeting::Met(&subpath, &sample),
+                contribution.as_ref(),
+            );
+        }
+        self.observer.stop(0, departure.edges + 2);
+    }
+
+    fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
+        self.observer.escape(subpath);
+        self.emission(subpath, |camera| camera.estimator.scene.lights.infinity_hit(-subpath.incoming));
+    }
+}
+
+impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
+    /// What it gathers goes to `observer`; the walk begins at the point `start` of the sensor.
+    pub fn new(
+        estimator: &'a Estimator<'a, P>,
+        cache: &'a LightCache<P::MisSums>,
+        hero: usize,
+        start: Vec3,
+        observer: R,
+    ) -> Self {
+        Self { estimator, cache, hero, previous: start, observer }
+    }
+
+    /// Another walk from the point `start` of the sensor.
+    pub fn restart(&mut self, start: Vec3) {
+        self.previous = start;
+    }
+
+    /// What was gathered.
+    pub fn into_observer(self) -> R {
+        self.observer
+    }
+
+    /// s = 0: the walk has come to an emitter, a point of which is `found` if it emits this way.
+    #[inline]
+    fn emission(
+        &mut self,
+        subpath: &Subpath<P::MisSums>,
+        found: impl FnOnce(&Self) -> Option<EmitterSample>,
+    ) {
+        if self.estimator.counts.emitter_hit <= 0.0 {
+            return;
+        }
+        self.observer.start();
+        if let Some(sample) = found(self) {
+            let contribution = self.emitter_hit(subpath, &sample);
+            self.observer.contribute(
+                0,
+                subpath.edges + 1,
+                Meeting::Met(subpath, &sample),
+                contribution.as_ref(),
+            );
+        }
+        self.observer.stop(0, subpath.edges + 1);
+    }
+
+    /// The end of a walk at a point of an emissive medium, as the emitter `light`; none where it is dark there.
+    pub fn meet(
+        &self,
+        departure: &Departure<P::MisSums>,
+        part: &FlightPart<P::Channels>,
+        light: u32,
+        t: f32,
+        stream: &mut Stream,
+    ) -> Option<(Subpath<P::MisSums>, EmitterSample)> {
+        let (scene, position) = (self.estimator.scene, part.interval.segment.at(t));
+        let sample = scene.lights.volume_sample(light, position)?;
+        let state = part.until::<P>(scene, t, self.hero, stream);
+        let sigma_t = connect::rate_at::<P>(&sample.point);
+        let at = Arrival { position: Some(position), cosine: 1.0, sigma_t };
+        Some((arrive::<P>(departure, &state, part.medium, &at, self.hero)?, sample))
+    }
+
+    /// s = 0: the walk has met an emitter.
+    ///
+    /// LW96 eq. 3: the term L_e, weighted by eq. 14.
+    #[inline]
+    pub fn emitter_hit(&self, subpath: &Subpath<P::MisSums>, sample: &EmitterSample) -> Option<Contribution> {
+        let counts = &self.estimator.counts;
+        // Media are no emitters that can be hidden: what is behind them is seen through them.
+        let hidden = self.estimator.hide_emitters && !(P::EMISSIVE && sample.point.is_volume());
+        if counts.emitter_hit <= 0.0 || (subpath.edges == 1 && hidden) {
+            return None;
+        }
+        // Both ends of the segment before must be able to join; across it joins s = 1, which from the sensor is
+        // a light subpath's first vertex and from anywhere else next-event estimation. Parallel rays meet what is
+        // at infinity in one direction, which no light subpath starts in.
+        let unseen = P::INFINITE && sample.point.is_infinite() && self.estimator.scene.sensor.is_parallel();
+        let connections = match (subpath.after_dirac, subpath.edges) {
+            (true, _) => 0.0,
+            (false, 1) if unseen => 0.0,
+            (false, 1) => counts.lens * sample.pdf_start,
+            (false, _) => counts.next_event * sample.pdf,
+        };
+        let unit = subpath.inv_pdf / counts.emitter_hit;
+        let by_light = subpath.others_over_pdf_rev.scaled(sample.pdf_direction * sample.pdf_start * unit);
+        let others = P::MisSums::of(subpath.pdf_over_hero_before.scaled(connections * unit)).and(by_light);
+        // `value` is radiance x cosine on shapes: the walk's density already contains that cosine. The rate of media is
+        // for weights alone.
+        let radiance = sample.value / sample.cosine;
+        let weight = mis::emitter_hit_weight(subpath.pdf_over_hero, others, self.estimator.heuristic);
+        let weight_alone = mis::weight_alone(subpath.pdf_over_hero);
+        Some(Contribution {
+            value: subpath.throughput * radiance * (weight / counts.emitter_hit),
+            weight,
+            alone: subpath.throughput * radiance * (weight_alone / counts.emitter_hit),
+            weight_alone,
+            transmittance: Spectrum::ONE,
+        })
+    }
+
+    /// s = 1: a freshly sampled emitter point.
+    #[inline]
+    fn next_event(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
+        let Scene { lights, geometry, .. } = self.estimator.scene;
+        let t = vertex.subpath.edges + 1;
+        self.observer.start();
+        if let Some(sample) = lights.sample_emitter(geometry, vertex.position(), stream) {
+            let contribution = self.join_emitter(vertex, &sample, stream);
+            self.observer.contribute(1, t, Meeting::Emitter(&sample), contribution.as_ref());
+        }
+        self.observer.stop(1, t);
+    }
+
+    /// The connection with an emitter point picked by next-event estimation.
+    #[inline]
+    pub fn join_emitter(
+        &self,
+        vertex: &Vertex<P::MisSums>,
+        sample: &EmitterSample,
+        stream: &mut Stream,
+    ) -> Option<Contribution> {
+        let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
+        let (direction, distance_squared) = sample.point.seen_from(vertex.position())?;
+        let camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
+        let light = connect::emitter_end::<P>(scene, sample, camera.medium, -direction, counts.emitter_hit);
+        let strategy = self.estimator.strategy(1.0);
+        if P::INFINITE && sample.point.is_infinite() {
+            let ray = Ray { origin: camera.origin?, direction, t_max: f32::INFINITY };
+            let span = Span { ray, cut: 0.0, distance_squared, hidden: false };
+            connect::connect_along::<P>(scene, &span, &camera, &light, strategy, stream)
+        } else {
+            connect::connect::<P>(scene, &camera, &light, distance_squared, strategy, false, stream)
+        }
+    }
+
+    /// s >= 2: vertices drawn from the cache of light subpaths.
+    #[inline]
+    fn connect_cached(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
+        let estimator = self.estimator;
+        let Some((pool, scale)) = self.cache.pool(self.hero, estimator.connections_per_vertex) else {
+            return;
+        };
+        for _ in 0..estimator.connections_per_vertex {
+            let index = stream.below(pool.len());
+            let other = &pool[index];
+            if vertex.subpath.edges + other.subpath.edges < estimator.max_edges {
+                let (s, t) = (other.subpath.edges + 1, vertex.subpath.edges + 1);
+                self.observer.start();
+                let contribution =
+                    self.connect_with(vertex, other, stream).map(|contribution| contribution * scale);
+                self.observer.contribute(s, t, Meeting::Light(index, other), contribution.as_ref());
+                self.observer.stop(s, t);
+            }
+        }
+    }
+
+    /// The connection with a vertex of a light subpath.
+    #[inline]
+    pub fn connect_with(
+        &self,
+        vertex: &Vertex<P::MisSums>,
+        other: &Vertex<P::MisSums>,
+        stream: &mut Stream,
+    ) -> Option<Contribution> {
+        let scene = self.estimator.scene;
+        let (direction, _, distance_squared) = measure::between(vertex.position(), other.position())?;
+        let camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
+        let light = connect::vertex_end(scene, other, -direction, Transport::Importance)?;
+        let strategy = self.estimator.strategy(self.estimator.counts.connection);
+        connect::connect::<P>(scene, &camera, &light, distance_squared, strategy, false, stream)
+    }
+}

@@ -1,0 +1,261 @@
+//! The light subpath's side: vertices joined to the lens (t = 1) and kept for joins with camera subpaths.
+
+use super::{
+    Estimator,
+    cache::LightCache,
+    connect::{self, Contribution, Span},
+    forced,
+    mis::{End, MisSums},
+    observer::{Meeting, Observer},
+    profile::Profile,
+    segment::Interaction,
+    vertex::Vertex,
+    walk::{Departure, Kind, Visitor, walk},
+};
+use crate::{
+    bsdf::Transport,
+    math::{Channels, Spectrum, Vec2, Vec3},
+    sampling::Stream,
+    scene::{
+        Scene,
+        lights::{EmissionSample, EmitterPoint},
+    },
+    sensor::Projection,
+    shape::Ray,
+};
+
+/// One light subpath on its way.
+pub struct LightPath<'a, P: Profile, R> {
+    estimator: &'a Estimator<'a, P>,
+    cache: &'a mut LightCache<P::MisSums>,
+    observer: &'a mut R,
+    start: EmissionSample,
+    hero: usize,
+}
+
+/// One light subpath: its vertices go to `cache`, its joins with the lens to `observer`.
+pub fn trace<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    cache: &mut LightCache<P::MisSums>,
+    observer: &mut impl Observer<P::MisSums>,
+    hero: usize,
+    stream: &mut Stream,
+) {
+    cache.add_walk(hero, estimator.keep);
+    let scene = estimator.scene;
+    let Some(start) = begin::<P>(scene, stream) else { return };
+    observer.emit(&start);
+    let departure = depart(estimator, &start);
+    let kind =
+        Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
+    let mut light = LightPath::new(estimator, cache, observer, start, hero);
+    let aperture = scene.sensor.sample_aperture(stream);
+    if estimator.counts.lens > 0.0 {
+        light.observer.start();
+        let contribution = light.connect_start_to_lens(aperture, stream);
+        light.splat(1, contribution);
+    }
+    walk(scene, kind, departure, &mut light, stream);
+}
+
+/// Where a light subpath starts; none where nothing leaves.
+pub fn begin<P: Profile>(scene: &Scene, stream: &mut Stream) -> Option<EmissionSample> {
+    let start = scene.lights.sample_emission(&scene.geometry, stream)?;
+    // Points are sampled in the box around an emissive medium: not all lie in it.
+    let astray = P::EMISSIVE && start.point.is_volume() && {
+        let medium = scene.lights.all[start.light as usize].medium;
+        !scene.is_within(medium, start.ray.origin, start.ray.direction)
+    };
+    (!astray).then_some(start)
+}
+
+/// Leaves the emitter. Before it only a camera subpath that meets it can join.
+pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) -> Departure<P::MisSums> {
+    let scene = estimator.scene;
+    let emitter = &scene.lights.all[start.light as usize].emitter;
+    let emitter_hits = if emitter.is_hittable() { estimator.counts.emitter_hit } else { 0.0 };
+    let Ray { origin, direction, .. } = start.ray;
+    let medium = scene.emission_medium(start.light, origin, direction);
+    let arriving = if P::INFINITE && start.point.is_infinite() {
+        scene.media[medium.0 as usize].transmittance_from_infinity()
+    } else {
+        Spectrum::ONE
+    };
+    Departure {
+        position: start.position(),
+        ray: start.ray,
+        medium,
+        from_infinity: start.point.is_infinite(),
+        edges: 0,
+        hidden: false,
+        dirac: !emitter.is_connectible(),
+        throughput: start.throughput * arriving,
+        pdf_fwd: start.pdf_direction,
+        others_before_segment: P::MisSums::of(
+            connect::rate_at::<P>(&start.point).scaled(emitter_hits * start.cosine / start.pdf),
+        ),
+        pdf_over_hero: P::Channels::splat(1.0),
+    }
+}
+
+impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for LightPath<'_, P, R> {
+    #[inline]
+    fn connections(&self, edges: u32, position: Vec3) -> f32 {
+        if edges > 1 {
+            return self.estimator.counts.connection;
+        }
+        let scene = self.estimator.scene;
+        let ratio = scene.lights.connect_over_start(&scene.geometry, &self.start, position);
+        self.estimator.counts.next_event * ratio
+    }
+
+    #[inline]
+    fn depart(&mut self, departure: &Departure<P::MisSums>) {
+        self.observer.depart(departure);
+    }
+
+    #[inline]
+    fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
+        self.observer.arrive(vertex);
+        if !vertex.is_connectible(self.estimator.scene) {
+            return;
+        }
+        if self.estimator.counts.lens > 0.0 {
+            let aperture = self.estimator.scene.sensor.sample_aperture(stream);
+            self.observer.start();
+            let contribution = self.connect_to_lens(vertex, aperture, stream);
+            self.splat(vertex.subpath.edges + 1, contribution);
+        }
+        let keep = self.estimator.keep;
+        if keep > 0.0 && (keep >= 1.0 || stream.uniform() < keep) {
+            self.cache.push(self.hero, *vertex);
+            self.observer.keep();
+        }
+    }
+}
+
+impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
+    /// The walk that begins with `start`.
+    pub fn new(
+        estimator: &'a Estimator<'a, P>,
+        cache: &'a mut LightCache<P::MisSums>,
+        observer: &'a mut R,
+        start: EmissionSample,
+        hero: usize,
+    ) -> Self {
+        Self { estimator, cache, observer, start, hero }
+    }
+
+    #[inline]
+    fn splat(&mut self, s: u32, contribution: Option<(Vec2, Contribution)>) {
+        if let Some((film, contribution)) = contribution {
+            let contribution = contribution / self.estimator.counts.lens;
+            self.observer.contribute(s, 1, Meeting::Lens(film), Some(&contribution));
+        }
+        self.observer.stop(s, 1);
+    }
+
+    /// t = 1: a vertex as the sensor sees it through a point of its aperture, and where on the film [pixels].
+    #[inline]
+    pub fn connect_to_lens(
+        &self,
+        vertex: &Vertex<P::MisSums>,
+        aperture: Vec2,
+        stream: &mut Stream,
+    ) -> Option<(Vec2, Contribution)> {
+        let scene = self.estimator.scene;
+        let seen = scene.sensor.project(vertex.position(), aperture)?;
+        let hidden = self.estimator.hide_emitters && vertex.is_on_emitter(scene);
+        if hidden || !self.observer.covers(seen.film) {
+            return None;
+        }
+        let mut end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
+        if P::MEDIA
+            && self.estimator.forced_interaction
+            && matches!(vertex.interaction, Interaction::Medium(..))
+        {
+            end.others_before = end.others_before.times(forced::gain(self.estimator, seen.ray));
+        }
+        let contribution = self.connect_end(&end, &seen, false, stream)?;
+        Some((seen.film, contribution))
+    }
+
+    /// s = 1, t = 1: the emitter itself as the sensor sees it, where a camera subpath could have met it.
+    pub fn connect_start_to_lens(&self, aperture: Vec2, stream: &mut Stream) -> Option<(Vec2, Contribution)> {
+        let (estimator, start) = (self.estimator, &self.start);
+        let scene = estimator.scene;
+        let hidden = estimator.hide_emitters && !(P::EMISSIVE && start.point.is_volume());
+        let seen_directly = estimator.max_edges > 0 && !hidden;
+        let hittable = scene.lights.all[start.light as usize].emitter.is_hittable();
+        if estimator.counts.lens <= 0.0 || !hittable || !seen_directly {
+            return None;
+        }
+        let seen = match start.point {
+            EmitterPoint::Direction(towards) => scene.sensor.project_direction(towards, aperture),
+            _ => scene.sensor.project(start.position(), aperture),
+        };
+        let seen = seen.filter(|seen| self.observer.covers(seen.film))?;
+        let end = start_end::<P>(estimator, start, -seen.ray.direction)?;
+        let contribution = self.connect_end(&end, &seen, start.point.is_infinite(), stream)?;
+        Some((seen.film, contribution))
+    }
+
+    #[inline]
+    fn connect_end(
+        &self,
+        end: &End<P::MisSums>,
+        seen: &Projection,
+        infinite: bool,
+        stream: &mut Stream,
+    ) -> Option<Contribution> {
+        let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
+        let Projection { ray, pdf, distance_squared, .. } = *seen;
+        let hidden = self.estimator.hide_emitters;
+        let lens = End {
+            origin: Some(ray.origin),
+            lift: Vec3::ZERO,
+            medium: scene.sensor_medium,
+            within: false,
+            value: Spectrum::splat(pdf),
+            pdf_fwd: pdf,
+            cosine: 1.0,
+            inv_pdf: 1.0,
+            sigma_t: P::Channels::splat(1.0),
+            pdf_over_hero: P::Channels::splat(1.0),
+            others_before: P::MisSums::none(),
+        };
+        let strategy = self.estimator.strategy(counts.lens);
+        if P::INFINITE && infinite {
+            let span = Span { ray, cut: 0.0, distance_squared, hidden };
+            connect::connect_along::<P>(scene, &span, &lens, end, strategy, stream)
+        } else {
+            connect::connect::<P>(scene, end, &lens, distance_squared, strategy, hidden, stream)
+        }
+    }
+}
+
+/// The emitter point of a light subpath as the end of a connection in unit direction `towards`; none where it
+/// does not emit that way.
+fn start_end<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    start: &EmissionSample,
+    towards: Vec3,
+) -> Option<End<P::MisSums>> {
+    let emission = estimator.scene.lights.emission(start, towards)?;
+    let origin = start.point.ray_origin(towards);
+    let leaving = origin.unwrap_or(start.ray.origin);
+    Some(End {
+        origin,
+        // Never the far end of a connection: the lens is.
+        lift: Vec3::ZERO,
+        medium: estimator.scene.emission_medium(start.light, leaving, towards),
+        within: false,
+        value: emission.value / start.pdf,
+        pdf_fwd: emission.pdf_direction,
+        cosine: emission.cosine,
+        inv_pdf: 1.0 / start.pdf,
+        sigma_t: connect::rate_at::<P>(&start.point),
+        pdf_over_hero: P::Channels::splat(1.0),
+        others_before: P::MisSums::of(P::Channels::splat(estimator.counts.emitter_hit)),
+    })
+}

@@ -1,0 +1,105 @@
+//! Weights of strategies (LW96 eq. 14), O(1) per connection. The files of the folder are the heuristics; `sums` is what they
+//! have in common.
+
+mod balance;
+mod cutoff;
+mod maximum;
+mod power;
+mod sums;
+mod uniform;
+
+pub use balance::Balance;
+pub use cutoff::Cutoff;
+pub use maximum::Maximum;
+#[cfg(test)]
+pub use maximum::TIE;
+pub use power::Power;
+pub use sums::MisSums;
+pub use uniform::Uniform;
+
+use crate::{
+    math::{Channels, Spectrum, Vec3},
+    medium::MediumIndex,
+    settings::heuristic::Heuristic,
+};
+
+/// One end of a connection: a vertex with its scattering towards the other end evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct End<S: MisSums> {
+    /// Where the connecting ray starts; none at infinity.
+    pub origin: Option<Vec3>,
+    /// Unit normal on the side of `origin`; zero where it lies on no surface.
+    pub lift: Vec3,
+    /// The medium it starts in.
+    pub medium: MediumIndex,
+    /// True if it is a point of that medium only: no segment through another can end here.
+    pub within: bool,
+    /// Throughput times scattering towards the other end.
+    pub value: Spectrum,
+    /// Density of the direction to the other end [1/sr].
+    pub pdf_fwd: f32,
+    /// |cos| on a surface, 1 elsewhere.
+    pub cosine: f32,
+    /// 1/p>^h of this vertex.
+    pub inv_pdf: f32,
+    /// sigma_t per channel in a medium, [`crate::medium::Emission::rate`] where that shines, 1 elsewhere.
+    pub sigma_t: S::Channels,
+    /// See [`super::vertex::Vertex::pdf_over_hero`].
+    pub pdf_over_hero: S::Channels,
+    /// See [`super::vertex::Vertex::others_before`].
+    pub others_before: S,
+}
+
+impl<S: MisSums> End<S> {
+    /// D of this end: the strategies that connect on its own side, relative to the one at hand. `other_pdf_fwd` is
+    /// the density of the direction from the other end to this one.
+    #[inline]
+    fn before(&self, other_pdf_fwd: f32, pdf: S::Channels, inverse_distance_squared: f32) -> S {
+        let geometry = other_pdf_fwd * self.cosine * inverse_distance_squared * self.inv_pdf;
+        self.others_before.times(self.sigma_t).times(pdf).scaled(geometry)
+    }
+}
+
+/// A strategy as its weights see it.
+#[derive(Clone, Copy, Debug)]
+pub struct Strategy {
+    /// Expected samples.
+    pub count: f32,
+    /// By which it shares paths with the others.
+    pub heuristic: Heuristic,
+}
+
+/// Weight of the connection of `a` and `b` by `strategy`, times the number of channels; for the balance heuristic
+/// n p^h / ((1/C) sum_c sum_j n_j p_j^c). `pdf` is the surface flight density of the connecting segment.
+///
+/// LW96 eq. 14, all densities in units of the strategy's own.
+#[inline]
+pub fn connection_weight<S: MisSums>(
+    a: &End<S>,
+    b: &End<S>,
+    pdf: S::Channels,
+    inverse_distance_squared: f32,
+    strategy: Strategy,
+) -> f32 {
+    let before_a = a.before(b.pdf_fwd, pdf, inverse_distance_squared);
+    let before_b = b.before(a.pdf_fwd, pdf, inverse_distance_squared);
+    let others = before_a.times(b.pdf_over_hero).and(before_b.times(a.pdf_over_hero));
+    others.scaled(1.0 / strategy.count).weight(strategy.heuristic, a.pdf_over_hero * b.pdf_over_hero)
+}
+
+/// The same where a camera subpath has met the emitter itself (s = 0): `others` are all other strategies in units of
+/// the walk's own density, whose channels are `pdf_over_hero`.
+///
+/// LW96 eq. 14.
+#[inline]
+pub fn emitter_hit_weight<S: MisSums>(pdf_over_hero: S::Channels, others: S, heuristic: Heuristic) -> f32 {
+    others.weight(heuristic, pdf_over_hero)
+}
+
+/// The weight of a strategy that runs alone, times the number of channels: only the channels share the path.
+/// `pdf_over_hero` is the product of both ends'. The weight among all strategies is that of
+/// [`connection_weight`] or [`emitter_hit_weight`] over this one.
+#[inline]
+pub fn weight_alone<L: Channels>(pdf_over_hero: L) -> f32 {
+    L::COUNT as f32 / pdf_over_hero.sum()
+}

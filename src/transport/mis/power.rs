@@ -1,0 +1,38 @@
+//! The power heuristic with exponent 2 (Veach 1997, sec. 9.2).
+
+use super::MisSums;
+use crate::{math::Channels, settings::heuristic::Heuristic};
+
+/// Root of the sum of (n p)^2 over strategies: with the root it grows as n p does, and no path is too long or too
+/// dense for it that is not for the balance heuristic too.
+#[derive(Clone, Copy, Debug)]
+pub struct Power<L>(L);
+
+impl<L: Channels> MisSums for Power<L> {
+    type Channels = L;
+
+    #[inline]
+    fn none() -> Self {
+        Self(L::splat(0.0))
+    }
+    #[inline]
+    fn of(strategy: L) -> Self {
+        Self(strategy)
+    }
+    #[inline]
+    fn and(self, other: Self) -> Self {
+        Self(L::from_fn(|c| self.0.hero(c).hypot(other.0.hero(c))))
+    }
+    #[inline]
+    fn times(self, channels: L) -> Self {
+        Self(self.0 * channels)
+    }
+    #[inline]
+    fn scaled(self, factor: f32) -> Self {
+        Self(self.0.scaled(factor))
+    }
+    #[inline]
+    fn weight(self, _: Heuristic, own: L) -> f32 {
+        L::COUNT as f32 / (own * own + self.0 * self.0).sum()
+    }
+}

@@ -1,0 +1,31 @@
+//! What the strategies that connect elsewhere along a path come to, by one heuristic or another.
+
+use crate::{math::Channels, settings::heuristic::Heuristic};
+use std::fmt::Debug;
+
+/// n_j p_j^c of some strategies j and all channels c, in units of the density of the walk that carries them,
+/// as far as one heuristic needs to know them. Walks and joins only ever multiply all of them by what the
+/// next vertex completes, and add others: whatever can follow both has a fold in O(1) per vertex.
+///
+/// Which heuristic it is is a matter of types: the balance heuristic does not know that there are others.
+pub trait MisSums: Copy + Send + Sync + Debug + 'static {
+    /// Extinction per channel.
+    type Channels: Channels;
+    /// Most segments of a path.
+    const MOST_EDGES: u32 = u32::MAX;
+
+    /// No strategy.
+    fn none() -> Self;
+    /// One strategy: n p per channel. It does not count where that is 0.
+    fn of(strategy: Self::Channels) -> Self;
+    /// These and those.
+    fn and(self, other: Self) -> Self;
+    /// All of them times `channels`.
+    fn times(self, channels: Self::Channels) -> Self;
+    /// All of them times `factor` >= 0.
+    fn scaled(self, factor: f32) -> Self;
+    /// The weight of the strategy at hand, by its hero, where these are all others; times the number of channels.
+    /// All in units of its own n p^h: `own` is n p^c in them, so 1 for the hero. `heuristic` is the one that
+    /// these are for, with its parameters.
+    fn weight(self, heuristic: Heuristic, own: Self::Channels) -> f32;
+}

@@ -1,0 +1,53 @@
+//! The uniform heuristic: every strategy that can make a path gets the same part of it, be it as unlikely as it may.
+//! For comparison only: where joins are short its variance has no bound.
+//!
+//! Channels are no strategies: the part of a strategy is divided among the heroes in proportion to their densities.
+//! A hero that has all but no chance to come along a path could not make up for a part that were due to it.
+
+use super::MisSums;
+use crate::{math::Channels, settings::heuristic::Heuristic};
+use std::marker::PhantomData;
+
+/// How many strategies can make a path.
+#[derive(Clone, Copy, Debug)]
+pub struct Uniform<L> {
+    strategies: f32,
+    channels: PhantomData<L>,
+}
+
+impl<L: Channels> Uniform<L> {
+    #[inline]
+    fn count(strategies: f32) -> Self {
+        Self { strategies, channels: PhantomData }
+    }
+}
+
+impl<L: Channels> MisSums for Uniform<L> {
+    type Channels = L;
+
+    #[inline]
+    fn none() -> Self {
+        Self::count(0.0)
+    }
+    #[inline]
+    fn of(strategy: L) -> Self {
+        Self::count(if strategy.sum() > 0.0 { 1.0 } else { 0.0 })
+    }
+    #[inline]
+    fn and(self, other: Self) -> Self {
+        Self::count(self.strategies + other.strategies)
+    }
+    /// Flights never are impossible for every channel: some hero came along the path.
+    #[inline]
+    fn times(self, _: L) -> Self {
+        self
+    }
+    #[inline]
+    fn scaled(self, factor: f32) -> Self {
+        if factor > 0.0 { self } else { Self::none() }
+    }
+    #[inline]
+    fn weight(self, _: Heuristic, own: L) -> f32 {
+        L::COUNT as f32 / (own.sum() * (1.0 + self.strategies))
+    }
+}

@@ -1,0 +1,163 @@
+//! Recorders: what is done with the contributions of the estimator. All of them pass through one, which an image is
+//! made with, and instruments look at the walks with. The estimator is compiled for its recorder: what a recorder
+//! does not want to know costs nothing.
+
+use super::{
+    Strategies,
+    connect::Contribution,
+    mis::MisSums,
+    vertex::{Subpath, Vertex},
+    walk::Departure,
+};
+use crate::{
+    math::{Spectrum, Vec2},
+    scene::lights::{EmissionSample, EmitterSample},
+};
+
+/// The kinds of strategies, as [`super::Strategies`] switches them on and off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StrategyKind {
+    /// s = 0: camera subpaths meet emitters.
+    EmitterHit,
+    /// s = 1, t >= 2: next-event estimation.
+    NextEvent,
+    /// s >= 2, t >= 2: connections of camera and light subpaths.
+    Connection,
+    /// t = 1: light subpaths join the lens.
+    Lens,
+}
+
+impl StrategyKind {
+    /// Every kind.
+    pub const ALL: [Self; 4] = [Self::EmitterHit, Self::NextEvent, Self::Connection, Self::Lens];
+
+    /// The kind of the strategy of `s` light and `t` camera vertices, the lens among these.
+    #[inline]
+    pub fn of(s: u32, t: u32) -> Self {
+        match (s, t) {
+            (0, _) => Self::EmitterHit,
+            (_, 1) => Self::Lens,
+            (1, _) => Self::NextEvent,
+            _ => Self::Connection,
+        }
+    }
+
+    /// As printed and as typed.
+    pub const NAMES: [(&'static str, Self); 4] = [
+        ("hit", Self::EmitterHit),
+        ("next-event", Self::NextEvent),
+        ("join", Self::Connection),
+        ("lens", Self::Lens),
+    ];
+
+    /// As printed and as typed.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
+}
+
+impl Strategies {
+    /// True if those of `kind` run.
+    pub fn has(self, kind: StrategyKind) -> bool {
+        match kind {
+            StrategyKind::EmitterHit => self.emitter_hit,
+            StrategyKind::NextEvent => self.next_event,
+            StrategyKind::Connection => self.connection,
+            StrategyKind::Lens => self.lens,
+        }
+    }
+
+    /// The same without those of `kind`.
+    pub fn without(mut self, kind: StrategyKind) -> Self {
+        match kind {
+            StrategyKind::EmitterHit => self.emitter_hit = false,
+            StrategyKind::NextEvent => self.next_event = false,
+            StrategyKind::Connection => self.connection = false,
+            StrategyKind::Lens => self.lens = false,
+        }
+        self
+    }
+}
+
+/// What the last vertex of one walk was joined with.
+#[derive(Clone, Copy, Debug)]
+pub enum Meeting<'a, S: MisSums> {
+    /// s = 0: the camera subpath came to this point of an emitter.
+    Met(&'a Subpath<S>, &'a EmitterSample),
+    /// s = 1: a point of an emitter, picked for the last vertex.
+    Emitter(&'a EmitterSample),
+    /// s >= 2: a vertex of a light subpath, and its place in the pool of the hero channel.
+    Light(usize, &'a Vertex<S>),
+    /// t = 1: the lens, through this film position [pixels].
+    Lens(Vec2),
+}
+
+/// Sees the walks of one pixel sample, or those of light, and whatever they bring.
+pub trait Observer<S: MisSums> {
+    /// The strategy of `s` light and `t` camera vertices, the lens among these, brings a path; none where the way is
+    /// blocked or nothing scatters along it. The sum over all of the values is the estimate.
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>);
+
+    /// True if a contribution at `film` [pixels] can count.
+    #[inline]
+    fn covers(&self, _film: Vec2) -> bool {
+        true
+    }
+
+    /// A strategy is tried from here...
+    #[inline]
+    fn start(&mut self) {}
+
+    /// ... to here, whatever it brought: the strategy of `s` light and `t` camera vertices.
+    #[inline]
+    fn stop(&mut self, _s: u32, _t: u32) {}
+
+    /// A light subpath begins at an emitter.
+    #[inline]
+    fn emit(&mut self, _start: &EmissionSample) {}
+
+    /// A walk leaves its start or a vertex.
+    #[inline]
+    fn depart(&mut self, _departure: &Departure<S>) {}
+
+    /// A walk came to a vertex that may scatter on.
+    #[inline]
+    fn arrive(&mut self, _vertex: &Vertex<S>) {}
+
+    /// A camera subpath left the scene: the `incoming` of `subpath`, reversed, is the direction it left in.
+    #[inline]
+    fn escape(&mut self, _subpath: &Subpath<S>) {}
+
+    /// The last vertex of the light subpath at hand was added to the cache.
+    #[inline]
+    fn keep(&mut self) {}
+}
+
+/// The recorder of ordinary camera subpaths: it adds up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sum {
+    /// Radiance estimate.
+    pub radiance: Spectrum,
+}
+
+impl<S: MisSums> Observer<S> for Sum {
+    #[inline]
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, contribution: Option<&Contribution>) {
+        self.radiance += contribution.map_or(Spectrum::ZERO, |contribution| contribution.value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_strategy_is_of_one_kind() {
+        let kinds = |length: u32| -> Vec<&str> {
+            (0..=length).map(|s| StrategyKind::of(s, length + 1 - s).name()).collect()
+        };
+        assert_eq!(kinds(1), ["hit", "lens"]);
+        assert_eq!(kinds(2), ["hit", "next-event", "lens"]);
+        assert_eq!(kinds(4), ["hit", "next-event", "join", "join", "lens"]);
+    }
+}

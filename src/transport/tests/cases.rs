@@ -1,0 +1,320 @@
+//! Real walks, and what the fast code says about every path that their connections make.
+
+use super::path::{APERTURE, Node, Path, Place};
+use crate::{
+    bsdf::Transport,
+    math::{Channels, Vec2, Vec3, vec2},
+    sampling::Stream,
+    scene::{
+        Scene,
+        lights::{EmissionSample, EmitterSample},
+    },
+    transport::{
+        Estimator, LightCache,
+        camera_path::{self, CameraPath},
+        connect::Contribution,
+        light_path::{self, LightPath},
+        mis::MisSums,
+        observer::{Meeting, Observer, Sum},
+        profile::Profile,
+        segment::{FlightPart, Interaction},
+        vertex::{Subpath, Vertex},
+        walk::{Departure, Kind, Visitor, walk},
+    },
+};
+
+/// A path, and the weight that the fast code gave it.
+pub struct Case {
+    /// None where the reference cannot tell what lies along it.
+    pub path: Option<Path>,
+    pub strategy: usize,
+    pub hero: usize,
+    pub weight: f32,
+}
+
+/// A film that reaches a little further than the image.
+pub struct WideFilm;
+
+impl<S: MisSums> Observer<S> for WideFilm {
+    fn covers(&self, film: Vec2) -> bool {
+        (film - vec2(8.0, 6.0)).abs().max_element() < 12.0
+    }
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Contribution>) {}
+}
+
+/// Remembers where a walk went.
+pub struct Trail<V, S: MisSums> {
+    visitor: V,
+    pub vertices: Vec<Vertex<S>>,
+    pub escaped: Option<Subpath<S>>,
+    /// What media were flown through, after how many vertices.
+    parts: Vec<(usize, Departure<S>, FlightPart<S::Channels>)>,
+}
+
+impl<V, S: MisSums> Trail<V, S> {
+    fn new(visitor: V) -> Self {
+        Self { visitor, vertices: Vec::new(), escaped: None, parts: Vec::new() }
+    }
+}
+
+impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::MisSums> {
+    fn connections(&self, edges: u32, position: Vec3) -> f32 {
+        self.visitor.connections(edges, position)
+    }
+    fn arrive(&mut self, vertex: &Vertex<P::MisSums>, _: &mut Stream) {
+        self.vertices.push(*vertex);
+    }
+    fn pass(&mut self, departure: &Departure<P::MisSums>, part: &FlightPart<P::Channels>, _: &mut Stream) {
+        self.parts.push((self.vertices.len(), *departure, *part));
+    }
+    fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
+        self.escaped = Some(*subpath);
+    }
+}
+
+/// A camera subpath through `film`.
+pub fn camera_walk<'a, P: Profile>(
+    estimator: &'a Estimator<'a, P>,
+    cache: &'a LightCache<P::MisSums>,
+    film: Vec2,
+    hero: usize,
+    stream: &mut Stream,
+) -> Trail<CameraPath<'a, P, Sum>, P::MisSums> {
+    let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
+    let departure = camera_path::depart(estimator, film, APERTURE);
+    let mut trail = Trail::new(CameraPath::new(estimator, cache, hero, departure.position, Sum::default()));
+    walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
+    trail
+}
+
+/// The light subpath of `visitor`.
+fn light_walk<'a, P: Profile>(
+    visitor: LightPath<'a, P, WideFilm>,
+    estimator: &Estimator<'_, P>,
+    start: &EmissionSample,
+    hero: usize,
+    stream: &mut Stream,
+) -> Trail<LightPath<'a, P, WideFilm>, P::MisSums> {
+    let max_edges = estimator.max_edges.saturating_sub(1);
+    let kind = Kind { transport: Transport::Importance, hero, max_edges };
+    let mut trail = Trail::new(visitor);
+    walk::<P>(estimator.scene, kind, light_path::depart(estimator, start), &mut trail, stream);
+    trail
+}
+
+/// Every path that one camera subpath through `film` and one light subpath make, with its fast weight.
+pub fn cases<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    film: Vec2,
+    hero: usize,
+    stream: &mut Stream,
+) -> Vec<Case> {
+    let cache = LightCache::new(P::Channels::COUNT);
+    let camera = camera_walk(estimator, &cache, film, hero, stream);
+    let mut cases = Cases { scene: estimator.scene, hidden: estimator.hide_emitters, hero, all: Vec::new() };
+    of_eye(estimator, &camera, &mut cases, stream);
+    let Some(start) = light_path::begin::<P>(estimator.scene, stream) else { return cases.all };
+    let (mut kept, mut film) = (LightCache::new(P::Channels::COUNT), WideFilm);
+    let visitor = LightPath::new(estimator, &mut kept, &mut film, start, hero);
+    let trail = light_walk(visitor, estimator, &start, hero, stream);
+    of_light(estimator, &start, &trail, &mut cases, stream);
+    of_both(estimator, &camera, &start, &trail.vertices, &mut cases, stream);
+    cases.all
+}
+
+/// Paths of at least `length` vertices: one by next-event estimation, one by a connection, one by the lens.
+pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, stream: &mut Stream) -> Vec<Case> {
+    let scene = estimator.scene;
+    let (cache, mut kept) = (LightCache::new(P::Channels::COUNT), LightCache::new(P::Channels::COUNT));
+    let camera = camera_walk(estimator, &cache, vec2(8.0, 6.0), 0, stream);
+    let start = scene.lights.sample_emission(&scene.geometry, stream).unwrap();
+    let mut film = WideFilm;
+    let light =
+        light_walk(LightPath::new(estimator, &mut kept, &mut film, start, 0), estimator, &start, 0, stream);
+    let mut cases = Cases { scene, hidden: estimator.hide_emitters, hero: 0, all: Vec::new() };
+    let last = &camera.vertices[length - 1];
+    let sample =
+        (0..100).find_map(|_| scene.lights.sample_emitter(&scene.geometry, last.position(), stream)).unwrap();
+    let of_eye = |count| chain(&camera.vertices[..count], false);
+    let of_light = |count| chain(&light.vertices[..count], false);
+    cases.add(
+        emitter_of(&sample),
+        Vec::new(),
+        of_eye(length),
+        camera.visitor.join_emitter(last, &sample, stream),
+    );
+    let half = length / 2;
+    let contribution =
+        camera.visitor.connect_with(&camera.vertices[half - 1], &light.vertices[half - 1], stream);
+    cases.add(start_of(&start), of_light(half), of_eye(half), contribution);
+    let seen = light.visitor.connect_to_lens(&light.vertices[length - 1], APERTURE, stream);
+    cases.add(start_of(&start), of_light(length), Vec::new(), seen.map(|(_, contribution)| contribution));
+    cases.all
+}
+
+struct Cases<'a> {
+    scene: &'a Scene,
+    /// The lens does not see emitters.
+    hidden: bool,
+    hero: usize,
+    all: Vec<Case>,
+}
+
+impl Cases<'_> {
+    /// A path from an emitter by `light`, in walking order, to the lens by `camera`, in walking order.
+    fn add(
+        &mut self,
+        emitter: (u32, Place),
+        light: Vec<Node>,
+        camera: Vec<Node>,
+        contribution: Option<Contribution>,
+    ) {
+        let Some(Contribution { weight, .. }) = contribution else { return };
+        let (index, place) = emitter;
+        let strategy = light.len() + 1;
+        let mut nodes = vec![Node::emitter(self.scene, index, place)];
+        nodes.extend(light);
+        nodes.extend(camera.into_iter().rev());
+        nodes.push(Node::lens(self.scene));
+        let path = Path::through(self.scene, self.hidden, index, nodes);
+        self.all.push(Case { path, strategy, hero: self.hero, weight });
+    }
+
+    /// The same where the camera subpath made all of it.
+    fn add_hit(&mut self, emitter: (u32, Place), camera: Vec<Node>, contribution: Option<Contribution>) {
+        let before = self.all.len();
+        self.add(emitter, Vec::new(), camera, contribution);
+        self.all[before..].iter_mut().for_each(|case| case.strategy = 0);
+    }
+}
+
+/// The vertices of a walk; `dirac` tells of the last one how it scatters.
+fn chain<S: MisSums>(vertices: &[Vertex<S>], dirac: bool) -> Vec<Node> {
+    let node = |(index, vertex): (usize, &Vertex<S>)| Node {
+        place: match vertex.interaction {
+            Interaction::Surface(point) => Place::Surface(point),
+            Interaction::Medium(position, _) => Place::Volume(position),
+        },
+        medium: vertex.subpath.medium,
+        dirac: vertices.get(index + 1).map_or(dirac, |next| next.subpath.after_dirac),
+    };
+    vertices.iter().enumerate().map(node).collect()
+}
+
+fn of_eye<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    camera: &Trail<CameraPath<'_, P, Sum>, P::MisSums>,
+    cases: &mut Cases<'_>,
+    stream: &mut Stream,
+) {
+    let scene = estimator.scene;
+    let mut previous = Node::lens(scene).position();
+    for (index, vertex) in camera.vertices.iter().enumerate() {
+        if let Interaction::Surface(point) = vertex.interaction
+            && let Some(light) = scene.surface(point.shape).emitter
+            && let Some(sample) = scene.lights.surface_hit(&scene.geometry, light, &point, previous)
+        {
+            let before = chain(&camera.vertices[..index], vertex.subpath.after_dirac);
+            cases.add_hit(
+                (light, Place::Surface(point)),
+                before,
+                camera.visitor.emitter_hit(&vertex.subpath, &sample),
+            );
+        }
+        if can_join(estimator, vertex)
+            && estimator.counts.next_event > 0.0
+            && let Some(sample) = scene.lights.sample_emitter(&scene.geometry, vertex.position(), stream)
+        {
+            let contribution = camera.visitor.join_emitter(vertex, &sample, stream);
+            cases.add(
+                emitter_of(&sample),
+                Vec::new(),
+                chain(&camera.vertices[..=index], false),
+                contribution,
+            );
+        }
+        previous = vertex.position();
+    }
+    of_flights(estimator, camera, cases, stream);
+    if let Some(subpath) = &camera.escaped
+        && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming)
+    {
+        let before = chain(&camera.vertices, subpath.after_dirac);
+        cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(subpath, &sample));
+    }
+}
+
+/// Points of emissive media, met on the flights of the camera subpath.
+fn of_flights<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    camera: &Trail<CameraPath<'_, P, Sum>, P::MisSums>,
+    cases: &mut Cases<'_>,
+    stream: &mut Stream,
+) {
+    for (count, departure, part) in &camera.parts {
+        if let Some((light, emission)) = estimator.scene.lights.of_medium(part.medium)
+            && let Some((t, _)) = emission.sample_along(&part.interval.segment, stream)
+            && let Some((subpath, sample)) = camera.visitor.meet(departure, part, light, t, stream)
+        {
+            let before = chain(&camera.vertices[..*count], departure.dirac);
+            cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(&subpath, &sample));
+        }
+    }
+}
+
+fn can_join<P: Profile>(estimator: &Estimator<'_, P>, vertex: &Vertex<P::MisSums>) -> bool {
+    vertex.subpath.edges < estimator.max_edges && vertex.is_connectible(estimator.scene)
+}
+
+fn of_light<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    start: &EmissionSample,
+    light: &Trail<LightPath<'_, P, WideFilm>, P::MisSums>,
+    cases: &mut Cases<'_>,
+    stream: &mut Stream,
+) {
+    if estimator.counts.lens <= 0.0 {
+        return;
+    }
+    let contribution =
+        light.visitor.connect_start_to_lens(APERTURE, stream).map(|(_, contribution)| contribution);
+    cases.add(start_of(start), Vec::new(), Vec::new(), contribution);
+    for (index, vertex) in light.vertices.iter().enumerate() {
+        if vertex.is_connectible(estimator.scene) {
+            let contribution =
+                light.visitor.connect_to_lens(vertex, APERTURE, stream).map(|(_, contribution)| contribution);
+            cases.add(start_of(start), chain(&light.vertices[..=index], false), Vec::new(), contribution);
+        }
+    }
+}
+
+fn of_both<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    camera: &Trail<CameraPath<'_, P, Sum>, P::MisSums>,
+    start: &EmissionSample,
+    light: &[Vertex<P::MisSums>],
+    cases: &mut Cases<'_>,
+    stream: &mut Stream,
+) {
+    if estimator.counts.connection <= 0.0 || light.is_empty() {
+        return;
+    }
+    for (index, vertex) in camera.vertices.iter().enumerate() {
+        let other = stream.below(light.len());
+        let (ours, theirs) = (can_join(estimator, vertex), light[other].is_connectible(estimator.scene));
+        if ours && theirs && vertex.subpath.edges + light[other].subpath.edges < estimator.max_edges {
+            let contribution = camera.visitor.connect_with(vertex, &light[other], stream);
+            let (camera, light) = (chain(&camera.vertices[..=index], false), chain(&light[..=other], false));
+            cases.add(start_of(start), light, camera, contribution);
+        }
+    }
+}
+
+fn start_of(start: &EmissionSample) -> (u32, Place) {
+    (start.light, Place::of(start.light, &start.point))
+}
+
+/// The emitter of a sample and its vertex.
+fn emitter_of(sample: &EmitterSample) -> (u32, Place) {
+    (sample.light, Place::of(sample.light, &sample.point))
+}

@@ -1,0 +1,367 @@
+//! The slow reference of the weights: the judge of the fast ones.
+//!
+//! `pdf` writes the density of every strategy of an explicit `path` out, vertex by vertex, in f64 logarithms,
+//! without any of the running sums of `walk`, `vertex` and `weight`, and `sharing` the heuristics by definition. `record` takes real walks and the weights
+//! that the fast code gives the paths they make; `replay` leads the fast code along a given path from both ends,
+//! so that it weighs all strategies of one path. All three must agree, and each set of weights must sum to one.
+
+mod cases;
+mod heuristics;
+mod path;
+mod reference;
+mod replay;
+mod report;
+pub mod scenes;
+
+use super::{
+    Estimator, Heuristic, LightCache, Nowhere, Options, Strategies,
+    profile::{
+        Bounded, ByCutoff, ByMaximum, ByPower, ByUniform, ChromaticFog, Everything, Fire, Fog, Profile,
+        Smoke, Vacuum,
+    },
+};
+use crate::{
+    math::{Channels, vec2, vec3},
+    sampling::{Stream, stream::Purpose},
+    scene::build::Setup,
+};
+use path::{Node, Path, Place};
+use reference::Reference;
+use report::Report;
+use scenes::*;
+
+const ALL: Options = Options {
+    strategies: Strategies::BDPT,
+    heuristic: Heuristic::Balance,
+    max_depth: None,
+    hide_emitters: false,
+    forced_interaction: false,
+};
+const PIXELS: u64 = 16 * 12;
+const SEED: u64 = 1;
+
+/// Compares all paths that `pairs` camera and light subpaths make.
+fn examine<P: Profile>(name: &'static str, setup: &Setup, options: Options, pairs: u64) -> Report {
+    let estimator = Estimator::<P>::new(&setup.scene, options, SEED, PIXELS, PIXELS);
+    let reference = Reference::new(&estimator);
+    let mut report = Report::new(name);
+    for pair in 0..pairs {
+        let mut stream = Stream::new(5, pair, 0, Purpose::Study);
+        let film = vec2(16.0, 12.0) * stream.square();
+        let hero = pair as usize % P::Channels::COUNT;
+        for case in cases::cases(&estimator, film, hero, &mut stream) {
+            report.take(&estimator, &reference, &case);
+        }
+    }
+    report.check();
+    report
+}
+
+/// The same, and at least a thousand paths, some by each kind of strategy.
+fn examine_all<P: Profile>(name: &'static str, setup: &Setup, pairs: u64) {
+    let report = examine::<P>(name, setup, ALL, pairs);
+    assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
+    assert!(report.strategies.iter().all(|count| *count > 0), "{name}: {:?}", report.strategies);
+}
+
+#[test]
+fn fog_in_a_closed_box() {
+    let setup = build(&[FOG, INSIDE, ROOM, LAMP, BALL]);
+    examine_all::<Fog>("fog", &setup, 400);
+    examine_all::<Everything>("fog by everything", &setup, 200);
+    examine_all::<Vacuum>("vacuum", &build(&[CLEAR, INSIDE, ROOM, LAMP, BALL]), 400);
+}
+
+#[test]
+fn dirac_vertices_in_fog() {
+    examine_all::<Fog>("glass, mirror", &build(&[FOG, INSIDE, ROOM, LAMP, GLASS_BALL, MIRROR]), 400);
+    examine_all::<Fog>("frosted", &build(&[FOG, INSIDE, ROOM, BULB, FROSTED_BALL, MIRROR, POINT]), 400);
+}
+
+#[test]
+fn surfaces_with_several_kinds_of_lobes() {
+    examine_all::<Fog>("plastic", &build(&[FOG, INSIDE, ROOM, LAMP, PLASTIC_BALL, MIRROR]), 400);
+    examine_all::<Bounded>("veiled", &build(&[FOG, INSIDE, ROOM, LAMP, VEILED_BALL]), 400);
+    examine_all::<Bounded>("stained", &build(&[FOG, INSIDE, ROOM, LAMP, BALL, STAINED_PANE]), 400);
+    examine_all::<Fog>("blurred", &build(&[FOG, INSIDE, ROOM, BULB, BLURRED_PANE]), 400);
+}
+
+#[test]
+fn emitters_at_infinity() {
+    examine_all::<Bounded>("sky", &build(&[OUTSIDE, SMOKE, KERNEL, GROUND, SKY]), 1000);
+    let setup = build(&[OUTSIDE, SMOKE, GROUND, SUN]);
+    let report = examine::<Bounded>("sun", &setup, ALL, 1000);
+    assert_eq!(report.strategies[0], 0, "a single direction cannot be met");
+    examine_all::<Everything>("sun, sky", &build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]), 1000);
+}
+
+#[test]
+fn half_transparent_panes() {
+    examine_all::<Bounded>("pane", &build(&[FOG, INSIDE, ROOM, LAMP, BALL, PANE]), 400);
+    examine_all::<Everything>(
+        "pane, colours",
+        &build(&[CHROMATIC_FOG, INSIDE, ROOM, BULB, PANE, MIRROR]),
+        300,
+    );
+}
+
+#[test]
+fn extinction_that_differs_between_channels() {
+    examine_all::<ChromaticFog>("chromatic", &build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL]), 300);
+    examine_all::<ChromaticFog>("1e-3, 1, 1e3", &build(&[EXTREME_FOG, INSIDE, ROOM, LAMP, BALL]), 300);
+    examine_all::<ChromaticFog>("one clear", &build(&[YELLOW_FOG, INSIDE, ROOM, LAMP, GLASS_BALL]), 300);
+}
+
+#[test]
+fn lights_of_all_kinds() {
+    let setup = build(&[OUTSIDE, SMOKE, GROUND, SKY, SUN, POINT, SPOT, LAMP, BULB]);
+    examine_all::<Bounded>("in the open", &setup, 1000);
+    examine_all::<Fog>("in a room", &build(&[FOG, INSIDE, ROOM, BALL, POINT, SPOT, LAMP, BULB]), 400);
+}
+
+#[test]
+fn a_lens_of_some_size() {
+    examine_all::<Fog>("thin lens", &build(&[FOG, LENS, ROOM, LAMP, BALL, POINT]), 400);
+}
+
+#[test]
+fn profiles_and_single_directions() {
+    let setup = build(&[FOG, INSIDE, ROOM, BALL, LUMINAIRE, BEAM, PROFILED_POINT]);
+    examine_all::<Fog>("profiles, beam", &setup, 600);
+}
+
+#[test]
+fn an_image_of_the_sky() {
+    examine_all::<Bounded>("sky image", &build(&[OUTSIDE, SMOKE, GROUND, SKY_IMAGE]), 1000);
+}
+
+#[test]
+fn normals_that_are_not_the_surface_s() {
+    examine_all::<Fog>("smooth mesh", &build(&[FOG, INSIDE, ROOM, BULB, SMOOTH]), 400);
+}
+
+/// Media whose extinction and albedo vary, by exact depths and by what stands in for random ones.
+#[test]
+fn media_that_vary() {
+    examine_all::<Smoke>("waves", &build(&[OUTSIDE, WAVES, GROUND, LAMP, BULB]), 600);
+    examine_all::<Smoke>("voxels", &build(&[OUTSIDE, VOXELS, GROUND, SKY, SUN]), 1000);
+    examine_all::<Everything>("waves by everything", &build(&[OUTSIDE, WAVES, GROUND, LAMP]), 600);
+    examine_all::<Everything>(
+        "coloured waves",
+        &build(&[OUTSIDE, CHROMATIC_WAVES, GROUND, LAMP, POINT]),
+        600,
+    );
+    examine_all::<Everything>("tracked waves", &build(&[OUTSIDE, TRACKED_WAVES, GROUND, LAMP, SKY]), 600);
+}
+
+/// Emissive media: as far as the camera is in them, beside lamps, in smoke that is dark itself.
+#[test]
+fn media_that_shine() {
+    examine_all::<Fire>("glowing fog", &build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, BALL]), 300);
+    examine_all::<Fire>("fire ball", &build(&[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP, POINT]), 600);
+    examine_all::<Fire>("fire in a box", &build(&[OUTSIDE, FIRE_BOX, GROUND, SKY]), 600);
+    examine_all::<Fire>("no matter", &build(&[OUTSIDE, NEON, GROUND, MIRROR, BALL]), 1500);
+    examine_all::<Everything>("colours", &build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]), 600);
+    examine_all::<Everything>("tracked", &build(&[OUTSIDE, TRACKED_FIRE, GROUND, LAMP]), 600);
+    examine_all::<Everything>(
+        "colours, glass, pane",
+        &build(&[GLOWING_CHROMATIC_FOG, INSIDE, SHELL, GLASS_BALL, PANE]),
+        300,
+    );
+}
+
+#[test]
+fn media_that_shine_by_any_subset_of_strategies() {
+    let setup = build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, GLASS_BALL]);
+    for bits in 1..16 {
+        let on = |bit: u32| bits >> bit & 1 == 1;
+        let strategies = Strategies { emitter_hit: on(0), next_event: on(1), connection: on(2), lens: on(3) };
+        let report = examine::<Fire>("shining subset", &setup, Options { strategies, ..ALL }, 60);
+        for (bit, count) in report.strategies.iter().enumerate() {
+            assert_eq!(*count > 0, on(bit as u32), "{strategies:?}");
+        }
+    }
+}
+
+#[test]
+fn media_that_shine_within_a_limited_depth() {
+    let setup = build(&[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP]);
+    for (depth, name) in
+        [(0, "fire, depth 0"), (1, "fire, depth 1"), (2, "fire, depth 2"), (3, "fire, depth 3")]
+    {
+        for hide_emitters in [false, true] {
+            let options = Options { max_depth: Some(depth), hide_emitters, ..ALL };
+            let report = examine::<Fire>(name, &setup, options, 300);
+            assert_eq!(report.longest, depth as usize);
+            assert_eq!(report.paths > 0, depth > 0, "a medium is never hidden");
+        }
+    }
+}
+
+/// All heuristics but the balance heuristic, in `setup`.
+fn examine_heuristics(name: &'static str, setup: &Setup, options: Options, pairs: u64) {
+    let by = |heuristic, max_depth| Options { heuristic, max_depth, ..options };
+    let open = options.max_depth;
+    let bound = Some(open.unwrap_or(Heuristic::CUTOFF_EDGES));
+    let reports = [
+        examine::<ByPower>(name, setup, by(Heuristic::Power, open), pairs),
+        examine::<ByMaximum>(name, setup, by(Heuristic::Maximum, open), pairs),
+        examine::<ByCutoff>(name, setup, by(Heuristic::Cutoff { alpha: 0.1 }, bound), pairs),
+        examine::<ByCutoff>(name, setup, by(Heuristic::Cutoff { alpha: 0.9 }, bound), pairs),
+        examine::<ByUniform>(name, setup, by(Heuristic::Uniform, open), pairs),
+    ];
+    for report in reports {
+        assert!(report.compared >= 100, "{name}: {} paths", report.compared);
+    }
+}
+
+#[test]
+fn every_heuristic_in_fog() {
+    examine_heuristics("fog", &build(&[FOG, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+    examine_heuristics("vacuum", &build(&[CLEAR, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+    examine_heuristics("chromatic", &build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+    examine_heuristics("1e-3, 1, 1e3", &build(&[EXTREME_FOG, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+    examine_heuristics("one clear", &build(&[YELLOW_FOG, INSIDE, ROOM, LAMP, BALL]), ALL, 60);
+}
+
+#[test]
+fn every_heuristic_with_dirac_vertices() {
+    let setup = build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, GLASS_BALL, MIRROR]);
+    examine_heuristics("glass, mirror", &setup, ALL, 60);
+    let setup = build(&[FOG, INSIDE, ROOM, LAMP, POINT, PLASTIC_BALL, PANE]);
+    examine_heuristics("plastic, pane", &setup, ALL, 60);
+}
+
+#[test]
+fn every_heuristic_under_the_sky_and_in_fire() {
+    examine_heuristics("sky", &build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]), ALL, 200);
+    examine_heuristics("waves", &build(&[OUTSIDE, CHROMATIC_WAVES, GROUND, LAMP, POINT]), ALL, 100);
+    let setup = build(&[GLOWING_CHROMATIC_FOG, INSIDE, SHELL, GLASS_BALL, PANE]);
+    examine_heuristics("fire", &setup, ALL, 60);
+}
+
+/// In a hollow diffuse ball all connections of a path have the same density, but for rounding: they share it.
+#[test]
+fn strategies_that_are_tied() {
+    let setup = build(&[CLEAR, INSIDE, HOLLOW]);
+    let options = Options { heuristic: Heuristic::Maximum, ..ALL };
+    let report = examine::<ByMaximum>("hollow ball", &setup, options, 300);
+    assert!(report.divided >= 50, "{} of {} paths", report.divided, report.compared);
+}
+
+#[test]
+fn every_heuristic_by_some_strategies_within_a_limited_depth() {
+    let setup = build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BULB, GLASS_BALL]);
+    for strategies in [
+        Strategies::PT,
+        Strategies { next_event: false, ..Strategies::BDPT },
+        Strategies { emitter_hit: false, ..Strategies::BDPT },
+    ] {
+        examine_heuristics("subset", &setup, Options { strategies, max_depth: Some(4), ..ALL }, 100);
+    }
+}
+
+#[test]
+fn limited_depth() {
+    let setup = build(&[FOG, INSIDE, ROOM, LAMP, BULB, BALL, POINT]);
+    for (depth, name) in [(0, "depth 0"), (1, "depth 1"), (2, "depth 2"), (4, "depth 4")] {
+        let options = Options { max_depth: Some(depth), ..ALL };
+        let report = examine::<Fog>(name, &setup, options, 300);
+        assert_eq!(report.longest, depth as usize);
+        assert_eq!(report.paths > 0, depth > 0);
+    }
+}
+
+#[test]
+fn any_subset_of_strategies() {
+    let setup = build(&[FOG, INSIDE, ROOM, LAMP, BULB, GLASS_BALL]);
+    for bits in 1..16 {
+        let on = |bit: u32| bits >> bit & 1 == 1;
+        let strategies = Strategies { emitter_hit: on(0), next_event: on(1), connection: on(2), lens: on(3) };
+        let report = examine::<Fog>("subset", &setup, Options { strategies, ..ALL }, 100);
+        for (bit, count) in report.strategies.iter().enumerate() {
+            assert_eq!(*count > 0, on(bit as u32), "{strategies:?}");
+        }
+    }
+}
+
+#[test]
+fn hidden_emitters_are_not_seen_but_lit_by() {
+    let setup = build(&[OUTSIDE, SMOKE, GROUND, SKY, LAMP]);
+    let report = examine::<Bounded>("hidden", &setup, Options { hide_emitters: true, ..ALL }, 300);
+    assert!(report.strategies.iter().all(|count| *count > 0));
+}
+
+#[test]
+fn joins_across_a_hundred_mean_free_paths() {
+    let report = examine::<Fog>("tunnel", &build(&[TUNNEL]), ALL, 300);
+    assert!(report.deepest > 100.0 && report.strategies[2] > 100);
+}
+
+/// No real walk takes these: one to three vertices in the dark between the lamp and the lens, 100 mean free paths
+/// apart. All strategies are as unlikely, and must still be weighed against each other.
+#[test]
+fn paths_through_the_dark() {
+    let setup = build(&[TUNNEL]);
+    let estimator = Estimator::<Fog>::new(&setup.scene, ALL, SEED, PIXELS, PIXELS);
+    let (reference, mut report) = (Reference::new(&estimator), Report::new("dark"));
+    for index in 0..300 {
+        let mut stream = Stream::new(5, index, 0, Purpose::Study);
+        let start = setup.scene.lights.sample_emission(&setup.scene.geometry, &mut stream).unwrap();
+        let mut nodes = vec![Node::emitter(&setup.scene, 0, Place::of(0, &start.point))];
+        let count = 1 + index % 3;
+        for step in (1..=count).rev() {
+            let aside = (stream.square() - 0.5) * 8.0;
+            let along = (step as f32 + stream.uniform() - 0.5) * 100.0 / (count + 1) as f32;
+            let place = Place::Volume(vec3(aside.x, aside.y, along));
+            nodes.push(Node { place, medium: setup.scene.sensor_medium, dirac: false });
+        }
+        nodes.push(Node::lens(&setup.scene));
+        let path = Path::through(&setup.scene, false, 0, nodes).unwrap();
+        let slow = report.lead(&estimator, &reference, &path);
+        assert!(slow.iter().flatten().filter(|weight| **weight > 1e-6).count() > 0);
+    }
+    report.check();
+}
+
+#[test]
+fn walks_of_ten_thousand_vertices() {
+    let setup = build(&[FURNACE, INSIDE, POINT]);
+    let options = Options { max_depth: Some(10_001), ..ALL };
+    let estimator = Estimator::<Fog>::new(&setup.scene, options, SEED, PIXELS, PIXELS);
+    let reference = Reference::new(&estimator);
+    let mut stream = Stream::new(5, 0, 0, Purpose::Study);
+    let mut weighed = 0;
+    for case in cases::long_cases(&estimator, 10_000, &mut stream) {
+        let path = case.path.unwrap();
+        let (slow, fast) = (reference.weights(&path)[case.strategy][0], f64::from(case.weight));
+        eprintln!("{} vertices, s = {}: {fast:e} {slow:e}", path.nodes.len(), case.strategy);
+        assert!(fast > 0.0 && fast.is_finite());
+        // Every vertex rounds the sums once more.
+        assert!((fast / slow - 1.0).abs() < 1e-3, "{fast} {slow}");
+        weighed += 1;
+    }
+    assert!(weighed >= 2, "a lens that looks elsewhere is all that may be missing");
+}
+
+/// n of a connection is how often a draw from the cache gives a certain vertex of a light subpath, thinned or not.
+#[test]
+fn joins_are_counted_as_often_as_they_come() {
+    for (setup, thinned) in
+        [(build(&[FOG, INSIDE, ROOM, LAMP]), false), (build(&[FURNACE, INSIDE, LAMP]), true)]
+    {
+        let options = Options { max_depth: Some(200), ..ALL };
+        let estimator = Estimator::<Fog>::new(&setup.scene, options, SEED, 1024, 1024);
+        assert_eq!(estimator.keep < 1.0, thinned);
+        let mut cache = LightCache::new(1);
+        for walk in 0..20_000 {
+            let mut stream = Stream::new(1, walk, 0, Purpose::Light);
+            estimator.trace_light(&mut cache, &mut Nowhere, 0, &mut stream);
+        }
+        // Every walk has a first vertex here, so of the draws this part are first vertices:
+        let (pool, _) = cache.pool(0, 1).unwrap();
+        let first = pool.iter().filter(|vertex| vertex.subpath.edges == 1).count() as f32 / pool.len() as f32;
+        let count = estimator.counts.connection;
+        assert!((count / first - 1.0).abs() < 0.1, "{count} counted, {first} came");
+    }
+}

@@ -1,0 +1,259 @@
+//! The densities of all strategies of a path, each written out vertex by vertex (LW96 eq. 11-13), and the weights by
+//! a heuristic over them (eq. 14). Logarithms in f64: no path is too long or too dense for them.
+
+use super::{
+    heuristics,
+    path::{APERTURE, Node, Path, Place, properties},
+};
+use crate::{
+    bsdf::{BsdfModel, Transport},
+    emitter::{Emitter, Kind},
+    math::{Channels, DVec3},
+    phase::{Deflection, PhaseModel},
+    sampling::{Stream, stream::Purpose},
+    scene::{
+        Scene,
+        lights::{EmissionSample, EmitterPoint, EmitterSample},
+    },
+    shape::SurfacePoint,
+    transport::{Counts, Estimator, Heuristic, profile::Profile},
+};
+
+/// Expected samples, over those of the likeliest strategy, that never come.
+const NEVER: f64 = 1e-30;
+
+/// What the reference knows of an estimator.
+pub struct Reference<'a> {
+    pub scene: &'a Scene,
+    pub counts: Counts,
+    pub heuristic: Heuristic,
+    pub channels: usize,
+    /// A sampled start on every emitter: those of one emitter have equal densities, but for environments
+    /// and media.
+    pub starts: Vec<Option<EmissionSample>>,
+}
+
+/// ln p>_i and ln p<_i of every vertex of a path, per channel.
+struct Written {
+    by_light: Vec<[f64; 3]>,
+    by_eye: Vec<[f64; 3]>,
+}
+
+impl<'a> Reference<'a> {
+    /// Gathers what is needed of the emitters.
+    pub fn new<P: Profile>(estimator: &Estimator<'a, P>) -> Self {
+        let Estimator { scene, counts, heuristic, .. } = *estimator;
+        let mut starts = vec![None; scene.lights.all.len()];
+        let mut stream = Stream::new(7, 0, 0, Purpose::Study);
+        for _ in 0..10_000 {
+            if let Some(start) = scene.lights.sample_emission(&scene.geometry, &mut stream) {
+                starts[start.light as usize].get_or_insert(start);
+            }
+        }
+        Self { scene, counts, heuristic, channels: P::Channels::COUNT, starts }
+    }
+
+    /// Weights by strategy and hero, each in [0, 1]: they sum to one.
+    pub fn weights(&self, path: &Path) -> Vec<Vec<f64>> {
+        heuristics::weights(self.heuristic, &self.counted(path))
+    }
+
+    /// True by strategy and hero where walks come along the path so rarely, beside other strategies, that f32 need not
+    /// hold how rarely.
+    pub fn never(&self, path: &Path) -> Vec<Vec<bool>> {
+        let logs = self.counted(path);
+        let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+        logs.iter().map(|strategy| strategy.iter().map(|log| *log < most + NEVER.ln()).collect()).collect()
+    }
+
+    /// True if densities that are off by `slack`, relative, could make all the difference to the weights.
+    pub fn is_close(&self, path: &Path, slack: f64) -> bool {
+        heuristics::is_close(self.heuristic, &self.counted(path), slack)
+    }
+
+    /// ln(n_s p_s^c) by strategy and channel.
+    fn counted(&self, path: &Path) -> Vec<Vec<f64>> {
+        let written = self.write(path);
+        let strategy = |s: usize| {
+            let count = self.count(path, s).ln();
+            let pdf = |c| count + self.first(path, s) + rest(&written, s, c);
+            (0..self.channels).map(pdf).collect()
+        };
+        (0..path.nodes.len()).map(strategy).collect()
+    }
+
+    /// Expected samples of strategy `s`; 0 where it cannot make this path, as it would have to join a vertex that
+    /// scatters by a Dirac lobe.
+    pub fn count(&self, path: &Path, s: usize) -> f64 {
+        let (length, hittable) = (path.nodes.len(), self.emitter(path).is_hittable());
+        let count = match s {
+            0 if hittable => self.counts.emitter_hit,
+            0 => 0.0,
+            _ if path.nodes[s - 1].dirac || path.nodes[s].dirac => 0.0,
+            1 if length == 2 && !hittable => 0.0,
+            _ if s == length - 1 => self.counts.lens,
+            1 => self.counts.next_event,
+            _ => self.counts.connection,
+        };
+        f64::from(count)
+    }
+
+    fn emitter(&self, path: &Path) -> &Emitter {
+        &self.scene.lights.all[path.light as usize].emitter
+    }
+
+    /// ln of the density of the emitter's vertex in strategy `s`.
+    fn first(&self, path: &Path, s: usize) -> f64 {
+        match s {
+            0 => 0.0,
+            1 if path.nodes.len() > 2 => {
+                self.emitter_sample(path).map_or(0.0, |sample| f64::from(sample.pdf)).ln()
+            }
+            _ => self.start(path).ln(),
+        }
+    }
+
+    /// Density of the emitter's vertex as the start of a light subpath.
+    pub fn start(&self, path: &Path) -> f64 {
+        if let (Kind::Environment(_), Place::Sky(direction)) = (&self.emitter(path).kind, path.nodes[0].place)
+        {
+            return self
+                .scene
+                .lights
+                .infinity_hit(direction)
+                .map_or(0.0, |sample| f64::from(sample.pdf_start));
+        }
+        if let Place::VolumeEmitter(position, light) = path.nodes[0].place {
+            return self
+                .scene
+                .lights
+                .volume_sample(light, position)
+                .map_or(0.0, |sample| f64::from(sample.pdf_start));
+        }
+        self.starts[path.light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf))
+    }
+
+    fn write(&self, path: &Path) -> Written {
+        let last = path.nodes.len() - 1;
+        let by_light = (0..last).map(|i| if i == 0 { [0.0; 3] } else { self.by_light(path, i) }).collect();
+        Written { by_light, by_eye: (0..last).map(|i| self.by_eye(path, i)).collect() }
+    }
+
+    /// ln p>_i: vertex `i` > 0 as the light subpath makes it.
+    fn by_light(&self, path: &Path, i: usize) -> [f64; 3] {
+        let nodes = &path.nodes;
+        let direction = match i {
+            1 => self.emission(path.light, &nodes[0], nodes[0].towards(&nodes[1])),
+            _ => self.scatter(&nodes[i - 2], &nodes[i - 1], &nodes[i], Transport::Importance),
+        };
+        self.made(&nodes[i - 1], &nodes[i], direction, &path.depths[i - 1])
+    }
+
+    /// ln p<_i: vertex `i` as the camera subpath makes it.
+    fn by_eye(&self, path: &Path, i: usize) -> [f64; 3] {
+        let nodes = &path.nodes;
+        let direction = match nodes.get(i + 2) {
+            None => self.lens(&nodes[i]),
+            Some(before) => self.scatter(before, &nodes[i + 1], &nodes[i], Transport::Radiance),
+        };
+        self.made(&nodes[i + 1], &nodes[i], direction, &path.depths[i])
+    }
+
+    /// ln of LW96 eq. 13, p' p'' / d^2, for a vertex `to` reached from `from`.
+    fn made(&self, from: &Node, to: &Node, direction: f64, depths: &[f64; 3]) -> [f64; 3] {
+        let geometry = to.cosine(from.towards(to)) * from.inverse_distance_squared(to);
+        let flight = |c: usize| to.sigma_t(self.scene, c).ln() - depths[c];
+        [0, 1, 2].map(|c| direction.ln() + geometry.ln() + flight(c))
+    }
+
+    /// Density of directions that leave the lens, per film area of a pixel.
+    fn lens(&self, seen: &Node) -> f64 {
+        let sensor = &self.scene.sensor;
+        let seen = match seen.place {
+            Place::Sky(direction) => sensor.project_direction(direction, APERTURE),
+            _ => sensor.project(seen.position(), APERTURE),
+        };
+        seen.map_or(0.0, |seen| f64::from(seen.pdf))
+    }
+
+    /// Density of directions that leave an emitter [1/sr]; for one at infinity, of starts on its disk [1/m^2].
+    pub fn emission(&self, light: u32, node: &Node, direction: DVec3) -> f64 {
+        match &self.scene.lights.all[light as usize].emitter.kind {
+            Kind::Area(area) => f64::from(area.pdf_sr(node.cosine(direction) as f32)),
+            Kind::DirectionalArea(_) => 1.0,
+            Kind::Point(point) => f64::from(point.pdf_sr(direction.as_vec3())),
+            Kind::Medium(_) => 0.25 / std::f64::consts::PI,
+            Kind::Directional(_) | Kind::Environment(_) => {
+                self.starts[light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf_direction))
+            }
+        }
+    }
+
+    /// Density of going on from `here` to `after`, coming from `before`, survival included [1/sr]; the probability
+    /// of the lobe where that is a Dirac lobe.
+    fn scatter(&self, before: &Node, here: &Node, after: &Node, transport: Transport) -> f64 {
+        let (back, on) = (here.towards(before), here.towards(after));
+        match &here.place {
+            Place::Volume(position) => {
+                let medium = &self.scene.media[here.medium.0 as usize];
+                f64::from(medium.phase.pdf_sr(Deflection::between(-back.as_vec3(), on.as_vec3())))
+                    * f64::from(properties(self.scene, here.medium, *position).survival())
+            }
+            Place::Surface(point) => reflect(self.scene, point, back, on, here.dirac, transport),
+            _ => 0.0,
+        }
+    }
+
+    /// The emitter's vertex as next-event estimation finds it from the next vertex.
+    pub fn emitter_sample(&self, path: &Path) -> Option<EmitterSample> {
+        let (lights, geometry) = (&self.scene.lights, &self.scene.geometry);
+        let reference = path.nodes[1].position();
+        match (&self.emitter(path).kind, path.nodes[0].place) {
+            (Kind::Area(_), Place::Surface(point)) => {
+                lights.surface_hit(geometry, path.light, &point, reference)
+            }
+            (Kind::Environment(_), Place::Sky(direction)) => lights.infinity_hit(direction),
+            (Kind::Medium(_), Place::VolumeEmitter(position, light)) => lights.volume_sample(light, position),
+            (_, place) => {
+                // Single points and directions come up as often as their emitter is chosen.
+                let mut stream = Stream::new(11, 0, 0, Purpose::Study);
+                let found = |sample: &EmitterSample| match (sample.point, place) {
+                    (EmitterPoint::Point(found), Place::Point(wanted)) => found == wanted,
+                    (EmitterPoint::Direction(found), Place::Sky(wanted)) => found == wanted,
+                    _ => false,
+                };
+                (0..4_096).filter_map(|_| lights.sample_emitter(geometry, reference, &mut stream)).find(found)
+            }
+        }
+    }
+}
+
+/// The product over all vertices but the emitter's own, if strategy `s` makes that by the light subpath.
+fn rest(written: &Written, s: usize, channel: usize) -> f64 {
+    let light: f64 = written.by_light[..s].iter().map(|log| log[channel]).sum();
+    let camera: f64 = written.by_eye[s..].iter().map(|log| log[channel]).sum();
+    light + camera
+}
+
+/// Density of the direction `on` given `back`, survival included.
+pub fn reflect(
+    scene: &Scene,
+    point: &SurfacePoint,
+    back: DVec3,
+    on: DVec3,
+    dirac: bool,
+    transport: Transport,
+) -> f64 {
+    let bsdf = scene.bsdf(point.shape);
+    let (wi, wo) = (point.shading.to_local(back.as_vec3()), point.shading.to_local(on.as_vec3()));
+    let survival = f64::from(bsdf.survival(point.uv, wi));
+    if !dirac {
+        return survival * f64::from(bsdf.evaluate(point.uv, wi, wo, transport).pdf_fwd);
+    }
+    // A surface has one Dirac lobe on each side at most; ask until the one on this side comes.
+    let mut stream = Stream::new(13, 0, 0, Purpose::Study);
+    let lobe = (0..4_096)
+        .filter_map(|_| bsdf.sample(point.uv, wi, transport, &mut stream))
+        .find(|sample| sample.dirac && sample.wo.z * wo.z > 0.0);
+    survival * lobe.map_or(0.0, |sample| f64::from(sample.pdf_fwd))
+}

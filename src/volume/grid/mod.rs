@@ -1,0 +1,441 @@
+//! `gridvolume`: values on a lattice of voxels, from a file, as in Mitsuba.
+//!
+//! The voxels fill the unit cube of `to_world` (or of the file's own box); their centres lie at (i + 1/2) / n. Where
+//! the value counts is told by [`VolumeModel::contains`]: as in Mitsuba, within the axis-aligned box around the
+//! transformed cube. [`VolumeModel::eval`] goes on beyond it as `wrap_mode` says, and so it does in what a turned or
+//! sheared cube leaves of its box; integrals and inversions count the box and no more.
+
+mod file;
+mod lattice;
+mod memory;
+#[cfg(test)]
+mod tests;
+mod vol;
+mod voxel;
+mod walk;
+mod wrap;
+
+use super::{Coarse, Place, VolumeModel};
+use crate::{
+    description::Params,
+    error::{Error, Result},
+    math::{
+        Affine3A, Channels, DAffine3, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3,
+        boxes::{image, narrowed},
+        cells::{Cells, Crossing},
+    },
+};
+use lattice::{BRICK, Brick, Extent, Fault, Lattice};
+use std::{path::Path, sync::Arc};
+use voxel::Voxel;
+use walk::{Line, Target, Walk};
+
+pub use crate::math::Wrap;
+pub use file::{Source, Values};
+pub use lattice::Filter;
+
+/// Where an optical depth, summed along a segment, reaches a given value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reached<L> {
+    /// Within the segment.
+    Within {
+        /// The place [m].
+        t: f32,
+        /// The depth of every channel up to there.
+        depth: L,
+        /// The extinction there, scaled [1/m]; that of the hero is not 0.
+        value: L,
+    },
+    /// Not at all.
+    Beyond {
+        /// The depth of every channel along the whole segment.
+        depth: L,
+    },
+}
+
+/// A lattice of numbers or colours. Cheap to clone: all of it is shared.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    bricks: Bricks,
+    frame: Arc<Frame>,
+}
+
+/// Where a grid lies.
+#[derive(Debug)]
+struct Frame {
+    wrap: Wrap,
+    /// From the world to the unit cube.
+    to_local: DAffine3,
+    /// From the world to the lattice, in cells.
+    to_lattice: DAffine3,
+    /// From the unit cube to the lattice: a scale and then a shift.
+    scale: DVec3,
+    shift: DVec3,
+    /// The box around the transformed cube.
+    domain: [DVec3; 2],
+}
+
+#[derive(Clone, Debug)]
+enum Bricks {
+    Grey(Arc<Lattice<f32>>),
+    Chromatic(Arc<Lattice<Spectrum>>),
+}
+
+/// Evaluates `$body` for the lattice, whatever it holds.
+macro_rules! each {
+    ($grid:expr, $lattice:ident => $body:expr) => {
+        match &$grid.bricks {
+            Bricks::Grey($lattice) => $body,
+            Bricks::Chromatic($lattice) => $body,
+        }
+    };
+}
+
+impl Grid {
+    /// Reads `filename`, `filter_type`, `wrap_mode`, `use_grid_bbox` (true by default for files that know where they
+    /// lie, `.vdb` and `.nvdb`), `to_world`, and `grid`, the name of one of several; `raw`, `accel` and `max_value`
+    /// change nothing.
+    pub fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
+        let path = params.file("filename")?;
+        let is_vdb = file::is_vdb(&path);
+        if params.has("data") || (params.has("grid") && !is_vdb) {
+            let remedy = "save the grid to a file and give its name as \"filename\"; \"grid\" names one of several \
+                          in a .vdb or .nvdb file";
+            return Err(Error::new(params.location(), "a grid file", "a grid in memory", remedy));
+        }
+        let grid = params.optional_string("grid")?;
+        let filters = [("trilinear", Filter::Trilinear), ("nearest", Filter::Nearest)];
+        let filter = params.choice("filter_type", Filter::Trilinear, &filters)?;
+        let wrap = params.choice("wrap_mode", Wrap::Clamp, &Wrap::NAMES)?;
+        params.boolean("raw", false)?;
+        params.accept_unused(&["accel", "max_value"], "the maximum is known, and no texture unit runs");
+        let mut to_world = place.to_world(params)?;
+        let uses_file_box = params.boolean("use_grid_bbox", is_vdb)?;
+        let source = file::open(&path, grid)?;
+        if uses_file_box {
+            check_box(&path, &source.to_file)?;
+            to_world *= source.to_file;
+        }
+        Self::new(&path, source.values, filter, wrap, to_world)
+    }
+
+    /// Makes bricks of `values`, whose voxels fill the unit cube of `to_world`; `path` is told in errors. Voxels that
+    /// are negative or not finite, and more of them than memory holds, are errors.
+    pub fn new(path: &Path, values: Values, filter: Filter, wrap: Wrap, to_world: DAffine3) -> Result<Self> {
+        let to_local = to_world.inverse();
+        check_place(path, &to_world, &to_local)?;
+        let domain = image(&to_world, [DVec3::ZERO, DVec3::ONE]);
+        let size = match &values {
+            Values::Grey(samples) => samples.size(),
+            Values::Chromatic(samples) => samples.size(),
+        };
+        // Before anything looks at all of its border.
+        check_bricks(path, size, &extent(size, filter, [DVec3::ZERO, DVec3::ONE]).0)?;
+        let reach = reach(&values, wrap, image(&to_local, domain));
+        let (extent, shift) = extent(size, filter, reach);
+        check_bricks(path, size, &extent)?;
+        let scale = DVec3::from(size.map(|n| n as f64));
+        let to_lattice = DAffine3::from_translation(shift) * DAffine3::from_scale(scale) * to_local;
+        let to_world = to_lattice.inverse();
+        // What a ray within the box never meets is not kept.
+        let is_needed = |brick: [usize; 3]| {
+            let low = DVec3::from(brick.map(|i| (i * BRICK) as f64 - 0.01));
+            let [low, high] = image(&to_world, [low, low + (BRICK as f64 + 0.02)]);
+            low.cmple(domain[1]).all() && high.cmpge(domain[0]).all()
+        };
+        let bricks = match values {
+            Values::Grey(samples) => {
+                let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
+                memory::check(path, size, Some(bytes))?;
+                let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
+                Bricks::Grey(Arc::new(lattice.map_err(|fault| refused(path, fault))?))
+            }
+            Values::Chromatic(samples) => {
+                let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
+                memory::check(path, size, Some(bytes))?;
+                let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
+                drop(samples);
+                collapse(lattice.map_err(|fault| refused(path, fault))?)
+            }
+        };
+        let frame = Arc::new(Frame { wrap, to_local, to_lattice, scale, shift, domain });
+        Ok(Self { bricks, frame })
+    }
+
+    /// The grid from afar: a cell a brick. The means are those of the parts of bricks that lie in the box.
+    pub fn coarse(&self) -> Coarse {
+        let (most, mean) = each!(self, lattice => {
+            let all = || lattice.bricks.iter();
+            let most = all().map(|brick| brick.most.to_spectrum().max_element()).collect();
+            (most, all().map(|brick| brick.mean.to_spectrum()).collect())
+        });
+        Coarse::from_cells(self.bricks(), self.to_bricks(), most, mean)
+    }
+
+    /// Bricks of 8 x 8 x 8 cells along x, y and z.
+    pub fn bricks(&self) -> [u32; 3] {
+        each!(self, lattice => lattice.size.map(|n| n as u32))
+    }
+
+    /// From world positions to the lattice of bricks, each a unit cube.
+    pub fn to_bricks(&self) -> Affine3A {
+        let map = DAffine3::from_scale(DVec3::splat(1.0 / BRICK as f64)) * self.frame.to_lattice;
+        Affine3A::from_mat3_translation(map.matrix3.as_mat3(), map.translation.as_vec3())
+    }
+
+    /// A bound of the values in a brick.
+    pub fn brick_max<L: Channels>(&self, [x, y, z]: [u32; 3]) -> L {
+        let at = [x as usize, y as usize, z as usize];
+        each!(self, lattice => channels(lattice.bricks[lattice.index(at)].most))
+    }
+
+    /// The mean of the values in a brick, over the part of it that lies in the unit cube (in what is kept of the
+    /// lattice, where a turned cube leaves some of its box).
+    pub fn brick_mean<L: Channels>(&self, [x, y, z]: [u32; 3]) -> L {
+        let at = [x as usize, y as usize, z as usize];
+        each!(self, lattice => channels(lattice.bricks[lattice.index(at)].mean))
+    }
+
+    /// About how many cells `segment` crosses: their boundaries, and bricks of one value counted as one.
+    pub fn cells_crossed(&self, segment: &RaySegment) -> f64 {
+        each!(self, lattice => {
+            let Some((line, [first, last])) = self.clip(segment, lattice.cells) else { return 0.0 };
+            let per_metre: f64 = line.direction.iter().map(|d| d.abs()).sum();
+            let mapped = segment.mapped(&self.to_bricks());
+            let cells = Cells::new(&mapped, first as f32, last as f32, self.bricks());
+            let cost = |Crossing { cell, first, last }: Crossing| {
+                let brick = &lattice.bricks[lattice.index(cell.map(|i| i as usize))];
+                1.0 + if brick.values.is_some() { per_metre * f64::from(last - first) } else { 0.0 }
+            };
+            cells.map(cost).sum()
+        })
+    }
+
+    /// The first place along `segment` where the integral of the hero's channel, times its `scale`, exceeds
+    /// `remaining`.
+    pub fn invert<L: Channels>(
+        &self,
+        segment: &RaySegment,
+        scale: L,
+        hero: usize,
+        remaining: f32,
+    ) -> Reached<L> {
+        let factor = f64::from(scale.hero(hero));
+        let value = if factor > 0.0 { f64::from(remaining) / factor } else { f64::INFINITY };
+        let target = Target { hero, value };
+        each!(self, lattice => match self.clip(segment, lattice.cells) {
+            None => Reached::Beyond { depth: L::splat(0.0) },
+            Some((line, [first, last])) => reached(&lattice.invert(&line, first, last, target), scale),
+        })
+    }
+
+    /// The line of `segment` in the lattice, and from where to where it counts.
+    #[inline]
+    fn clip(&self, segment: &RaySegment, cells: [usize; 3]) -> Option<(Line, [f64; 2])> {
+        let (origin, direction) = (segment.origin.as_dvec3(), segment.direction.as_dvec3());
+        let range = narrowed(origin, direction, self.frame.domain, [0.0, f64::from(segment.length)]);
+        let map = &self.frame.to_lattice;
+        let (origin, direction) = (map.transform_point3(origin), map.transform_vector3(direction));
+        let range = narrowed(origin, direction, [DVec3::ZERO, DVec3::from(cells.map(|n| n as f64))], range);
+        let line = Line { origin: origin.to_array(), direction: direction.to_array() };
+        (range[0] < range[1]).then_some((line, range))
+    }
+}
+
+#[cfg(test)]
+impl Grid {
+    pub(super) fn examples() -> Vec<Self> {
+        tests::examples()
+    }
+
+    /// How many bricks hold values of their own, and how many there are.
+    fn counts(&self) -> [usize; 2] {
+        each!(self, lattice => {
+            let full = lattice.bricks.iter().filter(|brick| brick.values.is_some());
+            [full.count(), lattice.bricks.len()]
+        })
+    }
+}
+
+impl VolumeModel for Grid {
+    #[inline]
+    fn eval<L: Channels>(&self, position: Vec3) -> L {
+        let local = self.frame.to_local.transform_point3(position.as_dvec3());
+        let at = DVec3::from(local.to_array().map(|x| self.frame.wrap.coordinate(x))) * self.frame.scale
+            + self.frame.shift;
+        each!(self, lattice => channels(lattice.eval(at.to_array())))
+    }
+
+    fn range(&self, low: Vec3, high: Vec3) -> [Spectrum; 2] {
+        let [low, high] = image(&self.frame.to_local, [low.as_dvec3(), high.as_dvec3()]);
+        let ends: [[f64; 2]; 3] = std::array::from_fn(|axis| {
+            self.frame
+                .wrap
+                .interval(low[axis], high[axis])
+                .map(|x| x * self.frame.scale[axis] + self.frame.shift[axis])
+        });
+        let (low, high) = (ends.map(|[low, _]| low), ends.map(|[_, high]| high));
+        each!(self, lattice => lattice.range(low, high).map(Channels::to_spectrum))
+    }
+
+    fn domain(&self) -> Option<[Vec3; 2]> {
+        let [low, high] = self.frame.domain.map(|end| end.as_vec3());
+        // Not less than the true box, whatever f32 makes of it.
+        let outward = |x: f32, exact: f64, next: fn(f32) -> f32, is_short: bool| {
+            if is_short && f64::from(x) != exact { next(x) } else { x }
+        };
+        let low = std::array::from_fn(|i| {
+            let exact = self.frame.domain[0][i];
+            outward(low[i], exact, f32::next_down, f64::from(low[i]) > exact)
+        });
+        let high = std::array::from_fn(|i| {
+            let exact = self.frame.domain[1][i];
+            outward(high[i], exact, f32::next_up, f64::from(high[i]) < exact)
+        });
+        Some([Vec3::from_array(low), Vec3::from_array(high)])
+    }
+
+    #[inline]
+    fn contains(&self, position: Vec3) -> bool {
+        let position = position.as_dvec3();
+        position.cmpge(self.frame.domain[0]).all() && position.cmple(self.frame.domain[1]).all()
+    }
+
+    fn is_grey(&self) -> bool {
+        matches!(self.bricks, Bricks::Grey(_))
+    }
+
+    fn has_integral(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn integral<L: Channels>(&self, segment: &RaySegment) -> L {
+        each!(self, lattice => match self.clip(segment, lattice.cells) {
+            None => L::splat(0.0),
+            Some((line, [first, last])) => narrow(lattice, lattice.integral(&line, first, last)),
+        })
+    }
+
+    fn moved(&self, by: DVec3) -> Self {
+        let Frame { wrap, to_local, to_lattice, scale, shift, domain } = *self.frame;
+        let back = DAffine3::from_translation(-by);
+        let (to_local, to_lattice) = (to_local * back, to_lattice * back);
+        let domain = domain.map(|corner| corner + by);
+        let frame = Frame { wrap, to_local, to_lattice, scale, shift, domain };
+        Self { bricks: self.bricks.clone(), frame: Arc::new(frame) }
+    }
+}
+
+/// A voxel in the channels that are asked for.
+#[inline]
+fn channels<L: Channels>(value: impl Channels) -> L {
+    L::from_spectrum(value.to_spectrum())
+}
+
+#[inline]
+fn narrow<V: Voxel, L: Channels>(_: &Lattice<V>, sum: V::Sum) -> L {
+    channels(V::narrow(sum))
+}
+
+fn reached<V: Voxel, L: Channels>(walk: &Walk<V>, scale: L) -> Reached<L> {
+    let depth = channels::<L>(V::narrow(walk.sum)) * scale;
+    match walk.stop {
+        None => Reached::Beyond { depth },
+        Some((t, value)) => Reached::Within { t: t as f32, depth, value: channels::<L>(value) * scale },
+    }
+}
+
+/// How far the values reach in the coordinates of the unit cube, of which the box counts from `low` to `high`.
+fn reach(values: &Values, wrap: Wrap, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
+    let cube = [DVec3::ZERO, DVec3::ONE];
+    let is_cube = (low.abs() + (high - 1.0).abs()).max_element() < 1e-6;
+    let is_empty_beyond = || {
+        wrap == Wrap::Clamp
+            && match values {
+                Values::Grey(samples) => is_empty_border(&**samples),
+                Values::Chromatic(samples) => is_empty_border(&**samples),
+            }
+    };
+    if is_cube || is_empty_beyond() { cube } else { [low.min(cube[0]), high.max(cube[1])] }
+}
+
+/// The list of bricks, empty ones included, must fit in memory.
+fn check_bricks(path: &Path, size: [usize; 3], extent: &Extent) -> Result<()> {
+    let count = extent.size().iter().try_fold(1u64, |count, n| count.checked_mul(*n as u64));
+    memory::check(path, size, count.and_then(|count| count.checked_mul(size_of::<Brick<Spectrum>>() as u64)))
+}
+
+/// True if all samples on the border are 0.
+fn is_empty_border<V: Voxel>(samples: &(impl super::Samples<V> + ?Sized)) -> bool {
+    let size = samples.size();
+    let zero = V::splat(0.0);
+    (0..3).all(|axis| {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        [0, size[axis] - 1].into_iter().all(|k| {
+            (0..size[i]).all(|a| {
+                (0..size[j]).all(|b| {
+                    let mut at = [k; 3];
+                    (at[i], at[j]) = (a, b);
+                    samples.at(at).same(zero)
+                })
+            })
+        })
+    })
+}
+
+/// The cells that cover the part of the unit cube's coordinates from `low` to `high`, and the shift from the cube
+/// (times the number of voxels) to them.
+fn extent(size: [usize; 3], filter: Filter, [low, high]: [DVec3; 2]) -> (Extent, DVec3) {
+    let scale = DVec3::from(size.map(|n| n as f64));
+    // Interpolation goes from centre to centre.
+    let offset = if filter == Filter::Trilinear { -0.5 } else { 0.0 };
+    let (first, last) = ((low * scale + offset).floor(), (high * scale + offset).ceil());
+    let shift = offset - first;
+    let cells = (last - first).to_array().map(|n| (n as usize).max(1));
+    let counted = [low, high].map(|end| (end * scale + shift).to_array());
+    (Extent { first: first.to_array().map(|x| x as i64), cells, counted }, shift)
+}
+
+/// A chromatic lattice, or a grey one where all its colours are.
+fn collapse(lattice: Lattice<Spectrum>) -> Bricks {
+    let is_grey = lattice.values().all(|color| color.is_grey());
+    if is_grey {
+        Bricks::Grey(Arc::new(lattice.map(|color| color.x)))
+    } else {
+        Bricks::Chromatic(Arc::new(lattice))
+    }
+}
+
+/// A grid may lie so many times its size away from the middle of the scene, for its voxels to be told apart.
+const FARTHEST: f64 = 1e12;
+
+fn check_place(path: &Path, to_world: &DAffine3, to_local: &DAffine3) -> Result<()> {
+    let away = to_local.transform_vector3(to_world.translation).abs().max_element();
+    if away <= FARTHEST {
+        return Ok(());
+    }
+    let found = format!("one {away:e} times its size away");
+    let remedy = "place it nearer with \"to_world\" (a wind moves it too), or make it larger";
+    Err(Error::new(
+        path.display(),
+        "a grid within 1e12 times its size of the middle of the scene",
+        found,
+        remedy,
+    ))
+}
+
+fn check_box(path: &Path, to_file: &DAffine3) -> Result<()> {
+    if to_file.is_finite() && to_file.matrix3.determinant() != 0.0 {
+        return Ok(());
+    }
+    let found = format!("one whose edges are {}", to_file.matrix3);
+    let remedy = "mend the box in the file's header, or set \"use_grid_bbox\" to false";
+    Err(Error::new(path.display(), "a bounding box with a finite volume", found, remedy))
+}
+
+fn refused(path: &Path, Fault { voxel: [x, y, z], channel, value }: Fault) -> Error {
+    let found = format!("{value} in channel {channel} of the voxel ({x}, {y}, {z})");
+    let remedy = "mend the grid: densities and colours are finite and not negative";
+    Error::new(path.display(), "voxels that are finite numbers >= 0", found, remedy)
+}
