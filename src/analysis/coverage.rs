@@ -116,9 +116,11 @@ impl Traits {
                 (0..1u32 << count).map(move |bits| (0..count).map(|i| bits >> i & 1 == 1).collect());
             let real =
                 move |pattern: &Vec<bool>| pattern.iter().all(|d| if *d { self.smooth } else { self.rough });
-            patterns
-                .filter(real)
-                .flat_map(move |pattern| self.emitters.iter().map(move |emitter| (*emitter, pattern.clone())))
+            // Of emitters in direct view alone there are paths without vertices between.
+            let lit = move |emitter: &&EmitterTraits| count > 0 || emitter.seen;
+            patterns.filter(real).flat_map(move |pattern| {
+                self.emitters.iter().filter(lit).map(move |emitter| (*emitter, pattern.clone()))
+            })
         })
     }
 }

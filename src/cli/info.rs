@@ -14,6 +14,7 @@ use crate::{
     phase::PhaseModel,
     scene::{Infinity, Scene, build::Setup, lights::Light},
     settings::integrator::{Integrator, Restriction},
+    shape::ShapeModel,
     transport::{
         Options, Strategies,
         profile::{Needs, ProfileName},

@@ -11,7 +11,7 @@ use crate::{
     math::{Spectrum, Vec2, Vec3, vec2, vec3},
     sampling::Stream,
     scene::{Scene, accel::Geometry},
-    shape::{Hit, Primitive, Ray, SurfacePoint},
+    shape::{Hit, Primitive, Ray, ShapeModel, SurfacePoint},
 };
 use rayon::prelude::*;
 use std::f32::consts::PI;

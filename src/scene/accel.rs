@@ -9,7 +9,7 @@ mod tree;
 use crate::{
     math::Vec3,
     sampling::Stream,
-    shape::{Hit, Primitive, Ray, Shape, SurfacePoint},
+    shape::{Hit, Primitive, Ray, Shape, ShapeModel, SurfacePoint},
 };
 use tree::Tree;
 
@@ -91,15 +91,16 @@ impl Geometry {
         SurfacePoint { shape, ..point }
     }
 
-    /// A point on `shape` for light to come from to `reference`, and its density per area [1/m^2].
+    /// A point on `shape` for light to come from to `reference`, and its density per area [1/m^2]; none where that has no
+    /// use (the point is seen edge-on).
     pub fn sample_toward(
         &self,
         shape: u32,
         reference: Vec3,
         stream: &mut Stream,
     ) -> Option<(SurfacePoint, f32)> {
-        let (point, pdf) = self.shapes[shape as usize].sample_toward(reference, stream)?;
-        Some((SurfacePoint { shape, ..point }, pdf))
+        let (point, pdf) = self.shapes[shape as usize].sample_toward(reference, stream);
+        (pdf > 0.0 && pdf.is_finite()).then_some((SurfacePoint { shape, ..point }, pdf))
     }
 
     /// The density with which `sample_toward` gives `point` [1/m^2].

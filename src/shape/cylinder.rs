@@ -2,7 +2,7 @@
 //! from its axis' base whose f32 roundings would be seen on the small scale of its radius.
 
 use super::{
-    Shape, SurfacePoint,
+    Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     placement::{Placement, is_in_range},
 };
 use crate::{
@@ -37,7 +37,7 @@ pub struct Tube {
 }
 
 /// Reads `p0`, `p1`, `radius`, `to_world` and `flip_normals`.
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Cylinder> {
     let p0 = params.optional_vector("p0")?.unwrap_or(DVec3::ZERO);
     let p1 = params.optional_vector("p1")?.unwrap_or(DVec3::Z);
     let radius = params.float("radius", 1.0)?;
@@ -49,7 +49,7 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
         return Err(params.complain("p1", "a point other than p0", format!("{p1}")));
     }
     placement.matrix *= unit_to_object(p0, p1, radius);
-    Cylinder::place(&placement).map(Shape::Cylinder).ok_or_else(|| {
+    Cylinder::place(&placement).ok_or_else(|| {
         let expected = "a transform that keeps a cylinder round and upright, and that f32 can hold";
         let found = "shearing, different scales across its axis, or too large or small a scale";
         let remedy = "use one scale for all axes, or a mesh of the tube";
@@ -89,11 +89,6 @@ impl Cylinder {
         (tube.fits() && !uneven && !sheared).then_some(Self { tube, across: [x, y], facing })
     }
 
-    /// As the ray tracer needs it.
-    pub fn tube(&self) -> Tube {
-        self.tube
-    }
-
     /// The surface point nearest to `p`.
     #[inline]
     pub fn point_near(&self, p: DVec3) -> SurfacePoint {
@@ -130,14 +125,23 @@ impl Cylinder {
         let reach = (self.tube.length + self.tube.radius) as f32;
         gamma(2) * position.abs() + gamma(6) * reach * normal.abs()
     }
+}
 
-    /// Area [m^2].
-    pub fn area(&self) -> f32 {
+impl ShapeModel for Cylinder {
+    fn primitive(&self, _: usize) -> Primitive {
+        Primitive::Tube(self.tube)
+    }
+
+    #[inline]
+    fn surface(&self, _: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        self.point_near(ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t))
+    }
+
+    fn area(&self) -> f32 {
         self.tube.area() as f32
     }
 
-    /// Uniform by area.
-    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+    fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
         let at = stream.square();
         let (sin, cos) = (TAU * f64::from(at.x)).sin_cos();
         let [x, y] = self.across;

@@ -1,7 +1,7 @@
 //! `disk`: the unit disk in the xy plane, facing +z; any affine transform makes it an ellipse.
 
 use super::{
-    Shape, SurfacePoint,
+    Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     parallelogram::flat_error,
     placement::{Placement, is_in_range},
 };
@@ -28,11 +28,11 @@ pub struct Disk {
 }
 
 /// Reads `to_world` and `flip_normals`.
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Disk> {
     let placement = Placement::read(params, recentre)?;
     let disk = Disk::place(&placement);
     if disk.fits() {
-        return Ok(Shape::Disk(disk));
+        return Ok(disk);
     }
     Err(Error::new(
         params.location(),
@@ -83,14 +83,23 @@ impl Disk {
             shape: 0,
         }
     }
+}
 
-    /// Area [m^2].
-    pub fn area(&self) -> f32 {
+impl ShapeModel for Disk {
+    fn primitive(&self, _: usize) -> Primitive {
+        Primitive::Disk(*self)
+    }
+
+    #[inline]
+    fn surface(&self, _: usize, _: &Ray, hit: &Hit) -> SurfacePoint {
+        self.point(hit.u, hit.v)
+    }
+
+    fn area(&self) -> f32 {
         self.area
     }
 
-    /// Uniform by area.
-    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+    fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
         let at = warp::to_disk(stream.square());
         self.point(at.x, at.y)
     }

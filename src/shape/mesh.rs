@@ -1,7 +1,7 @@
 //! Triangle meshes: what files hold, placed in the world, checked and ready for rays.
 
 use super::{
-    Flat, SurfacePoint,
+    Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     area::AreaTable,
     parallelogram::flat_error,
     placement::{Placement, is_in_range},
@@ -68,11 +68,6 @@ impl Mesh {
         Ok(Self { positions, normals, uvs: data.uvs, triangles: data.triangles, areas, facing })
     }
 
-    /// How many triangles.
-    pub fn triangle_count(&self) -> usize {
-        self.triangles.len()
-    }
-
     /// Triangle `index` as the ray tracer needs it.
     #[inline]
     pub fn flat(&self, index: usize) -> Flat {
@@ -119,14 +114,27 @@ impl Mesh {
         let tangent = (edge_u * along_v.y - edge_v * along_u.y) * along_u.perp_dot(along_v).signum();
         (a + along_u * u + along_v * v, tangent)
     }
+}
 
-    /// Area [m^2].
-    pub fn area(&self) -> f32 {
+impl ShapeModel for Mesh {
+    fn primitive_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    fn primitive(&self, index: usize) -> Primitive {
+        Primitive::Flat(self.flat(index))
+    }
+
+    #[inline]
+    fn surface(&self, index: usize, _: &Ray, hit: &Hit) -> SurfacePoint {
+        self.point(index, hit.u, hit.v)
+    }
+
+    fn area(&self) -> f32 {
         self.areas.total() as f32
     }
 
-    /// Uniform by area.
-    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+    fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
         let index = self.areas.sample(stream);
         let at = warp::to_triangle(stream.square());
         self.point(index, at.x, at.y)

@@ -128,39 +128,93 @@ impl Primitive {
     }
 }
 
-/// Any shape.
-#[derive(Clone, Debug)]
-pub enum Shape {
-    /// Rectangle, cube.
-    Parallelograms(Parallelograms),
-    /// Sphere.
-    Sphere(Sphere),
-    /// Disk.
-    Disk(Disk),
-    /// Cylinder.
-    Cylinder(Cylinder),
-    /// Obj, ply, serialized.
-    Mesh(Mesh),
+/// What every kind of shape can do.
+pub trait ShapeModel {
+    /// How many primitives it is made of.
+    fn primitive_count(&self) -> usize {
+        1
+    }
+
+    /// Its primitive number `index`.
+    fn primitive(&self, index: usize) -> Primitive;
+
+    /// The surface where `ray` met primitive `index`. For flat primitives `hit.u` and `hit.v` are those of [`Flat`], for
+    /// disks those of the unit disk; spheres and cylinders use `hit.t`.
+    fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint;
+
+    /// Area [m^2].
+    fn area(&self) -> f32;
+
+    /// Uniform by area, density 1/area [1/m^2].
+    fn sample_area(&self, stream: &mut Stream) -> SurfacePoint;
+
+    /// A point for light to come from to `reference`, and its density [1/m^2].
+    fn sample_toward(&self, _reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
+        (self.sample_area(stream), 1.0 / self.area())
+    }
+
+    /// Density of [`Self::sample_toward`] at `point` [1/m^2].
+    fn pdf_area_toward(&self, _reference: Vec3, _point: &SurfacePoint) -> f32 {
+        1.0 / self.area()
+    }
 }
 
 /// Builds a shape from its geometry parameters and no others (materials, media and emitters are the scene's); the
 /// point `recentre` becomes the origin.
 pub type BuildShape = fn(&Params<'_>, DVec3) -> Result<Shape>;
 
-/// All shapes.
-pub const ROWS: Registry<BuildShape> = Registry::new(
-    "a shape",
-    &[
-        ("rectangle", rectangle::build),
-        ("cube", cube::build),
-        ("sphere", sphere::build),
-        ("disk", disk::build),
-        ("cylinder", cylinder::build),
-        ("obj", obj::build),
-        ("ply", ply::build),
-        ("serialized", serialized::build),
-    ],
-);
+/// Makes the enum, its dispatch and the registry from one row a kind: its type, and each of its names with the module
+/// that builds it.
+macro_rules! shapes {
+    ($($model:ident: $($name:literal => $file:ident),+;)*) => {
+        /// Any shape.
+        #[derive(Clone, Debug)]
+        #[expect(missing_docs, reason = "each variant is the kind of its name, documented there")]
+        pub enum Shape {
+            $($model($model),)*
+        }
+
+        /// All shapes.
+        pub const ROWS: Registry<BuildShape> = Registry::new("a shape", &[
+            $($(($name, |params, recentre| $file::build(params, recentre).map(Shape::$model)),)+)*
+        ]);
+
+        impl ShapeModel for Shape {
+            #[inline]
+            fn primitive_count(&self) -> usize {
+                match self { $(Self::$model(model) => model.primitive_count(),)* }
+            }
+            #[inline]
+            fn primitive(&self, index: usize) -> Primitive {
+                match self { $(Self::$model(model) => model.primitive(index),)* }
+            }
+            #[inline]
+            fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
+                match self { $(Self::$model(model) => model.surface(index, ray, hit),)* }
+            }
+            fn area(&self) -> f32 {
+                match self { $(Self::$model(model) => model.area(),)* }
+            }
+            fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+                match self { $(Self::$model(model) => model.sample_area(stream),)* }
+            }
+            fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
+                match self { $(Self::$model(model) => model.sample_toward(reference, stream),)* }
+            }
+            fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
+                match self { $(Self::$model(model) => model.pdf_area_toward(reference, point),)* }
+            }
+        }
+    };
+}
+
+shapes! {
+    Parallelograms: "rectangle" => rectangle, "cube" => cube;
+    Sphere: "sphere" => sphere;
+    Disk: "disk" => disk;
+    Cylinder: "cylinder" => cylinder;
+    Mesh: "obj" => obj, "ply" => ply, "serialized" => serialized;
+}
 
 /// Builds the shape that `params` describes. Does not call `finish`: children remain for the scene to read.
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
@@ -170,90 +224,11 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
 }
 
 impl Shape {
-    /// How many primitives it is made of.
-    pub fn primitive_count(&self) -> usize {
-        match self {
-            Self::Parallelograms(p) => p.faces().len(),
-            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) => 1,
-            Self::Mesh(m) => m.triangle_count(),
-        }
-    }
-
-    /// Its primitive number `index`.
-    pub fn primitive(&self, index: usize) -> Primitive {
-        match self {
-            Self::Parallelograms(p) => Primitive::Flat(p.faces()[index].flat()),
-            Self::Sphere(s) => Primitive::Ball { center: s.center(), radius: s.radius() },
-            Self::Disk(d) => Primitive::Disk(*d),
-            Self::Cylinder(c) => Primitive::Tube(c.tube()),
-            Self::Mesh(m) => Primitive::Flat(m.flat(index)),
-        }
-    }
-
     /// Least and greatest corner of the box around it.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let boxes = (0..self.primitive_count()).map(|index| self.primitive(index).bounds());
         boxes
             .reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)))
             .unwrap_or((Vec3::INFINITY, Vec3::NEG_INFINITY))
-    }
-
-    /// The surface where `ray` met primitive `index`. For flat primitives `hit.u` and `hit.v` are those of
-    /// [`Flat`], for disks those of the unit disk; spheres and cylinders use `hit.t`.
-    #[inline]
-    pub fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        match self {
-            Self::Parallelograms(p) => p.faces()[index].point(hit.u, hit.v),
-            Self::Sphere(s) => s.point_near(ray.origin + ray.direction * hit.t),
-            Self::Disk(d) => d.point(hit.u, hit.v),
-            Self::Cylinder(c) => {
-                c.point_near(ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t))
-            }
-            Self::Mesh(m) => m.point(index, hit.u, hit.v),
-        }
-    }
-
-    /// Area [m^2].
-    pub fn area(&self) -> f32 {
-        match self {
-            Self::Parallelograms(p) => p.area(),
-            Self::Sphere(s) => s.area(),
-            Self::Disk(d) => d.area(),
-            Self::Cylinder(c) => c.area(),
-            Self::Mesh(m) => m.area(),
-        }
-    }
-
-    /// Uniform by area, density 1/area [1/m^2].
-    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
-        match self {
-            Self::Parallelograms(p) => p.sample_area(stream),
-            Self::Sphere(s) => s.sample_area(stream),
-            Self::Disk(d) => d.sample_area(stream),
-            Self::Cylinder(c) => c.sample_area(stream),
-            Self::Mesh(m) => m.sample_area(stream),
-        }
-    }
-
-    /// A point for light to come from to `reference`, and its density [1/m^2]; none where that has no use
-    /// (the point is seen edge-on).
-    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> Option<(SurfacePoint, f32)> {
-        let (point, pdf) = match self {
-            Self::Parallelograms(p) => p.sample_toward(reference, stream),
-            Self::Sphere(s) => s.sample_toward(reference, stream),
-            Self::Disk(_) | Self::Cylinder(_) | Self::Mesh(_) => {
-                (self.sample_area(stream), 1.0 / self.area())
-            }
-        };
-        (pdf > 0.0 && pdf.is_finite()).then_some((point, pdf))
-    }
-
-    /// Density of `sample_toward` at `point` [1/m^2].
-    pub fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
-        match self {
-            Self::Parallelograms(p) => p.pdf_area_toward(reference, point),
-            Self::Sphere(s) => s.pdf_area_toward(reference, point),
-            Self::Disk(_) | Self::Cylinder(_) | Self::Mesh(_) => 1.0 / self.area(),
-        }
     }
 }

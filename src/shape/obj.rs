@@ -1,7 +1,7 @@
 //! `obj`: Wavefront meshes. Read here rather than by a crate: coordinates keep their f64 digits until the scene
 //! is recentred, every error has its line, and faces of which only some have normals stay aligned.
 
-use super::{Mesh, Shape, mesh::MeshData};
+use super::{Mesh, mesh::MeshData};
 use crate::{
     description::Params,
     error::{Error, Result},
@@ -10,12 +10,12 @@ use crate::{
 use std::{collections::HashMap, path::Path};
 
 /// Reads `filename`, `flip_tex_coords` (on unless told otherwise, as in Mitsuba) and what every mesh has.
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords", true)?;
     let text = std::fs::read(&file).map_err(|e| Error::io(&file, "read", &e))?;
     let data = Reader::new(&file, flip).read(&text)?;
-    Mesh::build(params, recentre, &file, data).map(Shape::Mesh)
+    Mesh::build(params, recentre, &file, data)
 }
 
 /// Numbers of position, texture coordinate and normal of a face's corner, from 0; `ABSENT` where not given.

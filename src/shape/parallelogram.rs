@@ -1,7 +1,7 @@
 //! Parallelograms: rectangles under any affine transform, and the faces of cubes.
 
 use super::{
-    Flat, SurfacePoint,
+    Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     area::AreaTable,
     placement::{Placement, is_in_range},
     spherical_rectangle::{Seen, SphericalRectangle},
@@ -139,25 +139,37 @@ impl Parallelograms {
         Self { faces, areas, spherical }
     }
 
-    /// The single parallelograms.
-    pub fn faces(&self) -> &[Parallelogram] {
-        &self.faces
+    fn seen_from(&self, reference: Vec3) -> Option<Seen> {
+        self.spherical.as_ref().and_then(|s| s.seen_from(reference))
+    }
+}
+
+impl ShapeModel for Parallelograms {
+    fn primitive_count(&self) -> usize {
+        self.faces.len()
     }
 
-    /// Area [m^2].
-    pub fn area(&self) -> f32 {
+    fn primitive(&self, index: usize) -> Primitive {
+        Primitive::Flat(self.faces[index].flat())
+    }
+
+    #[inline]
+    fn surface(&self, index: usize, _: &Ray, hit: &Hit) -> SurfacePoint {
+        self.faces[index].point(hit.u, hit.v)
+    }
+
+    fn area(&self) -> f32 {
         self.areas.total() as f32
     }
 
-    /// Uniform by area.
-    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+    fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
         let index = if self.faces.len() == 1 { 0 } else { self.areas.sample(stream) };
         let at = stream.square();
         self.faces[index].point(at.x, at.y)
     }
 
     /// Uniform in solid angle from `reference` where that is precise, else by area; with its density [1/m^2].
-    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
+    fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
         let Some(seen) = self.seen_from(reference) else {
             return (self.sample_area(stream), 1.0 / self.area());
         };
@@ -166,16 +178,11 @@ impl Parallelograms {
         (point, pdf_area_from_solid_angle(&seen, reference, &point))
     }
 
-    /// Density of `sample_toward` [1/m^2].
-    pub fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
+    fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
         match self.seen_from(reference) {
             Some(seen) => pdf_area_from_solid_angle(&seen, reference, point),
             None => 1.0 / self.area(),
         }
-    }
-
-    fn seen_from(&self, reference: Vec3) -> Option<Seen> {
-        self.spherical.as_ref().and_then(|s| s.seen_from(reference))
     }
 }
 

@@ -1,6 +1,6 @@
 //! `ply`: Stanford meshes, ascii and binary.
 
-use super::{Mesh, Shape, mesh::MeshData};
+use super::{Mesh, mesh::MeshData};
 use crate::{
     description::Params,
     error::{Error, Result},
@@ -13,7 +13,7 @@ use ply_rs_bw::{
 use std::{fs::File, io::BufReader, path::Path};
 
 /// Reads `filename`, `flip_tex_coords` and what every mesh has.
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords", false)?;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
@@ -24,7 +24,7 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
         params.library.warn(params.location(), &text);
     }
     let data = ply.read(flip)?;
-    Mesh::build(params, recentre, &file, data).map(Shape::Mesh)
+    Mesh::build(params, recentre, &file, data)
 }
 
 /// A vertex: positions, normals, texture coordinates, in the order of `NAMES`.

@@ -1,7 +1,7 @@
 //! `serialized`: Mitsuba's compressed meshes, one or more to a file. The layout is the one that Mitsuba's
 //! documentation of the plugin gives; nothing is believed of a count until the stream has yielded the numbers.
 
-use super::{Mesh, Shape, mesh::MeshData};
+use super::{Mesh, mesh::MeshData};
 use crate::{
     description::Params,
     error::{Error, Result},
@@ -15,7 +15,7 @@ use std::{
 };
 
 /// Reads `filename`, `shape_index` and what every mesh has.
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let index = params.integer("shape_index", 0)?;
     let Ok(index) = u32::try_from(index) else {
@@ -29,7 +29,7 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
         let text = format!("{}: its vertex colours are not used", file.display());
         params.library.warn(params.location(), &text);
     }
-    Mesh::build(params, recentre, &file, data).map(Shape::Mesh)
+    Mesh::build(params, recentre, &file, data)
 }
 
 /// Bits that say what a mesh has. Those for tangents and face normals change nothing, as in Mitsuba 3.

@@ -1,7 +1,7 @@
 //! `sphere`: centre and radius, under a transform that keeps it a sphere.
 
 use super::{
-    Shape, SurfacePoint,
+    Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     placement::{Placement, is_in_range},
 };
 use crate::{
@@ -28,7 +28,7 @@ pub struct Sphere {
 }
 
 /// Reads `center`, `radius`, `to_world` and `flip_normals`.
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
+pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Sphere> {
     let center = params.optional_vector("center")?.unwrap_or(DVec3::ZERO);
     let radius = params.float("radius", 1.0)?;
     let mut placement = Placement::read(params, recentre)?;
@@ -36,7 +36,7 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
         return Err(params.complain("radius", "a number other than 0", "0"));
     }
     placement.matrix *= DMat4::from_translation(center) * DMat4::from_scale(DVec3::splat(radius));
-    Sphere::place(&placement).map(Shape::Sphere).ok_or_else(|| {
+    Sphere::place(&placement).ok_or_else(|| {
         let expected = "a transform that keeps a sphere a sphere and that f32 can hold";
         let found = "shearing, different scales on different axes, or too large or small a scale";
         Error::new(
@@ -73,21 +73,6 @@ impl Sphere {
         (fits && !uneven && !sheared).then_some(sphere)
     }
 
-    /// Its centre.
-    pub fn center(&self) -> Vec3 {
-        self.center
-    }
-
-    /// Its radius [m].
-    pub fn radius(&self) -> f32 {
-        self.radius
-    }
-
-    /// Area [m^2].
-    pub fn area(&self) -> f32 {
-        4.0 * PI * self.radius * self.radius
-    }
-
     /// The surface point nearest to `p`.
     #[inline]
     pub fn point_near(&self, p: Vec3) -> SurfacePoint {
@@ -118,11 +103,6 @@ impl Sphere {
         gamma(2) * self.center.abs() + gamma(12) * self.radius * out.abs()
     }
 
-    /// Uniform by area.
-    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
-        self.point(warp::to_sphere(stream.square()))
-    }
-
     /// 1 - cos of the half angle of the cone that `reference` sees the sphere in; none from inside.
     fn cone(&self, reference: Vec3) -> Option<f32> {
         let squared = reference.distance_squared(self.center);
@@ -130,8 +110,37 @@ impl Sphere {
         (sine_squared < 1.0 - ON_SPHERE).then(|| sine_squared / (1.0 + (1.0 - sine_squared).sqrt()))
     }
 
+    /// Uniform in the cone, as a density per area [1/m^2]; 0 on the far side.
+    fn cone_pdf_area(&self, one_minus_cos: f32, reference: Vec3, point: &SurfacePoint) -> f32 {
+        let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
+        let cosine = direction.dot(point.normal) * self.facing;
+        if cosine <= 0.0 {
+            return 0.0;
+        }
+        measure::solid_angle_to_vertex(cosine, squared) * warp::cone_pdf(one_minus_cos)
+    }
+}
+
+impl ShapeModel for Sphere {
+    fn primitive(&self, _: usize) -> Primitive {
+        Primitive::Ball { center: self.center, radius: self.radius }
+    }
+
+    #[inline]
+    fn surface(&self, _: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        self.point_near(ray.origin + ray.direction * hit.t)
+    }
+
+    fn area(&self) -> f32 {
+        4.0 * PI * self.radius * self.radius
+    }
+
+    fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+        self.point(warp::to_sphere(stream.square()))
+    }
+
     /// Uniform in the visible cone from outside, by area from inside; with its density [1/m^2].
-    pub fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
+    fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
         let Some(one_minus_cos) = self.cone(reference) else {
             return (self.sample_area(stream), 1.0 / self.area());
         };
@@ -149,21 +158,10 @@ impl Sphere {
         (point, self.cone_pdf_area(one_minus_cos, reference, &point))
     }
 
-    /// Density of `sample_toward` [1/m^2].
-    pub fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
+    fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
         match self.cone(reference) {
             Some(one_minus_cos) => self.cone_pdf_area(one_minus_cos, reference, point),
             None => 1.0 / self.area(),
         }
-    }
-
-    /// Uniform in the cone, as a density per area [1/m^2]; 0 on the far side.
-    fn cone_pdf_area(&self, one_minus_cos: f32, reference: Vec3, point: &SurfacePoint) -> f32 {
-        let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
-        let cosine = direction.dot(point.normal) * self.facing;
-        if cosine <= 0.0 {
-            return 0.0;
-        }
-        measure::solid_angle_to_vertex(cosine, squared) * warp::cone_pdf(one_minus_cos)
     }
 }

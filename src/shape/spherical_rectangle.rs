@@ -59,6 +59,7 @@ impl SphericalRectangle {
     }
 
     /// None where the reference lies (nearly) in the plane or the solid angle is tiny.
+    #[inline]
     pub fn seen_from(&self, reference: Vec3) -> Option<Seen> {
         let d = self.corner - reference.as_dvec3();
         let z = d.dot(self.z);
@@ -91,6 +92,7 @@ impl Seen {
     }
 
     /// From the unit square to (u, v) on the rectangle.
+    #[inline]
     pub fn sample(&self, u: Vec2) -> Vec2 {
         let (x, y) = self.sample_plane(f64::from(u.x), f64::from(u.y));
         let fraction = |t: f64, low: f64, high: f64| (((t - low) / (high - low)) as f32).clamp(0.0, 1.0);

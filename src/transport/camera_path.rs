@@ -51,6 +51,7 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
 
 /// Leaves the sensor through a film position and a point of its aperture. Nothing can join before the sensor:
 /// its sums are zero.
+#[inline]
 pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Vec2) -> Departure<P::MisSums> {
     let sensor = &estimator.scene.sensor;
     let SensorRay { position, ray, pdf } = sensor.ray(film, aperture);

@@ -145,6 +145,7 @@ impl<S: MisSums> Vertex<S> {
         }
     }
 
+    #[inline]
     fn reflect_towards(
         &self,
         scene: &Scene,

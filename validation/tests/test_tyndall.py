@@ -119,7 +119,7 @@ def test_other_files_are_no_scenes() -> None:
 
 def test_the_readmes_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
-    found = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    found = re.search(r"```python\n(.*?)```", (ROOT / "validation" / "README.md").read_text(), re.DOTALL)
     assert found
     code = found[1]
     for slow, quick in (("spp=64", "spp=1"), ("time_limit=10", "spp=1")):

@@ -1,11 +1,10 @@
 //! False colours of what went wrong: relative squared errors, and relative variances, on one logarithmic scale.
 
 use super::figures::power_of_ten;
-use crate::math::{Spectrum, relative::Relative};
-use colorgrad::Gradient as _;
-
-/// No number: no colour of the scale.
-const BROKEN: [u8; 3] = [0, 255, 255];
+use crate::{
+    analysis::picture,
+    math::{Spectrum, relative::Relative},
+};
 
 /// The squared error of each pixel over the reference's square: its mean over the image is relMSE.
 pub fn errors(image: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
@@ -57,18 +56,14 @@ impl Scale {
 
     /// Three bytes a pixel.
     pub fn coloured(self, values: &[f64]) -> Vec<u8> {
-        let colours = colours();
-        let colour = |value: &f64| match value {
-            value if value.is_nan() => BROKEN,
-            value if *value <= 0.0 => colours[0],
-            value => colours[(255.0 * self.share(*value)).round() as usize],
-        };
-        values.iter().flat_map(colour).collect()
+        let share = |value: &f64| if *value <= 0.0 { 0.0 } else { self.share(*value) as f32 };
+        picture::false_colour(&values.iter().map(share).collect::<Vec<_>>(), (0.0, 1.0))
     }
 
     /// The whole scale in a row of 256 pixels.
     pub fn bar() -> Vec<u8> {
-        colours().concat()
+        let shares: Vec<f32> = (0..=255u8).map(|k| f32::from(k) / 255.0).collect();
+        picture::false_colour(&shares, (0.0, 1.0))
     }
 
     /// What stands beside the bar: texts for some decades, both ends among them, and where [%].
@@ -83,16 +78,6 @@ impl Scale {
         };
         (self.low..=self.high).step_by(step as usize).map(|k| (power_of_ten(k), place(k))).collect()
     }
-}
-
-/// Inferno: its lightness rises evenly, for all eyes.
-fn colours() -> Vec<[u8; 3]> {
-    let gradient = colorgrad::preset::inferno();
-    let colour = |k: u8| {
-        let [r, g, b, _] = gradient.at(f32::from(k) / 255.0).to_rgba8();
-        [r, g, b]
-    };
-    (0..=255).map(colour).collect()
 }
 
 #[cfg(test)]
@@ -124,7 +109,7 @@ mod tests {
         let sums: Vec<u32> = bytes.chunks(3).map(|c| c.iter().map(|b| u32::from(*b)).sum()).collect();
         assert!(sums[0] == sums[1] && sums[1] < sums[2] && sums[2] < sums[3], "{sums:?}");
         assert_eq!(bytes[9..12], bytes[12..15]);
-        assert_eq!(bytes[18..], BROKEN);
+        assert_eq!(bytes[18..], [0, 255, 0]);
         let ticks = scale.ticks();
         assert_eq!(ticks.first().unwrap().1, 0.0);
         assert_eq!(ticks.last().unwrap(), &("10⁰".to_owned(), 100.0));

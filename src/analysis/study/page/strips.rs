@@ -172,7 +172,7 @@ fn left_out(scene: &SceneOutcome, plan: &Plan) -> Vec<String> {
 /// A word on pixels that are no light, where there are any.
 fn broken(shown: &[Vec<Shown>]) -> Option<String> {
     let found = shown.iter().flatten().any(|shown| shown.errors.iter().any(|error| error.is_nan()));
-    found.then(|| "Magenta in images and cyan in errors: pixels that are not numbers.".into())
+    found.then(|| "Magenta in images and green in errors: pixels that are not numbers.".into())
 }
 
 /// What all images of a scene are shown by.
