@@ -156,7 +156,7 @@ CASES = (
     Case("mirror_in_fog.json", EYE),
     Case("nested_media.json"),
     Case("opening_lamps_outside.json", EYE, effort=2),
-    Case("opening_sky_and_sun.json", EYE, effort=2),
+    Case("opening_sun.json", EYE, effort=2),
     Case("opening_lamp_inside.json", effort=2),
     Case("lantern_in_fog.json", EYE, effort=2),
     Case("fog_behind_walls.json", EYE),
