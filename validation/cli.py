@@ -109,7 +109,7 @@ def add_matrix(commands: Commands) -> None:
     command = add(commands, "matrix", run_matrix, "Every cross-check scene through all integrators that can render it.")
     depth = command.add_mutually_exclusive_group()
     depth.add_argument("--quick", dest="depth", action="store_const", const="quick", default="quick", help="against Mitsuba's images in the repository; minutes (default)")
-    depth.add_argument("--full", dest="depth", action="store_const", const="full", help="all generated scenes too, and Mitsuba renders everything again")
+    depth.add_argument("--full", dest="depth", action="store_const", const="full", help="all generated scenes, and Mitsuba renders everything now; hours")
     depth.add_argument("--record", dest="depth", action="store_const", const="record", help="render Mitsuba's images in the repository again")
     command.add_argument("--only", default="", help="only scenes whose name contains this")
     command.add_argument("--matrix-seed", type=int, default=cells.SEED, metavar="N", help="quick: another sample of the generated scenes, which Mitsuba renders (default %(default)s)")
@@ -120,7 +120,7 @@ def add_matrix(commands: Commands) -> None:
 def run_matrix(options: argparse.Namespace) -> bool:
     if options.depth == "quick":
         return matrix.quick(options.only, options.matrix_seed)
-    return matrix.full(options.only) if options.depth == "full" else matrix.record(options.only)
+    return matrix.live(options.only) if options.depth == "full" else matrix.record(options.only)
 
 
 def add_selftest(commands: Commands) -> None:

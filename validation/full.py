@@ -10,7 +10,7 @@ from validation.compare import Effort
 from validation.places import CROSSCHECK, OUTPUT
 from validation.stability import run as stability
 
-TEXT = "All scenes against Mitsuba, closed forms, stability and a page in a browser, at full depth: 40 minutes of two cores."
+TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and a page in a browser, at full depth: under 40 minutes of two cores."
 
 
 def run() -> bool:
@@ -20,7 +20,7 @@ def run() -> bool:
         "page in a browser": study_page,
         "closed forms": lambda: truths.run(Effort(batches=16, spp=512)),
         "stability": lambda: stability.run(stability.Effort(), OUTPUT / "stability"),
-        "matrix": matrix.full,
+        "matrix": lambda: matrix.live(count=matrix.DEEP_CELLS),
     }
     found = {name: timed(part) for name, part in parts.items()}
     for name, (holds, seconds) in found.items():

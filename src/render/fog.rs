@@ -37,12 +37,14 @@ struct Sight {
     through: Spectrum,
     /// What share of the veil is before it.
     veiled: Spectrum,
+    /// What emitters on the way, and the surface itself, emit.
+    emitted: Spectrum,
     end: End,
 }
 
 enum End {
-    /// A surface, seen along this direction; with its own light.
-    Surface(Box<SurfacePoint>, Vec3, Spectrum),
+    /// A surface, seen along this direction.
+    Surface(Box<SurfacePoint>, Vec3),
     /// Infinity, or nothing that could be seen.
     Radiance(Spectrum),
 }
@@ -67,7 +69,7 @@ impl<'a> Preview<'a> {
     fn brightness(&self, rays: impl Iterator<Item = (Ray, Stream)>) -> Spectrum {
         let (mut sum, mut count) = (Spectrum::ZERO, 0);
         for (ray, mut stream) in rays {
-            if let End::Surface(point, incoming, _) = self.follow(ray, &mut stream).end {
+            if let End::Surface(point, incoming) = self.follow(ray, &mut stream).end {
                 sum += self.lit(&point, incoming, &mut stream);
                 count += 1;
             }
@@ -77,20 +79,20 @@ impl<'a> Preview<'a> {
 
     /// Radiance along a primary ray.
     pub fn radiance(&self, ray: Ray, stream: &mut Stream) -> Spectrum {
-        let Sight { through, veiled, end } = self.follow(ray, stream);
+        let Sight { through, veiled, emitted, end } = self.follow(ray, stream);
         let behind = match end {
             End::Radiance(radiance) => radiance,
-            End::Surface(point, incoming, own) => {
-                own + self.lit(&point, incoming, stream) + self.surrounded(&point, incoming, stream)
+            End::Surface(point, incoming) => {
+                self.lit(&point, incoming, stream) + self.surrounded(&point, incoming, stream)
             }
         };
-        veiled * self.veil + through * behind
+        veiled * self.veil + emitted + through * behind
     }
 
     /// Follows a ray to the first surface that scatters light; what is smooth or not there it passes as light does.
     fn follow(&self, ray: Ray, stream: &mut Stream) -> Sight {
         let scene = self.scene;
-        let (mut through, mut veiled) = (Spectrum::ONE, Spectrum::ZERO);
+        let (mut through, mut veiled, mut emitted) = (Spectrum::ONE, Spectrum::ZERO, Spectrum::ZERO);
         let mut segment = Segment::along(scene, ray, scene.sensor_medium, self.hide_emitters);
         let mut left = self.threshold;
         for _ in 0..MOST_LEGS {
@@ -99,7 +101,7 @@ impl<'a> Preview<'a> {
             if hit.is_none() && left < t_max {
                 // Beyond the threshold there is fog alone.
                 let end = End::Radiance(Spectrum::ZERO);
-                return Sight { through: Spectrum::ZERO, veiled: veiled + through, end };
+                return Sight { through: Spectrum::ZERO, veiled: veiled + through, emitted, end };
             }
             // f of BMA02 eq. 6.
             let remains = segment.medium().quick_depth(&interval.segment).exp_neg();
@@ -108,10 +110,13 @@ impl<'a> Preview<'a> {
             let Some(hit) = hit else {
                 let sample = scene.lights.infinity_hit(direction).filter(|_| !segment.is_hidden());
                 let sky = sample.map_or(Spectrum::ZERO, |sample| sample.value);
-                return Sight { through, veiled, end: End::Radiance(sky) };
+                return Sight { through, veiled, emitted, end: End::Radiance(sky) };
             };
             left -= interval.segment.length;
             let point = segment.surface(&hit);
+            if !segment.is_hidden() {
+                emitted += through * self.emitted(&point, segment.ray());
+            }
             let weight = match segment.sample_crossing(&point, stream) {
                 NullCrossing::Passed(passed, probability) => {
                     segment.cross(&point);
@@ -119,12 +124,8 @@ impl<'a> Preview<'a> {
                 }
                 NullCrossing::Stopped(probability) => {
                     let Some((beyond, weight)) = self.deflect(&segment, &point, stream) else {
-                        let own = self.emitted(&point, segment.ray());
-                        return Sight {
-                            through,
-                            veiled,
-                            end: End::Surface(Box::new(point), -direction, own),
-                        };
+                        let end = End::Surface(Box::new(point), -direction);
+                        return Sight { through, veiled, emitted, end };
                     };
                     segment = beyond;
                     weight / probability
@@ -135,7 +136,7 @@ impl<'a> Preview<'a> {
                 break;
             }
         }
-        Sight { through: Spectrum::ZERO, veiled, end: End::Radiance(Spectrum::ZERO) }
+        Sight { through: Spectrum::ZERO, veiled, emitted, end: End::Radiance(Spectrum::ZERO) }
     }
 
     /// The segment beyond a smooth surface, and its factor; none where the ray ends.

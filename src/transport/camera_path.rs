@@ -8,9 +8,9 @@ use super::{
     mis::{self, MisSums},
     observer::{Meeting, Observer},
     profile::Profile,
-    segment::{FlightPart, Interaction},
+    segment::{FlightPart, Interaction, Passed},
     vertex::{Subpath, Vertex},
-    walk::{Arrival, Departure, Kind, Visitor, arrive, walk},
+    walk::{Arrival, Departure, Kind, Visitor, arrive, cross, walk},
 };
 use crate::{
     bsdf::Transport,
@@ -18,7 +18,7 @@ use crate::{
     sampling::Stream,
     scene::{Scene, lights::EmitterSample},
     sensor::SensorRay,
-    shape::Ray,
+    shape::{Ray, SurfacePoint},
 };
 
 /// Gathers the radiance of one pixel sample.
@@ -26,7 +26,7 @@ pub struct CameraPath<'a, P: Profile, R> {
     estimator: &'a Estimator<'a, P>,
     cache: &'a LightCache<P::MisSums>,
     hero: usize,
-    /// The vertex before the current one: where next-event estimation would have been made from.
+    /// The last vertex that the walk left: where next-event estimation would have been made from.
     previous: Vec3,
     observer: R,
 }
@@ -44,7 +44,7 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
 ) -> R {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
     let departure = depart(estimator, film, aperture);
-    let mut camera = CameraPath::new(estimator, cache, hero, departure.position, observer);
+    let mut camera = CameraPath::new(estimator, cache, hero, observer);
     walk(estimator.scene, kind, departure, &mut camera, stream);
     camera.observer
 }
@@ -78,18 +78,19 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
 
     #[inline]
     fn depart(&mut self, departure: &Departure<P::MisSums>) {
+        self.previous = departure.position;
         self.observer.depart(departure);
     }
 
     #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
         self.observer.arrive(vertex);
-        if let Interaction::Surface(point) = &vertex.interaction
+        // Where nulls exist, flights have shown the emitters that they came to, passed or not.
+        if !P::NULLS
+            && let Interaction::Surface(point) = &vertex.interaction
             && let Some(light) = self.estimator.scene.surface(point.shape).emitter
         {
-            let Scene { lights, geometry, .. } = self.estimator.scene;
-            let found = |camera: &Self| lights.surface_hit(geometry, light, point, camera.previous);
-            self.emission(&vertex.subpath, found);
+            self.surface_emission(&vertex.subpath, light, point, self.previous);
         }
         if vertex.subpath.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
             if self.estimator.counts.next_event > 0.0 {
@@ -97,22 +98,89 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
             }
             self.connect_cached(vertex, stream);
         }
-        self.previous = vertex.position();
+    }
+
+    #[inline]
+    fn pass(&mut self, departure: &Departure<P::MisSums>, passed: &Passed<P::Channels>, stream: &mut Stream) {
+        if self.estimator.counts.emitter_hit <= 0.0 {
+            return;
+        }
+        match passed {
+            Passed::Medium(part) => self.medium_emission(departure, part, stream),
+            Passed::Emitter(crossing) => {
+                if let Some(subpath) = cross::<P>(departure, crossing, self.hero) {
+                    self.surface_emission(&subpath, crossing.light, &crossing.point, departure.position);
+                }
+            }
+        }
+    }
+
+    fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
+        self.observer.escape(subpath);
+        let lights = &self.estimator.scene.lights;
+        self.emission(subpath, || lights.infinity_hit(-subpath.incoming));
+    }
+}
+
+impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
+    /// What it gathers goes to `observer`.
+    pub fn new(
+        estimator: &'a Estimator<'a, P>,
+        cache: &'a LightCache<P::MisSums>,
+        hero: usize,
+        observer: R,
+    ) -> Self {
+        Self { estimator, cache, hero, previous: Vec3::ZERO, observer }
+    }
+
+    /// What was gathered.
+    pub fn into_observer(self) -> R {
+        self.observer
+    }
+
+    /// s = 0: the walk has come to an emitter, a point of which is `found` if it emits this way.
+    #[inline]
+    fn emission(&mut self, subpath: &Subpath<P::MisSums>, found: impl FnOnce() -> Option<EmitterSample>) {
+        if self.estimator.counts.emitter_hit <= 0.0 {
+            return;
+        }
+        self.observer.start();
+        if let Some(sample) = found() {
+            let contribution = self.emitter_hit(subpath, &sample);
+            self.observer.contribute(
+                0,
+                subpath.edges + 1,
+                Meeting::Met(subpath, &sample),
+                contribution.as_ref(),
+            );
+        }
+        self.observer.stop(0, subpath.edges + 1);
+    }
+
+    /// s = 0 on a shape. Whether the walk goes on beyond it makes no difference: what the shape emits is added to what
+    /// comes through it.
+    #[inline]
+    fn surface_emission(
+        &mut self,
+        subpath: &Subpath<P::MisSums>,
+        light: u32,
+        point: &SurfacePoint,
+        previous: Vec3,
+    ) {
+        let Scene { lights, geometry, .. } = self.estimator.scene;
+        self.emission(subpath, || lights.surface_hit(geometry, light, point, previous));
     }
 
     /// s = 0 in a medium: of all points of a flight one is taken, by where it may shine most. That a flight comes as far
     /// as a point as often as radiance does is what makes up for the transmittance up to there.
     #[inline]
-    fn pass(
+    fn medium_emission(
         &mut self,
         departure: &Departure<P::MisSums>,
         part: &FlightPart<P::Channels>,
         stream: &mut Stream,
     ) {
         let Some((light, emission)) = self.estimator.scene.lights.of_medium(part.medium) else { return };
-        if self.estimator.counts.emitter_hit <= 0.0 {
-            return;
-        }
         self.observer.start();
         if let Some((t, pdf)) = emission.sample_along(&part.interval.segment, stream)
             && let Some((subpath, sample)) = self.meet(departure, part, light, t, stream)
@@ -126,57 +194,6 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
             );
         }
         self.observer.stop(0, departure.edges + 2);
-    }
-
-    fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
-        self.observer.escape(subpath);
-        self.emission(subpath, |camera| camera.estimator.scene.lights.infinity_hit(-subpath.incoming));
-    }
-}
-
-impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
-    /// What it gathers goes to `observer`; the walk begins at the point `start` of the sensor.
-    pub fn new(
-        estimator: &'a Estimator<'a, P>,
-        cache: &'a LightCache<P::MisSums>,
-        hero: usize,
-        start: Vec3,
-        observer: R,
-    ) -> Self {
-        Self { estimator, cache, hero, previous: start, observer }
-    }
-
-    /// Another walk from the point `start` of the sensor.
-    pub fn restart(&mut self, start: Vec3) {
-        self.previous = start;
-    }
-
-    /// What was gathered.
-    pub fn into_observer(self) -> R {
-        self.observer
-    }
-
-    /// s = 0: the walk has come to an emitter, a point of which is `found` if it emits this way.
-    #[inline]
-    fn emission(
-        &mut self,
-        subpath: &Subpath<P::MisSums>,
-        found: impl FnOnce(&Self) -> Option<EmitterSample>,
-    ) {
-        if self.estimator.counts.emitter_hit <= 0.0 {
-            return;
-        }
-        self.observer.start();
-        if let Some(sample) = found(self) {
-            let contribution = self.emitter_hit(subpath, &sample);
-            self.observer.contribute(
-                0,
-                subpath.edges + 1,
-                Meeting::Met(subpath, &sample),
-                contribution.as_ref(),
-            );
-        }
-        self.observer.stop(0, subpath.edges + 1);
     }
 
     /// The end of a walk at a point of an emissive medium, as the emitter `light`; none where it is dark there.

@@ -13,7 +13,7 @@ use super::{
     camera_path::{CameraPath, depart},
     observer::Observer,
     profile::Profile,
-    segment::{self, FlightPart, ForcedEnd, Interaction, Segment},
+    segment::{self, ForcedEnd, Interaction, Passed, Segment},
     walk::{Kind, Visitor, go_on, walk},
 };
 use crate::{
@@ -36,15 +36,14 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     let (scene, max_edges) = (estimator.scene, estimator.max_edges);
     let kind = Kind { transport: Transport::Radiance, hero, max_edges };
     let departure = depart(estimator, film, aperture);
-    let mut camera = CameraPath::new(estimator, cache, hero, departure.position, observer);
+    let mut camera = CameraPath::new(estimator, cache, hero, observer);
     if max_edges == 0 {
         return camera.into_observer();
     }
     let mut along =
-        |part: &FlightPart<P::Channels>, stream: &mut Stream| camera.pass(&departure, part, stream);
+        |passed: &Passed<P::Channels>, stream: &mut Stream| camera.pass(&departure, passed, stream);
     let forced = segment::force::<P>(departure.segment(scene), hero, stream, &mut along);
     for ForcedEnd { flight, share } in forced.ends.into_iter().flatten() {
-        camera.restart(departure.position);
         camera.depart(&departure);
         let next = go_on(scene, kind, &departure, &flight, &mut camera, stream, |subpath| {
             subpath.throughput = departure.throughput * share;

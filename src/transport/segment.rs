@@ -7,7 +7,9 @@ mod free_flight;
 mod transmittance;
 
 pub use forced::{ForcedEnd, force, sure_depth};
-pub use free_flight::{FlightPart, FlightState, FreeFlight, Interaction, sample_free_flight};
+pub use free_flight::{
+    EmitterCrossing, FlightPart, FlightState, FreeFlight, Interaction, Passed, sample_free_flight,
+};
 pub use transmittance::transmittance;
 
 use crate::{
@@ -23,8 +25,6 @@ use crate::{
 pub struct Segment<'a> {
     scene: &'a Scene,
     ray: Ray,
-    /// Where it has to end, if that is given.
-    end: Option<Vec3>,
     /// The medium that the ray starts in.
     medium: MediumIndex,
     /// How far behind the boundary the ray starts [m]: what was skipped to be clear of the surface still counts as way
@@ -39,14 +39,7 @@ impl<'a> Segment<'a> {
     /// Along `ray` to wherever it ends, starting in `medium`; emitters that are `hidden` are passed.
     #[inline(always)]
     pub fn along(scene: &'a Scene, ray: Ray, medium: MediumIndex, hidden: bool) -> Self {
-        Self { scene, ray, end: None, medium, skipped: 0.0, hidden }
-    }
-
-    /// To the end of `ray`, which may be at infinity.
-    #[inline]
-    fn to_end(scene: &'a Scene, ray: Ray, medium: MediumIndex, hidden: bool) -> Self {
-        let end = (ray.t_max < f32::INFINITY).then(|| ray.origin + ray.direction * ray.t_max);
-        Self { end, ..Self::along(scene, ray, medium, hidden) }
+        Self { scene, ray, medium, skipped: 0.0, hidden }
     }
 
     /// What lies ahead.
@@ -102,14 +95,30 @@ impl<'a> Segment<'a> {
         NullCrossing::Passed(through, passing)
     }
 
+    /// Shows a point that a flight has come to, if it emits.
+    #[inline]
+    fn show_emitter<L>(
+        &self,
+        point: SurfacePoint,
+        before: FlightState<L>,
+        certain: bool,
+        stream: &mut Stream,
+        along: &mut impl FnMut(&Passed<L>, &mut Stream),
+    ) {
+        if let Some(light) = self.scene.surface(point.shape).emitter {
+            let medium = self.medium;
+            along(&Passed::Emitter(EmitterCrossing { light, point, medium, before, certain }), stream);
+        }
+    }
+
     /// The segment along `ray`, which leaves `point` in another direction.
     pub fn deflected(&self, point: &SurfacePoint, ray: Ray) -> Self {
         let medium = self.scene.medium_towards(point, ray.direction, self.medium);
         Self::along(self.scene, ray, medium, false)
     }
 
-    /// Goes on beyond `point`, in the medium there. Crossings are rounded: a segment whose end is given is aimed at it
-    /// again, so that it ends where it should and not in the surface beyond.
+    /// Goes on beyond `point`, in the medium there.
+    #[inline]
     pub fn cross(&mut self, point: &SurfacePoint) {
         let Ray { origin, direction, t_max } = self.ray;
         let beyond = offset::leave_surface(point.position, point.error, point.normal, direction);
@@ -117,15 +126,20 @@ impl<'a> Segment<'a> {
         self.skipped = (beyond - point.position).dot(direction).max(0.0);
         self.ray = Ray { origin: beyond, direction, t_max };
         self.medium = self.scene.medium_beyond(point, &self.ray, self.medium);
-        if let Some(end) = self.end {
-            let (aim, t_max, _) = measure::between(beyond, end).unwrap_or((direction, 0.0, 0.0));
-            // An end so near to the boundary that the step across passed it has been reached.
-            let overshot = aim.dot(direction) <= 0.0;
-            self.ray = match overshot {
-                true => Ray { t_max: 0.0, ..self.ray },
-                false => Ray { direction: aim, t_max, ..self.ray },
-            };
-        }
+    }
+
+    /// Aims at a given `end` again. Crossings are rounded: the segment is to end where it should, not in the surface
+    /// beyond.
+    #[inline]
+    fn aim(&mut self, end: Vec3) {
+        let Ray { origin, direction, .. } = self.ray;
+        let (aim, t_max, _) = measure::between(origin, end).unwrap_or((direction, 0.0, 0.0));
+        // An end so near to the boundary that the step across passed it has been reached.
+        let overshot = aim.dot(direction) <= 0.0;
+        self.ray = match overshot {
+            true => Ray { t_max: 0.0, ..self.ray },
+            false => Ray { origin, direction: aim, t_max },
+        };
     }
 }
 

@@ -4,7 +4,7 @@
 use super::{
     mis::MisSums,
     profile::Profile,
-    segment::{FlightPart, FlightState, FreeFlight, Interaction, Segment, sample_free_flight},
+    segment::{EmitterCrossing, FlightState, FreeFlight, Interaction, Passed, Segment, sample_free_flight},
     vertex::{Subpath, Vertex, shading_correction},
 };
 use crate::{
@@ -65,11 +65,11 @@ pub trait Visitor<P: Profile> {
     /// A vertex was reached; it may scatter on.
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream);
 
-    /// A part of a flight from `departure` lies behind; only in profiles where media emit.
+    /// The flight from `departure` passes something that may emit.
     fn pass(
         &mut self,
         _departure: &Departure<P::MisSums>,
-        _part: &FlightPart<P::Channels>,
+        _passed: &Passed<P::Channels>,
         _stream: &mut Stream,
     ) {
     }
@@ -104,7 +104,7 @@ pub fn walk<P: Profile>(
     while departure.edges < kind.max_edges {
         visitor.depart(&departure);
         let mut along =
-            |part: &FlightPart<P::Channels>, stream: &mut Stream| visitor.pass(&departure, part, stream);
+            |passed: &Passed<P::Channels>, stream: &mut Stream| visitor.pass(&departure, passed, stream);
         let flight = sample_free_flight::<P>(departure.segment(scene), kind.hero, stream, &mut along);
         let Some(next) = go_on(scene, kind, &departure, &flight, visitor, stream, |_| ()) else { return };
         departure = next;
@@ -240,6 +240,26 @@ pub fn arrive<P: Profile>(
             .times(transmitted)
             .scaled(1.0 / distance_squared),
     })
+}
+
+/// The subpath to a point of an emitter that a flight passes.
+pub fn cross<P: Profile>(
+    departure: &Departure<P::MisSums>,
+    crossing: &EmitterCrossing<P::Channels>,
+    hero: usize,
+) -> Option<Subpath<P::MisSums>> {
+    let EmitterCrossing { point, medium, before, .. } = crossing;
+    let interaction = Interaction::Surface(*point);
+    let at = Arrival {
+        position: Some(point.position),
+        cosine: interaction.cosine(departure.ray.direction),
+        sigma_t: interaction.sigma_t(),
+    };
+    let mut subpath = arrive::<P>(departure, before, *medium, &at, hero)?;
+    if crossing.certain {
+        subpath.throughput = departure.throughput * before.ratio.to_spectrum() * before.tint;
+    }
+    Some(subpath)
 }
 
 /// Squared distance of two vertices one flight apart, never 0. In dense media many a flight is shorter than a rounding

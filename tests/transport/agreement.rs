@@ -181,6 +181,45 @@ fn around_a_lamp_in_a_ball_of_fog() {
     all_agree("lamp in a ball of fog", &scene(&parts), LAMP_IN_VIEW, 128);
 }
 
+/// A square that emits towards the camera, which sees what is behind it too.
+fn null_lamp(at: [f64; 3], half: f64, radiance: f64) -> Value {
+    json!({
+        "type": "rectangle", "to_world": place([half, half, 1.0], at), "bsdf": {"type": "null"},
+        "emitter": {"type": "area", "radiance": radiance},
+    })
+}
+
+#[test]
+fn with_lamps_that_light_passes() {
+    let masked = json!({"type": "mask", "opacity": 0.5, "nested": diffuse(0.6)});
+    let parts = [
+        ("sensor", camera([0.0, 0.3, 3.5], [0.0, 0.0, 0.0], 8)),
+        ("floor", floor(-1.0, 2.0, 0.5)),
+        ("box", null_box([-0.8; 3], [0.8; 3], Some(medium(1.5, 0.9, 0.4)))),
+        ("before", null_lamp([-0.4, 0.2, 1.0], 0.4, 1.0)),
+        ("within", with(null_lamp([0.3, -0.2, 0.2], 0.3, 4.0), &[("bsdf", masked)])),
+        ("around", with(lamp_ball([0.0, 0.3, -0.2], 0.3, 2.0), &[("bsdf", json!({"type": "null"}))])),
+    ];
+    all_agree("lamps that light passes", &scene(&parts), LAMP_IN_VIEW, 128);
+    let mut parts = parts.to_vec();
+    parts.push(("integrator", json!({"type": "bdpt", "hide_emitters": true})));
+    all_agree("hidden lamps that light passes", &scene(&parts), Kind::default(), 128);
+}
+
+/// Without media and without chance: a pane of light adds its own radiance to that of the sky behind it.
+#[test]
+fn a_pane_of_light_adds_to_what_is_behind_it() {
+    let parts = [
+        ("sensor", camera([0.0, 0.0, 3.0], [0.0, 0.0, 0.0], 4)),
+        ("pane", null_lamp([0.0, 0.0, 1.0], 2.0, 0.25)),
+        ("sky", sky(0.5)),
+    ];
+    let stage = Stage::new(&scene(&parts));
+    for image in stage.renders(strategies("hit"), 4, 0..2) {
+        assert!(image.iter().all(|pixel| (pixel.x - 0.75).abs() < 1e-6), "{image:?}");
+    }
+}
+
 #[test]
 fn through_a_slab_that_only_absorbs() {
     let parts = [

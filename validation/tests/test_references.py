@@ -39,8 +39,8 @@ def test_an_image_of_another_scene_or_effort_or_of_none_is_refused(tmp_path: Pat
 
 
 def test_an_extinction_that_is_off_by_a_twentieth_is_refused() -> None:
-    scene = open_scene(CROSSCHECK / "sphere_chromatic.json")
+    scene = open_scene(CROSSCHECK / "fog_isotropic.json")
     reference = references.recorded(scene, matrix.RECORDED_EFFORT)
     for perturbation, passes in ((0, True), (0.05, False)):
-        candidate = compare.candidate_renderer(compare.perturbed(scene, perturbation), "pt")
-        assert compare.compare(scene, "pt", matrix.QUICK, reference, candidate).passed == passes
+        candidate = compare.candidate_renderer(compare.perturbed(scene, perturbation), "bdpt")
+        assert compare.compare(scene, "bdpt", matrix.QUICK, reference, candidate).passed == passes

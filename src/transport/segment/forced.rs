@@ -1,7 +1,7 @@
 //! The forced flight (P03T sec. A.2.2): a segment that ends in two ways at once, at a collision within the media that
 //! the ray crosses and on what lies behind them, each with its share of radiance.
 
-use super::{FlightPart, FlightState, FreeFlight, Interaction, NullCrossing, Segment};
+use super::{FlightPart, FlightState, FreeFlight, Interaction, NullCrossing, Passed, Segment};
 use crate::{
     math::{Channels, Spectrum},
     medium::{Medium, MediumInterval, distance::collision_ratio},
@@ -74,7 +74,7 @@ pub fn force<P: Profile>(
     segment: Segment<'_>,
     hero: usize,
     stream: &mut Stream,
-    along: &mut impl FnMut(&FlightPart<P::Channels>, &mut Stream),
+    along: &mut impl FnMut(&Passed<P::Channels>, &mut Stream),
 ) -> Forced<P::Channels> {
     let Followed { parts, behind, depth, sure_depth } = follow::<P>(segment, hero, stream, along);
     let collision = collide::<P>(&parts, depth, hero, stream);
@@ -112,7 +112,7 @@ fn follow<'a, P: Profile>(
     mut segment: Segment<'a>,
     hero: usize,
     stream: &mut Stream,
-    along: &mut impl FnMut(&FlightPart<P::Channels>, &mut Stream),
+    along: &mut impl FnMut(&Passed<P::Channels>, &mut Stream),
 ) -> Followed<'a, P::Channels> {
     let (mut parts, mut sure) = (Vec::new(), None);
     let mut unforced = Unforced::none();
@@ -121,7 +121,7 @@ fn follow<'a, P: Profile>(
         let (before, medium) = (unforced, segment.medium);
         if P::EMISSIVE {
             let before = FlightState { ratio: before.through, ..before.state };
-            along(&FlightPart { medium, interval, before, certain: true }, stream);
+            along(&Passed::Medium(FlightPart { medium, interval, before, certain: true }), stream);
         }
         unforced.add::<P>(segment.medium(), &interval, hero, stream);
         let depth = unforced.spent - before.spent;
@@ -129,22 +129,16 @@ fn follow<'a, P: Profile>(
             parts.push(Part { segment, interval, before, depth });
         }
         let point = hit.map(|hit| segment.surface(&hit));
-        let state = &mut unforced.state;
         if let Some(point) = point.as_ref().filter(|_| P::NULLS) {
-            match segment.sample_crossing(point, stream) {
-                NullCrossing::Stopped(probability) => {
-                    sure.get_or_insert(state.depth);
-                    state.tint /= probability;
-                }
-                NullCrossing::Passed(through, probability) => {
-                    if probability < 1.0 {
-                        sure.get_or_insert(state.depth);
-                    }
-                    state.tint *= through / probability;
-                    state.depth = state.depth + P::Channels::splat(-probability.ln());
-                    segment.cross(point);
-                    continue;
-                }
+            let before = FlightState { ratio: unforced.through, ..unforced.state };
+            segment.show_emitter(*point, before, true, stream, along);
+            let crossing = segment.sample_crossing(point, stream);
+            if !matches!(crossing, NullCrossing::Passed(_, 1.0..)) {
+                sure.get_or_insert(unforced.state.depth);
+            }
+            if unforced.state.cross(&crossing) {
+                segment.cross(point);
+                continue;
             }
         }
         let Unforced { state, through, spent } = unforced;

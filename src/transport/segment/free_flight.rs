@@ -78,6 +78,44 @@ impl<L: Channels> FlightState<L> {
     pub fn none() -> Self {
         Self { depth: L::splat(0.0), ratio: L::splat(1.0), tint: Spectrum::ONE }
     }
+
+    /// What a surface makes of it; true if the flight goes on.
+    #[inline]
+    pub fn cross(&mut self, crossing: &NullCrossing) -> bool {
+        match *crossing {
+            NullCrossing::Stopped(probability) => self.tint /= probability,
+            NullCrossing::Passed(through, probability) => {
+                self.tint *= through / probability;
+                self.depth = self.depth + L::splat(-probability.ln());
+            }
+        }
+        matches!(crossing, NullCrossing::Passed(..))
+    }
+}
+
+/// What a flight passes on its way, as far as walks may want to see it.
+#[derive(Clone, Copy, Debug)]
+pub enum Passed<L> {
+    /// A part in one medium. Only profiles with emissive media show it.
+    Medium(FlightPart<L>),
+    /// A point of a shape that emits: the flight comes there whether it goes on or ends. Only profiles with nulls show
+    /// it; in others it always ends.
+    Emitter(EmitterCrossing<L>),
+}
+
+/// A flight's coming to a shape that emits.
+#[derive(Clone, Copy, Debug)]
+pub struct EmitterCrossing<L> {
+    /// The emitter.
+    pub light: u32,
+    /// Its point.
+    pub point: SurfacePoint,
+    /// The medium before it.
+    pub medium: MediumIndex,
+    /// What lies before it.
+    pub before: FlightState<L>,
+    /// As of [`FlightPart`].
+    pub certain: bool,
 }
 
 /// A part of a flight that lies in one medium.
@@ -116,7 +154,7 @@ impl<L: Channels> FlightPart<L> {
 }
 
 /// Samples where `segment` ends: at an exponential optical depth by the `hero` channel, or before, on a surface. Only
-/// profiles with nulls can pass boundaries. In profiles where media emit, `along` is shown every part of it.
+/// profiles with nulls can pass boundaries. `along` is shown what it passes.
 ///
 /// LW96 eq. 4: the distance is that of a free flight; its density is eq. 6 in a medium, and that it reaches a surface
 /// has the probability of eq. 7.
@@ -125,7 +163,7 @@ pub fn sample_free_flight<P: Profile>(
     segment: Segment<'_>,
     hero: usize,
     stream: &mut Stream,
-    along: &mut impl FnMut(&FlightPart<P::Channels>, &mut Stream),
+    along: &mut impl FnMut(&Passed<P::Channels>, &mut Stream),
 ) -> FreeFlight<P::Channels> {
     let remaining = if P::MEDIA { stream.exponential() } else { 0.0 };
     if P::NULLS {
@@ -197,7 +235,7 @@ fn fly_across_boundaries<P: Profile>(
     hero: usize,
     mut remaining: f32,
     stream: &mut Stream,
-    along: &mut impl FnMut(&FlightPart<P::Channels>, &mut Stream),
+    along: &mut impl FnMut(&Passed<P::Channels>, &mut Stream),
 ) -> FreeFlight<P::Channels> {
     let mut state = FlightState::none();
     loop {
@@ -205,22 +243,16 @@ fn fly_across_boundaries<P: Profile>(
             fly_to_surface::<P>(&segment, hero, remaining, stream);
         let medium = segment.medium;
         if P::EMISSIVE {
-            along(&FlightPart { medium, interval, before: state, certain: false }, stream);
+            along(&Passed::Medium(FlightPart { medium, interval, before: state, certain: false }), stream);
         }
         state.depth = state.depth + leg.depth;
         state.ratio = state.ratio * leg.ratio;
         let Some(Interaction::Surface(point)) = interaction else {
             return FreeFlight { interaction, medium, state };
         };
-        match segment.sample_crossing(&point, stream) {
-            NullCrossing::Stopped(probability) => {
-                state.tint /= probability;
-                return FreeFlight { interaction, medium, state };
-            }
-            NullCrossing::Passed(through, probability) => {
-                state.tint *= through / probability;
-                state.depth = state.depth + P::Channels::splat(-probability.ln());
-            }
+        segment.show_emitter(point, state, false, stream, along);
+        if !state.cross(&segment.sample_crossing(&point, stream)) {
+            return FreeFlight { interaction, medium, state };
         }
         remaining = (remaining - spent).max(0.0);
         segment.cross(&point);

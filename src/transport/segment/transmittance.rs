@@ -37,7 +37,7 @@ pub fn transmittance<P: Profile>(
     stream: &mut Stream,
 ) -> Option<SegmentTransmittance<P::Channels>> {
     if P::NULLS {
-        return across_boundaries::<P>(Segment::to_end(scene, ray, medium, hidden), cut, stream);
+        return across_boundaries::<P>(Segment::along(scene, ray, medium, hidden), cut, stream);
     }
     if scene.geometry.occluded(&ray) {
         return None;
@@ -54,6 +54,8 @@ fn across_boundaries<P: Profile>(
     cut: f32,
     stream: &mut Stream,
 ) -> Option<SegmentTransmittance<P::Channels>> {
+    let Ray { origin, direction, t_max } = *segment.ray();
+    let end = (t_max < f32::INFINITY).then(|| origin + direction * t_max);
     let mut product = Product::<P>::new();
     loop {
         let (mut interval, hit) = segment.next(f32::INFINITY);
@@ -71,6 +73,9 @@ fn across_boundaries<P: Profile>(
         product.tint *= through;
         product.add(segment.medium(), &interval, stream);
         segment.cross(&point);
+        if let Some(end) = end {
+            segment.aim(end);
+        }
     }
 }
 

@@ -17,9 +17,9 @@ use crate::{
         mis::MisSums,
         observer::{Meeting, Observer, Sum},
         profile::Profile,
-        segment::{FlightPart, Interaction},
+        segment::{Interaction, Passed},
         vertex::{Subpath, Vertex},
-        walk::{Departure, Kind, Visitor, walk},
+        walk::{Departure, Kind, Visitor, cross, walk},
     },
 };
 
@@ -47,13 +47,13 @@ pub struct Trail<V, S: MisSums> {
     visitor: V,
     pub vertices: Vec<Vertex<S>>,
     pub escaped: Option<Subpath<S>>,
-    /// What media were flown through, after how many vertices.
-    parts: Vec<(usize, Departure<S>, FlightPart<S::Channels>)>,
+    /// What flights passed, after how many vertices.
+    passed: Vec<(usize, Departure<S>, Passed<S::Channels>)>,
 }
 
 impl<V, S: MisSums> Trail<V, S> {
     fn new(visitor: V) -> Self {
-        Self { visitor, vertices: Vec::new(), escaped: None, parts: Vec::new() }
+        Self { visitor, vertices: Vec::new(), escaped: None, passed: Vec::new() }
     }
 }
 
@@ -64,8 +64,8 @@ impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::MisSums> {
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, _: &mut Stream) {
         self.vertices.push(*vertex);
     }
-    fn pass(&mut self, departure: &Departure<P::MisSums>, part: &FlightPart<P::Channels>, _: &mut Stream) {
-        self.parts.push((self.vertices.len(), *departure, *part));
+    fn pass(&mut self, departure: &Departure<P::MisSums>, passed: &Passed<P::Channels>, _: &mut Stream) {
+        self.passed.push((self.vertices.len(), *departure, *passed));
     }
     fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
         self.escaped = Some(*subpath);
@@ -82,7 +82,7 @@ pub fn camera_walk<'a, P: Profile>(
 ) -> Trail<CameraPath<'a, P, Sum>, P::MisSums> {
     let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
     let departure = camera_path::depart(estimator, film, APERTURE);
-    let mut trail = Trail::new(CameraPath::new(estimator, cache, hero, departure.position, Sum::default()));
+    let mut trail = Trail::new(CameraPath::new(estimator, cache, hero, Sum::default()));
     walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
     trail
 }
@@ -210,7 +210,8 @@ fn of_eye<P: Profile>(
     let scene = estimator.scene;
     let mut previous = Node::lens(scene).position();
     for (index, vertex) in camera.vertices.iter().enumerate() {
-        if let Interaction::Surface(point) = vertex.interaction
+        if !P::NULLS
+            && let Interaction::Surface(point) = vertex.interaction
             && let Some(light) = scene.surface(point.shape).emitter
             && let Some(sample) = scene.lights.surface_hit(&scene.geometry, light, &point, previous)
         {
@@ -244,18 +245,27 @@ fn of_eye<P: Profile>(
     }
 }
 
-/// Points of emissive media, met on the flights of the camera subpath.
+/// Emitters that are met on the flights of the camera subpath: points of emissive media, and of shapes.
 fn of_flights<P: Profile>(
     estimator: &Estimator<'_, P>,
     camera: &Trail<CameraPath<'_, P, Sum>, P::MisSums>,
     cases: &mut Cases<'_>,
     stream: &mut Stream,
 ) {
-    for (count, departure, part) in &camera.parts {
-        if let Some((light, emission)) = estimator.scene.lights.of_medium(part.medium)
-            && let Some((t, _)) = emission.sample_along(&part.interval.segment, stream)
-            && let Some((subpath, sample)) = camera.visitor.meet(departure, part, light, t, stream)
-        {
+    let Scene { lights, geometry, .. } = estimator.scene;
+    for (count, departure, passed) in &camera.passed {
+        let met = match passed {
+            Passed::Medium(part) => lights.of_medium(part.medium).and_then(|(light, emission)| {
+                let (t, _) = emission.sample_along(&part.interval.segment, stream)?;
+                camera.visitor.meet(departure, part, light, t, stream)
+            }),
+            Passed::Emitter(crossing) => {
+                let (light, from) = (crossing.light, departure.position);
+                let sample = lights.surface_hit(geometry, light, &crossing.point, from);
+                cross::<P>(departure, crossing, cases.hero).zip(sample)
+            }
+        };
+        if let Some((subpath, sample)) = met {
             let before = chain(&camera.vertices[..*count], departure.dirac);
             cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(&subpath, &sample));
         }

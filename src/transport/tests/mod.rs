@@ -105,6 +105,16 @@ fn half_transparent_panes() {
     );
 }
 
+/// Camera subpaths meet their light and go on.
+#[test]
+fn emitters_that_light_passes() {
+    examine_all::<Bounded>("null lamp", &build(&[FOG, INSIDE, ROOM, BALL, NULL_LAMP]), 400);
+    examine_all::<Bounded>("masked bulb", &build(&[FOG, INSIDE, ROOM, BALL, MASKED_BULB, LAMP]), 400);
+    examine_all::<Bounded>("bright boundary", &build(&[OUTSIDE, BRIGHT_SMOKE, GROUND]), 1000);
+    let setup = build(&[CHROMATIC_FOG, INSIDE, ROOM, NULL_LAMP, MASKED_BULB, MIRROR]);
+    examine_all::<Everything>("null lamp, colours", &setup, 300);
+}
+
 #[test]
 fn extinction_that_differs_between_channels() {
     examine_all::<ChromaticFog>("chromatic", &build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL]), 300);

@@ -54,8 +54,7 @@ pub fn weights<P: Profile>(
     let (mut kept, mut film) = (LightCache::new(P::Channels::COUNT), WideFilm);
     let start = start(reference, path);
     let light = LightPath::new(estimator, &mut kept, &mut film, start, hero);
-    let camera =
-        CameraPath::new(estimator, &cache, hero, Node::lens(estimator.scene).position(), Sum::default());
+    let camera = CameraPath::new(estimator, &cache, hero, Sum::default());
     let by_light = by_light(estimator, reference, path, &start, hero, &light);
     let by_eye = by_eye(estimator, reference, path, hero, &camera);
     let last = path.nodes.len() - 1;

@@ -150,6 +150,22 @@ pub const BALL: &str = r#""ball": {"type": "sphere", "center": [0.3, -0.6, 0.3],
 pub const BULB: &str = r#""bulb": {"type": "sphere", "center": [-0.5, 0.4, 0.4], "radius": 0.15,
     "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [9, 7, 3]}}}"#;
 
+/// A lamp that lets everything pass, in the camera's view.
+pub const NULL_LAMP: &str = r#""lamp": {"type": "rectangle",
+    "to_world": [{"type": "scale", "value": 0.5}, {"type": "rotate", "axis": [0, 1, 0], "angle": 160},
+                 {"type": "translate", "value": [0, 0.1, 0.1]}],
+    "bsdf": {"type": "null"}, "emitter": {"type": "area", "radiance": 2}}"#;
+
+/// A bulb with holes.
+pub const MASKED_BULB: &str = r#""bulb": {"type": "sphere", "center": [-0.3, 0.2, 0.3], "radius": 0.3,
+    "bsdf": {"type": "mask", "opacity": 0.4, "nested": {"type": "diffuse", "reflectance": 0.6}},
+    "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [9, 7, 3]}}}"#;
+
+/// Smoke whose boundary emits.
+pub const BRIGHT_SMOKE: &str = r#""smoke": {"type": "sphere", "bsdf": {"type": "null"},
+    "interior": {"type": "homogeneous", "sigma_t": 1.2, "albedo": 0.95},
+    "emitter": {"type": "area", "radiance": 1.5}}"#;
+
 /// Glass around thinner fog.
 pub const GLASS_BALL: &str = r#""haze": {"type": "homogeneous", "sigma_t": 1.5, "albedo": 0.95},
     "ball": {"type": "sphere", "center": [0.3, -0.4, 0.2], "radius": 0.4,
