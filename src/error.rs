@@ -1,4 +1,4 @@
-//! What can go wrong, told so that it can be mended: place, expected, found, remedy.
+//! Errors: the place, what was expected, what was found, and a remedy.
 
 use std::fmt;
 

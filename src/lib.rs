@@ -1,6 +1,6 @@
 //! Tyndall: a bidirectional path tracer for participating media, after Lafortune & Willems 1996 (LW96).
 //!
-//! The modules stand in the order of the pipeline; each may use those above it and none below.
+//! The modules are listed in the order of the pipeline; each may use the ones above it, none below.
 
 pub mod error;
 pub mod math;

@@ -147,7 +147,9 @@ fn in_words(emitter: EmitterTraits, dirac: &[bool]) -> String {
     };
     let smooth = "smooth mirrors or lenses";
     match (dirac.first(), dirac.last()) {
-        (Some(true), _) if !dirac.contains(&false) => format!("{light} that {smooth} alone lead to the eye"),
+        (Some(true), _) if !dirac.contains(&false) => {
+            format!("{light} that {smooth} alone lead to the camera")
+        }
         (Some(true), Some(true)) => format!("caustics of {light} seen in or through {smooth}"),
         (Some(true), _) => format!("caustics of {light}"),
         (_, Some(true)) => format!("{light} seen in or through {smooth}"),
@@ -170,11 +172,11 @@ pub fn unreachable(scene: &Scene, strategies: Strategies, paths: Paths) -> Vec<S
 pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
     let Strategies { emitter_hit, next_event, lens, .. } = options.strategies;
     let missing = unreachable(scene, options.strategies, options.into());
-    let mut notes: Vec<String> = missing.into_iter().map(|kind| format!("leaves out {kind}")).collect();
+    let mut notes: Vec<String> = missing.into_iter().map(|kind| format!("does not sample {kind}")).collect();
     let around = &scene.media[scene.sensor_medium.0 as usize];
     if lens && !emitter_hit && !next_event && around.bound().sigma_t != Spectrum::ZERO {
-        let why = "light scattered close to the camera, which only joins with the lens bring";
-        notes.push(format!("its variance is infinite: {why}; errors grow with luck"));
+        let why = "light scattered close to the camera is sampled by connections to the lens only";
+        notes.push(format!("its variance is infinite: {why}; its error bars are unreliable"));
     }
     let mut trackers = scene.media.iter().filter_map(|medium| Some(medium.heterogeneous()?.tracker()));
     if trackers.any(|tracker| matches!(tracker, DistanceSampler::RayMarching(_))) {
@@ -248,7 +250,7 @@ mod tests {
         let lamp = traits(&[LAMP], true);
         assert_eq!(lamp.unreachable(Strategies::BDPT), [""; 0]);
         let light = "light of area, sky or medium";
-        let of_light_tracing = ["alone lead to the eye", "seen in or through smooth mirrors or lenses"];
+        let of_light_tracing = ["alone lead to the camera", "seen in or through smooth mirrors or lenses"];
         let found = lamp.unreachable(Strategies::LT);
         assert!(found.len() == 3 && found[2].starts_with("caustics"), "{found:?}");
         for (found, end) in found.iter().zip(of_light_tracing) {

@@ -20,7 +20,7 @@ use tally::{Estimate, QUANTITIES, Tally};
 /// The form of the medium.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Shape {
-    /// Between two planes, without end to the sides.
+    /// Between two parallel planes, infinite to the sides.
     Slab,
     /// A cube; photons enter in the middle of a face.
     Cube,
@@ -31,7 +31,7 @@ pub enum Shape {
 pub struct Experiment {
     /// Its form.
     pub shape: Shape,
-    /// Thickness of the slab, or side of the cube [m].
+    /// Thickness of the slab, or side length of the cube [m].
     pub size: f64,
     /// Absorption [1/m], >= 0.
     pub sigma_a: f64,
@@ -77,7 +77,7 @@ impl Method {
 /// How much work to do.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Photons of each method, at least 2.
+    /// Number of photons for each method, at least 2.
     pub photons: u64,
     /// Photons of the run that stands for the truth, at least 2.
     pub truth_photons: u64,

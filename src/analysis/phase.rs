@@ -24,7 +24,7 @@ use std::f64::consts::{PI, TAU};
 pub struct Division {
     /// Circles of equal angle, the two poles among them; at least 3.
     pub parallels: usize,
-    /// Half circles from pole to pole, at least 3.
+    /// Number of meridians that divide the sphere, at least 3.
     pub meridians: usize,
 }
 
@@ -66,13 +66,13 @@ impl Check {
         use statrs::distribution::{ContinuousCDF, Normal};
         let two_sided = 2.0 * Normal::standard().sf(self.z().abs());
         let claims = [
-            ("the density is not normalised to 1", (self.normalisation - 1.0).abs() <= ROUNDING),
+            ("the pdf is not normalised to 1", (self.normalisation - 1.0).abs() <= ROUNDING),
             (
-                "the mean cosine told is not that of the density",
+                "the stated mean cosine is not that of the pdf",
                 (self.stated_mean_cosine - self.mean_cosine).abs() <= ROUNDING,
             ),
-            ("the samples' mean cosine is not that of the density", two_sided >= significance),
-            ("the samples are not distributed as the density says", self.fit.p_value >= significance),
+            ("the mean cosine of the samples is not that of the pdf", two_sided >= significance),
+            ("the samples are not distributed according to the pdf", self.fit.p_value >= significance),
         ];
         claims.into_iter().filter(|(_, holds)| !holds).map(|(failure, _)| failure).collect()
     }

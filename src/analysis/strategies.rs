@@ -199,7 +199,7 @@ fn check(film: &Film, cells: StrategyTable, options: &Options) -> Result<()> {
             film.height,
             bytes >> 30
         ),
-        "ask for a smaller --size, or for less --depth",
+        "use a smaller --size or a smaller --depth",
     ))
 }
 
@@ -269,7 +269,7 @@ fn advice(subsets: &[SubsetReport]) -> String {
         None if subsets.is_empty() => {
             "keep all strategies: without any of them paths would be missing".to_owned()
         }
-        None => "keep all strategies: no set without one of them has less error x time that could be told from chance"
+        None => "keep all strategies: no set without one of them has a significantly lower error x time"
             .to_owned(),
     }
 }

@@ -142,7 +142,7 @@ pub trait BsdfModel {
         self.evaluate(uv, wi, up, Transport::Radiance).value * PI
     }
 
-    /// True if light can get to the other side, be it bent or straight through.
+    /// True if light can be transmitted, refracted or not.
     fn transmits(&self) -> bool {
         self.has_null() || self.scatters_across()
     }
@@ -253,7 +253,7 @@ fn reflectance(params: &Params<'_>, name: &'static str, default: f32) -> Result<
     if max <= 1.0 {
         return Ok(texture);
     }
-    let found = format!("one that reaches {max}: it would make light out of nothing");
+    let found = format!("one that reaches {max}: more light would leave than arrives");
     Err(params.complain(name, "a colour from 0 to 1", found))
 }
 

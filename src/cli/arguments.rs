@@ -1,4 +1,4 @@
-//! What can be asked on the command line.
+//! The arguments of the command line.
 
 use super::{estimator::Estimator, study::Study};
 use crate::medium::DistanceMethod;
@@ -22,51 +22,53 @@ pub struct Arguments {
 pub enum Command {
     /// Render a scene to an image
     Render(Render),
-    /// Show what every strategy of bidirectional path tracing is worth in a scene
+    /// Show what each strategy of bidirectional path tracing contributes to a scene
     ///
-    /// Writes into a folder the image that each strategy makes, weighted and alone, as EXR layers and as pyramids on
-    /// contact sheets (Veach 1997, fig. 10.2 and 10.3), and a table of shares of energy, variance and time as JSON and
-    /// CSV. Then short renders taking turns tell which kinds of strategies the scene could do without.
+    /// Writes to a folder the image of each strategy, weighted and unweighted, as EXR layers and as pyramids on
+    /// contact sheets (Veach 1997, fig. 10.2 and 10.3), and a table of the shares of energy, variance and time as
+    /// JSON and CSV. Short renders with different sets of strategies then show which kinds of strategies the
+    /// scene does not need.
     Strategies(super::strategies::Arguments),
     /// Write the paths of one pixel's samples as JSON, for debugging
     ///
-    /// The samples are those of a render with the same seed, size and options: same walks, same light vertices. Every
-    /// vertex comes with its densities, every contribution with its weight; they sum up to what the pixel got.
+    /// The samples are those of a render with the same seed, size and options: the same camera subpaths and the
+    /// same light vertices. Every vertex is listed with its pdfs and every contribution with its weight; the
+    /// contributions sum to the value of the pixel.
     Pixel(super::pixel::Arguments),
-    /// Say what a scene holds, without rendering it
+    /// Print a summary of a scene without rendering it
     Info(Info),
-    /// Spell a scene again: Mitsuba 3 XML as JSON, or JSON as XML
+    /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML
     ///
-    /// Kept: plugins, names, ids, references, order, every number to the last bit, colours, spectra, transforms step
-    /// by step, and parameters with their defaults (XML's <default> is JSON's "$defaults"). Included files come into
-    /// the one new file, and so do the values of spectrum files; an alias gives way to the id that it stands for.
-    /// Comments and layout are not kept. Names of other files are changed so that they still lead to the same files,
-    /// which stay where they are. Where a parameter stands in a place that the other spelling has no words for, its
-    /// value is written instead, and a note on standard error says where.
+    /// Plugins, names, ids, references, order, the exact value of every number, colours, spectra, the steps of
+    /// transforms, and parameters with their defaults are preserved (<default> in XML is "$defaults" in JSON).
+    /// Included files and the values of spectrum files are written into the new file; aliases are replaced by the
+    /// ids that they refer to. Comments and layout are not kept. Paths of other files are adjusted so that they
+    /// still refer to the same files, which are not moved. Where the new format does not allow a parameter, its
+    /// value is written instead, and a note on standard error names the place.
     Convert(Convert),
-    /// Make the page of a study, study.html, again from its numbers and images
+    /// Create the page of a study, study.html, again from its numbers and images
     Report(Report),
-    /// Measure error against run time: contenders render scenes side by side, against a reference
+    /// Measure error against run time: render scenes with several contenders and compare them with a reference
     ///
-    /// Every contender renders every scene with several seeds. Each render is looked at as its samples double, so that
-    /// the points of one curve share samples: intervals over seeds are right at every budget, and the slope is taken
-    /// seed by seed. FOLDER gets study.json, study.csv, images, and runs/ with all that is needed to go on: a study that
-    /// was stopped, however, goes on where it was when the same command is run again.
+    /// Every contender renders every scene with several seeds. Each render is measured every time its number of
+    /// samples has doubled, so the points of one curve share samples: the intervals over seeds are valid at every
+    /// budget, and the slope is estimated seed by seed. Writes study.json, study.csv, images, and runs/ with the
+    /// state of the study to FOLDER: a study that was interrupted continues when the same command is run again.
     Study(Study),
-    /// Say how far an image is from a reference: MSE, relMSE, MAPE, SMAPE, FLIP and more
+    /// Compare an image with a reference: MSE, relMSE, MAPE, SMAPE, FLIP and more
     ///
-    /// In radiance and in display units (both images tone-mapped alike). Exit code: 0, or 1 if a measure is above its
-    /// --fail-above, or 2 for a mistake.
+    /// Measures are given in radiance and in display units (both images tone-mapped with the same curve). Exit
+    /// code: 0, 1 if a measure is above its --fail-above, 2 on an error.
     Diff(super::diff::Diff),
-    /// Look at a phase function: do its samples fit its density? With a polar plot (SVG) and a mesh (PLY)
+    /// Test whether the samples of a phase function match its pdf, and draw it as a polar plot (SVG) and a mesh (PLY)
     ///
-    /// Exit code: 0, or 1 if they do not, or 2 for a mistake.
+    /// Exit code: 0, 1 if they do not match, 2 on an error.
     Phase(super::phase::Phase),
-    /// Compare ways of sampling flights through a slab or a cube: bias, variance, time
+    /// Compare methods of free-flight sampling in a slab or a cube: bias, variance, time
     ///
-    /// Photons enter at one point in one direction. Flights are by constant steps (CDS), exponential by sigma_t
-    /// (RDS_t) or by sigma_s (RDS_s), or have their first collision forced. Exit code: 0, or 1 if an unbiased method is
-    /// off the truth, or 2 for a mistake.
+    /// Photons enter at one point in one direction. Distances are constant steps (CDS), exponentially distributed
+    /// with sigma_t (RDS_t) or with sigma_s (RDS_s), or have their first collision forced. Exit code: 0, 1 if an
+    /// unbiased method deviates from the expected values, 2 on an error.
     Flights(super::flights::Flights),
 }
 
@@ -77,49 +79,51 @@ pub struct Render {
     #[command(flatten)]
     pub scene: Scene,
 
-    /// Image to write: linear OpenEXR (.exr), float map (.pfm) or Radiance (.rgbe, .hdr), with a tone-mapped
-    /// PNG (.png) beside it
+    /// Image to write: linear OpenEXR (.exr), float map (.pfm) or Radiance (.rgbe, .hdr); a tone-mapped PNG
+    /// (.png) is written next to it
     ///
-    /// Default: the scene's name, in the current folder, in the format that its film names.
+    /// Default: the name of the scene, in the current folder, in the file format of its film.
     #[arg(short, long, value_name = "FILE", value_parser = image_file)]
     pub output: Option<PathBuf>,
 
-    /// Also write figures of the render (time, samples, noise) to this JSON file
+    /// Also write statistics of the render (time, samples, noise) to this JSON file
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
 
     /// Samples per pixel [default: the scene's sample_count]
     ///
-    /// With a time limit and no --spp: as many as the time allows.
+    /// With --time-limit and without --spp: as many as the time allows.
     #[arg(long, value_name = "N", value_parser = positive_u32, allow_negative_numbers = true)]
     pub spp: Option<u32>,
 
-    /// Stop after this time, a number with s, m or h (90, 90s, 5m, 1.5h; seconds if none) [default: no limit]
+    /// Stop after this time: a number with the unit s, m or h (90, 90s, 5m, 1.5h; seconds without a unit)
+    /// [default: no limit]
     ///
-    /// What is complete by then is written. With --spp as well, whichever is reached first counts. Alpha and
-    /// the layers of an aov integrator come after it, and are quick.
+    /// The samples completed by then are written. With --spp as well, the render stops at whichever limit is
+    /// reached first. Alpha and the layers of an aov integrator are rendered afterwards, in a short time.
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
     pub time_limit: Option<Duration>,
 
-    /// Sample every pixel until its value is off by less than this part of it, such as 0.02
+    /// Sample every pixel until its relative error is below this value, such as 0.02
     ///
-    /// In every channel, with the probability that --confidence names for each pixel by itself, as far as its samples
-    /// tell. Pixels darker than a hundredth of the image's mean luminance are known relative to that hundredth. Pixels
-    /// that are harder get more samples, those that are black so far as many as the hardest; the image stays unbiased.
-    /// With --spp or --time-limit as well, whichever is reached first ends the render; without, there is no other end.
-    /// Where the file is an EXR, its channel samples.N tells how many samples each pixel took.
+    /// The error is estimated from the samples of each pixel, in every channel, and holds for each pixel with the
+    /// probability --confidence. For pixels darker than 1 % of the image's mean luminance it is relative to that
+    /// 1 %. Noisier pixels get more samples, pixels that are still black as many as the noisiest; the image stays
+    /// unbiased. With --spp or --time-limit as well, the render stops at whichever limit is reached first;
+    /// without them there is no other limit. In EXR files the channel samples.N is the number of samples of each
+    /// pixel.
     #[arg(long, value_name = "E", value_parser = relative_error, allow_negative_numbers = true)]
     pub error: Option<f64>,
 
-    /// Probability with which a pixel is within --error [default: 0.95]
+    /// Probability that a pixel is within --error [default: 0.95]
     #[arg(long, value_name = "C", value_parser = confidence, requires = "error", allow_negative_numbers = true)]
     pub confidence: Option<f64>,
 
     /// Render N images with the seeds --seed, --seed + 1, ... and write their mean
     ///
-    /// The EXR also holds the standard error of the mean (standard_error.R, ...) and every image (batch.0.R, batch.1.R,
-    /// ...), for whatever needs independent images. --spp and --time-limit hold for each of them; the scene is loaded
-    /// once.
+    /// The EXR also holds the standard error of the mean (standard_error.R, ...) and every image (batch.0.R,
+    /// batch.1.R, ...), for uses that need independent images. --spp and --time-limit apply to each image; the
+    /// scene is loaded once.
     #[arg(long, value_name = "N", value_parser = batches, conflicts_with = "error", allow_negative_numbers = true)]
     pub batches: Option<u32>,
 
@@ -131,12 +135,12 @@ pub struct Render {
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
 
-    /// Render frames A to B of an animation, both included, or the one frame A: frame k shows the scene at its own
-    /// time + k / FPS
+    /// Render frames A to B of an animation, both included, or the single frame A; frame k shows the scene at the
+    /// time of the scene + k / FPS
     ///
-    /// What a wind moves has moved; the scene is loaded once. Files are numbered by frame with four digits or more:
-    /// fog.0007.exr and fog.0007.png. --spp and --time-limit hold for each frame. Every frame has random numbers of its
-    /// own, made of --seed and its number: rendered alone it is the same image.
+    /// Volumes inside a "wind" move; the scene is loaded once. The frame number is added to the file name with at
+    /// least four digits: fog.0007.exr and fog.0007.png. --spp and --time-limit apply to each frame. The random
+    /// numbers of a frame depend on --seed and its number only: a frame rendered alone is the same image.
     #[arg(long, value_name = "A..B", value_parser = frames, allow_hyphen_values = true)]
     pub frames: Option<Frames>,
 
@@ -144,7 +148,7 @@ pub struct Render {
     #[arg(long, value_name = "FPS", value_parser = fps, requires = "frames", allow_negative_numbers = true)]
     pub fps: Option<f64>,
 
-    /// How paths are made.
+    /// How paths are sampled.
     #[command(flatten)]
     pub estimator: Estimator,
 
@@ -153,34 +157,34 @@ pub struct Render {
     pub size: Option<Size>,
 }
 
-/// Say what a scene holds.
+/// Print a summary of a scene.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Info {
     /// Which scene.
     #[command(flatten)]
     pub scene: Scene,
 
-    /// How flights through media that vary are sampled [default: as each medium says]
+    /// Free-flight sampling method in heterogeneous media [default: the setting of each medium]
     #[arg(long, value_name = "NAME", value_parser = one_of(&DistanceMethod::NAMES))]
     pub tracker: Option<DistanceMethod>,
 }
 
-/// Spell a scene again.
+/// Convert a scene.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Convert {
     /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json)
     #[arg(value_name = "IN")]
     pub input: PathBuf,
 
-    /// Scene file to write; its ending, .xml or .json, says how
+    /// Scene file to write: .xml or .json
     #[arg(value_name = "OUT")]
     pub output: PathBuf,
 
-    /// Change the default of a $name parameter in OUT; may be repeated
+    /// Change the default of the parameter $name in OUT; may be repeated
     #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
 
-    /// Write the values of parameters in place of their names (mitsuba.load_dict knows no parameters)
+    /// Write the values of parameters instead of their names (mitsuba.load_dict does not support parameters)
     #[arg(long)]
     pub fill: bool,
 }
@@ -188,7 +192,7 @@ pub struct Convert {
 /// Make the page of a study.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Folder of the study: study.json and the images that it names
+    /// Folder of the study, with study.json and its images
     #[arg(value_name = "FOLDER")]
     pub folder: PathBuf,
 
@@ -197,14 +201,14 @@ pub struct Report {
     pub record: Option<PathBuf>,
 }
 
-/// A scene file and what to set in it.
+/// A scene file and its parameters.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Scene {
     /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json)
     #[arg(value_name = "SCENE")]
     pub file: PathBuf,
 
-    /// Set a $name parameter of the scene, in place of its default; may be repeated
+    /// Set the parameter $name of the scene instead of its default; may be repeated
     #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
 }

@@ -28,12 +28,12 @@ pub fn parse(place: &str, words: &str) -> Result<Estimator> {
         let text = error.to_string();
         let reported =
             text.split("\n\nUsage").next().unwrap_or_default().trim_start_matches("error: ").trim();
-        let expected = "options of tyndall render that say how paths are made";
+        let expected = "options of tyndall render about path sampling";
         Error::new(place, expected, reported.replace('\n', " "), "see tyndall render --help")
     })
 }
 
-/// Everybody that the command line asks for: the explicit ones, then the product of the axes.
+/// All contenders of the command line: the explicit ones, then the product of the axes.
 pub fn all(arguments: &Study) -> Result<Vec<Contender>> {
     let mut contenders = Vec::new();
     for text in &arguments.contenders {
@@ -91,7 +91,7 @@ struct Axis {
     values: Vec<(String, String)>,
 }
 
-/// Every axis that was asked for. An option of `render` needs a line here only to have a flag of its own.
+/// Every axis of the command line. An option of `render` needs a line here only to have a flag of its own.
 fn axes(arguments: &Study) -> Result<Vec<Axis>> {
     let named = [
         ("--integrators", "integrator", &arguments.integrators),
@@ -121,7 +121,7 @@ fn axes(arguments: &Study) -> Result<Vec<Axis>> {
 }
 
 impl Axis {
-    /// The axis of `option` (its long name), which `flag` asked for. Where the option is a switch, its values are "on" and
+    /// The axis of `option` (its long name), given by `flag`. Where the option is a switch, its values are "on" and
     /// "off"; off is said, lest the scene say otherwise.
     fn new(flag: &str, option: &str, values: &[String]) -> Result<Self> {
         let command = Words::command();

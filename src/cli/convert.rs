@@ -1,4 +1,4 @@
-//! `tyndall convert`: a scene in one spelling in, the same scene in the other out.
+//! `tyndall convert`: converts a scene between XML and JSON.
 
 use super::{arguments, complain};
 use crate::{error::Result, film, format, format::Naming};

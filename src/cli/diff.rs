@@ -13,56 +13,57 @@ use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::{io::Write as _, path::PathBuf};
 
-/// Say how far an image is from a reference.
+/// Compare an image with a reference.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Diff {
-    /// Image to judge: OpenEXR (.exr), float map (.pfm), Radiance (.hdr, .rgbe), PNG or another known format
+    /// Image to compare: OpenEXR (.exr), float map (.pfm), Radiance (.hdr, .rgbe), PNG or another supported format
     #[arg(value_name = "IMAGE")]
     pub image: PathBuf,
 
-    /// Image that stands for the truth: relative measures are relative to this one
+    /// Reference image; relative measures are relative to it
     #[arg(value_name = "REFERENCE")]
     pub reference: PathBuf,
 
-    /// Compare this layer of both OpenEXR files, or the one channel of this full name
-    /// [default: the channels without a layer]
+    /// Compare this layer of both OpenEXR files, or the channel with this full name [default: the channels
+    /// without a layer]
     #[arg(long, value_name = "NAME")]
     pub layer: Option<String>,
 
-    /// From where on a pixel counts as different: a number is a difference in some channel, with % it is
-    /// relative to the reference
+    /// Tolerance above which a pixel counts as different: the absolute difference in any channel, or relative to
+    /// the reference with %
     #[arg(long, value_name = "T", default_value = "1%", value_parser = tolerance, allow_negative_numbers = true)]
     pub tolerance: Tolerance,
 
-    /// For display units show both images at 2^STOPS times their values, cut off at white
-    /// [default: by the tone curve of the reference's own PNG]
+    /// For display units multiply both images by 2^STOPS and clip them at white [default: the tone curve of the
+    /// reference's PNG]
     #[arg(long, value_name = "STOPS", value_parser = stops, allow_negative_numbers = true)]
     pub exposure: Option<f32>,
 
-    /// Pixels in a degree of the eye's field of view, for FLIP (67: a 4K screen 0.7 m wide seen from 0.7 m)
+    /// Pixels per degree of the viewer's field of view, for FLIP (67: a 4K screen 0.7 m wide seen from 0.7 m)
     #[arg(long, value_name = "N", default_value_t = 67.0, value_parser = per_degree, allow_negative_numbers = true)]
     pub pixels_per_degree: f32,
 
-    /// Also write all figures to this JSON file (what is infinite or not a number becomes null)
+    /// Also write all numbers to this JSON file (infinite values and NaN become null)
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
-    /// Also write a picture of the differences in false colours to this PNG file
+    /// Also write a false-colour image of the differences to this PNG file
     #[arg(long, value_name = "FILE", value_parser = png_file)]
     pub map: Option<PathBuf>,
 
-    /// What the picture of --map shows of each pixel, averaged over its channels
+    /// Value of each pixel in the image of --map, averaged over its channels
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Shows::Relative, requires = "map")]
     pub map_of: Shows,
 
-    /// The difference that has the last colour of the map [default: 99 % of the pixels are below; of FLIP 1]
+    /// Difference shown in the last colour of the map [default: the 99th percentile of the pixels; 1 for FLIP]
     #[arg(long, value_name = "VALUE", value_parser = positive, requires = "map", allow_negative_numbers = true)]
     pub map_to: Option<f32>,
 
-    /// Exit with code 1 if a measure is above a value, such as relmse=0.01; may be repeated
+    /// Exit with code 1 if a measure exceeds a value, such as relmse=0.01; may be repeated
     ///
-    /// Measures: mse, rmse, relmse, trimmed_relmse, mape, smape, difference (of means, relative, either way),
-    /// largest, beyond (pixels beyond the tolerance, in percent), each also as display.NAME, and flip (mean).
+    /// Measures: mse, rmse, relmse, trimmed_relmse, mape, smape, difference (absolute relative difference of the
+    /// means), largest, beyond (percentage of pixels beyond the tolerance), each also as display.NAME, and flip
+    /// (mean).
     #[arg(long, value_name = "MEASURE=VALUE", value_parser = limit, allow_negative_numbers = true)]
     pub fail_above: Vec<Limit>,
 }
@@ -136,7 +137,7 @@ fn limit(text: &str) -> std::result::Result<Limit, String> {
     let names = || format!("flip, {}, or display. before one of them", MEASURES.join(", "));
     let (measure, most) = text.split_once('=').ok_or("expected MEASURE=VALUE, such as relmse=0.01")?;
     if measure != "flip" && !MEASURES.contains(&measure.strip_prefix("display.").unwrap_or(measure)) {
-        return Err(format!("\"{measure}\" is no measure: expected {}", names()));
+        return Err(format!("\"{measure}\" is not a measure: expected {}", names()));
     }
     let most = number(most).filter(|x: &f64| x.is_finite() && *x >= 0.0);
     let most = most.ok_or("expected a finite value >= 0 after \"=\"")?;
@@ -179,8 +180,9 @@ fn measured(arguments: &Diff, difference: &Difference) -> Result<Vec<f64>> {
 
 /// There is no such measure of these images.
 fn unknown(place: &str, measure: &str) -> Error {
-    let (found, remedy) = ("a layer that is no colours", "leave it out, or compare layers of R G B");
-    Error::new(place, format!("images of which {measure} is known"), found, remedy)
+    let (found, remedy) =
+        ("a layer that does not contain colours", "leave it out, or compare layers of R G B");
+    Error::new(place, format!("images for which {measure} is defined"), found, remedy)
 }
 
 fn judge(limits: &[Limit], values: &[f64]) -> bool {
@@ -244,7 +246,7 @@ fn table(arguments: &Diff, image: &Picture, difference: &Difference) -> String {
         Some(ToneCurve::Scale(scale)) => {
             format!("display: both times {}, cut off at 1, sRGB-encoded", short(scale.into()))
         }
-        None => "display: none, the layer is no colours".into(),
+        None => "display: none, the layer does not contain colours".into(),
     });
     lines.join("\n")
 }
@@ -296,7 +298,7 @@ fn describe_flip(arguments: &Diff, difference: &Difference) -> String {
     let per_degree = arguments.pixels_per_degree;
     match difference.measure("flip") {
         Some(mean) => row("FLIP, mean", &[String::new(), format!("{mean:.4} ({per_degree} pixels/degree)")]),
-        None => "FLIP: none, the layer is no colours".into(),
+        None => "FLIP: none, the layer does not contain colours".into(),
     }
 }
 

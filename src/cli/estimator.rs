@@ -16,81 +16,82 @@ use crate::{
 };
 use clap::{Args, ValueEnum};
 
-/// How paths are made and weighed.
+/// How paths are sampled and weighted.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Estimator {
-    /// How flights through media that vary are sampled [default: as each medium says]
+    /// Free-flight sampling method in heterogeneous media [default: the setting of each medium]
     ///
-    /// auto: the cheapest that is unbiased; closed_form: optical depths in closed form, not for every density; exact:
-    /// grids, cell by cell; march: ray marching, biased by its step; null_collision: delta and ratio tracking.
+    /// auto: the cheapest unbiased method; closed_form: closed-form optical depth, not available for every
+    /// volume; exact: regular tracking of grids, cell by cell; march: ray marching, biased by its step size;
+    /// null_collision: delta tracking and ratio tracking.
     #[arg(long, value_name = "NAME", value_parser = one_of(&DistanceMethod::NAMES))]
     pub tracker: Option<DistanceMethod>,
 
     /// Light transport algorithm [default: the scene's integrator]
     ///
-    /// bdpt: bidirectional path tracing; pt: path tracing from the camera; lt: light tracing (particle tracing) from the
-    /// emitters; fog: a preview of first surfaces without shadows, behind fog of one radiance, for which 4 samples per
-    /// pixel are enough. In scenes with the integrator single_scattering or non_scattering, media stay restricted as it
-    /// says.
+    /// bdpt: bidirectional path tracing; pt: path tracing from the camera; lt: light tracing (particle tracing)
+    /// from the emitters; fog: a preview of the first visible surfaces without shadows, behind fog of constant
+    /// radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
+    /// non_scattering its restriction of media still applies.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Strategies::INTEGRATORS))]
     pub integrator: Option<Strategies>,
 
-    /// Ways of making paths that may be used, separated by commas [default: all that the integrator has]
+    /// Sampling strategies to use, separated by commas [default: all of the integrator]
     ///
     /// hit: the camera subpath hits an emitter; next-event: it connects to a point sampled on an emitter; join: one of its
     /// vertices connects to one of a light subpath; lens: a light subpath connects to the lens.
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1, value_parser = one_of(&StrategyKind::NAMES))]
     pub strategies: Vec<StrategyKind>,
 
-    /// How strategies that can make the same path share it: balance, power, maximum, cutoff (or cutoff:ALPHA, 0.1
-    /// unless given; it needs a --max-depth of at most 32) or uniform [default: the scene's, else balance]
+    /// Heuristic of multiple importance sampling: balance, power, maximum, cutoff (or cutoff:ALPHA, ALPHA is 0.1
+    /// by default; needs a --max-depth of at most 32) or uniform [default: the scene's, or balance]
     ///
-    /// The image is the same within noise; the noise differs. All but balance run on the profile everything.
+    /// The expected image is the same; the noise differs. All heuristics except balance use the profile "everything".
     #[arg(long, value_name = "NAME", value_parser = heuristic)]
     pub heuristic: Option<Heuristic>,
 
-    /// Most edges of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 is without limit
+    /// Maximum number of segments of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 means no limit
     /// [default: the scene's]
     #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
     pub max_depth: Option<MaxDepth>,
 
-    /// How random numbers are spread over the samples of a pixel and over light subpaths [default: the scene's
-    /// sampler]
+    /// Source of random numbers for the samples of a pixel and for light subpaths [default: the scene's sampler]
     ///
-    /// independent: not at all; sobol: evenly, the first numbers of every walk being points of an Owen-scrambled Sobol
-    /// sequence. With sobol, noise is estimated as if samples were independent, and said to be below that.
+    /// independent: independent random numbers; sobol: the first dimensions of every subpath are points of an
+    /// Owen-scrambled Sobol sequence. With sobol the noise is estimated as if samples were independent and
+    /// reported as an upper bound.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Sampler::NAMES))]
     pub sampler: Option<Sampler>,
 
-    /// Follow every primary ray that crosses media twice: from a collision forced in them, and from what lies behind
-    /// [default: the scene's forced_interaction]
+    /// Continue every primary ray that crosses media twice: from a forced collision in the media and from the
+    /// surface behind them [default: the scene's forced_interaction]
     ///
-    /// Less noise in thin media, where few rays collide by chance; the image is the same within noise.
+    /// Reduces noise in thin media, where few rays collide by chance; the expected image is the same.
     #[arg(long, overrides_with = "no_forced_interaction")]
     pub forced_interaction: bool,
 
-    /// Leave primary rays to chance, whatever the scene says
+    /// Do not force collisions of primary rays, overriding the scene
     #[arg(long, overrides_with = "forced_interaction")]
     pub no_forced_interaction: bool,
 
-    /// Which code renders; the image is the same within noise, only the time differs
+    /// Specialisation of the compiled code; the expected image is the same, only the time differs
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]
     pub profile: Profile,
 }
 
-/// How far the rendering code is specialised.
+/// Specialisation of the rendering code.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum Profile {
-    /// Code without what the scene does not hold (media, colour, ...)
+    /// Without the features that the scene does not use (media, colour, ...)
     Fitted,
-    /// The general code, for comparison
+    /// General code with every feature, for comparison
     Everything,
 }
 
 /// A bound on the length of paths.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum MaxDepth {
-    /// At most so many edges.
+    /// At most this number of segments.
     Edges(u32),
     /// No bound (-1, as in Mitsuba).
     Unbounded,
@@ -139,7 +140,7 @@ impl Estimator {
             [(self.max_depth.is_some(), "--max-depth"), (self.heuristic.is_some(), "--heuristic")]
         {
             if is_given {
-                let text = "has no effect: the integrator fog makes no paths";
+                let text = "has no effect: the integrator fog does not sample paths";
                 super::complain(&format!("warning: {flag} {text}"));
             }
         }
@@ -163,7 +164,8 @@ impl Estimator {
     fn forced_interaction(&self, setup: &Setup, strategies: Strategies) -> bool {
         let by_eye = strategies.emitter_hit || strategies.next_event || strategies.connection;
         if self.forced_interaction && !(by_eye && Needs::of(&setup.scene, false).media) {
-            let why = if by_eye { "the scene has no media" } else { "no strategy in use walks from the eye" };
+            let why =
+                if by_eye { "the scene has no media" } else { "no strategy in use traces camera subpaths" };
             super::complain(&format!("warning: --forced-interaction has no effect: {why}"));
         }
         let forced = self.forced_interaction || setup.integrator.options.forced_interaction;
@@ -199,7 +201,7 @@ impl Estimator {
                 "--strategies",
                 "strategies that the integrator has",
                 "one that it leaves out",
-                "choose among those of --integrator bdpt: hit, next-event, join, lens",
+                "use strategies of --integrator bdpt: hit, next-event, join, lens",
             ));
         }
         let unnamed = StrategyKind::ALL.into_iter().filter(|kind| !self.strategies.contains(kind));

@@ -17,10 +17,10 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::{io::Write as _, path::PathBuf};
 
-/// Compare ways of sampling flights.
+/// Compare methods of free-flight sampling.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Flights {
-    /// Phase function of the medium, as in tyndall phase
+    /// Phase function of the medium, as for `tyndall phase`
     #[arg(value_name = "PHASE", default_value = "isotropic")]
     pub phase: String,
 
@@ -36,11 +36,11 @@ pub struct Flights {
     #[arg(long, value_name = "X", value_parser = coefficient, allow_negative_numbers = true)]
     pub sigma_s: f64,
 
-    /// Form of the medium
+    /// Shape of the medium
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Shape::Slab)]
     pub shape: Shape,
 
-    /// Thickness of the slab, or side of the cube [m]
+    /// Thickness of the slab, or side length of the cube [m]
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = length, allow_negative_numbers = true)]
     pub size: f64,
 
@@ -52,11 +52,11 @@ pub struct Flights {
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1, value_parser = length, allow_negative_numbers = true)]
     pub steps: Vec<f64>,
 
-    /// Photons of each method
+    /// Number of photons for each method
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(2..=1_000_000_000_000))]
     pub photons: u64,
 
-    /// Photons of the run by sigma_t that stands for the truth [default: four times those of each method]
+    /// Number of photons of the reference, sampled with sigma_t [default: four times that of each method]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=1_000_000_000_000))]
     pub truth_photons: Option<u64>,
 
@@ -64,21 +64,21 @@ pub struct Flights {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 
-    /// Also write all figures to this JSON file
+    /// Also write all numbers to this JSON file
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
 
-    /// Also draw the mean flight by constant steps against its law, to this SVG file
+    /// Also plot the mean distance of constant steps against the predicted mean, to this SVG file
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
 }
 
-/// Form of the medium.
+/// Shape of the medium.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum Shape {
-    /// Between two planes, without end to the sides
+    /// Between two parallel planes, infinite to the sides
     Slab,
-    /// A cube; light enters in the middle of a face
+    /// A cube; light enters at the centre of a face
     Cube,
 }
 
@@ -102,8 +102,8 @@ pub fn run(arguments: &Flights) -> Result<bool> {
     let experiment = experiment(arguments)?;
     let steps = steps(arguments, &experiment)?;
     if arguments.svg.is_some() && !steps.iter().any(|step| Law::is_measurable(*step, experiment.sigma_s)) {
-        let remedy = "let --sigma-s be above 0, or its steps longer";
-        return Err(Error::new("--svg", "flights that end in a scattering", "none", remedy));
+        let remedy = "increase --sigma-s, or use longer --steps";
+        return Err(Error::new("--svg", "free flights that end in a scattering event", "none", remedy));
     }
     let truth_photons = arguments.truth_photons.unwrap_or(4 * arguments.photons);
     let effort = Effort { photons: arguments.photons, truth_photons, seed: arguments.seed };
@@ -125,7 +125,7 @@ fn experiment(arguments: &Flights) -> Result<Experiment> {
     let phase = described::build(&arguments.phase, &arguments.parameters)?;
     let Flights { sigma_a, sigma_s, size, .. } = *arguments;
     if sigma_a + sigma_s == 0.0 {
-        let remedy = "let one of them be above 0";
+        let remedy = "set one of them to a value above 0";
         return Err(Error::new("--sigma-a and --sigma-s", "matter", "none: both are 0", remedy));
     }
     let shape = match arguments.shape {
@@ -135,7 +135,7 @@ fn experiment(arguments: &Flights) -> Result<Experiment> {
     Ok(Experiment { shape, size, sigma_a, sigma_s, phase, angle: arguments.angle.to_radians() })
 }
 
-/// A photon takes at most so many steps from face to face.
+/// Maximum number of steps of a photon from face to face.
 const MOST_STEPS: f64 = 1e6;
 
 fn steps(arguments: &Flights, experiment: &Experiment) -> Result<Vec<f64>> {
@@ -149,7 +149,7 @@ fn steps(arguments: &Flights, experiment: &Experiment) -> Result<Vec<f64>> {
         Some(step) => {
             let expected =
                 format!("steps of at least {} m, a millionth of the size", experiment.size / MOST_STEPS);
-            Err(Error::new("--steps", expected, step.to_string(), "give longer ones by --steps"))
+            Err(Error::new("--steps", expected, step.to_string(), "use longer --steps"))
         }
     }
 }
@@ -178,7 +178,7 @@ fn describe(arguments: &Flights, study: &Study, truth_photons: u64) -> String {
         ),
         "shares of the power, each with its standard error; scattered: through all faces; unscattered: through the far one".into(),
         format!(
-            "truth: unscattered light in closed form, the rest by {truth_photons} photons by sigma_t; |z| above {:.2} is no chance",
+            "truth: unscattered light in closed form, the rest from {truth_photons} photons sampled with sigma_t; |z| above {:.2} is significant",
             study.most_z
         ),
         String::new(),
@@ -187,7 +187,7 @@ fn describe(arguments: &Flights, study: &Study, truth_photons: u64) -> String {
     ];
     lines.extend(study.methods.iter().map(method));
     lines.push(String::new());
-    lines.push("mean flights without a border".into());
+    lines.push("mean free flights in an unbounded medium".into());
     lines.extend(study.free_paths.iter().map(free_path));
     lines.extend(study.laws.iter().map(law));
     lines.join("\n").trim_end().to_owned()

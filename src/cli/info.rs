@@ -97,19 +97,22 @@ fn describe_integrator(integrator: &Integrator) -> String {
     let media = match integrator.restriction {
         Restriction::None => "",
         Restriction::SingleScattering { .. } => ", single scattering",
-        Restriction::NonScattering => ", media that absorb and emit only",
+        Restriction::NonScattering => ", media absorb and emit only",
     };
     let length = match max_depth {
         Some(depth) => format!("at most {depth} segments"),
         None => "any length".to_owned(),
     };
-    format!("{method}, paths of {length}{media}, weighed by the {heuristic} heuristic")
+    format!("{method}, paths of {length}{media}, weighted by the {heuristic} heuristic")
 }
 
 fn describe_shapes(scene: &Scene) -> String {
     let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
     let boundaries = scene.surfaces.iter().filter(|surface| surface.boundary.is_known()).count();
-    format!("{} ({primitives} primitives), {boundaries} of them bound media", scene.surfaces.len())
+    format!(
+        "{} ({primitives} primitives), {boundaries} of them are boundaries of media",
+        scene.surfaces.len()
+    )
 }
 
 fn medium_name(setup: &Setup, index: u32) -> &str {
@@ -162,9 +165,9 @@ fn describe_tracker(setup: &Setup, varying: &Heterogeneous) -> String {
     let restricted = setup.integrator.restriction.medium_overrides().tracker;
     let why = match (varying.forced(), varying.requested()) {
         (Some(DistanceMethod::Auto), _) | (None, DistanceMethod::Auto) => "chosen by cost",
-        (Some(forced), _) if restricted == Some(forced) => "as the integrator demands",
+        (Some(forced), _) if restricted == Some(forced) => "set by the integrator",
         (Some(_), _) => "forced by --tracker",
-        (None, requested) if requested == tracker.choice() => "asked for by the scene",
+        (None, requested) if requested == tracker.choice() => "set by the scene",
         (None, _) => "chosen by cost",
     };
     format!("tracker {}{march}, {why}", tracker.choice().name())

@@ -43,7 +43,7 @@ pub fn run() -> ExitCode {
     judged(outcome.map(|()| true))
 }
 
-/// 0 for what holds, 1 for what does not, 2 for a mistake, which is told.
+/// 0 if the claim holds, 1 if it does not, 2 on an error, which is printed.
 fn judged(outcome: Result<bool>) -> ExitCode {
     match outcome {
         Ok(true) => ExitCode::SUCCESS,
@@ -68,7 +68,7 @@ fn load(
         complain(&format!("warning: {warning}"));
     }
     if tracker.is_some() && setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none()) {
-        complain("warning: --tracker has no effect: no medium of this scene varies");
+        complain("warning: --tracker has no effect: this scene has no heterogeneous medium");
     }
     Ok(setup)
 }
@@ -77,12 +77,7 @@ fn load(
 fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
     let threads = wanted.map_or(0, usize::from);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
-        Error::new(
-            "--threads",
-            "a number of threads this machine can start",
-            error.to_string(),
-            "ask for fewer",
-        )
+        Error::new("--threads", "a number of threads this machine can start", error.to_string(), "use fewer")
     })
 }
 

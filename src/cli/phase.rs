@@ -9,21 +9,21 @@ use crate::{
 use clap::Args;
 use std::{io::Write as _, path::PathBuf};
 
-/// Look at a phase function.
+/// Test and draw a phase function.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Phase {
-    /// Its plugin name, such as hg
+    /// Plugin name of the phase function, such as hg
     #[arg(value_name = "NAME")]
     pub name: String,
 
-    /// Its parameters: numbers, text (values=0.5,1,3), or @FILE for the text of a file
+    /// Parameters: numbers, text (values=0.5,1,3), or @FILE for the contents of a file
     ///
-    /// The name of a phase function as a value makes a nested one, whose own parameters have its name before them:
-    /// blendphase weight=0.3 a=hg a.g=0.9 b=isotropic
+    /// A value that is the name of a phase function creates a nested one; prefix the parameters of that one with
+    /// its name: blendphase weight=0.3 a=hg a.g=0.9 b=isotropic
     #[arg(value_name = "name=value")]
     pub parameters: Vec<String>,
 
-    /// Directions to sample
+    /// Number of directions to sample
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(2..=1_000_000_000_000))]
     pub samples: u64,
 
@@ -31,15 +31,15 @@ pub struct Phase {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 
-    /// Circles that divide the sphere, both poles included: finer towards the poles
+    /// Number of parallels that divide the sphere, both poles included; closer together near the poles
     #[arg(long, value_name = "P", default_value_t = 65, value_parser = clap::value_parser!(u16).range(3..=1025))]
     pub parallels: u16,
 
-    /// Half circles from pole to pole
+    /// Number of meridians that divide the sphere
     #[arg(long, value_name = "M", default_value_t = 32, value_parser = clap::value_parser!(u16).range(3..=1024))]
     pub meridians: u16,
 
-    /// The p-value below which samples do not fit
+    /// Significance: the p-value below which the test fails
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = significance)]
     pub significance: f64,
 
@@ -72,17 +72,17 @@ pub fn run(arguments: &Phase) -> Result<bool> {
 fn describe(arguments: &Phase, check: &Check, failures: &[&str]) -> String {
     let fit = &check.fit;
     let verdict = match failures {
-        [] => "the samples are distributed as the density says".to_owned(),
+        [] => "the samples are distributed according to the pdf".to_owned(),
         some => format!("FAILS: {}", some.join("; ")),
     };
     [
-        format!("normalisation      {:.6} (integral of the density over the sphere)", check.normalisation),
+        format!("normalisation      {:.6} (integral of the pdf over the sphere)", check.normalisation),
         format!(
-            "mean cosine        {:.6} of the density, {:.6} told by the phase function",
+            "mean cosine        {:.6} of the pdf, {:.6} stated by the phase function",
             check.mean_cosine, check.stated_mean_cosine
         ),
         format!(
-            "                   {:.6} +- {:.6} of {} samples, {:+.2} standard errors off",
+            "                   {:.6} +- {:.6} of {} samples, a deviation of {:+.2} standard errors",
             check.sampled_mean_cosine, check.standard_error, arguments.samples, check.z()
         ),
         format!(

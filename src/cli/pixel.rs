@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub sample: u32,
 
-    /// How many samples, one after the other
+    /// Number of consecutive samples
     #[arg(long, value_name = "M", default_value_t = 1, value_parser = positive_u32, allow_negative_numbers = true)]
     pub samples: u32,
 
@@ -48,7 +48,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
 
-    /// How paths are made.
+    /// How paths are sampled.
     #[command(flatten)]
     pub estimator: Estimator,
 }

@@ -40,7 +40,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     }
 }
 
-/// Frames per second where nobody says.
+/// Default number of frames per second.
 const FPS: f64 = 24.0;
 
 /// Renders frame after frame; their figures.
@@ -61,7 +61,9 @@ fn animate(
             Error { place, ..error }
         })?;
         if !moved && frame == first && first < last {
-            super::complain("warning: nothing in this scene moves (no wind): frames differ by noise alone");
+            super::complain(
+                "warning: nothing in this scene moves (no \"wind\"): frames differ by noise only",
+            );
         }
         let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };
         let task = Task { settings, ..*task };
@@ -96,20 +98,23 @@ fn precision(arguments: &arguments::Render, setup: &Setup, settings: &Settings) 
     };
     if settings.sampler == Sampler::Sobol {
         return refuse(
-            "samples that are spread evenly (sobol, or what in the scene means it)",
-            "leave --error out, or give --sampler independent",
+            "samples of a Sobol sequence (--sampler sobol, or the scene's sampler)",
+            "remove --error, or use --sampler independent",
         );
     }
     if settings.options.strategies == Strategies::NONE {
-        return refuse("the preview fog", "leave --error out, or choose another --integrator");
+        return refuse("the preview fog", "remove --error, or choose another --integrator");
     }
     if setup.integrator.layers.iter().any(|layer| layer.needs_squares() || layer.content == Content::Mean) {
-        return refuse("the integrator moment", "leave --error out, or take moment out of the scene");
+        return refuse(
+            "the integrator moment",
+            "remove --error, or remove the integrator moment from the scene",
+        );
     }
     Ok(Some(Precision { error, confidence: arguments.confidence.unwrap_or(CONFIDENCE) }))
 }
 
-/// With which pixels are within the error, where nobody says.
+/// Default probability that a pixel is within the error.
 const CONFIDENCE: f64 = 0.95;
 
 /// Renders one image and writes it; its figures.
@@ -185,7 +190,7 @@ fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
     Ok(Settings { budget, ..settings })
 }
 
-/// Samples per pixel of a preview are no more than these, unless they are asked for.
+/// Maximum number of samples per pixel of a preview, unless --spp is given.
 const PREVIEW_SAMPLES: u64 = 4;
 
 fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Budget {
@@ -224,14 +229,14 @@ impl Goal {
         if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {
             let layers = if has_layers { "of the scene's aov or moment integrator" } else { "of --batches" };
             let expected = format!("an OpenEXR file, to hold the layers {layers}");
-            let found = format!("a file that holds {}", file.holds());
-            let remedy = "let its name end in .exr, or set the film's file_format to openexr";
+            let found = format!("a file that contains {}", file.holds());
+            let remedy = "use a name that ends in .exr, or set the film's file_format to openexr";
             return Err(Error::new(path.display(), expected, found, remedy));
         }
         let format = scene.in_file(file);
         if format.names() != scene.names() {
             let (holds, names) = (file.holds(), format.names().concat());
-            super::complain(&format!("warning: {} holds {holds}; {names} is written", path.display()));
+            super::complain(&format!("warning: {} contains {holds}; {names} is written", path.display()));
         }
         Ok(Self { path, format })
     }

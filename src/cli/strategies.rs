@@ -21,20 +21,21 @@ pub struct Arguments {
     #[command(flatten)]
     pub scene: Scene,
 
-    /// Folder to write to, made if it is not there [default: the scene's name with -strategies, in the current folder]
+    /// Folder to write to, created if missing [default: the name of the scene followed by -strategies, in the
+    /// current folder]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
 
-    /// Passes, each of one sample per pixel, that make the images [default: the scene's sample_count]
+    /// Samples per pixel of the images [default: the scene's sample_count]
     #[arg(long, value_name = "N", value_parser = positive_u32, allow_negative_numbers = true)]
     pub spp: Option<u32>,
 
-    /// Passes of every set of strategies in the comparison, rounded up to ten turns of at least two; 0 for no
-    /// comparison [default: as --spp]
+    /// Samples per pixel for each set of strategies in the comparison, rounded up to ten rounds of at least two;
+    /// 0 for no comparison [default: --spp]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub pilots: Option<u32>,
 
-    /// Paths of up to so many segments are told apart strategy by strategy; longer ones by kind
+    /// Show each strategy separately for paths of up to N segments, and by kind for longer paths
     #[arg(long, value_name = "D", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=64))]
     pub depth: u32,
 
@@ -50,7 +51,7 @@ pub struct Arguments {
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
 
-    /// How paths are made.
+    /// How paths are sampled.
     #[command(flatten)]
     pub estimator: Estimator,
 }
@@ -89,7 +90,7 @@ fn folder(arguments: &Arguments) -> Result<PathBuf> {
         PathBuf::from(format!("{stem}-strategies"))
     });
     std::fs::create_dir_all(&folder).map_err(|error| {
-        let remedy = "choose another place, or allow yourself to make a folder there";
+        let remedy = "choose another place, or check that you may create a folder there";
         Error::new(folder.display(), "a folder to write to", error.to_string(), remedy)
     })?;
     Ok(folder)

@@ -41,44 +41,46 @@ pub struct Study {
     #[arg(value_name = "SCENE", required = true)]
     pub scenes: Vec<PathBuf>,
 
-    /// Folder to write to; the same command goes on with what it holds
+    /// Folder to write to; the same command continues a study in it
     #[arg(short, long, value_name = "FOLDER")]
     pub output: PathBuf,
 
-    /// Integrators that compete, separated by commas: bdpt, pt, lt [default: bdpt,pt, where nobody else is named]
+    /// Integrators to compare, separated by commas: bdpt, pt, lt [default: bdpt,pt if no other contender is given]
     ///
-    /// All axes (--integrators, --strategies, --trackers, --heuristics, --samplers, --vary) multiply.
+    /// Every combination of the values of --integrators, --strategies, --trackers, --heuristics, --samplers and
+    /// --vary is one contender.
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub integrators: Vec<String>,
 
-    /// Sets of strategies that compete, such as hit+next-event,hit+next-event+join; those of bdpt, where --integrators names
-    /// no others
+    /// Sets of strategies to compare, such as hit+next-event,hit+next-event+join; of bdpt unless --integrators is
+    /// given
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub strategies: Vec<String>,
 
-    /// Flight samplers that compete, such as exact,null_collision
+    /// Free-flight sampling methods to compare, such as exact,null_collision
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub trackers: Vec<String>,
 
-    /// Heuristics that compete, such as balance,power,maximum; all on the profile everything
+    /// Heuristics to compare, such as balance,power,maximum; all with the profile "everything"
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub heuristics: Vec<String>,
 
-    /// Sources of random numbers that compete: independent, sobol
+    /// Sources of random numbers to compare: independent, sobol
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
     pub samplers: Vec<String>,
 
-    /// Any option of `tyndall render` that says how paths are made, as an axis: max-depth=2,4,8; of a switch: on,off. May
-    /// be repeated
+    /// Values to compare of any option of `tyndall render` about path sampling: max-depth=2,4,8; of a switch:
+    /// on,off; may be repeated
     #[arg(long, value_name = "OPTION=LIST", allow_hyphen_values = true)]
     pub vary: Vec<String>,
 
-    /// One more contender, by options of `tyndall render`: "joins: --integrator bdpt --strategies hit,join"; may be repeated
+    /// Add a contender with options of `tyndall render`: "joins: --integrator bdpt --strategies hit,join"; may be
+    /// repeated
     #[arg(long = "contender", value_name = "NAME: OPTIONS", allow_hyphen_values = true)]
     pub contenders: Vec<String>,
 
-    /// Another renderer as a contender, by its command line: "mitsuba: render.py {scene} --seed {seed} --spp {spp} -o {out}";
-    /// may be repeated
+    /// Add another renderer as a contender by its command line: "mitsuba: render.py {scene} --seed {seed} --spp
+    /// {spp} -o {out}"; may be repeated
     ///
     /// It is run for each budget, or for each seed with {budgets} (such as 16,32,64) and {folder} (where to write 16.exr,
     /// 32.exr, 64.exr) in place of {spp} and {out}. Further placeholders: {definitions} (-D name=value for each parameter),
@@ -87,11 +89,11 @@ pub struct Study {
     #[arg(long = "external", value_name = "NAME: COMMAND", allow_hyphen_values = true)]
     pub externals: Vec<String>,
 
-    /// Renders of each contender with a seed each; intervals come from these
+    /// Number of renders of each contender, each with its own seed; intervals are computed from these
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub seeds: u32,
 
-    /// Budgets at which a render is looked at, each twice the one before
+    /// Number of budgets at which a render is measured, each twice the previous one
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=30))]
     pub doublings: u32,
 
@@ -101,7 +103,8 @@ pub struct Study {
 
     /// Time of the largest budget, as --time-limit of `tyndall render` [default: 8]
     ///
-    /// A pilot turns it into samples per pixel, once for each contender and scene; runs/plan.json tells how many.
+    /// A pilot run converts it to samples per pixel, once for each contender and scene; the numbers are in
+    /// runs/plan.json.
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
     pub seconds: Option<Duration>,
 
@@ -113,7 +116,7 @@ pub struct Study {
     #[arg(long, value_name = "N", value_parser = threads_of, allow_negative_numbers = true)]
     pub threads: Option<NonZeroUsize>,
 
-    /// Set a $name parameter of all scenes, in place of its default; may be repeated
+    /// Set the parameter $name of all scenes instead of its default; may be repeated
     #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
 
@@ -121,26 +124,26 @@ pub struct Study {
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
 
-    /// Of every interval, from 0.5 to 0.9999
+    /// Confidence level of every interval, from 0.5 to 0.9999
     #[arg(long, value_name = "SHARE", default_value_t = 0.95, value_parser = confidence, allow_negative_numbers = true)]
     pub confidence: f64,
 
-    /// Image to measure errors against (.exr, .pfm), one for each scene, in their order [default: one is made]
+    /// Reference image (.exr, .pfm), one for each scene, in the order of the scenes [default: render one]
     #[arg(long = "reference", value_name = "FILE", conflicts_with_all = ["by", "reference_seconds", "reference_spp"])]
     pub references: Vec<PathBuf>,
 
-    /// relMSE of the --reference against the truth, one for each [default: not known]
+    /// relMSE of the --reference itself, one for each [default: unknown]
     #[arg(long = "reference-error", value_name = "RELMSE", value_parser = error, requires = "references",
           allow_negative_numbers = true)]
     pub reference_errors: Vec<f64>,
 
-    /// What makes the reference, by options of `tyndall render`, such as "--integrator bdpt", or by the name of a
-    /// contender; several, by repeating this, make it together [default: bdpt or pt, whichever does not compete, where it
-    /// covers the scene and is not much noisier, else a contender with other seeds; and the first external contender]
+    /// Renderer of the reference: options of `tyndall render`, such as "--integrator bdpt", or the name of a
+    /// contender; repeat to average several [default: bdpt or pt, whichever is not a contender, if it covers the
+    /// scene and is not much noisier, otherwise a contender with other seeds; and the first external contender]
     #[arg(long = "reference-by", value_name = "OPTIONS", allow_hyphen_values = true)]
     pub by: Vec<String>,
 
-    /// Time to make each reference in [default: four times that of a contender's largest budgets]
+    /// Time to render each reference [default: four times that of a contender's largest budgets]
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
     pub reference_seconds: Option<Duration>,
 
@@ -149,7 +152,7 @@ pub struct Study {
           allow_negative_numbers = true)]
     pub reference_spp: Option<u32>,
 
-    /// Drop what an earlier study left in FOLDER
+    /// Discard an earlier study in FOLDER
     #[arg(long)]
     pub restart: bool,
 }
@@ -183,7 +186,7 @@ pub fn run(arguments: &Study) -> Result<()> {
     say(table::text(&outcome?).trim_end());
     let page = page::write(&arguments.output)?;
     say(&format!(
-        "{} shows it; numbers and images lie beside it: study.json, study.csv, images",
+        "{} shows the result; the numbers and images are next to it: study.json, study.csv, images",
         page.display()
     ));
     Ok(())
@@ -364,7 +367,7 @@ impl<'a> Stage<'a> {
 }
 
 /// Said of a contender whose name promises a difference that there is not.
-const IDLE_TRACKER: &str = "its tracker has no effect: no medium of this scene varies";
+const IDLE_TRACKER: &str = "its tracker has no effect: this scene has no heterogeneous medium";
 
 /// The command, as a shell takes it.
 fn command() -> String {
@@ -381,7 +384,7 @@ fn machine(threads: usize) -> String {
     format!("{brand}, {threads} threads")
 }
 
-/// A progress bar over the whole study. Where nobody looks at a terminal, a line now and then.
+/// A progress bar over the whole study; without a terminal, a line from time to time.
 struct Bar {
     bar: ProgressBar,
     is_hidden: bool,

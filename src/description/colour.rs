@@ -126,7 +126,7 @@ impl Place<'_> {
     }
 }
 
-/// The colour of a sampled spectrum; what lies outside the range of `role` is clamped, and told.
+/// The colour of a sampled spectrum, clamped to the range of `role` with a warning.
 fn sampled(pairs: &[(f64, f64)], role: Role, warn: impl Fn(&str)) -> DVec3 {
     let illuminant = if role == Role::Light { Illuminant::Equal } else { Illuminant::D65 };
     let rgb = of_spectrum(illuminant, |wavelength| interpolated(pairs, wavelength));
@@ -139,7 +139,7 @@ fn sampled(pairs: &[(f64, f64)], role: Role, warn: impl Fn(&str)) -> DVec3 {
 }
 
 fn uniform(params: &Params<'_>, _: Role) -> Result<DVec3> {
-    params.accept_unused(&["wavelength_min", "wavelength_max"], "there are no wavelengths here");
+    params.accept_unused(&["wavelength_min", "wavelength_max"], "only three colour channels are rendered");
     required(params, "value").map(DVec3::splat)
 }
 

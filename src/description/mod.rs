@@ -1,4 +1,4 @@
-//! The scene description: one tree, whichever spelling it was read from. Models build themselves from it.
+//! The scene description: one tree for all file formats, from which models are built.
 
 pub mod colour;
 mod library;
@@ -47,7 +47,7 @@ impl fmt::Display for Location {
 /// One plugin instance: `type`, optional `id`, and what was given to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// The XML tag (`shape`, `bsdf`, ...), where the spelling has one; JSON has none.
+    /// The XML tag (`shape`, `bsdf`, ...) of an object from XML; JSON has none.
     pub tag: Option<String>,
     /// The plugin name, as Mitsuba calls it.
     pub plugin: String,

@@ -1,4 +1,4 @@
-//! Typed access to an object's parameters. What nobody asked for is an error: nothing is ignored silently.
+//! Typed access to the parameters of an object. Unread parameters are errors: nothing is ignored silently.
 
 use super::{
     Library, Location, Object, Position, Property, Value,
@@ -268,7 +268,7 @@ impl<'a> Params<'a> {
         Error::new(self.location(), format!("{expected} called \"{name}\""), found, remedy)
     }
 
-    /// Every parameter must have been asked for.
+    /// Every parameter must have been read.
     pub fn finish(&self) -> Result<()> {
         let used = self.used.borrow();
         let Some(index) = used.iter().position(|used| !used) else { return Ok(()) };

@@ -62,7 +62,7 @@ impl<T> Registry<Build<T>> {
     }
 }
 
-/// At most so many names are listed in a message.
+/// Maximum number of names listed in a message.
 const LISTED: usize = 24;
 
 /// The known name closest to `found`, if one is close, and the names that are known after `what` ("known",

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// The emission of a medium as an emitter: every point of the medium emits alike in all directions.
 #[derive(Clone, Debug)]
 pub struct VolumeEmitter {
-    /// Where it shines and how much.
+    /// Radiance emitted per metre, at every point.
     pub emission: Arc<Emission>,
     /// The part of its power that is emitted within the medium; the rest of its box is not lit.
     pub filled: f64,

@@ -7,7 +7,7 @@ use crate::math::{Spectrum, SpectrumExt, Vec3, relative::Relative, spectrum::LUM
 pub struct Accumulator {
     sums: Vec<[f64; 3]>,
     luminance_squares: Vec<f64>,
-    /// Sums of products of two channels, R R, R G, R B, G G, G B, B B; empty where nobody asks.
+    /// Sums of products of two channels, R R, R G, R B, G G, G B, B B; empty where not needed.
     products: Vec<[f64; 6]>,
     passes: u64,
 }
@@ -19,7 +19,7 @@ impl Accumulator {
         Self { sums, luminance_squares, products: Vec::new(), passes: 0 }
     }
 
-    /// The same, ready to tell second moments and variances.
+    /// The same, with second moments and variances.
     pub fn with_products(pixels: usize) -> Self {
         Self { products: vec![[0.0; 6]; pixels], ..Self::new(pixels) }
     }

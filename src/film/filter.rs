@@ -179,7 +179,7 @@ fn cubic(b: f32, c: f32, x: f32) -> f32 {
     }
 }
 
-/// The windowed sinc of so many lobes at distance `x` >= 0.
+/// The windowed sinc with the given number of lobes at distance `x` >= 0.
 #[inline(never)]
 fn lanczos(lobes: f32, x: f32) -> f32 {
     let angle = PI * x;

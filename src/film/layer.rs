@@ -1,7 +1,7 @@
 //! What an image file can hold besides the image: layers of channels, named as Mitsuba's `aov` and `moment`
 //! integrators name them.
 
-/// What the first surface that a primary ray meets is asked for.
+/// Quantities of the first surface that a primary ray hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// pi times the BSDF towards the normal; of a diffuse surface its reflectance.
@@ -42,7 +42,7 @@ pub struct QuantityRow {
     pub channels: &'static [&'static str],
 }
 
-/// Every quantity, by the name it is asked for with.
+/// Every quantity with its name.
 pub const QUANTITIES: &[QuantityRow] = &[
     QuantityRow { name: "albedo", quantity: Quantity::Albedo, channels: &["R", "G", "B"] },
     QuantityRow { name: "depth", quantity: Quantity::Depth, channels: &["T"] },

@@ -1,4 +1,4 @@
-//! The JSON spelling: the dictionary that `mitsuba.load_dict` takes, written as JSON.
+//! The JSON format: the dictionary that `mitsuba.load_dict` takes, written as JSON.
 //!
 //! ```json
 //! {
@@ -24,7 +24,7 @@
 //! | `{"type": "ref", "id": ...}` | a reference to the object with that id |
 //! | `{"type": ..., ...}` | a plugin |
 //!
-//! A plugin that Tyndall does not know may say in `"$tag"` which tag of XML it goes with; converting asks for it.
+//! A plugin that Tyndall does not know may state its XML tag in `"$tag"`, which converting needs.
 //!
 //! The outermost object is a `scene`. Its direct children have their key as id; where one has an `"id"` of its
 //! own, either name leads to it. Objects further in have an id only if they say so.
@@ -136,7 +136,7 @@ fn value(node: &Node) -> Result<Value> {
             _ => object(node).map(Value::Object),
         },
         Json::Null => {
-            let remedy = "leave the key out to have its default";
+            let remedy = "remove the key to use the default";
             Err(Error::new(&node.location, "a value", "null", remedy))
         }
     }

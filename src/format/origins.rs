@@ -17,7 +17,7 @@ pub(super) struct Declaration {
     pub text: String,
     /// What it stands for.
     pub value: String,
-    /// Of what kind its values are, where the spelling says so.
+    /// The type of its values, where the format states it.
     pub kind: Option<Kind>,
 }
 

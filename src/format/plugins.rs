@@ -99,7 +99,7 @@ pub(crate) fn kind(tag: &str) -> &str {
     }
 }
 
-/// The error for a plugin in a `parent` that nobody knows.
+/// The error for an unknown plugin in a `parent`.
 pub(crate) fn unknown_in(object: &Object, parent: &str) -> Error {
     unknown(object, None, &known_in(parent))
 }

@@ -1,4 +1,4 @@
-//! A scene file, whichever its spelling, as a description whose references all lead somewhere.
+//! Reads a scene file of either format as a description in which every reference is resolved.
 
 use super::{json, origins::Origins, parameters::Parameters, references, references::Alias, xml};
 use crate::{
@@ -11,7 +11,7 @@ use std::path::Path;
 /// limit keeps every later recursion over the tree within its stack.
 pub(super) const DEEPEST: usize = 100;
 
-/// What a spelling yields: the tree as written, and the second names of its objects.
+/// What a reader returns: the tree as written, and the aliases of its objects.
 pub(super) struct Draft {
     /// The scene.
     pub root: Object,
@@ -47,7 +47,7 @@ pub enum Spelling {
     Json,
 }
 
-/// The spelling that the ending of a file's name tells.
+/// The format according to the extension of the file name.
 pub(super) fn spelling(path: &Path) -> Result<Spelling> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match extension.as_deref() {
@@ -56,8 +56,8 @@ pub(super) fn spelling(path: &Path) -> Result<Spelling> {
         other => Err(Error::new(
             path.display(),
             "a scene file that ends in .xml or .json",
-            other.map_or("a name without an ending".into(), |e| format!("one that ends in .{e}")),
-            "rename the file after what it holds: Mitsuba XML or JSON",
+            other.map_or("a name without an extension".into(), |e| format!("one that ends in .{e}")),
+            "rename the file to match its contents: .xml for Mitsuba XML, .json for JSON",
         )),
     }
 }

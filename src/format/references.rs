@@ -1,4 +1,4 @@
-//! References, whichever the spelling: second names are settled, every id leads to one object, none to itself.
+//! References in either format: aliases are resolved, every id refers to one object, and none to itself.
 
 use super::read::{DEEPEST, Draft};
 use crate::{

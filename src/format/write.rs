@@ -1,4 +1,4 @@
-//! Scenes written again: from the tree and from what reading replaced, in either spelling.
+//! Writes scenes in either format, from the tree and from what reading replaced.
 //!
 //! What is kept: plugins, names, ids, references, order, every number to the last bit (whole numbers and others
 //! apart), colours, spectra, transforms step by step, strings, parameters with their defaults, and which files
@@ -39,7 +39,7 @@ pub struct Conversion {
 /// What becomes of a scene's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Naming {
-    /// They stay parameters, where the new spelling has words for it.
+    /// They stay parameters where the new format allows it.
     Keep,
     /// Their values stand in their places.
     Fill,
@@ -70,7 +70,11 @@ pub fn convert(
     let mut conversion = spell(&root, &origins, spelling, paths::folder(output))?;
     if !origins.included.is_empty() {
         let files: Vec<_> = origins.included.iter().map(|file| file.display().to_string()).collect();
-        let note = format!("{}: what it includes stands in place: {}", input.display(), files.join(", "));
+        let note = format!(
+            "{}: the contents of included files are written in place: {}",
+            input.display(),
+            files.join(", ")
+        );
         conversion.notes.insert(0, note);
     }
     Ok(conversion)
@@ -97,7 +101,7 @@ fn spell(root: &Object, origins: &Origins, spelling: Spelling, folder: &Path) ->
     Ok(Conversion { text, notes: known.notes })
 }
 
-/// The parameters of a scene, and what is to be told about them.
+/// The parameters of a scene, and the notes about them.
 struct Known<'a> {
     declarations: &'a [Declaration],
     parameters: Parameters,

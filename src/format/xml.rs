@@ -1,4 +1,4 @@
-//! The XML spelling: Mitsuba 3 scene files as they are, versions 2 and 3.
+//! The XML format: Mitsuba scene files, versions 2 and 3.
 //!
 //! All of Mitsuba's tags are read: objects, values, `transform`, `ref`, `include`, `default`, `alias`, `path`.
 //! What Mitsuba would refuse is refused here; beyond that, text between tags and a `path` that is no folder are

@@ -1,4 +1,4 @@
-//! The colour of a black body at any temperature, from a table: what a flame asks at each of its points.
+//! The colour of a black body at any temperature, from a table, as it is evaluated at every point of a flame.
 
 use super::{
     DVec3, Spectrum,

@@ -8,7 +8,7 @@ pub type Spectrum = Vec3;
 /// What each channel counts for luminance (Rec. 709).
 pub const LUMINANCE: Spectrum = vec3(0.212_671, 0.715_160, 0.072_169);
 
-/// What a colour can be asked beyond vector arithmetic.
+/// Operations on colours beyond vector arithmetic.
 pub trait SpectrumExt {
     /// Rec. 709 luminance.
     fn luminance(self) -> f32;

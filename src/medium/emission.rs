@@ -56,7 +56,7 @@ impl EmissionDescription {
             }
         }
         if given.is_none() && params.has("emission_scale") {
-            let found = "a factor on nothing";
+            let found = "none";
             let remedy =
                 "give \"emission\", \"radiance\" or \"temperature\" too, or remove \"emission_scale\"";
             return Err(Error::new(params.location(), "an emission to scale", found, remedy));
@@ -232,7 +232,7 @@ impl Emission {
         check_non_negative(&given.volume, low, high)
             .map_err(|negative| negative.error(&given.location, &given.place))?;
         if given.quantity == Quantity::Temperature && !given.volume.is_grey() {
-            return Err(given.complain("one number a point", "a colour", "give a temperature in Kelvin"));
+            return Err(given.complain("one number per point", "a colour", "give a temperature in Kelvin"));
         }
         let most = given.volume.range(low, high)[1];
         let EmissionDescription { quantity, volume, scale, .. } = given.clone();
@@ -240,7 +240,7 @@ impl Emission {
         if !(most.is_finite() && field.most(low, high) <= BRIGHTEST) {
             let found = format!("up to {:e}", field.most(low, high).max(most.max_element()));
             let expected = "less than 1e30 W/(m^3 sr) of emission";
-            return Err(given.complain(expected, &found, "make it less, or emission_scale"));
+            return Err(given.complain(expected, &found, "reduce it, or reduce emission_scale"));
         }
         let coarse = field.coarse();
         Ok(Self::of(field, coarse))

@@ -5,7 +5,7 @@ use super::{Stream, stream::Purpose};
 /// How the random numbers of an image's samples are spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampler {
-    /// All independent.
+    /// Independent random numbers.
     #[default]
     Independent,
     /// The first of every stream are the coordinates of a point of an Owen-scrambled Sobol sequence: those of
@@ -14,10 +14,10 @@ pub enum Sampler {
 }
 
 impl Sampler {
-    /// As printed and as typed.
+    /// Name in scene files and on the command line.
     pub const NAMES: [(&'static str, Self); 2] = [("independent", Self::Independent), ("sobol", Self::Sobol)];
 
-    /// As printed and as typed.
+    /// Name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, sampler)| *sampler == self).map_or("", |(name, _)| name)
     }

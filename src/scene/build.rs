@@ -106,8 +106,7 @@ fn warn_of_counted_nulls(object: &Object, integrator: &Integrator, scene: &Scene
     let limited = integrator.options.max_depth.is_some() || integrator.options.hide_emitters;
     let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
     if object.plugin == "path" && limited && nulls {
-        let text = "a passage through a null surface, a mask or a thin pane is no bounce here, as in volpath; \
-                    Mitsuba's path counts it in max_depth";
+        let text = "passing through a null surface, a mask or a thin pane does not count as a bounce here, as in volpath; Mitsuba's path integrator counts it in max_depth";
         library.warn(&object.location, text);
     }
 }

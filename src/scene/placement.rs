@@ -129,8 +129,7 @@ impl Names<'_> {
     pub fn warn_of_endless(&self, outside: MediumIndex, media: &[MediumDescription], sky: Option<&Location>) {
         let description = &media[outside.0 as usize];
         if let Some(location) = description.endless_emission() {
-            let text = "this medium lies around the whole scene and emits without end; it is taken to emit only in the box \
-                        around all shapes and the camera. Put it into a shape to say where it ends";
+            let text = "this medium surrounds the whole scene and emits everywhere; emission is limited to the box around all shapes and the camera. Bound the medium by a shape to limit its emission yourself";
             self.library.warn(location, text);
         }
         if let Some(location) = sky

@@ -115,17 +115,17 @@ fn misplaced(child: &Child<'_>) -> Error {
         );
     }
     let remedy = "move it into the object that it belongs to (films and samplers into the sensor)";
-    Error::new(child.location, "a plugin that stands in the scene itself", format!("\"{plugin}\""), remedy)
+    Error::new(child.location, "a plugin that belongs in the scene itself", format!("\"{plugin}\""), remedy)
 }
 
-/// Says which definitions have no effect, and checks them all the same. What is referred to will be built anyway.
+/// Warns about definitions without effect, and checks them. Definitions that are referred to are built elsewhere.
 fn check_idle(definitions: &[Child<'_>], root: &Object, library: &Library, time: f64) -> Result<()> {
     let referred = references::referred(root);
     for Child { object, location, .. } in definitions {
         if object.id.as_deref().is_none_or(|id| !referred.contains(id)) {
             let name = object.id.as_deref().unwrap_or(&object.plugin);
             check_definition(object, library, time)?;
-            library.warn(location, &format!("\"{name}\" is not used: nothing refers to it"));
+            library.warn(location, &format!("\"{name}\" is not used: it is never referred to"));
         }
     }
     Ok(())

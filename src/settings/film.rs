@@ -33,9 +33,7 @@ pub fn default(overrides: Overrides) -> Film {
 pub fn build(object: &Object, library: &Library, overrides: Overrides) -> Result<Film> {
     if object.plugin != "hdrfilm" {
         let remedy = match object.plugin.as_str() {
-            "specfilm" => {
-                "light is carried as linear sRGB, so spectral bands cannot be told apart: use hdrfilm"
-            }
+            "specfilm" => "light is represented in linear sRGB, so there are no spectral bands: use hdrfilm",
             _ => "use hdrfilm",
         };
         let found = format!("\"{}\"", object.plugin);

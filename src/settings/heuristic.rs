@@ -24,7 +24,7 @@ pub enum Heuristic {
 }
 
 impl Heuristic {
-    /// alpha of the cutoff heuristic where nobody says.
+    /// Default alpha of the cutoff heuristic.
     pub const ALPHA: f32 = 0.1;
 
     /// Most segments of paths that the cutoff heuristic weighs. It has to know every strategy's q apart: no sum over

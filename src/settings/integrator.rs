@@ -1,4 +1,4 @@
-//! Which integrator a scene asks for. All are one estimator with strategies left out; `aov` and `moment` hold
+//! The integrator of a scene. All are one estimator with strategies left out; `aov` and `moment` hold
 //! another one and ask for more channels. `fog` is a preview that makes no paths; `single_scattering` and
 //! `non_scattering` restrict what media do.
 
@@ -33,7 +33,7 @@ impl Restriction {
     /// Most segments of a path that single scattering has.
     pub const SINGLE: u32 = 2;
 
-    /// What it asks of all media.
+    /// Its overrides of all media.
     pub fn medium_overrides(&self) -> MediumOverrides {
         match *self {
             Self::None => MediumOverrides::default(),
@@ -61,10 +61,10 @@ pub struct FogSettings {
     pub threshold: Option<f32>,
 }
 
-/// An integrator as a scene file asks for it.
+/// An integrator as described by a scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Integrator {
-    /// How paths are made.
+    /// How paths are sampled.
     pub options: Options,
     /// What light does in media.
     pub restriction: Restriction,
@@ -104,7 +104,7 @@ fn check_names(object: &Object, layers: &[Layer]) -> Result<()> {
     let remedy = "rename one of the layers";
     if let Some((_, name)) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
         let found = format!("\"{name}\" twice");
-        return Err(Error::new(&object.location, "channels with names of their own", found, remedy));
+        return Err(Error::new(&object.location, "channels with distinct names", found, remedy));
     }
     let fits = |name: &&String| name.len() < 256 && name.chars().all(|c| c.is_ascii_graphic());
     match names.iter().find(|name| !fits(name)) {
@@ -123,11 +123,11 @@ fn build_as(params: &Params<'_>, strategies: Strategies) -> Result<Integrator> {
         0..=0xffff_fffe => Some(depth as u32),
         _ => return Err(params.complain("max_depth", "-1 (no limit) or an integer >= 0", depth.to_string())),
     };
-    params.accept_unused(&["rr_depth"], "walks end by absorption, which is exact at any depth");
+    params.accept_unused(&["rr_depth"], "paths end by absorption, which is exact at any depth");
     accept_division(params);
     let hide_emitters = params.boolean("hide_emitters", false)?;
     if strategies == Strategies::LT {
-        params.accept_unused(&["forced_interaction"], "light walks have no primary rays");
+        params.accept_unused(&["forced_interaction"], "light subpaths have no primary rays");
     }
     let forced_interaction = params.boolean("forced_interaction", false)?;
     let heuristic = heuristic(params)?;
@@ -188,14 +188,14 @@ fn build_single_scattering(params: &Params<'_>) -> Result<Integrator> {
     Ok(Integrator { options, restriction, ..integrator })
 }
 
-/// `non_scattering`: media that absorb and emit only, among surfaces as they are.
+/// `non_scattering`: media absorb and emit only, among surfaces as they are.
 fn build_non_scattering(params: &Params<'_>) -> Result<Integrator> {
     let integrator = build_as(params, Strategies::BDPT)?;
     Ok(Integrator { restriction: Restriction::NonScattering, ..integrator })
 }
 
 fn accept_division(params: &Params<'_>) {
-    params.accept_unused(&["samples_per_pass", "block_size", "timeout"], "work is divided by Tyndall itself");
+    params.accept_unused(&["samples_per_pass", "block_size", "timeout"], "Tyndall divides the work itself");
 }
 
 /// `aov`: what the first surface is like, and the image of the integrator inside. Without one the image is

@@ -8,12 +8,12 @@ pub mod sampler;
 
 use crate::{description::params::Child, error::Error, medium::DistanceMethod};
 
-/// What the caller asks of the film instead of the file's word.
+/// Settings of the command line that override those of the scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
     /// Width and height [pixels].
     pub size: Option<(u32, u32)>,
-    /// How flights through media that vary are sampled.
+    /// Free-flight sampling methods in heterogeneous media.
     pub tracker: Option<DistanceMethod>,
 }
 

@@ -30,8 +30,8 @@ impl Strategies {
         [("bdpt", Self::BDPT), ("pt", Self::PT), ("lt", Self::LT), ("fog", Self::NONE)];
 }
 
-/// How paths are made and weighed. A new option is a field here that an integrator reads (`integrator.rs`), and a flag of
-/// the command line (`cli/estimator.rs`).
+/// How paths are sampled and weighted. A new option is a field here that an integrator reads
+/// (`integrator.rs`), and a flag of the command line (`cli/estimator.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Which strategies run.

@@ -1,4 +1,4 @@
-//! How many samples a scene asks for, and how their random numbers are spread.
+//! The number of samples of a scene, and the source of their random numbers.
 
 use crate::{
     description::{Library, Object, Params, Registry},
@@ -20,7 +20,7 @@ pub(crate) const ROWS: Registry<Sampler> = Registry::new(
     ],
 );
 
-/// What a sampler asks for.
+/// The settings of a sampler.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sampling {
     /// Samples per pixel.

@@ -36,7 +36,7 @@ pub struct Mesh {
     uvs: Vec<Vec2>,
     triangles: Vec<[u32; 3]>,
     areas: AreaTable,
-    /// -1 where the user asked for turned normals.
+    /// -1 if `flip_normals` is set.
     facing: f32,
 }
 
@@ -164,7 +164,7 @@ fn drop_degenerate(
     }
     if dropped > 0 {
         let text =
-            format!("{}: {dropped} of {before} triangles have no area and are left out", file.display());
+            format!("{}: {dropped} of {before} triangles have no area and are ignored", file.display());
         params.library.warn(params.location(), &text);
     }
     Ok(())

@@ -9,7 +9,7 @@ use crate::{
 };
 use std::{collections::HashMap, path::Path};
 
-/// Reads `filename`, `flip_tex_coords` (on unless told otherwise, as in Mitsuba) and what every mesh has.
+/// Reads `filename`, `flip_tex_coords` (true by default, as in Mitsuba) and what every mesh has.
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords", true)?;

@@ -11,7 +11,7 @@ use crate::{
 pub struct Placement {
     /// Object to recentred world space.
     pub matrix: DMat4,
-    /// The user asked for turned normals.
+    /// True if `flip_normals` is set.
     pub flip_normals: bool,
 }
 

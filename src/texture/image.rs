@@ -39,7 +39,7 @@ pub fn read(path: &Path, raw: bool) -> Result<Image> {
     checked(path, read_unchecked(path, raw)?)
 }
 
-/// The same without a look at the pixels, which may be negative or not finite.
+/// The same without checking the pixels, which may be negative or not finite.
 pub fn read_unchecked(path: &Path, raw: bool) -> Result<Image> {
     let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
     let reader = reader.map_err(|error| Error::io(path, "read", &error))?;
@@ -100,6 +100,6 @@ fn checked(path: &Path, image: Image) -> Result<Image> {
             format!("{} in column {x}, row {y}", image.pixels[at])
         }
     };
-    let remedy = "mend the image: light and reflectance are finite and >= 0 in every pixel";
+    let remedy = "correct the image: light and reflectance must be finite and >= 0 in every pixel";
     Err(Error::new(path.display(), "pixels with finite colours >= 0", found, remedy))
 }

@@ -42,7 +42,7 @@ impl StrategyKind {
         }
     }
 
-    /// As printed and as typed.
+    /// Name in scene files and on the command line.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("hit", Self::EmitterHit),
         ("next-event", Self::NextEvent),
@@ -50,7 +50,7 @@ impl StrategyKind {
         ("lens", Self::Lens),
     ];
 
-    /// As printed and as typed.
+    /// Name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize].0
     }

@@ -25,7 +25,7 @@ pub trait Profile: MediaProfile {
     const INFINITE: bool;
     /// Some medium shines.
     const EMISSIVE: bool;
-    /// As printed and as typed.
+    /// Name in scene files and on the command line.
     const NAME: &'static str;
 }
 
@@ -182,7 +182,7 @@ impl ProfileName {
         if heuristic == Heuristic::Balance { self } else { Self::Everything }
     }
 
-    /// As printed and as typed.
+    /// Name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Vacuum => Vacuum::NAME,
@@ -204,7 +204,7 @@ impl ProfileName {
                 (P::Channels::COUNT > 1, "chromatic extinction"),
                 (P::NULLS, "index-matched boundaries"),
                 (P::INFINITE, "infinite emitters"),
-                (P::EMISSIVE, "media that shine"),
+                (P::EMISSIVE, "emissive media"),
             ];
             parts.iter().filter(|(present, _)| !present).map(|(_, what)| *what).collect()
         }
@@ -243,7 +243,7 @@ mod tests {
                 (needs.heterogeneous, "varying media"),
                 (needs.nulls, "index-matched boundaries"),
                 (needs.infinite, "infinite emitters"),
-                (needs.emissive, "media that shine"),
+                (needs.emissive, "emissive media"),
             ] {
                 assert!(!(needed && left_out.contains(&what)), "{needs:?} lacks {what}");
             }

@@ -146,7 +146,7 @@ impl Function for Turbulence {
         false
     }
 
-    /// Not asked for: there is none.
+    /// Never called: there is none.
     fn integral(&self, _: &Line, _: f64, _: f64) -> f64 {
         0.0
     }

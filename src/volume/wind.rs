@@ -30,7 +30,7 @@ impl Wind {
                 params.location(),
                 "one nested volume",
                 several.len().to_string(),
-                "put them into a sum, or each into a wind of its own",
+                "put them into a sum, or each into its own wind",
             )
         })?;
         Ok(Self::new(inner, velocity, place.time))

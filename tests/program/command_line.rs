@@ -85,7 +85,7 @@ fn heuristics_can_be_chosen() {
     let reported = sandbox.run("render scene.json --integrator fog --heuristic power").ends(0).err();
     assert!(reported.contains("--heuristic has no effect"), "{reported}");
     let reported = sandbox.run("info scene.json").ends(0).out();
-    assert!(reported.contains("weighed by the balance heuristic"), "{reported}");
+    assert!(reported.contains("weighted by the balance heuristic"), "{reported}");
 }
 
 /// Every batch is the image of its own seed, the image is their mean, and the error is that of the mean.

@@ -10,7 +10,7 @@ fn a_phase_function_is_judged_and_drawn() {
         "normalisation      1.000000",
         "mean cosine        0.6000",
         "degrees of freedom",
-        "as the density says",
+        "according to the pdf",
     ] {
         assert!(run.out().contains(hint), "no {hint} in {}", run.out());
     }

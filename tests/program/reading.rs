@@ -461,7 +461,7 @@ fn broken_xml_is_refused_with_place_and_remedy() {
         broken("<shape type='s'><path value='.'/></shape>", "scene.xml:1:40", &["outermost"]),
         broken("<scene type='scene'/>", "scene.xml:1:24", &["outermost element of a file"]),
         broken("<!-- \u{e9}\u{20ac} --><shap type='s'/>", "scene.xml:1:35", &["<shap>"]),
-        broken("hello", "scene.xml:1:24", &["nothing but elements", "hello"]),
+        broken("hello", "scene.xml:1:24", &["elements only", "hello"]),
         broken("<shape type='s'>", "", &["well-formed XML"]),
         broken("<x:shape xmlns:x='u' type='s'/>", "scene.xml:1:24", &["namespace"]),
     ];

@@ -43,7 +43,7 @@ fn insert(object: &mut Object, steps: &[&str], value: Value, word: &str) -> Resu
         (Some(Property { value: Value::Object(child), .. }), rest) => insert(child, rest, value, word),
         _ => {
             let expected = format!("a nested phase function \"{name}\" before its parameters");
-            let remedy = format!("say which it is first, as {name}=hg");
+            let remedy = format!("set its type first, as {name}=hg");
             Err(Error::new(word, expected, "none", remedy))
         }
     }

@@ -90,7 +90,7 @@ fn draw(text: &mut String, title: &str, phase: &Phase, check: &Check) -> std::re
     root.fill(&WHITE).map_err(drawing_error)?;
     write(&root, title, (12, 10), 18)?;
     let legend = format!(
-        "line: density [1/sr]; bars: {} samples; light comes from the left",
+        "line: pdf [1/sr]; bars: {} samples; light comes from the left",
         check.histogram.iter().sum::<u64>()
     );
     write(&root, &legend, (12, 32), 13)?;

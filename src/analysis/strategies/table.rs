@@ -62,9 +62,9 @@ const SUBSETS: &str = "with less: relMSE x seconds of all strategies over that o
      paths that the short renders did not meet are not in it)";
 
 const EXPLANATION: [&str; 3] = [
-    "energy: share of the mean luminance. alone: what the strategy brings unweighted, over all light on paths of its length.",
+    "energy: share of the mean luminance. alone: the unweighted contribution of the strategy, relative to all light on paths of its length.",
     "variance: of its weighted part in one pass, over that of the image (luminance, summed over pixels; covariances apart).",
-    "time: share of the time of all threads that its joins take. tries: per pixel and pass.",
+    "time: share of the time of all threads spent on its connections. tries: number of connections per pixel and pass.",
 ];
 
 fn line(cell: &CellReport) -> String {

@@ -292,7 +292,7 @@ impl Study<'_> {
 }
 
 /// For a render whose numbers cannot be read.
-const LOST_UNIT: &str = "remove the file, and it is rendered anew; or start all anew by --restart";
+const LOST_UNIT: &str = "remove the file to render it again, or restart the whole study with --restart";
 
 fn seeds(question: &Question) -> impl Iterator<Item = u64> {
     let first = question.first_seed;

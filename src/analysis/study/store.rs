@@ -62,7 +62,7 @@ impl Store {
         match first_difference(&plan.question, question) {
             None => Ok(plan),
             Some((place, old, new)) => {
-                Err(self.taken(&format!("one with {place} = {old}, where {new} is asked for")))
+                Err(self.taken(&format!("one with {place} = {old}, but {new} is requested")))
             }
         }
     }

@@ -60,7 +60,7 @@ fn explain(message: &str) -> (&'static str, String, &'static str) {
         "key must be a string" => (
             "a key in double quotes",
             "something else".to_owned(),
-            "quote it; a comment has no place in JSON",
+            "quote it, or remove it if it is a comment: JSON has no comments",
         ),
         "trailing comma" => ("another entry after the comma", "none".to_owned(), "remove the comma"),
         "expected value" => ("a JSON value", "none".to_owned(), correct),
@@ -118,7 +118,7 @@ fn declare(defaults: &Node, parameters: &mut Parameters, kinds: &mut Kinds) -> R
             Json::String(s) => filled(s, &entry.node.location, parameters)?,
             other => {
                 let found = other.describe();
-                let remedy = "put the numbers of a list into parameters of their own";
+                let remedy = "use one parameter for each number of the list";
                 let place = &entry.node.location;
                 return Err(Error::new(place, "a number, a boolean or a string", found, remedy));
             }
@@ -143,7 +143,7 @@ fn kind_of(default: &Json, kinds: &Kinds) -> Json {
 
 fn filled(text: &str, location: &Location, parameters: &mut Parameters) -> Result<String> {
     parameters.substitute_at(text, location, "value").map_err(|unfit| {
-        let remedy = format!("{} (defaults stand in \"{DEFAULTS}\" of the scene)", unfit.remedy);
+        let remedy = format!("{} (defaults belong in \"{DEFAULTS}\" of the scene)", unfit.remedy);
         Error::new(location, unfit.expected, unfit.found, remedy)
     })
 }

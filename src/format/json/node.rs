@@ -1,4 +1,4 @@
-//! A JSON value with its place, asked for what it should be.
+//! A JSON value with its place, and its conversion to the expected type.
 
 use super::{
     super::text::{Parsed, triple},
@@ -75,7 +75,7 @@ impl<'j> Node<'j> {
             let node = self.child(name, json);
             if name.is_empty() || (name.contains(['.', '$']) && name != super::TAG) {
                 let expected = "a name with neither \".\" nor \"$\" in it";
-                let remedy = "rename it; \"$defaults\" stands in the scene itself";
+                let remedy = "rename it; \"$defaults\" belongs in the scene itself";
                 return Err(Error::new(node.location, expected, format!("\"{name}\""), remedy));
             }
             Ok(Entry { name: name.clone(), node })

@@ -75,7 +75,7 @@ impl Writer<'_, '_> {
         Ok(Json::Map(entries))
     }
 
-    /// Says the tag where nothing else tells it.
+    /// Writes the tag where it cannot be derived.
     fn add_tag(&self, value: &mut Json, entry: &Entry, key: &str, parent: &str) {
         if let (Json::Map(entries), Item::Object(node)) = (value, &entry.item)
             && tags::derive(&node.plugin.value, key, parent) != Some(&node.tag)

@@ -40,7 +40,7 @@ impl Json {
         }
     }
 
-    /// True for plugins with plugins in them: one look should tell what stands in what.
+    /// True for plugins that contain plugins: these are written on several lines to show the nesting.
     fn is_deep(&self) -> bool {
         let plugin = |value: &Self| matches!(value, Self::Map(entries) if !is_value(entries));
         matches!(self, Self::Map(entries) if entries.iter().any(|(_, value)| plugin(value)))

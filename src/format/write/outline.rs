@@ -1,4 +1,4 @@
-//! A scene as it is to be written, whichever the spelling: every value with the text that stands for it where
+//! A scene to be written in either format: every value with the text that stands for it where
 //! parameters are in it, names only where they mean something, names of files as the target's folder reaches them.
 
 use crate::description::Location;
@@ -38,7 +38,7 @@ pub(super) enum Texts {
     Whole(String),
     /// A text for some of them.
     Each(Vec<Option<String>>),
-    /// Somewhere among them, but which of them it is cannot be told.
+    /// One of them, but which one is unknown.
     Lost(String),
 }
 

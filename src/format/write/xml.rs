@@ -134,7 +134,7 @@ impl Writer<'_, '_> {
                 numbers.values.iter().zip(texts).map(word).collect::<Vec<_>>().join(", ")
             }
             Texts::Lost(text) => {
-                self.known.note(place, text, "the numbers that it stands among have been completed");
+                self.known.note(place, text, "the numbers around it were completed with defaults");
                 listed(&numbers.values)
             }
         }
@@ -163,7 +163,7 @@ fn vector_tag(name: &str) -> &'static str {
     }
 }
 
-/// The value of an attribute. XML 1.0 has no spelling for some control characters.
+/// The value of an attribute. XML 1.0 cannot represent some control characters.
 fn attribute(value: &str, place: &Location) -> Result<String> {
     let mut out = String::new();
     for c in value.chars() {

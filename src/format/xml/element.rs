@@ -1,4 +1,4 @@
-//! An element with its parameters substituted, its place known, and its attributes asked for by name.
+//! An XML element with its parameters substituted, its place, and its attributes by name.
 
 use super::{
     super::text::{Parsed, quoted},
@@ -97,12 +97,7 @@ impl<'s> Element<'s> {
             let start = stray.range().start + stray.text().map_or(0, blank);
             let found = format!("the text {}", quoted(stray.text().unwrap_or_default().trim()));
             let place = self.source.location(start);
-            return Err(Error::new(
-                place,
-                "nothing but elements",
-                found,
-                "remove the text or comment it out",
-            ));
+            return Err(Error::new(place, "elements only", found, "remove the text or comment it out"));
         }
         Ok(self.node.children().filter(Node::is_element).collect())
     }

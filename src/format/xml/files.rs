@@ -83,15 +83,15 @@ fn explain(error: &roxmltree::Error) -> (&'static str, String, String) {
             "remove the <!DOCTYPE>; use <default> and $name for entities".into(),
         ),
         E::NoRootNode => {
-            (well_formed, "no element at all".into(), "write <scene version=\"3.0.0\">...</scene>".into())
+            (well_formed, "no element".into(), "write <scene version=\"3.0.0\">...</scene>".into())
         }
         E::UnclosedRootNode => {
             (well_formed, "the end of the file within an element".into(), "close every element".into())
         }
         E::UnknownToken(_) => (
-            "one element outermost and nothing after it",
+            "one root element and nothing after it",
             "more".into(),
-            "remove what stands here, or correct the markup before it".into(),
+            "remove the text here, or correct the markup before it".into(),
         ),
         E::UnexpectedCloseTag(due, given, _) => (
             well_formed,

@@ -48,7 +48,7 @@ pub enum DistanceMethod {
 }
 
 impl DistanceMethod {
-    /// As printed and as typed.
+    /// Name in scene files and on the command line.
     pub const NAMES: [(&'static str, Self); 5] = [
         ("auto", Self::Auto),
         ("closed_form", Self::ClosedForm),
@@ -57,7 +57,7 @@ impl DistanceMethod {
         ("null_collision", Self::DeltaTracking),
     ];
 
-    /// As printed and as typed.
+    /// Name in scene files and on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, choice)| *choice == self).map_or("", |(name, _)| name)
     }

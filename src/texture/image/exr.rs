@@ -10,7 +10,7 @@ use exr::{
 };
 use std::path::Path;
 
-/// Reads the data window, as Mitsuba does; the display window is not asked.
+/// Reads the data window, as Mitsuba does; the display window is ignored.
 pub(super) fn read(path: &Path) -> Result<Image> {
     check(path)?;
     let layer = reader()
@@ -40,7 +40,7 @@ pub(super) fn read(path: &Path) -> Result<Image> {
     Ok(Image { width: layer.size.width(), height: layer.size.height(), pixels })
 }
 
-/// No part of the file is larger than images may be: asked before memory is taken for them.
+/// No part of the file is larger than images may be: checked before memory is allocated for them.
 pub fn check(path: &Path) -> Result<()> {
     let meta = MetaData::read_from_file(path, false).map_err(|error| undecodable(path, error))?;
     meta.headers.iter().try_for_each(|header| check_size(path, header))

@@ -44,7 +44,7 @@ pub fn unpack(bytes: &[u8], count: usize, out: &mut Vec<u8>) -> Result<()> {
     out.clear();
     if frame.flags & STORED != 0 {
         let stored = bytes.get(HEADER..HEADER + count);
-        out.extend_from_slice(stored.ok_or_else(|| damaged("fewer bytes than told"))?);
+        out.extend_from_slice(stored.ok_or_else(|| damaged("fewer bytes than stated"))?);
         return Ok(());
     }
     out.resize(count, 0);
@@ -59,7 +59,7 @@ impl<'a> Frame<'a> {
     /// The frame in `bytes`, and how many bytes it holds.
     fn new(bytes: &'a [u8]) -> Result<(Self, usize)> {
         if bytes.len() < HEADER {
-            return Err(damaged("fewer bytes than told"));
+            return Err(damaged("fewer bytes than stated"));
         }
         let (flags, width) = (bytes[2], bytes[3].into());
         let [length, block] = [4, 8].map(|at| u32::from_le_bytes(array(bytes, at)) as usize);

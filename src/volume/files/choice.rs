@@ -60,6 +60,6 @@ fn ambiguous(grids: &[Label]) -> Problem {
     if grids.is_empty() {
         return Problem::new("a file with a grid", "one without", "export the volume again");
     }
-    let remedy = "say which one with the parameter \"grid\"";
+    let remedy = "choose one with the parameter \"grid\"";
     Problem::new(format!("one grid, or one that is named \"{USUAL}\""), list(grids), remedy)
 }

@@ -1,9 +1,9 @@
-//! What is wrong with a file, told so that it can be mended.
+//! Errors in a file, with a remedy.
 
 use crate::error::Error;
 use std::{fmt, io};
 
-/// A mistake in a file. Who asked for the file knows the place.
+/// An error in a file. The caller adds the place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// What would have been right.

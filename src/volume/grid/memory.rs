@@ -1,4 +1,4 @@
-//! A grid that memory cannot hold is refused before any of it is asked for.
+//! Rejects grids that do not fit into memory before any of it is allocated.
 
 use crate::error::{Error, Result};
 use std::path::Path;

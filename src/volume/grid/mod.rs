@@ -327,7 +327,7 @@ impl VolumeModel for Grid {
     }
 }
 
-/// A voxel in the channels that are asked for.
+/// A voxel in the requested channels.
 #[inline]
 fn channels<L: Channels>(value: impl Channels) -> L {
     L::from_spectrum(value.to_spectrum())
@@ -430,12 +430,12 @@ fn check_box(path: &Path, to_file: &DAffine3) -> Result<()> {
         return Ok(());
     }
     let found = format!("one whose edges are {}", to_file.matrix3);
-    let remedy = "mend the box in the file's header, or set \"use_grid_bbox\" to false";
+    let remedy = "correct the box in the file's header, or set \"use_grid_bbox\" to false";
     Err(Error::new(path.display(), "a bounding box with a finite volume", found, remedy))
 }
 
 fn refused(path: &Path, Fault { voxel: [x, y, z], channel, value }: Fault) -> Error {
     let found = format!("{value} in channel {channel} of the voxel ({x}, {y}, {z})");
-    let remedy = "mend the grid: densities and colours are finite and not negative";
+    let remedy = "correct the grid: densities and colours must be finite and >= 0";
     Error::new(path.display(), "voxels that are finite numbers >= 0", found, remedy)
 }

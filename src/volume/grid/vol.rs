@@ -36,7 +36,7 @@ impl<V: Copy> Samples<V> for Voxels<V> {
     }
 }
 
-/// What the first bytes tell.
+/// The header of the file.
 struct Header {
     size: [usize; 3],
     channels: usize,
@@ -134,8 +134,7 @@ fn channels(path: &Path, bytes: &[u8; HEADER]) -> Result<usize> {
     match integer(bytes, 20) {
         channels @ (1 | 3) => Ok(channels as usize),
         other => {
-            let remedy =
-                "give a grid of densities or colours; phase function parameters (6 channels) have no use";
+            let remedy = "use a grid of densities or colours; phase function parameters (6 channels) are not supported";
             Err(Error::new(path.display(), "1 or 3 channels", format!("{other} channels"), remedy))
         }
     }

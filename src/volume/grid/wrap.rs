@@ -1,4 +1,4 @@
-//! What a grid asks of its wrap mode besides single samples: ranges of them, and coordinates.
+//! Operations of a wrap mode on ranges of samples and on coordinates.
 
 use crate::math::Wrap;
 

@@ -18,13 +18,13 @@ pub fn outcome(path: &Path) -> Result<Outcome> {
         .map_err(|error| Error::new(path.display(), "the numbers of a study", error.to_string(), remedy))?;
     let outcome: Outcome = serde_json::from_str(&text).map_err(|error| {
         let place = format!("{}:{}:{}", path.display(), error.line(), error.column());
-        let remedy = "run the study anew";
+        let remedy = "run the study again";
         Error::new(place, "a study as JSON", error.to_string(), remedy)
     })?;
     match gap(&outcome) {
         None => Ok(outcome),
         Some((expected, found)) => {
-            Err(Error::new(path.display(), expected, found, "run the study anew, to its end"))
+            Err(Error::new(path.display(), expected, found, "run the study again until it has finished"))
         }
     }
 }
@@ -58,7 +58,7 @@ fn gap_in_scene(scene: &SceneOutcome) -> Option<(&'static str, String)> {
 /// The pixels of an image that has the size of `scene`, of any values.
 pub fn image(path: &Path, scene: &SceneOutcome) -> Result<Vec<Spectrum>> {
     let expected = || format!("an image of {} x {} pixels", scene.width, scene.height);
-    let remedy = "run the study anew, or bring its images back";
+    let remedy = "run the study again, or restore its images";
     let picture = picture::read(path).map_err(|error| Error {
         expected: expected(),
         remedy: remedy.to_owned(),
