@@ -364,7 +364,7 @@ impl Locator<'_> {
     }
 
     /// What light from infinity that starts at `origin` in `direction` is in.
-    pub fn from_infinity(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
+    pub fn at_infinity(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
         match boundary::first(self.geometry, self.surfaces, ray, false) {
             Met::Side(side) => side.undoubted(self.geometry, self.surfaces, origin).medium,

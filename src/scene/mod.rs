@@ -110,7 +110,7 @@ impl Scene {
             return light.medium;
         }
         if light.emitter.is_infinite() {
-            return self.locator().from_infinity(origin, direction);
+            return self.locator().at_infinity(origin, direction);
         }
         self.locator().along(origin, direction).unwrap_or(light.medium)
     }
