@@ -272,7 +272,7 @@ mod tests {
             (["--contender", "a: --integrator ptt"], "bdpt"),
             (["--external", "render.py"], "NAME: COMMAND"),
             (["--external", "a: render.py {scene}"], "{budgets} and {folder}"),
-            (["--contender", "a: --spp 4"], "how paths are made"),
+            (["--contender", "a: --spp 4"], "about path sampling"),
             (["--integrators", "bdpt,bdpt"], "twice"),
             (["--integrators", "bdpt,ptt"], "ptt"),
             (["--strategies", "hit+jion"], "join"),

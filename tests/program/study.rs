@@ -574,7 +574,7 @@ fn what_cannot_be_done_is_said() {
         desk.refuses(words, hints);
     }
     // Another study in the same folder.
-    desk.refuses(&["room.json", "-o", "out", "--spp", "2"], &["seeds = 2, where 8", "--restart"]);
+    desk.refuses(&["room.json", "-o", "out", "--spp", "2"], &["seeds = 2, but 8", "--restart"]);
     fs::write(desk.path("room.json"), scene(&[("sensor", camera([0.0; 3], [0.0, 0.0, 1.0], 8))]).to_string())
         .unwrap();
     desk.refuses(&with_quick(&["room.json", "-o", "out"]), &["scenes[0].fingerprint", "another folder"]);

@@ -221,7 +221,7 @@ mod tests {
         drop(Store::open(folder.path(), &question(), false).unwrap());
         let other = Question { seeds: 9, ..question() };
         let error = Store::open(folder.path(), &other, false).unwrap_err();
-        assert!(error.found.contains("seeds = 2, where 9") && error.remedy.contains("--restart"), "{error}");
+        assert!(error.found.contains("seeds = 2, but 9") && error.remedy.contains("--restart"), "{error}");
         let (store, plan) = Store::open(folder.path(), &question(), false).unwrap();
         assert_eq!(plan.question, question());
         let error = Store::open(folder.path(), &question(), false).unwrap_err();
