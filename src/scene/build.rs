@@ -7,7 +7,7 @@ use super::{
     boundary::{self, Boundary},
     extents::Extents,
     lights::{Light, Lights, emissive},
-    locate::{Infinity, Known, Locator},
+    locate::{Known, Locator},
     placement::{Names, Placement, place_camera},
     sections::Sections,
 };
@@ -319,17 +319,8 @@ impl<'a> Builder<'a> {
         sensor_location: &Location,
         medium_overrides: &MediumOverrides,
     ) -> Result<Scene> {
-        let geometry = Geometry::build(std::mem::take(&mut self.shapes));
-        let touching = boundary::touching(&geometry, &self.surfaces);
-        self.surfaces.iter_mut().zip(touching).for_each(|(surface, touching)| surface.touching = touching);
-        let names = Names {
-            library: self.library,
-            media: &self.medium_names,
-            ids: &self.medium_ids,
-            shapes: &self.shape_names,
-            locations: &self.shape_locations,
-            recentre: self.recentre,
-        };
+        let geometry = self.geometry();
+        let names = self.names();
         let ambient = stated.unwrap_or(MediumIndex::VACUUM);
         let (mut known, survey) =
             Known::survey(&geometry, &self.surfaces, self.stated_points(start, stated), ambient);
@@ -342,32 +333,50 @@ impl<'a> Builder<'a> {
         let outside = known.infinity.most();
         let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
         names.warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
-        let viewpoint = sensor.position();
+        let (surfaces, recentre) = (&self.surfaces, self.recentre);
         let extents =
-            Extents { geometry: &geometry, surfaces: &self.surfaces, viewpoint, outside, survey: &survey };
-        let media = extents.finish(self.media, medium_overrides)?;
-        let locator = Locator { geometry: &geometry, surfaces: &self.surfaces, known: &known };
-        let placement = Placement { locator, names: &names, ambient: sensor_medium };
-        let recentre = self.recentre;
-        let lights = self.emitters.into_iter().map(|placed| light(placed, recentre, &placement));
-        let lights: Vec<Light> = lights.chain(emissive(&media, locator, outside)).collect();
-        let around = match known.infinity {
-            Infinity::Directional(_) => &media[0],
-            _ => &media[outside.0 as usize],
-        };
-        let lights = Lights::new(lights, &geometry, around);
-        Ok(Scene {
+            Extents { geometry: &geometry, surfaces, viewpoint: sensor.position(), outside, survey: &survey };
+        let media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
+        let locator = Locator { geometry: &geometry, surfaces, known: &known };
+        let placement = Placement { locator, names: &self.names(), ambient: sensor_medium };
+        let emitters = self.emitters.iter().map(|placed| light(placed, recentre, &placement));
+        let all = emitters.chain(emissive(&media, locator, outside)).collect();
+        let around = if known.infinity.is_uniform() { outside } else { MediumIndex::VACUUM };
+        let lights = Lights::new(all, &geometry, &media[around.0 as usize]);
+        let Self { surfaces, bsdfs, .. } = self;
+        let scene = Scene {
             lights,
             geometry,
-            surfaces: self.surfaces,
-            bsdfs: self.bsdfs,
+            surfaces,
+            bsdfs,
             media,
             outside,
             known,
             sensor,
             sensor_medium,
             recentre,
-        })
+        };
+        Ok(scene)
+    }
+
+    /// All shapes, indexed; their surfaces learn which of them may share faces.
+    fn geometry(&mut self) -> Geometry {
+        let geometry = Geometry::build(std::mem::take(&mut self.shapes));
+        let touching = boundary::touching(&geometry, &self.surfaces);
+        self.surfaces.iter_mut().zip(touching).for_each(|(surface, touching)| surface.touching = touching);
+        geometry
+    }
+
+    /// What messages call media and shapes by.
+    fn names(&self) -> Names<'_> {
+        Names {
+            library: self.library,
+            media: &self.medium_names,
+            ids: &self.medium_ids,
+            shapes: &self.shape_names,
+            locations: &self.shape_locations,
+            recentre: self.recentre,
+        }
     }
 
     /// Camera and emitters at points whose medium the file states; the camera stands at `start`.
@@ -380,10 +389,11 @@ impl<'a> Builder<'a> {
 }
 
 /// An emitter with the medium that it lies in.
-fn light(placed: Placed<'_>, recentre: DVec3, placement: &Placement<'_>) -> Light {
+fn light(placed: &Placed<'_>, recentre: DVec3, placement: &Placement<'_>) -> Light {
     let Placed { emitter, shape, stated, location } = placed;
+    let (emitter, shape) = (emitter.clone(), *shape);
     let position = emitter.position().map(|position| (position - recentre).as_vec3());
-    let (medium, straddles) = match (stated, shape, position) {
+    let (medium, straddles) = match (*stated, shape, position) {
         (Some(medium), ..) => (medium, false),
         (None, Some(shape), _) => placement.of_shape(shape, location),
         (None, None, Some(position)) => (placement.of_point(position, location), false),
