@@ -9,6 +9,7 @@ use super::{
     lights::{Light, Lights, emissive},
     locate::{Known, Locator},
     placement::{Names, Placement, place_camera},
+    range,
     sections::Sections,
 };
 use crate::{
@@ -147,6 +148,7 @@ struct Builder<'a> {
     bsdf_index: HashMap<*const Object, u32>,
     place: Place,
     media: Vec<MediumDescription>,
+    medium_locations: Vec<Location>,
     medium_names: Vec<String>,
     medium_ids: Vec<Option<String>>,
     medium_index: HashMap<*const Object, MediumIndex>,
@@ -169,6 +171,7 @@ impl<'a> Builder<'a> {
             bsdf_index: HashMap::new(),
             place,
             media: vec![MediumDescription::vacuum()],
+            medium_locations: Vec::new(),
             medium_names: Vec::new(),
             medium_ids: Vec::new(),
             medium_index: HashMap::new(),
@@ -275,6 +278,7 @@ impl<'a> Builder<'a> {
         let index = MediumIndex(self.media.len() as u32);
         self.media.push(medium::build(object, self.library, &self.place)?);
         self.medium_names.push(name_of(object));
+        self.medium_locations.push(object.location.clone());
         self.medium_ids.push(object.id.clone());
         self.medium_index.insert(std::ptr::from_ref(object), index);
         Ok(index)
@@ -337,6 +341,7 @@ impl<'a> Builder<'a> {
         let extents =
             Extents { geometry: &geometry, surfaces, viewpoint: sensor.position(), outside, survey: &survey };
         let media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
+        range::check(&media[1..], &self.medium_locations, &extents, self.library)?;
         let locator = Locator { geometry: &geometry, surfaces, known: &known };
         let placement = Placement { locator, names: &self.names(), ambient: sensor_medium };
         let emitters = self.emitters.iter().map(|placed| light(placed, recentre, &placement));
