@@ -7,8 +7,8 @@ use crate::{
     texture::{self, Texture},
 };
 
-/// Every point sends light in the one direction of its normal. No camera subpath can meet that and no point can be
-/// joined to it: only light subpaths bring its light.
+/// Every point sends light in the one direction of its normal. No camera subpath can hit that by chance and
+/// no point can be connected to it: only light subpaths carry its light.
 #[derive(Clone, Debug)]
 pub struct DirectionalArea {
     exitance: Texture,

@@ -62,7 +62,7 @@ pub enum Kind {
     Medium(VolumeEmitter),
 }
 
-/// Emitters that stand at a point.
+/// Emitters at a point.
 #[derive(Clone, Debug)]
 pub enum PointKind {
     /// All around.
@@ -97,8 +97,8 @@ pub const ROWS: Registry<Build<Kind>> = Registry::new(
     ],
 );
 
-/// Builds the emitter that `object` describes; positions still stand in the file's coordinates. A medium among
-/// its children (the one it stands in) is the scene's to read.
+/// Builds the emitter that `object` describes; positions are still in the file's coordinates. A medium among
+/// its children (the one it is in) is read by the scene.
 pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
     let params = Params::new(object, library);
     let (name, build) = ROWS.row(object)?;
@@ -115,7 +115,7 @@ impl Emitter {
         Self { name: "medium", kind: Kind::Medium(volume), sampling_weight: 1.0 }
     }
 
-    /// True for emitters that stand on a shape.
+    /// True for emitters that lie on a shape.
     pub fn needs_shape(&self) -> bool {
         matches!(self.kind, Kind::Area(_) | Kind::DirectionalArea(_))
     }
@@ -125,7 +125,7 @@ impl Emitter {
         matches!(self.kind, Kind::Directional(_) | Kind::Environment(_))
     }
 
-    /// True if a walk can meet it by chance: it is neither a point nor a single direction.
+    /// True if a walk can hit it by chance: it is neither a point nor a single direction.
     pub fn is_hittable(&self) -> bool {
         matches!(self.kind, Kind::Area(_) | Kind::Environment(_) | Kind::Medium(_))
     }
@@ -155,7 +155,7 @@ impl Emitter {
         power.dot(LUMINANCE.as_dvec3())
     }
 
-    /// Where it stands, in the file's coordinates: emitters at a point only.
+    /// Its position in the file's coordinates: emitters at a point only.
     pub fn position(&self) -> Option<DVec3> {
         match &self.kind {
             Kind::Point(PointKind::Point(e)) => Some(e.position),

@@ -12,7 +12,7 @@ use std::f32::consts::PI;
 /// A point light: alike in all directions, or by a profile around an axis.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Where it stands, in the file's coordinates.
+    /// Its position in the file's coordinates.
     pub position: DVec3,
     /// Intensity on the axis [W/sr].
     intensity: Spectrum,

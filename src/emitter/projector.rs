@@ -10,11 +10,11 @@ use crate::{
 };
 use std::{f32::consts::PI, sync::Arc};
 
-/// A pinhole camera run backwards: what stands at distance 1 across its axis is lit by the image, at
+/// A pinhole camera run backwards: what lies at distance 1 across its axis is lit by the image, at
 /// irradiance pi times that of the texture (so Mitsuba scales it).
 #[derive(Clone, Debug)]
 pub struct Projector {
-    /// Where it stands, in the file's coordinates.
+    /// Its position in the file's coordinates.
     pub position: DVec3,
     irradiance: Texture,
     scale: f32,

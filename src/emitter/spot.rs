@@ -12,7 +12,7 @@ use std::f32::consts::TAU;
 /// A spotlight.
 #[derive(Clone, Debug)]
 pub struct Spot {
-    /// Where it stands, in the file's coordinates.
+    /// Its position in the file's coordinates.
     pub position: DVec3,
     /// Intensity on the axis [W/sr].
     intensity: Spectrum,
@@ -35,7 +35,7 @@ struct Slide {
 }
 
 impl Spot {
-    /// Reads `intensity`, `cutoff_angle` and `beam_width` [degrees], `texture` and `to_world`; it shines along
+    /// Reads `intensity`, `cutoff_angle` and `beam_width` [degrees], `texture` and `to_world`; it emits along
     /// local +z.
     pub fn build(params: &Params<'_>) -> Result<Self> {
         let to_world = params.transform("to_world")?;

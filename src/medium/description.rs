@@ -59,7 +59,7 @@ impl MediumDescription {
         self.fields.is_some()
     }
 
-    /// Where the description of an emission stands that has no end but the medium's own.
+    /// Where the file describes an emission that is bounded only by the medium itself.
     pub fn endless_emission(&self) -> Option<&Location> {
         let given = self.emission.as_ref()?;
         given.has_no_end(self.varies()).then_some(&given.location)

@@ -14,12 +14,12 @@ use crate::{
 };
 use std::f64::consts::PI;
 
-/// What the volume of an emission tells.
+/// What the volume of an emission gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {
     /// Radiance gained per metre [W/(m^3 sr)].
     Gain,
-    /// Radiance of a layer that nothing shines through [W/(m^2 sr)].
+    /// Radiance of an opaque layer [W/(m^2 sr)].
     Radiance,
     /// Temperature of a black body [K].
     Temperature,
@@ -36,7 +36,7 @@ pub struct EmissionDescription {
     volume: Volume,
     scale: f32,
     place: Place,
-    /// Where it stands in the file.
+    /// Where it is in the file.
     pub(super) location: Location,
 }
 
@@ -192,7 +192,7 @@ impl Field {
 /// The most radiance gained per metre: products with volumes and lengths of any scene stay finite.
 const BRIGHTEST: f32 = 1e30;
 
-/// The box that holds all that shines.
+/// The box that holds all emission.
 fn extent(given: &EmissionDescription, within: &Within, around: &MediumBounds) -> [Vec3; 2] {
     let of_matter = match within {
         Within::Varying(varying) if given.quantity != Quantity::Gain => Some([varying.0.low, varying.0.high]),
@@ -205,8 +205,8 @@ fn extent(given: &EmissionDescription, within: &Within, around: &MediumBounds) -
     if ends { known } else { common(known, [around.low, around.high]) }
 }
 
-/// A cell is chosen as if it shone by this part of its maximum more than it does on average: so that what its few
-/// looked-at points missed is found.
+/// A cell is chosen as if its mean emission were higher by this fraction of its maximum: so that what the few
+/// points examined in it missed is found.
 const FLOOR: f32 = 0.1;
 
 /// The emission of a medium.
@@ -222,8 +222,8 @@ pub struct Emission {
 }
 
 impl Emission {
-    /// Looks at what is `given` where it is and matter is as `within`, `around` where neither says where that is; none
-    /// where nothing shines.
+    /// Examines what is `given` where it is and matter is as `within`, `around` where neither says where that
+    /// is; none where nothing emits.
     pub fn new(given: EmissionDescription, within: Within, around: &MediumBounds) -> Result<Option<Self>> {
         let [low, high] = extent(&given, &within, around);
         if !low.cmplt(high).all() {
@@ -297,10 +297,10 @@ impl Emission {
         self.coarse.cell_at(position).map_or(0.0, |cell| chosen(cell) as f32)
     }
 
-    /// How often a camera subpath that passes `position` is taken to meet emission there [1/m]: what weights
-    /// know, per channel of extinction.
+    /// Rate at which a camera subpath that passes `position` is taken to sample emission there [1/m]: the
+    /// density that the weights use, per channel of extinction.
     ///
-    /// A walk really meets one point on each of its flights, which are as long as chance makes them. In thin matter
+    /// A walk really samples one point on each of its flights, which have random lengths. In thin matter
     /// that is the density of `sample_along` on a whole line, here that of a mean line; in thick matter the flights
     /// are of a mean free path.
     #[inline]
@@ -309,8 +309,8 @@ impl Emission {
         self.field.within.at(position).sigma_t + self.per_line * most
     }
 
-    /// A point of `segment`, in proportion to the maxima of the cells it crosses: t [m] and the density [1/m]; none
-    /// where nothing shines.
+    /// A point of `segment`, in proportion to the maxima of the cells it crosses: t [m] and the density
+    /// [1/m]; none where nothing emits.
     #[inline]
     pub fn sample_along(&self, segment: &RaySegment, stream: &mut Stream) -> Option<(f32, f32)> {
         let most = |piece: &volume::Piece| self.coarse.most(piece.cell);

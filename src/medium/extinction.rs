@@ -35,7 +35,7 @@ impl Extinction {
         self.volume.integral::<L>(&part).scaled(self.scale)
     }
 
-    /// The part of `segment` within the box; none where they do not meet.
+    /// The part of `segment` within the box; none where they do not overlap.
     #[inline]
     pub fn clip(&self, segment: &RaySegment) -> Option<[f32; 2]> {
         segment.within(self.low, self.high)

@@ -22,15 +22,15 @@ pub struct Fields {
     pub scale: f32,
     /// sigma_s / sigma_t.
     pub albedo: Volume,
-    /// Asked for.
+    /// As requested.
     pub tracker: DistanceMethod,
-    /// Longest interval of ray marching [m], if asked for.
+    /// Longest interval of ray marching [m], if requested.
     pub step: Option<f64>,
-    /// Error of transmittance that ray marching may make where no step is asked for.
+    /// Error of transmittance that ray marching may make where no step is requested.
     pub march_error: f64,
     /// The origin of positions in the file's coordinates [m].
     pub recentre: DVec3,
-    /// Where the medium stands in the file.
+    /// Where the medium is in the file.
     pub location: Location,
 }
 
@@ -68,7 +68,7 @@ pub struct Heterogeneous {
     extinction: Extinction,
     albedo: Volume,
     tracker: DistanceSampler,
-    /// What it was made of, to be made again for another time.
+    /// Its description, to build it again for another time.
     fields: Fields,
     around: [Vec3; 2],
     overrides: MediumOverrides,
@@ -123,7 +123,7 @@ impl Heterogeneous {
         &self.extinction
     }
 
-    /// The tracker that its description asks for.
+    /// The tracker that its description requests.
     pub fn requested(&self) -> DistanceMethod {
         self.fields.tracker
     }
@@ -144,14 +144,14 @@ impl Heterogeneous {
         &self.tracker
     }
 
-    /// What it is made of at a world position.
+    /// Its coefficients at a world position.
     #[inline]
     pub fn at<L: Channels>(&self, position: Vec3) -> MediumProperties {
         let sigma_t = self.extinction.at::<L>(position).to_spectrum();
         MediumProperties { sigma_t, albedo: self.albedo.eval::<Spectrum>(position) }
     }
 
-    /// What absorbs, for what shines there.
+    /// Absorption, for the emission there.
     pub(super) fn within(&self) -> Within {
         Within::Varying(Box::new((self.extinction.clone(), self.albedo.clone())))
     }

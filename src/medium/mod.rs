@@ -33,7 +33,7 @@ impl MediumIndex {
     pub const VACUUM: Self = Self(0);
 }
 
-/// A medium: the same everywhere, or varying in space. Which of the two it is concerns nobody but this page: light
+/// A medium: the same everywhere, or varying in space. Which of the two it is matters only in this module: light
 /// transport samples distances, and finds transmittances and properties, by the methods below.
 #[derive(Clone, Debug)]
 pub struct Medium {
@@ -42,10 +42,10 @@ pub struct Medium {
     /// What it emits.
     pub emission: Option<Arc<Emission>>,
     /// A homogeneous medium is its own bound: what was compiled without heterogeneous media looks no further than
-    /// this, and what was compiled with them asks `coefficients` first.
+    /// this, and what was compiled with them calls `coefficients` first.
     bound: Homogeneous,
     coefficients: Coefficients,
-    /// What the emission was made of, to be made again for another time.
+    /// The description of the emission, to build it again for another time.
     given: Option<Box<(EmissionDescription, MediumBounds)>>,
 }
 
@@ -66,7 +66,7 @@ pub trait MediaProfile: Copy + Send + Sync + 'static {
     const HETEROGENEOUS: bool;
 }
 
-/// What a medium is made of at a point.
+/// The properties of a medium at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct MediumProperties {
     /// Extinction coefficient [1/m].
@@ -174,7 +174,7 @@ impl Medium {
         if M::HETEROGENEOUS { self.heterogeneous() } else { None }
     }
 
-    /// What a homogeneous medium is made of; of a heterogeneous one, a bound on what it is made of anywhere.
+    /// The properties of a homogeneous medium; of a heterogeneous one, a bound on them anywhere.
     #[inline]
     pub fn bound(&self) -> MediumProperties {
         self.bound.0
@@ -197,7 +197,7 @@ impl Medium {
         if self.extent().is_some() { Spectrum::ONE } else { self.bound.transmittance_from_infinity() }
     }
 
-    /// What it is made of at a world position.
+    /// Its properties at a world position.
     #[inline]
     pub fn properties_at<M: MediaProfile>(&self, position: Vec3) -> MediumProperties {
         self.varying::<M>().map_or(self.bound.0, |varying| varying.at::<M::Channels>(position))

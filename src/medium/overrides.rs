@@ -1,4 +1,4 @@
-//! What an integrator or the command line asks of all media of a scene, whatever their descriptions say.
+//! What an integrator or the command line sets for all media of a scene, whatever their descriptions say.
 
 use super::DistanceMethod;
 

@@ -1,5 +1,5 @@
-//! All shapes as one: which primitive a ray meets first, whether anything is in its way, and what the surface
-//! is like where it hits.
+//! All shapes as one: which primitive a ray hits first, whether anything blocks it, and what the surface is
+//! like at the hit.
 
 mod curved;
 mod pack;

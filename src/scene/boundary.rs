@@ -1,4 +1,5 @@
-//! The media on the two sides of shapes, and what the sides that a ray meets say of the medium it runs through.
+//! The media on the two sides of shapes, and what the sides that a ray hits say about the medium it runs
+//! through.
 
 use super::{Surface, accel::Geometry};
 use crate::{
@@ -61,14 +62,15 @@ pub struct Side {
 }
 
 impl Side {
-    /// Where two shapes share a face, a ray meets one of the two, and which one is chance: seen from within one, the
-    /// other's face says that one is outside of it, which is true and not the question.
+    /// Where two shapes share a face, a ray hits one of the two, and which one is chance: from within one
+    /// shape, a hit on the other's face says that the ray is outside of the other, which is true but does not
+    /// answer the question.
     pub fn is_doubtful(&self) -> bool {
         self.touching && !self.inside
     }
 
-    /// What was met from `origin`, all doubt removed: rays in other directions are looked at for a side that is met from
-    /// its inside. No ray meets such a one that starts outside.
+    /// What was hit from `origin`, without doubt: rays in other directions are searched for a side that is
+    /// hit from its inside. No ray that starts outside hits a side from its inside.
     pub fn undoubted(self, geometry: &Geometry, surfaces: &[Surface], origin: Vec3) -> Self {
         if !self.is_doubtful() {
             return self;
@@ -82,7 +84,7 @@ impl Side {
     }
 }
 
-/// What a ray meets that has to do with media. Surfaces that light passes and that separate no media do not count.
+/// What a ray hits that has to do with media. Surfaces that light passes and that separate no media do not count.
 #[derive(Clone, Copy, Debug)]
 pub enum Met {
     /// A side of which the medium is known.
@@ -98,11 +100,11 @@ pub enum Met {
     Nothing,
 }
 
-/// Most surfaces that a ray is followed through: it cannot meet more than there are, but a sphere twice; the bound ends
-/// even a faulty one.
+/// Most surfaces that a ray is followed through: it cannot hit more than there are, except a sphere twice;
+/// the bound ends even a faulty loop.
 const MOST_SURFACES: u32 = 10_000;
 
-/// The first thing that `ray` meets. Where `through_walls`, opaque surfaces are passed if they say nothing.
+/// The first thing that `ray` hits. Where `through_walls`, opaque surfaces are passed if they say nothing.
 pub fn first(geometry: &Geometry, surfaces: &[Surface], mut ray: Ray, through_walls: bool) -> Met {
     for _ in 0..MOST_SURFACES {
         let Some(hit) = geometry.closest(&ray) else { return Met::Nothing };
@@ -131,8 +133,8 @@ pub fn medium_ahead(geometry: &Geometry, surfaces: &[Surface], ray: &Ray) -> Opt
     }
 }
 
-/// For every shape, whether its boundary may share faces with that of another: their boxes meet, and neither
-/// lies within the other.
+/// For every shape, whether its boundary may share faces with that of another: their boxes overlap, and
+/// neither lies within the other.
 pub fn touching(geometry: &Geometry, surfaces: &[Surface]) -> Vec<bool> {
     let bounding: Vec<usize> = (0..surfaces.len()).filter(|i| surfaces[*i].boundary.is_known()).collect();
     let boxes: Vec<(Vec3, Vec3)> = bounding.iter().map(|i| geometry.shapes()[*i].bounds()).collect();

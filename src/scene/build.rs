@@ -42,7 +42,7 @@ pub struct Setup {
     pub film: Film,
     /// Which integrator, how deep.
     pub integrator: Integrator,
-    /// Samples per pixel asked for by the sampler.
+    /// Samples per pixel that the sampler requests.
     pub samples_per_pixel: u64,
     /// How the sampler spreads random numbers.
     pub sampler: Sampler,
@@ -131,7 +131,7 @@ fn name_of(object: &Object) -> String {
 struct Placed<'a> {
     emitter: Emitter,
     shape: Option<u32>,
-    /// The medium that the file says it stands in.
+    /// The medium that the file says it is in.
     stated: Option<MediumIndex>,
     location: &'a Location,
 }
@@ -284,7 +284,7 @@ impl<'a> Builder<'a> {
         Ok(index)
     }
 
-    /// The medium that a camera or emitter says it stands in.
+    /// The medium that a camera or emitter says it is in.
     fn stated_medium(&mut self, params: &Params<'a>) -> Result<Option<MediumIndex>> {
         match params.children(|child| medium::ROWS.has(child.object))?.as_slice() {
             [] => Ok(None),
@@ -384,7 +384,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Camera and emitters at points whose medium the file states; the camera stands at `start`.
+    /// Camera and emitters at points whose medium the file states; the camera is at `start`.
     fn stated_points(&self, start: Vec3, medium: Option<MediumIndex>) -> Vec<(Vec3, MediumIndex)> {
         let emitters = self.emitters.iter().filter_map(|placed| {
             Some(((placed.emitter.position()? - self.recentre).as_vec3(), placed.stated?))

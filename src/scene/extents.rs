@@ -15,7 +15,7 @@ const MARGIN: f32 = 1e-3;
 pub struct Extents<'a> {
     /// All shapes.
     pub geometry: &'a Geometry,
-    /// What they are made of.
+    /// Their properties.
     pub surfaces: &'a [Surface],
     /// A point that the scene's own box holds: the camera.
     pub viewpoint: Vec3,

@@ -1,8 +1,9 @@
 //! Which medium a point lies in, where nothing states it: the camera, emitters, infinity.
 //!
 //! Evidence flows along unblocked segments from where the medium is known: the sides of boundaries, a camera or emitters
-//! that state theirs. From a point rays are aimed at these, and go on from walls that say nothing: whatever is connected by
-//! free segments lies in one medium. A guess (nothing unblocked was found) is weaker, and whoever asks must warn of it.
+//! that state theirs. From a point, rays are aimed at these, and go on from walls that say nothing: all
+//! points connected by unblocked segments lie in one medium. A guess (nothing unblocked was found) is weaker,
+//! and the caller must warn about it.
 
 use super::{
     Surface,
@@ -189,7 +190,7 @@ pub struct Located {
 pub struct Locator<'a> {
     /// All shapes.
     pub geometry: &'a Geometry,
-    /// What they are made of.
+    /// Their properties.
     pub surfaces: &'a [Surface],
     /// What is known.
     pub known: &'a Known,
@@ -231,7 +232,7 @@ impl Known {
     }
 }
 
-/// The one medium that is stated, be it by a vacuum left unstated; none where there are several.
+/// The one medium that is stated, a vacuum left unstated included; none where there are several.
 fn only_medium(
     surfaces: &[Surface],
     points: &[(Vec3, MediumIndex)],
@@ -283,7 +284,7 @@ impl Locator<'_> {
         }
     }
 
-    /// Follows a ray in `medium` and on from walls, until it meets a boundary or nothing.
+    /// Follows a ray in `medium` and on from walls, until it hits a boundary or nothing.
     fn follow(
         &self,
         mut origin: Vec3,

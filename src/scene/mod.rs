@@ -24,7 +24,7 @@ use lights::Lights;
 pub use locate::Infinity;
 use locate::{Known, Locator};
 
-/// What a shape is made of.
+/// The properties of a shape: its BSDF, emitter and media.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
     /// Index of its BSDF.
@@ -66,7 +66,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// What the surface of `shape` is made of.
+    /// The properties of the surface of `shape`.
     #[inline]
     pub fn surface(&self, shape: u32) -> &Surface {
         &self.surfaces[shape as usize]
@@ -85,8 +85,8 @@ impl Scene {
     }
 
     /// The medium that `ray` is in, which has passed `point` from within `medium`. Where two boundaries share a
-    /// face, a ray meets only one of the two, and which one is chance; what it is in now, the next one says. Opaque
-    /// surfaces are passed where they are hidden, as if they were not there.
+    /// face, a ray hits only one of the two, and which one is chance; the next boundary says which medium the
+    /// ray is in now. Opaque surfaces are passed where they are hidden, as if they were not there.
     #[inline]
     pub fn medium_beyond(&self, point: &SurfacePoint, ray: &Ray, medium: MediumIndex) -> MediumIndex {
         let Surface { touching, transmits, .. } = *self.surface(point.shape);
@@ -116,7 +116,7 @@ impl Scene {
         self.locator().along(origin, direction).unwrap_or(light.medium)
     }
 
-    /// True if `position` lies in `medium`, as far as a ray from there towards `direction` can tell.
+    /// True if `position` lies in `medium`, as far as a ray from there towards `direction` can show.
     pub fn is_within(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> bool {
         self.locator().along(position, direction).unwrap_or(self.outside) == medium
     }

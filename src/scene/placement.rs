@@ -27,7 +27,7 @@ pub struct Names<'a> {
     pub ids: &'a [Option<String>],
     /// The same of each shape.
     pub shapes: &'a [String],
-    /// Where each shape stands in the file.
+    /// Where each shape is in the file.
     pub locations: &'a [Location],
     /// Origin of all positions in the file's coordinates [m].
     pub recentre: DVec3,
@@ -59,7 +59,7 @@ impl Names<'_> {
         }
     }
 
-    /// Says what `located` is if not certain; `what` stands at `location`.
+    /// Says what `located` is if not certain; `what` is at `location`.
     fn warn(&self, located: Located, what: &str, location: &Location) {
         let (medium, line) = (self.medium(located.medium), self.line(located.medium, location));
         let text = match located.certainty {
@@ -202,7 +202,7 @@ impl Placement<'_> {
             self.in_front_of(&point, &mut stream)
         });
         let first = located.next().unwrap_or_else(|| self.assumed());
-        // Where all that can be said is one medium, no other points have to be asked.
+        // Where only one medium is possible, no other points have to be located.
         if self.locator.known.is_uniform() || self.is_stated(shape) {
             return (first.medium, false);
         }

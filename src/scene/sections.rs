@@ -74,15 +74,15 @@ impl<'a> Sections<'a> {
         Ok(Self { integrator, sensor, shapes, emitters, time })
     }
 
-    /// Where the camera stands, in the file's coordinates: it becomes the origin, so that f32 geometry is most
+    /// The camera's position in the file's coordinates: it becomes the origin, so that f32 geometry is most
     /// precise where it is seen from nearest, however far from the file's origin that is.
     pub fn viewpoint(&self, library: &Library) -> Result<DVec3> {
         sensor::viewpoint(self.sensor, library)
     }
 }
 
-/// A definition is built even if nothing refers to it, so that a mistake in it is told. Where it would stand is of no
-/// matter to whether it can be built.
+/// A definition is built even if nothing refers to it, so that a mistake in it is reported. Its position does
+/// not matter to whether it can be built.
 fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()> {
     let place = Place { recentre: DVec3::ZERO, time };
     if bsdf::ROWS.has(object) {
@@ -98,7 +98,7 @@ fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()>
     }
 }
 
-/// A plugin that nobody knows, that a scene does not hold, or a sensor that only Mitsuba has.
+/// A plugin that does not exist, that a scene cannot hold, or a sensor that only Mitsuba has.
 fn misplaced(child: &Child<'_>) -> Error {
     let plugin = &child.object.plugin;
     let tags = tags::of_plugin(plugin);

@@ -7,8 +7,8 @@ use super::{
 use crate::{emitter::Kind, error::Result};
 
 impl Scene {
-    /// Moves the scene to `time` [s]; false where nothing in it depends on time. Media that change are looked at
-    /// again, and so is where light starts, for how far they reach and how they shine may have changed.
+    /// Moves the scene to `time` [s]; false where nothing in it depends on time. Media that change are
+    /// examined again, and so are the emitters, as the extent and the emission of media may have changed.
     pub fn set_time(&mut self, time: f64) -> Result<bool> {
         let mut changed = false;
         for medium in &mut self.media {

@@ -1,5 +1,5 @@
-//! The cache of light subpaths that the camera subpaths of a block are joined with: joining every camera
-//! vertex with a fixed number of its vertices, drawn uniformly, bounds the cost of a pixel sample linearly in
+//! The cache of light subpaths that the camera subpaths of a block are connected to: connecting every camera
+//! vertex to a fixed number of its vertices, drawn uniformly, bounds the cost of a pixel sample linearly in
 //! its length.
 
 use super::{mis::MisSums, vertex::Vertex};
@@ -35,7 +35,7 @@ impl<S: MisSums> LightCache<S> {
     }
 
     /// The vertices for camera subpaths of `hero`, and the factor that makes `connections` uniform draws from them an
-    /// estimate of the sum over all vertices of one light subpath: vertices / (joins x walks).
+    /// estimate of the sum over all vertices of one light subpath: vertices / (connections x walks).
     #[inline]
     pub fn pool(&self, hero: usize, connections: u32) -> Option<(&[Vertex<S>], f32)> {
         let pool = &self.pools[hero];

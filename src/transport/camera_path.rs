@@ -1,5 +1,5 @@
-//! The camera subpath's side: emitters met and media passed that shine (s = 0), next-event estimation (s =
-//! 1), joins with light subpaths (s >= 2).
+//! The camera subpath's side: emitters hit and emissive media crossed (s = 0), next-event estimation (s = 1),
+//! connections to light subpaths (s >= 2).
 
 use super::{
     Estimator,
@@ -31,7 +31,7 @@ pub struct CameraPath<'a, P: Profile, R> {
     observer: R,
 }
 
-/// One camera subpath through `film` [pixels] and a point of the aperture, joined with the light subpaths of
+/// One camera subpath through `film` [pixels] and a point of the aperture, connected to the light subpaths of
 /// `cache`; its radiance goes to `observer`.
 pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     estimator: &Estimator<'_, P>,
@@ -49,8 +49,8 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     camera.observer
 }
 
-/// Leaves the sensor through a film position and a point of its aperture. Nothing can join before the sensor:
-/// its sums are zero.
+/// Leaves the sensor through a film position and a point of its aperture. No strategy connects before the
+/// sensor: its sums are zero.
 #[inline]
 pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Vec2) -> Departure<P::MisSums> {
     let sensor = &estimator.scene.sensor;
@@ -171,8 +171,9 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         self.emission(subpath, || lights.surface_hit(geometry, light, point, previous));
     }
 
-    /// s = 0 in a medium: of all points of a flight one is taken, by where it may shine most. That a flight comes as far
-    /// as a point as often as radiance does is what makes up for the transmittance up to there.
+    /// s = 0 in a medium: one point of each flight is sampled, in proportion to a bound on the emission. A
+    /// flight reaches a point with the probability that radiance from there reaches the start, so the
+    /// transmittance up to the point cancels.
     #[inline]
     fn medium_emission(
         &mut self,
@@ -225,9 +226,9 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         if counts.emitter_hit <= 0.0 || (subpath.edges == 1 && hidden) {
             return None;
         }
-        // Both ends of the segment before must be able to join; across it joins s = 1, which from the sensor is
-        // a light subpath's first vertex and from anywhere else next-event estimation. Parallel rays meet what is
-        // at infinity in one direction, which no light subpath starts in.
+        // Both ends of the segment before must be connectible; s = 1 connects across it, which from the
+        // sensor is a light subpath's first vertex and from anywhere else next-event estimation. Parallel
+        // rays reach what is at infinity in one direction, in which no light subpath starts.
         let unseen = P::INFINITE && sample.point.is_infinite() && self.estimator.scene.sensor.is_parallel();
         let connections = match (subpath.after_dirac, subpath.edges) {
             (true, _) => 0.0,

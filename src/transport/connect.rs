@@ -1,5 +1,5 @@
-//! Joins: the segment between the end of a camera subpath and the end of a light subpath, with contribution
-//! (LW96 eq. 10) and weight (eq. 14).
+//! Connections: the segment between the end of a camera subpath and the end of a light subpath, with
+//! contribution (LW96 eq. 10) and weight (eq. 14).
 
 use super::{
     mis::{self, End, MisSums, Strategy},
@@ -78,7 +78,8 @@ pub fn emitter_end<P: Profile>(
     }
 }
 
-/// What stands for sigma_t at an emitter's point: how often emission is met in a medium, 1 elsewhere.
+/// What replaces sigma_t at an emitter's point: the rate at which emission is sampled in a medium, 1
+/// elsewhere.
 #[inline]
 pub fn rate_at<P: Profile>(point: &EmitterPoint) -> P::Channels {
     match point {
@@ -96,14 +97,14 @@ fn lift(point: &EmitterPoint, towards: Vec3) -> Vec3 {
     }
 }
 
-/// What a strategy brings for one path.
+/// The contribution of a strategy to one path.
 #[derive(Clone, Copy, Debug)]
 pub struct Contribution {
     /// The weighted contribution, of which the caller takes as many samples as it has.
     pub value: Spectrum,
     /// The weight in it, times the number of channels.
     pub weight: f32,
-    /// What the strategy would bring if it ran alone: [`Self::share`] of it is `value`.
+    /// What the strategy would contribute if it ran alone: [`Self::share`] of it is `value`.
     pub alone: Spectrum,
     /// The weight that it would then have.
     pub weight_alone: f32,
@@ -144,12 +145,12 @@ pub struct Span {
     pub cut: f32,
     /// Squared distance of the ends; 1 where one is at infinity.
     pub distance_squared: f32,
-    /// Emitters do not stand in the way.
+    /// Emitters do not block the connection.
     pub hidden: bool,
 }
 
-/// Joins `a` and `b` by `strategy`; none where the way is blocked, which emitters
-/// that are `hidden` do not. The caller divides by the number of samples it took.
+/// Connects `a` and `b` by `strategy`; none where the segment is blocked; emitters that are `hidden` do not
+/// block it. The caller divides by the number of samples it took.
 #[inline(always)]
 pub fn connect<P: Profile>(
     scene: &Scene,

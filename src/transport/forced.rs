@@ -2,10 +2,10 @@
 //! and one from what lies behind. Thin media are seen by every sample, not by the few that chance has collide.
 //!
 //! Forcing makes collisions in thin media denser by 1 / (1 - T), T the transmittance of all media that the ray crosses.
-//! The balance heuristic is told: that factor multiplies the density of every strategy that makes the first segment from
-//! the eye, which all but the lens joins do. It depends on the primary ray alone, so that it is the same function of
-//! the path in every strategy, and the weights sum to one. On surfaces and where media emit the factor is left at 1:
-//! the weights there are not the best, but right.
+//! The balance heuristic accounts for it: that factor multiplies the density of every strategy that samples
+//! the first segment from the camera, as all but the connections to the lens do. It depends on the primary
+//! ray alone, so that it is the same function of the path in every strategy, and the weights sum to one. On
+//! surfaces and where media emit the factor is left at 1: the weights there are not the best, but right.
 
 use super::{
     Estimator,

@@ -1,4 +1,5 @@
-//! The light subpath's side: vertices joined to the lens (t = 1) and kept for joins with camera subpaths.
+//! The light subpath's side: vertices connected to the lens (t = 1) and kept for connections to camera
+//! subpaths.
 
 use super::{
     Estimator,
@@ -33,7 +34,7 @@ pub struct LightPath<'a, P: Profile, R> {
     hero: usize,
 }
 
-/// One light subpath: its vertices go to `cache`, its joins with the lens to `observer`.
+/// One light subpath: its vertices go to `cache`, its connections to the lens to `observer`.
 pub fn trace<P: Profile>(
     estimator: &Estimator<'_, P>,
     cache: &mut LightCache<P::MisSums>,
@@ -69,7 +70,7 @@ pub fn begin<P: Profile>(scene: &Scene, stream: &mut Stream) -> Option<EmissionS
     (!astray).then_some(start)
 }
 
-/// Leaves the emitter. Before it only a camera subpath that meets it can join.
+/// Leaves the emitter. Before it there is only the camera subpath that hits it.
 pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) -> Departure<P::MisSums> {
     let scene = estimator.scene;
     let emitter = &scene.lights.all[start.light as usize].emitter;

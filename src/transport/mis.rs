@@ -42,7 +42,7 @@ pub struct End<S: MisSums> {
     pub cosine: f32,
     /// 1/p>^h of this vertex.
     pub inv_pdf: f32,
-    /// sigma_t per channel in a medium, [`crate::medium::Emission::rate`] where that shines, 1 elsewhere.
+    /// sigma_t per channel in a medium, [`crate::medium::Emission::rate`] where that emits, 1 elsewhere.
     pub sigma_t: S::Channels,
     /// See [`super::vertex::Vertex::pdf_over_hero`].
     pub pdf_over_hero: S::Channels,

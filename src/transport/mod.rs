@@ -31,7 +31,7 @@
 //! ```
 //! | s, t | what happens | where |
 //! |---|---|---|
-//! | s = 0 | the camera subpath meets an emitter | [`camera_path::Eye::emitter_hit`] |
+//! | s = 0 | the camera subpath hits an emitter | [`camera_path::Eye::emitter_hit`] |
 //! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`camera_path::Eye::join_emitter`] |
 //! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache | [`camera_path::Eye::connect_with`] |
 //! | s >= 1, t = 1 | the light subpath is seen by the lens, through any pixel | [`light_path::Light::connect_to_lens`] |
@@ -54,7 +54,7 @@
 //! | LW96 eq. 13, density of a vertex | [`walk::arrive`] |
 //! | LW96 eq. 14, the weight | [`mis::connection_weight`], [`mis::emitter_hit_weight`], [`mis::Balance`] |
 //! | LW96 sec. 5, media that vary | [`crate::medium::distance`] |
-//! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], met in [`camera_path::Eye::meet`] |
+//! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], sampled in [`camera_path::Eye::meet`] |
 //! | P03T eq. 2.9, media that only absorb | [`crate::medium::MediumOverrides`] |
 //! | P03T sec. A.2.2, forced interactions | [`forced::sample`], [`segment::force`] |
 //! | BMA02 eq. 5 and 6, the fog blend | `render::fog` |
@@ -118,7 +118,7 @@ pub struct Estimator<'a, P: Profile> {
     counts: Counts,
     heuristic: Heuristic,
     connections_per_vertex: u32,
-    /// Probability that a light vertex is kept for joins.
+    /// Probability that a light vertex is kept for connections.
     keep: f32,
     max_edges: u32,
     hide_emitters: bool,
@@ -191,7 +191,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
         self.connections_per_vertex > 0 || self.counts.lens > 0.0
     }
 
-    /// Traces one light subpath of channel `hero` into `cache`; what it brings goes to `observer`.
+    /// Traces one light subpath of channel `hero` into `cache`; what it contributes goes to `observer`.
     pub fn trace_light(
         &self,
         cache: &mut LightCache<P::MisSums>,
@@ -210,9 +210,8 @@ impl<'a, P: Profile> Estimator<'a, P> {
         passed.map_or(Spectrum::ZERO, |passed| passed.transmittance)
     }
 
-    /// One camera subpath of channel `hero` through `film` [pixels] and a point of the aperture; what it brings
-    /// goes to
-    /// `observer`.
+    /// One camera subpath of channel `hero` through `film` [pixels] and a point of the aperture; what it
+    /// contributes goes to `observer`.
     pub fn sample_pixel<R: Observer<P::MisSums>>(
         &self,
         cache: &LightCache<P::MisSums>,

@@ -17,13 +17,13 @@ use crate::{
 /// The kinds of strategies, as [`super::Strategies`] switches them on and off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StrategyKind {
-    /// s = 0: camera subpaths meet emitters.
+    /// s = 0: camera subpaths hit emitters.
     EmitterHit,
     /// s = 1, t >= 2: next-event estimation.
     NextEvent,
     /// s >= 2, t >= 2: connections of camera and light subpaths.
     Connection,
-    /// t = 1: light subpaths join the lens.
+    /// t = 1: light subpaths connect to the lens.
     Lens,
 }
 
@@ -79,7 +79,7 @@ impl Strategies {
     }
 }
 
-/// What the last vertex of one walk was joined with.
+/// What the last vertex of one walk was connected to.
 #[derive(Clone, Copy, Debug)]
 pub enum Meeting<'a, S: MisSums> {
     /// s = 0: the camera subpath came to this point of an emitter.
@@ -92,10 +92,10 @@ pub enum Meeting<'a, S: MisSums> {
     Lens(Vec2),
 }
 
-/// Sees the walks of one pixel sample, or those of light, and whatever they bring.
+/// Sees the walks of one pixel sample, or those of light, and all that they contribute.
 pub trait Observer<S: MisSums> {
-    /// The strategy of `s` light and `t` camera vertices, the lens among these, brings a path; none where the way is
-    /// blocked or nothing scatters along it. The sum over all of the values is the estimate.
+    /// The strategy of `s` light and `t` camera vertices, the lens among these, contributes a path; none
+    /// where it is blocked or nothing scatters along it. The sum of all values is the estimate.
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>);
 
     /// True if a contribution at `film` [pixels] can count.
@@ -108,7 +108,7 @@ pub trait Observer<S: MisSums> {
     #[inline]
     fn start(&mut self) {}
 
-    /// ... to here, whatever it brought: the strategy of `s` light and `t` camera vertices.
+    /// ... to here, whatever it contributed: the strategy of `s` light and `t` camera vertices.
     #[inline]
     fn stop(&mut self, _s: u32, _t: u32) {}
 

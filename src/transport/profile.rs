@@ -23,7 +23,7 @@ pub trait Profile: MediaProfile {
     const NULLS: bool;
     /// Some emitter is at infinity, or the sensor is: its rays are parallel.
     const INFINITE: bool;
-    /// Some medium shines.
+    /// Some medium emits light.
     const EMISSIVE: bool;
     /// Name in scene files and on the command line.
     const NAME: &'static str;
@@ -121,7 +121,7 @@ pub struct Needs {
     pub nulls: bool,
     /// Some emitter is at infinity, or the sensor is.
     pub infinite: bool,
-    /// Some medium shines.
+    /// Some medium emits light.
     pub emissive: bool,
 }
 
@@ -176,8 +176,9 @@ impl ProfileName {
         }
     }
 
-    /// The profile that runs where this one and `heuristic` are asked for: only the balance heuristic is compiled for
-    /// all of them. Who compares run times of heuristics runs the balance heuristic on the others' profile too.
+    /// The profile that runs where this one and `heuristic` are requested: only the balance heuristic is compiled for
+    /// all of them. To compare run times of heuristics, run the balance heuristic on the profile of the
+    /// others too.
     pub fn weighing(self, heuristic: Heuristic) -> Self {
         if heuristic == Heuristic::Balance { self } else { Self::Everything }
     }

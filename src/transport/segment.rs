@@ -31,7 +31,7 @@ pub struct Segment<'a> {
     /// through a homogeneous medium there. In media whose mean free path is some hundreds of rounding errors, light
     /// would otherwise always start too deep.
     skipped: f32,
-    /// Emitters do not stand in the way: before a camera that does not see them.
+    /// Emitters do not block the segment: it leads to a camera that does not see them.
     hidden: bool,
 }
 
@@ -161,8 +161,8 @@ mod tests {
         transport::{profile::Bounded, tests::scenes},
     };
 
-    /// A cube of the mean free path 1e-6, its face one metre from the camera, which is the origin: 16 steps of what
-    /// single precision can tell there.
+    /// A cube of the mean free path 1e-6, its face one metre from the camera, which is the origin: 16 steps
+    /// of what single precision can resolve there.
     fn dense() -> Setup {
         let sensor = r#""sensor": {"type": "perspective", "near_clip": 1e-3, "to_world":
             [{"type": "lookat", "origin": [0, 0, 2], "target": [0, 0, 0], "up": [0, 1, 0]}]}"#;

@@ -14,7 +14,8 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub struct Scattering {
     /// The factor of the path's contribution (LW96 eq. 10, g without the other vertex's cosine): albedo x phase
-    /// in a medium (sigma_t stands with the flight), BSDF x cosine on a surface, shading normals accounted for.
+    /// in a medium (sigma_t is a factor of the flight), BSDF x cosine on a surface, shading normals accounted
+    /// for.
     pub value: Spectrum,
     /// Density of the outgoing direction given the incoming one, survival included [1/sr].
     pub pdf_fwd: f32,
@@ -60,7 +61,7 @@ pub struct Subpath<S: MisSums> {
 pub struct Vertex<S: MisSums> {
     /// Surface or medium.
     pub interaction: Interaction,
-    /// n_i: expected samples of the strategy that joins across the segment before; 0 where none can.
+    /// n_i: expected samples of the strategy that connects across the segment before; 0 where none can.
     pub connections: f32,
     /// How the walk came here.
     pub subpath: Subpath<S>,

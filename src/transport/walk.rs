@@ -30,7 +30,7 @@ pub struct Departure<S: MisSums> {
     pub from_infinity: bool,
     /// Segments so far.
     pub edges: u32,
-    /// True where emitters do not stand in the way: before a camera that does not see them.
+    /// True where emitters do not block: before a camera that does not see them.
     pub hidden: bool,
     /// True if the direction was sampled by a Dirac lobe.
     pub dirac: bool,
@@ -54,8 +54,8 @@ impl<S: MisSums> Departure<S> {
 
 /// What happens at the vertices of a walk.
 pub trait Visitor<P: Profile> {
-    /// n of the strategy that joins across the segment to the vertex at `position`, `edges` segments from the
-    /// start.
+    /// n of the strategy that connects across the segment to the vertex at `position`, `edges` segments from
+    /// the start.
     fn connections(&self, edges: u32, position: Vec3) -> f32;
 
     /// The walk sets out for the next vertex.

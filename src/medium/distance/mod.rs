@@ -23,7 +23,7 @@ use crate::{
 pub struct DistanceSample<L> {
     /// Where it collided [m]; none where it passed the segment.
     pub collision: Option<f32>,
-    /// Deterministic optical depth up to there: what the weights know (the stand-in where transmittance is random).
+    /// Deterministic optical depth up to there: what the weights use (the stand-in where transmittance is random).
     pub depth: L,
     /// Transmittance of every channel over the hero's, and the hero's sigma_t over that by which the collision was
     /// sampled, were it only in the mean: with sigma_t at the collision over the hero's, the factor of the throughput.
@@ -154,7 +154,7 @@ impl DistanceSampler {
     }
 
     /// The optical depth along `segment`, whose [`Self::depth`] is `depth`, by which forced collisions are drawn: the
-    /// `hero` channel's, or what stands in for it where it is not known.
+    /// `hero` channel's, or the stand-in where it is not known.
     pub fn forced_depth<L: Channels>(
         &self,
         medium: &Extinction,

@@ -18,14 +18,14 @@ const ROULETTE: f32 = 0.05;
 /// that none do, and a density of 0 in their weights would lose them.
 const DEEPEST: f32 = 30.0;
 
-/// The deterministic depth that stands in for the medium's own.
+/// The deterministic depth that replaces the medium's own.
 #[inline]
 pub fn stand_in<L: Channels>(medium: &Extinction, coarse: &Coarse, segment: &RaySegment) -> L {
     coarse.integral::<L>(segment).scaled(medium.scale).at_most(DEEPEST)
 }
 
-/// Tentative collisions along `segment`, at the rate of the local majorants: `visit` is given t and the majorant
-/// [1/m], and tells whether to go on.
+/// Tentative collisions along `segment`, at the rate of the local majorants: `visit` is given t and the
+/// majorant [1/m], and returns whether to go on.
 #[inline]
 fn collisions(
     medium: &Extinction,

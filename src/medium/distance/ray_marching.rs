@@ -1,9 +1,9 @@
 //! Ray marching (LW96 sec. 5): the way through the medium is cut into intervals, each taken for homogeneous.
 //!
 //! The cuts divide the whole chord of the line through the medium's box, wherever a walk on it starts or ends: both
-//! directions of a segment see the same intervals, so that T(x, y) = T(y, x), and a flight is sampled from the same
-//! depths that joins are given. What is biased is the transmittance alone: at vertices the medium has its own
-//! coefficients.
+//! directions of a segment see the same intervals, so that T(x, y) = T(y, x), and a flight is sampled from
+//! the same depths that connections use. What is biased is the transmittance alone: at vertices the medium
+//! has its own coefficients.
 
 use super::{DistanceSample, Extinction};
 use crate::math::{Channels, RaySegment, Vec3, boxes};
@@ -15,7 +15,7 @@ pub struct RayMarching {
     pub step: f32,
 }
 
-/// The intervals that a segment meets.
+/// The intervals that a segment crosses.
 struct Intervals {
     /// t where the chord begins, possibly behind the segment's origin.
     start: f32,

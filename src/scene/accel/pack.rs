@@ -87,7 +87,7 @@ impl FlatPack {
         self.primitive[lane] = number;
     }
 
-    /// Plane first, then (u, v) of the point where the ray meets it: both relative to the corner, so that
+    /// Plane first, then (u, v) of the point where the ray hits it: both relative to the corner, so that
     /// nothing cancels near the primitive however far it is from the origin of space.
     #[inline(always)]
     fn test(&self, ray: &WideRay, t_max: f32) -> Found {

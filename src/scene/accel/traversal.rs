@@ -14,7 +14,7 @@ use glam::Vec4;
 struct Slabs {
     origin: [Vec4; 3],
     inverse: [Vec4; 3],
-    /// Per axis: which of a box's two planes the ray meets first.
+    /// Per axis: which of a box's two planes the ray crosses first.
     first: [usize; 3],
 }
 
@@ -30,7 +30,7 @@ impl Slabs {
         }
     }
 
-    /// Which boxes the ray meets before `t_max` (a bit each), and where it enters them.
+    /// Which boxes the ray hits before `t_max` (a bit each), and where it enters them.
     #[inline(always)]
     fn enter(&self, node: &Node, t_max: f32) -> (u32, Vec4) {
         let (mut near, mut far) = (Vec4::ZERO, Vec4::INFINITY);
@@ -139,7 +139,7 @@ impl Tree {
             || self.curved.iter().any(|curved| curved.closest(ray, ray.t_max).is_some())
     }
 
-    /// What `index` of a reference to a [`ROUND`] stands for, in a tree with `CURVED` primitives or without.
+    /// What `index` of a reference to a [`ROUND`] refers to, in a tree with `CURVED` primitives or without.
     #[inline(always)]
     fn closest_of_round<const CURVED: bool>(&self, index: usize, ray: &Ray, t_max: f32) -> Option<Hit> {
         if CURVED && index & BEYOND as usize != 0 {
@@ -174,7 +174,7 @@ impl Tree {
         }
     }
 
-    /// Puts the children that the ray meets on the stack, the nearest on top; returns its new height.
+    /// Puts the children that the ray hits on the stack, the nearest on top; returns its new height.
     #[inline(always)]
     fn open(&self, index: usize, slabs: &Slabs, t_max: f32, stack: &mut [Entry], base: usize) -> usize {
         let node = &self.nodes[index];

@@ -28,16 +28,16 @@ const LIST_LIMIT: usize = 12;
 pub const INNER: u32 = 0;
 /// A `FlatPack`.
 pub const FLATS: u32 = 1 << 30;
-/// A `Ball`; or, with [`BEYOND`], a `Curved`. No kind of its own: scenes without these rare ones shall not pay
-/// for asking.
+/// A `Ball`; or, with [`BEYOND`], a `Curved`. No kind of its own: scenes without these rare ones should not
+/// pay for the test.
 pub const ROUND: u32 = 2 << 30;
 /// Marks the index of a `Curved`.
 pub const BEYOND: u32 = 1 << 29;
 /// The bits of the kind.
 pub const KIND: u32 = 3 << 30;
 
-/// Added to the depth where there are curved primitives. Deeper than any tree, so that what is rare is asked
-/// for last.
+/// Added to the depth where there are curved primitives. Deeper than any tree, so that the rare ones are
+/// tested last.
 pub const RARE: usize = usize::MAX / 8;
 
 /// Four boxes and what is in them. Empty slots have empty boxes.
@@ -208,7 +208,7 @@ struct Widening<'a> {
 
 impl Widening<'_> {
     fn run(mut self) {
-        // Binary node, wide node that stands for it, depth.
+        // Binary node, wide node that replaces it, depth.
         let mut open = vec![(0, 0, 1)];
         self.tree.nodes.push(EMPTY);
         while let Some((binary, wide, depth)) = open.pop() {
@@ -244,7 +244,7 @@ impl Widening<'_> {
         found
     }
 
-    /// Makes room for what stands for `node`.
+    /// Makes room for what replaces `node`.
     fn reference(&mut self, node: usize) -> u32 {
         if !self.is_leaf(node) {
             self.tree.nodes.push(EMPTY);
@@ -284,7 +284,7 @@ impl Widening<'_> {
     }
 }
 
-/// No ray meets a box from infinity to -infinity.
+/// No ray hits a box from infinity to -infinity.
 const EMPTY: Node = Node { planes: [[Vec4::INFINITY; 3], [Vec4::NEG_INFINITY; 3]], child: [0; 4] };
 
 impl Node {

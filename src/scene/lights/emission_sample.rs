@@ -138,7 +138,7 @@ impl Lights {
         EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
     }
 
-    /// In the medium's box; whether it is in the medium, who knows its boundaries has to ask.
+    /// In the medium's box; whether it is in the medium is for the caller to check, who knows the boundaries.
     fn start_within(
         &self,
         index: usize,
@@ -177,7 +177,7 @@ impl Lights {
     }
 
     /// Next-event density over start density of the point a light subpath started from, as seen from its second
-    /// vertex: the ratio by which strategy s = 1 stands for s = 2 in the weights.
+    /// vertex: the ratio that turns the density of s = 2 into that of s = 1 in the weights.
     #[inline]
     pub fn connect_over_start(&self, geometry: &Geometry, start: &EmissionSample, reference: Vec3) -> f32 {
         let index = start.light as usize;

@@ -1,10 +1,10 @@
-//! All emitters of a scene: which one is chosen, where its light starts, how a point is joined to it.
+//! All emitters of a scene: which one is chosen, where its light starts, how a point is connected to it.
 //!
-//! Two densities stand for the same emitter point: that by which light subpaths begin there, and that by
+//! The same emitter point has two densities: that by which light subpaths begin there, and that by
 //! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
 //! emitter and are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle
-//! [1/sr] for emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for emissive media. What
-//! camera subpaths make of a point of those, and so the density of s = 0, see [`Emission::rate`].
+//! [1/sr] for emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for emissive media.
+//! For how camera subpaths sample a point of those, and so the density of s = 0, see [`Emission::rate`].
 
 mod emission_sample;
 mod emitter_sample;
@@ -31,7 +31,7 @@ use std::f32::consts::PI;
 pub struct Light {
     /// How it emits.
     pub emitter: Emitter,
-    /// Where it stands: a point, or nothing for shapes and emitters at infinity.
+    /// Its position: a point, or nothing for shapes and emitters at infinity.
     pub position: Vec3,
     /// The shape that emits.
     pub shape: Option<u32>,
@@ -48,8 +48,8 @@ pub struct Lights {
     pub all: Vec<Light>,
     /// By power: where light subpaths start.
     starts: Discrete,
-    /// Half by power, half uniform: which emitter a point is joined to. A distant strong emitter cannot keep
-    /// a near weak one from being found.
+    /// Half by power, half uniform: which emitter a point is connected to. A distant strong emitter cannot
+    /// keep a near weak one from being found.
     connections: Discrete,
     /// The emitter that each medium is.
     of_media: Vec<Option<u32>>,
@@ -110,7 +110,7 @@ impl Lights {
         self.all.iter().any(|light| light.emitter.is_infinite())
     }
 
-    /// True if some medium shines.
+    /// True if some medium emits light.
     pub fn has_media(&self) -> bool {
         !self.of_media.is_empty()
     }
@@ -130,7 +130,7 @@ impl Lights {
     }
 }
 
-/// The emitter of each medium, up to the last that shines.
+/// The emitter of each medium, up to the last that emits.
 fn of_media(all: &[Light]) -> Vec<Option<u32>> {
     let mut found = Vec::new();
     for (index, light) in all.iter().enumerate() {

@@ -8,7 +8,7 @@ use crate::{
 /// A point of an emitter.
 #[derive(Clone, Copy, Debug)]
 pub enum EmitterPoint {
-    /// Where a point light or a spotlight stands.
+    /// Position of a point light or a spotlight.
     Point(Vec3),
     /// A point on a shape that emits.
     Surface(SurfacePoint),
@@ -16,7 +16,7 @@ pub enum EmitterPoint {
     Volume {
         /// World position.
         position: Vec3,
-        /// How often camera subpaths meet emission there [1/m], see [`crate::medium::Emission::rate`].
+        /// Rate at which camera subpaths sample emission there [1/m], see [`crate::medium::Emission::rate`].
         rate: Spectrum,
     },
     /// The unit direction towards an emitter at infinity.

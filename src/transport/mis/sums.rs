@@ -4,8 +4,8 @@ use crate::{math::Channels, settings::heuristic::Heuristic};
 use std::fmt::Debug;
 
 /// n_j p_j^c of some strategies j and all channels c, in units of the density of the walk that carries them,
-/// as far as one heuristic needs to know them. Walks and joins only ever multiply all of them by what the
-/// next vertex completes, and add others: whatever can follow both has a fold in O(1) per vertex.
+/// as far as one heuristic needs to know them. Walks and connections only ever multiply all of them by what
+/// the next vertex completes, and add others: whatever can follow both has a fold in O(1) per vertex.
 ///
 /// Which heuristic it is is a matter of types: the balance heuristic does not know that there are others.
 pub trait MisSums: Copy + Send + Sync + Debug + 'static {

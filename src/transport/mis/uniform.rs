@@ -1,5 +1,5 @@
-//! The uniform heuristic: every strategy that can make a path gets the same part of it, be it as unlikely as it may.
-//! For comparison only: where joins are short its variance has no bound.
+//! The uniform heuristic: every strategy that can make a path gets the same weight, however unlikely it is to
+//! sample the path. For comparison only: where connections are short its variance has no bound.
 //!
 //! Channels are no strategies: the part of a strategy is divided among the heroes in proportion to their densities.
 //! A hero that has all but no chance to come along a path could not make up for a part that were due to it.

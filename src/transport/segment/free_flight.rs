@@ -15,7 +15,7 @@ use crate::{
 pub enum Interaction {
     /// A surface.
     Surface(SurfacePoint),
-    /// The medium, by a collision at this point, and what it is made of there.
+    /// The medium, by a collision at this point, and its properties there.
     Medium(Vec3, MediumProperties),
 }
 

@@ -25,7 +25,7 @@ use crate::{
 
 /// A path, and the weight that the fast code gave it.
 pub struct Case {
-    /// None where the reference cannot tell what lies along it.
+    /// None where the reference cannot determine what lies along it.
     pub path: Option<Path>,
     pub strategy: usize,
     pub hero: usize,
@@ -188,7 +188,7 @@ impl Cases<'_> {
     }
 }
 
-/// The vertices of a walk; `dirac` tells of the last one how it scatters.
+/// The vertices of a walk; `dirac` says how the last one scatters.
 fn chain<S: MisSums>(vertices: &[Vertex<S>], dirac: bool) -> Vec<Node> {
     let node = |(index, vertex): (usize, &Vertex<S>)| Node {
         place: match vertex.interaction {

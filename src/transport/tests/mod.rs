@@ -105,7 +105,7 @@ fn half_transparent_panes() {
     );
 }
 
-/// Camera subpaths meet their light and go on.
+/// Camera subpaths hit them and go on.
 #[test]
 fn emitters_that_light_passes() {
     examine_all::<Bounded>("null lamp", &build(&[FOG, INSIDE, ROOM, BALL, NULL_LAMP]), 400);
@@ -150,7 +150,7 @@ fn normals_that_are_not_the_surface_s() {
     examine_all::<Fog>("smooth mesh", &build(&[FOG, INSIDE, ROOM, BULB, SMOOTH]), 400);
 }
 
-/// Media whose extinction and albedo vary, by exact depths and by what stands in for random ones.
+/// Media whose extinction and albedo vary, by exact depths and by the stand-in for random ones.
 #[test]
 fn media_that_vary() {
     examine_all::<Smoke>("waves", &build(&[OUTSIDE, WAVES, GROUND, LAMP, BULB]), 600);

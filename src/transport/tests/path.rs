@@ -101,7 +101,7 @@ impl Node {
         }
     }
 
-    /// sigma_t of `channel` in a medium, what stands for it where that shines; 1 elsewhere.
+    /// sigma_t of `channel` in a medium, what replaces it where that emits; 1 elsewhere.
     pub fn sigma_t(&self, scene: &Scene, channel: usize) -> f64 {
         match self.place {
             Place::Volume(p) => f64::from(properties(scene, self.medium, p).sigma_t[channel]),
@@ -155,7 +155,7 @@ struct Way {
 }
 
 impl Path {
-    /// Finds the depths; none where something stands in the way.
+    /// Finds the depths; none where something blocks it.
     /// The lens does not see emitters that are `hidden`.
     pub fn through(scene: &Scene, hidden: bool, light: u32, nodes: Vec<Node>) -> Option<Self> {
         let way = |pair: &[Node]| Way::both(scene, hidden, &pair[1], &pair[0]);
@@ -270,12 +270,12 @@ const STEEPNESS: f64 = 6.0;
 /// Points of the quadrature of an optical depth.
 const POINTS: u32 = 4_000;
 
-/// What a medium is made of at `position`.
+/// The properties of a medium at `position`.
 pub fn properties(scene: &Scene, medium: MediumIndex, position: Vec3) -> MediumProperties {
     scene.media[medium.0 as usize].properties_at::<Everything>(position)
 }
 
-/// How often a camera subpath that passes `position` meets what the emitter `light` emits there [1/m].
+/// How often a camera subpath that passes `position` samples what the emitter `light` emits there [1/m].
 pub fn rate(scene: &Scene, light: u32, position: Vec3) -> Spectrum {
     match &scene.lights.all[light as usize].emitter.kind {
         Kind::Medium(glow) => glow.emission.rate(position),

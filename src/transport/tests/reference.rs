@@ -82,8 +82,8 @@ impl<'a> Reference<'a> {
         (0..path.nodes.len()).map(strategy).collect()
     }
 
-    /// Expected samples of strategy `s`; 0 where it cannot make this path, as it would have to join a vertex that
-    /// scatters by a Dirac lobe.
+    /// Expected samples of strategy `s`; 0 where it cannot make this path, as it would have to connect to a
+    /// vertex that scatters by a Dirac lobe.
     pub fn count(&self, path: &Path, s: usize) -> f64 {
         let (length, hittable) = (path.nodes.len(), self.emitter(path).is_hittable());
         let count = match s {
@@ -250,7 +250,7 @@ pub fn reflect(
     if !dirac {
         return survival * f64::from(bsdf.evaluate(point.uv, wi, wo, transport).pdf_fwd);
     }
-    // A surface has one Dirac lobe on each side at most; ask until the one on this side comes.
+    // A surface has one Dirac lobe on each side at most; sample until it is the one on this side.
     let mut stream = Stream::new(13, 0, 0, Purpose::Study);
     let lobe = (0..4_096)
         .filter_map(|_| bsdf.sample(point.uv, wi, transport, &mut stream))

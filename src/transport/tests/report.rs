@@ -67,20 +67,20 @@ fn describe(path: &Path) -> String {
 pub struct Report {
     name: &'static str,
     pub paths: usize,
-    /// By strategy: hit, next event, join, lens.
+    /// By strategy: emitter hit, next-event estimation, connection, lens.
     pub strategies: [usize; 4],
     vertices: usize,
     /// The longest path, in segments.
     pub longest: usize,
-    /// The greatest optical depth that was joined across.
+    /// The greatest optical depth that a connection crossed.
     pub deepest: f64,
     /// Paths held to `TOLERANCE` itself.
     exact: usize,
-    /// Paths that are free one way but blocked, by a hair, as the fast code joins them.
+    /// Paths that are free one way but blocked, by a hair, as the fast code connects them.
     blocked: usize,
-    /// Paths whose reference could not tell what lies along them.
+    /// Paths along which the reference could not determine what lies there.
     unclear: usize,
-    /// Paths some of whose strategies lie where the heuristic jumps, as near as f32 can tell: not compared.
+    /// Paths with strategies that lie, within the precision of f32, where the heuristic jumps: not compared.
     close: usize,
     /// Paths compared.
     pub compared: usize,

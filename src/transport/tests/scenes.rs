@@ -44,7 +44,7 @@ pub const YELLOW_FOG: &str = r#""fog": {"type": "homogeneous",
 
 pub const CLEAR: &str = r#""fog": {"type": "homogeneous", "sigma_t": 0.0}"#;
 
-/// Fog that shines where it absorbs, and little elsewhere.
+/// Fog that emits where it absorbs, and little elsewhere.
 pub const GLOWING_FOG: &str = r#""fog": {"type": "homogeneous", "sigma_t": 0.6, "albedo": 0.9,
     "radiance": {"type": "rgb", "value": [3, 2, 1]}, "phase": {"type": "hg", "g": 0.5}}"#;
 
@@ -108,7 +108,7 @@ pub const CHROMATIC_WAVES: &str = r#""smoke": {"type": "cube", "bsdf": {"type": 
     "sigma_t": {"type": "product", "a": {"type": "constvolume", "value": {"type": "rgb", "value": [0.1, 1, 6]}},
     "b": {"type": "cosine", "constant": 1, "a": {"type": "wave", "amplitude": 0.9, "vector": [3, 5, 1]}}}}}"#;
 
-/// The same by null collisions, whose weights know a stand-in.
+/// The same by null collisions, where the weights use a stand-in.
 pub const TRACKED_WAVES: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
     "interior": {"type": "heterogeneous", "albedo": 0.9, "tracker": "null_collision",
     "sigma_t": {"type": "product", "a": {"type": "constvolume", "value": {"type": "rgb", "value": [0.1, 1, 6]}},
@@ -250,7 +250,7 @@ pub const POINT: &str = r#""point": {"type": "point", "position": [-0.3, 0.8, -0
 pub const SPOT: &str = r#""spot": {"type": "spot", "cutoff_angle": 35, "intensity": 6,
     "to_world": [{"type": "lookat", "origin": [0.6, 0.9, -0.4], "target": [0, -0.5, 0], "up": [0, 0, 1]}]}"#;
 
-/// A ball that shines inwards and reflects little.
+/// A ball that emits inwards and reflects little.
 pub const HOLLOW: &str = r#""shell": {"type": "sphere", "flip_normals": true,
     "bsdf": {"type": "diffuse", "reflectance": 0.3}, "emitter": {"type": "area", "radiance": 1}}"#;
 

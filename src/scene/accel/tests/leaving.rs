@@ -133,7 +133,7 @@ fn a_box_of_separate_rectangles_holds_its_rays() {
     }
 }
 
-/// f64 recomputation: the point where the ray meets the exact f32 primitive.
+/// f64 recomputation: the point where the ray hits the exact f32 primitive.
 #[test]
 fn positions_are_within_their_error_bound() {
     for round in 0..600 {
