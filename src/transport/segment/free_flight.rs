@@ -214,6 +214,9 @@ fn fly_to_surface<P: Profile>(
     let interaction = match (sample.collision, hit) {
         (Some(t), _) => {
             interval.segment.length = t;
+            if P::EMISSIVE {
+                interval.skipped = medium.skipped_before::<P>(interval.skipped, hero, sample.spent);
+            }
             Some(collide::<P>(medium, &interval, hero, &mut state))
         }
         (None, Some(hit)) => Some(Interaction::Surface(segment.surface(&hit))),
