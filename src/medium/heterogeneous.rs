@@ -144,7 +144,7 @@ impl Heterogeneous {
         &self.tracker
     }
 
-    /// Its coefficients at a world position.
+    /// Its properties at a world position.
     #[inline]
     pub fn at<L: Channels>(&self, position: Vec3) -> MediumProperties {
         let sigma_t = self.extinction.at::<L>(position).to_spectrum();

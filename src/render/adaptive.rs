@@ -4,8 +4,8 @@
 //! biased for it. Hence two halves of independent passes: a pixel's mean over one half ends where the *other* half's
 //! samples say that the error is small enough, so that what ends it knows nothing of what it is the mean of.
 //!
-//! What light subpaths bring to the film is a mean over passes too, of every pixel at once: it ends for a
-//! half where the last pixel of the other half is content.
+//! What light subpaths contribute to the film is a mean over passes too, of every pixel at once: it ends for
+//! a half where the last pixel of the other half has converged.
 
 use super::{
     Progress,
@@ -18,8 +18,9 @@ use crate::math::{DVec3, Spectrum, spectrum::LUMINANCE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// What is asked of every pixel: that its value is off by less than `error`, relative to it or to a hundredth of the
-/// image's mean luminance, whichever is greater; in every channel, with probability `confidence`.
+/// The precision required of every pixel: that its value is off by less than `error`, relative to it or to a
+/// hundredth of the image's mean luminance, whichever is greater; in every channel, with probability
+/// `confidence`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
     /// In (0, 1].
@@ -64,11 +65,11 @@ struct Half {
     passes: u64,
     /// Sums over passes while a pixel is active.
     camera: Vec<DVec3>,
-    /// Of squares of what a pass brings, light subpaths included.
+    /// Of squares of what a pass contributes, light subpaths included.
     squares: Vec<DVec3>,
     /// Sums over all passes.
     light: Vec<DVec3>,
-    /// Squared relative error as this half's samples tell it, kept once it is small enough.
+    /// Squared relative error as this half's samples estimate it, kept once it is small enough.
     errors: Vec<f64>,
     /// The half is content with the pixel.
     content: Vec<bool>,
@@ -142,7 +143,7 @@ impl Half {
     fn judge_black(&mut self, limits: &Limits) {
         let is_black = |pixel: usize| self.squares[pixel] == DVec3::ZERO;
         let pixels = || 0..self.content.len();
-        // What has no variance, such as an emitter in view, does not tell that light was found elsewhere.
+        // What has no variance, such as an emitter in view, does not show that light was found elsewhere.
         let light_was_found = pixels().any(|pixel| !is_black(pixel) && self.errors[pixel] > 0.0);
         let waited = light_was_found || self.passes >= limits.passes_without_light;
         if waited && pixels().all(|pixel| is_black(pixel) || self.content[pixel]) {
@@ -163,7 +164,7 @@ impl Half {
         of(0).max(of(1)).max(of(2))
     }
 
-    /// Neighbours are asked as well: a few samples may all have missed what makes a pixel's variance.
+    /// Neighbours are checked as well: a few samples may all have missed what makes a pixel's variance.
     fn is_calm(&self, pixel: usize, width: usize, limits: &Limits) -> bool {
         self.squares[pixel] != DVec3::ZERO
             && self.errors[pixel].max(self.around(pixel, width)) <= limits.squared_error

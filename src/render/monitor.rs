@@ -1,4 +1,4 @@
-//! Who watches a render: told how far it is, and shown the image at wanted marks.
+//! Watches a render: receives its progress, and the image at requested marks.
 
 use super::Progress;
 use crate::math::Spectrum;
@@ -17,7 +17,7 @@ pub struct Snapshot {
 
 /// Marks at which the image is wanted, and who gets to know.
 pub(super) struct Monitor<'a> {
-    /// Told now and then.
+    /// Called now and then.
     pub progress: &'a mut dyn FnMut(Progress),
     /// Samples per pixel, in growing order.
     pub marks: &'a [u64],
