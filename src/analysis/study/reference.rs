@@ -1,4 +1,4 @@
-//! The image that stands for the truth: made in independent batches, so that its own error is known, or read.
+//! The reference image: made in independent batches, so that its own error is known, or read.
 
 use super::{
     contender::{Enter, Entry, How, Renderer},

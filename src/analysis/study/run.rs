@@ -20,7 +20,7 @@ use crate::{
 };
 use std::path::Path;
 
-/// What stands in the outcome besides what was found.
+/// What the outcome holds besides what was found.
 #[derive(Clone, Debug)]
 pub struct Signature {
     /// The command that makes the study again.

@@ -117,7 +117,7 @@ impl Strips {
 }
 
 impl Strips {
-    /// How many images stand side by side, the reference among them.
+    /// How many images are shown side by side, the reference among them.
     pub fn count(&self) -> usize {
         1 + self.levels.first().map_or(0, |strip| strip.shots.len())
     }
