@@ -65,7 +65,7 @@ impl Place {
 
 /// What every volume can do. Positions are world positions, recentred.
 pub trait VolumeModel {
-    /// The value at `position`, per channel. Who looks where the volume does not reach asks `contains` first.
+    /// The value at `position`, per channel. Where the volume may not reach, call `contains` first.
     fn eval<L: Channels>(&self, position: Vec3) -> L;
 
     /// Bounds of every channel within the box from `low` to `high`: conservative, and as narrow as is cheap.
