@@ -2,7 +2,8 @@
 //!
 //! A pixel that stops because its own samples look calm stops too soon where they happened to be low, and its mean is
 //! biased for it. Hence two halves of independent passes: a pixel's mean over one half ends where the *other* half's
-//! samples say that the error is small enough, so that what ends it knows nothing of what it is the mean of.
+//! samples say that the error is small enough, so that the decision to stop is independent of the samples
+//! that are averaged.
 //!
 //! What light subpaths contribute to the film is a mean over passes too, of every pixel at once: it ends for
 //! a half where the last pixel of the other half has converged.
@@ -50,9 +51,10 @@ pub(super) struct Developed {
     pub reached: Reached,
 }
 
-/// Passes of a half before it is first looked at: variances of fewer are too uncertain.
+/// Passes of a half before it is first examined: variances of fewer are too uncertain.
 const FIRST_LOOK: u64 = 16;
-/// Passes up to the next look over those up to the last: few looks, so that luck has few chances.
+/// Passes up to the next check over those up to the last: few checks, so that chance has few opportunities to
+/// stop early.
 const GROWTH: f64 = 1.25;
 /// Pixels darker than this part of the mean luminance need not be known relative to themselves.
 const FLOOR: f64 = 0.01;
@@ -117,7 +119,7 @@ impl Half {
         (mean, variance.max(DVec3::ZERO))
     }
 
-    /// Looks at the samples of the active pixels.
+    /// Examines the samples of the active pixels.
     fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
         if self.floor == 0.0 {
             let luminances = (0..self.camera.len()).map(|pixel| luminance(self.moments(pixel).0));
@@ -221,7 +223,7 @@ impl Limits {
         let Precision { error, confidence } = precision;
         let tail = 0.5 * (1.0 - confidence);
         let t = StudentsT::new(0.0, 1.0, (passes - 1) as f64).map_or(f64::INFINITY, |t| -t.inverse_cdf(tail));
-        // With this many passes, light that comes in more than a thousandth of all samples of every pixel alike has shown
+        // With this many passes, light that comes in more than a thousandth of all samples of every pixel has shown
         // itself somewhere with probability `confidence`, were there but one pixel.
         let unseen = (1.0 - confidence).ln() / (-RAREST).ln_1p();
         Self { squared_error: (error / t).powi(2), passes_without_light: unseen.ceil() as u64 }
@@ -309,7 +311,7 @@ impl<'a> Adaptive<'a> {
     /// Ends what can be ended.
     fn look(&mut self) {
         let [first, second] = self.halves.each_ref().map(|half| half.passes);
-        // Where the budget ended between the halves they are not alike; this look is the last one then.
+        // Where the budget ended between the halves they are not equal; this check is the last one then.
         let passes = first.min(second);
         if passes < 2 {
             return;

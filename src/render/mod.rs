@@ -1,7 +1,7 @@
 //! Rendering: passes over blocks of pixels on all threads, until a sample or time budget is spent.
 //!
 //! Results depend on the seed alone: every walk draws from its own stream, blocks are fixed sets of pixels, and
-//! their results are added up in block order whatever thread made them.
+//! their results are added up in block order, whichever thread made them.
 
 pub mod adaptive;
 mod batches;

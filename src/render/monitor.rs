@@ -15,7 +15,7 @@ pub struct Snapshot {
     pub elapsed: Duration,
 }
 
-/// Marks at which the image is wanted, and who gets to know.
+/// Marks at which the image is requested, and who receives it.
 pub(super) struct Monitor<'a> {
     /// Called now and then.
     pub progress: &'a mut dyn FnMut(Progress),
@@ -56,7 +56,7 @@ impl Stopwatch {
         self.started.elapsed().saturating_sub(self.held)
     }
 
-    /// Does something whose time does not count.
+    /// Does something; its time does not count.
     pub fn hold(&mut self, work: impl FnOnce()) {
         let started = Instant::now();
         work();

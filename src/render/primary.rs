@@ -112,8 +112,8 @@ impl<'a> View<'a> {
         Self { scene, bench, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }
     }
 
-    /// The chance that the ray interacts with something or meets a visible environment: what Mitsuba's
-    /// `volpath` finds out by walking on. Emitters that are hidden do not count.
+    /// The probability that the ray interacts with something or hits a visible environment: what Mitsuba's
+    /// `volpath` determines by walking on. Emitters that are hidden do not count.
     fn alpha(&self, stream: &mut Stream) -> f32 {
         let hidden = self.bench.settings.options.hide_emitters;
         if self.environment && !hidden {

@@ -138,7 +138,7 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
         let (Meeting::Lens(film), Some(contribution)) = (meeting, contribution) else { return };
         let (cell, parts) = (self.table.index(s, t) as u32, &mut self.parts);
-        // A share of the film goes with both values alike.
+        // A share of the film applies to both values equally.
         self.film.spread(film, Spectrum::ONE, |pixel, share| {
             let (weighted, alone) = (contribution.value * share, contribution.alone * share);
             parts.push(CellContribution { cell, pixel: pixel as u32, weighted, alone });

@@ -87,7 +87,7 @@ fn total(spans: &[f32], look: f64) -> f64 {
     sum * spans.len() as f64 / kept as f64
 }
 
-/// Looks at the clock before and after every connection.
+/// Reads the clock before and after every connection.
 struct TimingObserver<'a> {
     film: &'a Film,
     table: StrategyTable,

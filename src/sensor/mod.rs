@@ -3,9 +3,9 @@
 //! image.
 //!
 //! A camera subpath starts by a film position and a point of the aperture, both sampled with densities that do not
-//! depend on the path; a connection with the sensor samples the aperture likewise and finds the film position. What
-//! remains of either is one density: of directions per film area of a pixel, or, for parallel rays, of
-//! positions.
+//! depend on the path; a connection with the sensor samples the aperture in the same way and finds the film
+//! position. What remains of either is one density: of directions per film area of a pixel, or, for parallel
+//! rays, of positions.
 
 mod lens;
 mod orthographic;

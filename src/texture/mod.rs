@@ -111,7 +111,7 @@ pub fn emission(params: &Params<'_>, name: &'static str, default: f32) -> Result
     of_role(params, name, default, Role::Light)
 }
 
-/// The same for indices of refraction, whose spectra may exceed 1.
+/// The same for indices of refraction; their spectra may exceed 1.
 pub fn index(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
     of_role(params, name, default, Role::Index)
 }

@@ -176,7 +176,7 @@ volumes! {
     "gridvolume" => Grid,
 }
 
-/// Plugins that are parts of a volume and none themselves, and whose parts they are.
+/// Plugins that are parts of a volume and none themselves, each with the volume that it is a part of.
 pub const PARTS: &[(&str, &str)] = &[("wave", "cosine"), ("term", "polynomial")];
 
 /// How a volume is built.

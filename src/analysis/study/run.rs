@@ -291,7 +291,7 @@ impl Study<'_> {
     }
 }
 
-/// For a render whose numbers cannot be read.
+/// For a render that reported unreadable numbers.
 const LOST_UNIT: &str = "remove the file to render it again, or restart the whole study with --restart";
 
 fn seeds(question: &Question) -> impl Iterator<Item = u64> {

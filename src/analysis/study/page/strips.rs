@@ -24,7 +24,7 @@ pub struct Picture {
 
 /// A contender at a level.
 pub struct Shot {
-    /// Whose.
+    /// The contender's name.
     pub name: String,
     /// Its colour.
     pub series: usize,
@@ -52,7 +52,7 @@ pub struct Strip {
 
 /// A contender's variance.
 pub struct Spread {
-    /// Whose.
+    /// The contender's name.
     pub name: String,
     /// Its colour.
     pub series: usize,
