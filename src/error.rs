@@ -9,7 +9,7 @@ pub struct Error {
     pub place: String,
     /// What would have been right.
     pub expected: String,
-    /// What stands there instead.
+    /// What was found there instead.
     pub found: String,
     /// What to do about it.
     pub remedy: String,

@@ -36,7 +36,7 @@ fn survival(statistic: f64, freedom: usize) -> f64 {
     ChiSquared::new(freedom as f64).map_or(1.0, |distribution| distribution.sf(statistic))
 }
 
-/// Cells that expect enough each; what is left over at the end joins the last.
+/// Cells that expect enough each; what is left over at the end is merged into the last.
 fn pooled(observed: &[u64], expected: &[f64]) -> Vec<(f64, f64)> {
     let mut cells: Vec<(f64, f64)> = Vec::new();
     let mut open = (0.0, 0.0);

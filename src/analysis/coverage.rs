@@ -46,13 +46,13 @@ pub struct Traits {
 /// What of an emitter decides which strategies can start or end at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct EmitterTraits {
-    /// Camera subpaths can meet it.
+    /// Camera subpaths can hit it.
     hittable: bool,
     /// Next-event estimation can find it.
     connectible: bool,
     /// It is seen directly, so that there are paths of one segment.
     seen: bool,
-    /// The lens can be joined to the emitter itself.
+    /// The lens can be connected to the emitter itself.
     to_lens: bool,
 }
 
@@ -232,7 +232,8 @@ mod tests {
         assert!(smooth.len() == 8 && smooth.iter().all(|s| s.starts_with("hit")), "{smooth:?}");
     }
 
-    /// Of a point over smooth surfaces next-event estimation, joins and the lens make each what no other can.
+    /// For a point light over smooth surfaces, next-event estimation, connections and connections to the lens
+    /// each make paths that no other can.
     #[test]
     fn what_a_point_needs_among_smooth_surfaces() {
         let point = traits(&[POINT], true);
@@ -264,7 +265,7 @@ mod tests {
         assert_eq!(traits(&[POINT], false).unreachable(Strategies::PT), [""; 0]);
     }
 
-    /// What nobody can make is nobody's to miss.
+    /// What no strategy can make is missing from none.
     #[test]
     fn what_all_lack_may_be_lacking() {
         assert_eq!(traits(&[LAMP], false).missing(Strategies::PT, Strategies::PT), None);

@@ -79,7 +79,7 @@ impl Method {
 pub struct Effort {
     /// Number of photons for each method, at least 2.
     pub photons: u64,
-    /// Photons of the run that stands for the truth, at least 2.
+    /// Photons of the reference run, at least 2.
     pub truth_photons: u64,
     /// Seed of all random numbers.
     pub seed: u64,
@@ -112,7 +112,7 @@ pub struct Judged {
     pub estimate: Estimate,
     /// Mean less truth.
     pub bias: f64,
-    /// That in standard errors of both; where no two photons differ, 1 / photons stands for the method's.
+    /// That in standard errors of both; where no two photons differ, 1 / photons replaces the method's.
     pub z: f64,
     /// Variance of the mean times seconds: the lower the better, however many photons [s].
     pub variance_seconds: f64,

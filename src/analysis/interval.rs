@@ -2,8 +2,8 @@
 //!
 //! Few seeds, often with heavy tails: what can be negative gets Student's t; what is positive gets it for the logarithm
 //! of its mean, so that the estimate stays the mean (which is what the expected error is) while the interval is longer
-//! upwards and never reaches zero. What is made of several means gets the same, with an error
-//! that is found by drawing seeds again.
+//! upwards and never reaches zero. What is computed from several means gets the same, with an error from
+//! resampling the seeds (bootstrap).
 
 use crate::{
     analysis::study::outcome::Interval,
@@ -75,8 +75,8 @@ pub fn bootstrap(count: usize, confidence: f64, estimate: impl Fn(&[usize]) -> f
     Interval { mean, low: mean / factor, high: mean * factor }
 }
 
-/// Slope of the straight line of least squares through points (log x, log y); none where they do not tell: fewer than
-/// three, or not all positive and finite.
+/// Slope of the straight line of least squares through points (log x, log y); none where they do not
+/// determine it: fewer than three, or not all positive and finite.
 pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     if logs.len() < 3 || !logs.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {

@@ -17,7 +17,7 @@
 //! - `study.csv`: one row per scene, contender, budget and seed;
 //! - `images/`: references, an image for every budget, variance over the seeds;
 //! - `runs/`: what is needed to resume. A study that was stopped, in whatever way, is resumed by the same command, to the
-//!   same numbers: what pilots made of a time is in `runs/plan.json` before anything is measured.
+//!   same numbers: the plan that the pilots lead to is in `runs/plan.json` before anything is measured.
 //!
 //! Axes multiply: `--integrators`, `--strategies hit+next-event,hit+next-event+join`, `--trackers`, `--heuristics`,
 //! `--samplers`, and `--vary OPTION=A,B` for any option of `render` that says how paths are made

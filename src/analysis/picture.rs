@@ -24,7 +24,7 @@ pub struct Picture {
     pub width: usize,
     /// Rows, at least 1.
     pub height: usize,
-    /// Row by row from the top: linear sRGB, or what else the channels of a layer are. One channel stands in all
+    /// Row by row from the top: linear sRGB, or what else the channels of a layer are. One channel fills all
     /// three places, two leave the third 0.
     pub pixels: Vec<Spectrum>,
     /// How many channels the file has for a pixel: 1, 2 or 3. Opacity is left out.
@@ -45,7 +45,7 @@ impl Picture {
         film::exr::write(path, self.width, self.height, format.channels(&self.pixels, &[]), format)
     }
 
-    /// An error that tells the first value that is not finite, where there is one.
+    /// An error that names the first value that is not finite, where there is one.
     pub fn check_finite(&self, path: &Path) -> Result<()> {
         let values = || (0..self.channels).flat_map(|channel| self.pixels.iter().map(move |p| p[channel]));
         let broken = values().filter(|value| !value.is_finite()).count();
@@ -92,7 +92,7 @@ fn start_of(path: &Path) -> Result<Vec<u8>> {
     Ok(start)
 }
 
-/// What stands for values that are not finite: no colour of either scale.
+/// What represents values that are not finite: no colour of either scale.
 const BROKEN: [u8; 3] = [0, 255, 0];
 
 /// Colours (8-bit sRGB, three bytes a value) of `values`, which lie in `range` = (low, high) or are cut to it.
@@ -112,7 +112,7 @@ pub fn false_colour(values: &[f32], range: (f32, f32)) -> Vec<u8> {
     values.iter().flat_map(|value| if value.is_nan() { BROKEN } else { table[place(*value)] }).collect()
 }
 
-/// Colours of a scale that are told apart: four times as many as 8 bits show.
+/// Colours of a scale that are distinguished: four times as many as 8 bits show.
 const TABLE: usize = 1024;
 
 fn inferno() -> Vec<[u8; 3]> {

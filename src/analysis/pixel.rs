@@ -44,7 +44,7 @@ pub struct Sample {
     pub film: [f32; 2],
     /// Through which point of the aperture, as the sensor samples it.
     pub aperture: [f32; 2],
-    /// Factor of the filter on what the camera subpath brings: 1, but for filters with negative lobes.
+    /// Factor of the filter on what the camera subpath contributes: 1, but for filters with negative lobes.
     pub filter: f32,
     /// The channel that samples distances, where extinction differs between channels.
     pub hero: Option<&'static str>,
@@ -53,7 +53,7 @@ pub struct Sample {
     pub eye_walks: Vec<WalkText>,
     /// The strategies tried from its vertices.
     pub contributions: Vec<Contribution>,
-    /// What light subpaths brought to the pixel by the lens (t = 1).
+    /// What light subpaths contributed to the pixel through the lens (t = 1).
     pub splats: Vec<SplatText>,
     /// The light subpaths named by the others, by their number in the pass.
     pub light_walks: BTreeMap<u64, WalkText>,
@@ -90,9 +90,9 @@ pub struct EmitterText {
     pub index: usize,
     /// Its plugin.
     pub kind: &'static str,
-    /// The shape that it stands on.
+    /// The shape that it lies on.
     pub shape: Option<ShapeText>,
-    /// The medium that shines.
+    /// The medium that emits.
     pub medium: Option<String>,
 }
 
@@ -188,7 +188,7 @@ pub struct Contribution {
     pub reached: bool,
     /// What remains of radiance along the connecting segment; 1 where there is none.
     pub transmittance: Option<[f32; 3]>,
-    /// What the strategy would bring alone: contribution over density and samples.
+    /// What the strategy would contribute alone: contribution over density and samples.
     pub unweighted: Option<[f32; 3]>,
     /// Its weight: over all strategies of one path they sum to 1.
     pub weight: Option<f32>,
@@ -220,7 +220,7 @@ pub struct PointText {
     pub start_density: f32,
 }
 
-/// What a light subpath brought by the lens.
+/// What a light subpath contributed through the lens.
 #[derive(Clone, Debug, Serialize)]
 pub struct SplatText {
     /// Light vertices; t = 1.
@@ -235,7 +235,7 @@ pub struct SplatText {
     pub share: f32,
     /// What remains of radiance along the connecting segment.
     pub transmittance: [f32; 3],
-    /// What the strategy would bring alone.
+    /// What the strategy would contribute alone.
     pub unweighted: [f32; 3],
     /// Its weight.
     pub weight: f32,

@@ -32,7 +32,7 @@ use std::{
 /// How much is done.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Paths of up to so many segments are told apart strategy by strategy.
+    /// Paths of up to so many segments are reported strategy by strategy.
     pub depth: u32,
     /// Passes that make the images.
     pub passes: usize,
@@ -57,9 +57,9 @@ pub struct Report {
     pub variance: Option<f64>,
     /// Time of one pass, summed over threads [s].
     pub seconds: f64,
-    /// Share of time of camera subpaths, without joins.
+    /// Share of time of camera subpaths, without connections.
     pub eye_walks: f64,
-    /// Share of time of light subpaths, without joins.
+    /// Share of time of light subpaths, without connections.
     pub light_walks: f64,
     /// Share of variance that is none of a single strategy's: covariances between them. Often negative or positive by
     /// a lot, as strategies share their walks.
@@ -100,13 +100,13 @@ pub struct CellReport {
     pub kind: &'static str,
     /// Share of the image's mean luminance.
     pub energy: f64,
-    /// Mean luminance of what it brings alone, over that of all paths of its length: 1 where it can make all of them;
-    /// none where there is no light on paths of its length, or on longer ones, of which several strategies count
-    /// here.
+    /// Mean luminance of what it contributes alone, over that of all paths of its length: 1 where it can make
+    /// all of them; none where there is no light on paths of its length, or on longer ones, of which several
+    /// strategies count here.
     pub alone: Option<f64>,
     /// Its weighted contribution's variance, by luminance and summed over pixels, over that of the image. Of one pass.
     pub variance: Option<f64>,
-    /// The same of what it brings alone.
+    /// The same of what it contributes alone.
     pub variance_alone: Option<f64>,
     /// Share of time.
     pub time: f64,
@@ -138,7 +138,7 @@ pub struct Findings {
 /// The images of a study may take no more [bytes].
 const MOST_BYTES: usize = 6 << 30;
 
-/// Looks into all strategies of `setup`, rendered by `settings`. Tells how many steps are done of how many.
+/// Examines all strategies of `setup`, rendered by `settings`. Reports how many steps are done of how many.
 pub fn examine(
     setup: &Setup,
     settings: &Settings,
@@ -348,7 +348,7 @@ impl StrategyImages {
         all.filter(move |(cell, _)| cell.length() == length)
     }
 
-    /// Mean luminance of what all strategies bring on paths of `length` segments, or on longer ones.
+    /// Mean luminance of what all strategies contribute on paths of `length` segments, or on longer ones.
     fn luminance_of(&self, length: Option<u32>) -> f64 {
         self.of(length).filter_map(|(_, images)| Some(mean_luminance(&images?.weighted))).sum()
     }

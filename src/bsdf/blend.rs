@@ -40,7 +40,8 @@ impl Blend {
     }
 
     /// Survival of both parts on this side, and where light crosses the surface, on whichever side has more. What
-    /// lets light across survives alike on both: asking it twice would double at every depth of blends.
+    /// lets light across survives alike on both: evaluating it twice would double the cost at every depth of
+    /// blends.
     #[inline]
     fn survivals(&self, uv: Vec2, wi: Vec3) -> ([f32; 2], [f32; 2]) {
         let here = [self.parts[0].survival(uv, wi), self.parts[1].survival(uv, wi)];

@@ -8,7 +8,8 @@ use crate::math::{Spectrum, Vec2, Vec3};
 use crate::sampling::Stream;
 use crate::texture::{self, Texture};
 
-/// Where the index varies, the mean may tell nothing of a place: a walk survives there one time in ten at least.
+/// Where the index varies, the mean may say nothing about a place: a walk survives there one time in ten at
+/// least.
 const LEAST_SURVIVAL: f32 = 0.1;
 
 /// Reflects as Fresnel says, as a Dirac lobe; the lower side is black.

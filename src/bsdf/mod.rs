@@ -117,7 +117,7 @@ pub trait BsdfModel {
         Spectrum::ZERO
     }
 
-    /// True if some of its scattering is not Dirac, so that it can be joined to another vertex.
+    /// True if some of its scattering is not Dirac, so that it can be connected to another vertex.
     fn is_connectible(&self) -> bool;
 
     /// True if some of its scattering is Dirac.

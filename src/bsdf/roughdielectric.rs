@@ -16,7 +16,7 @@ pub struct RoughDielectric {
     roughness: Roughness,
 }
 
-/// Below this spread [rad] of the refracted lobe, f32 directions cannot tell which microfacet refracted.
+/// Below this spread [rad] of the refracted lobe, f32 directions cannot resolve which microfacet refracted.
 const LEAST_SPREAD: f32 = 1e-5;
 
 /// A pair of directions as the microfacets see it, in the frame turned so that wi.z > 0.
@@ -31,8 +31,8 @@ struct Facet {
 }
 
 impl RoughDielectric {
-    /// A rough interface, or the smooth one that it cannot be told from: indices all but equal bend light by
-    /// less than directions resolve.
+    /// A rough interface, or the smooth one that it cannot be distinguished from: nearly equal indices bend
+    /// light by less than directions resolve.
     pub(super) fn build(params: &Params<'_>) -> Result<Bsdf> {
         let smooth =
             Dielectric { interfaces: index::interfaces(params, "bk7")?, tints: Tints::build(params)? };
@@ -45,7 +45,7 @@ impl RoughDielectric {
         Ok(Self { smooth, roughness }.into())
     }
 
-    /// Value and densities where `facet` joins the two directions; none where its lobes are all black.
+    /// Value and densities where `facet` connects the two directions; none where its lobes are all black.
     #[inline]
     fn evaluate_with(
         &self,
@@ -91,7 +91,7 @@ impl RoughDielectric {
 }
 
 impl Facet {
-    /// None where no facet joins the two directions: they would meet it from behind, or on the wrong sides.
+    /// None where no facet connects the two directions: they would hit it from behind, or on the wrong sides.
     #[inline]
     fn joining(interfaces: &Interfaces, wi: Vec3, wo: Vec3) -> Option<Self> {
         let turn = vec3(1.0, 1.0, 1f32.copysign(wi.z));

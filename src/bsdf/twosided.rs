@@ -38,7 +38,7 @@ impl TwoSided {
         }
     }
 
-    /// The model that `wi` meets and the factor that turns directions to its upper side.
+    /// The model that `wi` hits and the factor that turns directions to its upper side.
     #[inline]
     fn side(&self, wi: Vec3) -> (&Bsdf, Vec3) {
         let [front, back] = &*self.sides;

@@ -280,7 +280,7 @@ pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
         .ok_or_else(|| "expected at most 4096 threads".into())
 }
 
-/// Reads a name of a table as what it stands for.
+/// Reads a name of a table as the value that it refers to.
 pub(super) fn one_of<T: Copy + Send + Sync + 'static>(
     table: &'static [(&'static str, T)],
 ) -> impl TypedValueParser<Value = T> {

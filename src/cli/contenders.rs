@@ -21,7 +21,7 @@ struct Words {
     estimator: Estimator,
 }
 
-/// What `words` ask for; `place` is where they stand.
+/// What `words` request; `place` is where they are.
 pub fn parse(place: &str, words: &str) -> Result<Estimator> {
     let parsed = Words::try_parse_from(words.split_whitespace());
     parsed.map(|words| words.estimator).map_err(|error| {
@@ -122,7 +122,7 @@ fn axes(arguments: &Study) -> Result<Vec<Axis>> {
 
 impl Axis {
     /// The axis of `option` (its long name), given by `flag`. Where the option is a switch, its values are "on" and
-    /// "off"; off is said, lest the scene say otherwise.
+    /// "off"; "off" is passed on, so that the scene cannot say otherwise.
     fn new(flag: &str, option: &str, values: &[String]) -> Result<Self> {
         let command = Words::command();
         let all = || command.get_arguments().filter_map(|argument| argument.get_long());

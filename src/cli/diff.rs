@@ -253,7 +253,7 @@ fn table(arguments: &Diff, image: &Picture, difference: &Difference) -> String {
 
 type Cell = fn(&Comparison) -> String;
 
-/// Titles, and what stands behind them.
+/// Titles, and the cells of their rows.
 const ROWS: &[(&str, Cell)] = &[
     ("MSE", |c| short(c.measures.mse)),
     ("RMSE", |c| short(c.measures.rmse)),

@@ -204,7 +204,7 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
     Budget { samples_per_pixel, time: arguments.time_limit }
 }
 
-/// The image file: where, and what is in it. The PNG stands beside it.
+/// The image file: where, and what is in it. The PNG is beside it.
 struct Goal {
     path: PathBuf,
     format: Format,

@@ -366,7 +366,7 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// Said of a contender whose name promises a difference that there is not.
+/// A warning about a contender with a name that promises a difference that does not exist.
 const IDLE_TRACKER: &str = "its tracker has no effect: this scene has no heterogeneous medium";
 
 /// The command, as a shell takes it.

@@ -1,4 +1,5 @@
-//! What stands where a colour is wanted: numbers, rgb, spectra and the plugins for them, as linear sRGB.
+//! What may be given where a colour is expected: numbers, rgb, spectra and the plugins for them, as linear
+//! sRGB.
 //!
 //! Spectra become the colours that Mitsuba's rgb variants make of them, clamping included. Those variants
 //! cannot evaluate the plugins `regular`, `irregular` and `blackbody`; here they are taken like the plain
@@ -29,7 +30,7 @@ pub enum Role {
     Light,
 }
 
-/// How a plugin that stands for a colour is read.
+/// How a plugin that represents a colour is read.
 struct Plugin {
     name: &'static str,
     read: fn(&Params<'_>, Role) -> Result<DVec3>,
@@ -45,7 +46,7 @@ const PLUGINS: [Plugin; 7] = [
     Plugin { name: "blackbody", read: blackbody },
 ];
 
-/// True if `object` stands for one colour. Of `d65` around a texture only the texture matters.
+/// True if `object` represents one colour. Of `d65` around a texture only the texture matters.
 pub fn is_plugin(object: &Object) -> bool {
     let is_child = |p: &Property| matches!(p.value, Value::Object(_) | Value::Reference(_));
     let holds_texture = object.plugin == "d65" && object.properties.iter().any(is_child);
@@ -69,7 +70,7 @@ pub fn read(property: &Property, library: &Library, role: Role) -> Result<Spectr
     place.checked(rgb)
 }
 
-/// The colour that the plugin `object` stands for, >= 0.
+/// The colour that the plugin `object` represents, >= 0.
 pub fn of_object(object: &Object, library: &Library, role: Role) -> Result<Spectrum> {
     let params = Params::new(object, library);
     let color = of_plugin(&params, role)?;

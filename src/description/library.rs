@@ -59,7 +59,7 @@ impl Library {
         location.file.parent().unwrap_or(Path::new("")).join(name)
     }
 
-    /// Tells the user something that is not an error.
+    /// Informs the user of something that is not an error.
     pub fn warn(&self, location: &Location, text: &str) {
         self.warnings.borrow_mut().push(format!("{location}: {text}"));
     }

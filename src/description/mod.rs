@@ -12,7 +12,7 @@ pub use registry::{Build, Registry, nearest, suggest};
 use std::{fmt, path::PathBuf, sync::Arc};
 pub use transform::TransformStep;
 
-/// Where in which file something stands.
+/// Where in which file something is.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Location {
     /// The file as the user named it (an included file under its own name).
@@ -66,7 +66,7 @@ pub struct Property {
     pub name: String,
     /// What was given.
     pub value: Value,
-    /// Where it stands.
+    /// Where it is.
     pub location: Location,
 }
 

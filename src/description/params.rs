@@ -18,7 +18,7 @@ pub struct Child<'a> {
     pub name: &'a str,
     /// The child itself.
     pub object: &'a Object,
-    /// Where the child (or the reference to it) stands.
+    /// Where the child (or the reference to it) is.
     pub location: &'a Location,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Params<'a> {
         Self { object, library, used, requested: RefCell::default() }
     }
 
-    /// Where the object stands.
+    /// Where the object is.
     pub fn location(&self) -> &'a Location {
         &self.object.location
     }
@@ -157,8 +157,8 @@ impl<'a> Params<'a> {
         Err(self.complain(name, "an invertible transform", found))
     }
 
-    /// A colour of matter with finite entries >= 0: a number (grey), rgb, a spectrum, or a plugin that stands
-    /// for one; where given.
+    /// A colour of matter with finite entries >= 0: a number (grey), rgb, a spectrum, or a plugin that
+    /// represents one; where given.
     pub fn optional_color(&self, name: &'static str) -> Result<Option<Spectrum>> {
         self.color_of(name, Role::Matter)
     }
@@ -245,7 +245,7 @@ impl<'a> Params<'a> {
     /// Reads and drops parameters that have no meaning here, with a warning that says so.
     pub fn accept_unused(&self, names: &[&'static str], why: &str) {
         for name in names {
-            // Not asked for: nobody is to be told to use them.
+            // Not requested: no user should be advised to use them.
             if let Some(property) = self.take(name) {
                 self.library.warn(&property.location, &format!("\"{name}\" is accepted but not used: {why}"));
             }

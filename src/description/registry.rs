@@ -1,10 +1,10 @@
-//! Registries: the names that users write, and what each stands for. Whatever lists, looks up or suggests names reads
+//! Registries: the names that users write, and what each refers to. Whatever lists, looks up or suggests names reads
 //! these rows.
 
 use super::{Library, Object, Params};
 use crate::error::{Error, Result};
 
-/// Names of one kind, and what each stands for.
+/// Names of one kind, and what each refers to.
 #[derive(Clone, Copy, Debug)]
 pub struct Registry<V: 'static> {
     /// With its article, for errors: `a bsdf`.
@@ -26,7 +26,7 @@ impl<V> Registry<V> {
         self.rows.iter().map(|(name, _)| *name).collect()
     }
 
-    /// What `name` stands for.
+    /// What `name` refers to.
     pub fn get(&self, name: &str) -> Option<&'static V> {
         self.rows.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
     }
@@ -36,12 +36,12 @@ impl<V> Registry<V> {
         self.get(&object.plugin).is_some()
     }
 
-    /// What the plugin name of `object` stands for.
+    /// What the plugin name of `object` refers to.
     pub fn find(&self, object: &Object) -> Result<&'static V> {
         self.row(object).map(|(_, value)| value)
     }
 
-    /// The plugin name of `object`, and what it stands for.
+    /// The plugin name of `object`, and what it refers to.
     pub fn row(&self, object: &Object) -> Result<&'static (&'static str, V)> {
         self.rows.iter().find(|(known, _)| *known == object.plugin).ok_or_else(|| {
             let remedy = suggest(&object.plugin, "known", &self.names());

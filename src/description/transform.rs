@@ -18,7 +18,7 @@ pub enum TransformStep {
     Translate([f64; 3]),
     /// Camera-style placement: local z towards `target`, local y as near to `up` as can be.
     LookAt {
-        /// Where it stands.
+        /// Where it is.
         origin: [f64; 3],
         /// What it looks at.
         target: [f64; 3],

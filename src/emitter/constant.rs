@@ -1,4 +1,4 @@
-//! The same radiance from everywhere at infinity.
+//! The same radiance from all directions at infinity.
 
 use crate::{
     description::Params,

@@ -1,5 +1,5 @@
-//! Emitters: how much light leaves in which direction, and how directions are sampled. Where emission starts
-//! on a shape, and which emitter is chosen, the scene decides.
+//! Emitters: how much light leaves in which direction, and how directions are sampled. The scene decides
+//! where emission starts on a shape, and which emitter is chosen.
 
 mod area;
 mod constant;
@@ -41,7 +41,7 @@ pub struct Emitter {
     pub name: &'static str,
     /// How it emits.
     pub kind: Kind,
-    /// The user's factor on the probability of choosing this emitter.
+    /// The factor from the user on the probability of choosing this emitter.
     pub sampling_weight: f32,
 }
 
@@ -140,8 +140,8 @@ impl Emitter {
         matches!(self.kind, Kind::Environment(_))
     }
 
-    /// Emitted power [W], luminance-weighted; `area` [m^2] of the emitting shape, `radius` [m] of the scene. Of
-    /// textured shapes an estimate: the mean of the texture counts.
+    /// Emitted power [W], luminance-weighted; `area` [m^2] of the emitting shape, `radius` [m] of the scene.
+    /// For textured shapes an estimate from the mean of the texture.
     pub fn power(&self, area: f32, radius: f32) -> f64 {
         let disk = f64::from(PI) * f64::from(radius).powi(2);
         let power = match &self.kind {
@@ -184,7 +184,7 @@ impl PointKind {
         }
     }
 
-    /// A direction for light to leave in; 0 where it has none to offer.
+    /// A direction for light to leave in; 0 where there is none.
     #[inline]
     pub fn sample(&self, stream: &mut Stream) -> Vec3 {
         match self {
@@ -254,7 +254,7 @@ impl Environment {
 /// Mitsuba's `sampling_weight`: a factor > 0 on the probability of choosing an emitter.
 fn sampling_weight(params: &Params<'_>) -> Result<f32> {
     let weight = params.float("sampling_weight", 1.0)?;
-    // Within these f32 holds it and what it is multiplied with.
+    // Within these bounds, f32 holds it and its products.
     if (1e-20..=1e20).contains(&weight) {
         return Ok(weight as f32);
     }

@@ -1,4 +1,4 @@
-//! A point that emits all around.
+//! A point that emits in all directions.
 
 use super::Profile;
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
 };
 use std::f32::consts::PI;
 
-/// A point light: alike in all directions, or by a profile around an axis.
+/// A point light: the same in all directions, or by a profile around an axis.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Its position in the file's coordinates.

@@ -40,7 +40,7 @@ impl Profile {
         let wrong = || params.complain("profile", expected, format!("\"{text}\""));
         let points = parse(text).ok_or_else(wrong)?;
         let profile = Self::new(&points);
-        // Light that only leaves backwards never leaves a surface, but a point it does.
+        // Light that only leaves backwards cannot leave a surface, but can leave a point.
         if profile.integral > 0.0 { Ok(Some(profile)) } else { Err(wrong()) }
     }
 
@@ -166,7 +166,7 @@ fn parse(text: &str) -> Option<Vec<(f64, f64)>> {
     let pair = |word: &str| {
         let (angle, value) = word.split_once(':')?;
         let (angle, value) = (angle.parse::<f64>().ok()?, value.parse::<f64>().ok()?);
-        // What f32 would take for 0 or for infinite is neither.
+        // Values that f32 would round to 0 or to infinity are errors.
         let fits = value == 0.0 || (1e-30..=1e30).contains(&value);
         ((0.0..=180.0).contains(&angle) && fits).then_some((angle, value))
     };

@@ -1,4 +1,4 @@
-//! An image thrown from a point: Mitsuba's `projector`.
+//! An image projected from a point: Mitsuba's `projector`.
 
 use crate::{
     description::Params,
@@ -21,7 +21,7 @@ pub struct Projector {
     to_local: Mat3,
     /// Half the width and height of the image at distance 1.
     half: Vec2,
-    /// Texture cells by how bright they are.
+    /// Texture cells by brightness.
     cells: Arc<Cells>,
 }
 

@@ -6,7 +6,7 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// The emission of a medium as an emitter: every point of the medium emits alike in all directions.
+/// The emission of a medium as an emitter: every point of the medium emits isotropically.
 #[derive(Clone, Debug)]
 pub struct VolumeEmitter {
     /// Radiance emitted per metre, at every point.

@@ -51,7 +51,7 @@ impl Accumulator {
         self.sums.iter().map(|s| Spectrum::from_array(s.map(|channel| (channel * scale) as f32))).collect()
     }
 
-    /// Mean over the passes of (`row` . rgb)^2: the second moment of a channel that is made of R, G and B.
+    /// Mean over the passes of (`row` . rgb)^2: the second moment of a channel that combines R, G and B.
     pub fn second_moment(&self, row: Vec3) -> Vec<f32> {
         let scale = 1.0 / self.passes.max(1) as f64;
         self.products.iter().map(|products| (square_of(row, products) * scale) as f32).collect()

@@ -1,5 +1,5 @@
 //! Reconstruction filters. Camera subpaths are distributed by the filter, so every sample counts fully for one
-//! pixel; what light subpaths bring is spread over the pixels that the filter reaches.
+//! pixel; what light subpaths contribute is spread over the pixels that the filter reaches.
 //!
 //! Where a filter has negative lobes, camera subpaths are distributed by its magnitude and carry its sign, times
 //! what the lobes cancel: the integral of |f| over that of f.
@@ -428,7 +428,7 @@ mod tests {
     /// What a sample of one pixel counts for is on average what its filter makes of the image.
     #[test]
     fn signed_samples_average_to_the_filtered_image() {
-        // exp(-x) stands for the image.
+        // exp(-x) represents the image.
         for (filter, (size, border)) in FILTERS.into_iter().flat_map(|f| AXES.map(|axis| (f, axis))) {
             let axis = Axis::new(filter, size, border);
             let mut stream = Stream::new(8, 0, 0, Purpose::Study);

@@ -98,7 +98,7 @@ impl FileKind {
         }
     }
 
-    /// The kind whose files end so.
+    /// The kind of file with this extension.
     pub fn of_extension(extension: &str) -> Option<Self> {
         match extension.to_lowercase().as_str() {
             "exr" => Some(Self::OpenExr),

@@ -21,7 +21,7 @@ pub enum Quantity {
     /// Change of position with the second texture coordinate [m].
     DpDv,
     /// Change of the texture coordinates with a step across the film of 1 / sqrt(samples per pixel) pixels,
-    /// to where the ray from the lens meets the tangent plane (Mitsuba starts that ray at the near clip plane).
+    /// to where the ray from the lens hits the tangent plane (Mitsuba starts that ray at the near clip plane).
     DuvDx,
     /// The same for a step down.
     DuvDy,
@@ -70,8 +70,8 @@ impl Quantity {
 /// Moments are those of one pass over the image, which for the path tracer is one sample per pixel. With box,
 /// tent and Gaussian filters, E of the squared pass is the filtered square of a sample's radiance: Mitsuba's
 /// second moment. A filter with negative lobes makes it larger (a sample's signed weight is squared too), and
-/// what light subpaths bring adds to the pass before it is squared, so that with `bdpt` and `ptracer` the moment
-/// is that of the estimator, not of one path.
+/// what light subpaths contribute adds to the pass before it is squared, so that with `bdpt` and `ptracer`
+/// the moment is that of the estimator, not of one path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
     /// Of the first surface.

@@ -69,7 +69,7 @@ fn explain(path: &Path, error: &io::Error) -> Error {
     Error::new(path.display(), "to write the file", error.to_string(), remedy)
 }
 
-/// An image must have as many pixels as its size says, and some.
+/// An image must have as many pixels as its size says, and at least one.
 pub(super) fn check_size(path: &Path, width: usize, height: usize, count: usize) -> Result<()> {
     if count > 0 && width.checked_mul(height) == Some(count) {
         return Ok(());

@@ -113,7 +113,7 @@ fn tag(node: &Node) -> Result<String> {
     Err(Error::new(&node.location, "a tag of Mitsuba's XML", format!("\"{word}\""), remedy))
 }
 
-/// Whatever can stand for a key.
+/// Whatever can serve as a key.
 fn value(node: &Node) -> Result<Value> {
     match node.json {
         Json::Boolean(b) => Ok(Value::Boolean(*b)),

@@ -11,17 +11,17 @@ use std::{
 /// A parameter as the scene declares it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Declaration {
-    /// What stands after the `$`.
+    /// What follows the `$`.
     pub name: String,
     /// Its default as text: `$` names another parameter, `\$` is a dollar sign.
     pub text: String,
-    /// What it stands for.
+    /// Its value.
     pub value: String,
     /// The type of its values, where the format states it.
     pub kind: Option<Kind>,
 }
 
-/// What a parameter stands for.
+/// The value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// `true` or `false`.
@@ -39,7 +39,7 @@ pub(super) enum Kind {
 pub(super) struct Origins {
     /// Texts with `$` in them, by element and attribute. A value in JSON is the attribute `value` of its place.
     texts: HashMap<Location, Vec<(String, String)>>,
-    /// Where each step of a transform of XML stands.
+    /// Where each step of a transform of XML is.
     steps: HashMap<Location, Vec<Location>>,
     /// Names of files that were found in a folder other than that of the file which gives them.
     found: HashSet<Location>,
@@ -50,12 +50,12 @@ pub(super) struct Origins {
 }
 
 impl Origins {
-    /// Remembers that `text` stands at the attribute `name` of what is at `place`.
+    /// Remembers that `text` is at the attribute `name` of what is at `place`.
     pub fn record(&mut self, place: Location, name: &str, text: &str) {
         self.texts.entry(place).or_default().push((name.to_owned(), text.to_owned()));
     }
 
-    /// Remembers where the steps of the transform at `place` stand.
+    /// Remembers where the steps of the transform at `place` are.
     pub fn record_steps(&mut self, place: Location, steps: Vec<Location>) {
         self.steps.insert(place, steps);
     }
@@ -65,7 +65,7 @@ impl Origins {
         self.found.insert(place);
     }
 
-    /// Remembers a parameter; what stands already, stays.
+    /// Remembers a parameter; one already known keeps its value.
     pub fn declare(&mut self, name: &str, value: &str, text: &str, kind: Option<Kind>) {
         if self.declarations.iter().all(|known| known.name != name) {
             let [name, value, text] = [name, value, text].map(str::to_owned);
@@ -73,7 +73,7 @@ impl Origins {
         }
     }
 
-    /// Forgets all parameters: every value stands for itself.
+    /// Forgets all parameters: every value is its own text.
     pub fn fill(&mut self) {
         self.texts.clear();
         self.declarations.clear();
@@ -105,7 +105,7 @@ impl Origins {
         }
     }
 
-    /// Where step `index` of the transform at `place` stands.
+    /// Where step `index` of the transform at `place` is.
     pub fn step(&self, place: &Location, index: usize) -> Option<Location> {
         match &place.position {
             Position::Text { .. } => self.steps.get(place)?.get(index).cloned(),

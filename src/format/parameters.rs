@@ -6,7 +6,7 @@ use crate::{
     error::{Error, Result},
 };
 
-/// All parameters known so far and what they stand for.
+/// All parameters known so far and their values.
 pub(super) struct Parameters {
     entries: Vec<Entry>,
     /// What reading replaces.
@@ -20,12 +20,12 @@ struct Entry {
     by_user: bool,
 }
 
-/// Why a text cannot be substituted; where it stands is for the caller to add.
+/// Why a text cannot be substituted; the caller adds where it is.
 #[derive(Debug)]
 pub(super) struct Unfit {
     /// What would have been right.
     pub expected: String,
-    /// What stands there.
+    /// What is there.
     pub found: String,
     /// What to do about it.
     pub remedy: String,
@@ -63,7 +63,7 @@ impl Parameters {
         Ok(parameters)
     }
 
-    /// The scene's own default for `name`, which it writes as `text`; what stands already, stays.
+    /// The scene's own default for `name`, which it writes as `text`; a value already given is kept.
     pub fn declare(&mut self, name: &str, default: &str, text: &str, kind: Option<Kind>) {
         if self.get(name).is_none() {
             self.insert(name, default, false);
@@ -108,7 +108,7 @@ impl Parameters {
         self.entries.insert(place, Entry { name, value, used: false, by_user });
     }
 
-    /// [`Self::substitute`], remembering that `text` stands at the attribute `name` of what is at `place`.
+    /// [`Self::substitute`], remembering that `text` is at the attribute `name` of what is at `place`.
     pub fn substitute_at(
         &mut self,
         text: &str,
@@ -144,7 +144,7 @@ impl Parameters {
         Ok(result + rest)
     }
 
-    /// The names of all parameters in `text`, every one as often as it stands there.
+    /// The names of all parameters in `text`, each as often as it occurs.
     pub fn names_in(&self, text: &str) -> Vec<&str> {
         let mut names = Vec::new();
         let mut rest = text;

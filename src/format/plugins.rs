@@ -1,5 +1,5 @@
-//! Is every plugin of a scene one, and of the kind that its tag or place says? Asked before anything is built, so
-//! that a misspelt name is told as that, with the nearest right one.
+//! Is every plugin of a scene one, and of the kind that its tag or place says? Checked before anything is
+//! built, so that a misspelt name is reported as that, with the nearest right one.
 
 use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours, whole_of};
 use crate::{
@@ -7,8 +7,8 @@ use crate::{
     error::{Error, Result},
 };
 
-/// Every plugin in `root` must be one, and of the kind that its tag says. What is known but of no use where it
-/// stands is for builders to tell.
+/// Every plugin in `root` must be one, and of the kind that its tag says. What is known but of no use where
+/// it is, builders report.
 pub(crate) fn check(root: &Object) -> Result<()> {
     check_below(root, "scene")
 }
@@ -18,7 +18,7 @@ fn check_below(object: &Object, tag: &str) -> Result<()> {
         let Value::Object(child) = &property.value else { continue };
         let derived = || derive(&child.plugin, &property.name, tag);
         let Some(child_tag) = child.tag.as_deref().or_else(derived) else {
-            // Elsewhere builders know better what can stand there.
+            // Elsewhere builders know better what is allowed.
             match tag {
                 "shape" | "sensor" | "film" | "bsdf" | "integrator" => return Err(unknown_in(child, tag)),
                 _ => continue,
@@ -60,7 +60,7 @@ fn check_tag(object: &Object, tag: &str) -> Result<()> {
     }
 }
 
-/// The error for a part that stands elsewhere than in its `whole`.
+/// The error for a part that is elsewhere than in its `whole`.
 fn astray(part: &Object, whole: &str) -> Error {
     let remedy = format!("put it into a {whole}");
     Error::new(&part.location, format!("a {} in a {whole}", part.plugin), "it elsewhere", remedy)
@@ -104,7 +104,7 @@ pub(crate) fn unknown_in(object: &Object, parent: &str) -> Error {
     unknown(object, None, &known_in(parent))
 }
 
-/// All plugins that may stand in a `parent`.
+/// All plugins that are allowed in a `parent`.
 fn known_in(parent: &str) -> Vec<&'static str> {
     let inside = INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[][..], |(_, tags)| tags);
     let known = |tag: &&'static str| match ours(tag) {

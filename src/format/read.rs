@@ -7,7 +7,7 @@ use crate::{
 };
 use std::path::Path;
 
-/// How deep objects may stand in one another, in the file or through references. Scenes need about ten; the
+/// How deep objects may be nested, in the file or through references. Scenes need about ten; the
 /// limit keeps every later recursion over the tree within its stack.
 pub(super) const DEEPEST: usize = 100;
 
@@ -15,7 +15,7 @@ pub(super) const DEEPEST: usize = 100;
 pub(super) struct Draft {
     /// The scene.
     pub root: Object,
-    /// Names that stand for other ids.
+    /// Names that are aliases of other ids.
     pub aliases: Vec<Alias>,
 }
 

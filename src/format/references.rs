@@ -14,7 +14,7 @@ const LARGEST: u64 = 100_000_000;
 pub(super) struct Alias {
     /// The second name.
     pub name: String,
-    /// The id (or earlier second name) it stands for.
+    /// The id (or earlier second name) it refers to.
     pub target: String,
     /// Where it was given.
     pub location: Location,
@@ -30,7 +30,7 @@ pub(super) fn settle(draft: Draft) -> Result<Object> {
     Ok(root)
 }
 
-/// What each second name finally stands for.
+/// What each second name finally refers to.
 fn targets(root: &Object, aliases: Vec<Alias>) -> Result<HashMap<String, String>> {
     let mut names = HashMap::new();
     if aliases.is_empty() {
@@ -104,7 +104,7 @@ struct Extent {
 /// One walk along all children and references.
 struct Survey<'a> {
     library: &'a Library,
-    /// The ids of the objects that the walk stands in.
+    /// The ids of the objects that the walk is in.
     open: Vec<&'a str>,
     extents: HashMap<&'a str, Extent>,
 }

@@ -124,7 +124,7 @@ pub(crate) const MITSUBA: [(&str, &[&str]); 12] = [
     ("volume", &["constvolume", "gridvolume"]),
 ];
 
-/// Which tags may stand in which.
+/// Which tags may be nested in which.
 pub(crate) const INSIDE: [(&str, &[&str]); 13] = [
     ("scene", &["integrator", "sensor", "shape", "bsdf", "texture", "emitter", "medium", "phase", "volume"]),
     ("integrator", &["integrator"]),
@@ -159,7 +159,7 @@ pub(crate) fn ours(tag: &str) -> Vec<&'static str> {
     }
 }
 
-/// The plugin that `plugin` is a part of; none where it stands for itself.
+/// The plugin that `plugin` is a part of; none where it is complete by itself.
 pub(crate) fn whole_of(plugin: &str) -> Option<&'static str> {
     volume::PARTS.iter().find(|(part, _)| *part == plugin).map(|(_, whole)| *whole)
 }
@@ -174,7 +174,8 @@ pub(crate) fn of_plugin(plugin: &str) -> Vec<&'static str> {
     MITSUBA.iter().filter(|row| known(row)).map(|(tag, _)| *tag).collect()
 }
 
-/// The tag of a plugin called `plugin` that stands as `name` in a `parent`; none if that does not tell.
+/// The tag of a plugin called `plugin` that is the child `name` of a `parent`; none if that does not
+/// determine it.
 pub(crate) fn derive(plugin: &str, name: &str, parent: &str) -> Option<&'static str> {
     let inside = INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[][..], |(_, tags)| tags);
     let by_plugin = of_plugin(plugin);
@@ -187,7 +188,7 @@ pub(crate) fn derive(plugin: &str, name: &str, parent: &str) -> Option<&'static 
     named.or(if let [only] = fitting.as_slice() { Some(only) } else { None }).copied()
 }
 
-/// The tag that a name stands for: itself, with or without a number, or the parameter that it is.
+/// The tag that a name refers to: itself, with or without a number, or the parameter that it is.
 fn by_name(name: &str) -> &str {
     match name {
         "interior" | "exterior" => "medium",

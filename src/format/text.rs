@@ -7,12 +7,12 @@ use crate::{
 };
 use std::{path::Path, sync::Arc};
 
-/// Why a text is not what it should be; where it stands is for the caller to add.
+/// Why a text is not what it should be; the caller adds where it is.
 #[derive(Debug)]
 pub(super) struct Mistake {
     /// What would have been right.
     pub expected: String,
-    /// What stands there.
+    /// What is there.
     pub found: String,
 }
 

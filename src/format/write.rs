@@ -2,10 +2,10 @@
 //!
 //! What is kept: plugins, names, ids, references, order, every number to the last bit (whole numbers and others
 //! apart), colours, spectra, transforms step by step, strings, parameters with their defaults, and which files
-//! are meant. What is not: comments and layout, the division into included files (their content stands in
+//! are meant. What is not: comments and layout, the division into included files (their content is put in
 //! place), second names of objects (references lead straight to the ids), and names of spectrum files (their
-//! values stand in place). JSON gives a key to everything; a child without a name is called after its tag, and
-//! what is so called loses the name again on the way back.
+//! values are put in place). JSON gives a key to everything; a child without a name is called after its tag,
+//! and what is so called loses the name again on the way back.
 
 mod draw;
 mod json;
@@ -41,7 +41,7 @@ pub struct Conversion {
 pub enum Naming {
     /// They stay parameters where the new format allows it.
     Keep,
-    /// Their values stand in their places.
+    /// Their values are put in their places.
     Fill,
 }
 
@@ -123,7 +123,7 @@ impl<'a> Known<'a> {
         text.trim().strip_prefix('$').filter(|name| self.parameters.is_name(name))
     }
 
-    /// Tells that the value stands where `text` stood.
+    /// Says that the value replaces `text`.
     fn note(&mut self, place: &Location, text: &str, why: &str) {
         self.notes.push(format!("{place}: {text} is written as its value: {why}"));
     }

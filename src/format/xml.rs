@@ -2,7 +2,7 @@
 //!
 //! All of Mitsuba's tags are read: objects, values, `transform`, `ref`, `include`, `default`, `alias`, `path`.
 //! What Mitsuba would refuse is refused here; beyond that, text between tags and a `path` that is no folder are
-//! errors too, an `alias` may stand before what it names, and colours may be written `#rrggbb`.
+//! errors too, an `alias` may precede what it names, and colours may be written `#rrggbb`.
 
 mod element;
 mod files;

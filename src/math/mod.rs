@@ -1,4 +1,4 @@
-//! Vectors, frames, colours, warps and measures: what every other room stands on.
+//! Vectors, frames, colours, warps and measures: what every other module builds on.
 
 pub mod black_body;
 pub mod boxes;

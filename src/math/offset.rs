@@ -51,8 +51,8 @@ pub const IN_PLANE: f64 = 1e-6;
 pub const ON_SPHERE: f32 = 1e-4;
 
 /// Moves a computed surface point off its surface, to the side that `direction` leaves to, by the bound on
-/// its rounding error (`error`, per axis) along the geometric normal: a ray from there cannot meet the
-/// surface it starts on, at any scale and any distance from the origin.
+/// its rounding error (`error`, per axis) along the geometric normal: a ray from there cannot hit the surface
+/// it starts on, at any scale and any distance from the origin.
 #[inline]
 pub fn leave_surface(position: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let distance = normal.abs().dot(error);

@@ -16,7 +16,7 @@ impl Wrap {
     pub const NAMES: [(&'static str, Self); 3] =
         [("repeat", Self::Repeat), ("mirror", Self::Mirror), ("clamp", Self::Clamp)];
 
-    /// The index below `size` of the sample that stands for `index`.
+    /// The index below `size` of the sample that represents `index`.
     #[inline]
     pub fn index(self, index: i64, size: usize) -> usize {
         let n = size as i64;

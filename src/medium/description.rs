@@ -1,5 +1,5 @@
 //! From a description to a medium: parameters are read first; where coefficients vary, what they are like within the
-//! medium's bounds is looked at once those are known.
+//! medium's bounds is examined once those are known.
 
 use super::{
     DistanceMethod, Heterogeneous, Medium, MediumOverrides, MediumProperties, emission::EmissionDescription,

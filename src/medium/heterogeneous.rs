@@ -75,7 +75,7 @@ pub struct Heterogeneous {
 }
 
 impl Heterogeneous {
-    /// Looks at `fields` within their own bounds, or the box `around` where they have none, and chooses a tracker.
+    /// Examines `fields` within their own bounds, or the box `around` where they have none, and chooses a tracker.
     pub fn new(fields: Fields, around: [Vec3; 2], overrides: MediumOverrides) -> Result<Self> {
         let location = &fields.location;
         let [low, high] = fields.sigma_t.fills().unwrap_or(around);
@@ -144,7 +144,7 @@ impl Heterogeneous {
         &self.tracker
     }
 
-    /// Its coefficients at a world position.
+    /// Its properties at a world position.
     #[inline]
     pub fn at<L: Channels>(&self, position: Vec3) -> MediumProperties {
         let sigma_t = self.extinction.at::<L>(position).to_spectrum();
@@ -211,7 +211,7 @@ impl Heterogeneous {
     }
 }
 
-/// A ratio of transmittances is looked at no deeper than this: exponential depths are less, whatever lies beyond.
+/// A ratio of transmittances is evaluated no deeper than this: exponential depths are less, whatever lies beyond.
 const DEEPEST: f32 = 80.0;
 
 /// A bound may lie this far above what it bounds, relative to it: volumes widen theirs by their rounding.

@@ -58,7 +58,7 @@ enum Coefficients {
     Heterogeneous(Box<Heterogeneous>),
 }
 
-/// Which media an estimator is compiled for. What it does not know is not tested for.
+/// Which media an estimator is compiled for. What it does not support is not tested for.
 pub trait MediaProfile: Copy + Send + Sync + 'static {
     /// Extinction per channel.
     type Channels: Channels;
@@ -203,7 +203,7 @@ impl Medium {
         self.varying::<M>().map_or(self.bound.0, |varying| varying.at::<M::Channels>(position))
     }
 
-    /// Deterministic optical depth per channel, the same from either end: what weights know.
+    /// Deterministic optical depth per channel, the same from either end: as the weights use it.
     ///
     /// LW96 eq. 7: P_surface = e^-depth.
     #[inline(always)]

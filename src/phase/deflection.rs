@@ -4,9 +4,9 @@ use crate::math::{Vec3, vec3};
 
 /// The turn from one direction of flight to another.
 ///
-/// The cosine alone cannot tell narrow angles apart: near 1 the steps of an f32 are 6e-8, as wide as the whole
-/// peak of a sharp phase function. Half the squared distance between two unit vectors is 1 - cos without a
-/// cancellation. Nothing is computed before it is asked for.
+/// The cosine alone cannot distinguish narrow angles: near 1 the steps of an f32 are 6e-8, as wide as the
+/// whole peak of a sharp phase function. Half the squared distance between two unit vectors is 1 - cos
+/// without a cancellation. Nothing is computed before it is needed.
 #[derive(Clone, Copy, Debug)]
 pub struct Deflection {
     before: Vec3,

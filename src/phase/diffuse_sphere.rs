@@ -7,7 +7,7 @@ use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
 use std::f32::consts::PI;
 
-/// 2 (sin theta - theta cos theta) / (3 pi^2): nothing straight on, most straight back, as the moon shines.
+/// 2 (sin theta - theta cos theta) / (3 pi^2): nothing straight on, most straight back, like the full moon.
 ///
 /// P03T prints it twice. The first form has theta as the angle of deflection, and is this one; the second has
 /// it from the direction back and a minus sign too many.
@@ -42,7 +42,7 @@ impl PhaseModel for DiffuseSphere {
         SCALE * crescent(turn.angle())
     }
 
-    /// What happens: a ray meets the sphere somewhere, the normal there being distributed by cosine around the
+    /// What happens: a ray hits the sphere somewhere, the normal there being distributed by cosine around the
     /// direction back, and leaves by cosine around that normal.
     #[inline]
     fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {

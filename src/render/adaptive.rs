@@ -2,10 +2,11 @@
 //!
 //! A pixel that stops because its own samples look calm stops too soon where they happened to be low, and its mean is
 //! biased for it. Hence two halves of independent passes: a pixel's mean over one half ends where the *other* half's
-//! samples say that the error is small enough, so that what ends it knows nothing of what it is the mean of.
+//! samples say that the error is small enough, so that the decision to stop is independent of the samples
+//! that are averaged.
 //!
-//! What light subpaths bring to the film is a mean over passes too, of every pixel at once: it ends for a
-//! half where the last pixel of the other half is content.
+//! What light subpaths contribute to the film is a mean over passes too, of every pixel at once: it ends for
+//! a half where the last pixel of the other half has converged.
 
 use super::{
     Progress,
@@ -18,8 +19,9 @@ use crate::math::{DVec3, Spectrum, spectrum::LUMINANCE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// What is asked of every pixel: that its value is off by less than `error`, relative to it or to a hundredth of the
-/// image's mean luminance, whichever is greater; in every channel, with probability `confidence`.
+/// The precision required of every pixel: that its value is off by less than `error`, relative to it or to a
+/// hundredth of the image's mean luminance, whichever is greater; in every channel, with probability
+/// `confidence`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
     /// In (0, 1].
@@ -49,9 +51,10 @@ pub(super) struct Developed {
     pub reached: Reached,
 }
 
-/// Passes of a half before it is first looked at: variances of fewer are too uncertain.
+/// Passes of a half before it is first examined: variances of fewer are too uncertain.
 const FIRST_LOOK: u64 = 16;
-/// Passes up to the next look over those up to the last: few looks, so that luck has few chances.
+/// Passes up to the next check over those up to the last: few checks, so that chance has few opportunities to
+/// stop early.
 const GROWTH: f64 = 1.25;
 /// Pixels darker than this part of the mean luminance need not be known relative to themselves.
 const FLOOR: f64 = 0.01;
@@ -64,11 +67,11 @@ struct Half {
     passes: u64,
     /// Sums over passes while a pixel is active.
     camera: Vec<DVec3>,
-    /// Of squares of what a pass brings, light subpaths included.
+    /// Of squares of what a pass contributes, light subpaths included.
     squares: Vec<DVec3>,
     /// Sums over all passes.
     light: Vec<DVec3>,
-    /// Squared relative error as this half's samples tell it, kept once it is small enough.
+    /// Squared relative error as this half's samples estimate it, kept once it is small enough.
     errors: Vec<f64>,
     /// The half is content with the pixel.
     content: Vec<bool>,
@@ -116,7 +119,7 @@ impl Half {
         (mean, variance.max(DVec3::ZERO))
     }
 
-    /// Looks at the samples of the active pixels.
+    /// Examines the samples of the active pixels.
     fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
         if self.floor == 0.0 {
             let luminances = (0..self.camera.len()).map(|pixel| luminance(self.moments(pixel).0));
@@ -142,7 +145,7 @@ impl Half {
     fn judge_black(&mut self, limits: &Limits) {
         let is_black = |pixel: usize| self.squares[pixel] == DVec3::ZERO;
         let pixels = || 0..self.content.len();
-        // What has no variance, such as an emitter in view, does not tell that light was found elsewhere.
+        // What has no variance, such as an emitter in view, does not show that light was found elsewhere.
         let light_was_found = pixels().any(|pixel| !is_black(pixel) && self.errors[pixel] > 0.0);
         let waited = light_was_found || self.passes >= limits.passes_without_light;
         if waited && pixels().all(|pixel| is_black(pixel) || self.content[pixel]) {
@@ -163,7 +166,7 @@ impl Half {
         of(0).max(of(1)).max(of(2))
     }
 
-    /// Neighbours are asked as well: a few samples may all have missed what makes a pixel's variance.
+    /// Neighbours are checked as well: a few samples may all have missed what makes a pixel's variance.
     fn is_calm(&self, pixel: usize, width: usize, limits: &Limits) -> bool {
         self.squares[pixel] != DVec3::ZERO
             && self.errors[pixel].max(self.around(pixel, width)) <= limits.squared_error
@@ -220,7 +223,7 @@ impl Limits {
         let Precision { error, confidence } = precision;
         let tail = 0.5 * (1.0 - confidence);
         let t = StudentsT::new(0.0, 1.0, (passes - 1) as f64).map_or(f64::INFINITY, |t| -t.inverse_cdf(tail));
-        // With this many passes, light that comes in more than a thousandth of all samples of every pixel alike has shown
+        // With this many passes, light that comes in more than a thousandth of all samples of every pixel has shown
         // itself somewhere with probability `confidence`, were there but one pixel.
         let unseen = (1.0 - confidence).ln() / (-RAREST).ln_1p();
         Self { squared_error: (error / t).powi(2), passes_without_light: unseen.ceil() as u64 }
@@ -308,7 +311,7 @@ impl<'a> Adaptive<'a> {
     /// Ends what can be ended.
     fn look(&mut self) {
         let [first, second] = self.halves.each_ref().map(|half| half.passes);
-        // Where the budget ended between the halves they are not alike; this look is the last one then.
+        // Where the budget ended between the halves they are not equal; this check is the last one then.
         let passes = first.min(second);
         if passes < 2 {
             return;

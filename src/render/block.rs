@@ -55,12 +55,12 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Adds what camera subpaths brought.
+    /// Adds what camera subpaths contributed.
     pub fn add_eye_to(&self, pass: &mut [DVec3]) {
         self.camera.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
     }
 
-    /// Adds what light subpaths brought, in a fixed order.
+    /// Adds what light subpaths contributed, in a fixed order.
     pub fn add_light_to(&self, pass: &mut [DVec3]) {
         self.light.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
     }
@@ -122,8 +122,8 @@ impl Blocks {
         CameraStart { stream, hero, position, aperture, weight }
     }
 
-    /// The random numbers of light subpath `walk` of a pass. All walks of a block bring light to the same pixels:
-    /// where they are spread evenly, it is all of them together, pass after pass.
+    /// The random numbers of light subpath `walk` of a pass. All walks of a block contribute to the same
+    /// pixels: a sampler that distributes them evenly distributes all of them together, pass after pass.
     #[inline]
     pub fn light_stream(&self, seed: u64, pass: usize, walk: u64) -> Stream {
         let (pass, per_block) = (pass as u64, self.walks_per_block);
@@ -186,7 +186,7 @@ impl Blocks {
 }
 
 impl CameraStart {
-    /// The camera subpath from here, which `observer` sees, joined with the light subpaths of `cache`.
+    /// The camera subpath from here, which `observer` sees, connected to the light subpaths of `cache`.
     #[inline]
     pub fn trace<P: Profile, R: Observer<P::MisSums>>(
         mut self,
@@ -227,7 +227,7 @@ impl Blocks {
     }
 }
 
-/// What light subpaths brought to the film.
+/// What light subpaths contributed to the film.
 struct Splatted<'a> {
     film: &'a Film,
     values: Vec<(u32, Spectrum)>,

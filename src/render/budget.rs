@@ -20,8 +20,8 @@ impl Budget {
         }
     }
 
-    /// True if no further tasks should start. An image is made of whole passes, so time ends with the pass that
-    /// would overrun it by more than half.
+    /// True if no further tasks should start. An image consists of whole passes, so time ends with the pass
+    /// that would overrun it by more than half.
     pub(super) fn is_spent(&self, tasks: usize, per_pass: usize, elapsed: Duration) -> bool {
         if self.limit_tasks(tasks + 1, per_pass) == tasks {
             return true;

@@ -65,7 +65,7 @@ impl<'a> Preview<'a> {
         Self { veil, ambient: ambient + even_sky(scene), ..dark }
     }
 
-    /// The mean of what emitters make of the surfaces that rays meet; 1 where they make nothing.
+    /// The mean brightness that emitters give the surfaces that rays hit; 1 where they give none.
     fn brightness(&self, rays: impl Iterator<Item = (Ray, Stream)>) -> Spectrum {
         let (mut sum, mut count) = (Spectrum::ZERO, 0);
         for (ray, mut stream) in rays {
@@ -168,8 +168,8 @@ impl<'a> Preview<'a> {
         sample.map_or(Spectrum::ZERO, |sample| sample.value / sample.cosine)
     }
 
-    /// Light of all emitters reflected at a point, as if nothing stood in its way. The same sky everywhere is not
-    /// among them: it is ambient light.
+    /// Light of all emitters reflected at a point, as if nothing blocked it. A sky that is the same
+    /// everywhere is not among them: it is ambient light.
     fn lit(&self, point: &SurfacePoint, incoming: Vec3, stream: &mut Stream) -> Spectrum {
         let Scene { lights, geometry, .. } = self.scene;
         let reference = point.position;

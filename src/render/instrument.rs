@@ -1,4 +1,4 @@
-//! A bench: a scene with its compiled estimator, whose passes instruments look at one by one. Blocks, streams and
+//! A bench: a scene with its compiled estimator; instruments inspect its passes one by one. Blocks, streams and
 //! the order of sums are those of a render with the same seed.
 
 use super::{
@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Blocks that are worked on between two looks at the clock: enough to keep any machine's threads busy, and
+/// Blocks that are rendered between two readings of the clock: enough to keep any machine's threads busy, and
 /// independent of their number.
 pub(super) const BLOCKS_AT_ONCE: usize = 64;
 

@@ -1,7 +1,7 @@
 //! Rendering: passes over blocks of pixels on all threads, until a sample or time budget is spent.
 //!
 //! Results depend on the seed alone: every walk draws from its own stream, blocks are fixed sets of pixels, and
-//! their results are added up in block order whatever thread made them.
+//! their results are added up in block order, whichever thread made them.
 
 pub mod adaptive;
 mod batches;
@@ -66,7 +66,7 @@ pub struct Progress {
     pub elapsed: Duration,
     /// See [`Accumulator::noise`].
     pub noise: Option<f64>,
-    /// The part of the pixels that have the precision asked for, if one was.
+    /// The part of the pixels that have the requested precision, if one was requested.
     pub within: Option<f64>,
 }
 
@@ -81,8 +81,8 @@ pub struct Image {
     pub elapsed: Duration,
     /// See [`Accumulator::noise`].
     pub noise: Option<f64>,
-    /// The part of each pixel that the scene covers, in [0, 1] for filters without negative lobes; empty where
-    /// nobody asked for it.
+    /// The part of each pixel that the scene covers, in [0, 1] for filters without negative lobes; empty
+    /// where it was not requested.
     pub alpha: Vec<f32>,
     /// The channels of all layers, in their order.
     pub layers: Vec<Channel>,
@@ -90,7 +90,7 @@ pub struct Image {
     pub reached: Option<Reached>,
 }
 
-/// Renders `scene` onto `film`, telling `progress` now and then.
+/// Renders `scene` onto `film`, reporting to `progress` now and then.
 pub fn render(scene: &Scene, film: &Film, settings: &Settings, progress: &mut dyn FnMut(Progress)) -> Image {
     render_layers(scene, film, settings, &[], progress)
 }
@@ -149,7 +149,7 @@ pub fn preview(
     dispatch(scene, film, &Settings { options, ..*settings }, Mode::Preview(fog), layers, &mut monitor)
 }
 
-/// What is made of samples.
+/// What a render computes from its samples.
 #[derive(Clone, Copy)]
 enum Mode<'a> {
     /// An image, as good as the budget allows.
@@ -193,7 +193,7 @@ fn dispatch(
     Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers, reached: None }
 }
 
-/// The image of an adaptive render, with a layer that tells how many samples its pixels took.
+/// The image of an adaptive render, with a layer that shows how many samples its pixels took.
 fn finish(bench: &Instrument<'_>, stopwatch: &Stopwatch, found: Developed, layers: &[Layer]) -> Image {
     let Developed { pixels, passes, noise, reached } = found;
     let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
@@ -253,7 +253,7 @@ fn accumulate(
     }
 }
 
-/// The channels of a layer. Variances are left out where a single pass does not tell them.
+/// The channels of a layer. Variances are left out where a single pass cannot estimate them.
 fn develop(layer: &Layer, pixels: &[Spectrum], passes: &Accumulator, seen: &primary::Seen) -> Vec<Channel> {
     let values = match layer.content {
         Content::Surface(quantity) => seen.of(quantity),

@@ -1,4 +1,4 @@
-//! Who watches a render: told how far it is, and shown the image at wanted marks.
+//! Watches a render: receives its progress, and the image at requested marks.
 
 use super::Progress;
 use crate::math::Spectrum;
@@ -15,9 +15,9 @@ pub struct Snapshot {
     pub elapsed: Duration,
 }
 
-/// Marks at which the image is wanted, and who gets to know.
+/// Marks at which the image is requested, and who receives it.
 pub(super) struct Monitor<'a> {
-    /// Told now and then.
+    /// Called now and then.
     pub progress: &'a mut dyn FnMut(Progress),
     /// Samples per pixel, in growing order.
     pub marks: &'a [u64],
@@ -56,7 +56,7 @@ impl Stopwatch {
         self.started.elapsed().saturating_sub(self.held)
     }
 
-    /// Does something whose time does not count.
+    /// Does something; its time does not count.
     pub fn hold(&mut self, work: impl FnOnce()) {
         let started = Instant::now();
         work();

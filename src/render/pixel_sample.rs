@@ -28,9 +28,9 @@ pub struct PixelSample {
     /// The camera subpath; where an interaction is forced the walk from that collision, then that from what lies
     /// behind.
     pub camera: Vec<Walk>,
-    /// What the strategies tried from its vertices brought, in order; values before `factor`.
+    /// What the strategies tried from its vertices contributed, in order; values before `factor`.
     pub tries: Vec<Try>,
-    /// What light subpaths brought to the pixel, in order.
+    /// What light subpaths contributed to the pixel, in order.
     pub splats: Vec<Splat>,
     /// The light subpaths that the others name by number.
     pub light: BTreeMap<u64, Walk>,
@@ -102,13 +102,13 @@ pub struct Try {
     pub s: u32,
     /// Camera vertices, the lens among them.
     pub t: u32,
-    /// What the last of the camera vertices was joined with.
+    /// What the last of the camera vertices was connected to.
     pub partner: Partner,
-    /// What it brought; none where the way was blocked or nothing scatters along it.
+    /// What it contributed; none where it was blocked or nothing scatters along it.
     pub contribution: Option<Contribution>,
 }
 
-/// What a camera vertex was joined with.
+/// What a camera vertex was connected to.
 #[derive(Clone, Debug)]
 pub enum Partner {
     /// The camera subpath met an emitter here.
@@ -149,8 +149,9 @@ impl Splat {
 }
 
 impl Instrument<'_> {
-    /// What `pass` adds to `pixel` (row-major index), and how: all light subpaths of the pass, for any of them
-    /// may land on the pixel, the camera subpath, and once more the light subpaths that brought something.
+    /// What `pass` adds to `pixel` (row-major index), and how: all light subpaths of the pass, for any of
+    /// them may land on the pixel, the camera subpath, and once more the light subpaths that contributed
+    /// something.
     pub fn sample(&self, pass: usize, pixel: usize) -> PixelSample {
         let (blocks, compiled) = (self.compiled.blocks(), &self.compiled);
         let own = (0..blocks.count()).find(|block| blocks.pixels(*block).any(|p| p == pixel)).unwrap_or(0);
@@ -187,7 +188,7 @@ pub(super) struct EyeSample {
     tries: Vec<Try>,
 }
 
-/// Makes the camera subpath of `pixel` in `pass` again, joined with the light subpaths of `block`.
+/// Makes the camera subpath of `pixel` in `pass` again, connected to the light subpaths of `block`.
 pub(super) fn camera<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize, pixel: usize) -> EyeSample {
     let lit = light(ready, pass, block, pixel);
     let start = ready.blocks.camera_start(ready.scene, ready.film, ready.seed, pass, pixel);
@@ -217,7 +218,7 @@ pub(super) struct Lit<S: MisSums> {
     pub splats: Vec<Splat>,
 }
 
-/// Traces the light subpaths of `block`; of what they bring to the film, the splats on `pixel`.
+/// Traces the light subpaths of `block`; of what they contribute to the film, the splats on `pixel`.
 pub(super) fn light<P: Profile>(
     ready: &Ready<'_, P>,
     pass: usize,

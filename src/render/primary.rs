@@ -1,5 +1,5 @@
-//! What primary rays see: alpha, and the layers that tell of the first surface. A cheap pass of its own, only
-//! where something asks for it, through the same film positions as the camera subpaths.
+//! What primary rays see: alpha, and the layers that describe the first surface. A cheap pass of its own,
+//! only where something requests it, through the same film positions as the camera subpaths.
 
 use super::{block::CameraStart, instrument::Instrument};
 use crate::{
@@ -16,7 +16,7 @@ use crate::{
 use rayon::prelude::*;
 use std::f32::consts::PI;
 
-/// What is asked of primary rays.
+/// What is requested of primary rays.
 pub struct Pass {
     alpha: bool,
     quantities: Vec<Quantity>,
@@ -24,7 +24,7 @@ pub struct Pass {
 
 /// What they saw.
 pub struct Seen {
-    /// The part of each pixel that the scene covers; empty where nobody asked.
+    /// The part of each pixel that the scene covers; empty where it was not requested.
     pub alpha: Vec<f32>,
     /// Per quantity, one plane per channel.
     planes: Vec<(Quantity, Vec<Vec<f32>>)>,
@@ -38,7 +38,7 @@ impl Seen {
 }
 
 impl Pass {
-    /// What `film` and `layers` ask for.
+    /// What `film` and `layers` request.
     pub fn new(film: &Film, layers: &[Layer]) -> Self {
         let mut quantities: Vec<Quantity> = Vec::new();
         for layer in layers {
@@ -89,7 +89,7 @@ impl Pass {
     }
 }
 
-/// A primary ray and what it meets first; nulls and boundaries of media count, as in Mitsuba.
+/// A primary ray and what it hits first; nulls and boundaries of media count, as in Mitsuba.
 struct View<'a> {
     scene: &'a Scene,
     bench: &'a Instrument<'a>,
@@ -97,7 +97,7 @@ struct View<'a> {
     aperture: Vec2,
     ray: Ray,
     hit: Option<(Hit, SurfacePoint)>,
-    /// Something shines from everywhere at infinity.
+    /// There is an environment emitter, in every direction at infinity.
     environment: bool,
     /// Step across the film that `duv_dx` speaks of [pixels].
     step: f32,
@@ -112,8 +112,8 @@ impl<'a> View<'a> {
         Self { scene, bench, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }
     }
 
-    /// The chance that the ray interacts with something or meets a visible environment: what Mitsuba's
-    /// `volpath` finds out by walking on. Emitters that are hidden do not count.
+    /// The probability that the ray interacts with something or hits a visible environment: what Mitsuba's
+    /// `volpath` determines by walking on. Emitters that are hidden do not count.
     fn alpha(&self, stream: &mut Stream) -> f32 {
         let hidden = self.bench.settings.options.hide_emitters;
         if self.environment && !hidden {
@@ -151,7 +151,7 @@ impl<'a> View<'a> {
         if seen == Spectrum::ZERO { bsdf.albedo(point.uv, vec3(wi.x, wi.y, -wi.z)) } else { seen }
     }
 
-    /// How the texture coordinates change from here to where a neighbouring ray meets the tangent plane.
+    /// How the texture coordinates change from here to where a neighbouring ray hits the tangent plane.
     fn uv_change(&self, hit: &Hit, point: &SurfacePoint, across: Vec2) -> Vec2 {
         let (du, dv) = partials(&self.scene.geometry, &self.ray, hit, point);
         let neighbour = self.film + across * self.step;

@@ -1,4 +1,5 @@
-//! The image in parts: what each strategy brings, weighted and as if it ran alone (Veach 1997, fig. 10.2 and 10.3).
+//! The image in parts: what each strategy contributes, weighted and as if it ran alone (Veach 1997, fig. 10.2
+//! and 10.3).
 
 use super::{compiled::Ready, instrument::Instrument};
 use crate::{
@@ -11,7 +12,7 @@ use crate::{
     },
 };
 
-/// Which strategies are told apart.
+/// Which strategies are distinguished.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StrategyTable {
     /// Paths of up to so many segments, strategy by strategy; longer ones by kind.
@@ -122,7 +123,7 @@ pub(super) fn block<P: Profile>(
     parts
 }
 
-/// What light subpaths bring to the film.
+/// What light subpaths contribute to the film.
 struct LightPathObserver<'a> {
     film: &'a Film,
     table: StrategyTable,
@@ -137,7 +138,7 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
         let (Meeting::Lens(film), Some(contribution)) = (meeting, contribution) else { return };
         let (cell, parts) = (self.table.index(s, t) as u32, &mut self.parts);
-        // A share of the film goes with both values alike.
+        // A share of the film applies to both values equally.
         self.film.spread(film, Spectrum::ONE, |pixel, share| {
             let (weighted, alone) = (contribution.value * share, contribution.alone * share);
             parts.push(CellContribution { cell, pixel: pixel as u32, weighted, alone });
@@ -145,7 +146,7 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
     }
 }
 
-/// What one camera subpath brings: sums over its cells, weighted and alone.
+/// What one camera subpath contributes: sums over its cells, weighted and alone.
 struct CameraPathObserver {
     table: StrategyTable,
     sums: Vec<(Spectrum, Spectrum)>,
@@ -226,7 +227,7 @@ impl StrategyImages {
 }
 
 impl Instrument<'_> {
-    /// The parts of the image that `passes` passes make, told of as they come.
+    /// The parts of the image that `passes` passes make, reported as they finish.
     pub fn parts(
         &self,
         table: StrategyTable,

@@ -1,4 +1,4 @@
-//! How long each strategy takes: the time of its joins, and that of the walks.
+//! How long each strategy takes: the time of its connections, and that of the walks.
 
 use super::{compiled::Ready, instrument::Instrument, strategy_images::StrategyTable};
 use crate::{
@@ -70,8 +70,8 @@ pub(super) fn block<P: Profile>(
     }
 }
 
-/// A span longer than this, and than [`OUTLIER`] medians of its kind, held an interruption: other programs take the
-/// processor for milliseconds, joins take it for microseconds [s].
+/// A span longer than this, and than [`OUTLIER`] medians of its kind, held an interruption: other programs
+/// take the processor for milliseconds, connections take microseconds [s].
 const INTERRUPTION: f32 = 1e-3;
 /// See [`INTERRUPTION`].
 const OUTLIER: f32 = 50.0;
@@ -87,7 +87,7 @@ fn total(spans: &[f32], look: f64) -> f64 {
     sum * spans.len() as f64 / kept as f64
 }
 
-/// Looks at the clock before and after every connection.
+/// Reads the clock before and after every connection.
 struct TimingObserver<'a> {
     film: &'a Film,
     table: StrategyTable,
@@ -115,7 +115,7 @@ impl<'a> TimingObserver<'a> {
         span
     }
 
-    /// The time between joins so far, which is then forgotten.
+    /// The time between connections so far, which is then reset.
     fn rest(&mut self) -> f64 {
         let span = self.span();
         self.between.push(span);

@@ -1,5 +1,5 @@
-//! Inverse distribution functions, for numbers whose order must be kept: u = (bits + 1/2) 2^-64, which is told from 0 and
-//! from 1 alike, so that either tail is as fine as it should be.
+//! Inverse distribution functions, for numbers whose order must be kept: u = (bits + 1/2) 2^-64, which is
+//! distinguished from 0 and from 1 alike, so that either tail is as fine as it should be.
 
 use statrs::function::erf::erfc_inv;
 

@@ -33,7 +33,7 @@ const SLIPS: f32 = 0.01;
 /// The medium at infinity, by direction.
 #[derive(Clone, Debug)]
 pub enum Infinity {
-    /// Nothing whose medium is known was seen to reach it; this is assumed.
+    /// Nothing with a known medium was seen to reach it; this is assumed.
     Unseen(MediumIndex),
     /// The same all around.
     Uniform(MediumIndex),
@@ -121,7 +121,7 @@ impl Votes {
 /// What is known of a scene's media before anything is located.
 #[derive(Clone, Debug)]
 pub struct Known {
-    /// Shapes of whose sides some medium is known.
+    /// Shapes with a known medium on some side.
     boundaries: Vec<u32>,
     /// Points whose medium is stated, or has been located.
     points: Vec<(Vec3, MediumIndex)>,

@@ -37,7 +37,7 @@ pub struct Surface {
     pub transmits: bool,
     /// The boundary may share faces with another shape's (see [`boundary::touching`]).
     pub touching: bool,
-    /// Some of its scattering is not Dirac: the answer of its BSDF, kept where every vertex asks.
+    /// Some of its scattering is not Dirac: the answer of its BSDF, stored because every vertex needs it.
     pub connectible: bool,
 }
 

@@ -46,13 +46,13 @@ impl Lens {
         })
     }
 
-    /// The point of the film plane (camera space, z = 1 left out) that a film position stands for.
+    /// The point of the film plane (camera space, z = 1 left out) that corresponds to a film position.
     #[inline(always)]
     pub fn plane(&self, film: Vec2) -> Vec2 {
         (self.centre - film) / self.scale
     }
 
-    /// The film position that a point of the film plane stands for.
+    /// The film position that corresponds to a point of the film plane.
     #[inline(always)]
     pub fn film(&self, plane: Vec2) -> Vec2 {
         self.centre - plane * self.scale

@@ -1,11 +1,11 @@
-//! Sensors: where camera subpaths start and what light subpaths are joined to. Camera space: +z forwards, +y
+//! Sensors: camera subpaths start there, light subpaths connect there. Camera space: +z forwards, +y
 //! up, +x to the image's left, as in Mitsuba. Film positions are in pixels, (0, 0) the top left corner of the
 //! image.
 //!
 //! A camera subpath starts by a film position and a point of the aperture, both sampled with densities that do not
-//! depend on the path; a connection with the sensor samples the aperture likewise and finds the film position. What
-//! remains of either is one density: of directions per film area of a pixel, or, for parallel rays, of
-//! positions.
+//! depend on the path; a connection with the sensor samples the aperture in the same way and finds the film
+//! position. What remains of either is one density: of directions per film area of a pixel, or, for parallel
+//! rays, of positions.
 
 mod lens;
 mod orthographic;
@@ -97,13 +97,13 @@ pub fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Sensor>
     Ok(sensor)
 }
 
-/// Where the sensor stands in the file's coordinates.
+/// The sensor's position in the file's coordinates.
 pub fn viewpoint(object: &Object, library: &Library) -> Result<DVec3> {
     Ok(Params::new(object, library).transform("to_world")?.transform_point3(DVec3::ZERO))
 }
 
 impl Sensor {
-    /// A point of the aperture for one walk or join, uniform by area, in the lens's own axes [m].
+    /// A point of the aperture for one walk or connection, uniform by area, in the lens's own axes [m].
     #[inline(always)]
     pub fn sample_aperture(&self, stream: &mut Stream) -> Vec2 {
         match self {
@@ -142,7 +142,7 @@ impl Sensor {
         }
     }
 
-    /// True where all rays are parallel: the sensor stands for a point at infinity.
+    /// True where all rays are parallel: the sensor acts as a point at infinity.
     #[inline(always)]
     pub fn is_parallel(&self) -> bool {
         matches!(self, Self::Orthographic(_))

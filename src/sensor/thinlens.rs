@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// A round lens without thickness. Every film position has its image on the plane of focus, and all rays from
-/// there through the lens count alike.
+/// there through the lens count equally.
 #[derive(Clone, Debug)]
 pub struct ThinLens {
     lens: Lens,

@@ -27,8 +27,8 @@ impl Heuristic {
     /// Default alpha of the cutoff heuristic.
     pub const ALPHA: f32 = 0.1;
 
-    /// Most segments of paths that the cutoff heuristic weighs. It has to know every strategy's q apart: no sum over
-    /// strategies tells how many of them stay below a maximum that is not known yet.
+    /// Most segments of paths that the cutoff heuristic weighs. It has to know every strategy's q separately:
+    /// no sum over strategies gives how many of them stay below a maximum that is not known yet.
     pub const CUTOFF_EDGES: u32 = 32;
 
     /// Every rule as typed.

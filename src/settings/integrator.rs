@@ -1,5 +1,5 @@
-//! The integrator of a scene. All are one estimator with strategies left out; `aov` and `moment` hold
-//! another one and ask for more channels. `fog` is a preview that makes no paths; `single_scattering` and
+//! The integrator of a scene. All are one estimator with strategies left out; `aov` and `moment` hold another
+//! one and request more channels. `fog` is a preview that makes no paths; `single_scattering` and
 //! `non_scattering` restrict what media do.
 
 use super::heuristic::Heuristic;

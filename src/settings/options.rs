@@ -5,13 +5,13 @@ use super::heuristic::Heuristic;
 /// Which strategies run. Their weights sum to one over those that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Strategies {
-    /// s = 0: camera subpaths meet emitters.
+    /// s = 0: camera subpaths hit emitters.
     pub emitter_hit: bool,
     /// s = 1, t >= 2: next-event estimation.
     pub next_event: bool,
     /// s >= 2, t >= 2: connections of camera and light subpaths.
     pub connection: bool,
-    /// t = 1: light subpaths join the lens.
+    /// t = 1: light subpaths connect to the lens.
     pub lens: bool,
 }
 

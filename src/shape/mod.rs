@@ -130,7 +130,7 @@ impl Primitive {
 
 /// What every kind of shape can do.
 pub trait ShapeModel {
-    /// How many primitives it is made of.
+    /// How many primitives it has.
     fn primitive_count(&self) -> usize {
         1
     }

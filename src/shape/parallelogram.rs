@@ -77,7 +77,7 @@ pub fn flat_error(corner: Vec3, along_u: Vec3, along_v: Vec3) -> Vec3 {
 }
 
 /// Steps per axis in which all corners and edges of a shape are whole numbers: every corner is then exact
-/// however it is summed, and the faces of a box meet without gaps. 0: no steps.
+/// however it is summed, and the faces of a box touch without gaps. 0: no steps.
 struct Grid(DVec3);
 
 impl Grid {

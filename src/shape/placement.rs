@@ -1,4 +1,4 @@
-//! Where a shape stands: its transform, recentred, in f64.
+//! Where a shape is: its transform, recentred, in f64.
 
 use crate::{
     description::Params,

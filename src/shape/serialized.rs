@@ -112,7 +112,7 @@ impl Container {
         } else {
             u32::from_le_bytes(bytes(&mut self.source)?).into()
         };
-        // A header of four bytes stands before every mesh.
+        // A header of four bytes precedes every mesh.
         let start = start.checked_add(4).filter(|start| *start < end);
         let start = start.ok_or_else(|| Fault::new("a mesh inside the file", "one beyond its end"))?;
         self.source.seek(SeekFrom::Start(start))?;

@@ -149,7 +149,7 @@ impl ShapeModel for Sphere {
         let distance = to_reference.length();
         let h = u.x * one_minus_cos;
         let (cosine, sine_squared) = (1.0 - h, h * (2.0 - h));
-        // Where the direction first meets the sphere, as an angle at its centre (pbrt-v4, 6.2.4).
+        // Where the direction first hits the sphere, as an angle at its centre (pbrt-v4, 6.2.4).
         let sine_max = self.radius / distance;
         let ratio = (sine_squared / (sine_max * sine_max)).min(1.0);
         let cos_alpha = sine_squared / sine_max + cosine * (1.0 - ratio).sqrt();

@@ -27,7 +27,7 @@ pub struct Image {
 /// The longest side of an image [pixels].
 pub const LONGEST_SIDE: u32 = 1 << 16;
 
-/// An image has at most this many pixels (16384 x 8192): a few bytes of header must not ask for all memory.
+/// An image has at most this many pixels (16384 x 8192): a few bytes of header must not allocate all memory.
 pub const MOST_PIXELS: usize = 1 << 27;
 
 /// What a decoder may allocate [bytes]: the most pixels, in four channels of 32 bits.

@@ -34,7 +34,7 @@ pub trait TextureModel {
 }
 
 /// Makes the enum, its dispatch, the registry and the list of test examples from one row a model, and the
-/// names of more plugins that stand for one colour.
+/// names of more plugins that represent one colour.
 macro_rules! textures {
     ($($name:literal => $model:ident,)* colors: $($color:literal,)*) => {
         /// Any texture. Cheap to clone: images are shared.
@@ -111,7 +111,7 @@ pub fn emission(params: &Params<'_>, name: &'static str, default: f32) -> Result
     of_role(params, name, default, Role::Light)
 }
 
-/// The same for indices of refraction, whose spectra may exceed 1.
+/// The same for indices of refraction; their spectra may exceed 1.
 pub fn index(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
     of_role(params, name, default, Role::Index)
 }
@@ -132,7 +132,7 @@ fn of_role(params: &Params<'_>, name: &'static str, default: f32, role: Role) ->
     color.map(Texture::constant)
 }
 
-/// A plugin that stands for one colour; or `d65` around a texture, which is that texture.
+/// A plugin that represents one colour; or `d65` around a texture, which is that texture.
 fn build_color(params: &Params<'_>) -> Result<Texture> {
     if colour::is_plugin(params.object) {
         return Uniform::build(params).map(Texture::Uniform);

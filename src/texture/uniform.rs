@@ -13,8 +13,8 @@ use crate::math::{Spectrum, Vec2};
 pub struct Uniform(pub Spectrum);
 
 impl Uniform {
-    /// Of any plugin that stands for one colour. As light, for that has the widest range; where a plugin stands
-    /// in another, [`super::parameter`] reads it as what it is there.
+    /// Of any plugin that represents one colour. As light, for that has the widest range; where a plugin is
+    /// nested in another, [`super::parameter`] reads it as what it is there.
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         colour::of_plugin(params, Role::Light).map(Self)
     }

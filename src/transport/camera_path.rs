@@ -26,7 +26,7 @@ pub struct CameraPath<'a, P: Profile, R> {
     estimator: &'a Estimator<'a, P>,
     cache: &'a LightCache<P::MisSums>,
     hero: usize,
-    /// The last vertex that the walk left: where next-event estimation would have been made from.
+    /// The last vertex that the walk left, from which next-event estimation would have been done.
     previous: Vec3,
     observer: R,
 }
@@ -85,7 +85,7 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
     #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
         self.observer.arrive(vertex);
-        // Where nulls exist, flights have shown the emitters that they came to, passed or not.
+        // Where nulls exist, flights have already reported the emitters that they reached, passed or not.
         if !P::NULLS
             && let Interaction::Surface(point) = &vertex.interaction
             && let Some(light) = self.estimator.scene.surface(point.shape).emitter
@@ -123,7 +123,7 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
 }
 
 impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
-    /// What it gathers goes to `observer`.
+    /// Its contributions go to `observer`.
     pub fn new(
         estimator: &'a Estimator<'a, P>,
         cache: &'a LightCache<P::MisSums>,
@@ -138,7 +138,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         self.observer
     }
 
-    /// s = 0: the walk has come to an emitter, a point of which is `found` if it emits this way.
+    /// s = 0: the walk has reached an emitter; `found` is the point of it, if it emits this way.
     #[inline]
     fn emission(&mut self, subpath: &Subpath<P::MisSums>, found: impl FnOnce() -> Option<EmitterSample>) {
         if self.estimator.counts.emitter_hit <= 0.0 {
@@ -215,13 +215,13 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         Some((arrive::<P>(departure, &state, part.medium, &at, self.hero)?, sample))
     }
 
-    /// s = 0: the walk has met an emitter.
+    /// s = 0: the walk has hit an emitter.
     ///
     /// LW96 eq. 3: the term L_e, weighted by eq. 14.
     #[inline]
     pub fn emitter_hit(&self, subpath: &Subpath<P::MisSums>, sample: &EmitterSample) -> Option<Contribution> {
         let counts = &self.estimator.counts;
-        // Media are no emitters that can be hidden: what is behind them is seen through them.
+        // Media cannot be hidden as emitters: what is behind them is seen through them.
         let hidden = self.estimator.hide_emitters && !(P::EMISSIVE && sample.point.is_volume());
         if counts.emitter_hit <= 0.0 || (subpath.edges == 1 && hidden) {
             return None;
@@ -239,8 +239,8 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         let unit = subpath.inv_pdf / counts.emitter_hit;
         let by_light = subpath.others_over_pdf_rev.scaled(sample.pdf_direction * sample.pdf_start * unit);
         let others = P::MisSums::of(subpath.pdf_over_hero_before.scaled(connections * unit)).and(by_light);
-        // `value` is radiance x cosine on shapes: the walk's density already contains that cosine. The rate of media is
-        // for weights alone.
+        // `value` is radiance x cosine on shapes: the walk's density already contains that cosine. The rate
+        // of media is used only in weights.
         let radiance = sample.value / sample.cosine;
         let weight = mis::emitter_hit_weight(subpath.pdf_over_hero, others, self.estimator.heuristic);
         let weight_alone = mis::weight_alone(subpath.pdf_over_hero);

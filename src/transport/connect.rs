@@ -100,13 +100,13 @@ fn lift(point: &EmitterPoint, towards: Vec3) -> Vec3 {
 /// The contribution of a strategy to one path.
 #[derive(Clone, Copy, Debug)]
 pub struct Contribution {
-    /// The weighted contribution, of which the caller takes as many samples as it has.
+    /// The weighted contribution of one sample; the caller may take several.
     pub value: Spectrum,
     /// The weight in it, times the number of channels.
     pub weight: f32,
     /// What the strategy would contribute if it ran alone: [`Self::share`] of it is `value`.
     pub alone: Spectrum,
-    /// The weight that it would then have.
+    /// The weight that it would have then.
     pub weight_alone: f32,
     /// What remains of radiance along the connecting segment; 1 where there is none.
     pub transmittance: Spectrum,
@@ -141,7 +141,7 @@ impl Div<f32> for Contribution {
 pub struct Span {
     /// From the first end, to just before the second.
     pub ray: Ray,
-    /// How much further the second end lies.
+    /// How much further away the second end lies.
     pub cut: f32,
     /// Squared distance of the ends; 1 where one is at infinity.
     pub distance_squared: f32,

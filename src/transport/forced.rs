@@ -1,11 +1,12 @@
-//! Forced interaction (P03T sec. A.2.2): a primary ray that crosses media makes two walks, one from a collision in them
-//! and one from what lies behind. Thin media are seen by every sample, not by the few that chance has collide.
+//! Forced interaction (P03T sec. A.2.2): a primary ray that crosses media starts two walks, one from a
+//! collision in them and one from what lies behind. Every sample sees thin media, not only the few that
+//! happen to collide.
 //!
 //! Forcing makes collisions in thin media denser by 1 / (1 - T), T the transmittance of all media that the ray crosses.
 //! The balance heuristic accounts for it: that factor multiplies the density of every strategy that samples
 //! the first segment from the camera, as all but the connections to the lens do. It depends on the primary
 //! ray alone, so that it is the same function of the path in every strategy, and the weights sum to one. On
-//! surfaces and where media emit the factor is left at 1: the weights there are not the best, but right.
+//! surfaces and where media emit the factor is left at 1: the weights there are not optimal, but correct.
 
 use super::{
     Estimator,
@@ -23,7 +24,7 @@ use crate::{
     shape::Ray,
 };
 
-/// One eye sample with a forced interaction; the rest as in [`super::camera_path::sample`].
+/// One camera sample with a forced interaction; the rest as in [`super::camera_path::sample`].
 pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     estimator: &Estimator<'_, P>,
     cache: &LightCache<P::MisSums>,
@@ -60,8 +61,8 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     camera.into_observer()
 }
 
-/// By how much more densely forcing makes the first vertex from the eye in a medium, per channel, where
-/// primary ray `ray` sees it.
+/// The factor by which forcing raises the density of the first vertex from the camera in a medium, per
+/// channel, where primary ray `ray` sees it.
 pub fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Channels {
     let Estimator { scene, hide_emitters, .. } = *estimator;
     gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.sensor_medium, hide_emitters)))
@@ -70,7 +71,7 @@ pub fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Channels {
 /// No gain is taken to be more than this: thinner media are seen by camera subpaths alone as it is.
 const MOST: f32 = 1e4;
 
-/// 1 / (1 - exp(-depth)); where nothing is sure to be crossed nothing is known, and nothing gained.
+/// 1 / (1 - exp(-depth)); where no medium is certain to be crossed, nothing is known and nothing gained.
 fn gain_of<L: Channels>(depth: L) -> L {
     let channel = |depth: f32| if depth > 0.0 { (-1.0 / (-depth).exp_m1()).min(MOST) } else { 1.0 };
     L::from_spectrum(depth.to_spectrum().map(channel))

@@ -181,7 +181,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
         Some((seen.film, contribution))
     }
 
-    /// s = 1, t = 1: the emitter itself as the sensor sees it, where a camera subpath could have met it.
+    /// s = 1, t = 1: the emitter itself as the sensor sees it, where a camera subpath could have hit it.
     pub fn connect_start_to_lens(&self, aperture: Vec2, stream: &mut Stream) -> Option<(Vec2, Contribution)> {
         let (estimator, start) = (self.estimator, &self.start);
         let scene = estimator.scene;

@@ -60,12 +60,12 @@ impl<S: MisSums> End<S> {
     }
 }
 
-/// A strategy as its weights see it.
+/// A strategy as the weights use it.
 #[derive(Clone, Copy, Debug)]
 pub struct Strategy {
     /// Expected samples.
     pub count: f32,
-    /// By which it shares paths with the others.
+    /// The heuristic by which it shares paths with the others.
     pub heuristic: Heuristic,
 }
 
@@ -87,7 +87,7 @@ pub fn connection_weight<S: MisSums>(
     others.scaled(1.0 / strategy.count).weight(strategy.heuristic, a.pdf_over_hero * b.pdf_over_hero)
 }
 
-/// The same where a camera subpath has met the emitter itself (s = 0): `others` are all other strategies in units of
+/// The same where a camera subpath has hit the emitter itself (s = 0): `others` are all other strategies in units of
 /// the walk's own density, whose channels are `pdf_over_hero`.
 ///
 /// LW96 eq. 14.

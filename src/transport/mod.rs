@@ -107,7 +107,7 @@ pub struct Counts {
 
 /// Draws from the light cache at every camera vertex.
 const CONNECTIONS_PER_VERTEX: u32 = 1;
-/// Vertices that the cache of a block should hold at most, on average: it has to stay near the processor.
+/// Vertices that the cache of a block should hold at most, on average: it has to fit the processor's caches.
 const CACHE_VERTICES: f32 = 16_384.0;
 /// Light subpaths that measure how many vertices a light subpath leaves.
 const PILOT_WALKS: u64 = 2_048;
@@ -167,7 +167,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     fn plan_connections(&mut self, seed: u64, walks_per_block: u64) {
         self.keep = 1.0;
         let mut cache = LightCache::new(P::Channels::COUNT);
-        // Compiled for instruments anyhow; pilot walks are few.
+        // Compiled for instruments in any case; pilot walks are few.
         let mut observer: &mut dyn Observer<P::MisSums> = &mut Nowhere;
         for walk in 0..PILOT_WALKS {
             let mut stream = Stream::new(seed, walk, 0, Purpose::Pilot);

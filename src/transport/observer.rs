@@ -1,6 +1,6 @@
-//! Recorders: what is done with the contributions of the estimator. All of them pass through one, which an image is
-//! made with, and instruments look at the walks with. The estimator is compiled for its recorder: what a recorder
-//! does not want to know costs nothing.
+//! Recorders receive the contributions of the estimator. An image is rendered with one, and instruments
+//! inspect the walks with one. The estimator is compiled for its recorder: what a recorder does not use costs
+//! nothing.
 
 use super::{
     Strategies,
@@ -82,7 +82,7 @@ impl Strategies {
 /// What the last vertex of one walk was connected to.
 #[derive(Clone, Copy, Debug)]
 pub enum Meeting<'a, S: MisSums> {
-    /// s = 0: the camera subpath came to this point of an emitter.
+    /// s = 0: the camera subpath hit this point of an emitter.
     Met(&'a Subpath<S>, &'a EmitterSample),
     /// s = 1: a point of an emitter, picked for the last vertex.
     Emitter(&'a EmitterSample),
@@ -120,7 +120,7 @@ pub trait Observer<S: MisSums> {
     #[inline]
     fn depart(&mut self, _departure: &Departure<S>) {}
 
-    /// A walk came to a vertex that may scatter on.
+    /// A walk reached a vertex that may scatter on.
     #[inline]
     fn arrive(&mut self, _vertex: &Vertex<S>) {}
 

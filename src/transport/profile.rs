@@ -117,7 +117,7 @@ pub struct Needs {
     pub chromatic: bool,
     /// Some medium's coefficients vary in space.
     pub heterogeneous: bool,
-    /// Some surface lets rays pass undeflected, were it only those from the camera.
+    /// Some surface lets rays pass undeflected, even if only those from the camera.
     pub nulls: bool,
     /// Some emitter is at infinity, or the sensor is.
     pub infinite: bool,

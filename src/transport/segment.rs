@@ -27,9 +27,9 @@ pub struct Segment<'a> {
     ray: Ray,
     /// The medium that the ray starts in.
     medium: MediumIndex,
-    /// How far behind the boundary the ray starts [m]: what was skipped to be clear of the surface still counts as way
-    /// through a homogeneous medium there. In media whose mean free path is some hundreds of rounding errors, light
-    /// would otherwise always start too deep.
+    /// How far behind the boundary the ray starts [m]: the distance skipped to be clear of the surface still
+    /// counts as distance through a homogeneous medium there. In media whose mean free path is some hundreds
+    /// of rounding errors, light would otherwise always start too deep.
     skipped: f32,
     /// Emitters do not block the segment: it leads to a camera that does not see them.
     hidden: bool,
@@ -84,7 +84,7 @@ impl<'a> Segment<'a> {
         self.scene.null_transmission(point, self.ray.direction)
     }
 
-    /// A segment that comes to a surface passes or stops.
+    /// A segment that reaches a surface passes or stops.
     #[inline]
     pub fn sample_crossing(&self, point: &SurfacePoint, stream: &mut Stream) -> NullCrossing {
         let through = self.transmission(point);
@@ -95,7 +95,7 @@ impl<'a> Segment<'a> {
         NullCrossing::Passed(through, passing)
     }
 
-    /// Shows a point that a flight has come to, if it emits.
+    /// Shows a point that a flight has reached, if it emits.
     #[inline]
     fn show_emitter<L>(
         &self,
@@ -143,7 +143,7 @@ impl<'a> Segment<'a> {
     }
 }
 
-/// What became of a sampled segment at a surface.
+/// What happened to a sampled segment at a surface.
 pub enum NullCrossing {
     /// It ends there, which had this probability from either side: it takes the place of sigma_t at a collision, cancels
     /// in every ratio of densities, and divides the throughput.

@@ -23,8 +23,8 @@ pub struct Scattering {
     pub pdf_rev: f32,
 }
 
-/// A subpath of a camera or light subpath: all that is known of it when it comes to its i-th point after the
-/// start, before anything happens there.
+/// A subpath of a camera or light subpath: all that is known about it when it reaches its i-th point after
+/// the start, before anything happens there.
 ///
 /// The last four fields are the running sums of the weights. With p>_i the density by which this
 /// walk makes vertex i (flight, direction and geometry, LW96 eq. 13) and p<_i that of the opposite walk, for
@@ -164,8 +164,8 @@ impl<S: MisSums> Vertex<S> {
     }
 }
 
-/// By what a light subpath's scattering differs where the shading normal is not the geometric one (Veach 1997,
-/// eq. 5.19): |wi.ns| |wo.ng| / (|wi.ng| |wo.ns|). Camera subpaths and media have no such factor.
+/// The correction of a light subpath's scattering where the shading normal is not the geometric one (Veach
+/// 1997, eq. 5.19): |wi.ns| |wo.ng| / (|wi.ng| |wo.ns|). Camera subpaths and media have no such factor.
 #[inline]
 pub fn shading_correction(
     point: &SurfacePoint,

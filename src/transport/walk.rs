@@ -141,38 +141,38 @@ pub fn go_on<P: Profile>(
     if vertex.subpath.edges < LONG { Some(next) } else { thinned(next, stream) }
 }
 
-/// Walks of more segments end by chance: where nothing absorbs and nothing is left to leave, in white fog without end,
-/// they would else go on for ever.
+/// Walks of more segments end by Russian roulette: where nothing absorbs and there is no way out, as in white
+/// fog without end, they would otherwise never end.
 const LONG: u32 = 100_000;
-/// The chance with which a long walk goes on from a vertex.
+/// The probability that a long walk goes on from a vertex.
 const LONG_SURVIVAL: f32 = 0.9999;
 
-/// Roulette that no density knows of, the same for all strategies.
+/// Russian roulette that no density contains, the same for all strategies.
 #[cold]
 fn thinned<S: MisSums>(next: Departure<S>, stream: &mut Stream) -> Option<Departure<S>> {
     let throughput = next.throughput / LONG_SURVIVAL;
     (stream.uniform() < LONG_SURVIVAL).then_some(Departure { throughput, ..next })
 }
 
-/// Where a flight comes to, as far as densities depend on it.
+/// Where a flight arrives, as far as densities depend on it.
 pub struct Arrival<L> {
     /// World position; none at infinity.
     pub position: Option<Vec3>,
     /// |cos| on a surface, 1 elsewhere.
     pub cosine: f32,
-    /// sigma_t per channel at a collision, the rate of [`crate::medium::Emission::rate`] where emission is met in
-    /// a medium, 1 elsewhere.
+    /// sigma_t per channel at a collision, the rate of [`crate::medium::Emission::rate`] where emission is
+    /// sampled in a medium, 1 elsewhere.
     pub sigma_t: L,
 }
 
 impl<L: Channels> Arrival<L> {
-    /// In no place, but from a direction.
+    /// At no position, but from a direction.
     fn at_infinity() -> Self {
         Self { position: None, cosine: 1.0, sigma_t: L::splat(1.0) }
     }
 }
 
-/// The vertex at the end of a flight; none if its density is no number.
+/// The vertex at the end of a flight; none if its density is not finite and positive.
 #[inline]
 pub fn land<P: Profile>(
     departure: &Departure<P::MisSums>,
@@ -192,7 +192,7 @@ pub fn land<P: Profile>(
     Some(Vertex { interaction, connections, subpath })
 }
 
-/// The subpath that a flight extends to `at`; none if its density is no number.
+/// The subpath that a flight extends to `at`; none if its density is not finite and positive.
 ///
 /// LW96 eq. 13: p' p'' / d^2, the density of the direction (`departure.pdf_fwd`), that of the flight (eq. 6 in a
 /// medium, eq. 7 on a surface) and the geometry; its inverse is what weights need.
@@ -217,7 +217,8 @@ pub fn arrive<P: Profile>(
     let geometry = measure::solid_angle_to_vertex(at.cosine, distance_squared);
     let pdf = departure.pdf_fwd * transmitted.hero(hero) * at.sigma_t.hero(hero) * geometry;
     let inv_pdf = 1.0 / pdf;
-    // A density of 0, infinite, or so great or small that its inverse is: no walk in a real scene comes here.
+    // A density of 0, infinite, or so great or small that its inverse is: no walk in a real scene reaches
+    // this.
     if !(inv_pdf > 0.0 && inv_pdf < f32::INFINITY) {
         return None;
     }
@@ -268,7 +269,7 @@ pub fn cross<P: Profile>(
 #[inline]
 fn squared_distance(a: Vec3, b: Vec3) -> f32 {
     let squared = a.distance_squared(b);
-    // What is no number is none of these.
+    // NaN is not 0: it is returned.
     if squared != 0.0 {
         return squared;
     }
@@ -353,7 +354,7 @@ fn collide<S: MisSums>(
     Some(ScatterSample { direction, weight, pdf_fwd: pdf, pdf_rev: pdf, dirac: false })
 }
 
-/// LW96 eq. 9: p_reflection, or whatever the bsdf samples by.
+/// LW96 eq. 9: p_reflection, or the density that the BSDF samples by.
 #[inline]
 fn reflect<S: MisSums>(
     scene: &Scene,

@@ -18,7 +18,7 @@ pub struct Negative {
 }
 
 impl Negative {
-    /// The error that says so, at what stands at `location` in the file.
+    /// The error that says so, for what is at `location` in the file.
     pub fn error(&self, location: &Location, place: &Place) -> Error {
         let [x, y, z] = (self.position.as_dvec3() + place.recentre).to_array();
         Error::new(

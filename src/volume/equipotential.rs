@@ -214,7 +214,7 @@ impl Function for Potential {
     #[inline]
     fn integral(&self, line: &Line, first: f64, last: f64) -> f64 {
         let mut ends = [first, first, first, last];
-        // Beside the segment, or nowhere: NaN from a line that never meets the change.
+        // Beside the segment, or nowhere: NaN from a line that never reaches the change.
         let [a, b] = self.thing.changes(line).map(|t| if t.is_nan() { first } else { t.clamp(first, last) });
         (ends[1], ends[2]) = (a.min(b), a.max(b));
         let pieces = ends.windows(2).filter(|pair| pair[0] < pair[1]);

@@ -65,7 +65,7 @@ impl Place {
 
 /// What every volume can do. Positions are world positions, recentred.
 pub trait VolumeModel {
-    /// The value at `position`, per channel. Who looks where the volume does not reach asks `contains` first.
+    /// The value at `position`, per channel. Where the volume may not reach, call `contains` first.
     fn eval<L: Channels>(&self, position: Vec3) -> L;
 
     /// Bounds of every channel within the box from `low` to `high`: conservative, and as narrow as is cheap.
@@ -176,7 +176,7 @@ volumes! {
     "gridvolume" => Grid,
 }
 
-/// Plugins that are parts of a volume and none themselves, and whose parts they are.
+/// Plugins that are parts of a volume and none themselves, each with the volume that it is a part of.
 pub const PARTS: &[(&str, &str)] = &[("wave", "cosine"), ("term", "polynomial")];
 
 /// How a volume is built.

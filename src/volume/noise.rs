@@ -120,8 +120,8 @@ impl Function for Turbulence {
         self.value(self.octaves.iter().map(octave).sum())
     }
 
-    /// Every octave stays within its slope of what it is in the middle, where that tells more than that it is from -1
-    /// to 1.
+    /// Every octave stays within its slope of what it is in the middle, where that says more than that it is
+    /// from -1 to 1.
     fn range(&self, low: DVec3, high: DVec3) -> [f64; 2] {
         let (center, reach) = (0.5 * (low + high), 0.5 * (high - low).length());
         let mut mean = [0.0; 2];

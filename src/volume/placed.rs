@@ -71,12 +71,12 @@ pub(super) fn common(a: [DVec3; 2], b: [DVec3; 2]) -> [DVec3; 2] {
 /// The box around an affine map's image of a finite box, wide enough for rounding.
 fn image(map: &DAffine3, finite: [DVec3; 2]) -> [DVec3; 2] {
     let [low, high] = boxes::image(map, finite);
-    // Far more than rounding can move a point by, far less than f32 tells apart.
+    // Far more than rounding can move a point by, far less than f32 can resolve.
     let slack = (low.abs().max(high.abs()) + map.translation.abs()) * 1e-12;
     [low - slack, high + slack]
 }
 
-/// A density function where it stands in the world.
+/// A density function placed in the world.
 #[derive(Clone, Debug)]
 pub struct Placed<F> {
     to_own: DAffine3,

@@ -6,7 +6,7 @@
 //! together, is at most 31.
 //!
 //! The box is [-C, C] along every axis, C being `half_width` (> 0, 1 where not given). With the `wrap` `repeat` (where
-//! not given) the same stands in every such box, side by side without end; with `zero` it is 0 beyond C along the
+//! not given) the same is in every such box, side by side without end; with `zero` it is 0 beyond C along the
 //! axes that the function depends on.
 //!
 //! Along a line, what depends on one axis is integrated at no more cost over many boxes than over two. Mixed terms
@@ -127,7 +127,7 @@ impl Tile {
         if self.0.repeats { (x / (2.0 * self.0.half)).round() } else { 0.0 }
     }
 
-    /// The coordinate `x` within its box `cell`. Far out, where f64 does not tell boxes apart, it stays in it.
+    /// The coordinate `x` within its box `cell`. Far out, where f64 cannot distinguish boxes, it stays in it.
     fn local(&self, x: f64, cell: f64) -> f64 {
         (x - 2.0 * self.0.half * cell).clamp(-self.0.half, self.0.half)
     }
@@ -198,7 +198,7 @@ impl Tile {
         };
         let mut next = [0, 1, 2].map(|axis| border(&cell, axis));
         let (mut at, mut sum) = (first, 0.0);
-        // Far out, where f64 does not tell boxes apart, borders may stop moving.
+        // Far out, where f64 cannot distinguish boxes, borders may stop moving.
         for _ in 0..2 * CROSSED as usize {
             let axis =
                 if next[0] <= next[1] && next[0] <= next[2] { 0 } else { usize::from(next[1] > next[2]) + 1 };

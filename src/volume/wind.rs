@@ -1,5 +1,5 @@
-//! `wind`: a nested volume that drifts with `velocity` [m/s], from where it stands at the time 0 to where it is at the
-//! scene's `time` [s] (BMA02 5). What stands beside it, in a sum, stays.
+//! `wind`: a nested volume that drifts with `velocity` [m/s], from where it is at the time 0 to where it is at the
+//! scene's `time` [s] (BMA02 5). What is added to it, in a sum, stays.
 
 use super::{Place, Volume, VolumeModel, nested, placed::vector};
 use crate::{
@@ -36,7 +36,7 @@ impl Wind {
         Ok(Self::new(inner, velocity, place.time))
     }
 
-    /// `volume` stands where it does at the time `built_at`.
+    /// `volume` is placed as at the time `built_at`.
     fn new(volume: Volume, velocity: DVec3, built_at: f64) -> Self {
         let built = Arc::new(volume);
         Self { now: Arc::clone(&built), built, built_at, velocity }

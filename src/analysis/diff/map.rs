@@ -28,11 +28,11 @@ pub struct Mapped {
     pub range: (f32, f32),
 }
 
-/// The share of pixels that the scale of a map holds, where nobody says how far it goes.
+/// The share of pixels that the scale of a map holds, where its range is not given.
 const HELD: f64 = 0.99;
 
 /// A map of the difference between `image` and `reference`. Its scale ends at `most` > 0; if not given, FLIP's at 1
-/// and others where 99 % of the pixels are below. None where FLIP is asked for and not known.
+/// and others where 99 % of the pixels are below. None where FLIP is requested and not known.
 pub fn map(
     of: MapOf,
     image: &Picture,

@@ -55,7 +55,7 @@ fn all_unbiased_methods_agree_in_a_cube() {
         assert!((all - 1.0).abs() < 1e-4, "{found:?}");
         assert!(found.estimates[2].estimate.mean > 0.05 && found.estimates[5].estimate.mean == 0.0);
     }
-    // At 46 degrees the beam meets a side: nothing unscattered reaches the far face.
+    // At 46 degrees the beam hits a side: nothing unscattered reaches the far face.
     let steep = Experiment { angle: 0.8, ..cube };
     assert_eq!(steep.closed_forms()[DIRECT], Some(0.0));
     assert!((steep.closed_forms()[DIRECT + 1].unwrap() - (-2.0 * 0.75 / 0.8f64.sin()).exp()).abs() < 1e-6);

@@ -78,7 +78,7 @@ fn face_of(corners: &[u32; 3]) -> DefaultElement {
     element
 }
 
-/// Corner 0 is the pole straight on, the last the other; between them stand rings of `meridians` corners.
+/// Corner 0 is the pole straight on, the last the other; between them are rings of `meridians` corners.
 fn triangles(parallels: usize, meridians: usize) -> Vec<[u32; 3]> {
     let ring =
         |parallel: usize, meridian: usize| (1 + (parallel - 1) * meridians + meridian % meridians) as u32;

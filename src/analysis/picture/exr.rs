@@ -44,7 +44,7 @@ struct Layer<'a> {
     name: String,
     width: usize,
     height: usize,
-    /// What stands after the dot, and the values.
+    /// What follows the dot, and the values.
     channels: Vec<(String, &'a FlatSamples)>,
 }
 
@@ -86,8 +86,8 @@ impl Layer<'_> {
         channels.iter().all(|channel| self.index(channel).is_some())
     }
 
-    /// Which of its channels make a pixel, in order; none where nobody knows. A lone channel does, whatever its
-    /// name. Y with differences of colour beside it (RY, BY) is no picture.
+    /// Which of its channels make a pixel, in order; none where that is not known. A lone channel does,
+    /// whatever its name. Y with differences of colour beside it (RY, BY) is no picture.
     fn order(&self) -> Option<Vec<usize>> {
         let known = KNOWN.iter().find(|known| self.is(known) && self.index("RY").is_none());
         if let Some(known) = known {

@@ -1,4 +1,4 @@
-//! What is written is read back; what cannot be read is explained; colours stand for what they should.
+//! What is written is read back; what cannot be read is explained; colours represent what they should.
 
 use super::*;
 use crate::film::{self, Channel, format::Format};

@@ -1,5 +1,5 @@
-//! Sets of strategies against each other: short renders that take turns, so that whatever else the machine does falls
-//! upon all of them, and what their passes say of error and time.
+//! Sets of strategies against each other: short renders that take turns, so that whatever else the machine
+//! does affects all of them, and what their passes say about error and time.
 
 use crate::{
     analysis::{interval, study::outcome::Interval},
@@ -14,7 +14,7 @@ const ROUNDS: usize = 10;
 /// Passes of a turn, at least: below, there is no variance between them.
 const PASSES: usize = 2;
 
-/// What one turn of one contender told.
+/// What one turn of one contender measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
     /// relMSE of one pass: mean over pixels and channels of the variance between passes over (r^2 + 0.01 m^2), as
@@ -24,7 +24,7 @@ pub struct Turn {
     pub seconds: f64,
 }
 
-/// Passes that every contender makes if `wanted` are asked for.
+/// Passes that every contender makes if `wanted` are requested.
 pub fn passes(wanted: usize) -> usize {
     turn(wanted) * ROUNDS
 }
@@ -33,8 +33,8 @@ fn turn(wanted: usize) -> usize {
     wanted.div_ceil(ROUNDS).max(PASSES)
 }
 
-/// Lets all of `contenders` make `wanted` passes or a few more, in turns; what each turn told, by contender. Errors
-/// are relative to `reference`. Tells of every turn.
+/// Lets all of `contenders` make `wanted` passes or a few more, in turns; what each turn measured, by
+/// contender. Errors are relative to `reference`. Reports every turn.
 pub fn take_turns(
     contenders: &[Instrument<'_>],
     reference: &[Spectrum],

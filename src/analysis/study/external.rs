@@ -54,7 +54,7 @@ struct Report {
     load_seconds: Option<f64>,
 }
 
-/// The words of a command line as a shell would split them, refused unless it renders what it is told to.
+/// The words of a command line as a shell would split them, refused unless it renders what is requested.
 pub fn words(place: &str, command: &str) -> Result<Vec<String>> {
     let refuse = |expected: &str, found: String| {
         let remedy =

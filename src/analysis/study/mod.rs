@@ -1,8 +1,8 @@
 //! Error against run time: contenders take turns at doubling budgets, against a reference (validation level 6).
 //!
-//! A `question` is what is asked, a `plan` what pilots make of it; `run` does the plan, `unit` by `unit`, and the `store`
-//! keeps what is done, so that a study that was stopped goes on; `summary` and `table` tell what came of it. Other
-//! renderers take part as `external` commands.
+//! A `question` is what is to be found out, a `plan` how, after pilots; `run` carries out the plan, `unit` by
+//! `unit`, and the `store` keeps what is done, so that a study that was stopped goes on; `summary` and
+//! `table` report the results. Other renderers take part as `external` commands.
 
 pub mod contender;
 pub mod external;

@@ -1,4 +1,4 @@
-//! What a study found, as it stands in `study.json`: numbers only. The images lie beside it, named here.
+//! What a study found, as written to `study.json`: numbers only. The images lie beside it, named here.
 
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -36,14 +36,14 @@ pub struct SceneOutcome {
     pub notes: Vec<String>,
 }
 
-/// The image that stands for the truth.
+/// The reference image.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Reference {
     /// Where it lies, beside `study.json`.
     pub image: PathBuf,
     /// How it was made: renderer, integrator, samples per pixel; or the file it was read from.
     pub how: String,
-    /// Its own relMSE: the expected value of the measure between it and the truth; none if nobody knows.
+    /// Its own relMSE: the expected value of the measure between it and the truth; none if not known.
     pub own_relmse: Option<f64>,
 }
 

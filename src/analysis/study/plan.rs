@@ -13,7 +13,7 @@ use std::time::Duration;
 /// A question and what is planned for its scenes so far.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Plan {
-    /// What is asked.
+    /// The question.
     pub question: Question,
     /// One entry a scene, in their order; fewer as long as not all are planned.
     pub scenes: Vec<ScenePlan>,

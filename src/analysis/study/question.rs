@@ -1,4 +1,4 @@
-//! What is asked of a study: written down first, so that what goes on later is the same study.
+//! The question that a study answers: written down first, so that what goes on later is the same study.
 
 use super::contender::{Contender, How};
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ impl Effort {
     }
 }
 
-/// A reference as it is asked for.
+/// A reference as it is requested.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Wanted {

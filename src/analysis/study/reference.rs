@@ -1,4 +1,4 @@
-//! The image that stands for the truth: made in independent batches, so that its own error is known, or read.
+//! The reference image: made in independent batches, so that its own error is known, or read.
 
 use super::{
     contender::{Enter, Entry, How, Renderer},
@@ -188,7 +188,7 @@ fn describe(Batches { how, like, count, samples }: &Batches) -> String {
     format!("{who}: {all} samples per pixel in {count} independent batches, {whose}")
 }
 
-/// What one renderer made of a reference.
+/// What one renderer computed of a reference.
 struct Made {
     how: String,
     mean: Vec<DVec3>,

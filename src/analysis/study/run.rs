@@ -20,7 +20,7 @@ use crate::{
 };
 use std::path::Path;
 
-/// What stands in the outcome besides what was found.
+/// What the outcome holds besides what was found.
 #[derive(Clone, Debug)]
 pub struct Signature {
     /// The command that makes the study again.
@@ -291,7 +291,7 @@ impl Study<'_> {
     }
 }
 
-/// For a render whose numbers cannot be read.
+/// For a render that reported unreadable numbers.
 const LOST_UNIT: &str = "remove the file to render it again, or restart the whole study with --restart";
 
 fn seeds(question: &Question) -> impl Iterator<Item = u64> {

@@ -1,4 +1,5 @@
-//! From the numbers of all seeds to what is told: means, intervals, slopes, and what gives cause for doubt.
+//! From the numbers of all seeds to what is reported: means, intervals, slopes, and what gives cause for
+//! doubt.
 
 use super::{
     reference::Truth,

@@ -103,7 +103,7 @@ fn samples_tell_what_evaluation_tells() {
     }
 }
 
-/// A Dirac lobe: the way back must be among the lobes there, with the probability that was told.
+/// A Dirac lobe: the way back must be among the lobes there, with the probability that was reported.
 #[test]
 fn dirac_lobes_lead_back_with_the_probability_told() {
     for bsdf in examples().iter().filter(|bsdf| bsdf.has_dirac()) {

@@ -1,4 +1,5 @@
-//! What Mitsuba 3.9.1 (scalar_rgb) makes of what stands for colours, read from its parameters after loading.
+//! What Mitsuba 3.9.1 (scalar_rgb) makes of everything that represents a colour, read from its parameters
+//! after loading.
 
 use super::*;
 use crate::testing::{nowhere, object};
@@ -144,7 +145,7 @@ fn black_bodies_are_light_only() {
         [&properties[..], &[("wavelength_min", float(600.0)), ("wavelength_max", float(700.0))]].concat();
     let (red, _) = plugin("blackbody", &part, Role::Light).unwrap();
     assert!(red.x > 0.2 * found.x && red.z == 0.0, "{red}");
-    // Too cold to shine, and too hot for f32.
+    // Too cold to emit, and too hot for f32.
     let of = |t| plugin("blackbody", &[("temperature", float(t))], Role::Light);
     assert_eq!(of(1.0).unwrap().0, DVec3::ZERO);
     assert!(of(1e300).is_err() && of(0.0).is_err() && of(-5.0).is_err());

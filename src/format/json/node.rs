@@ -10,13 +10,13 @@ use crate::{
 };
 use std::{path::PathBuf, sync::Arc};
 
-/// A value and where it stands.
+/// A value and where it is.
 pub(super) struct Node<'j> {
     pub location: Location,
     pub json: &'j Json,
 }
 
-/// What stands behind a key.
+/// What follows a key.
 pub(super) struct Entry<'j> {
     pub name: String,
     pub node: Node<'j>,

@@ -201,7 +201,7 @@ impl Writer<'_, '_> {
         Json::List(items)
     }
 
-    /// The text that stands for each number.
+    /// The text that represents each number.
     fn texts(&mut self, numbers: &Numbers) -> Vec<Option<String>> {
         let count = numbers.values.len();
         match &numbers.text {

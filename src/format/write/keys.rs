@@ -35,7 +35,7 @@ impl Keys {
         Ok(Self { taken, values, ids, seen: HashMap::new() })
     }
 
-    /// The key of `entry`, which stands in the scene itself if `outermost`.
+    /// The key of `entry`, which is in the scene itself if `outermost`.
     pub fn of(&mut self, entry: &Entry, outermost: bool) -> String {
         let id = match &entry.item {
             Item::Object(Node { id: Some(Leaf { value, text: None }), .. }) if outermost => Some(value),

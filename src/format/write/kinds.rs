@@ -1,4 +1,4 @@
-//! Of what kind each parameter is: JSON must say so, XML leaves it to where the parameter stands.
+//! Of what kind each parameter is: JSON must say so, XML leaves it to where the parameter is used.
 
 use super::{
     Known,
@@ -29,7 +29,7 @@ pub(super) fn kinds(root: &Node, known: &mut Known<'_>) -> HashMap<String, Kind>
     kinds
 }
 
-/// The kind that serves most uses; `value` is what the parameter stands for.
+/// The kind that serves most uses; `value` is the value of the parameter.
 fn choose(used: &[Kind], value: &str) -> Kind {
     let is_integer = text::integer(value).is_ok();
     let is_number = text::float(value).is_ok();

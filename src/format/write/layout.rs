@@ -1,4 +1,4 @@
-//! JSON laid out: what fits on a line stands on one, the rest a line each.
+//! JSON laid out: what fits on a line is put on one, the rest a line each.
 
 /// A line is at most so wide, where it can be.
 const WIDTH: usize = 100;
@@ -23,7 +23,7 @@ impl Json {
         Self::Word(quoted(text))
     }
 
-    /// The text of a file that holds it, which stands open whatever its width.
+    /// The text of a file that holds it, which is spread over lines whatever its width.
     pub fn file(&self) -> String {
         let mut text = String::new();
         self.open(&mut text, 0);

@@ -1,9 +1,9 @@
-//! A scene to be written in either format: every value with the text that stands for it where
-//! parameters are in it, names only where they mean something, names of files as the target's folder reaches them.
+//! A scene to be written in either format: every value with the text that represents it where parameters are
+//! in it, names only where they mean something, names of files as the target's folder reaches them.
 
 use crate::description::Location;
 
-/// A value, and the text with `$` in it that stands for it.
+/// A value, and the text with `$` in it that represents it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Leaf<T> {
     pub value: T,
@@ -29,7 +29,7 @@ impl Numbers {
     }
 }
 
-/// Where parameters stand among numbers.
+/// Where parameters occur among numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Texts {
     /// Nowhere.
@@ -42,7 +42,7 @@ pub(super) enum Texts {
     Lost(String),
 }
 
-/// What can stand for a name.
+/// What can serve as a name.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Item {
     Boolean(Leaf<bool>),
@@ -74,7 +74,7 @@ pub(super) struct Node {
     pub location: Location,
 }
 
-/// What stands in a plugin.
+/// The contents of a plugin.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
     /// Empty where there is none, or none that means something.
@@ -85,7 +85,7 @@ pub(super) struct Entry {
     pub location: Location,
 }
 
-/// The key that JSON gives to the unnamed child of which `before` of the same tag stand before it.
+/// The key that JSON gives to the unnamed child that `before` children of the same tag precede.
 pub(super) fn made_up(tag: &str, before: usize) -> String {
     if before == 0 { tag.to_owned() } else { format!("{tag}_{}", before + 1) }
 }

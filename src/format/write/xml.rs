@@ -43,7 +43,7 @@ fn written<T>(leaf: &Leaf<T>, literal: impl Fn(&T) -> String) -> String {
 }
 
 impl Writer<'_, '_> {
-    /// `inside` writes what stands in the element, if anything does.
+    /// `inside` writes the contents of the element, if there are any.
     fn element(
         &mut self,
         tag: &str,

@@ -10,7 +10,7 @@ use crate::{
 
 /// Sections that are tried.
 const SECTIONS: u64 = 256;
-/// Estimates of the transmittance of each, whose variance counts as cost.
+/// Estimates of the transmittance of each; their variance counts as cost.
 const ESTIMATES: u64 = 8;
 /// The shortest sections, over the box's diagonal.
 const SHORTEST: f32 = 1e-3;
@@ -116,7 +116,7 @@ fn longest_step(medium: &Extinction, error: f64) -> f32 {
     step
 }
 
-/// The least step that is thought of [m]: a flat box is looked at as finely as it is thin, where that costs little, for
+/// The least step that is considered [m]: a flat box is sampled as finely as it is thin, where that costs little, for
 /// there is an integral to compare with.
 fn finest(medium: &Extinction, diagonal: f32) -> f32 {
     let shortest = (medium.high - medium.low).min_element();

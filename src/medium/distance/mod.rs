@@ -97,8 +97,8 @@ impl DistanceSampler {
         }
     }
 
-    /// What of radiance remains along `segment`, whose [`Self::depth`] is `depth`: exp(-depth), or an unbiased random
-    /// estimate of what it really is.
+    /// The fraction of radiance that remains along `segment`, whose [`Self::depth`] is `depth`: exp(-depth),
+    /// or an unbiased random estimate of what it really is.
     #[inline]
     pub fn transmittance<L: Channels>(
         &self,
@@ -200,7 +200,7 @@ impl DistanceSampler {
 }
 
 impl<L: Channels> DistanceSample<L> {
-    /// A sample of a method that knows depths exactly.
+    /// A sample of a method that computes depths exactly.
     #[inline]
     pub(super) fn exact(collision: Option<f32>, depth: L, hero: usize) -> Self {
         Self { collision, depth, ratio: depth.flight_ratio(L::splat(1.0), hero), spent: depth.hero(hero) }

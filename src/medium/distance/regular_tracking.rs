@@ -6,7 +6,7 @@ use crate::{
     volume::{VolumeModel, grid::Reached},
 };
 
-/// Optical depth along `segment`: the grid knows where it ends.
+/// Optical depth along `segment`: the grid computes where it ends.
 #[inline]
 pub fn depth<L: Channels>(medium: &Extinction, segment: &RaySegment) -> L {
     medium.volume.integral::<L>(segment).scaled(medium.scale)

@@ -138,7 +138,7 @@ impl Lights {
         EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
     }
 
-    /// In the medium's box; whether it is in the medium is for the caller to check, who knows the boundaries.
+    /// In the medium's box; the caller, who knows the boundaries, checks whether it is in the medium.
     fn start_within(
         &self,
         index: usize,

@@ -3,10 +3,10 @@
 use super::MisSums;
 use crate::{math::Channels, settings::heuristic::Heuristic};
 
-/// Strategies whose n p lie this close together, relative, share a path alike. Which one is ahead must not be a matter
-/// of rounding: each strategy rounds in its own way, and either both could claim the path or neither. Ties do happen:
-/// channels of equal extinction have equal densities, and so have all connections within a hollow diffuse
-/// sphere.
+/// Strategies whose n p lie this close together, relative, share a path equally. Which one is greater must
+/// not depend on rounding: each strategy rounds differently, so both could claim the path, or neither. Ties
+/// do happen: channels of equal extinction have equal densities, and so have all connections within a hollow
+/// diffuse sphere.
 pub const TIE: f32 = 1e-3;
 
 /// The greatest n p of some strategies, and how many have it.

@@ -1,4 +1,4 @@
-//! What the strategies that connect elsewhere along a path come to, by one heuristic or another.
+//! The sum over the strategies that connect elsewhere along a path, for each heuristic.
 
 use crate::{math::Channels, settings::heuristic::Heuristic};
 use std::fmt::Debug;
@@ -7,7 +7,7 @@ use std::fmt::Debug;
 /// as far as one heuristic needs to know them. Walks and connections only ever multiply all of them by what
 /// the next vertex completes, and add others: whatever can follow both has a fold in O(1) per vertex.
 ///
-/// Which heuristic it is is a matter of types: the balance heuristic does not know that there are others.
+/// The heuristic is chosen by type: the balance heuristic contains nothing of the others.
 pub trait MisSums: Copy + Send + Sync + Debug + 'static {
     /// Extinction per channel.
     type Channels: Channels;

@@ -1,8 +1,8 @@
 //! The uniform heuristic: every strategy that can make a path gets the same weight, however unlikely it is to
 //! sample the path. For comparison only: where connections are short its variance has no bound.
 //!
-//! Channels are no strategies: the part of a strategy is divided among the heroes in proportion to their densities.
-//! A hero that has all but no chance to come along a path could not make up for a part that were due to it.
+//! Channels are not strategies: the share of a strategy is divided among the heroes in proportion to their
+//! densities. A hero that is very unlikely to sample a path could not compensate for an equal share of it.
 
 use super::MisSums;
 use crate::{math::Channels, settings::heuristic::Heuristic};
@@ -37,7 +37,7 @@ impl<L: Channels> MisSums for Uniform<L> {
     fn and(self, other: Self) -> Self {
         Self::count(self.strategies + other.strategies)
     }
-    /// Flights never are impossible for every channel: some hero came along the path.
+    /// No flight is impossible for every channel: some hero sampled the path.
     #[inline]
     fn times(self, _: L) -> Self {
         self

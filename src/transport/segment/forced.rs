@@ -12,7 +12,7 @@ use crate::{
 /// One way in which a forced flight ends.
 #[derive(Clone, Copy, Debug)]
 pub struct ForcedEnd<L> {
-    /// As weights know it: like one that was left to chance.
+    /// As the weights see it: like one that was sampled without forcing.
     pub flight: FreeFlight<L>,
     /// Contribution over the density by which it was really sampled.
     pub share: Spectrum,
@@ -148,7 +148,7 @@ fn follow<'a, P: Profile>(
     }
 }
 
-/// A collision in one of `parts`, whose depth is `whole` in all: its depth is exponential, cut off there.
+/// A collision in one of `parts`, whose depth is `whole` in all: its depth is exponential, truncated there.
 fn collide<P: Profile>(
     parts: &[Part<'_, P::Channels>],
     whole: f32,
@@ -164,7 +164,7 @@ fn collide<P: Profile>(
     let sample = segment.medium().force_collision::<P>(interval, hero, remaining, stream)?;
     let position = interval.segment.at(sample.collision?);
     let properties = segment.medium().properties_at::<P>(position);
-    // Positions are rounded: a collision at the very edge may come to lie outside.
+    // Positions are rounded: a collision at the very edge may lie outside.
     if P::Channels::from_spectrum(properties.sigma_t).hero(hero) <= 0.0 {
         return None;
     }

@@ -59,11 +59,11 @@ pub struct FreeFlight<L> {
     pub state: FlightState<L>,
 }
 
-/// What a flight has passed, as its contribution and the weights know it.
+/// What a flight has passed, for its contribution and for the weights.
 #[derive(Clone, Copy, Debug)]
 pub struct FlightState<L> {
-    /// Optical depth per channel, the logarithms of null-passing probabilities included: the flight density that
-    /// weights know is exp(-depth), times sigma_t at a collision.
+    /// Optical depth per channel, the logarithms of null-passing probabilities included: the flight density
+    /// in the weights is exp(-depth), times sigma_t at a collision.
     pub depth: L,
     /// Contribution over the density by which the flight was really sampled, per channel. Profiles without
     /// varying media have it from `depth`.
@@ -73,13 +73,13 @@ pub struct FlightState<L> {
 }
 
 impl<L: Channels> FlightState<L> {
-    /// Of a flight that has not begun.
+    /// For a flight that has not begun.
     #[inline]
     pub fn none() -> Self {
         Self { depth: L::splat(0.0), ratio: L::splat(1.0), tint: Spectrum::ONE }
     }
 
-    /// What a surface makes of it; true if the flight goes on.
+    /// Applies a surface; true if the flight goes on.
     #[inline]
     pub fn cross(&mut self, crossing: &NullCrossing) -> bool {
         match *crossing {
@@ -98,12 +98,12 @@ impl<L: Channels> FlightState<L> {
 pub enum Passed<L> {
     /// A part in one medium. Only profiles with emissive media show it.
     Medium(FlightPart<L>),
-    /// A point of a shape that emits: the flight comes there whether it goes on or ends. Only profiles with nulls show
+    /// A point of a shape that emits: the flight reaches it whether it goes on or ends. Only profiles with nulls show
     /// it; in others it always ends.
     Emitter(EmitterCrossing<L>),
 }
 
-/// A flight's coming to a shape that emits.
+/// The arrival of a flight at a shape that emits.
 #[derive(Clone, Copy, Debug)]
 pub struct EmitterCrossing<L> {
     /// The emitter.
@@ -127,7 +127,7 @@ pub struct FlightPart<L> {
     pub interval: MediumInterval,
     /// What lies before it.
     pub before: FlightState<L>,
-    /// True where it is not left to chance whether a flight comes as far as this: `before.ratio` is transmittance.
+    /// True where it is certain that a flight gets this far: `before.ratio` is transmittance.
     pub certain: bool,
 }
 

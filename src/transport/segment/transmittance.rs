@@ -13,8 +13,8 @@ use crate::{
 /// A given segment that nothing blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct SegmentTransmittance<L> {
-    /// exp(-depth) per channel as weights know it: the density of a flight that ends on a surface (LW96 eq. 7), see
-    /// [`super::FreeFlight::depth`].
+    /// exp(-depth) per channel as the weights use it: the density of a flight that ends on a surface (LW96
+    /// eq. 7), see [`super::FreeFlight::depth`].
     pub pdf: L,
     /// The fraction of radiance that arrives; where a medium's tracker is random, an unbiased estimate of it.
     pub transmittance: Spectrum,

@@ -26,7 +26,7 @@ impl Label {
     }
 }
 
-/// A file's text as it may stand in a message.
+/// A file's text as a message may quote it.
 pub fn shown(text: &str) -> String {
     text.chars().flat_map(char::escape_debug).take(SHOWN).collect()
 }

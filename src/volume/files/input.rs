@@ -21,7 +21,7 @@ impl<R: Read + Seek> Input<R> {
         Ok(Self { source, length, position: 0 })
     }
 
-    /// Where the next byte stands [bytes].
+    /// Offset of the next byte [bytes].
     pub fn position(&self) -> u64 {
         self.position
     }
@@ -53,7 +53,7 @@ impl<R: Read + Seek> Input<R> {
     /// Passes over `count` bytes.
     pub fn skip(&mut self, count: u64) -> Result<()> {
         self.need(count)?;
-        // A file is never longer than this type can tell.
+        // A file is never longer than this type can represent.
         self.source.seek_relative(count.cast_signed())?;
         self.position += count;
         Ok(())

@@ -42,7 +42,7 @@ pub struct Source {
     pub to_world: DAffine3,
     /// The index of the first sample.
     pub low: [i64; 3],
-    /// The values, as they stand in the file: finite or not, negative or not.
+    /// The values, as they are in the file: finite or not, negative or not.
     pub samples: Field,
 }
 
@@ -79,7 +79,7 @@ impl Source {
 type Result<T> = std::result::Result<T, Problem>;
 
 /// Reads the grid named `grid` of the file at `path`; where no name is given, the one named "density", or else the only
-/// one there is. What the file is, is told by its first bytes.
+/// one there is. The first bytes of a file identify its format.
 pub fn open(path: &Path, grid: Option<&str>) -> Result<Source> {
     let file = File::open(path).map_err(|error| {
         let remedy = "check that the path exists and that you may access it";

@@ -1,5 +1,5 @@
 //! NanoVDB's files: segments of grids, each an image of memory that may be packed. The layout is that of NanoVDB 32
-//! (nanovdb/NanoVDB.h and nanovdb/util/IO.h), in which 32 stands for the layout itself.
+//! (nanovdb/NanoVDB.h and nanovdb/util/IO.h), in which 32 refers to the layout itself.
 
 mod image;
 mod leaf;
@@ -76,13 +76,13 @@ const KINDS: [&str; 27] = [
 struct Entry {
     label: Label,
     codec: u16,
-    /// Where it stands.
+    /// Where it is.
     start: u64,
     /// Its length in the file, and that of its image [bytes].
     lengths: [u64; 2],
 }
 
-/// Reads the grid that is meant; the input stands after the first magic bytes.
+/// Reads the grid that is meant; the input is positioned after the first magic bytes.
 pub fn read<R: Read + Seek>(input: &mut Input<R>, wanted: Option<&str>) -> Result<Source> {
     input.seek(0)?;
     let mut entries = vec![];

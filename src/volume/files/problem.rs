@@ -8,7 +8,7 @@ use std::{fmt, io};
 pub struct Problem {
     /// What would have been right.
     pub expected: String,
-    /// What stands there instead.
+    /// What was found there instead.
     pub found: String,
     /// What to do about it.
     pub remedy: String,

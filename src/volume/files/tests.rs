@@ -27,7 +27,7 @@ fn names() -> impl Iterator<Item = String> {
     files.filter_map(|name| name.strip_suffix(".gz").map(str::to_owned))
 }
 
-/// What golden.txt tells of a grid.
+/// What golden.txt says about a grid.
 struct Golden {
     file: String,
     name: String,

@@ -1,4 +1,4 @@
-//! What a sample is made of, and how files write it.
+//! The components of a sample, and how files write it.
 
 use super::{Field, Sparse};
 use crate::math::Vec3;

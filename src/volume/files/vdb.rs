@@ -21,7 +21,7 @@ use values::Coding;
 /// First bytes of every file.
 pub const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";
 
-/// Reads the grid that is meant; the input stands after the magic bytes.
+/// Reads the grid that is meant; the input is positioned after the magic bytes.
 pub fn read<R: Read + Seek>(input: &mut Input<R>, wanted: Option<&str>) -> Result<Source> {
     let entries = archive::read(input)?;
     let labels: Vec<_> = entries.iter().map(Entry::label).collect();

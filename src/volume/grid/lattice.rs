@@ -78,7 +78,7 @@ pub struct Fault {
     pub voxel: [usize; 3],
     /// Its channel.
     pub channel: usize,
-    /// What stands there.
+    /// What is there.
     pub value: f32,
 }
 
@@ -98,8 +98,8 @@ impl<V: Voxel> Lattice<V> {
         all.map(|at| (size_of::<Brick<V>>() + bytes(at)) as u64).sum()
     }
 
-    /// Copies `samples` within `extent` into bricks. Bricks for which `is_needed` is false (asked with their number
-    /// along each axis) stay empty.
+    /// Copies `samples` within `extent` into bricks. Bricks for which `is_needed` is false (called with their
+    /// number along each axis) stay empty.
     pub fn build<S: Samples<V> + ?Sized>(
         samples: &S,
         wrap: Wrap,
@@ -156,10 +156,11 @@ impl<V: Voxel> Lattice<V> {
         corners(values, index).map_or(brick.mean, |corners| V::weighted(corners, low, high))
     }
 
-    /// The least and the greatest value at the corners of all bricks that the box between two points meets, in cells.
+    /// The least and the greatest value at the corners of all bricks that the box between two points
+    /// overlaps, in cells.
     pub fn range(&self, low: [f64; 3], high: [f64; 3]) -> [V; 2] {
         let brick = |x: f64, i: usize| (x.max(0.0) as usize / BRICK).min(self.size[i] - 1);
-        // A little wider than asked, as `eval` rounds its positions in its own way.
+        // A little wider than requested, as `eval` rounds its positions in its own way.
         let first: [usize; 3] = std::array::from_fn(|i| brick(low[i] - 1e-3, i));
         let last: [usize; 3] = std::array::from_fn(|i| brick(high[i] + 1e-3, i));
         let start = &self.bricks[self.index(first)];

@@ -1,9 +1,9 @@
 //! `gridvolume`: values on a lattice of voxels, from a file, as in Mitsuba.
 //!
-//! The voxels fill the unit cube of `to_world` (or of the file's own box); their centres lie at (i + 1/2) / n. Where
-//! the value counts is told by [`VolumeModel::contains`]: as in Mitsuba, within the axis-aligned box around the
-//! transformed cube. [`VolumeModel::eval`] goes on beyond it as `wrap_mode` says, and so it does in what a turned or
-//! sheared cube leaves of its box; integrals and inversions count the box and no more.
+//! The voxels fill the unit cube of `to_world` (or of the file's own box); their centres lie at (i + 1/2) /
+//! n. [`VolumeModel::contains`] says where the value counts: as in Mitsuba, within the axis-aligned box
+//! around the transformed cube. [`VolumeModel::eval`] goes on beyond it as `wrap_mode` says, and so it does
+//! in what a turned or sheared cube leaves of its box; integrals and inversions count the box and no more.
 
 mod file;
 mod lattice;
@@ -119,7 +119,7 @@ impl Grid {
         Self::new(&path, source.values, filter, wrap, to_world)
     }
 
-    /// Makes bricks of `values`, whose voxels fill the unit cube of `to_world`; `path` is told in errors. Voxels that
+    /// Makes bricks of `values`, whose voxels fill the unit cube of `to_world`; errors name `path`. Voxels that
     /// are negative or not finite, and more of them than memory holds, are errors.
     pub fn new(path: &Path, values: Values, filter: Filter, wrap: Wrap, to_world: DAffine3) -> Result<Self> {
         let to_local = to_world.inverse();
@@ -137,7 +137,7 @@ impl Grid {
         let scale = DVec3::from(size.map(|n| n as f64));
         let to_lattice = DAffine3::from_translation(shift) * DAffine3::from_scale(scale) * to_local;
         let to_world = to_lattice.inverse();
-        // What a ray within the box never meets is not kept.
+        // What a ray within the box never reaches is not kept.
         let is_needed = |brick: [usize; 3]| {
             let low = DVec3::from(brick.map(|i| (i * BRICK) as f64 - 0.01));
             let [low, high] = image(&to_world, [low, low + (BRICK as f64 + 0.02)]);
@@ -407,7 +407,8 @@ fn collapse(lattice: Lattice<Spectrum>) -> Bricks {
     }
 }
 
-/// A grid may lie so many times its size away from the middle of the scene, for its voxels to be told apart.
+/// A grid may lie so many times its size away from the middle of the scene, for its voxels to be
+/// distinguishable.
 const FARTHEST: f64 = 1e12;
 
 fn check_place(path: &Path, to_world: &DAffine3, to_local: &DAffine3) -> Result<()> {

@@ -297,7 +297,7 @@ fn inversions_find_where_the_integral_is_reached() {
                             "{depth} {remaining}"
                         );
                         assert!(value > 0.0);
-                        // As exact as an f32 can tell the place.
+                        // As exact as an f32 can represent the place.
                         let ulp = t.next_up() - t;
                         let most = 2.0 * 1e3 * f64::from(ulp);
                         let up_to = RaySegment { length: t, ..segment };
@@ -381,7 +381,7 @@ fn odd_sections_are_harmless() {
     }
 }
 
-/// Tells what it knows of a table's even parts.
+/// Reports which parts of a table are uniform.
 struct Sparse(Table<f32>);
 
 impl Samples<f32> for Sparse {
@@ -485,7 +485,7 @@ fn colours_that_are_all_grey_collapse() {
     assert!(!chromatic(table, Filter::Trilinear, Wrap::Clamp, askew()).is_grey());
 }
 
-/// A plume of 256^3 voxels, made as it is asked for.
+/// A plume of 256^3 voxels, made as it is requested.
 struct Plume;
 
 impl Samples<f32> for Plume {

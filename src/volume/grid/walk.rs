@@ -128,14 +128,14 @@ impl Stepper {
     /// t where the line leaves the cell, kept from `start` to `last`.
     #[inline]
     fn end(&self, start: f64, last: f64) -> f64 {
-        // Not f64::min and f64::max, which ask for NaN.
+        // Not f64::min and f64::max, which check for NaN.
         let lesser = |x: f64, y: f64| if x < y { x } else { y };
         let [x, y, z] = self.next;
         let end = lesser(lesser(x, y), lesser(z, last));
         if end > start { end } else { start }
     }
 
-    /// Goes on to the next cell; true for the axis along which. No branches: which axis comes next, nobody can guess.
+    /// Goes on to the next cell; true for the axis along which. No branches: which axis comes next is unpredictable.
     #[inline]
     fn advance(&mut self) -> [bool; 3] {
         let [x, y, z] = self.next;

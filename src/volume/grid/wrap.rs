@@ -3,7 +3,7 @@
 use crate::math::Wrap;
 
 impl Wrap {
-    /// The least and the greatest index that stand for those from `low` to `high`; all in between are taken for
+    /// The least and the greatest index that represent those from `low` to `high`; all in between are taken for
     /// hit, which may be too many.
     pub fn indices(self, [low, high]: [i64; 2], size: usize) -> [usize; 2] {
         let n = size as i64;
@@ -14,7 +14,7 @@ impl Wrap {
         [a.min(b), a.max(b)]
     }
 
-    /// The coordinate in [0, 1] that stands for `x`, in units of the cube.
+    /// The coordinate in [0, 1] that represents `x`, in units of the cube.
     #[inline]
     pub fn coordinate(self, x: f64) -> f64 {
         if (0.0..=1.0).contains(&x) && !(self == Self::Repeat && x == 1.0) {
@@ -30,7 +30,7 @@ impl Wrap {
         }
     }
 
-    /// Bounds of the coordinates that stand for those from `low` to `high`.
+    /// Bounds of the coordinates that represent those from `low` to `high`.
     pub fn interval(self, low: f64, high: f64) -> [f64; 2] {
         if self != Self::Clamp && low.floor() != high.floor() {
             return [0.0, 1.0];

@@ -93,7 +93,7 @@ fn both_spellings_say_the_same_and_turn_into_each_other() {
     }
 }
 
-/// Values told by hand.
+/// Values worked out by hand.
 #[test]
 fn values_are_those_of_the_formulas() {
     let value = |fog: &str, at: Vec3| json(fog, &HERE).unwrap().eval::<f32>(at);

@@ -33,7 +33,7 @@ impl Span {
             Some(Self { low: span.low.min(value), high: span.high.max(value) })
         };
         let Some(Self { low, high }) = shown.fold(None, ends) else { return Self { low: 0.1, high: 1.0 } };
-        // Not narrower than half a decade, lest noise looks like change.
+        // Not narrower than half a decade, so that noise does not look like change.
         let padding = if high / low < 2.0 { 2.0 } else { PADDING };
         Self { low: (low / padding).clamp(1e-300, 1e299), high: (high * padding).clamp(1e-299, 1e300) }
     }
@@ -43,7 +43,7 @@ impl Span {
         value > self.low / NEAR && value < self.high * NEAR
     }
 
-    /// `value` on the scale; what is off it stands at its end, and what is no number at the high one: of errors and
+    /// `value` on the scale; what is off it is put at its end, and what is no number at the high one: of errors and
     /// times that is the worst.
     pub fn clamped(&self, value: f64) -> f64 {
         if value.is_nan() { self.high } else { value.clamp(self.low, self.high) }
@@ -54,7 +54,7 @@ impl Span {
         (self.low..self.high).log_scale().with_key_points(self.ticks())
     }
 
-    /// Where lines and numbers stand.
+    /// Where lines and numbers are.
     fn ticks(&self) -> Vec<f64> {
         let first = self.low.log10().floor() as i32;
         let last = self.high.log10().ceil() as i32;

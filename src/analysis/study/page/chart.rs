@@ -1,5 +1,5 @@
 //! Error curves on logarithmic scales, as the inside of an SVG element. Colours, strokes and sizes of text are the
-//! page's: everything stands in groups with classes.
+//! page's: everything is in groups with classes.
 
 use super::{
     axis::Span,
@@ -66,7 +66,7 @@ impl<'a> Chart<'a> {
             parts.push(group("floor", &self.layer(|plane| self.draw_level(plane, floor))?));
         }
         let all = 0..self.scene.contenders.len();
-        // Below every line, lest one contender's doubt hides another's curve.
+        // Below every line, so that one contender's interval does not hide another's curve.
         for series in all.clone() {
             parts.push(of_series("band", series, &self.layer(|plane| self.draw_band(plane, series))?));
         }
@@ -181,7 +181,7 @@ pub fn hue(series: usize) -> usize {
 const HUES: usize = 7;
 
 /// The corners of a contender's mark around its middle; none for a disc. With the colours of [`hue`], which repeat
-/// earlier than marks do, they tell 35 contenders apart, and the first five in black and white too.
+/// earlier than marks do, they distinguish 35 contenders, and the first five in black and white too.
 pub fn outline(series: usize) -> Option<Vec<(i32, i32)>> {
     let r = MARK;
     match series % 5 {

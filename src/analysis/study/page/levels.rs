@@ -1,11 +1,11 @@
-//! Which images stand side by side: for every level of time, each contender's image nearest to it.
+//! Which images are shown side by side: for every level of time, each contender's image nearest to it.
 
 use crate::analysis::study::outcome::{ContenderOutcome, Outcome, SceneOutcome};
 
 /// All images of a page together have at most this many pixels, about 40 MB of file.
 const MOST_PIXELS: usize = 16_000_000;
 
-/// More levels than this tell an eye no more.
+/// More levels than this show the eye nothing more.
 const MOST_LEVELS: usize = 5;
 
 /// A time, and each contender's point nearest to it.
@@ -77,7 +77,7 @@ fn common_time(contenders: &[ContenderOutcome]) -> [f64; 2] {
     [start, end]
 }
 
-/// Shorter than what clocks tell apart [s]; a logarithm needs more than 0.
+/// Shorter than what clocks resolve [s]; a logarithm needs more than 0.
 const TICK: f64 = 1e-9;
 
 /// A time that has a logarithm [s].

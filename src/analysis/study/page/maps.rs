@@ -48,7 +48,7 @@ impl Scale {
         Self { low, high }
     }
 
-    /// Where `value` stands: 0 at the low end and below, 1 at the high end and above.
+    /// Where `value` is on the bar: 0 at the low end and below, 1 at the high end and above.
     fn share(self, value: f64) -> f64 {
         let share = (value.log10() - f64::from(self.low)) / f64::from(self.high - self.low);
         share.clamp(0.0, 1.0)
@@ -66,7 +66,7 @@ impl Scale {
         picture::false_colour(&shares, (0.0, 1.0))
     }
 
-    /// What stands beside the bar: texts for some decades, both ends among them, and where [%].
+    /// What is written beside the bar: texts for some decades, both ends among them, and where [%].
     pub fn ticks(self) -> Vec<(String, f64)> {
         let decades = f64::from(self.high - self.low);
         let place = |k: i32| 100.0 * f64::from(k - self.low) / decades;

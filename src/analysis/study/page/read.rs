@@ -1,4 +1,4 @@
-//! What a page is made of, from a study's folder.
+//! The contents of a page, from a study's folder.
 
 use crate::{
     analysis::{

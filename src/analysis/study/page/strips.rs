@@ -24,7 +24,7 @@ pub struct Picture {
 
 /// A contender at a level.
 pub struct Shot {
-    /// Whose.
+    /// The contender's name.
     pub name: String,
     /// Its colour.
     pub series: usize,
@@ -52,7 +52,7 @@ pub struct Strip {
 
 /// A contender's variance.
 pub struct Spread {
-    /// Whose.
+    /// The contender's name.
     pub name: String,
     /// Its colour.
     pub series: usize,
@@ -117,7 +117,7 @@ impl Strips {
 }
 
 impl Strips {
-    /// How many images stand side by side, the reference among them.
+    /// How many images are shown side by side, the reference among them.
     pub fn count(&self) -> usize {
         1 + self.levels.first().map_or(0, |strip| strip.shots.len())
     }

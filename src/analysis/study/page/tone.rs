@@ -1,4 +1,4 @@
-//! Light on a screen whose exposure is chosen by whoever looks at it.
+//! Light on a screen with an exposure that the viewer chooses.
 //!
 //! An inlined image holds the cube root of its light over four times the scene's white: two stops above white survive
 //! in 8 bits, and dark pixels keep as many levels as sRGB gives them. The page turns that into sRGB by an SVG filter

@@ -48,7 +48,7 @@ impl Image {
         self.array(at).map(f64::from_le_bytes)
     }
 
-    /// Where the node is whose distance from the node at `from` stands at `at`.
+    /// The position of a node: its distance from the node at `from` is stored at `at`.
     pub fn follow(&self, from: usize, at: usize) -> Result<usize> {
         let offset = self.u64(at)?.cast_signed();
         let place = isize::try_from(offset).ok().and_then(|offset| from.checked_add_signed(offset));

@@ -25,7 +25,7 @@ const FLAGS: usize = 15;
 const MASK: usize = 16;
 const REST: usize = MASK + BLOCK / 8;
 
-/// Where codes start; before stand the least value and the step between codes [bytes].
+/// Where codes start; before them are the least value and the step between codes [bytes].
 const CODES: usize = 96;
 
 impl Leaf {

@@ -6,7 +6,7 @@ use std::io::{Read, Seek};
 /// File versions that are read: from the first whose nodes leave out inactive values on.
 const VERSIONS: std::ops::RangeInclusive<u32> = 222..=224;
 
-/// Stands between a name and its number where several grids have the same name.
+/// Separates a name from its number where several grids have the same name.
 const SEPARATOR: char = '\x1e';
 
 /// Ends the type of a grid whose numbers are saved as half.
@@ -25,9 +25,9 @@ pub struct Entry {
     pub kind: String,
     /// True if numbers are saved as half.
     pub half: bool,
-    /// Where its metadata stand.
+    /// Offset of its metadata.
     pub grid: u64,
-    /// Where its blocks of values stand.
+    /// Offset of its blocks of values.
     pub blocks: u64,
 }
 
@@ -43,7 +43,7 @@ impl Entry {
     }
 }
 
-/// Reads the table of grids; the input stands after the magic bytes.
+/// Reads the table of grids; the input is positioned after the magic bytes.
 pub fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<Vec<Entry>> {
     let version = input.u32()?;
     if !VERSIONS.contains(&version) {

@@ -4,7 +4,7 @@ use super::super::{Problem, Result, choice::shown, input::Input};
 use crate::math::{DAffine3, DMat3, DVec3};
 use std::io::{Read, Seek};
 
-/// Reads a map. What stands in a file beside scales and shifts follows from these.
+/// Reads a map. What a file holds beside scales and shifts follows from these.
 pub fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<DAffine3> {
     let kind = input.text()?;
     let map = match kind.as_str() {

@@ -27,7 +27,7 @@ struct Reader<'a, V, R> {
     blocks: Vec<[i32; 3]>,
 }
 
-/// Reads a tree whose blocks' values stand at `start`.
+/// Reads a tree; the values of its blocks start at `start`.
 pub fn read<V: Value, R: Read + Seek>(
     input: &mut Input<R>,
     coding: Coding,
@@ -91,7 +91,7 @@ impl<V: Value, R: Read + Seek> Reader<'_, V, R> {
         Ok(())
     }
 
-    /// The mask of a block stands again beside its values.
+    /// The mask of a block is repeated beside its values.
     fn block(&mut self, origin: [i32; 3]) -> Result<()> {
         self.input.skip(MASK as u64)?;
         self.blocks.push(origin);
