@@ -258,7 +258,10 @@ mod tests {
             assert!(found.starts_with(light) && found.ends_with(end), "{found}");
         }
         let point = traits(&[POINT], true).unreachable(Strategies::BDPT);
-        assert!(point.iter().all(|kind| kind.ends_with("camera") || kind.starts_with("caustics")), "{point:?}");
+        assert!(
+            point.iter().all(|kind| kind.ends_with("camera") || kind.starts_with("caustics")),
+            "{point:?}"
+        );
         assert_eq!(traits(&[POINT], false).unreachable(Strategies::PT), [""; 0]);
     }
 

@@ -15,6 +15,19 @@ pub const fn gamma(n: u32) -> f32 {
 /// with room for the sums and products that hierarchies and samplers make of them.
 pub const LARGEST_COORDINATE: f32 = 1e15;
 
+/// A mean free path is resolved if it is as many rounding errors of positions: rays start up to four of them behind the
+/// boundary that they leave, and what would collide before that collides there, where less of it comes out again. A half
+/// space of albedo 0.9 is too dark by 0.4 % at this, by 6.5 % at a tenth of it.
+pub const RESOLVED_STEPS: f32 = 100.0;
+
+/// Least mean free path [m] that densities hold: those of vertices in a medium are up to its inverse cubed [1/m^3], and
+/// their products with others must stay below the largest number of f32.
+pub const LEAST_MEAN_FREE_PATH: f32 = 5e-11;
+
+/// Least sigma_t over the squared size of a scene [1/m^3]: a density of that size times a transmittance of 1e-5 is the
+/// smallest normal number of f32.
+pub const LEAST_VOLUME_DENSITY: f64 = 1e-33;
+
 /// How far past an edge a flat primitive still counts as hit, in its own barycentric units, per unit of
 /// (1 + distance / size): neighbours overlap by their rounding errors, so no ray slips through the seam.
 pub const SEAM: f32 = 4.0 * f32::EPSILON;

@@ -27,7 +27,7 @@ impl Homogeneous {
 
     /// Where the `hero` channel's optical depth is `remaining` [m from the start of the medium].
     #[inline]
-    fn free_path<L: Channels>(&self, hero: usize, remaining: f32) -> f32 {
+    pub fn free_path<L: Channels>(&self, hero: usize, remaining: f32) -> f32 {
         remaining / self.sigma_t::<L>().hero(hero)
     }
 

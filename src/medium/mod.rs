@@ -253,6 +253,13 @@ impl Medium {
         }
     }
 
+    /// Of `skipped` metres behind a boundary, those before a collision where the hero's optical depth is `spent`; of no
+    /// meaning where coefficients vary.
+    #[inline]
+    pub fn skipped_before<M: MediaProfile>(&self, skipped: f32, hero: usize, spent: f32) -> f32 {
+        skipped.min(self.bound.free_path::<M::Channels>(hero, spent))
+    }
+
     /// A distance by the `hero` channel: where its optical depth is `remaining` (an exponential variate; random
     /// methods draw their own).
     ///

@@ -7,8 +7,9 @@ use super::{
     boundary::{self, Boundary},
     extents::Extents,
     lights::{Light, Lights, emissive},
-    locate::{Infinity, Known, Locator},
+    locate::{Known, Locator},
     placement::{Names, Placement, place_camera},
+    range,
     sections::Sections,
 };
 use crate::{
@@ -147,6 +148,7 @@ struct Builder<'a> {
     bsdf_index: HashMap<*const Object, u32>,
     place: Place,
     media: Vec<MediumDescription>,
+    medium_locations: Vec<Location>,
     medium_names: Vec<String>,
     medium_ids: Vec<Option<String>>,
     medium_index: HashMap<*const Object, MediumIndex>,
@@ -169,6 +171,7 @@ impl<'a> Builder<'a> {
             bsdf_index: HashMap::new(),
             place,
             media: vec![MediumDescription::vacuum()],
+            medium_locations: Vec::new(),
             medium_names: Vec::new(),
             medium_ids: Vec::new(),
             medium_index: HashMap::new(),
@@ -275,6 +278,7 @@ impl<'a> Builder<'a> {
         let index = MediumIndex(self.media.len() as u32);
         self.media.push(medium::build(object, self.library, &self.place)?);
         self.medium_names.push(name_of(object));
+        self.medium_locations.push(object.location.clone());
         self.medium_ids.push(object.id.clone());
         self.medium_index.insert(std::ptr::from_ref(object), index);
         Ok(index)
@@ -319,17 +323,8 @@ impl<'a> Builder<'a> {
         sensor_location: &Location,
         medium_overrides: &MediumOverrides,
     ) -> Result<Scene> {
-        let geometry = Geometry::build(std::mem::take(&mut self.shapes));
-        let touching = boundary::touching(&geometry, &self.surfaces);
-        self.surfaces.iter_mut().zip(touching).for_each(|(surface, touching)| surface.touching = touching);
-        let names = Names {
-            library: self.library,
-            media: &self.medium_names,
-            ids: &self.medium_ids,
-            shapes: &self.shape_names,
-            locations: &self.shape_locations,
-            recentre: self.recentre,
-        };
+        let geometry = self.geometry();
+        let names = self.names();
         let ambient = stated.unwrap_or(MediumIndex::VACUUM);
         let (mut known, survey) =
             Known::survey(&geometry, &self.surfaces, self.stated_points(start, stated), ambient);
@@ -342,32 +337,51 @@ impl<'a> Builder<'a> {
         let outside = known.infinity.most();
         let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
         names.warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
-        let viewpoint = sensor.position();
+        let (surfaces, recentre) = (&self.surfaces, self.recentre);
         let extents =
-            Extents { geometry: &geometry, surfaces: &self.surfaces, viewpoint, outside, survey: &survey };
-        let media = extents.finish(self.media, medium_overrides)?;
-        let locator = Locator { geometry: &geometry, surfaces: &self.surfaces, known: &known };
-        let placement = Placement { locator, names: &names, ambient: sensor_medium };
-        let recentre = self.recentre;
-        let lights = self.emitters.into_iter().map(|placed| light(placed, recentre, &placement));
-        let lights: Vec<Light> = lights.chain(emissive(&media, locator, outside)).collect();
-        let around = match known.infinity {
-            Infinity::Directional(_) => &media[0],
-            _ => &media[outside.0 as usize],
-        };
-        let lights = Lights::new(lights, &geometry, around);
-        Ok(Scene {
+            Extents { geometry: &geometry, surfaces, viewpoint: sensor.position(), outside, survey: &survey };
+        let media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
+        range::check(&media[1..], &self.medium_locations, &extents, self.library)?;
+        let locator = Locator { geometry: &geometry, surfaces, known: &known };
+        let placement = Placement { locator, names: &self.names(), ambient: sensor_medium };
+        let emitters = self.emitters.iter().map(|placed| light(placed, recentre, &placement));
+        let all = emitters.chain(emissive(&media, locator, outside)).collect();
+        let around = if known.infinity.is_uniform() { outside } else { MediumIndex::VACUUM };
+        let lights = Lights::new(all, &geometry, &media[around.0 as usize]);
+        let Self { surfaces, bsdfs, .. } = self;
+        let scene = Scene {
             lights,
             geometry,
-            surfaces: self.surfaces,
-            bsdfs: self.bsdfs,
+            surfaces,
+            bsdfs,
             media,
             outside,
             known,
             sensor,
             sensor_medium,
             recentre,
-        })
+        };
+        Ok(scene)
+    }
+
+    /// All shapes, indexed; their surfaces learn which of them may share faces.
+    fn geometry(&mut self) -> Geometry {
+        let geometry = Geometry::build(std::mem::take(&mut self.shapes));
+        let touching = boundary::touching(&geometry, &self.surfaces);
+        self.surfaces.iter_mut().zip(touching).for_each(|(surface, touching)| surface.touching = touching);
+        geometry
+    }
+
+    /// What messages call media and shapes by.
+    fn names(&self) -> Names<'_> {
+        Names {
+            library: self.library,
+            media: &self.medium_names,
+            ids: &self.medium_ids,
+            shapes: &self.shape_names,
+            locations: &self.shape_locations,
+            recentre: self.recentre,
+        }
     }
 
     /// Camera and emitters at points whose medium the file states; the camera is at `start`.
@@ -380,10 +394,11 @@ impl<'a> Builder<'a> {
 }
 
 /// An emitter with the medium that it lies in.
-fn light(placed: Placed<'_>, recentre: DVec3, placement: &Placement<'_>) -> Light {
+fn light(placed: &Placed<'_>, recentre: DVec3, placement: &Placement<'_>) -> Light {
     let Placed { emitter, shape, stated, location } = placed;
+    let (emitter, shape) = (emitter.clone(), *shape);
     let position = emitter.position().map(|position| (position - recentre).as_vec3());
-    let (medium, straddles) = match (stated, shape, position) {
+    let (medium, straddles) = match (*stated, shape, position) {
         (Some(medium), ..) => (medium, false),
         (None, Some(shape), _) => placement.of_shape(shape, location),
         (None, None, Some(position)) => (placement.of_point(position, location), false),

@@ -40,7 +40,7 @@ impl Extents<'_> {
     }
 
     /// The box around the shapes that hold `medium`; around the whole scene where it also lies outside of some: false.
-    fn of(&self, medium: MediumIndex) -> (bool, [Vec3; 2]) {
+    pub fn of(&self, medium: MediumIndex) -> (bool, [Vec3; 2]) {
         let boundaries = || self.surfaces.iter().zip(self.geometry.shapes());
         let holds = |surface: &Surface| surface.boundary.interior == Some(medium);
         let leaks = |surface: &Surface| surface.boundary.exterior == Some(medium);
@@ -57,7 +57,8 @@ impl Extents<'_> {
         seen.is_none_or(|(l, h)| l.cmpge(low).all() && h.cmple(high).all())
     }
 
-    fn scene(&self) -> [Vec3; 2] {
+    /// The box around everything, the camera too.
+    pub fn scene(&self) -> [Vec3; 2] {
         let (low, high) = self.geometry.bounds();
         let camera = (self.viewpoint, self.viewpoint);
         widened(if low.is_finite() && high.is_finite() { union((low, high), camera) } else { camera })

@@ -63,6 +63,11 @@ impl Infinity {
         }
     }
 
+    /// True if it is the same all around.
+    pub fn is_uniform(&self) -> bool {
+        !matches!(self, Self::Directional(_))
+    }
+
     /// The same; none where it is only assumed.
     fn seen_towards(&self, direction: Vec3) -> Option<MediumIndex> {
         (!matches!(self, Self::Unseen(_))).then(|| self.towards(direction))

@@ -7,6 +7,7 @@ mod extents;
 pub mod lights;
 mod locate;
 mod placement;
+mod range;
 mod sections;
 mod time;
 

@@ -3,7 +3,7 @@
 use super::{
     accel::Geometry,
     boundary::Boundary,
-    locate::{Certainty, Contradiction, Infinity, Known, Located, Locator, Survey},
+    locate::{Certainty, Contradiction, Known, Located, Locator, Survey},
 };
 use crate::{
     description::{Library, Location, Position},
@@ -236,7 +236,7 @@ impl Placement<'_> {
     pub fn of_infinite(&self, emitter: &Emitter) -> (MediumIndex, bool) {
         let infinity = &self.locator.known.infinity;
         let medium = emitter.direction().map_or(infinity.most(), |direction| infinity.towards(-direction));
-        (medium, matches!(infinity, Infinity::Directional(_)))
+        (medium, !infinity.is_uniform())
     }
 }
 

@@ -181,9 +181,10 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         part: &FlightPart<P::Channels>,
         stream: &mut Stream,
     ) {
-        let Some((light, emission)) = self.estimator.scene.lights.of_medium(part.medium) else { return };
+        let scene = self.estimator.scene;
+        let Some((light, emission)) = scene.lights.of_medium(part.medium) else { return };
         self.observer.start();
-        if let Some((t, pdf)) = emission.sample_along(&part.interval.segment, stream)
+        if let Some((t, pdf)) = emission.sample_along(&part.emitting(scene), stream)
             && let Some((subpath, sample)) = self.meet(departure, part, light, t, stream)
         {
             let contribution = self.emitter_hit(&subpath, &sample).map(|contribution| contribution / pdf);

@@ -186,6 +186,10 @@ pub fn connect_along<P: Profile>(
     if P::EMISSIVE && b.within && between.medium != b.medium {
         return None;
     }
+    // Where nothing comes through, weights may be 0 times an overflowed ratio of densities: no numbers.
+    if P::MEDIA && between.transmittance.max_element() <= 0.0 {
+        return None;
+    }
     let geometry = 1.0 / distance_squared;
     let weight = mis::connection_weight(a, b, between.pdf, geometry, strategy);
     let value = a.value * b.value * between.transmittance * (geometry * weight);

@@ -94,9 +94,15 @@ fn layers_are_compared_by_name_or_explained() {
     sandbox.run("diff a.exr b.exr --fail-above mse=0").ends(0);
     let run =
         sandbox.run("diff a.exr b.exr --layer dd --fail-above mse=1.001 --fail-above largest=0.99").ends(1);
-    assert!(run.err().contains("largest is 1.0") && run.out().contains("does not contain colours"), "{}", run.out());
+    assert!(
+        run.err().contains("largest is 1.0") && run.out().contains("does not contain colours"),
+        "{}",
+        run.out()
+    );
     sandbox.run("diff a.exr b.exr --layer depth").refuses(&["a.exr", "dd (T)", "R"]);
-    sandbox.run("diff a.exr b.exr --layer dd --fail-above flip=1").refuses(&["--fail-above", "does not contain colours"]);
+    sandbox
+        .run("diff a.exr b.exr --layer dd --fail-above flip=1")
+        .refuses(&["--fail-above", "does not contain colours"]);
     sandbox.run("diff a.exr b.exr --layer dd --map m.png --map-of flip").refuses(&["--map-of"]);
 }
 

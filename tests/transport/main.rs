@@ -6,6 +6,7 @@ mod common;
 mod adaptive;
 mod agreement;
 mod determinism;
+mod extremes;
 mod forced;
 mod glowing;
 mod heuristics;

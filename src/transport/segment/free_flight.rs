@@ -2,7 +2,7 @@
 
 use super::{NullCrossing, Segment};
 use crate::{
-    math::{Channels, Spectrum, Vec3},
+    math::{Channels, RaySegment, Spectrum, Vec3},
     medium::{Medium, MediumIndex, MediumInterval, MediumProperties, distance::collision_ratio},
     sampling::Stream,
     scene::Scene,
@@ -132,6 +132,16 @@ pub struct FlightPart<L> {
 }
 
 impl<L: Channels> FlightPart<L> {
+    /// The part as far as it can emit. In a homogeneous medium the distance skipped behind a boundary counts: where mean
+    /// free paths are as short, the light of that distance would be lost.
+    pub fn emitting(&self, scene: &Scene) -> RaySegment {
+        let MediumInterval { segment, skipped } = self.interval;
+        match scene.media[self.medium.0 as usize].heterogeneous() {
+            Some(_) => segment,
+            None => RaySegment { length: segment.length + skipped, ..segment },
+        }
+    }
+
     /// The state of a flight that would have ended `t` metres into this part.
     pub fn until<P: Profile<Channels = L>>(
         &self,
@@ -204,6 +214,9 @@ fn fly_to_surface<P: Profile>(
     let interaction = match (sample.collision, hit) {
         (Some(t), _) => {
             interval.segment.length = t;
+            if P::EMISSIVE {
+                interval.skipped = medium.skipped_before::<P>(interval.skipped, hero, sample.spent);
+            }
             Some(collide::<P>(medium, &interval, hero, &mut state))
         }
         (None, Some(hit)) => Some(Interaction::Surface(segment.surface(&hit))),

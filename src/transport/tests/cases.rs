@@ -256,7 +256,7 @@ fn of_flights<P: Profile>(
     for (count, departure, passed) in &camera.passed {
         let met = match passed {
             Passed::Medium(part) => lights.of_medium(part.medium).and_then(|(light, emission)| {
-                let (t, _) = emission.sample_along(&part.interval.segment, stream)?;
+                let (t, _) = emission.sample_along(&part.emitting(estimator.scene), stream)?;
                 camera.visitor.meet(departure, part, light, t, stream)
             }),
             Passed::Emitter(crossing) => {

@@ -1,0 +1,83 @@
+//! What single precision can hold: which media, of which sizes, the image is right for. Whatever lies beyond is reported
+//! when the scene is built.
+
+use super::extents::Extents;
+use crate::{
+    description::{Library, Location},
+    error::{Error, Result},
+    math::{
+        Vec3,
+        offset::{LEAST_MEAN_FREE_PATH, LEAST_VOLUME_DENSITY, RESOLVED_STEPS, ROUNDOFF},
+    },
+    medium::{DistanceMethod, Heterogeneous, Medium, MediumIndex},
+};
+
+/// Reports every one of `media` (all but vacuum) that is too dense, or too thin for the size of the scene.
+pub fn check(
+    media: &[Medium],
+    locations: &[Location],
+    extents: &Extents<'_>,
+    library: &Library,
+) -> Result<()> {
+    for (index, (medium, location)) in media.iter().zip(locations).enumerate() {
+        let densest = medium.bound().sigma_t.max_element();
+        if densest <= 0.0 {
+            continue;
+        }
+        let [low, high] = medium.extent().unwrap_or_else(|| extents.of(MediumIndex(index as u32 + 1)).1);
+        check_mean_free_path(medium, 1.0 / densest, farthest(low, high), location, library)?;
+        let [low, high] = extents.scene();
+        let size = f64::from((high - low).length());
+        if f64::from(densest) / (size * size) < LEAST_VOLUME_DENSITY {
+            let text = format!(
+                "expected sigma_t over the square of the scene's size of at least {LEAST_VOLUME_DENSITY:e} per cubic \
+                 metre, found sigma_t {densest:e} per metre in a scene of {size:.0e} m: densities of paths \
+                 are too small for single precision, and light will be lost. Use a larger unit of length"
+            );
+            library.warn(location, &text);
+        }
+    }
+    Ok(())
+}
+
+/// The largest coordinate of a box [m from the camera].
+fn farthest(low: Vec3, high: Vec3) -> f32 {
+    low.abs().max(high.abs()).max_element()
+}
+
+/// A mean free path [m] against the steps of positions where the medium reaches `farthest` metres from the camera.
+fn check_mean_free_path(
+    medium: &Medium,
+    free_path: f32,
+    farthest: f32,
+    location: &Location,
+    library: &Library,
+) -> Result<()> {
+    let step = 2.0 * ROUNDOFF;
+    let tracker = medium.heterogeneous().map(|varying: &Heterogeneous| varying.tracker().choice());
+    if tracker == Some(DistanceMethod::DeltaTracking) && free_path < step * farthest {
+        return Err(Error::new(
+            location,
+            format!(
+                "a mean free path of at least {:.1e} m for null collisions (the rounding error of positions)",
+                step * farthest
+            ),
+            format!(
+                "{free_path:.1e} m, 1 over the largest sigma_t, in a medium that reaches {farthest:.2e} m from the camera"
+            ),
+            "lower sigma_t or scale, or choose another tracker: \"march\" works for every medium",
+        ));
+    }
+    let resolved = free_path / (RESOLVED_STEPS * step);
+    if farthest > resolved || free_path < LEAST_MEAN_FREE_PATH {
+        let text = format!(
+            "expected a mean free path of at least {:.1e} m, found {free_path:.1e} m (1 over the largest sigma_t), in a \
+             medium that reaches {farthest:.2e} m from the camera: positions are rounded to {:.1e} m there, and its \
+             boundaries will be too dark beyond {resolved:.1e} m. Lower sigma_t, or bring the medium closer",
+            (RESOLVED_STEPS * step * farthest).max(LEAST_MEAN_FREE_PATH),
+            step * farthest,
+        );
+        library.warn(location, &text);
+    }
+    Ok(())
+}

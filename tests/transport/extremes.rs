@@ -1,0 +1,100 @@
+//! Numbers at the edge of what single precision holds, each against a known radiance or one method against another.
+
+use crate::common::{
+    Stage,
+    claims::{Claims, Sample},
+    pieces::*,
+    strategies,
+};
+use serde_json::{Value, json};
+use tyndall::transport::Strategies;
+
+const SEEDS: u64 = 12;
+
+fn sample(stage: &Stage, set: Strategies, first: u64) -> Sample {
+    Sample::of(&stage.renders(set, 64, first..first + SEEDS), stage.width())
+}
+
+fn bdpt_is_pt(what: &str, parts: &[(&str, Value)]) {
+    let stage = Stage::new(&scene(parts));
+    let mut claims = Claims::new();
+    claims.equal(what, &sample(&stage, Strategies::BDPT, 500), &sample(&stage, Strategies::PT, 0));
+    claims.settle();
+}
+
+/// Under a sky of radiance 1 nothing that absorbs nothing can be told from it.
+fn is_invisible(what: &str, parts: &[(&str, Value)]) {
+    let mut all = vec![("sensor", camera([0.0, 0.0, 3.5], [0.0, 0.0, 0.0], 8)), ("sky", sky(1.0))];
+    all.extend(parts.iter().cloned());
+    let stage = Stage::new(&scene(&all));
+    let mut claims = Claims::new();
+    for (name, set) in [("hit", strategies("hit")), ("bdpt", Strategies::BDPT)] {
+        claims.equal_to(&format!("{what}, {name}"), &sample(&stage, set, 0), 1.0);
+    }
+    claims.settle();
+}
+
+/// Ratios of densities overflow here, and a transmittance of 0 times one is no number.
+#[test]
+fn connections_through_opaque_media_bring_nothing() {
+    let fog = with(medium(1e9, 0.5, 0.0), &[("radiance", json!(1.0))]);
+    let parts = [
+        ("fog", fog),
+        ("sensor", with(camera([0.1, 0.2, 0.9], [0.0, 0.0, -1.0], 8), &[("medium", named("fog"))])),
+        ("room", room(0.5, Some(named("fog")))),
+    ];
+    let images = Stage::new(&scene(&parts)).renders(Strategies::BDPT, 16, 0..4);
+    assert!(images.iter().flatten().all(|value| value.is_finite()));
+}
+
+/// Each ray meets one of two faces in the same place, and which one is chance.
+#[test]
+fn nested_media_may_share_faces() {
+    let outer = null_box([-0.8; 3], [0.8; 3], Some(named("thin")));
+    let inner =
+        with(null_box([-0.3, -0.8, -0.3], [0.8; 3], Some(named("thick"))), &[("exterior", named("thin"))]);
+    let parts = [
+        ("thin", medium(0.5, 1.0, 0.3)),
+        ("thick", medium(3.0, 1.0, 0.0)),
+        ("outer", outer),
+        ("inner", inner),
+    ];
+    is_invisible("nested boxes that share four faces", &parts);
+}
+
+/// Scattering by less than a degree: cosines near 1, where 1 - cos has few digits.
+#[test]
+fn sharp_forward_scattering_keeps_energy() {
+    is_invisible("g = 0.9999", &[("cloud", null_box([-0.5; 3], [0.5; 3], Some(medium(4.0, 1.0, 0.9999))))]);
+}
+
+/// Mitsuba starts shadow rays some way off surfaces, behind a boundary as near as this.
+#[test]
+fn lamps_may_be_a_hair_from_a_boundary() {
+    for gap in [1e-5, -1e-5] {
+        let parts = [
+            ("sensor", camera([0.0, 0.5, 3.5], [0.0, 0.0, 0.0], 8)),
+            ("floor", floor(-1.0, 2.0, 0.5)),
+            ("cloud", null_box([-0.7; 3], [0.7; 3], Some(medium(1.0, 0.9, 0.0)))),
+            ("lamp", lamp_panel([0.0, 0.7 + gap, 0.0], 0.4, 3.0)),
+        ];
+        bdpt_is_pt(&format!("lamp {gap} above the top of a cloud"), &parts);
+    }
+}
+
+/// One component of a blend passes light that the other absorbs or reflects.
+#[test]
+fn rough_glass_may_be_blended_with_black_and_grey() {
+    let glass = json!({"type": "roughdielectric", "distribution": "ggx", "alpha": 0.3, "int_ior": 1.5});
+    for grey in [0.0, 0.5] {
+        let blend = json!({"type": "blendbsdf", "weight": 0.5, "b0": glass, "b1": diffuse(grey)});
+        let parts = [
+            ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+            ("room", room(0.5, None)),
+            ("ball", with(lamp_ball([0.0, -0.2, -0.3], 0.1, 4.0), &[])),
+            ("glass", json!({"type": "sphere", "center": [0.0, -0.2, -0.3], "radius": 0.5, "bsdf": blend})),
+            ("lamp", lamp_panel([0.0, 0.95, 0.0], 0.4, 3.0)),
+        ];
+        bdpt_is_pt(&format!("rough glass and diffuse {grey}"), &parts);
+    }
+}
