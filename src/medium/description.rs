@@ -85,7 +85,7 @@ impl MediumDescription {
     }
 }
 
-/// What `overrides` makes of a homogeneous medium.
+/// A homogeneous medium with `overrides` applied.
 fn overridden(medium: Medium, overrides: &MediumOverrides) -> Medium {
     let MediumProperties { sigma_t, albedo } = medium.bound();
     let absorbing = MediumProperties { sigma_t: sigma_t * (Spectrum::ONE - albedo), albedo: Spectrum::ZERO };

@@ -1,8 +1,8 @@
 //! Emission of a medium: radiance gained per metre (P03 eq. 11), where it is, and how points of it are sampled.
 //!
-//! It is given as that gain itself, which needs no matter; or as the radiance that a thick layer would have (P03's
-//! L_e), times the absorption, with the sign that eq. 11 ought to have; or as the temperature of a black body, whose
-//! radiance that is by Kirchhoff's law.
+//! It is given as that gain itself, which needs no extinction; or as the radiance that a thick layer would
+//! have (P03's L_e), times the absorption, with the sign that eq. 11 should have; or as the temperature of
+//! a black body, whose radiance that is by Kirchhoff's law.
 
 use super::{Extinction, MediumBounds, MediumProperties};
 use crate::{
@@ -178,7 +178,7 @@ impl Field {
         matches!((&self.within, &self.volume), (Within::Uniform(_), Volume::Constant(_)))
     }
 
-    /// What it is like from afar: one cell where it is the same everywhere.
+    /// A coarse view of it: one cell where it is the same everywhere.
     fn coarse(&self) -> Coarse {
         if !self.is_uniform() {
             return Coarse::of(self.low, self.high, |p| self.at(p), |low, high| self.most(low, high));

@@ -43,7 +43,7 @@ impl Fields {
         }
         let range = albedo.range(Vec3::ZERO, Vec3::ZERO);
         let (absorbed, scale) = match albedo {
-            // A factor leaves the volume what it is, and its trackers what they are.
+            // A factor changes neither the kind of the volume nor its trackers.
             Volume::Constant(_) if albedo.is_grey() => (sigma_t.clone(), scale * (1.0 - range[0].x)),
             albedo => (sigma_t.clone().absorbed(albedo.clone()), *scale),
         };
@@ -118,7 +118,7 @@ impl Heterogeneous {
         !self.extinction.volume.is_grey()
     }
 
-    /// Where it is, and how much.
+    /// Where it is, and how strong.
     pub fn extinction(&self) -> &Extinction {
         &self.extinction
     }
@@ -128,7 +128,7 @@ impl Heterogeneous {
         self.fields.tracker
     }
 
-    /// The tracker that goes before that, if any.
+    /// The tracker that takes precedence over that, if any.
     pub fn forced(&self) -> Option<DistanceMethod> {
         self.overrides.tracker
     }

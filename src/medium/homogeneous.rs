@@ -13,7 +13,7 @@ impl Homogeneous {
         L::from_spectrum(self.0.sigma_t)
     }
 
-    /// Optical depth of a distance [m] that may be infinite: nothing times infinity is nothing.
+    /// Optical depth of a distance [m] that may be infinite: 0 times infinity counts as 0.
     ///
     /// LW96 eq. 7: kappa d, whose e^-(kappa d) is P_surface.
     #[inline]

@@ -2,7 +2,7 @@
 
 use super::DistanceMethod;
 
-/// How the media of a scene are to be taken.
+/// Changes to the media of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MediumOverrides {
     /// The tracker of those that vary, in place of their own choice.

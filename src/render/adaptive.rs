@@ -30,7 +30,7 @@ pub struct Precision {
     pub confidence: f64,
 }
 
-/// How a render with a wanted precision ended.
+/// How a render with a requested precision ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
     /// The part of the pixels that are within the error, by what their samples say.
@@ -39,7 +39,7 @@ pub struct Reached {
     pub samples: Vec<u32>,
 }
 
-/// What came out of an adaptive render.
+/// The result of an adaptive render.
 pub(super) struct Developed {
     /// The image.
     pub pixels: Vec<Spectrum>,
@@ -73,7 +73,7 @@ struct Half {
     light: Vec<DVec3>,
     /// Squared relative error as this half's samples estimate it, kept once it is small enough.
     errors: Vec<f64>,
-    /// The half is content with the pixel.
+    /// The pixel has converged by this half.
     content: Vec<bool>,
     /// What errors are relative to at least.
     floor: f64,
@@ -141,7 +141,7 @@ impl Half {
     }
 
     /// Pixels without any light yet have no variance to judge by. They end with the last of the others, or in an image
-    /// that is all black, after samples enough.
+    /// that is all black, after enough samples.
     fn judge_black(&mut self, limits: &Limits) {
         let is_black = |pixel: usize| self.squares[pixel] == DVec3::ZERO;
         let pixels = || 0..self.content.len();
@@ -188,7 +188,7 @@ impl Half {
         sum / count
     }
 
-    /// Ends the means of this half where `other` is content.
+    /// Ends the means of this half where `other` has converged.
     fn end(&mut self, other: &Self) {
         let n = self.passes as f64;
         for (pixel, ended) in self.ended.iter_mut().enumerate() {
@@ -224,7 +224,7 @@ impl Limits {
         let tail = 0.5 * (1.0 - confidence);
         let t = StudentsT::new(0.0, 1.0, (passes - 1) as f64).map_or(f64::INFINITY, |t| -t.inverse_cdf(tail));
         // With this many passes, light that comes in more than a thousandth of all samples of every pixel has shown
-        // itself somewhere with probability `confidence`, were there but one pixel.
+        // itself somewhere with probability `confidence`, even if there were only one pixel.
         let unseen = (1.0 - confidence).ln() / (-RAREST).ln_1p();
         Self { squared_error: (error / t).powi(2), passes_without_light: unseen.ceil() as u64 }
     }
@@ -249,7 +249,7 @@ impl<'a> Adaptive<'a> {
         Self { bench, stopwatch, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
     }
 
-    /// Renders until every pixel is content or the budget is spent.
+    /// Renders until every pixel has converged or the budget is spent.
     pub fn run(mut self, progress: &mut dyn FnMut(Progress)) -> Developed {
         let mut goal = FIRST_LOOK;
         while self.active.iter().any(|active| *active) {
@@ -327,7 +327,7 @@ impl<'a> Adaptive<'a> {
         }
     }
 
-    /// The part of the pixels that are at rest.
+    /// The fraction of the pixels that have converged.
     fn share(&self) -> f64 {
         self.active.iter().filter(|active| !**active).count() as f64 / self.active.len().max(1) as f64
     }
@@ -349,7 +349,7 @@ impl<'a> Adaptive<'a> {
     }
 }
 
-/// Root of the mean squared relative error, of what the halves said last.
+/// Root of the mean squared relative error, as the halves estimated it last.
 fn rms(halves: &[&Half]) -> f64 {
     let errors = halves.iter().flat_map(|half| &half.errors);
     let count = halves.iter().map(|half| half.errors.len()).sum::<usize>().max(1);

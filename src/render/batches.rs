@@ -49,7 +49,7 @@ impl Image {
     }
 }
 
-/// The means of the images' own layers; what is a variance of the image is so much less of the mean.
+/// The means of the images' own layers; a variance of the image is that much smaller for the mean.
 fn mean_layers(images: &[Image], layers: &[Layer]) -> Vec<Channel> {
     let variances = layers.iter().filter(|layer| layer.content == Content::Variance);
     let variances: Vec<String> = variances.flat_map(Layer::channel_names).collect();
@@ -70,7 +70,7 @@ fn planes(images: &[Vec<Channel>], c: usize) -> Vec<&[f32]> {
     images.iter().map(|channels| &channels[c].values[..]).collect()
 }
 
-/// What `merge` makes of the values that the planes have in one place, for every place.
+/// `merge` applied to the values of the planes at each position.
 fn merged(planes: &[&[f32]], merge: fn(&[f64]) -> f64) -> Vec<f32> {
     let at = |i: usize| merge(&planes.iter().map(|plane| f64::from(plane[i])).collect::<Vec<_>>()) as f32;
     (0..planes[0].len()).map(at).collect()

@@ -18,8 +18,8 @@ use crate::{
 };
 use std::ops::Range;
 
-/// Pixels (and light subpaths) of a block: a cache of this many walks still fits near the processor, and its
-/// noise is shared by few enough pixels.
+/// Pixels (and light subpaths) of a block: a cache of this many walks still fits the processor's caches, and
+/// its noise is shared by few enough pixels.
 const PIXELS_PER_BLOCK: usize = 1024;
 
 /// How an image's pixels are divided among blocks.

@@ -1,5 +1,5 @@
 //! The preview `fog` (BMA02 eq. 5): surfaces as they are lit, behind a veil of constant radiance as thick as the media
-//! make it. One ray a sample and no shadows: a picture to place things by, not to measure.
+//! make it. One ray a sample and no shadows: a picture for placing objects, not for measurements.
 
 use crate::{
     bsdf::{BsdfModel, Transport},
@@ -31,7 +31,7 @@ pub struct Preview<'a> {
     ambient: Spectrum,
 }
 
-/// What a ray has come to.
+/// What a ray has reached.
 struct Sight {
     /// The part of radiance from there that remains.
     through: Spectrum,

@@ -30,7 +30,7 @@ impl<'a> Instrument<'a> {
         Self { scene, film, settings: *settings, compiled: compiled::choose(scene, film, settings) }
     }
 
-    /// `work` on tasks, each a block of a pass, on all threads; what came of it in their order.
+    /// `work` on tasks, each a block of a pass, on all threads; the results in their order.
     pub(super) fn work<T: Send>(
         &self,
         tasks: Range<usize>,
@@ -53,7 +53,7 @@ impl<'a> Instrument<'a> {
         })
     }
 
-    /// `work` on all blocks of `passes`, on all threads; `take` gets what came of it in order, and whether the
+    /// `work` on all blocks of `passes`, on all threads; `take` gets the results in order, and whether the
     /// pass ends with it. The time that `work` took.
     pub(super) fn in_order<T: Send>(
         &self,

@@ -86,7 +86,7 @@ pub struct Image {
     pub alpha: Vec<f32>,
     /// The channels of all layers, in their order.
     pub layers: Vec<Channel>,
-    /// How far a wanted precision was reached, if one was wanted.
+    /// How far a requested precision was reached, if one was requested.
     pub reached: Option<Reached>,
 }
 

@@ -4,14 +4,14 @@ use super::Progress;
 use crate::math::Spectrum;
 use std::time::{Duration, Instant};
 
-/// The image as it is on its way.
+/// The image while it is being rendered.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     /// Row-major radiance, top row first: what a render of so many samples would have been, bit for bit.
     pub pixels: Vec<Spectrum>,
     /// Samples per pixel.
     pub samples_per_pixel: u64,
-    /// Time spent on them, pilot walks included; what earlier snapshots took is not.
+    /// Time spent on them, pilot walks included; the time for earlier snapshots is not.
     pub elapsed: Duration,
 }
 
@@ -33,13 +33,13 @@ impl Monitor<'_> {
         next.map_or(wanted, |mark| wanted.min((*mark as usize).saturating_mul(per_pass)))
     }
 
-    /// True if the image is wanted after `passes`.
+    /// True if the image is requested after `passes`.
     pub fn is_mark(&self, passes: u64) -> bool {
         self.marks.contains(&passes)
     }
 }
 
-/// A clock that can be held.
+/// A clock that can be paused.
 pub(super) struct Stopwatch {
     started: Instant,
     held: Duration,

@@ -1,4 +1,4 @@
-//! One pixel sample made again, with all that its walks met: what one pass adds to one pixel.
+//! One pixel sample made again, with everything that its walks hit: what one pass adds to one pixel.
 
 use super::{compiled::Ready, instrument::Instrument};
 use crate::{
@@ -21,7 +21,7 @@ pub struct PixelSample {
     pub film: Vec2,
     /// Through which point of the aperture, as the sensor samples it.
     pub aperture: Vec2,
-    /// What the filter makes of a sample there: 1, but for filters with negative lobes.
+    /// The filter's factor for a sample there: 1, but for filters with negative lobes.
     pub factor: f32,
     /// The channel that samples distances, where extinction differs between channels.
     pub hero: Option<usize>,
@@ -43,7 +43,7 @@ pub struct PixelSample {
 pub struct Walk {
     /// The emitter that a light subpath starts at.
     pub emitter: Option<EmissionSample>,
-    /// Where it sets out from; none where nothing left the emitter.
+    /// Where it starts; none where nothing left the emitter.
     pub start: Option<Leg>,
     /// Its vertices after the start.
     pub stops: Vec<Stop>,
@@ -68,7 +68,7 @@ pub struct Leg {
     pub throughput: Spectrum,
 }
 
-/// How a walk came to a point.
+/// How a walk reached a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Arrival {
     /// The medium of the segment that ended here.
@@ -111,7 +111,7 @@ pub struct Try {
 /// What a camera vertex was connected to.
 #[derive(Clone, Debug)]
 pub enum Partner {
-    /// The camera subpath met an emitter here.
+    /// The camera subpath hit an emitter here.
     Met(Arrival, EmitterSample),
     /// A point of an emitter.
     Emitter(EmitterSample),
@@ -133,7 +133,7 @@ pub struct Splat {
     pub walk: u64,
     /// Light vertices; t = 1.
     pub s: u32,
-    /// Where on the film it came down [pixels].
+    /// Where it landed on the film [pixels].
     pub film: Vec2,
     /// The share of it that the filter gives the pixel.
     pub share: f32,

@@ -99,7 +99,7 @@ struct View<'a> {
     hit: Option<(Hit, SurfacePoint)>,
     /// There is an environment emitter, in every direction at infinity.
     environment: bool,
-    /// Step across the film that `duv_dx` speaks of [pixels].
+    /// Step across the film that `duv_dx` refers to [pixels].
     step: f32,
 }
 

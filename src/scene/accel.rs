@@ -13,7 +13,7 @@ use crate::{
 };
 use tree::Tree;
 
-/// All shapes of a scene, ready for rays.
+/// All shapes of a scene, ready for ray queries.
 #[derive(Clone, Debug)]
 pub struct Geometry {
     shapes: Vec<Shape>,
@@ -91,8 +91,8 @@ impl Geometry {
         SurfacePoint { shape, ..point }
     }
 
-    /// A point on `shape` for light to come from to `reference`, and its density per area [1/m^2]; none where that has no
-    /// use (the point is seen edge-on).
+    /// A point on `shape` for light to come from to `reference`, and its density per area [1/m^2]; none where
+    /// that is useless (the point is seen edge-on).
     pub fn sample_toward(
         &self,
         shape: u32,

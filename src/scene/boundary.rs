@@ -8,7 +8,7 @@ use crate::{
     shape::{Ray, SurfacePoint},
 };
 
-/// The media on the two sides of a shape; none where nothing is known of a side.
+/// The media on the two sides of a shape; none where nothing is known about a side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Boundary {
     /// Behind the surface, where the normal points away from.
@@ -46,7 +46,7 @@ impl Boundary {
     }
 }
 
-/// A side of a boundary that a ray has met.
+/// A side of a boundary that a ray has hit.
 #[derive(Clone, Copy, Debug)]
 pub struct Side {
     /// The medium of the ray.
@@ -55,9 +55,9 @@ pub struct Side {
     pub shape: u32,
     /// Where.
     pub position: Vec3,
-    /// It was met from its inside.
+    /// It was hit from its inside.
     inside: bool,
-    /// Its faces may be another's too (see [`touching`]).
+    /// Its faces may coincide with another's (see [`touching`]).
     touching: bool,
 }
 

@@ -1,5 +1,5 @@
-//! From description to scene: the tree is walked once, every object is built by its registry row, and what
-//! belongs together is tied up by index.
+//! From description to scene: the tree is walked once, every object is built by its registry row, and related
+//! objects refer to each other by index.
 
 use super::{
     Scene, Surface,
@@ -44,7 +44,7 @@ pub struct Setup {
     pub integrator: Integrator,
     /// Samples per pixel that the sampler requests.
     pub samples_per_pixel: u64,
-    /// How the sampler spreads random numbers.
+    /// How the sampler distributes random numbers.
     pub sampler: Sampler,
     /// What the user should know.
     pub warnings: Vec<String>,

@@ -1,5 +1,5 @@
-//! How far the media of a scene reach: the boxes in which coefficients that vary without bounds of their own are
-//! looked at.
+//! How far the media of a scene reach: the boxes in which coefficients that vary without bounds of their own
+//! are examined.
 
 use super::{Surface, accel::Geometry, locate::Survey};
 use crate::{

@@ -27,7 +27,7 @@ const LONGEST_CHAIN: u32 = 8;
 const CHAINS: usize = 128;
 /// Pieces of evidence that settle the medium of a point.
 const ENOUGH: u32 = 8;
-/// Shares of evidence below this are taken for rays that slipped through an edge.
+/// Shares of evidence below this are attributed to rays that slipped through an edge.
 const SLIPS: f32 = 0.01;
 
 /// The medium at infinity, by direction.
@@ -118,20 +118,20 @@ impl Votes {
     }
 }
 
-/// What is known of a scene's media before anything is located.
+/// What is known about the media of a scene before anything is located.
 #[derive(Clone, Debug)]
 pub struct Known {
     /// Shapes with a known medium on some side.
     boundaries: Vec<u32>,
     /// Points whose medium is stated, or has been located.
     points: Vec<(Vec3, MediumIndex)>,
-    /// The only medium that anything in the scene speaks of.
+    /// The only medium that anything in the scene names.
     only: Option<MediumIndex>,
     /// What surrounds the scene.
     pub infinity: Infinity,
 }
 
-/// A side of a boundary in one medium, from which an unblocked way leads to another in a different one.
+/// A side of a boundary in one medium, from which an unblocked segment leads to another in a different one.
 #[derive(Clone, Copy, Debug)]
 pub struct Contradiction {
     /// The shape where the way begins; none for a point whose medium is stated.
@@ -142,12 +142,12 @@ pub struct Contradiction {
     pub at: Side,
 }
 
-/// What the boundaries of a scene say of each other.
+/// What the boundaries of a scene say about each other.
 #[derive(Debug, Default)]
 pub struct Survey {
     /// Where they are open or overlap.
     pub contradictions: Vec<Contradiction>,
-    /// Per medium, least and greatest corner of what rays within it have met; infinite where they met nothing.
+    /// Per medium, least and greatest corner of what rays within it have hit; infinite where they hit nothing.
     pub extents: Vec<Option<(Vec3, Vec3)>>,
     escapes: Vec<(Vec3, MediumIndex)>,
 }
@@ -221,7 +221,7 @@ impl Known {
         (Self { infinity, ..known }, survey)
     }
 
-    /// True if one medium is all that can lie anywhere.
+    /// True if only one medium is possible anywhere.
     pub fn is_uniform(&self) -> bool {
         self.only.is_some()
     }
@@ -423,7 +423,7 @@ impl Locator<'_> {
         None
     }
 
-    /// A ray from `origin`: half of them in a direction of chance, or `leaving`; half aimed at a boundary, or at a point of
+    /// A ray from `origin`: half of them in a random direction, or `leaving`; half aimed at a boundary, or at a point of
     /// known medium, where they end.
     fn aim(&self, origin: Vec3, leaving: Option<Vec3>, stream: &mut Stream) -> (Ray, Option<MediumIndex>) {
         let Known { boundaries, points, .. } = self.known;

@@ -57,7 +57,7 @@ pub struct Scene {
     pub sensor: Sensor,
     /// The medium around everything; where that differs by direction, the one seen most.
     pub outside: MediumIndex,
-    /// What is known of where media lie.
+    /// What is known about where media lie.
     pub known: Known,
     /// The medium around the camera.
     pub sensor_medium: MediumIndex,

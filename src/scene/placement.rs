@@ -83,7 +83,7 @@ impl Names<'_> {
         self.library.warn(location, &text);
     }
 
-    /// Shapes that are open or overlap; every pair once, those that most rays prove first.
+    /// Shapes that are open or overlap; every pair once, in order of the number of rays that prove it.
     pub fn warn_of_contradictions(&self, survey: &Survey) {
         let key = |c: &Contradiction| (c.from, c.medium, c.at.shape, c.at.medium);
         let mut found: Vec<(&Contradiction, usize)> = Vec::new();
@@ -156,8 +156,8 @@ pub struct Placement<'a> {
     pub ambient: MediumIndex,
 }
 
-/// The medium of a camera whose ray through the middle of the image starts at `start`, and which states none; what it is
-/// taken for helps to find others, if it is a guess.
+/// The medium of a camera whose ray through the middle of the image starts at `start`, and which states none;
+/// if it is a guess, it also serves as evidence for others.
 pub fn place_camera(
     geometry: &Geometry,
     surfaces: &[super::Surface],

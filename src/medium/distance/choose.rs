@@ -41,7 +41,7 @@ pub fn choose(
             let coarse = coarse();
             let exact = COST_OF_CELL * mean(medium, |segment, _| cells(medium, segment));
             let work = work_of_tracking(medium, &coarse);
-            // Noise only makes tracking dearer; and where it costs a lot, so would measuring it.
+            // Noise only makes tracking more expensive; and where it costs a lot, so would measuring it.
             if exact <= work || exact <= work * (1.0 + noise_of_tracking(medium, &coarse)) {
                 DistanceSampler::RegularTracking
             } else {
@@ -131,8 +131,8 @@ fn mean(medium: &Extinction, of: impl Fn(&RaySegment, &mut Stream) -> f64) -> f6
 }
 
 /// Sections from random points of the medium's box, each with random numbers of its own: half of them to other such
-/// points, half of them as long as chance has it, in all orders of magnitude and directions, for a flat box is crossed
-/// steeply too, and where extinction is strong only what is near is seen.
+/// points, half of them of random length, in all orders of magnitude and directions, because a flat box is
+/// crossed steeply too, and where extinction is strong only what is near is seen.
 fn sections(medium: &Extinction) -> impl Iterator<Item = (RaySegment, Stream)> + use<'_> {
     (0..SECTIONS).map(|index| {
         let mut stream = Stream::new(0, index, 0, Purpose::Pilot);

@@ -56,7 +56,7 @@ fn invert<L: Channels>(
         }
         let slope = medium.at::<L>(segment.at(t)).hero(hero);
         let newton = t - excess / slope;
-        // A flat stretch sends Newton away; so does a step that would hardly move.
+        // A flat stretch sends the Newton step out of the bracket, and so does a step that would hardly move.
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         if next == t || low >= high {
             break;

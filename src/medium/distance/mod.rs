@@ -26,9 +26,9 @@ pub struct DistanceSample<L> {
     /// Deterministic optical depth up to there: what the weights use (the stand-in where transmittance is random).
     pub depth: L,
     /// Transmittance of every channel over the hero's, and the hero's sigma_t over that by which the collision was
-    /// sampled, were it only in the mean: with sigma_t at the collision over the hero's, the factor of the throughput.
+    /// sampled, if only in the mean: with sigma_t at the collision over the hero's, the factor of the throughput.
     pub ratio: L,
-    /// What of the hero's optical depth that was to go is used up.
+    /// How much of the hero's remaining optical depth is used up.
     pub spent: f32,
 }
 
@@ -213,7 +213,7 @@ impl<L: Channels> DistanceSample<L> {
     }
 }
 
-/// Optical depth along `segment`, to be seen and not to be measured: never random.
+/// Optical depth along `segment`, for display and not for measurement: never random.
 pub fn quick_depth<L: Channels>(tracker: &DistanceSampler, medium: &Extinction, segment: &RaySegment) -> L {
     match tracker {
         DistanceSampler::DeltaTracking(_) if medium.volume.has_integral() => {

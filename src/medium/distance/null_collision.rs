@@ -38,7 +38,7 @@ fn collisions(
     for Piece { cell, first, last } in coarse.pieces(segment) {
         let majorant = coarse.most(cell) * medium.scale;
         let mut at = first;
-        // A cell without matter has no collisions: 0 < 0 is false whatever remains.
+        // A cell without matter has no collisions: 0 < 0 is false, whatever depth remains.
         while remaining < majorant * (last - at) {
             at += remaining / majorant;
             remaining = stream.exponential();
@@ -109,7 +109,8 @@ pub fn sample_distance<L: Channels>(
     DistanceSample { collision, depth, ratio, spent: 0.0 }
 }
 
-/// Forced collisions come at no less than this part of the majorant: what the means of cells miss is found too.
+/// The rate of forced collisions is at least this fraction of the majorant: so matter that the means of cells
+/// miss is found too.
 const LEAST: f32 = 0.05;
 
 /// The rate at which forced collisions are drawn in `cell` [1/m]: the mean, as in the stand-in.

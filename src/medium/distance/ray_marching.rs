@@ -1,4 +1,5 @@
-//! Ray marching (LW96 sec. 5): the way through the medium is cut into intervals, each taken for homogeneous.
+//! Ray marching (LW96 sec. 5): the segment through the medium is cut into intervals, each treated as
+//! homogeneous.
 //!
 //! The cuts divide the whole chord of the line through the medium's box, wherever a walk on it starts or ends: both
 //! directions of a segment see the same intervals, so that T(x, y) = T(y, x), and a flight is sampled from

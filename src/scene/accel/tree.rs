@@ -1,5 +1,5 @@
-//! The hierarchy: obvhs builds it (PLOC and reinsertion), here it becomes four wide, for four boxes and four
-//! flat primitives are tested in the time of one.
+//! The hierarchy: obvhs builds it (PLOC and reinsertion), here it becomes four wide, because four boxes and
+//! four flat primitives are tested in the time of one.
 
 use super::{
     curved::Curved,
@@ -198,7 +198,7 @@ fn leaf<'a>(bvh: &'a Bvh2, node: &Bvh2Node) -> impl Iterator<Item = u32> + 'a {
     bvh.primitive_indices[first..first + node.prim_count as usize].iter().copied()
 }
 
-/// The binary tree on its way to become a wide one.
+/// The binary tree while it is turned into a wide one.
 struct Widening<'a> {
     bvh: &'a Bvh2,
     primitives: &'a [Primitive],
@@ -253,7 +253,7 @@ impl Widening<'_> {
         let numbers = self.below(node);
         let tree = &mut *self.tree;
         let mut flats = Vec::new();
-        // A leaf that is no pack holds one primitive.
+        // A leaf that is not a pack holds one primitive.
         for number in numbers {
             match self.primitives[number as usize] {
                 Primitive::Flat(flat) => flats.push((number, flat)),

@@ -155,8 +155,8 @@ impl Lights {
         EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
     }
 
-    /// What the emitter point of a light subpath sends towards unit `towards`; none where it does not emit that
-    /// way or cannot be met.
+    /// What the emitter point of a light subpath sends towards unit `towards`; none where it does not emit
+    /// that way or cannot be hit.
     pub fn emission(&self, start: &EmissionSample, towards: Vec3) -> Option<Emitted> {
         match (&self.all[start.light as usize].emitter.kind, &start.point) {
             (Kind::Area(area), EmitterPoint::Surface(point)) => {

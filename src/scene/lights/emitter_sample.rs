@@ -1,4 +1,4 @@
-//! Emitter points as seen from a reference: sampled by next-event estimation or met by a camera subpath.
+//! Emitter points as seen from a reference: sampled by next-event estimation or hit by a camera subpath.
 
 use super::{EmitterPoint, Geometry, Lights, front};
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
     shape::SurfacePoint,
 };
 
-/// An emitter point sampled for (or met from) a reference point.
+/// An emitter point sampled for (or hit from) a reference point.
 #[derive(Clone, Copy, Debug)]
 pub struct EmitterSample {
     /// The emitter.
@@ -133,7 +133,7 @@ impl Lights {
         }
     }
 
-    /// A point of an emissive medium, by whatever way it was found; none where it is dark there.
+    /// A point of an emissive medium, however it was found; none where nothing is emitted there.
     pub fn volume_sample(&self, light: u32, position: Vec3) -> Option<EmitterSample> {
         let index = light as usize;
         let Kind::Medium(VolumeEmitter { emission, .. }) = &self.all[index].emitter.kind else { return None };

@@ -12,7 +12,7 @@ use crate::{
 /// Points of an emissive medium's box that are located.
 const POINTS: u32 = 4096;
 
-/// The emissive ones among `media`; `outside` is what a point lies in of which nothing is known.
+/// The emissive ones among `media`; `outside` is the medium of points about which nothing is known.
 pub fn emissive<'a>(
     media: &'a [Medium],
     locator: Locator<'a>,
