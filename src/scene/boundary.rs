@@ -124,15 +124,6 @@ pub fn first(geometry: &Geometry, surfaces: &[Surface], mut ray: Ray, through_wa
     Met::Nothing
 }
 
-/// The medium that a ray is in which leaves a boundary that may share faces with another: that of the first side ahead.
-pub fn medium_ahead(geometry: &Geometry, surfaces: &[Surface], ray: &Ray) -> Option<MediumIndex> {
-    let ray = Ray { t_max: f32::INFINITY, ..*ray };
-    match first(geometry, surfaces, ray, true) {
-        Met::Side(side) => Some(side.undoubted(geometry, surfaces, ray.origin).medium),
-        _ => None,
-    }
-}
-
 /// For every shape, whether its boundary may share faces with that of another: their boxes overlap, and
 /// neither lies within the other.
 pub fn touching(geometry: &Geometry, surfaces: &[Surface]) -> Vec<bool> {

@@ -369,6 +369,22 @@ impl Locator<'_> {
         }
     }
 
+    /// The medium of a ray that leaves a boundary that may share faces with another: that of the first side ahead, seen
+    /// through walls if need be, or what surrounds the scene.
+    pub fn ahead(&self, ray: &Ray) -> Option<MediumIndex> {
+        let first = |through_walls| {
+            let ray = Ray { t_max: f32::INFINITY, ..*ray };
+            boundary::first(self.geometry, self.surfaces, ray, through_walls)
+        };
+        let met = match first(false) {
+            Met::Nothing => return self.known.infinity.seen_towards(ray.direction),
+            Met::Wall { .. } => first(true),
+            side => side,
+        };
+        let Met::Side(side) = met else { return None };
+        Some(side.undoubted(self.geometry, self.surfaces, ray.origin).medium)
+    }
+
     /// What light from infinity that starts at `origin` in `direction` is in.
     pub fn at_infinity(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
         let ray = Ray { origin, direction, t_max: f32::INFINITY };

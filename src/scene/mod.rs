@@ -93,7 +93,7 @@ impl Scene {
         if !transmits {
             return medium;
         }
-        if touching && let Some(found) = boundary::medium_ahead(&self.geometry, &self.surfaces, ray) {
+        if touching && let Some(found) = self.locator().ahead(ray) {
             return found;
         }
         self.medium_towards(point, ray.direction, medium)
