@@ -299,7 +299,7 @@ impl Locator<'_> {
             match boundary::first(self.geometry, self.surfaces, ray, false) {
                 Met::Side(side) => {
                     survey.extend(medium, side.position, side.position);
-                    if side.medium != medium && !side.is_doubtful() {
+                    if side.medium != medium && !side.is_doubtful() && !self.share_a_plane(from, side.shape) {
                         survey.contradictions.push(Contradiction { from, medium, at: side });
                     }
                     return;
@@ -314,6 +314,17 @@ impl Locator<'_> {
                 }
             }
         }
+    }
+
+    /// True if two shapes end in one plane, up to rounding: faces of theirs may lie in the same place, and a ray that
+    /// starts on one does not say which of the two it has left.
+    fn share_a_plane(&self, a: Option<u32>, b: u32) -> bool {
+        let Some(a) = a else { return false };
+        let [(a_low, a_high), (b_low, b_high)] =
+            [a, b].map(|shape| self.geometry.shapes()[shape as usize].bounds());
+        let slack = offset::gamma(32) * a_low.abs().max(a_high.abs()).max_element();
+        let near = |x: Vec3, y: Vec3| (x - y).abs().cmple(Vec3::splat(slack)).any();
+        a != b && (near(a_low, b_low) || near(a_high, b_high) || near(a_low, b_high) || near(a_high, b_low))
     }
 
     /// True if another boundary has a face at `point` too.
