@@ -67,16 +67,16 @@ fn desk() -> tempfile::TempDir {
     let pixel = |x: u32, y: u32| {
         if x == 3 { [0.0; 3] } else { [x as f32 + 1.0, y as f32 + 1.0, (10 * (y + 1) + x) as f32] }
     };
-    write_hdr(&folder.path().join("image.exr"), pixel);
-    write_hdr(&folder.path().join("full.exr"), |x, y| {
+    write_exr(&folder.path().join("image.exr"), pixel);
+    write_exr(&folder.path().join("full.exr"), |x, y| {
         [x as f32 + 1.0, y as f32 + 1.0, (10 * (y + 1) + x) as f32]
     });
     folder
 }
 
-fn write_hdr(path: &Path, pixel: impl Fn(u32, u32) -> [f32; 3]) {
-    let image = ::image::Rgb32FImage::from_fn(6, 4, |x, y| ::image::Rgb(pixel(x, y)));
-    image.save(path).unwrap();
+fn write_exr(path: &Path, pixel: impl Fn(u32, u32) -> [f32; 3] + Sync) {
+    exr::prelude::write_rgb_file(path, 6, 4, |x, y| <(f32, f32, f32)>::from(pixel(x as u32, y as u32)))
+        .unwrap();
 }
 
 fn file(folder: &Path, name: &str) -> Value {

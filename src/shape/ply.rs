@@ -27,55 +27,36 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     Mesh::build(params, recentre, &file, data)
 }
 
-/// A vertex: positions, normals, texture coordinates, in the order of `NAMES`.
-#[derive(Clone, Copy)]
-struct Vertex([f64; 8]);
-
-/// All names under which each number of a vertex is known.
+/// All names under which each number of a vertex is known: position, normal, texture coordinates.
 const NAMES: [&[&str]; 8] =
     [&["x"], &["y"], &["z"], &["nx"], &["ny"], &["nz"], &["u", "s", "texture_u"], &["v", "t", "texture_v"]];
 
 /// All names of the list of a face's corners.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// A face's corners; none where the list held something else than vertex numbers.
-struct Face(Option<Vec<u32>>);
-
-/// An element of no interest, read over.
-struct Other;
-
-impl PropertyAccess for Vertex {
-    fn new() -> Self {
-        Self([0.0; 8])
-    }
-
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        let Some(slot) = NAMES.iter().position(|names| names.contains(&name)) else {
-            return PropertyAccessResult::Ignored;
-        };
-        let Some(value) = scalar(&value) else { return PropertyAccessResult::UnsupportedType };
-        self.0[slot] = value;
-        PropertyAccessResult::Set
-    }
+/// A vertex, a face, or an element of no interest. One type for all, as the parser is compiled for each.
+struct Element {
+    /// In the order of `NAMES`.
+    numbers: [f64; 8],
+    /// None where the list held something else than vertex numbers.
+    corners: Option<Vec<u32>>,
 }
 
-impl PropertyAccess for Face {
+impl PropertyAccess for Element {
     fn new() -> Self {
-        Self(None)
+        Self { numbers: [0.0; 8], corners: None }
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        if !CORNERS.contains(&name) {
+        if CORNERS.contains(&name) {
+            self.corners = value.to_u32_list();
+        } else if let Some(slot) = NAMES.iter().position(|names| names.contains(&name)) {
+            let Some(value) = scalar(&value) else { return PropertyAccessResult::UnsupportedType };
+            self.numbers[slot] = value;
+        } else {
             return PropertyAccessResult::Ignored;
         }
-        self.0 = value.to_u32_list();
         PropertyAccessResult::Set
-    }
-}
-
-impl PropertyAccess for Other {
-    fn new() -> Self {
-        Self
     }
 }
 
@@ -103,7 +84,7 @@ struct Ply<'a> {
 impl<'a> Ply<'a> {
     fn open(file: &'a Path, source: File) -> Result<Self> {
         let mut reader = Reader::new(BufReader::new(source));
-        let header = Parser::<Other>::new().read_header(&mut reader).map_err(|e| broken(file, &e))?;
+        let header = Parser::<Element>::new().read_header(&mut reader).map_err(|e| broken(file, &e))?;
         Ok(Self { file, reader, header })
     }
 
@@ -130,13 +111,13 @@ impl<'a> Ply<'a> {
 
     fn read(mut self, flip: bool) -> Result<MeshData> {
         let elements: Vec<ElementDef> = self.header.elements.values().cloned().collect();
-        let (mut vertices, mut faces): (Vec<Vertex>, Vec<Face>) = (vec![], vec![]);
+        let (mut vertices, mut faces): (Vec<Element>, Vec<Element>) = (vec![], vec![]);
         for element in &elements {
             self.check(element)?;
             match element.name.as_str() {
                 "vertex" => vertices = self.payload(element)?,
                 "face" => faces = self.payload(element)?,
-                _ => drop(self.payload::<Other>(element)?),
+                _ => drop(self.payload(element)?),
             }
         }
         let has = |names: &[usize]| {
@@ -151,9 +132,9 @@ impl<'a> Ply<'a> {
         let triangles = self.triangles(&faces, vertices.len())?;
         let data =
             MeshData { positions: vertices.iter().map(|v| v.triple(0)).collect(), normals, uvs, triangles };
-        match vertices.iter().position(|v| !v.0.iter().all(|x| x.is_finite())) {
+        match vertices.iter().position(|v| !v.numbers.iter().all(|x| x.is_finite())) {
             Some(index) => {
-                Err(self.wrong("finite numbers", format!("{:?} in vertex {index}", vertices[index].0)))
+                Err(self.wrong("finite numbers", format!("{:?} in vertex {index}", vertices[index].numbers)))
             }
             None => Ok(data),
         }
@@ -174,19 +155,19 @@ impl<'a> Ply<'a> {
         Ok(())
     }
 
-    fn payload<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<Vec<E>> {
-        let read = Parser::<E>::new().read_payload_for_element(&mut self.reader, element, &self.header);
+    fn payload(&mut self, element: &ElementDef) -> Result<Vec<Element>> {
+        let read = Parser::new().read_payload_for_element(&mut self.reader, element, &self.header);
         read.map_err(|e| broken(self.file, &e))
     }
 
     /// Polygons become fans around their first corners.
-    fn triangles(&self, faces: &[Face], vertices: usize) -> Result<Vec<[u32; 3]>> {
+    fn triangles(&self, faces: &[Element], vertices: usize) -> Result<Vec<[u32; 3]>> {
         let mut triangles = Vec::with_capacity(faces.len());
         for (number, face) in faces.iter().enumerate() {
-            let corners = face.0.as_deref().filter(|c| c.len() >= 3);
+            let corners = face.corners.as_deref().filter(|c| c.len() >= 3);
             let Some(corners) = corners.filter(|c| c.iter().all(|i| (*i as usize) < vertices)) else {
                 let expected = format!("three or more vertex numbers below {vertices} in every face");
-                return Err(self.wrong(expected, format!("{:?} in face {number}", face.0)));
+                return Err(self.wrong(expected, format!("{:?} in face {number}", face.corners)));
             };
             triangles.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
         }
@@ -194,13 +175,13 @@ impl<'a> Ply<'a> {
     }
 }
 
-impl Vertex {
+impl Element {
     fn triple(&self, first: usize) -> DVec3 {
-        DVec3::new(self.0[first], self.0[first + 1], self.0[first + 2])
+        DVec3::new(self.numbers[first], self.numbers[first + 1], self.numbers[first + 2])
     }
 
     fn uv(&self, flip: bool) -> Vec2 {
-        Vec2::new(self.0[6] as f32, if flip { 1.0 - self.0[7] } else { self.0[7] } as f32)
+        Vec2::new(self.numbers[6] as f32, if flip { 1.0 - self.numbers[7] } else { self.numbers[7] } as f32)
     }
 }
 

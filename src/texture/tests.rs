@@ -4,7 +4,7 @@ use super::*;
 use crate::description::{Location, TransformStep};
 use crate::math::vec3;
 use crate::testing::{nowhere, object};
-use ::image::{Rgb, Rgb32FImage, RgbImage};
+use ::image::{Rgb, RgbImage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -50,8 +50,8 @@ const POSITIONS: [(f32, f32); 9] = [
 
 fn image_file(folder: &Path) -> PathBuf {
     let path = folder.join("steps.exr");
-    let image = Rgb32FImage::from_fn(3, 2, |x, y| Rgb([0.1 * (1 + x + 3 * y) as f32; 3]));
-    image.save(&path).unwrap();
+    let grey = |x, y| 0.1 * (1 + x + 3 * y) as f32;
+    exr::prelude::write_rgb_file(&path, 3, 2, |x, y| (grey(x, y), grey(x, y), grey(x, y))).unwrap();
     path
 }
 

@@ -14,8 +14,8 @@ pub fn build(parts: &[&str]) -> Setup {
     std::fs::write(&file, text).unwrap();
     std::fs::write(folder.path().join("octahedron.obj"), OCTAHEDRON).unwrap();
     std::fs::write(folder.path().join("voxels.vol"), voxels()).unwrap();
-    let sky = |x: u32, y: u32| image::Rgb([x as f32 + 0.1, 3.0 - y as f32, if x == 2 { 40.0 } else { 0.5 }]);
-    image::Rgb32FImage::from_fn(6, 4, sky).save(folder.path().join("sky.exr")).unwrap();
+    let sky = |x: usize, y: usize| (x as f32 + 0.1, 3.0 - y as f32, if x == 2 { 40.0 } else { 0.5 });
+    exr::prelude::write_rgb_file(folder.path().join("sky.exr"), 6, 4, sky).unwrap();
     let description = format::read(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
     scene::build::build(&description, Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
 }
