@@ -166,15 +166,18 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// weight, hence a measurement beforehand.
     fn plan_connections(&mut self, seed: u64, walks_per_block: u64) {
         self.keep = 1.0;
-        let mut cache = LightCache::new(P::Channels::COUNT);
+        let mut vertices = 0;
         // Compiled for instruments in any case; pilot walks are few.
         let mut observer: &mut dyn Observer<P::MisSums> = &mut Nowhere;
         for walk in 0..PILOT_WALKS {
+            // One by one: without absorption, walks are as long as the depth allows, and all of them fill the memory.
+            let mut cache = LightCache::new(P::Channels::COUNT);
             let mut stream = Stream::new(seed, walk, 0, Purpose::Pilot);
             let hero = walk as usize % P::Channels::COUNT;
             light_path::trace(self, &mut cache, &mut observer, hero, &mut stream);
+            vertices += cache.len();
         }
-        let per_walk = (cache.len() as f32 / PILOT_WALKS as f32).max(1.0 / PILOT_WALKS as f32);
+        let per_walk = (vertices as f32 / PILOT_WALKS as f32).max(1.0 / PILOT_WALKS as f32);
         self.keep = (CACHE_VERTICES / (per_walk * walks_per_block as f32)).min(1.0);
         self.connections_per_vertex = CONNECTIONS_PER_VERTEX;
         self.counts.connection = CONNECTIONS_PER_VERTEX as f32 / per_walk;

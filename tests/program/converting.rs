@@ -1,13 +1,8 @@
 //! Scenes written again: nothing is lost on the way from one spelling to the other and back.
 
 use crate::sandbox::Sandbox;
-use proptest::{
-    collection::vec,
-    prelude::*,
-    sample::select,
-    test_runner::{Config, RngSeed},
-};
-use std::{collections::HashSet, fs, path::Path, sync::Arc};
+use arbtest::arbitrary::{Result, Unstructured as Entropy};
+use std::{collections::HashSet, fs, ops::RangeInclusive, path::Path, sync::Arc};
 use tyndall::{
     description::{Location, Object, Position, Property, TransformStep, Value},
     format,
@@ -68,64 +63,85 @@ fn assert_same(a: &Object, b: &Object, text: &str) {
     assert_eq!(a, b, "{text}");
 }
 
-fn finite() -> impl Strategy<Value = f64> + Clone {
-    let odd = select(vec![0.0, -0.0, 1.0, -1.0, 5e-324, f64::MAX, 0.1 + 0.2, 1e16, 1e22, 123_456_789.0]);
-    prop_oneof![odd, -100.0..100.0, any::<u64>().prop_map(bits)]
+/// Checks `property` on as many cases, the same ones in every run.
+fn check(cases: u32, property: impl Fn(&mut Entropy) -> Result<()>) {
+    for case in 1..=cases {
+        // The lower half of what arbtest calls a seed is a number of bytes.
+        let seed = u64::from(case.wrapping_mul(0x9e37_79b9)) << 32 | 1 << 16;
+        let checked = |u: &mut Entropy| property(u).inspect(|()| assert!(!u.is_empty(), "too few bytes"));
+        arbtest::arbtest(checked).seed(seed).run();
+    }
 }
 
-/// Any finite number there is.
-fn bits(bits: u64) -> f64 {
-    Some(f64::from_bits(bits)).filter(|x| x.is_finite()).unwrap_or(2.5)
+/// As many of what `make` makes.
+fn several<T>(
+    u: &mut Entropy,
+    counts: RangeInclusive<usize>,
+    mut make: impl FnMut(&mut Entropy) -> Result<T>,
+) -> Result<Vec<T>> {
+    (0..u.int_in_range(counts)?).map(|_| make(u)).collect()
 }
 
-fn triple(number: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = [f64; 3]> {
-    [number.clone(), number.clone(), number]
+fn between(u: &mut Entropy, low: f64, high: f64) -> Result<f64> {
+    Ok(low + (high - low) * f64::from(u.arbitrary::<u32>()?) / f64::from(u32::MAX))
+}
+
+/// Any finite number there is, odd ones and usual ones more often.
+fn finite(u: &mut Entropy) -> Result<f64> {
+    let odd = [0.0, -0.0, 1.0, -1.0, 5e-324, f64::MAX, 0.1 + 0.2, 1e16, 1e22, 123_456_789.0];
+    match u.int_in_range(0..=2)? {
+        0 => u.choose(&odd).copied(),
+        1 => between(u, -100.0, 100.0),
+        _ => Ok(Some(f64::from_bits(u.arbitrary()?)).filter(|x| x.is_finite()).unwrap_or(2.5)),
+    }
+}
+
+fn triple(u: &mut Entropy, number: impl Fn(&mut Entropy) -> Result<f64>) -> Result<[f64; 3]> {
+    Ok([number(u)?, number(u)?, number(u)?])
 }
 
 /// Text that XML can hold.
-fn text() -> impl Strategy<Value = String> {
+fn text(u: &mut Entropy) -> Result<String> {
     let odd = ["", "$", "\\$", "\\\\$x", " a ", "<&\"'>", "a\tb\nc\r", "#$%", "\u{e9}\u{1f30d}", "]]>"];
-    prop_oneof![select(odd.to_vec()).prop_map(str::to_owned), "[ -~\u{a0}-\u{ff}\u{4e00}-\u{4eff}]{0,12}"]
+    let usual: Vec<char> = (' '..='~').chain('\u{a0}'..='\u{ff}').chain('\u{4e00}'..='\u{4eff}').collect();
+    match u.arbitrary()? {
+        true => u.choose(&odd).map(|text| (*text).to_owned()),
+        false => Ok(several(u, 0..=12, |u| u.choose(&usual).copied())?.into_iter().collect()),
+    }
 }
 
-fn step() -> impl Strategy<Value = TransformStep> {
-    let apart = |[origin, target, up]: &[[f64; 3]; 3]| {
-        let d: Vec<f64> = (0..3).map(|i| target[i] - origin[i]).collect();
-        let cross = [up[1] * d[2] - up[2] * d[1], up[2] * d[0] - up[0] * d[2], up[0] * d[1] - up[1] * d[0]];
-        cross.iter().any(|c| c.abs() > 0.01)
-    };
-    let near = || triple(-10.0..10.0f64);
-    let look = [near(), near(), near()].prop_filter("a view", apart);
-    prop_oneof![
-        triple(finite()).prop_map(TransformStep::Translate),
-        triple(finite()).prop_map(TransformStep::Scale),
-        (triple(0.1..10.0f64), finite()).prop_map(|(axis, angle)| TransformStep::Rotate { axis, angle }),
-        look.prop_map(|[origin, target, up]| TransformStep::LookAt { origin, target, up }),
-        vec(finite(), 16).prop_map(|rows| TransformStep::Matrix(rows.try_into().unwrap())),
-    ]
-}
-
-fn spectrum() -> impl Strategy<Value = Value> {
-    vec((1.0..100.0f64, finite()), 2..5).prop_map(|steps| {
-        let rising = steps.iter().scan(300.0, |nm, (more, value)| {
-            *nm += more;
-            Some((*nm, *value))
-        });
-        Value::Spectrum(rising.collect())
+fn step(u: &mut Entropy) -> Result<TransformStep> {
+    // Three such points are next to never in line, which would be no view.
+    let near = |u: &mut Entropy| triple(u, |u| between(u, -10.0, 10.0));
+    Ok(match u.int_in_range(0..=4)? {
+        0 => TransformStep::Translate(triple(u, finite)?),
+        1 => TransformStep::Scale(triple(u, finite)?),
+        2 => TransformStep::Rotate { axis: triple(u, |u| between(u, 0.1, 10.0))?, angle: finite(u)? },
+        3 => TransformStep::LookAt { origin: near(u)?, target: near(u)?, up: near(u)? },
+        _ => TransformStep::Matrix(several(u, 16..=16, finite)?.try_into().unwrap()),
     })
 }
 
-fn value() -> impl Strategy<Value = Value> {
-    prop_oneof![
-        any::<bool>().prop_map(Value::Boolean),
-        any::<i64>().prop_map(Value::Integer),
-        finite().prop_map(Value::Float),
-        text().prop_map(Value::String),
-        triple(finite()).prop_map(Value::Rgb),
-        triple(finite()).prop_map(Value::Vector),
-        vec(step(), 0..4).prop_map(Value::Transform),
-        spectrum(),
-    ]
+fn spectrum(u: &mut Entropy) -> Result<Value> {
+    let mut nm = 300.0;
+    let rising = |u: &mut Entropy| {
+        nm += between(u, 1.0, 100.0)?;
+        Ok((nm, finite(u)?))
+    };
+    several(u, 2..=4, rising).map(Value::Spectrum)
+}
+
+fn value(u: &mut Entropy) -> Result<Value> {
+    Ok(match u.int_in_range(0..=7)? {
+        0 => Value::Boolean(u.arbitrary()?),
+        1 => Value::Integer(u.arbitrary()?),
+        2 => Value::Float(finite(u)?),
+        3 => Value::String(text(u)?),
+        4 => Value::Rgb(triple(u, finite)?),
+        5 => Value::Vector(triple(u, finite)?),
+        6 => Value::Transform(several(u, 0..=3, step)?),
+        _ => spectrum(u)?,
+    })
 }
 
 /// Tags with plugins, one of them unknown.
@@ -149,139 +165,134 @@ fn plugin(tag: &str, plugin: &str, properties: Vec<Property>) -> Object {
     Object { tag: Some(tag), plugin, id: None, properties, location: nowhere() }
 }
 
+/// Chances in a hundred that objects of these depths, or fewer, have children.
+const NESTED: [u8; 3] = [5, 33, 90];
+
 /// A plugin without ids and references; names are given later.
-fn object() -> impl Strategy<Value = Object> {
-    let values = || vec(value().prop_map(|v| property(String::new(), v)), 0..4);
-    let leaf = (select(PLUGINS), values()).prop_map(|((tag, name), values)| plugin(tag, name, values));
-    leaf.prop_recursive(3, 12, 3, move |inner| {
-        (select(PLUGINS), values(), vec(inner, 0..3)).prop_map(|((tag, name), mut values, children)| {
-            values.extend(children.into_iter().map(|child| property(String::new(), Value::Object(child))));
-            plugin(tag, name, values)
-        })
-    })
+fn object(u: &mut Entropy, depth: usize) -> Result<Object> {
+    let is_nested = depth > 0 && u.ratio(NESTED[depth - 1], 100)?;
+    if depth > 0 && !is_nested {
+        return object(u, depth - 1);
+    }
+    let (tag, name) = *u.choose(PLUGINS)?;
+    let mut values = several(u, 0..=3, value)?;
+    if is_nested {
+        values.extend(several(u, 0..=2, |u| object(u, depth - 1).map(Value::Object))?);
+    }
+    Ok(plugin(tag, name, values.into_iter().map(|value| property(String::new(), value)).collect()))
 }
 
 /// Names that are no tags. Names and ids come from here by turns.
 const NAMES: &[&str] = &["a", "to_world", "Größe", "x y", "interior", "p-1", "a<b>&\"c\"", "filename"];
 
-/// Gives names and ids, and refers from later objects to earlier ones.
-fn scene(children: Vec<Object>, choices: &[u8]) -> Object {
-    let mut christening = Christening { choices: choices.iter().copied().cycle(), ids: Vec::new() };
-    let mut properties = Vec::new();
-    for (index, mut child) in children.into_iter().enumerate() {
-        let earlier = christening.ids.clone();
-        christening.name(&mut child, &earlier);
+/// Gives names and ids, and refers to objects before.
+fn christen(u: &mut Entropy, object: &mut Object, before: &[String], ids: &mut Vec<String>) -> Result<()> {
+    for (index, p) in object.properties.iter_mut().enumerate() {
+        if !matches!(p.value, Value::Object(_)) || u.arbitrary()? {
+            p.name = format!("{}{index}", u.choose(NAMES)?);
+        }
+        if let Value::Object(child) = &mut p.value {
+            christen(u, child, before, ids)?;
+            if u.ratio(1, 5)? {
+                ids.push(format!("{}.{}", u.choose(&["id", "$id", "i\u{e9} d"])?, ids.len()));
+                child.id = ids.last().cloned();
+            }
+        }
+    }
+    for (index, id) in before.iter().enumerate().step_by(4) {
+        let name = if index.is_multiple_of(3) { format!("link {index}") } else { String::new() };
+        object.properties.push(property(name, Value::Reference(id.clone())));
+    }
+    Ok(())
+}
+
+fn scene(u: &mut Entropy, objects: RangeInclusive<usize>) -> Result<Object> {
+    let (mut properties, mut ids) = (Vec::new(), Vec::new());
+    for (index, mut child) in several(u, objects, |u| object(u, 3))?.into_iter().enumerate() {
+        christen(u, &mut child, &ids.clone(), &mut ids)?;
         if !index.is_multiple_of(3) {
             child.id.get_or_insert_with(|| format!("top {index}"));
-            christening.ids.extend(child.id.clone());
+            ids.extend(child.id.clone());
         }
         properties.push(property(String::new(), Value::Object(child)));
     }
-    plugin("scene", "scene", properties)
+    Ok(plugin("scene", "scene", properties))
 }
 
-struct Christening<I> {
-    choices: I,
-    ids: Vec<String>,
-}
-
-impl<I: Iterator<Item = u8>> Christening<I> {
-    fn name(&mut self, object: &mut Object, earlier: &[String]) {
-        for (index, p) in object.properties.iter_mut().enumerate() {
-            let choice = usize::from(self.choices.next().unwrap());
-            let is_named = !matches!(p.value, Value::Object(_)) || choice.is_multiple_of(2);
-            if is_named {
-                p.name = format!("{}{index}", NAMES[choice % NAMES.len()]);
-            }
-            if let Value::Object(child) = &mut p.value {
-                self.name(child, earlier);
-                if choice.is_multiple_of(5) {
-                    let id = format!("{}.{}", ["id", "$id", "i\u{e9} d"][choice % 3], self.ids.len());
-                    self.ids.push(id.clone());
-                    child.id = Some(id);
-                }
-            }
-        }
-        for (index, id) in earlier.iter().enumerate().filter(|(index, _)| index.is_multiple_of(4)) {
-            let name = if index.is_multiple_of(3) { format!("link {index}") } else { String::new() };
-            object.properties.push(property(name, Value::Reference(id.clone())));
-        }
-    }
-}
-
-fn any_scene() -> impl Strategy<Value = Object> {
-    (vec(object(), 0..5), vec(any::<u8>(), 8)).prop_map(|(children, choices)| scene(children, &choices))
-}
-
-proptest! {
-    #![proptest_config(Config { cases: 400, rng_seed: RngSeed::Fixed(1996), failure_persistence: None, ..Config::default() })]
-
-    #[test]
-    fn what_is_written_is_read_again(tree in any_scene()) {
-        let sandbox = Sandbox::with_files(&[]);
+#[test]
+fn what_is_written_is_read_again() {
+    let sandbox = Sandbox::new();
+    check(400, |u| {
+        let tree = scene(u, 0..=4)?;
         let (xml, text) = sandbox.through(&tree, Spelling::Xml);
         assert_same(&tree, &xml, &text);
-        prop_assert_eq!(format::write(&xml, Spelling::Xml, Path::new("nowhere")).unwrap(), text);
-    }
+        assert_eq!(format::write(&xml, Spelling::Xml, Path::new("nowhere")).unwrap(), text);
+        Ok(())
+    });
+}
 
-    #[test]
-    fn both_ways_lose_nothing(tree in any_scene()) {
-        let sandbox = Sandbox::with_files(&[]);
+#[test]
+fn both_ways_lose_nothing() {
+    let sandbox = Sandbox::new();
+    check(400, |u| {
+        let tree = scene(u, 0..=4)?;
         let (json, text) = sandbox.through(&tree, Spelling::Json);
         let (again, same_text) = sandbox.through(&json, Spelling::Json);
         assert_same(&json, &again, &text);
-        prop_assert_eq!(&text, &same_text);
+        assert_eq!(text, same_text);
         let (xml, _) = sandbox.through(&json, Spelling::Xml);
         assert_same(&tree, &xml, &text);
-    }
+        Ok(())
+    });
 }
 
 /// Puts parameters in place of values in XML as it is written, and says which could be set to what.
-fn parametrised(xml: &str, choices: &[u8]) -> (String, Vec<(String, &'static str)>) {
+fn parametrised(u: &mut Entropy, xml: &str) -> Result<(String, Vec<(String, &'static str)>)> {
     let others = [("float", "2.5"), ("integer", "7"), ("boolean", "false"), ("string", "other")];
     let lists = ["point", "vector", "rgb", "translate", "scale", "matrix"];
     let (mut defaults, mut body, mut settable) = (String::new(), String::new(), Vec::new());
-    for (line, choice) in xml.lines().skip(1).zip(choices.iter().cycle()) {
+    for line in xml.lines().skip(1) {
         let tag = line.trim_start_matches([' ', '<']).split([' ', '/', '>']).next().unwrap();
         let other = others.iter().find(|(known, _)| *known == tag).map(|(_, other)| *other);
         let value = line.rsplit_once(" value=\"").and_then(|(_, rest)| rest.strip_suffix("\"/>"));
-        match value.filter(|_| choice % 3 != 0 && (other.is_some() || lists.contains(&tag))) {
-            Some(value) => {
+        match value.filter(|_| other.is_some() || lists.contains(&tag)) {
+            Some(value) if u.ratio(2, 3)? => {
                 let name = format!("p{}_", defaults.lines().count());
                 defaults += &format!("<default name=\"{name}\" value=\"{value}\"/>\n");
                 body += &format!(
                     "{}value=\"${name}\"/>\n",
                     line.strip_suffix(&format!("value=\"{value}\"/>")).unwrap()
                 );
-                settable.extend(other.filter(|_| choice % 2 == 0).map(|other| (name, other)));
+                let is_set = u.arbitrary()?;
+                settable.extend(other.filter(|_| is_set).map(|other| (name, other)));
             }
-            None => body += &format!("{line}\n"),
+            _ => body += &format!("{line}\n"),
         }
     }
-    (format!("<scene version=\"3.0.0\">\n{defaults}{body}"), settable)
+    Ok((format!("<scene version=\"3.0.0\">\n{defaults}{body}"), settable))
 }
 
-proptest! {
-    #![proptest_config(Config { cases: 200, rng_seed: RngSeed::Fixed(2002), failure_persistence: None, ..Config::default() })]
-
-    #[test]
-    fn parameters_go_both_ways(tree in any_scene(), choices in vec(any::<u8>(), 16)) {
+#[test]
+fn parameters_go_both_ways() {
+    let sandbox = Sandbox::new();
+    check(200, |u| {
+        let tree = scene(u, 1..=4)?;
         let plain = format::write(&tree, Spelling::Xml, Path::new("nowhere")).unwrap();
-        prop_assume!(plain.lines().count() > 2);
-        let (text, settable) = parametrised(&plain, &choices);
-        let sandbox = Sandbox::with_files(&[("a.xml", &text)]);
+        let (text, settable) = parametrised(u, &plain)?;
+        fs::write(sandbox.path("a.xml"), &text).unwrap();
         assert_same(&tree, &sandbox.read("a.xml", &[]), &text);
         let (json, _) = sandbox.convert("a.xml", "b.json", &[]);
         sandbox.convert("b.json", "c.xml", &[]);
         let (same, notes) = sandbox.convert("a.xml", "d.xml", &[]);
-        prop_assert_eq!(notes, [""; 0]);
+        assert_eq!(notes, [""; 0]);
         let settings: Vec<_> = settable.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         for definitions in [&[][..], &settings] {
             let expected = sandbox.read("a.xml", definitions);
             assert_same(&expected, &sandbox.read("c.xml", definitions), &json);
             assert_same(&expected, &sandbox.read("d.xml", definitions), &same);
         }
-    }
+        Ok(())
+    });
 }
 
 #[test]

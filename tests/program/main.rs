@@ -10,6 +10,7 @@ mod converting;
 mod diff;
 mod errors;
 mod flights;
+mod html;
 mod layering;
 mod page;
 mod phase;

@@ -1,39 +1,30 @@
 //! `tyndall report`: the page of a made-up study, read back as HTML and, where there is a Chromium, looked at in it.
 
 use crate::common::studies::{self, Study};
-use scraper::{ElementRef, Html, Selector};
+use crate::html::{self, all, shown, texts};
+use roxmltree::Document;
 use std::{fs, path::Path, process::Command};
 use tyndall::analysis::study::page;
 
 /// The page of a study, refused unless it is well-formed and stands alone.
-fn page_of(study: &Study) -> Html {
+fn page_of(study: &Study) -> Document<'static> {
     let path = page::write(study.folder.path()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(path, study.folder.path().join("study.html"));
     let text = fs::read_to_string(path).unwrap();
-    let html = Html::parse_document(&text);
-    assert!(html.errors.is_empty(), "{:?}", html.errors);
+    let html = html::parse(&text);
     stands_alone(&text, &html);
     html
 }
 
 /// Nothing in it leads to another file.
-fn stands_alone(text: &str, html: &Html) {
-    for element in html.select(&Selector::parse("*").unwrap()) {
+fn stands_alone(text: &str, html: &Document) {
+    for element in all(html, "*") {
         for name in ["src", "href", "srcset", "data", "action"] {
-            let Some(address) = element.value().attr(name) else { continue };
+            let Some(address) = element.attribute(name) else { continue };
             assert!(address.starts_with("data:") || address.starts_with('#'), "{name}={address:.80}");
         }
     }
     assert!(!text.contains("://") && !text.contains("@import"), "an address in the page");
-}
-
-fn all<'a>(html: &'a Html, query: &str) -> Vec<ElementRef<'a>> {
-    let selector = Selector::parse(query).unwrap();
-    html.select(&selector).collect()
-}
-
-fn texts(html: &Html, query: &str) -> Vec<String> {
-    all(html, query).iter().map(|element| element.text().collect::<String>().trim().to_owned()).collect()
 }
 
 #[test]
@@ -45,10 +36,10 @@ fn everything_of_a_study_is_on_its_page() {
     assert_eq!(texts(&html, "#scene-0 .strip h4").len(), 4);
     // Five measures over two axes, one shown at first; a mark for every budget.
     assert_eq!(all(&html, "#scene-0 .chart").len(), 10);
-    assert_eq!(all(&html, "#scene-0 .chart:not([hidden])").len(), 1);
-    let marks = all(&html, "#scene-0 .chart:not([hidden]) .marks > *");
+    assert_eq!(shown(&html, "#scene-0 .chart").len(), 1);
+    let marks = shown(&html, "#scene-0 .chart .marks > *");
     assert_eq!(marks.len(), 3 * 4);
-    assert_eq!(all(&html, "#scene-0 .chart:not([hidden]) .floor > *").len(), 1);
+    assert_eq!(shown(&html, "#scene-0 .chart .floor > *").len(), 1);
     // The reference; an image and an error of each at each level; a variance of each.
     assert_eq!(all(&html, "#scene-0 img.source").len(), 1 + 3 * 4 * 2 + 3);
     let footer = texts(&html, "footer").concat();
@@ -86,7 +77,7 @@ fn names_are_text_wherever_they_stand() {
     assert_eq!(texts(&html, "code")[0], name);
     assert!(all(&html, "[onerror]").is_empty());
     assert_eq!(all(&html, "script").len(), 2);
-    let frame = all(&html, ".frame")[0].value().attr("aria-label").unwrap().to_owned();
+    let frame = all(&html, ".frame")[0].attribute("aria-label").unwrap().to_owned();
     assert!(frame.contains(name), "{frame}");
 }
 
@@ -94,7 +85,7 @@ fn names_are_text_wherever_they_stand() {
 fn one_contender_with_one_budget_is_enough() {
     let html = page_of(&Study::new(&["room"], &["bdpt"], 1));
     assert_eq!(all(&html, ".strip").len(), 1);
-    assert_eq!(all(&html, ".chart:not([hidden]) .marks > *").len(), 1);
+    assert_eq!(shown(&html, ".chart .marks > *").len(), 1);
     assert!(all(&html, ".glance").is_empty() && all(&html, "nav").is_empty());
 }
 
@@ -105,15 +96,14 @@ fn every_number_can_be_drawn() {
         study.set_all(value);
         let html = page_of(&study);
         for shape in all(&html, ".chart .series *, .chart .band *, .chart .guide *") {
-            let numbers = shape.value().attrs().filter(|(name, _)| ["points", "cx", "cy"].contains(name));
-            for place in numbers.flat_map(|(_, text)| text.split([' ', ',']).filter(|part| !part.is_empty()))
-            {
+            let numbers = ["points", "cx", "cy"].into_iter().filter_map(|name| shape.attribute(name));
+            for place in numbers.flat_map(|text| text.split([' ', ',']).filter(|part| !part.is_empty())) {
                 let place: f64 = place.parse().unwrap();
                 assert!((-40.0..=1640.0).contains(&place), "{value:e}: {place}");
             }
         }
-        for mark in all(&html, ".chart:not([hidden]) .marks circle") {
-            let at = ["cx", "cy"].map(|name| mark.value().attr(name).unwrap().parse::<f64>().unwrap());
+        for mark in shown(&html, ".chart .marks circle") {
+            let at = ["cx", "cy"].map(|name| mark.attribute(name).unwrap().parse::<f64>().unwrap());
             // What is no number, or beyond all scales, stands at the worst corner: late, and with much error.
             let is_worst = at[0] >= 1570.0 && at[1] <= 30.0;
             assert_eq!(is_worst, value.is_nan() || value == f64::MAX, "{value:e}: {at:?}");
@@ -150,7 +140,7 @@ fn the_record_has_all_curves_and_images() {
         assert!(table.contains(said), "{said}: {table}");
     }
     for svg in [&curves, &strips] {
-        let svg = roxmltree::Document::parse(svg).unwrap();
+        let svg = Document::parse(svg).unwrap();
         let texts: Vec<&str> = svg.descendants().filter_map(|node| node.text()).collect();
         assert!(
             ["room", "church <&>", "<pt>", "volpath"].iter().all(|name| texts.contains(name)),
