@@ -12,7 +12,7 @@ from validation.places import OUTPUT, RECORDED
 from validation.scene import Scene
 
 DEEP = Effort(batches=16, spp=80, seed=5001)
-DEEP_CELLS = 240
+DEEP_CELLS = 120
 """Generated scenes that the deep matrix takes, out of nearly two thousand."""
 RECORDED_EFFORT = Effort(batches=16, spp=192)
 """Of Mitsuba's images in the repository, times the scene's own factor."""
