@@ -107,7 +107,7 @@ class Cell:
         leaves a dense or white medium around a lamp reaches the camera by rare, bright paths of Mitsuba's: most of its
         pixels are too dark and claim to be exact. `pt` errs alike; `lt` and `bdpt`, which have less noise, would be refused
         (against 2000 samples of `pt` they are not)."""
-        if self.medium in ("dense", "white") and self.boundary == "null" and (self.place, self.camera) == ("inside", "outside"):
+        if self.medium in ("dense", "white") and self.boundary not in SMOOTH and (self.place, self.camera) == ("inside", "outside"):
             return ("pt",)
         in_medium = self.camera == "inside" and self.medium != "none"
         return ALL if not in_medium and self.boundary in ("null", "room") else EYE
