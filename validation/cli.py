@@ -136,12 +136,13 @@ def add_closed_forms(commands: Commands) -> None:
     command = add(commands, "closed-forms", run_closed_forms, "Furnaces, slabs and single scattering against theory.")
     command.add_argument("--integrators", default="", help="instead of all that apply: any of pt, lt, bdpt, mitsuba")
     command.add_argument("--only", default="", help="only cases whose name contains this")
+    command.add_argument("--quick", action="store_true", help="without what costs most for what other cases show too")
     add_effort(command, Effort(batches=16, spp=256))
 
 
 def run_closed_forms(options: argparse.Namespace) -> bool:
     methods = tuple(filter(None, options.integrators.split(",")))
-    return truths.run(effort_of(options), methods, options.only)
+    return truths.run(effort_of(options), methods, options.only, options.quick)
 
 
 def add_studies(commands: Commands) -> None:

@@ -50,7 +50,7 @@ def make() -> None:
         venv.create(ENVIRONMENT, with_pip=True)
     except (subprocess.CalledProcessError, OSError) as error:
         raise Failure(f"no virtual environment could be made: {error}", "install Python's venv module (Debian: python3-venv)")
-    install: list[str | Path] = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r", REQUIREMENTS_DEV]
+    install: list[str | Path] = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile", "-r", REQUIREMENTS_DEV]
     # pip's messages go to stderr: stdout belongs to the command's table
     if subprocess.run(install, stdout=sys.stderr).returncode != 0:
         raise Failure("pip could not install the requirements", f"see its message above; then run again ({REQUIREMENTS_DEV})")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from validation import matrix, package_tests, page, truths, tyndall
 from validation.compare import Effort
+from validation.failure import Failure
 from validation.places import CROSSCHECK, OUTPUT
 from validation.stability import run as stability
 
@@ -22,16 +23,25 @@ def run() -> bool:
         "stability": lambda: stability.run(stability.Effort(), OUTPUT / "stability"),
         "matrix": lambda: matrix.live(count=matrix.DEEP_CELLS),
     }
-    found = {name: timed(part) for name, part in parts.items()}
+    found = {name: timed(name, part) for name, part in parts.items()}
     for name, (holds, seconds) in found.items():
         print(f"{name:24} {'holds' if holds else 'FAILS':8} {seconds:7.0f} s")
-    return all(holds for holds, _ in found.values())
+    failing = [name for name, (holds, _) in found.items() if not holds]
+    minutes = sum(seconds for _, seconds in found.values()) / 60
+    print(f"{', '.join(failing)}: FAILS" if failing else "everything holds", f"({minutes:.0f} minutes)")
+    return not failing
 
 
-def timed(part: Callable[[], bool]) -> tuple[bool, float]:
-    """What a part finds and how long it takes."""
+def timed(name: str, part: Callable[[], bool]) -> tuple[bool, float]:
+    """What a part finds and how long it takes; one that cannot be run does not hold."""
+    print(f"\n{name}:", flush=True)
     start = time.perf_counter()
-    return part(), time.perf_counter() - start
+    try:
+        holds = part()
+    except Failure as failure:
+        print(failure, flush=True)
+        holds = False
+    return holds, time.perf_counter() - start
 
 
 def study_page() -> bool:

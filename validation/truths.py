@@ -10,11 +10,17 @@ from validation.failure import Failure
 from validation.places import OUTPUT
 
 
-def run(effort: Effort, methods: tuple[str, ...] = (), only: str = "") -> bool:
-    """Tests all cases whose name contains `only`, by the given methods or by all that apply; true if all hold."""
+def run(effort: Effort, methods: tuple[str, ...] = (), only: str = "", quick: bool = False) -> bool:
+    """Tests all cases whose name contains `only`, by the given methods or by all that apply; true if all hold. `quick`
+    takes only those samples that a case grants the quick level."""
     every = (*furnace.cases(), *slab.cases(), *point_light.cases(), *varying.cases(), *glowing.cases())
     cases = [case for case in every if only in case.scene.name]
-    tests = [partial(test, case, method, effort.times(case.effort)) for case in cases for method in methods or case.methods]
+    tests = [
+        partial(test, case, method, effort.times(case.effort * share))
+        for case in cases
+        for method in methods or case.methods
+        if (share := case.quick.get(method, 1) if quick else 1)
+    ]
     return compare.all_agree(tests, "images are as theory says")
 
 

@@ -165,7 +165,8 @@ pub fn connect<P: Profile>(
     let end = offset::clear_of_end(origin, other, b.lift);
     let (direction, distance, _) = measure::between(origin, end)?;
     let ray = Ray { origin, direction, t_max: distance };
-    let cut = (other - end).dot(direction);
+    // An end nearer than the step away from its surface: nothing is between.
+    let cut = (other - end).dot(direction).max(-distance);
     connect_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, strategy, stream)
 }
 

@@ -32,7 +32,7 @@ fn agrees_with_mitsuba_on_every_crosscheck_scene() {
 /// Furnaces, slabs by adding-doubling, single scattering by quadrature.
 #[test]
 fn agrees_with_closed_forms() {
-    must_hold(&["closed-forms"]);
+    must_hold(&["closed-forms", "--quick"]);
 }
 
 /// Lines of the stability table: one group of each kind, and all that the renderer was once wrong about.

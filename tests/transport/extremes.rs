@@ -38,13 +38,21 @@ fn is_invisible(what: &str, parts: &[(&str, Value)]) {
 #[test]
 fn connections_through_opaque_media_bring_nothing() {
     let fog = with(medium(1e9, 0.5, 0.0), &[("radiance", json!(1.0))]);
-    let parts = [
+    let room = scene(&[
         ("fog", fog),
         ("sensor", with(camera([0.1, 0.2, 0.9], [0.0, 0.0, -1.0], 8), &[("medium", named("fog"))])),
         ("room", room(0.5, Some(named("fog")))),
-    ];
-    let images = Stage::new(&scene(&parts)).renders(Strategies::BDPT, 16, 0..4);
-    assert!(images.iter().flatten().all(|value| value.is_finite()));
+    ]);
+    let ball = scene(&[
+        ("sensor", camera([0.0, 0.5, 4.0], [0.0; 3], 8)),
+        ("ball", null_box([-1.0; 3], [1.0; 3], Some(medium(1e25, 0.5, 0.5)))),
+        ("lamp", point([0.0, 2.0, 2.0], 5.0)),
+        ("sky", sky(1.0)),
+    ]);
+    for scene in [room, ball] {
+        let images = Stage::new(&scene).renders(Strategies::BDPT, 16, 0..4);
+        assert!(images.iter().flatten().all(|value| value.is_finite()));
+    }
 }
 
 /// Each ray meets one of two faces in the same place, and which one is chance.

@@ -8,7 +8,7 @@ use crate::common::{
 };
 use serde_json::{Value, json};
 use tyndall::{
-    math::Spectrum,
+    math::{Spectrum, Vec3},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
     scene::Infinity,
@@ -329,7 +329,10 @@ fn infinity_differs_by_direction_where_a_surface_divides_the_world() {
         ("sun", sun([0.2, -1.0, 0.1], 2.0)),
     ];
     let stage = Stage::new(&scene(&parts));
-    let Infinity::Directional(_) = stage.setup.scene.known.infinity else { panic!("infinity is uniform") };
+    let infinity = &stage.setup.scene.known.infinity;
+    assert!(matches!(infinity, Infinity::Directional(_)), "{infinity:?}");
+    let [above, below] = [Vec3::Y, Vec3::NEG_Y].map(|direction| infinity.towards(direction));
+    assert!(above == MediumIndex::VACUUM && below != above, "{above:?} {below:?}");
     // Of light subpaths alone too few come near the ball.
     let [pt, bdpt] = [(Strategies::PT, 0), (Strategies::BDPT, 1000)]
         .map(|(set, first)| Sample::of(&stage.renders(set, 128, first..first + 8), stage.width()));

@@ -1,7 +1,7 @@
 """One scene with its truth, and the parts that these scenes share."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,12 +15,14 @@ SIZE = 8
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, the truth (anything that broadcasts to height x width x 3), its methods, its relative effort."""
+    """A scene, the truth (anything that broadcasts to height x width x 3), its methods, its relative effort, and by method
+    what part of that the quick level takes, if not all: 0 leaves to the full level what costs much and other cases show."""
 
     scene: Scene
     truth: np.ndarray | float
     methods: tuple[str, ...] = ("pt", "bdpt")
     effort: float = 1
+    quick: Mapping[str, float] = field(default_factory=lambda: {"pt:march": 0.5})
 
     def image(self) -> np.ndarray:
         """The truth as an image."""

@@ -45,11 +45,12 @@ SLABS = (
 
 
 def cases() -> list[Case]:
-    """Each slab, lit from below and from above."""
+    """Each slab, lit from below and from above. Few walks come through a thick one."""
     found = []
     for slab in SLABS:
         ur1, ut1 = slab.totals()
-        found.append(Case(lit_slab(slab, "UT1", blocker_height=1.5), ut1, effort=slab.effort))
+        quick = {"pt": 0, "bdpt": 0} if slab.b > 50 else {}
+        found.append(Case(lit_slab(slab, "UT1", blocker_height=1.5), ut1, effort=slab.effort, quick=quick))
         found.append(Case(lit_slab(slab, "UR1", blocker_height=-1.5), ur1, effort=slab.effort))
     return found
 

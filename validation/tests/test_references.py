@@ -43,4 +43,4 @@ def test_an_extinction_that_is_off_by_a_twentieth_is_refused() -> None:
     reference = references.recorded(scene, matrix.RECORDED_EFFORT)
     for perturbation, passes in ((0, True), (0.05, False)):
         candidate = compare.candidate_renderer(compare.perturbed(scene, perturbation), "bdpt")
-        assert compare.compare(scene, "bdpt", matrix.QUICK, reference, candidate).passed == passes
+        assert compare.compare(scene, "bdpt", matrix.quick_effort("bdpt"), reference, candidate).passed == passes
