@@ -27,6 +27,8 @@ pub fn parse(page: &str) -> Document<'static> {
                 svgs -= i32::from(*tag.name == b"svg");
                 xml += &format!("</{}>", text(&tag.name));
             }
+            // Between the doctype, the root and the end there may be line feeds, but no references to them.
+            Token::String(content) if text(&content).trim().is_empty() => xml += text(&content),
             Token::String(content) => xml += &escaped(&content),
             Token::Comment(_) => {}
             Token::Error(error) => panic!("{}", *error),
