@@ -16,7 +16,7 @@ use crate::{
     render::{
         Settings,
         instrument::Instrument,
-        strategy_images::{StrategyCell, StrategyImages, StrategyTable},
+        strategy_images::{CellImages, StrategyCell, StrategyImages, StrategyTable},
         timing::Times,
     },
     scene::build::Setup,
@@ -275,37 +275,25 @@ fn advice(subsets: &[SubsetReport]) -> String {
 }
 
 fn report(setup: &Setup, options: &Options, parts: &StrategyImages, times: &Times, timed: usize) -> Report {
-    let whole = mean_luminance(&parts.whole);
-    let variance = parts.whole.luminance_variance();
-    let total_time = times.total().max(f64::MIN_POSITIVE);
+    let whole = Whole {
+        luminance: mean_luminance(&parts.whole),
+        variance: parts.whole.luminance_variance(),
+        seconds: times.total().max(f64::MIN_POSITIVE),
+        samples: (timed * setup.film.len()) as f64,
+    };
     let lengths = (1..=parts.table.depth).map(Some).chain([None]);
     let rows = lengths.map(|length| RowReport {
         length,
         exposure: sheet::exposure(&parts.sum_of(length)),
-        energy: share(parts.luminance_of(length), whole).unwrap_or(0.0),
+        energy: share(parts.luminance_of(length), whole.luminance).unwrap_or(0.0),
     });
-    let tried = (timed * setup.film.len()) as f64;
     let cells = parts.table.all().zip(&parts.images).enumerate().filter_map(|(index, (cell, images))| {
-        let images = images.as_ref()?;
-        let relative = |image: &Accumulator| share(image.luminance_variance()?, variance?);
-        let (s, t) = match cell {
-            StrategyCell::Strategy { s, t } => (Some(s), Some(t)),
-            StrategyCell::Longer(_) => (None, None),
-        };
+        let (time, tries) =
+            (times.connections[index] / whole.seconds, times.tries[index] as f64 / whole.samples);
         Some(CellReport {
-            name: cell.name(),
-            length: cell.length(),
-            s,
-            t,
-            kind: cell.kind().name(),
-            energy: share(mean_luminance(&images.weighted), whole).unwrap_or(0.0),
-            alone: cell
-                .length()
-                .and_then(|_| share(mean_luminance(&images.alone), parts.luminance_of(cell.length()))),
-            variance: relative(&images.weighted),
-            variance_alone: relative(&images.alone),
-            time: times.connections[index] / total_time,
-            tries: times.tries[index] as f64 / tried,
+            time,
+            tries,
+            ..whole.cell(cell, images.as_ref()?, parts.luminance_of(cell.length()))
         })
     });
     let cells: Vec<CellReport> = cells.collect();
@@ -315,16 +303,48 @@ fn report(setup: &Setup, options: &Options, parts: &StrategyImages, times: &Time
         strategies: names(options.strategies),
         size: [setup.film.width, setup.film.height],
         passes: parts.whole.passes() as usize,
-        luminance: whole,
-        variance,
-        seconds: total_time / timed as f64,
-        eye_walks: times.camera_paths / total_time,
-        light_walks: times.light_paths / total_time,
+        luminance: whole.luminance,
+        variance: whole.variance,
+        seconds: whole.seconds / timed as f64,
+        eye_walks: times.camera_paths / whole.seconds,
+        light_walks: times.light_paths / whole.seconds,
         covariances: own.map(|own| 1.0 - own),
         rows: rows.collect(),
         cells,
         subsets: Vec::new(),
         advice: None,
+    }
+}
+
+/// What the shares of strategies are of.
+struct Whole {
+    luminance: f64,
+    variance: Option<f64>,
+    seconds: f64,
+    samples: f64,
+}
+
+impl Whole {
+    /// A strategy, its time left out; of all paths of its length, `luminance`.
+    fn cell(&self, cell: StrategyCell, images: &CellImages, luminance: f64) -> CellReport {
+        let relative = |image: &Accumulator| share(image.luminance_variance()?, self.variance?);
+        let (s, t) = match cell {
+            StrategyCell::Strategy { s, t } => (Some(s), Some(t)),
+            StrategyCell::Longer(_) => (None, None),
+        };
+        CellReport {
+            name: cell.name(),
+            length: cell.length(),
+            s,
+            t,
+            kind: cell.kind().name(),
+            energy: share(mean_luminance(&images.weighted), self.luminance).unwrap_or(0.0),
+            alone: cell.length().and_then(|_| share(mean_luminance(&images.alone), luminance)),
+            variance: relative(&images.weighted),
+            variance_alone: relative(&images.alone),
+            time: 0.0,
+            tries: 0.0,
+        }
     }
 }
 
@@ -340,10 +360,7 @@ fn mean_luminance(image: &Accumulator) -> f64 {
 
 impl StrategyImages {
     /// The cells of paths of `length` segments, or of longer ones, with their images.
-    fn of(
-        &self,
-        length: Option<u32>,
-    ) -> impl Iterator<Item = (StrategyCell, Option<&crate::render::strategy_images::CellImages>)> {
+    fn of(&self, length: Option<u32>) -> impl Iterator<Item = (StrategyCell, Option<&CellImages>)> {
         let all = self.table.all().zip(self.images.iter().map(Option::as_ref));
         all.filter(move |(cell, _)| cell.length() == length)
     }
@@ -391,11 +408,7 @@ impl Findings {
     }
 
     /// The image of a strategy; black where it does not run.
-    fn image(
-        &self,
-        images: Option<&crate::render::strategy_images::CellImages>,
-        which: Which,
-    ) -> Vec<Spectrum> {
+    fn image(&self, images: Option<&CellImages>, which: Which) -> Vec<Spectrum> {
         match (images, which) {
             (None, _) => vec![Spectrum::ZERO; self.film[0] * self.film[1]],
             (Some(images), Which::Weighted) => images.weighted.mean(),

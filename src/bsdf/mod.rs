@@ -40,7 +40,7 @@ pub use thindielectric::ThinDielectric;
 pub use translucent::Translucent;
 pub use twosided::TwoSided;
 
-use crate::description::{Build, Library, Object, Params, Registry};
+use crate::description::{Build, Library, Object, Params, Registry, models};
 use crate::error::{Error, Result};
 use crate::math::{Spectrum, SpectrumExt, Vec2, Vec3, vec3};
 use crate::sampling::Stream;
@@ -152,61 +152,18 @@ pub trait BsdfModel {
 /// has `fn build(&Params)`, giving itself or any other `Bsdf`, and, for the tests, `fn examples() -> Vec<_>`.
 macro_rules! bsdfs {
     ($($name:literal => $model:ident,)*) => {
-        /// Any surface model.
-        #[derive(Clone, Debug)]
-        #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
-        pub enum Bsdf {
-            $($model($model),)*
-        }
-
-        $(impl From<$model> for Bsdf {
-            fn from(model: $model) -> Self {
-                Self::$model(model)
-            }
-        })*
-
-        impl BsdfModel for Bsdf {
-            #[inline]
-            fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
-                match self { $(Self::$model(model) => model.evaluate(uv, wi, wo, transport),)* }
-            }
-            #[inline]
-            fn sample(
-                &self,
-                uv: Vec2,
-                wi: Vec3,
-                transport: Transport,
-                stream: &mut Stream,
-            ) -> Option<BsdfSample> {
-                match self { $(Self::$model(model) => model.sample(uv, wi, transport, stream),)* }
-            }
-            #[inline]
-            fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
-                match self { $(Self::$model(model) => model.survival(uv, wi),)* }
-            }
-            #[inline]
-            fn null_transmission(&self, uv: Vec2, cosine: f32) -> Spectrum {
-                match self { $(Self::$model(model) => model.null_transmission(uv, cosine),)* }
-            }
-            #[inline]
-            fn is_connectible(&self) -> bool {
-                match self { $(Self::$model(model) => model.is_connectible(),)* }
-            }
-            #[inline]
-            fn has_dirac(&self) -> bool {
-                match self { $(Self::$model(model) => model.has_dirac(),)* }
-            }
-            #[inline]
-            fn has_null(&self) -> bool {
-                match self { $(Self::$model(model) => model.has_null(),)* }
-            }
-            #[inline]
-            fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
-                match self { $(Self::$model(model) => model.albedo(uv, wi),)* }
-            }
-            fn scatters_across(&self) -> bool {
-                match self { $(Self::$model(model) => model.scatters_across(),)* }
-            }
+        models! {
+            /// Any surface model.
+            Bsdf: BsdfModel [$($model)*]
+            #[inline] fn evaluate(uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue;
+            #[inline] fn sample(uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample>;
+            #[inline] fn survival(uv: Vec2, wi: Vec3) -> f32;
+            #[inline] fn null_transmission(uv: Vec2, cosine: f32) -> Spectrum;
+            #[inline] fn is_connectible() -> bool;
+            #[inline] fn has_dirac() -> bool;
+            #[inline] fn has_null() -> bool;
+            #[inline] fn albedo(uv: Vec2, wi: Vec3) -> Spectrum;
+            fn scatters_across() -> bool;
         }
 
         /// Every surface model there is, by plugin name.

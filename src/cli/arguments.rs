@@ -107,9 +107,9 @@ pub struct Render {
     /// Sample every pixel until its relative error is below this value, such as 0.02
     ///
     /// The error is estimated from the samples of each pixel, in every channel, and holds for each pixel with the
-    /// probability --confidence. For pixels darker than 1 % of the image's mean luminance it is relative to that
-    /// 1 %. Noisier pixels get more samples, pixels that are still black as many as the noisiest; the image stays
-    /// unbiased. With --spp or --time-limit as well, the render stops at whichever limit is reached first;
+    /// probability --confidence. It is relative to the pixel's value plus 1 % of the image's mean luminance, as in the
+    /// MAPE of tyndall diff. Noisier pixels get more samples, pixels that are still black as many as the noisiest; the
+    /// image stays unbiased. With --spp or --time-limit as well, the render stops at whichever limit is reached first;
     /// without them there is no other limit. In EXR files the channel samples.N is the number of samples of each
     /// pixel.
     #[arg(long, value_name = "E", value_parser = relative_error, allow_negative_numbers = true)]

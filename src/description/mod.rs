@@ -8,6 +8,7 @@ pub mod transform;
 
 pub use library::Library;
 pub use params::Params;
+pub(crate) use registry::models;
 pub use registry::{Build, Registry, nearest, suggest};
 use std::{fmt, path::PathBuf, sync::Arc};
 pub use transform::TransformStep;

@@ -1,5 +1,5 @@
 //! Registries: the names that users write, and what each refers to. Whatever lists, looks up or suggests names reads
-//! these rows.
+//! these rows. And the enum of all models of a kind, whose methods are those of the model.
 
 use super::{Library, Object, Params};
 use crate::error::{Error, Result};
@@ -61,6 +61,42 @@ impl<T> Registry<Build<T>> {
         Ok(built)
     }
 }
+
+/// Makes an enum with a variant a model, named as the model, and dispatches the methods of their trait. The trait is
+/// in scope where the rows are; methods that are not listed are the trait's own.
+macro_rules! models {
+    ($(#[$doc:meta])* $any:ident: $contract:ident $models:tt
+     $($(#[$attribute:meta])* fn $method:ident($($argument:ident: $type:ty),*) -> $out:ty;)*) => {
+        $crate::description::models!(@enum $(#[$doc])* $any $models);
+        impl $contract for $any {
+            $($crate::description::models! {
+                @method $models $(#[$attribute])* fn $method [$($argument: $type),*] ($($argument),*) -> $out
+            })*
+        }
+    };
+    (@enum $(#[$doc:meta])* $any:ident [$($model:ident)*]) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug)]
+        #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
+        pub enum $any {
+            $($model($model),)*
+        }
+
+        $(impl From<$model> for $any {
+            fn from(model: $model) -> Self {
+                Self::$model(model)
+            }
+        })*
+    };
+    (@method [$($model:ident)*] $(#[$attribute:meta])*
+     fn $method:ident [$($signature:tt)*] $arguments:tt -> $out:ty) => {
+        $(#[$attribute])*
+        fn $method(&self, $($signature)*) -> $out {
+            match self { $(Self::$model(model) => model.$method $arguments,)* }
+        }
+    };
+}
+pub(crate) use models;
 
 /// Maximum number of names listed in a message.
 const LISTED: usize = 24;

@@ -1,11 +1,12 @@
 //! Emission from the side of a shape that its normal points to.
 
-use super::Profile;
+use super::{Profile, SurfaceEmission, SurfaceModel};
 use crate::{
     description::Params,
     error::Result,
-    math::{DVec3, Spectrum, Vec2, Vec3, warp},
+    math::{DVec3, Frame, Spectrum, Vec2, Vec3, warp},
     sampling::Stream,
+    shape::SurfacePoint,
     texture::{self, Texture},
 };
 use std::f32::consts::PI;
@@ -26,9 +27,19 @@ impl Area {
         Ok(Self { radiance: texture::emission(params, "radiance", 1.0)?, profile })
     }
 
-    /// Radiance leaving from texture position `uv` at `cosine` to the normal: none behind.
+    /// A direction in the frame of the normal, cosine-weighted.
     #[inline]
-    pub fn radiance(&self, uv: Vec2, cosine: f32) -> Spectrum {
+    pub(super) fn sample_local(&self, stream: &mut Stream) -> Vec3 {
+        match &self.profile {
+            None => warp::to_cosine_hemisphere(stream.square()),
+            Some(profile) => profile.sample_from_surface(stream),
+        }
+    }
+}
+
+impl SurfaceModel for Area {
+    #[inline]
+    fn radiance(&self, uv: Vec2, cosine: f32) -> Spectrum {
         match &self.profile {
             _ if cosine <= 0.0 => Spectrum::ZERO,
             None => self.radiance.eval(uv),
@@ -36,26 +47,25 @@ impl Area {
         }
     }
 
-    /// A direction in the frame of the normal, cosine-weighted.
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
-        match &self.profile {
-            None => warp::to_cosine_hemisphere(stream.square()),
-            Some(profile) => profile.sample_from_surface(stream),
-        }
-    }
-
-    /// Density of `sample` [1/sr].
-    #[inline]
-    pub fn pdf_sr(&self, cosine: f32) -> f32 {
+    fn pdf_sr(&self, cosine: f32) -> f32 {
         match &self.profile {
             None => warp::cosine_hemisphere_pdf(cosine),
             Some(profile) => profile.pdf_sr_from_surface(cosine),
         }
     }
 
-    /// Emitted power per area [W/m^2].
-    pub fn exitance(&self) -> DVec3 {
+    #[inline]
+    fn sample(&self, point: &SurfacePoint, pdf_area: f32, stream: &mut Stream) -> SurfaceEmission {
+        let front = point.front();
+        let direction = Frame::around(front).to_world(self.sample_local(stream)).normalize();
+        let cosine = front.dot(direction);
+        let pdf_sr = self.pdf_sr(cosine);
+        let throughput = self.radiance(point.uv, cosine) * (cosine / (pdf_area * pdf_sr));
+        SurfaceEmission { direction, cosine, pdf_sr, throughput }
+    }
+
+    fn exitance(&self) -> DVec3 {
         let leaving = self.profile.as_ref().map_or(PI, Profile::projected_integral);
         self.radiance.mean().as_dvec3() * f64::from(leaving)
     }

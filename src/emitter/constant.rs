@@ -1,17 +1,19 @@
 //! The same radiance from all directions at infinity.
 
+use super::InfiniteModel;
 use crate::{
     description::Params,
     error::Result,
-    math::{Spectrum, Vec3, warp},
+    math::{DVec3, Spectrum, Vec3, warp},
     sampling::Stream,
 };
+use std::f32::consts::PI;
 
 /// A constant environment.
 #[derive(Clone, Debug)]
 pub struct Constant {
     /// Radiance [W/(m^2 sr)].
-    pub radiance: Spectrum,
+    radiance: Spectrum,
 }
 
 impl Constant {
@@ -19,16 +21,29 @@ impl Constant {
     pub fn build(params: &Params<'_>) -> Result<Self> {
         Ok(Self { radiance: params.emission("radiance", 1.0)? })
     }
+}
 
-    /// A direction, uniform.
+impl InfiniteModel for Constant {
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+    fn radiance(&self, _: Vec3) -> Spectrum {
+        self.radiance
+    }
+
+    #[inline]
+    fn sample(&self, stream: &mut Stream) -> Vec3 {
         warp::to_sphere(stream.square())
     }
 
-    /// Density of `sample` [1/sr].
     #[inline]
-    pub fn pdf_sr(&self) -> f32 {
+    fn pdf_sr(&self, _: Vec3) -> f32 {
         warp::SPHERE_PDF
+    }
+
+    fn fluence(&self) -> DVec3 {
+        self.radiance.as_dvec3() * f64::from(4.0 * PI)
+    }
+
+    fn even_radiance(&self) -> Option<Spectrum> {
+        Some(self.radiance)
     }
 }

@@ -1,18 +1,20 @@
 //! Parallel light from infinity.
 
+use super::InfiniteModel;
 use crate::{
     description::Params,
     error::Result,
     math::{DVec3, Spectrum, Vec3},
+    sampling::Stream,
 };
 
 /// A directional light.
 #[derive(Clone, Debug)]
 pub struct Directional {
     /// Unit direction in which the light travels.
-    pub direction: Vec3,
+    direction: Vec3,
     /// Irradiance on a surface facing the light [W/m^2].
-    pub irradiance: Spectrum,
+    irradiance: Spectrum,
 }
 
 impl Directional {
@@ -29,6 +31,32 @@ impl Directional {
             None => params.transform("to_world")?.transform_vector3(DVec3::Z),
         };
         Ok(Self { direction: unit(direction).as_vec3(), irradiance: params.emission("irradiance", 1.0)? })
+    }
+}
+
+impl InfiniteModel for Directional {
+    #[inline]
+    fn radiance(&self, _: Vec3) -> Spectrum {
+        self.irradiance
+    }
+
+    #[inline]
+    fn sample(&self, _: &mut Stream) -> Vec3 {
+        -self.direction
+    }
+
+    #[inline]
+    fn pdf_sr(&self, _: Vec3) -> f32 {
+        1.0
+    }
+
+    fn fluence(&self) -> DVec3 {
+        self.irradiance.as_dvec3()
+    }
+
+    #[inline]
+    fn direction(&self) -> Option<Vec3> {
+        Some(-self.direction)
     }
 }
 

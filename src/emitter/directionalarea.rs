@@ -1,9 +1,12 @@
 //! Emission along the normals of a shape only: Mitsuba's `directionalarea`.
 
+use super::{SurfaceEmission, SurfaceModel};
 use crate::{
     description::Params,
     error::Result,
     math::{DVec3, Spectrum, Vec2},
+    sampling::Stream,
+    shape::SurfacePoint,
     texture::{self, Texture},
 };
 
@@ -19,15 +22,31 @@ impl DirectionalArea {
     pub fn build(params: &Params<'_>) -> Result<Self> {
         Ok(Self { exitance: texture::emission(params, "radiance", 1.0)? })
     }
+}
 
-    /// Power per area at texture position `uv` [W/m^2].
+impl SurfaceModel for DirectionalArea {
     #[inline]
-    pub fn exitance_at(&self, uv: Vec2) -> Spectrum {
-        self.exitance.eval(uv)
+    fn radiance(&self, _: Vec2, _: f32) -> Spectrum {
+        Spectrum::ZERO
     }
 
-    /// Its mean [W/m^2].
-    pub fn exitance(&self) -> DVec3 {
+    #[inline]
+    fn pdf_sr(&self, _: f32) -> f32 {
+        0.0
+    }
+
+    #[inline]
+    fn sample(&self, point: &SurfacePoint, pdf_area: f32, _: &mut Stream) -> SurfaceEmission {
+        let throughput = self.exitance.eval(point.uv) / pdf_area;
+        SurfaceEmission { direction: point.shading.normal, cosine: 1.0, pdf_sr: 1.0, throughput }
+    }
+
+    #[inline]
+    fn is_dirac(&self) -> bool {
+        true
+    }
+
+    fn exitance(&self) -> DVec3 {
         self.exitance.mean().as_dvec3()
     }
 }

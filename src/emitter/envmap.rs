@@ -1,5 +1,6 @@
 //! An image of the surroundings, infinitely far away: Mitsuba's `envmap`.
 
+use super::InfiniteModel;
 use crate::{
     description::Params,
     error::{Error, Result},
@@ -67,18 +68,18 @@ impl EnvMap {
         let (map, fluence) = Map::new(image);
         Ok(Self { map: Arc::new(map), to_local, scale, fluence: fluence * f64::from(scale) })
     }
+}
 
-    /// Radiance from unit direction `towards` [W/(m^2 sr)].
+impl InfiniteModel for EnvMap {
     #[inline]
-    pub fn radiance(&self, towards: Vec3) -> Spectrum {
+    fn radiance(&self, towards: Vec3) -> Spectrum {
         let Spot { column, row, x, y } = self.map.spot(self.to_local * towards);
         let mix = |row| self.map.pixel(column, row).lerp(self.map.pixel(column + 1, row), x);
         mix(row).lerp(mix(row + 1), y) * self.scale
     }
 
-    /// A unit direction for light to come from.
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+    fn sample(&self, stream: &mut Stream) -> Vec3 {
         let Cell { column, row, .. } = self.map.cells.sample(stream);
         let u = stream.square();
         let (top, bottom) = (self.map.cosines[row], self.map.cosines[row + 1]);
@@ -89,15 +90,13 @@ impl EnvMap {
         (self.to_local.transpose() * vec3(sine * s, cosine, -sine * c)).normalize()
     }
 
-    /// Density of `sample` [1/sr].
     #[inline]
-    pub fn pdf_sr(&self, towards: Vec3) -> f32 {
+    fn pdf_sr(&self, towards: Vec3) -> f32 {
         let Spot { column, row, .. } = self.map.spot(self.to_local * towards);
         self.map.cells.probability(column, row) / self.map.solid_angle(row) as f32
     }
 
-    /// Integral of radiance over all directions [W/m^2].
-    pub fn fluence(&self) -> DVec3 {
+    fn fluence(&self) -> DVec3 {
         self.fluence
     }
 }

@@ -1,5 +1,5 @@
-//! Emitters: how much light leaves in which direction, and how directions are sampled. The scene decides
-//! where emission starts on a shape, and which emitter is chosen.
+//! Emitters: one file a model; this page is the contract and the registry. Models say how much light leaves in which
+//! direction, and sample directions. The scene decides where emission starts on a shape, and which emitter is chosen.
 
 mod area;
 mod constant;
@@ -14,23 +14,24 @@ mod spot;
 mod tests;
 mod volume;
 
-pub use area::Area;
-pub use constant::Constant;
-pub use directional::Directional;
-pub use directionalarea::DirectionalArea;
-pub use envmap::EnvMap;
-pub use point::Point;
-pub use profile::Profile;
-pub use projector::Projector;
-pub use spot::Spot;
+use area::Area;
+use constant::Constant;
+use directional::Directional;
+use directionalarea::DirectionalArea;
+use envmap::EnvMap;
+use point::Point;
+use profile::Profile;
+use projector::Projector;
+use spot::Spot;
 pub use volume::VolumeEmitter;
 
 use crate::{
-    description::{Build, Library, Object, Params, Registry},
+    description::{Build, Library, Object, Params, Registry, models},
     error::Result,
-    math::{DVec3, Spectrum, Vec3, spectrum::LUMINANCE},
+    math::{DVec3, Spectrum, Vec2, Vec3, spectrum::LUMINANCE},
     medium,
     sampling::Stream,
+    shape::SurfacePoint,
 };
 use std::f32::consts::PI;
 
@@ -45,57 +46,152 @@ pub struct Emitter {
     pub sampling_weight: f32,
 }
 
-/// The ways to emit.
+/// The ways to emit, by where light starts: each has a measure of its own for the density of that.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// A shape whose surface emits.
-    Area(Area),
-    /// A shape that emits along its normal only.
-    DirectionalArea(DirectionalArea),
+    /// A shape [1/m^2].
+    Surface(SurfaceEmitter),
     /// A point.
-    Point(PointKind),
-    /// Parallel light from infinity.
-    Directional(Directional),
-    /// Light from all around at infinity.
-    Environment(Environment),
-    /// An emissive medium. Its description is the medium's own.
+    Point(PointEmitter),
+    /// Infinity [1/sr].
+    Infinite(InfiniteEmitter),
+    /// An emissive medium [1/m^3]. Its description is the medium's own.
     Medium(VolumeEmitter),
 }
 
-/// Emitters at a point.
-#[derive(Clone, Debug)]
-pub enum PointKind {
-    /// All around.
-    Point(Point),
-    /// Within a cone.
-    Spot(Spot),
-    /// An image.
-    Projector(Projector),
+/// What every emitter on a shape can do.
+pub trait SurfaceModel {
+    /// Radiance that leaves texture position `uv` at `cosine` to the normal of the side that emits [W/(m^2 sr)]: none
+    /// behind. Of a Dirac emitter 0.
+    fn radiance(&self, uv: Vec2, cosine: f32) -> Spectrum;
+
+    /// Density of [`Self::sample`] [1/sr]. Of a Dirac emitter 0.
+    fn pdf_sr(&self, cosine: f32) -> f32;
+
+    /// A direction for light to leave `point` in, which was sampled with density `pdf_area` [1/m^2].
+    fn sample(&self, point: &SurfacePoint, pdf_area: f32, stream: &mut Stream) -> SurfaceEmission;
+
+    /// Emitted power per area [W/m^2]; for textured shapes an estimate from the mean of the texture.
+    fn exitance(&self) -> DVec3;
+
+    /// True if each point emits in a single direction: no camera subpath hits that by chance, and no point can be
+    /// connected to it.
+    fn is_dirac(&self) -> bool {
+        false
+    }
 }
 
-/// Emitters that surround the scene.
-#[derive(Clone, Debug)]
-pub enum Environment {
-    /// The same radiance from everywhere.
-    Constant(Constant),
-    /// An image of the surroundings.
-    EnvMap(EnvMap),
+/// Light that leaves a point of a shape.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceEmission {
+    /// Where it goes, a unit vector.
+    pub direction: Vec3,
+    /// |cos| to the normal; 1 of a Dirac emitter.
+    pub cosine: f32,
+    /// Density of the direction [1/sr]; 1 of a Dirac emitter.
+    pub pdf_sr: f32,
+    /// Radiance x cosine over the densities of direction and point.
+    pub throughput: Spectrum,
 }
 
-/// Every kind of emitter.
-pub const ROWS: Registry<Build<Kind>> = Registry::new(
-    "an emitter",
-    &[
-        ("area", |p| Area::build(p).map(Kind::Area)),
-        ("directionalarea", |p| DirectionalArea::build(p).map(Kind::DirectionalArea)),
-        ("point", |p| Point::build(p).map(PointKind::Point).map(Kind::Point)),
-        ("spot", |p| Spot::build(p).map(PointKind::Spot).map(Kind::Point)),
-        ("projector", |p| Projector::build(p).map(PointKind::Projector).map(Kind::Point)),
-        ("directional", |p| Directional::build(p).map(Kind::Directional)),
-        ("constant", |p| Constant::build(p).map(Environment::Constant).map(Kind::Environment)),
-        ("envmap", |p| EnvMap::build(p).map(Environment::EnvMap).map(Kind::Environment)),
-    ],
-);
+/// What every emitter at a point can do.
+pub trait PointModel {
+    /// Its position in the file's coordinates.
+    fn position(&self) -> DVec3;
+
+    /// Intensity towards unit `direction` [W/sr].
+    fn intensity(&self, direction: Vec3) -> Spectrum;
+
+    /// A direction for light to leave in; 0 where there is none.
+    fn sample(&self, stream: &mut Stream) -> Vec3;
+
+    /// Density of [`Self::sample`] [1/sr].
+    fn pdf_sr(&self, direction: Vec3) -> f32;
+
+    /// Emitted power [W].
+    fn power(&self) -> DVec3;
+}
+
+/// What every emitter at infinity can do.
+pub trait InfiniteModel {
+    /// Radiance from the unit direction `towards` it [W/(m^2 sr)]; from a single direction irradiance [W/m^2].
+    fn radiance(&self, towards: Vec3) -> Spectrum;
+
+    /// A unit direction for light to come from.
+    fn sample(&self, stream: &mut Stream) -> Vec3;
+
+    /// Density of [`Self::sample`] [1/sr]; 1 of the only direction there is.
+    fn pdf_sr(&self, towards: Vec3) -> f32;
+
+    /// The integral of radiance over all directions [W/m^2].
+    fn fluence(&self) -> DVec3;
+
+    /// The only direction towards it; none where it surrounds the scene.
+    fn direction(&self) -> Option<Vec3> {
+        None
+    }
+
+    /// Its radiance, if that is the same from everywhere.
+    fn even_radiance(&self) -> Option<Spectrum> {
+        None
+    }
+}
+
+/// Makes an enum with its dispatch for each kind, and the registry, from one row an emitter. An emitter has
+/// `fn build(&Params) -> Result<Self>`.
+macro_rules! emitters {
+    ($($(#[$doc:meta])* $kind:ident($any:ident: $contract:ident) {
+        $($name:literal => $model:ident,)*
+    } [$($methods:tt)*])*) => {
+        $(models! { $(#[$doc])* $any: $contract [$($model)*] $($methods)* })*
+
+        /// Every emitter there is, by plugin name.
+        pub const ROWS: Registry<Build<Kind>> = Registry::new("an emitter", &[
+            $($(($name, |params: &Params<'_>| $model::build(params).map($any::from).map(Kind::$kind)),)*)*
+        ]);
+    };
+}
+
+emitters! {
+    /// Any emitter on a shape.
+    Surface(SurfaceEmitter: SurfaceModel) {
+        "area" => Area,
+        "directionalarea" => DirectionalArea,
+    } [
+        #[inline] fn radiance(uv: Vec2, cosine: f32) -> Spectrum;
+        #[inline] fn pdf_sr(cosine: f32) -> f32;
+        #[inline] fn sample(point: &SurfacePoint, pdf_area: f32, stream: &mut Stream) -> SurfaceEmission;
+        fn exitance() -> DVec3;
+        #[inline] fn is_dirac() -> bool;
+    ]
+
+    /// Any emitter at a point.
+    Point(PointEmitter: PointModel) {
+        "point" => Point,
+        "spot" => Spot,
+        "projector" => Projector,
+    } [
+        fn position() -> DVec3;
+        #[inline] fn intensity(direction: Vec3) -> Spectrum;
+        #[inline] fn sample(stream: &mut Stream) -> Vec3;
+        #[inline] fn pdf_sr(direction: Vec3) -> f32;
+        fn power() -> DVec3;
+    ]
+
+    /// Any emitter at infinity.
+    Infinite(InfiniteEmitter: InfiniteModel) {
+        "directional" => Directional,
+        "constant" => Constant,
+        "envmap" => EnvMap,
+    } [
+        #[inline] fn radiance(towards: Vec3) -> Spectrum;
+        #[inline] fn sample(stream: &mut Stream) -> Vec3;
+        #[inline] fn pdf_sr(towards: Vec3) -> f32;
+        fn fluence() -> DVec3;
+        #[inline] fn direction() -> Option<Vec3>;
+        fn even_radiance() -> Option<Spectrum>;
+    ]
+}
 
 /// Builds the emitter that `object` describes; positions are still in the file's coordinates. A medium among
 /// its children (the one it is in) is read by the scene.
@@ -117,39 +213,46 @@ impl Emitter {
 
     /// True for emitters that lie on a shape.
     pub fn needs_shape(&self) -> bool {
-        matches!(self.kind, Kind::Area(_) | Kind::DirectionalArea(_))
+        matches!(self.kind, Kind::Surface(_))
     }
 
     /// True for emitters at infinity: their "position" is a direction and is measured in steradians.
     pub fn is_infinite(&self) -> bool {
-        matches!(self.kind, Kind::Directional(_) | Kind::Environment(_))
+        matches!(self.kind, Kind::Infinite(_))
     }
 
     /// True if a walk can hit it by chance: it is neither a point nor a single direction.
+    #[inline]
     pub fn is_hittable(&self) -> bool {
-        matches!(self.kind, Kind::Area(_) | Kind::Environment(_) | Kind::Medium(_))
+        match &self.kind {
+            Kind::Surface(e) => !e.is_dirac(),
+            Kind::Point(_) => false,
+            Kind::Infinite(e) => e.direction().is_none(),
+            Kind::Medium(_) => true,
+        }
     }
 
     /// True if next-event estimation can find it: it emits towards more than a single direction at each point.
+    #[inline]
     pub fn is_connectible(&self) -> bool {
-        !matches!(self.kind, Kind::DirectionalArea(_))
+        !matches!(&self.kind, Kind::Surface(e) if e.is_dirac())
     }
 
-    /// True for what surrounds the scene.
-    pub fn is_environment(&self) -> bool {
-        matches!(self.kind, Kind::Environment(_))
+    /// What surrounds the scene, if it does.
+    #[inline]
+    pub fn environment(&self) -> Option<&InfiniteEmitter> {
+        match &self.kind {
+            Kind::Infinite(e) if e.direction().is_none() => Some(e),
+            _ => None,
+        }
     }
 
     /// Emitted power [W], luminance-weighted; `area` [m^2] of the emitting shape, `radius` [m] of the scene.
-    /// For textured shapes an estimate from the mean of the texture.
     pub fn power(&self, area: f32, radius: f32) -> f64 {
-        let disk = f64::from(PI) * f64::from(radius).powi(2);
         let power = match &self.kind {
-            Kind::Area(e) => e.exitance() * f64::from(area),
-            Kind::DirectionalArea(e) => e.exitance() * f64::from(area),
+            Kind::Surface(e) => e.exitance() * f64::from(area),
             Kind::Point(e) => e.power(),
-            Kind::Directional(e) => e.irradiance.as_dvec3() * disk,
-            Kind::Environment(e) => e.fluence() * disk,
+            Kind::Infinite(e) => e.fluence() * (f64::from(PI) * f64::from(radius).powi(2)),
             Kind::Medium(e) => e.power(),
         };
         power.dot(LUMINANCE.as_dvec3())
@@ -157,97 +260,7 @@ impl Emitter {
 
     /// Its position in the file's coordinates: emitters at a point only.
     pub fn position(&self) -> Option<DVec3> {
-        match &self.kind {
-            Kind::Point(PointKind::Point(e)) => Some(e.position),
-            Kind::Point(PointKind::Spot(e)) => Some(e.position),
-            Kind::Point(PointKind::Projector(e)) => Some(e.position),
-            _ => None,
-        }
-    }
-}
-
-impl Emitter {
-    /// The unit direction in which its light travels, where there is only one.
-    pub fn direction(&self) -> Option<Vec3> {
-        if let Kind::Directional(sun) = &self.kind { Some(sun.direction) } else { None }
-    }
-}
-
-impl PointKind {
-    /// Intensity towards unit `direction` [W/sr].
-    #[inline]
-    pub fn intensity(&self, direction: Vec3) -> Spectrum {
-        match self {
-            Self::Point(e) => e.intensity(direction),
-            Self::Spot(e) => e.intensity(direction),
-            Self::Projector(e) => e.intensity(direction),
-        }
-    }
-
-    /// A direction for light to leave in; 0 where there is none.
-    #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
-        match self {
-            Self::Point(e) => e.sample(stream),
-            Self::Spot(e) => e.sample(stream),
-            Self::Projector(e) => e.sample(stream),
-        }
-    }
-
-    /// Density of `sample` [1/sr].
-    #[inline]
-    pub fn pdf_sr(&self, direction: Vec3) -> f32 {
-        match self {
-            Self::Point(e) => e.pdf_sr(direction),
-            Self::Spot(e) => e.pdf_sr(direction),
-            Self::Projector(e) => e.pdf_sr(direction),
-        }
-    }
-
-    /// Emitted power [W].
-    pub fn power(&self) -> DVec3 {
-        match self {
-            Self::Point(e) => e.power(),
-            Self::Spot(e) => e.power(),
-            Self::Projector(e) => e.power(),
-        }
-    }
-}
-
-impl Environment {
-    /// Radiance from the unit direction `towards` [W/(m^2 sr)].
-    #[inline]
-    pub fn radiance(&self, towards: Vec3) -> Spectrum {
-        match self {
-            Self::Constant(e) => e.radiance,
-            Self::EnvMap(e) => e.radiance(towards),
-        }
-    }
-
-    /// A unit direction for light to come from.
-    #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
-        match self {
-            Self::Constant(e) => e.sample(stream),
-            Self::EnvMap(e) => e.sample(stream),
-        }
-    }
-
-    /// Density of `sample` [1/sr].
-    #[inline]
-    pub fn pdf_sr(&self, towards: Vec3) -> f32 {
-        match self {
-            Self::Constant(e) => e.pdf_sr(),
-            Self::EnvMap(e) => e.pdf_sr(towards),
-        }
-    }
-
-    /// The integral of radiance over all directions [W/m^2].
-    pub fn fluence(&self) -> DVec3 {
-        match self {
-            Self::Constant(e) => e.radiance.as_dvec3() * f64::from(4.0 * PI),
-            Self::EnvMap(e) => e.fluence(),
-        }
+        if let Kind::Point(e) = &self.kind { Some(e.position()) } else { None }
     }
 }
 

@@ -1,6 +1,6 @@
 //! A point that emits in all directions.
 
-use super::Profile;
+use super::{PointModel, Profile};
 use crate::{
     description::Params,
     error::Result,
@@ -12,8 +12,7 @@ use std::f32::consts::PI;
 /// A point light: the same in all directions, or by a profile around an axis.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Its position in the file's coordinates.
-    pub position: DVec3,
+    position: DVec3,
     /// Intensity on the axis [W/sr].
     intensity: Spectrum,
     /// Beyond Mitsuba: intensity relative to that by angle, and the axis, local +z.
@@ -35,10 +34,15 @@ impl Point {
         let profile = Profile::build(params)?.map(|profile| (profile, axis));
         Ok(Self { position, intensity: params.emission("intensity", 1.0)?, profile })
     }
+}
 
-    /// Intensity towards unit `direction` [W/sr].
+impl PointModel for Point {
+    fn position(&self) -> DVec3 {
+        self.position
+    }
+
     #[inline]
-    pub fn intensity(&self, direction: Vec3) -> Spectrum {
+    fn intensity(&self, direction: Vec3) -> Spectrum {
         match &self.profile {
             None => self.intensity,
             Some((profile, axis)) => self.intensity * profile.value(axis.normal.dot(direction)),
@@ -47,24 +51,22 @@ impl Point {
 
     /// A direction: uniform, or by the profile.
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+    fn sample(&self, stream: &mut Stream) -> Vec3 {
         match &self.profile {
             None => warp::to_sphere(stream.square()),
             Some((profile, axis)) => axis.to_world(profile.sample_around(stream)).normalize(),
         }
     }
 
-    /// Density of `sample` [1/sr].
     #[inline]
-    pub fn pdf_sr(&self, direction: Vec3) -> f32 {
+    fn pdf_sr(&self, direction: Vec3) -> f32 {
         match &self.profile {
             None => warp::SPHERE_PDF,
             Some((profile, axis)) => profile.pdf_sr_around(axis.normal.dot(direction)),
         }
     }
 
-    /// Emitted power [W].
-    pub fn power(&self) -> DVec3 {
+    fn power(&self) -> DVec3 {
         let around = self.profile.as_ref().map_or(4.0 * PI, |(profile, _)| profile.integral());
         self.intensity.as_dvec3() * f64::from(around)
     }

@@ -1,5 +1,6 @@
 //! An image projected from a point: Mitsuba's `projector`.
 
+use super::PointModel;
 use crate::{
     description::Params,
     error::Result,
@@ -14,8 +15,7 @@ use std::{f32::consts::PI, sync::Arc};
 /// irradiance pi times that of the texture (so Mitsuba scales it).
 #[derive(Clone, Debug)]
 pub struct Projector {
-    /// Its position in the file's coordinates.
-    pub position: DVec3,
+    position: DVec3,
     irradiance: Texture,
     scale: f32,
     to_local: Mat3,
@@ -72,10 +72,15 @@ impl Projector {
         let uv = Vec2::splat(0.5) - local.truncate() / (local.z * 2.0 * self.half);
         (uv.min_element() >= 0.0 && uv.max_element() <= 1.0).then_some((uv, local.z))
     }
+}
 
-    /// Intensity towards unit `direction` [W/sr].
+impl PointModel for Projector {
+    fn position(&self) -> DVec3 {
+        self.position
+    }
+
     #[inline]
-    pub fn intensity(&self, direction: Vec3) -> Spectrum {
+    fn intensity(&self, direction: Vec3) -> Spectrum {
         match self.through(direction) {
             Some((uv, cosine)) => self.irradiance.eval(uv) * (PI * self.scale / cosine.powi(3)),
             None => Spectrum::ZERO,
@@ -84,23 +89,22 @@ impl Projector {
 
     /// A direction through the image, by its brightness.
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+    fn sample(&self, stream: &mut Stream) -> Vec3 {
         let uv = self.cells.sample(stream);
         let plane = (Vec2::splat(0.5) - uv) * (2.0 * self.half);
         let local = vec3(plane.x, plane.y, 1.0);
         (self.to_local.inverse() * local).normalize()
     }
 
-    /// Density of `sample` [1/sr].
     #[inline]
-    pub fn pdf_sr(&self, direction: Vec3) -> f32 {
+    fn pdf_sr(&self, direction: Vec3) -> f32 {
         let Some((uv, cosine)) = self.through(direction) else { return 0.0 };
         let area = 4.0 * self.half.x * self.half.y;
         self.cells.pdf(uv) / (area * cosine.powi(3))
     }
 
-    /// Emitted power [W]: the mean of the texture counts. At distance 1 it falls on an area of `area`.
-    pub fn power(&self) -> DVec3 {
+    /// the mean of the texture counts. At distance 1 it falls on an area of `area`.
+    fn power(&self) -> DVec3 {
         let area = 4.0 * self.half.x * self.half.y;
         self.irradiance.mean().as_dvec3() * f64::from(PI * area) * f64::from(self.scale)
     }

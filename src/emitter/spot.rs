@@ -1,5 +1,6 @@
 //! A point that emits within a cone: constant inside the beam, falling linearly in the angle to its edge.
 
+use super::PointModel;
 use crate::{
     description::Params,
     error::Result,
@@ -12,8 +13,7 @@ use std::f32::consts::TAU;
 /// A spotlight.
 #[derive(Clone, Debug)]
 pub struct Spot {
-    /// Its position in the file's coordinates.
-    pub position: DVec3,
+    position: DVec3,
     /// Intensity on the axis [W/sr].
     intensity: Spectrum,
     axis: Frame,
@@ -59,16 +59,6 @@ impl Spot {
         })
     }
 
-    /// Intensity towards unit `direction` [W/sr].
-    #[inline]
-    pub fn intensity(&self, direction: Vec3) -> Spectrum {
-        let falloff = self.falloff(angle(direction, self.axis.normal));
-        match &self.slide {
-            Some(slide) if falloff > 0.0 => self.intensity * slide.eval(direction) * falloff,
-            _ => self.intensity * falloff,
-        }
-    }
-
     fn falloff(&self, angle: f32) -> f32 {
         if angle <= self.beam {
             1.0
@@ -83,16 +73,30 @@ impl Spot {
     fn one_minus_cos(&self) -> f32 {
         2.0 * (0.5 * self.cutoff).sin().powi(2)
     }
+}
+
+impl PointModel for Spot {
+    fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    #[inline]
+    fn intensity(&self, direction: Vec3) -> Spectrum {
+        let falloff = self.falloff(angle(direction, self.axis.normal));
+        match &self.slide {
+            Some(slide) if falloff > 0.0 => self.intensity * slide.eval(direction) * falloff,
+            _ => self.intensity * falloff,
+        }
+    }
 
     /// A direction, uniform in the cone.
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> Vec3 {
+    fn sample(&self, stream: &mut Stream) -> Vec3 {
         self.axis.to_world(warp::to_cone(stream.square(), self.one_minus_cos()))
     }
 
-    /// Density of `sample` [1/sr].
     #[inline]
-    pub fn pdf_sr(&self, direction: Vec3) -> f32 {
+    fn pdf_sr(&self, direction: Vec3) -> f32 {
         if angle(direction, self.axis.normal) < self.cutoff {
             warp::cone_pdf(self.one_minus_cos())
         } else {
@@ -100,9 +104,8 @@ impl Spot {
         }
     }
 
-    /// Emitted power [W]: 2 pi times the integral of falloff(a) sin(a), in closed form; of a texture its mean
-    /// counts.
-    pub fn power(&self) -> DVec3 {
+    /// 2 pi times the integral of falloff(a) sin(a), in closed form; of a texture its mean counts.
+    fn power(&self) -> DVec3 {
         let (beam, cutoff) = (f64::from(self.beam), f64::from(self.cutoff));
         let inner = 2.0 * (0.5 * beam).sin().powi(2);
         let ramp = if cutoff - beam < 1e-6 {

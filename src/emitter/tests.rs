@@ -130,7 +130,7 @@ fn directions_follow_their_densities() {
     for emitter in examples(folder.path()) {
         match &emitter.kind {
             Kind::Point(e) => check(emitter.name, |s| e.sample(s), |d| e.pdf_sr(d), |d| e.intensity(d)),
-            Kind::Environment(e) => check(emitter.name, |s| e.sample(s), |d| e.pdf_sr(d), |d| e.radiance(d)),
+            Kind::Infinite(e) => check(emitter.name, |s| e.sample(s), |d| e.pdf_sr(d), |d| e.radiance(d)),
             other => panic!("{other:?}"),
         }
     }
@@ -141,9 +141,9 @@ fn power_is_what_leaves() {
     let folder = desk();
     for emitter in examples(folder.path()) {
         let (found, reported) = match &emitter.kind {
-            Kind::Point(PointKind::Spot(_)) => continue, // of a slide the mean counts, and its corners do not
+            Kind::Point(PointEmitter::Spot(_)) => continue, // of a slide the mean counts, and its corners do not
             Kind::Point(e) => (integrals(|d| e.intensity(d).z), e.power().z),
-            Kind::Environment(e) => (integrals(|d| e.radiance(d).z), e.fluence().z),
+            Kind::Infinite(e) => (integrals(|d| e.radiance(d).z), e.fluence().z),
             other => panic!("{other:?}"),
         };
         let found: f64 = found.iter().sum();
@@ -155,9 +155,9 @@ fn power_is_what_leaves() {
 fn a_profile_leaves_surfaces_as_it_says() {
     for text in ["0:1", "0:1 30:0.8 90:0", "10:0 20:5 21:5 80:0", "0:0 89:1e-3 90:1"] {
         let area = built("area", &[("profile", Value::String(text.into()))]).unwrap();
-        let Kind::Area(area) = area.kind else { panic!() };
+        let Kind::Surface(SurfaceEmitter::Area(area)) = area.kind else { panic!() };
         let radiance = |d: Vec3| area.radiance(vec2(0.5, 0.5), d.z);
-        check(text, |s| area.sample(s), |d| area.pdf_sr(d.z), radiance);
+        check(text, |s| area.sample_local(s), |d| area.pdf_sr(d.z), radiance);
         let leaving: f64 = integrals(|d| radiance(d).x * d.z.max(0.0)).iter().sum();
         assert!((leaving / area.exitance().x - 1.0).abs() < 1e-2, "{text}: {leaving}");
     }
@@ -179,7 +179,7 @@ fn a_profile_is_linear_in_the_angle() {
 fn values_are_those_of_mitsuba() {
     let folder = desk();
     let sky = built("envmap", &[("filename", file(folder.path(), "full.exr"))]).unwrap();
-    let Kind::Environment(sky) = sky.kind else { panic!() };
+    let Kind::Infinite(sky) = sky.kind else { panic!() };
     for (towards, radiance) in [
         ([0.0, 0.0, 1.0], [3.5, 2.5, 27.5]),
         ([0.0, 0.0, -1.0], [3.5, 2.5, 27.5]),

@@ -1,6 +1,8 @@
 //! What an image file can hold besides the image: layers of channels, named as Mitsuba's `aov` and `moment`
 //! integrators name them.
 
+use crate::description::Registry;
+
 /// Quantities of the first surface that a primary ray hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
@@ -32,36 +34,37 @@ pub enum Quantity {
     ShapeIndex,
 }
 
-/// One row of the registry of quantities.
-pub struct QuantityRow {
-    /// Mitsuba's name.
-    pub name: &'static str,
-    /// What it is.
-    pub quantity: Quantity,
-    /// Mitsuba's names of its channels.
-    pub channels: &'static [&'static str],
-}
-
-/// Every quantity with its name.
-pub const QUANTITIES: &[QuantityRow] = &[
-    QuantityRow { name: "albedo", quantity: Quantity::Albedo, channels: &["R", "G", "B"] },
-    QuantityRow { name: "depth", quantity: Quantity::Depth, channels: &["T"] },
-    QuantityRow { name: "position", quantity: Quantity::Position, channels: &["X", "Y", "Z"] },
-    QuantityRow { name: "uv", quantity: Quantity::Uv, channels: &["U", "V"] },
-    QuantityRow { name: "geo_normal", quantity: Quantity::GeometricNormal, channels: &["X", "Y", "Z"] },
-    QuantityRow { name: "sh_normal", quantity: Quantity::ShadingNormal, channels: &["X", "Y", "Z"] },
-    QuantityRow { name: "dp_du", quantity: Quantity::DpDu, channels: &["X", "Y", "Z"] },
-    QuantityRow { name: "dp_dv", quantity: Quantity::DpDv, channels: &["X", "Y", "Z"] },
-    QuantityRow { name: "duv_dx", quantity: Quantity::DuvDx, channels: &["U", "V"] },
-    QuantityRow { name: "duv_dy", quantity: Quantity::DuvDy, channels: &["U", "V"] },
-    QuantityRow { name: "prim_index", quantity: Quantity::PrimitiveIndex, channels: &["I"] },
-    QuantityRow { name: "shape_index", quantity: Quantity::ShapeIndex, channels: &["I"] },
-];
+/// Every quantity by Mitsuba's name.
+pub const QUANTITIES: Registry<Quantity> = Registry::new(
+    "a quantity",
+    &[
+        ("albedo", Quantity::Albedo),
+        ("depth", Quantity::Depth),
+        ("position", Quantity::Position),
+        ("uv", Quantity::Uv),
+        ("geo_normal", Quantity::GeometricNormal),
+        ("sh_normal", Quantity::ShadingNormal),
+        ("dp_du", Quantity::DpDu),
+        ("dp_dv", Quantity::DpDv),
+        ("duv_dx", Quantity::DuvDx),
+        ("duv_dy", Quantity::DuvDy),
+        ("prim_index", Quantity::PrimitiveIndex),
+        ("shape_index", Quantity::ShapeIndex),
+    ],
+);
 
 impl Quantity {
-    /// Names of its channels.
+    /// Mitsuba's names of its channels.
     pub fn channels(self) -> &'static [&'static str] {
-        QUANTITIES.iter().find(|row| row.quantity == self).map_or(&[], |row| row.channels)
+        match self {
+            Self::Albedo => &["R", "G", "B"],
+            Self::Depth => &["T"],
+            Self::Uv | Self::DuvDx | Self::DuvDy => &["U", "V"],
+            Self::Position | Self::GeometricNormal | Self::ShadingNormal | Self::DpDu | Self::DpDv => {
+                &["X", "Y", "Z"]
+            }
+            Self::PrimitiveIndex | Self::ShapeIndex => &["I"],
+        }
     }
 }
 

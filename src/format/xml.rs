@@ -146,7 +146,7 @@ impl Reader<'_> {
             tag if TAGS.contains(&tag) || child.is_spectrum_plugin() => {
                 Value::Object(self.object(page, child, &[], depth + 1)?)
             }
-            tag => match values::find(tag) {
+            tag => match values::ROWS.get(tag) {
                 Some(row) => values::read(row, child, &page.folders)?,
                 None => return Err(unknown(child)),
             },
@@ -241,7 +241,7 @@ fn unknown(element: &Element) -> Error {
     if super::steps::WORDS.contains(&tag) {
         return misplaced(element, "inside <transform>");
     }
-    let known: Vec<_> = [&TAGS[1..], &DIRECTIONS, &values::tags()].concat();
+    let known: Vec<_> = [&TAGS[1..], &DIRECTIONS, &values::ROWS.names()].concat();
     let remedy = format!("{}known: {}", nearest(tag, &known), known.join(", "));
     Error::new(&element.location, "a tag of Mitsuba's scene format", format!("<{tag}>"), remedy)
 }

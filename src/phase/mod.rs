@@ -36,7 +36,7 @@ pub use schlick::Schlick;
 pub use specular_sphere::SpecularSphere;
 pub use table::Table;
 
-use crate::description::{Build, Library, Object, Params, Registry};
+use crate::description::{Build, Library, Object, Params, Registry, models};
 use crate::error::Result;
 use crate::math::{Frame, Vec3};
 use crate::sampling::Stream;
@@ -58,31 +58,12 @@ pub trait PhaseModel {
 /// `fn examples() -> Vec<Self>`.
 macro_rules! phases {
     ($($model:ident: $($name:literal => $build:ident),+;)*) => {
-        /// Any phase function.
-        #[derive(Clone, Debug)]
-        #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
-        pub enum Phase {
-            $($model($model),)*
-        }
-
-        $(impl From<$model> for Phase {
-            fn from(model: $model) -> Self {
-                Self::$model(model)
-            }
-        })*
-
-        impl PhaseModel for Phase {
-            #[inline]
-            fn pdf_sr(&self, turn: Deflection) -> f32 {
-                match self { $(Self::$model(model) => model.pdf_sr(turn),)* }
-            }
-            #[inline]
-            fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
-                match self { $(Self::$model(model) => model.sample(direction, stream),)* }
-            }
-            fn mean_cosine(&self) -> f32 {
-                match self { $(Self::$model(model) => model.mean_cosine(),)* }
-            }
+        models! {
+            /// Any phase function.
+            Phase: PhaseModel [$($model)*]
+            #[inline] fn pdf_sr(turn: Deflection) -> f32;
+            #[inline] fn sample(direction: Vec3, stream: &mut Stream) -> Vec3;
+            fn mean_cosine() -> f32;
         }
 
         /// Every phase function there is, by plugin name.

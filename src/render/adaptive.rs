@@ -15,13 +15,12 @@ use super::{
     instrument::{BLOCKS_AT_ONCE, Instrument},
     monitor::Stopwatch,
 };
-use crate::math::{DVec3, Spectrum, spectrum::LUMINANCE};
+use crate::math::{DVec3, Spectrum, relative::Relative, spectrum::LUMINANCE};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The precision required of every pixel: that its value is off by less than `error`, relative to it or to a
-/// hundredth of the image's mean luminance, whichever is greater; in every channel, with probability
-/// `confidence`.
+/// The precision required of every pixel: that its value is off by less than `error`, relative to it and a hundredth of
+/// the image's mean luminance together (see [`Relative::difference`]); in every channel, with probability `confidence`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precision {
     /// In (0, 1].
@@ -56,9 +55,6 @@ const FIRST_LOOK: u64 = 16;
 /// Passes up to the next check over those up to the last: few checks, so that chance has few opportunities to
 /// stop early.
 const GROWTH: f64 = 1.25;
-/// Pixels darker than this part of the mean luminance need not be known relative to themselves.
-const FLOOR: f64 = 0.01;
-
 /// An image is black if light does not come in more than this part of the samples.
 const RAREST: f64 = 1e-3;
 
@@ -75,8 +71,8 @@ struct Half {
     errors: Vec<f64>,
     /// The pixel has converged by this half.
     content: Vec<bool>,
-    /// What errors are relative to at least.
-    floor: f64,
+    /// Mean luminance of the image; 0 before it is known.
+    mean: f64,
     /// Means of camera subpaths, where the other half has ended them.
     ended: Vec<Option<DVec3>>,
     /// The same of light subpaths.
@@ -93,7 +89,7 @@ impl Half {
             light: zeros(),
             errors: vec![f64::INFINITY; pixels],
             content: vec![false; pixels],
-            floor: 0.0,
+            mean: 0.0,
             ended: vec![None; pixels],
             ended_light: None,
         }
@@ -121,11 +117,11 @@ impl Half {
 
     /// Examines the samples of the active pixels.
     fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
-        if self.floor == 0.0 {
+        if self.mean == 0.0 {
             let luminances = (0..self.camera.len()).map(|pixel| luminance(self.moments(pixel).0));
             // One broken sample must not decide for all pixels.
             let sum: f64 = luminances.filter(|luminance| luminance.is_finite()).sum();
-            self.floor = FLOOR * sum / self.camera.len() as f64;
+            self.mean = sum / self.camera.len() as f64;
         }
         for pixel in (0..active.len()).filter(|pixel| active[*pixel]) {
             if !self.content[pixel] {
@@ -159,10 +155,8 @@ impl Half {
         if !mean.is_finite() {
             return f64::INFINITY;
         }
-        let scale = mean.abs().max(DVec3::splat(self.floor));
-        let relative = variance / (2.0 * self.passes as f64);
-        // A black image has no floor: no variance, no error.
-        let of = |c: usize| if relative[c] > 0.0 { relative[c] / (scale[c] * scale[c]) } else { 0.0 };
+        let (to, passes) = (Relative::to_mean(self.mean), 2.0 * self.passes as f64);
+        let of = |c: usize| to.difference((variance[c] / passes).sqrt(), mean[c]).powi(2);
         of(0).max(of(1)).max(of(2))
     }
 

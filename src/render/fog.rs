@@ -3,7 +3,7 @@
 
 use crate::{
     bsdf::{BsdfModel, Transport},
-    emitter::{Environment, Kind},
+    emitter::{Emitter, InfiniteModel},
     math::{Channels, Spectrum, Vec3, offset},
     sampling::Stream,
     scene::{Scene, lights::EmitterSample},
@@ -91,52 +91,67 @@ impl<'a> Preview<'a> {
 
     /// Follows a ray to the first surface that scatters light; what is smooth or not there it passes as light does.
     fn follow(&self, ray: Ray, stream: &mut Stream) -> Sight {
-        let scene = self.scene;
-        let (mut through, mut veiled, mut emitted) = (Spectrum::ONE, Spectrum::ZERO, Spectrum::ZERO);
-        let mut segment = Segment::along(scene, ray, scene.sensor_medium, self.hide_emitters);
+        let nothing = End::Radiance(Spectrum::ZERO);
+        let mut sight =
+            Sight { through: Spectrum::ONE, veiled: Spectrum::ZERO, emitted: Spectrum::ZERO, end: nothing };
+        let mut segment = Segment::along(self.scene, ray, self.scene.sensor_medium, self.hide_emitters);
         let mut left = self.threshold;
         for _ in 0..MOST_LEGS {
-            let Ray { direction, t_max, .. } = *segment.ray();
-            let (interval, hit) = segment.next(left);
-            if hit.is_none() && left < t_max {
-                // Beyond the threshold there is fog alone.
-                let end = End::Radiance(Spectrum::ZERO);
-                return Sight { through: Spectrum::ZERO, veiled: veiled + through, emitted, end };
-            }
-            // f of BMA02 eq. 6.
-            let remains = segment.medium().quick_depth(&interval.segment).exp_neg();
-            veiled += through * (Spectrum::ONE - remains);
-            through *= remains;
-            let Some(hit) = hit else {
-                let sample = scene.lights.infinity_hit(direction).filter(|_| !segment.is_hidden());
-                let sky = sample.map_or(Spectrum::ZERO, |sample| sample.value);
-                return Sight { through, veiled, emitted, end: End::Radiance(sky) };
-            };
-            left -= interval.segment.length;
-            let point = segment.surface(&hit);
-            if !segment.is_hidden() {
-                emitted += through * self.emitted(&point, segment.ray());
-            }
-            let weight = match segment.sample_crossing(&point, stream) {
-                NullCrossing::Passed(passed, probability) => {
-                    segment.cross(&point);
-                    passed / probability
-                }
-                NullCrossing::Stopped(probability) => {
-                    let Some((beyond, weight)) = self.deflect(&segment, &point, stream) else {
-                        let end = End::Surface(Box::new(point), -direction);
-                        return Sight { through, veiled, emitted, end };
-                    };
-                    segment = beyond;
-                    weight / probability
-                }
-            };
-            through *= weight;
-            if through.max_element() <= 0.0 {
-                break;
+            if let Some(end) = self.advance(&mut sight, &mut segment, &mut left, stream) {
+                return Sight { end, ..sight };
             }
         }
-        Sight { through: Spectrum::ZERO, veiled, emitted, end: End::Radiance(Spectrum::ZERO) }
+        sight
+    }
+
+    /// Follows a `segment` to the next surface, within the distance `left`, and passes it; none unless the ray ends.
+    fn advance(
+        &self,
+        sight: &mut Sight,
+        segment: &mut Segment<'a>,
+        left: &mut f32,
+        stream: &mut Stream,
+    ) -> Option<End> {
+        let Ray { direction, t_max, .. } = *segment.ray();
+        let (interval, hit) = segment.next(*left);
+        if hit.is_none() && *left < t_max {
+            // Beyond the threshold there is fog alone.
+            sight.veiled += std::mem::replace(&mut sight.through, Spectrum::ZERO);
+            return Some(End::Radiance(Spectrum::ZERO));
+        }
+        // f of BMA02 eq. 6.
+        let remains = segment.medium().quick_depth(&interval.segment).exp_neg();
+        sight.veiled += sight.through * (Spectrum::ONE - remains);
+        sight.through *= remains;
+        let Some(hit) = hit else {
+            let sky = self.scene.lights.infinity_hit(direction).filter(|_| !segment.is_hidden());
+            return Some(End::Radiance(sky.map_or(Spectrum::ZERO, |sample| sample.value)));
+        };
+        *left -= interval.segment.length;
+        let point = segment.surface(&hit);
+        if !segment.is_hidden() {
+            sight.emitted += sight.through * self.emitted(&point, segment.ray());
+        }
+        let Some(weight) = self.pass(segment, &point, stream) else {
+            return Some(End::Surface(Box::new(point), -direction));
+        };
+        sight.through *= weight;
+        (sight.through.max_element() <= 0.0).then_some(End::Radiance(Spectrum::ZERO))
+    }
+
+    /// Takes a `segment` beyond a surface point; the factor on its radiance, or none where it ends.
+    fn pass(&self, segment: &mut Segment<'a>, point: &SurfacePoint, stream: &mut Stream) -> Option<Spectrum> {
+        match segment.sample_crossing(point, stream) {
+            NullCrossing::Passed(passed, probability) => {
+                segment.cross(point);
+                Some(passed / probability)
+            }
+            NullCrossing::Stopped(probability) => {
+                let (beyond, weight) = self.deflect(segment, point, stream)?;
+                *segment = beyond;
+                Some(weight / probability)
+            }
+        }
     }
 
     /// The segment beyond a smooth surface, and its factor; none where the ray ends.
@@ -176,13 +191,14 @@ impl<'a> Preview<'a> {
         if lights.all.len() > LIGHTS_PER_POINT {
             let mut draw = |_| {
                 let sample = lights.sample_emitter(geometry, reference, stream)?;
-                (!is_even_sky(&lights.all[sample.light as usize].emitter.kind)).then_some(sample)
+                even_radiance(&lights.all[sample.light as usize].emitter).is_none().then_some(sample)
             };
             let samples = (0..LIGHTS_PER_POINT).filter_map(&mut draw);
             let sum: Spectrum = samples.map(|sample| self.reflected(point, incoming, &sample)).sum();
             return sum / LIGHTS_PER_POINT as f32;
         }
-        let others = lights.all.iter().enumerate().filter(|(_, light)| !is_even_sky(&light.emitter.kind));
+        let is_sampled = |emitter: &Emitter| emitter.is_connectible() && even_radiance(emitter).is_none();
+        let others = lights.all.iter().enumerate().filter(|(_, light)| is_sampled(&light.emitter));
         let samples =
             others.filter_map(|(index, _)| lights.sample_point_of(geometry, index, 1.0, reference, stream));
         samples.map(|sample| self.reflected(point, incoming, &sample)).sum()
@@ -212,22 +228,15 @@ impl<'a> Preview<'a> {
 
 /// Mean radiance of what surrounds the scene, if anything does.
 fn surroundings(scene: &Scene) -> Option<Spectrum> {
-    let index = scene.lights.environment?;
-    match &scene.lights.all[index as usize].emitter.kind {
-        Kind::Environment(sky) => Some(sky.fluence().as_vec3() / (4.0 * PI)),
-        _ => None,
-    }
+    let sky = scene.lights.all[scene.lights.environment? as usize].emitter.environment()?;
+    Some(sky.fluence().as_vec3() / (4.0 * PI))
 }
 
-/// Radiance of a sky that is the same everywhere: ambient light, known without samples.
+/// Radiance of skies that are the same everywhere: ambient light, known without samples.
 fn even_sky(scene: &Scene) -> Spectrum {
-    let even = |kind: &Kind| match kind {
-        Kind::Environment(Environment::Constant(sky)) => sky.radiance,
-        _ => Spectrum::ZERO,
-    };
-    scene.lights.all.iter().map(|light| even(&light.emitter.kind)).sum()
+    scene.lights.all.iter().filter_map(|light| even_radiance(&light.emitter)).sum()
 }
 
-fn is_even_sky(kind: &Kind) -> bool {
-    matches!(kind, Kind::Environment(Environment::Constant(_)))
+fn even_radiance(emitter: &Emitter) -> Option<Spectrum> {
+    emitter.environment()?.even_radiance()
 }

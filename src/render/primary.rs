@@ -10,11 +10,10 @@ use crate::{
     },
     math::{Spectrum, Vec2, Vec3, vec2, vec3},
     sampling::Stream,
-    scene::{Scene, accel::Geometry},
-    shape::{Hit, Primitive, Ray, ShapeModel, SurfacePoint},
+    scene::Scene,
+    shape::{Hit, Ray, SurfacePoint},
 };
 use rayon::prelude::*;
-use std::f32::consts::PI;
 
 /// What is requested of primary rays.
 pub struct Pass {
@@ -134,8 +133,8 @@ impl<'a> View<'a> {
             Quantity::Uv => point.uv.extend(0.0),
             Quantity::GeometricNormal => point.normal,
             Quantity::ShadingNormal => point.shading.normal,
-            Quantity::DpDu => partials(geometry, &self.ray, hit, point).0,
-            Quantity::DpDv => partials(geometry, &self.ray, hit, point).1,
+            Quantity::DpDu => geometry.partials(&self.ray, hit, point).0,
+            Quantity::DpDv => geometry.partials(&self.ray, hit, point).1,
             Quantity::DuvDx => self.uv_change(hit, point, vec2(1.0, 0.0)).extend(0.0),
             Quantity::DuvDy => self.uv_change(hit, point, vec2(0.0, 1.0)).extend(0.0),
             Quantity::PrimitiveIndex => vec3(geometry.local_primitive(hit) as f32, 0.0, 0.0),
@@ -153,7 +152,7 @@ impl<'a> View<'a> {
 
     /// How the texture coordinates change from here to where a neighbouring ray hits the tangent plane.
     fn uv_change(&self, hit: &Hit, point: &SurfacePoint, across: Vec2) -> Vec2 {
-        let (du, dv) = partials(&self.scene.geometry, &self.ray, hit, point);
+        let (du, dv) = self.scene.geometry.partials(&self.ray, hit, point);
         let neighbour = self.film + across * self.step;
         let Ray { origin, direction, .. } = self.scene.sensor.ray(neighbour, self.aperture).ray;
         let t = (point.position - origin).dot(point.normal) / direction.dot(point.normal);
@@ -163,43 +162,5 @@ impl<'a> View<'a> {
         let change = vec2(vv * mu - uv * mv, uu * mv - uv * mu) / (uu * vv - uv * uv);
         // A neighbour that runs along the surface, or a pole of the coordinates.
         if change.is_finite() { change } else { Vec2::ZERO }
-    }
-}
-
-/// How position changes with the texture coordinates u and v [m].
-fn partials(geometry: &Geometry, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
-    let shape = &geometry.shapes()[point.shape as usize];
-    match shape.primitive(geometry.local_primitive(hit) as usize) {
-        Primitive::Flat(flat) => {
-            // Positions and texture coordinates both are linear in those of the primitive.
-            let uv = |u: f32, v: f32| geometry.surface(ray, &Hit { u, v, ..*hit }).uv;
-            let (along_u, along_v) = (uv(1.0, 0.0) - uv(0.0, 0.0), uv(0.0, 1.0) - uv(0.0, 0.0));
-            let area = along_u.perp_dot(along_v);
-            if area == 0.0 {
-                return (point.shading.tangent, point.shading.bitangent);
-            }
-            let du = (flat.edge_u * along_v.y - flat.edge_v * along_u.y) / area;
-            let dv = (flat.edge_v * along_u.x - flat.edge_u * along_v.x) / area;
-            (du, dv)
-        }
-        Primitive::Disk(disk) => {
-            // u is the distance from the centre, v the angle in turns.
-            let Vec2 { x, y } = vec2(hit.u, hit.v);
-            let out = (disk.edge_u * x + disk.edge_v * y) / x.hypot(y).max(f32::MIN_POSITIVE);
-            (out, (disk.edge_v * x - disk.edge_u * y) * (2.0 * PI))
-        }
-        Primitive::Tube(tube) => {
-            let around = point.shading.tangent * (2.0 * PI * tube.radius as f32);
-            (around, (tube.axis * tube.length).as_vec3())
-        }
-        Primitive::Ball { center, radius } => {
-            // u runs along the parallels, v from pole to pole.
-            let out = (point.position - center) / radius;
-            let du = point.shading.tangent * (2.0 * PI * radius * (PI * point.uv.y).sin());
-            let along = out.cross(point.shading.tangent) * (PI * radius);
-            let moved = Ray { origin: point.position + along * 1e-3, ..*ray };
-            let further = geometry.surface(&moved, &Hit { t: 0.0, ..*hit }).uv.y > point.uv.y;
-            (du, if further { along } else { -along })
-        }
     }
 }

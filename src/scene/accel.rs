@@ -1,7 +1,6 @@
 //! All shapes as one: which primitive a ray hits first, whether anything blocks it, and what the surface is
 //! like at the hit.
 
-mod curved;
 mod pack;
 mod traversal;
 mod tree;
@@ -73,6 +72,12 @@ impl Geometry {
     /// The number of the primitive that was hit, in its own shape.
     pub fn local_primitive(&self, hit: &Hit) -> u32 {
         hit.primitive - self.first[self.shape_of(hit) as usize]
+    }
+
+    /// How position changes with the texture coordinates u and v [m] at `point`, the surface at `hit`.
+    pub fn partials(&self, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
+        let index = self.local_primitive(hit) as usize;
+        self.shapes[point.shape as usize].partials(index, ray, hit, point)
     }
 
     /// Least and greatest corner of the box around everything; two zeros for an empty scene.

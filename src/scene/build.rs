@@ -7,7 +7,7 @@ use super::{
     boundary::{self, Boundary},
     extents::Extents,
     lights::{Light, Lights, emissive},
-    locate::{Known, Locator},
+    locate::{Known, Locator, Survey},
     placement::{Names, Placement, place_camera},
     range,
     sections::Sections,
@@ -20,7 +20,7 @@ use crate::{
     film::Film,
     format::plugins,
     math::{DVec3, Vec2, Vec3},
-    medium::{self, MediumDescription, MediumIndex, MediumOverrides},
+    medium::{self, Medium, MediumDescription, MediumIndex, MediumOverrides},
     sampling::Sampler,
     sensor::{self, Crop, Sensor},
     settings::{
@@ -82,8 +82,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     let medium_overrides =
         MediumOverrides { tracker: overrides.tracker.or(medium_overrides.tracker), ..medium_overrides };
     let time = builder.place.time;
-    let scene =
-        builder.finish(view.sensor, view.start, view.medium, &sections.sensor.location, &medium_overrides)?;
+    let scene = builder.finish(view.camera, &medium_overrides)?;
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }
@@ -113,13 +112,20 @@ fn warn_of_counted_nulls(object: &Object, integrator: &Integrator, scene: &Scene
 }
 
 /// The camera with its film.
-struct View {
+struct View<'a> {
+    camera: Camera<'a>,
+    film: Film,
+    sampling: Sampling,
+}
+
+/// The camera as the file places it.
+struct Camera<'a> {
     sensor: Sensor,
     /// Where the ray through the middle of the image starts: on the near plane.
     start: Vec3,
-    film: Film,
-    sampling: Sampling,
-    medium: Option<MediumIndex>,
+    /// The medium that the file says it is in.
+    stated: Option<MediumIndex>,
+    location: &'a Location,
 }
 
 /// Its id, or the name of its plugin.
@@ -234,7 +240,8 @@ impl<'a> Builder<'a> {
             let remedy = "put it inside the shape that emits";
             return Err(Error::new(child.location, expected, "one in the scene", remedy));
         }
-        if emitter.is_environment() && self.emitters.iter().any(|other| other.emitter.is_environment()) {
+        let surrounds = |emitter: &Emitter| emitter.environment().is_some();
+        if surrounds(&emitter) && self.emitters.iter().any(|other| surrounds(&other.emitter)) {
             return Err(only_one(child, "environment"));
         }
         let stated = self.stated_medium(&Params::new(child.object, self.library))?;
@@ -293,7 +300,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View> {
+    fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View<'a>> {
         let params = Params::new(object, self.library);
         let film = match params.children(film::is_film)?.as_slice() {
             [] => film::default(overrides),
@@ -305,63 +312,66 @@ impl<'a> Builder<'a> {
             [one] => sampler::build(one.object, self.library)?,
             [_, second, ..] => return Err(only_one(second, "sampler")),
         };
-        let medium = self.stated_medium(&params)?;
+        let stated = self.stated_medium(&params)?;
         let crop = Crop { film: film.window.full_size, offset: film.window.offset };
         let sensor = sensor::build(&params, self.recentre, crop)?;
         params.finish()?;
         let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
         let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;
-        Ok(View { sensor, start, film, sampling, medium })
+        Ok(View { camera: Camera { sensor, start, stated, location: &object.location }, film, sampling })
     }
 
     /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
-    fn finish(
-        mut self,
-        sensor: Sensor,
-        start: Vec3,
-        stated: Option<MediumIndex>,
-        sensor_location: &Location,
-        medium_overrides: &MediumOverrides,
-    ) -> Result<Scene> {
+    fn finish(mut self, camera: Camera<'_>, medium_overrides: &MediumOverrides) -> Result<Scene> {
         let geometry = self.geometry();
-        let names = self.names();
-        let ambient = stated.unwrap_or(MediumIndex::VACUUM);
-        let (mut known, survey) =
-            Known::survey(&geometry, &self.surfaces, self.stated_points(start, stated), ambient);
-        names.warn_of_contradictions(&survey);
-        let sensor_medium = match stated {
-            Some(medium) => medium,
-            // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
-            None => place_camera(&geometry, &self.surfaces, &mut known, start, &names, sensor_location),
-        };
+        let (known, survey, sensor_medium) = self.survey(&geometry, &camera);
         let outside = known.infinity.most();
         let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
-        names.warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
-        let (surfaces, recentre) = (&self.surfaces, self.recentre);
-        let extents =
-            Extents { geometry: &geometry, surfaces, viewpoint: sensor.position(), outside, survey: &survey };
+        self.names().warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
+        let (surfaces, viewpoint) = (&self.surfaces, camera.sensor.position());
+        let extents = Extents { geometry: &geometry, surfaces, viewpoint, outside, survey: &survey };
         let media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
         range::check(&media[1..], &self.medium_locations, &extents, self.library)?;
-        let locator = Locator { geometry: &geometry, surfaces, known: &known };
-        let placement = Placement { locator, names: &self.names(), ambient: sensor_medium };
-        let emitters = self.emitters.iter().map(|placed| light(placed, recentre, &placement));
-        let all = emitters.chain(emissive(&media, locator, outside)).collect();
-        let around = if known.infinity.is_uniform() { outside } else { MediumIndex::VACUUM };
-        let lights = Lights::new(all, &geometry, &media[around.0 as usize]);
-        let Self { surfaces, bsdfs, .. } = self;
-        let scene = Scene {
-            lights,
+        let lights = self.lights(&geometry, &known, &media, sensor_medium);
+        let Self { surfaces, bsdfs, recentre, .. } = self;
+        let sensor = camera.sensor;
+        Ok(Scene {
             geometry,
             surfaces,
             bsdfs,
             media,
+            lights,
+            sensor,
             outside,
             known,
-            sensor,
             sensor_medium,
             recentre,
-        };
-        Ok(scene)
+        })
+    }
+
+    /// What is known about where media lie, how far, and the medium of the camera.
+    fn survey(&self, geometry: &Geometry, camera: &Camera<'_>) -> (Known, Survey, MediumIndex) {
+        let Camera { start, stated, location, .. } = *camera;
+        let names = self.names();
+        let ambient = stated.unwrap_or(MediumIndex::VACUUM);
+        let points = self.stated_points(start, stated);
+        let (mut known, survey) = Known::survey(geometry, &self.surfaces, points, ambient);
+        names.warn_of_contradictions(&survey);
+        // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
+        let place = || place_camera(geometry, &self.surfaces, &mut known, start, &names, location);
+        let medium = stated.unwrap_or_else(place);
+        (known, survey, medium)
+    }
+
+    /// All emitters, emissive media among them, with the medium that each lies in.
+    fn lights(&self, geometry: &Geometry, known: &Known, media: &[Medium], ambient: MediumIndex) -> Lights {
+        let outside = known.infinity.most();
+        let locator = Locator { geometry, surfaces: &self.surfaces, known };
+        let placement = Placement { locator, names: &self.names(), ambient };
+        let emitters = self.emitters.iter().map(|placed| light(placed, self.recentre, &placement));
+        let all = emitters.chain(emissive(media, locator, outside)).collect();
+        let around = if known.infinity.is_uniform() { outside } else { MediumIndex::VACUUM };
+        Lights::new(all, geometry, &media[around.0 as usize])
     }
 
     /// All shapes, indexed; their surfaces learn which of them may share faces.

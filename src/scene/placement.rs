@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     description::{Library, Location, Position},
-    emitter::Emitter,
+    emitter::{Emitter, InfiniteModel, Kind},
     math::{DVec3, Vec3, offset},
     medium::{MediumDescription, MediumIndex},
     sampling::{Stream, stream::Purpose},
@@ -235,7 +235,8 @@ impl Placement<'_> {
     /// The medium that light from infinity comes through, and whether that differs by direction.
     pub fn of_infinite(&self, emitter: &Emitter) -> (MediumIndex, bool) {
         let infinity = &self.locator.known.infinity;
-        let medium = emitter.direction().map_or(infinity.most(), |direction| infinity.towards(-direction));
+        let direction = if let Kind::Infinite(sky) = &emitter.kind { sky.direction() } else { None };
+        let medium = direction.map_or(infinity.most(), |direction| infinity.towards(direction));
         (medium, !infinity.is_uniform())
     }
 }

@@ -1,6 +1,10 @@
 //! By which rule the strategies that can make a path share it: an axis of variance studies. Under each of them the
 //! weights of a path sum to one, so that all give the same image; what differs is the noise.
 
+use crate::{
+    description::{Params, nearest},
+    error::{self, Error},
+};
 use std::fmt;
 
 /// A rule of multiple importance sampling (Veach 1997, sec. 9.2). With q = n p, expected samples times density, of every
@@ -56,6 +60,18 @@ impl Heuristic {
                 Err(format!("one of {}, or cutoff:ALPHA", names.join(", ")))
             }
         }
+    }
+
+    /// Reads `heuristic`, as [`Self::parse`] does.
+    pub(super) fn read(params: &Params<'_>) -> error::Result<Self> {
+        let Some(text) = params.optional_string("heuristic")? else { return Ok(Self::default()) };
+        Self::parse(text).map_err(|expected| {
+            let names = Self::NAMES.map(|(name, _)| name);
+            let name = text.split(':').next().unwrap_or(text);
+            let hint = if names.contains(&name) { String::new() } else { nearest(name, &names) };
+            let error = params.complain("heuristic", expected, format!("\"{text}\""));
+            Error { remedy: format!("{hint}{}", error.remedy), ..error }
+        })
     }
 
     /// Most segments of paths that it can weigh; none for no limit.

@@ -2,9 +2,8 @@
 //! one and request more channels. `fog` is a preview that makes no paths; `single_scattering` and
 //! `non_scattering` restrict what media do.
 
-use super::heuristic::Heuristic;
 use crate::{
-    description::{Build, Library, Object, Params, Registry, nearest, params::Child},
+    description::{Build, Library, Object, Params, Registry, params::Child, suggest},
     error::{Error, Result},
     film::layer::{Content, Layer, QUANTITIES},
     math::Spectrum,
@@ -117,34 +116,8 @@ fn check_names(object: &Object, layers: &[Layer]) -> Result<()> {
 }
 
 fn build_as(params: &Params<'_>, strategies: Strategies) -> Result<Integrator> {
-    let depth = params.integer("max_depth", -1)?;
-    let max_depth = match depth {
-        -1 => None,
-        0..=0xffff_fffe => Some(depth as u32),
-        _ => return Err(params.complain("max_depth", "-1 (no limit) or an integer >= 0", depth.to_string())),
-    };
-    params.accept_unused(&["rr_depth"], "paths end by absorption, which is exact at any depth");
     accept_division(params);
-    let hide_emitters = params.boolean("hide_emitters", false)?;
-    if strategies == Strategies::LT {
-        params.accept_unused(&["forced_interaction"], "light subpaths have no primary rays");
-    }
-    let forced_interaction = params.boolean("forced_interaction", false)?;
-    let heuristic = heuristic(params)?;
-    let options = Options { strategies, heuristic, max_depth, hide_emitters, forced_interaction };
-    Ok(Integrator { options, ..Integrator::default() })
-}
-
-/// `heuristic`: as [`Heuristic::parse`] reads it.
-fn heuristic(params: &Params<'_>) -> Result<Heuristic> {
-    let Some(text) = params.optional_string("heuristic")? else { return Ok(Heuristic::default()) };
-    Heuristic::parse(text).map_err(|expected| {
-        let names = Heuristic::NAMES.map(|(name, _)| name);
-        let name = text.split(':').next().unwrap_or(text);
-        let hint = if names.contains(&name) { String::new() } else { nearest(name, &names) };
-        let error = params.complain("heuristic", expected, format!("\"{text}\""));
-        Error { remedy: format!("{hint}{}", error.remedy), ..error }
-    })
+    Ok(Integrator { options: Options::read(params, strategies)?, ..Integrator::default() })
 }
 
 /// `fog`: `fog_color`, `ambient`, `threshold` [m] (BMA02 sec. 3.1 and 4.2).
@@ -284,11 +257,9 @@ fn surface_layer(params: &Params<'_>, item: &str) -> Result<Layer> {
         Some((name, quantity)) if !name.is_empty() => (name, quantity),
         _ => return Err(params.complain("aovs", expected, format!("\"{item}\""))),
     };
-    let Some(row) = QUANTITIES.iter().find(|row| row.name == quantity) else {
-        let known: Vec<_> = QUANTITIES.iter().map(|row| row.name).collect();
+    let Some(found) = QUANTITIES.get(quantity) else {
         let error = params.complain("aovs", "a quantity", format!("\"{quantity}\""));
-        let remedy = format!("{}known: {}", nearest(quantity, &known), known.join(", "));
-        return Err(Error { remedy, ..error });
+        return Err(Error { remedy: suggest(quantity, "known", &QUANTITIES.names()), ..error });
     };
-    Ok(Layer { name: name.into(), content: Content::Surface(row.quantity) })
+    Ok(Layer { name: name.into(), content: Content::Surface(*found) })
 }

@@ -1,6 +1,7 @@
 //! How paths are made: what a scene's integrator says, unless the command line says otherwise.
 
 use super::heuristic::Heuristic;
+use crate::{description::Params, error::Result};
 
 /// Which strategies run. Their weights sum to one over those that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +31,8 @@ impl Strategies {
         [("bdpt", Self::BDPT), ("pt", Self::PT), ("lt", Self::LT), ("fog", Self::NONE)];
 }
 
-/// How paths are sampled and weighted. A new option is a field here that an integrator reads
-/// (`integrator.rs`), and a flag of the command line (`cli/estimator.rs`).
+/// How paths are sampled and weighted. A new option is a field here, with the parameter of a scene that it is read
+/// from, and a flag of the command line (`cli/estimator.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Which strategies run.
@@ -57,5 +58,30 @@ impl Default for Options {
             hide_emitters: false,
             forced_interaction: false,
         }
+    }
+}
+
+impl Options {
+    /// Reads the parameters of integrators that make paths.
+    pub(super) fn read(params: &Params<'_>, strategies: Strategies) -> Result<Self> {
+        params.accept_unused(&["rr_depth"], "paths end by absorption, which is exact at any depth");
+        if strategies == Strategies::LT {
+            params.accept_unused(&["forced_interaction"], "light subpaths have no primary rays");
+        }
+        Ok(Self {
+            strategies,
+            max_depth: max_depth(params)?,
+            hide_emitters: params.boolean("hide_emitters", false)?,
+            forced_interaction: params.boolean("forced_interaction", false)?,
+            heuristic: Heuristic::read(params)?,
+        })
+    }
+}
+
+fn max_depth(params: &Params<'_>) -> Result<Option<u32>> {
+    match params.integer("max_depth", -1)? {
+        -1 => Ok(None),
+        depth @ 0..=0xffff_fffe => Ok(Some(depth as u32)),
+        depth => Err(params.complain("max_depth", "-1 (no limit) or an integer >= 0", depth.to_string())),
     }
 }

@@ -2,38 +2,37 @@
 //! from its axis' base whose f32 roundings would be seen on the small scale of its radius.
 
 use super::{
-    Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    Curved, CurvedModel, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     placement::{Placement, is_in_range},
 };
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::{DMat4, DVec3, Frame, Vec3, offset::gamma, vec2},
+    math::{
+        DMat4, DVec3, Frame, Vec3,
+        offset::{SEAM, gamma},
+        vec2,
+    },
     sampling::Stream,
 };
 use std::f64::consts::TAU;
 
-/// A cylinder's side, and how it is turned (for its texture coordinates).
+/// All points at distance `radius` from the segment `base` + z `axis`, z in [0, `length`], beside it; and how it is
+/// turned (for its texture coordinates).
 #[derive(Clone, Copy, Debug)]
 pub struct Cylinder {
-    tube: Tube,
+    /// z = 0.
+    base: DVec3,
+    /// Unit vector.
+    axis: DVec3,
+    /// The greatest z [m].
+    length: f64,
+    /// Its radius [m].
+    radius: f64,
     /// Unit vectors across the axis; with it left-handed where the transform mirrors.
     across: [DVec3; 2],
     /// 1 outwards, -1 inwards.
     facing: f64,
-}
-
-/// All points at distance `radius` from the segment `base` + z `axis`, z in [0, `length`], beside it.
-#[derive(Clone, Copy, Debug)]
-pub struct Tube {
-    /// z = 0.
-    pub base: DVec3,
-    /// Unit vector.
-    pub axis: DVec3,
-    /// The greatest z [m].
-    pub length: f64,
-    /// Its radius [m].
-    pub radius: f64,
 }
 
 /// Reads `p0`, `p1`, `radius`, `to_world` and `flip_normals`.
@@ -84,15 +83,22 @@ impl Cylinder {
         let [x, y, axis] = [x / radius, y / radius, z / length];
         let uneven = (x.length() - 1.0).abs() > TOLERANCE;
         let sheared = [x.dot(y), y.dot(axis), axis.dot(x)].iter().any(|d| d.abs() > TOLERANCE);
-        let tube = Tube { base: placement.point(DVec3::ZERO), axis, length, radius };
         let facing = if placement.flip_normals { -1.0 } else { 1.0 };
-        (tube.fits() && !uneven && !sheared).then_some(Self { tube, across: [x, y], facing })
+        let base = placement.point(DVec3::ZERO);
+        let cylinder = Self { base, axis, length, radius, across: [x, y], facing };
+        (cylinder.fits() && !uneven && !sheared).then_some(cylinder)
+    }
+
+    /// f32 can hold it.
+    fn fits(&self) -> bool {
+        let (low, high) = self.bounds();
+        is_in_range(low) && is_in_range(high) && (self.radius as f32).is_normal() && self.area().is_normal()
     }
 
     /// The surface point nearest to `p`.
     #[inline]
     pub fn point_near(&self, p: DVec3) -> SurfacePoint {
-        let Tube { base, axis, length, .. } = self.tube;
+        let Self { base, axis, length, .. } = *self;
         let from = p - base;
         let z = axis.dot(from);
         let out = (from - axis * z).normalize_or(self.across[0]);
@@ -102,7 +108,7 @@ impl Cylinder {
     /// The surface point at height `z` [m] in the unit direction `out` from the axis.
     #[inline]
     fn point(&self, z: f64, out: DVec3) -> SurfacePoint {
-        let Tube { base, axis, length, radius } = self.tube;
+        let Self { base, axis, length, radius, .. } = *self;
         let [x, y] = self.across.map(|axis| axis.dot(out));
         let turn = y.atan2(x) / TAU;
         let along_u = self.across[1] * x - self.across[0] * y;
@@ -122,14 +128,14 @@ impl Cylinder {
     /// that grazes along the axis must not come down on the tube before its end.
     #[inline]
     fn error(&self, position: Vec3, normal: Vec3) -> Vec3 {
-        let reach = (self.tube.length + self.tube.radius) as f32;
+        let reach = (self.length + self.radius) as f32;
         gamma(2) * position.abs() + gamma(6) * reach * normal.abs()
     }
 }
 
 impl ShapeModel for Cylinder {
     fn primitive(&self, _: usize) -> Primitive {
-        Primitive::Tube(self.tube)
+        Primitive::Curved(Curved::Cylinder(*self))
     }
 
     #[inline]
@@ -137,37 +143,80 @@ impl ShapeModel for Cylinder {
         self.point_near(ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t))
     }
 
+    fn partials(&self, _: usize, _: &Ray, _: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
+        let around = point.shading.tangent * (TAU as f32 * self.radius as f32);
+        (around, (self.axis * self.length).as_vec3())
+    }
+
     fn area(&self) -> f32 {
-        self.tube.area() as f32
+        (TAU * self.radius * self.length) as f32
     }
 
     fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
         let at = stream.square();
         let (sin, cos) = (TAU * f64::from(at.x)).sin_cos();
         let [x, y] = self.across;
-        self.point(f64::from(at.y) * self.tube.length, x * cos + y * sin)
+        self.point(f64::from(at.y) * self.length, x * cos + y * sin)
     }
 }
 
-impl Tube {
-    fn area(&self) -> f64 {
-        TAU * self.radius * self.length
-    }
-
-    /// f32 can hold it.
-    fn fits(&self) -> bool {
-        let (low, high) = self.bounds();
-        is_in_range(low)
-            && is_in_range(high)
-            && (self.radius as f32).is_normal()
-            && (self.area() as f32).is_normal()
-    }
-
-    /// Least and greatest corner of the box around it: that of the circles at its ends.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
-        let Self { base, axis, length, radius } = *self;
+impl CurvedModel for Cylinder {
+    /// That of the circles at its ends.
+    fn bounds(&self) -> (Vec3, Vec3) {
+        let Self { base, axis, length, radius, .. } = *self;
         let half = (DVec3::ONE - axis * axis).max(DVec3::ZERO).map(f64::sqrt) * radius;
         let end = base + axis * length;
         ((base.min(end) - half).as_vec3(), (base.max(end) + half).as_vec3())
     }
+
+    /// Of its corners, and the seams at its ends.
+    fn rounding(&self) -> Vec3 {
+        let (low, high) = self.bounds();
+        gamma(2) * low.abs().max(high.abs()) + SEAM * (self.length + self.radius) as f32
+    }
+
+    /// In f64, where the roots of the plain quadratic are good for every f32 ray; the nearer one between the ends.
+    fn closest(&self, ray: &Ray, t_max: f32) -> Option<[f32; 3]> {
+        let Self { base, axis, length, radius, .. } = *self;
+        let direction = ray.direction.as_dvec3();
+        let from = ray.origin.as_dvec3() - base;
+        let (z, slope) = (axis.dot(from), axis.dot(direction));
+        let roots = circle(from - axis * z, direction - axis * slope, radius)?;
+        roots.into_iter().find_map(|t| {
+            let height = z + slope * t;
+            let slack = f64::from(SEAM) * (length + radius + t);
+            let between = height >= -slack && height <= length + slack;
+            let t = t as f32;
+            (between && t > 0.0 && t < t_max).then_some([t, 0.0, 0.0])
+        })
+    }
+
+    #[cfg(test)]
+    fn distance(&self, p: DVec3) -> f64 {
+        let from = p - self.base;
+        ((from - self.axis * self.axis.dot(from)).length() - self.radius).abs()
+    }
+}
+
+/// Where from + t along, both in a plane through the origin, is at distance `radius`: smaller t first. The
+/// discriminant comes from the line's distance to the origin, and no root from a difference.
+fn circle(from: DVec3, along: DVec3, radius: f64) -> Option<[f64; 2]> {
+    let a = along.length_squared();
+    if a == 0.0 {
+        return None;
+    }
+    let b = -from.dot(along);
+    let across = from + along * (b / a);
+    let discriminant = (radius - across.length()) * (radius + across.length());
+    if discriminant < 0.0 {
+        return None;
+    }
+    let c = from.length_squared() - radius * radius;
+    let q = b + (a * discriminant).sqrt().copysign(b);
+    // b = 0 and a tangent: both roots are where the line is nearest.
+    if q == 0.0 {
+        return Some([0.0, 0.0]);
+    }
+    let (one, other) = (c / q, q / a);
+    Some([one.min(other), one.max(other)])
 }

@@ -1,14 +1,18 @@
 //! `disk`: the unit disk in the xy plane, facing +z; any affine transform makes it an ellipse.
 
 use super::{
-    Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    Curved, CurvedModel, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     parallelogram::flat_error,
     placement::{Placement, is_in_range},
 };
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::{DVec3, Frame, Vec3, vec2, warp},
+    math::{
+        DVec3, Frame, Vec2, Vec3,
+        offset::{SEAM, gamma},
+        vec2, warp,
+    },
     sampling::Stream,
 };
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -19,11 +23,15 @@ pub struct Disk {
     /// x = y = 0.
     pub center: Vec3,
     /// To x = 1.
-    pub edge_u: Vec3,
+    edge_u: Vec3,
     /// To y = 1.
-    pub edge_v: Vec3,
+    edge_v: Vec3,
     /// Unit normal, the very one that surface points report (see [`super::Flat::normal`]).
-    pub normal: Vec3,
+    normal: Vec3,
+    /// Reciprocal to the edges: x of a point relative to the centre, and y.
+    axes: [Vec3; 2],
+    /// Greatest length of the reciprocal axes [1/m].
+    reach: f32,
     area: f32,
 }
 
@@ -51,21 +59,17 @@ impl Disk {
         let cross = edge_u.as_dvec3().cross(edge_v.as_dvec3());
         let turn = if placement.is_mirrored() != placement.flip_normals { -1.0 } else { 1.0 };
         let normal = (cross.normalize() * turn).as_vec3();
-        Self { center, edge_u, edge_v, normal, area: PI * cross.length() as f32 }
+        let axes = [edge_v.as_dvec3().cross(cross), cross.cross(edge_u.as_dvec3())]
+            .map(|axis| axis / cross.length_squared());
+        let reach = axes[0].length().max(axes[1].length()) as f32;
+        let (axes, area) = (axes.map(|axis| axis.as_vec3()), PI * cross.length() as f32);
+        Self { center, edge_u, edge_v, normal, axes, reach, area }
     }
 
     /// f32 can hold it.
     fn fits(&self) -> bool {
         self.area.is_normal()
             && [self.center, self.edge_u, self.edge_v, self.normal].into_iter().all(is_in_range)
-    }
-
-    /// Least and greatest corner of the box around it.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
-        let reach = |u: f32, v: f32| u.hypot(v);
-        let (u, v) = (self.edge_u, self.edge_v);
-        let half = Vec3::new(reach(u.x, v.x), reach(u.y, v.y), reach(u.z, v.z));
-        (self.center - half, self.center + half)
     }
 
     /// The point (`x`, `y`) of the unit disk. Texture coordinates are polar: distance from the centre, and
@@ -85,14 +89,53 @@ impl Disk {
     }
 }
 
+impl CurvedModel for Disk {
+    fn bounds(&self) -> (Vec3, Vec3) {
+        let reach = |u: f32, v: f32| u.hypot(v);
+        let (u, v) = (self.edge_u, self.edge_v);
+        let half = Vec3::new(reach(u.x, v.x), reach(u.y, v.y), reach(u.z, v.z));
+        (self.center - half, self.center + half)
+    }
+
+    fn rounding(&self) -> Vec3 {
+        gamma(5) * (self.center.abs() + self.edge_u.abs() + self.edge_v.abs())
+    }
+
+    /// As for flat packs: plane first, then the position in it relative to the centre.
+    fn closest(&self, ray: &Ray, t_max: f32) -> Option<[f32; 3]> {
+        let from = ray.origin - self.center;
+        let t = -self.normal.dot(from) / self.normal.dot(ray.direction);
+        if !(t > 0.0 && t < t_max) {
+            return None;
+        }
+        let at = from + t * ray.direction;
+        let [u, v] = self.axes.map(|axis| axis.dot(at));
+        let limit = 1.0 + SEAM * (1.0 + self.reach * t);
+        (u * u + v * v <= limit * limit).then_some([t, u, v])
+    }
+
+    #[cfg(test)]
+    fn distance(&self, p: DVec3) -> f64 {
+        let normal = self.edge_u.as_dvec3().cross(self.edge_v.as_dvec3()).normalize();
+        (p - self.center.as_dvec3()).dot(normal).abs()
+    }
+}
+
 impl ShapeModel for Disk {
     fn primitive(&self, _: usize) -> Primitive {
-        Primitive::Disk(*self)
+        Primitive::Curved(Curved::Disk(*self))
     }
 
     #[inline]
     fn surface(&self, _: usize, _: &Ray, hit: &Hit) -> SurfacePoint {
         self.point(hit.u, hit.v)
+    }
+
+    /// u is the distance from the centre, v the angle in turns.
+    fn partials(&self, _: usize, _: &Ray, hit: &Hit, _: &SurfacePoint) -> (Vec3, Vec3) {
+        let Vec2 { x, y } = vec2(hit.u, hit.v);
+        let out = (self.edge_u * x + self.edge_v * y) / x.hypot(y).max(f32::MIN_POSITIVE);
+        (out, (self.edge_v * x - self.edge_u * y) * (2.0 * PI))
     }
 
     fn area(&self) -> f32 {

@@ -1,6 +1,7 @@
 //! Shapes: one file a model; this page is the contract and the registry.
 //!
-//! A shape is a list of primitives (parallelograms, triangles, spheres, disks, tubes). Positions are f32, relative to the
+//! A shape is a list of primitives (parallelograms, triangles, spheres, and curved ones, which are shapes themselves).
+//! Positions are f32, relative to the
 //! scene's recentring point; everything before that is f64. The f32 geometry is then exact by definition:
 //! error bounds speak of rounding after it.
 
@@ -20,13 +21,13 @@ mod sphere;
 mod spherical_rectangle;
 
 use crate::{
-    description::{Params, Registry},
+    description::{Params, Registry, models},
     error::Result,
-    math::{DVec3, Frame, Vec2, Vec3},
+    math::{DVec3, Frame, Vec2, Vec3, offset::gamma},
     sampling::Stream,
 };
 
-pub use cylinder::{Cylinder, Tube};
+pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use mesh::Mesh;
 pub use parallelogram::{Parallelogram, Parallelograms};
@@ -77,8 +78,16 @@ pub struct SurfacePoint {
     pub shape: u32,
 }
 
+impl SurfacePoint {
+    /// The normal of the side that emits: geometric, turned to the side that the shading normal names.
+    #[inline]
+    pub fn front(&self) -> Vec3 {
+        if self.normal.dot(self.shading.normal) < 0.0 { -self.normal } else { self.normal }
+    }
+}
+
 /// A primitive as the ray tracer needs it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Primitive {
     /// Part of a plane.
     Flat(Flat),
@@ -89,10 +98,8 @@ pub enum Primitive {
         /// Its radius [m].
         radius: f32,
     },
-    /// A whole ellipse in a plane.
-    Disk(Disk),
-    /// The side of a cylinder.
-    Tube(Tube),
+    /// One that is tested against rays by itself: too rare for lanes.
+    Curved(Curved),
 }
 
 /// The points corner + u `edge_u` + v `edge_v`: u, v in [0, 1], and u + v <= 1 for a triangle.
@@ -116,8 +123,7 @@ impl Primitive {
     pub fn bounds(&self) -> (Vec3, Vec3) {
         match self {
             Self::Ball { center, radius } => (center - radius, center + radius),
-            Self::Disk(disk) => disk.bounds(),
-            Self::Tube(tube) => tube.bounds(),
+            Self::Curved(curved) => curved.bounds(),
             Self::Flat(flat) => {
                 let Flat { corner, edge_u, edge_v, triangle, .. } = *flat;
                 let (u, v) = (corner + edge_u, corner + edge_v);
@@ -126,6 +132,47 @@ impl Primitive {
             }
         }
     }
+
+    /// The same around all hits, which rounding can take beyond that.
+    pub fn hit_bounds(&self) -> (Vec3, Vec3) {
+        let error = match self {
+            Self::Ball { center, radius } => {
+                let reach = *radius + gamma(2) * (center.abs() + *radius);
+                return (center - reach, center + reach);
+            }
+            Self::Curved(curved) => curved.rounding(),
+            Self::Flat(Flat { corner, edge_u, edge_v, .. }) => {
+                gamma(3) * (corner.abs() + edge_u.abs() + edge_v.abs())
+            }
+        };
+        let (low, high) = self.bounds();
+        (low - error, high + error)
+    }
+}
+
+/// What every curved primitive can do.
+pub trait CurvedModel {
+    /// Least and greatest corner of the box around it.
+    fn bounds(&self) -> (Vec3, Vec3);
+
+    /// How far rounding can take a hit beyond that, per axis.
+    fn rounding(&self) -> Vec3;
+
+    /// The nearest hit with t in (0, `t_max`): t, u and v of [`Hit`].
+    fn closest(&self, ray: &Ray, t_max: f32) -> Option<[f32; 3]>;
+
+    /// Distance of `p` from the surface that it is a part of [m].
+    #[cfg(test)]
+    fn distance(&self, p: DVec3) -> f64;
+}
+
+models! {
+    /// Any curved primitive.
+    Curved: CurvedModel [Disk Cylinder]
+    fn bounds() -> (Vec3, Vec3);
+    fn rounding() -> Vec3;
+    #[inline] fn closest(ray: &Ray, t_max: f32) -> Option<[f32; 3]>;
+    #[cfg(test)] fn distance(p: DVec3) -> f64;
 }
 
 /// What every kind of shape can do.
@@ -141,6 +188,22 @@ pub trait ShapeModel {
     /// The surface where `ray` met primitive `index`. For flat primitives `hit.u` and `hit.v` are those of [`Flat`], for
     /// disks those of the unit disk; spheres and cylinders use `hit.t`.
     fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint;
+
+    /// How position changes with the texture coordinates u and v [m] at `point`, where `ray` met primitive `index`.
+    fn partials(&self, index: usize, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
+        let Frame { tangent, bitangent, .. } = point.shading;
+        let Primitive::Flat(flat) = self.primitive(index) else { return (tangent, bitangent) };
+        // Positions and texture coordinates both are linear in those of the primitive.
+        let uv = |u: f32, v: f32| self.surface(index, ray, &Hit { u, v, ..*hit }).uv;
+        let (along_u, along_v) = (uv(1.0, 0.0) - uv(0.0, 0.0), uv(0.0, 1.0) - uv(0.0, 0.0));
+        let area = along_u.perp_dot(along_v);
+        if area == 0.0 {
+            return (tangent, bitangent);
+        }
+        let du = (flat.edge_u * along_v.y - flat.edge_v * along_u.y) / area;
+        let dv = (flat.edge_v * along_u.x - flat.edge_u * along_v.x) / area;
+        (du, dv)
+    }
 
     /// Area [m^2].
     fn area(&self) -> f32;
@@ -167,44 +230,23 @@ pub type BuildShape = fn(&Params<'_>, DVec3) -> Result<Shape>;
 /// that builds it.
 macro_rules! shapes {
     ($($model:ident: $($name:literal => $file:ident),+;)*) => {
-        /// Any shape.
-        #[derive(Clone, Debug)]
-        #[expect(missing_docs, reason = "each variant is the kind of its name, documented there")]
-        pub enum Shape {
-            $($model($model),)*
+        models! {
+            /// Any shape.
+            Shape: ShapeModel [$($model)*]
+            #[inline] fn primitive_count() -> usize;
+            #[inline] fn primitive(index: usize) -> Primitive;
+            #[inline] fn surface(index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint;
+            fn partials(index: usize, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3);
+            fn area() -> f32;
+            fn sample_area(stream: &mut Stream) -> SurfacePoint;
+            fn sample_toward(reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32);
+            fn pdf_area_toward(reference: Vec3, point: &SurfacePoint) -> f32;
         }
 
         /// All shapes.
         pub const ROWS: Registry<BuildShape> = Registry::new("a shape", &[
             $($(($name, |params, recentre| $file::build(params, recentre).map(Shape::$model)),)+)*
         ]);
-
-        impl ShapeModel for Shape {
-            #[inline]
-            fn primitive_count(&self) -> usize {
-                match self { $(Self::$model(model) => model.primitive_count(),)* }
-            }
-            #[inline]
-            fn primitive(&self, index: usize) -> Primitive {
-                match self { $(Self::$model(model) => model.primitive(index),)* }
-            }
-            #[inline]
-            fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
-                match self { $(Self::$model(model) => model.surface(index, ray, hit),)* }
-            }
-            fn area(&self) -> f32 {
-                match self { $(Self::$model(model) => model.area(),)* }
-            }
-            fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
-                match self { $(Self::$model(model) => model.sample_area(stream),)* }
-            }
-            fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
-                match self { $(Self::$model(model) => model.sample_toward(reference, stream),)* }
-            }
-            fn pdf_area_toward(&self, reference: Vec3, point: &SurfacePoint) -> f32 {
-                match self { $(Self::$model(model) => model.pdf_area_toward(reference, point),)* }
-            }
-        }
     };
 }
 

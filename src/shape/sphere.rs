@@ -131,6 +131,15 @@ impl ShapeModel for Sphere {
         self.point_near(ray.origin + ray.direction * hit.t)
     }
 
+    /// u runs along the parallels, v from pole to pole.
+    fn partials(&self, _: usize, _: &Ray, _: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
+        let out = (point.position - self.center) / self.radius;
+        let du = point.shading.tangent * (2.0 * PI * self.radius * (PI * point.uv.y).sin());
+        let along = out.cross(point.shading.tangent) * (PI * self.radius);
+        let further = self.point_near(point.position + along * 1e-3).uv.y > point.uv.y;
+        (du, if further { along } else { -along })
+    }
+
     fn area(&self) -> f32 {
         4.0 * PI * self.radius * self.radius
     }

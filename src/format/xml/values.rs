@@ -6,48 +6,37 @@ use super::{
     files::Folders,
 };
 use crate::{
-    description::Value,
+    description::{Registry, Value},
     error::{Error, Result},
 };
 
-/// How a tag is read.
-pub(super) struct Row {
-    tag: &'static str,
-    attributes: &'static [&'static str],
-    read: fn(&Element, &Folders) -> Result<Value>,
-}
+/// The attributes that a tag may have, and how it is read.
+pub(super) struct Row(&'static [&'static str], fn(&Element, &Folders) -> Result<Value>);
 
 const VALUE: &[&str] = &["name", "value"];
 const POINT: &[&str] = &["name", "value", "x", "y", "z"];
 
 /// All tags of values.
-const ROWS: [Row; 8] = [
-    Row { tag: "float", attributes: VALUE, read: |e, _| parse(e, text::float).map(Value::Float) },
-    Row { tag: "integer", attributes: VALUE, read: |e, _| parse(e, text::integer).map(Value::Integer) },
-    Row { tag: "boolean", attributes: VALUE, read: |e, _| parse(e, text::boolean).map(Value::Boolean) },
-    Row { tag: "string", attributes: VALUE, read: |e, _| parse(e, |t| Ok(Value::String(t.to_owned()))) },
-    Row { tag: "rgb", attributes: VALUE, read: |e, _| parse(e, text::rgb).map(Value::Rgb) },
-    Row { tag: "spectrum", attributes: &["name", "value", "filename"], read: spectrum },
-    Row { tag: "point", attributes: POINT, read: |e, _| vector(e) },
-    Row { tag: "vector", attributes: POINT, read: |e, _| vector(e) },
-];
-
-/// The tags, for error messages.
-pub(super) fn tags() -> [&'static str; 8] {
-    ROWS.map(|row| row.tag)
-}
-
-/// How `tag` is read.
-pub(super) fn find(tag: &str) -> Option<&'static Row> {
-    const { &ROWS }.iter().find(|row| row.tag == tag)
-}
+pub(super) const ROWS: Registry<Row> = Registry::new(
+    "a value",
+    &[
+        ("float", Row(VALUE, |e, _| parse(e, text::float).map(Value::Float))),
+        ("integer", Row(VALUE, |e, _| parse(e, text::integer).map(Value::Integer))),
+        ("boolean", Row(VALUE, |e, _| parse(e, text::boolean).map(Value::Boolean))),
+        ("string", Row(VALUE, |e, _| parse(e, |t| Ok(Value::String(t.to_owned()))))),
+        ("rgb", Row(VALUE, |e, _| parse(e, text::rgb).map(Value::Rgb))),
+        ("spectrum", Row(&["name", "value", "filename"], spectrum)),
+        ("point", Row(POINT, |e, _| vector(e))),
+        ("vector", Row(POINT, |e, _| vector(e))),
+    ],
+);
 
 /// The value of `element`, which `row` describes.
-pub(super) fn read(row: &Row, element: &Element, folders: &Folders) -> Result<Value> {
-    element.allow(row.attributes)?;
+pub(super) fn read(Row(attributes, read): &Row, element: &Element, folders: &Folders) -> Result<Value> {
+    element.allow(attributes)?;
     element.require("name")?.nonempty()?;
     element.childless()?;
-    (row.read)(element, folders)
+    read(element, folders)
 }
 
 fn parse<T>(element: &Element, read: impl FnOnce(&str) -> Parsed<T>) -> Result<T> {

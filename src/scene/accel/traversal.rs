@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     math::offset::{BOX_WIDENING, LEAST_COMPONENT},
-    shape::{Hit, Ray},
+    shape::{CurvedModel, Hit, Ray},
 };
 use glam::Vec4;
 
@@ -121,8 +121,8 @@ impl Tree {
     fn closest_of_mixed_list(&self, ray: &Ray) -> Option<Hit> {
         let mut best = Best::new(ray);
         best.offer(self.closest_of_list(ray));
-        for curved in &self.curved {
-            best.offer(curved.closest(ray, best.t_max));
+        for index in 0..self.curved.len() {
+            best.offer(self.closest_of_curved(index, ray, best.t_max));
         }
         best.hit
     }
@@ -136,14 +136,19 @@ impl Tree {
 
     fn occluded_by_mixed_list(&self, ray: &Ray) -> bool {
         self.occluded_by_list(ray)
-            || self.curved.iter().any(|curved| curved.closest(ray, ray.t_max).is_some())
+            || self.curved.iter().any(|(curved, _)| curved.closest(ray, ray.t_max).is_some())
+    }
+
+    fn closest_of_curved(&self, index: usize, ray: &Ray, t_max: f32) -> Option<Hit> {
+        let (curved, primitive) = &self.curved[index];
+        curved.closest(ray, t_max).map(|[t, u, v]| Hit { t, primitive: *primitive, u, v })
     }
 
     /// What `index` of a reference to a [`ROUND`] refers to, in a tree with `CURVED` primitives or without.
     #[inline(always)]
     fn closest_of_round<const CURVED: bool>(&self, index: usize, ray: &Ray, t_max: f32) -> Option<Hit> {
         if CURVED && index & BEYOND as usize != 0 {
-            return self.curved[index & !(BEYOND as usize)].closest(ray, t_max);
+            return self.closest_of_curved(index & !(BEYOND as usize), ray, t_max);
         }
         self.balls[index].closest(ray, t_max)
     }

@@ -1,18 +1,12 @@
 //! The hierarchy: obvhs builds it (PLOC and reinsertion), here it becomes four wide, because four boxes and
 //! four flat primitives are tested in the time of one.
 
-use super::{
-    curved::Curved,
-    pack::{Ball, FlatPack},
-};
+use super::pack::{Ball, FlatPack};
 use crate::{
-    math::{
-        Vec3,
-        offset::{SEAM, gamma},
-    },
-    shape::{Disk, Flat, Primitive, Tube},
+    math::Vec3,
+    shape::{Curved, Flat, Primitive},
 };
-use glam::{Vec3A, Vec4};
+use glam::Vec4;
 use obvhs::{
     BvhBuildParams,
     aabb::Aabb,
@@ -55,7 +49,8 @@ pub struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) packs: Vec<FlatPack>,
     pub(super) balls: Vec<Ball>,
-    pub(super) curved: Vec<Curved>,
+    /// With their numbers.
+    pub(super) curved: Vec<(Curved, u32)>,
     /// Inner nodes on the longest way down, 0 for a list; and [`RARE`].
     pub(super) depth: usize,
     bounds: Aabb,
@@ -105,21 +100,27 @@ impl Tree {
     fn fill_list(&mut self, primitives: &[Primitive]) {
         let mut flats = Vec::new();
         for (number, primitive) in (0..).zip(primitives) {
-            match *primitive {
-                Primitive::Flat(flat) => flats.push((number, flat)),
-                Primitive::Ball { center, radius } => {
-                    self.balls.push(Ball { center, radius, primitive: number });
-                }
-                Primitive::Disk(disk) => self.curved.push(Curved::disk(number, &disk)),
-                Primitive::Tube(tube) => self.curved.push(Curved::tube(number, tube)),
-            }
+            self.add(number, primitive, &mut flats);
         }
         self.packs = flats.chunks(4).map(FlatPack::new).collect();
     }
 
-    fn push_curved(&mut self, curved: Curved) -> u32 {
-        self.curved.push(curved);
-        ROUND | BEYOND | (self.curved.len() - 1) as u32
+    /// Takes in a primitive; the reference to it, unless it is flat: these go to `flats`, to be packed.
+    fn add(&mut self, number: u32, primitive: &Primitive, flats: &mut Vec<(u32, Flat)>) -> Option<u32> {
+        match primitive {
+            Primitive::Flat(flat) => {
+                flats.push((number, *flat));
+                None
+            }
+            Primitive::Ball { center, radius } => {
+                self.balls.push(Ball { center: *center, radius: *radius, primitive: number });
+                Some(ROUND | (self.balls.len() - 1) as u32)
+            }
+            Primitive::Curved(curved) => {
+                self.curved.push((curved.clone(), number));
+                Some(ROUND | BEYOND | (self.curved.len() - 1) as u32)
+            }
+        }
     }
 
     fn fill_nodes(&mut self, primitives: &[Primitive], boxes: &[Aabb]) {
@@ -130,38 +131,10 @@ impl Tree {
     }
 }
 
+/// Around all hits.
 pub(super) fn bound(primitive: &Primitive) -> Aabb {
-    match *primitive {
-        Primitive::Flat(flat) => bound_flat(&flat),
-        Primitive::Ball { center, radius } => {
-            let reach = Vec3A::splat(radius) + gamma(2) * (Vec3A::from(center).abs() + radius);
-            Aabb::new(Vec3A::from(center) - reach, Vec3A::from(center) + reach)
-        }
-        Primitive::Disk(disk) => bound_disk(&disk),
-        Primitive::Tube(tube) => bound_tube(&tube),
-    }
-}
-
-fn bound_disk(disk: &Disk) -> Aabb {
-    let (low, high) = disk.bounds();
-    let error = gamma(5) * (disk.center.abs() + disk.edge_u.abs() + disk.edge_v.abs());
-    Aabb::new((low - error).into(), (high + error).into())
-}
-
-/// With the rounding of its corners, and the seams at its ends.
-fn bound_tube(tube: &Tube) -> Aabb {
-    let (low, high) = tube.bounds();
-    let error = gamma(2) * low.abs().max(high.abs()) + SEAM * (tube.length + tube.radius) as f32;
-    Aabb::new((low - error).into(), (high + error).into())
-}
-
-/// Around all corners, widened by what their sums may be rounded by.
-fn bound_flat(flat: &Flat) -> Aabb {
-    let [corner, u, v] = [flat.corner, flat.edge_u, flat.edge_v].map(Vec3A::from);
-    let last = if flat.triangle { corner } else { corner + u + v };
-    let around = Aabb::from_points(&[corner, corner + u, corner + v, last]);
-    let error = gamma(3) * (corner.abs() + u.abs() + v.abs());
-    Aabb::new(around.min - error, around.max + error)
+    let (low, high) = primitive.hit_bounds();
+    Aabb::new(low.into(), high.into())
 }
 
 /// For each node of the binary tree: how many primitives are below it if these are all flat.
@@ -255,14 +228,8 @@ impl Widening<'_> {
         let mut flats = Vec::new();
         // A leaf that is not a pack holds one primitive.
         for number in numbers {
-            match self.primitives[number as usize] {
-                Primitive::Flat(flat) => flats.push((number, flat)),
-                Primitive::Ball { center, radius } => {
-                    tree.balls.push(Ball { center, radius, primitive: number });
-                    return ROUND | (tree.balls.len() - 1) as u32;
-                }
-                Primitive::Disk(disk) => return tree.push_curved(Curved::disk(number, &disk)),
-                Primitive::Tube(tube) => return tree.push_curved(Curved::tube(number, tube)),
+            if let Some(reference) = tree.add(number, &self.primitives[number as usize], &mut flats) {
+                return reference;
             }
         }
         tree.packs.push(FlatPack::new(&flats));

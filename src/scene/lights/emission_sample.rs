@@ -1,8 +1,11 @@
 //! Where light subpaths start.
 
-use super::{EmitterPoint, Geometry, Lights, front};
+use super::{EmitterPoint, Geometry, Lights};
 use crate::{
-    emitter::{Area, DirectionalArea, Kind, PointKind, VolumeEmitter},
+    emitter::{
+        InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceEmission, SurfaceEmitter,
+        SurfaceModel, VolumeEmitter,
+    },
     math::{Frame, Spectrum, Vec3, offset, warp},
     sampling::Stream,
     shape::{Ray, SurfacePoint},
@@ -55,45 +58,18 @@ impl Lights {
         let (index, chosen) = self.starts.sample_precisely(stream.uniform_precisely());
         let chosen = chosen as f32;
         let start = match &self.all[index].emitter.kind {
-            Kind::Area(area) => self.start_on_area(index, area, chosen, geometry, stream)?,
-            Kind::DirectionalArea(area) => self.start_along_normal(index, area, chosen, geometry, stream)?,
+            Kind::Surface(surface) => self.start_on_shape(index, surface, chosen, geometry, stream)?,
             Kind::Point(point) => self.start_at_point(index, point, chosen, stream),
-            Kind::Directional(sun) => {
-                self.start_at_infinity(index, -sun.direction, chosen, sun.irradiance, stream)
-            }
-            Kind::Environment(sky) => {
-                let towards = sky.sample(stream);
-                let pdf = chosen * sky.pdf_sr(towards);
-                self.start_at_infinity(index, towards, pdf, sky.radiance(towards), stream)
-            }
+            Kind::Infinite(sky) => self.start_at_infinity(index, sky, chosen, stream),
             Kind::Medium(volume) => self.start_within(index, volume, chosen, stream),
         };
         (start.throughput.is_finite() && start.throughput.max_element() > 0.0).then_some(start)
     }
 
-    fn start_on_area(
+    fn start_on_shape(
         &self,
         index: usize,
-        area: &Area,
-        chosen: f32,
-        geometry: &Geometry,
-        stream: &mut Stream,
-    ) -> Option<EmissionSample> {
-        let shape = self.all[index].shape?;
-        let point = geometry.sample_area(shape, stream);
-        let front = front(&point);
-        let direction = Frame::around(front).to_world(area.sample(stream)).normalize();
-        let cosine = front.dot(direction);
-        let (pdf, pdf_direction) = (chosen / geometry.area(shape), area.pdf_sr(cosine));
-        let throughput = area.radiance(point.uv, cosine) * (cosine / (pdf * pdf_direction));
-        let (point, ray) = (EmitterPoint::Surface(point), leaving(&point, direction));
-        Some(EmissionSample { light: index as u32, point, ray, cosine, pdf, pdf_direction, throughput })
-    }
-
-    fn start_along_normal(
-        &self,
-        index: usize,
-        area: &DirectionalArea,
+        surface: &SurfaceEmitter,
         chosen: f32,
         geometry: &Geometry,
         stream: &mut Stream,
@@ -101,16 +77,15 @@ impl Lights {
         let shape = self.all[index].shape?;
         let point = geometry.sample_area(shape, stream);
         let pdf = chosen / geometry.area(shape);
-        let throughput = area.exitance_at(point.uv) / pdf;
-        let (point, ray) = (EmitterPoint::Surface(point), leaving(&point, point.shading.normal));
-        let (light, cosine, pdf_direction) = (index as u32, 1.0, 1.0);
-        Some(EmissionSample { light, point, ray, cosine, pdf, pdf_direction, throughput })
+        let SurfaceEmission { direction, cosine, pdf_sr, throughput } = surface.sample(&point, pdf, stream);
+        let (light, point, ray) = (index as u32, EmitterPoint::Surface(point), leaving(&point, direction));
+        Some(EmissionSample { light, point, ray, cosine, pdf, pdf_direction: pdf_sr, throughput })
     }
 
     fn start_at_point(
         &self,
         index: usize,
-        point: &PointKind,
+        point: &PointEmitter,
         pdf: f32,
         stream: &mut Stream,
     ) -> EmissionSample {
@@ -125,11 +100,12 @@ impl Lights {
     fn start_at_infinity(
         &self,
         index: usize,
-        towards: Vec3,
-        pdf: f32,
-        radiance: Spectrum,
+        sky: &InfiniteEmitter,
+        chosen: f32,
         stream: &mut Stream,
     ) -> EmissionSample {
+        let towards = sky.sample(stream);
+        let (pdf, radiance) = (chosen * sky.pdf_sr(towards), sky.radiance(towards));
         let disk = warp::to_disk(stream.square()) * self.radius;
         let origin = self.centre + Frame::around(towards).to_world(disk.extend(self.radius));
         let pdf_direction = self.disk_pdf_area();
@@ -155,16 +131,17 @@ impl Lights {
         EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
     }
 
-    /// What the emitter point of a light subpath sends towards unit `towards`; none where it does not emit
-    /// that way or cannot be hit.
+    /// What the emitter point of a light subpath sends towards unit `towards`, if camera subpaths can hit it; none where
+    /// it does not emit that way.
     pub fn emission(&self, start: &EmissionSample, towards: Vec3) -> Option<Emitted> {
         match (&self.all[start.light as usize].emitter.kind, &start.point) {
-            (Kind::Area(area), EmitterPoint::Surface(point)) => {
-                let cosine = front(point).dot(towards);
-                let (value, pdf_direction) = (area.radiance(point.uv, cosine) * cosine, area.pdf_sr(cosine));
+            (Kind::Surface(surface), EmitterPoint::Surface(point)) => {
+                let cosine = point.front().dot(towards);
+                let value = surface.radiance(point.uv, cosine) * cosine;
+                let pdf_direction = surface.pdf_sr(cosine);
                 (value.max_element() > 0.0).then_some(Emitted { value, pdf_direction, cosine })
             }
-            (Kind::Environment(sky), EmitterPoint::Direction(direction)) => {
+            (Kind::Infinite(sky), EmitterPoint::Direction(direction)) => {
                 let value = sky.radiance(*direction) * self.from_infinity;
                 Some(Emitted { value, pdf_direction: self.disk_pdf_area(), cosine: 1.0 })
             }

@@ -1,8 +1,8 @@
 //! Emitter points as seen from a reference: sampled by next-event estimation or hit by a camera subpath.
 
-use super::{EmitterPoint, Geometry, Lights, front};
+use super::{EmitterPoint, Geometry, Lights};
 use crate::{
-    emitter::{Kind, PointKind, VolumeEmitter},
+    emitter::{InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceModel, VolumeEmitter},
     math::{Spectrum, Vec3, measure},
     sampling::Stream,
     shape::SurfacePoint,
@@ -55,20 +55,12 @@ impl Lights {
     ) -> Option<EmitterSample> {
         let light = &self.all[index];
         match &light.emitter.kind {
-            Kind::Area(_) => {
+            Kind::Surface(_) => {
                 let (point, pdf) = geometry.sample_toward(light.shape?, reference, stream)?;
                 self.surface_sample(geometry, index, point, chosen * pdf, reference)
             }
-            Kind::DirectionalArea(_) => None,
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
-            Kind::Directional(sun) => {
-                Some(self.direction_sample(index, -sun.direction, chosen, sun.irradiance))
-            }
-            Kind::Environment(sky) => {
-                let towards = sky.sample(stream);
-                let pdf = chosen * sky.pdf_sr(towards);
-                (pdf > 0.0).then(|| self.direction_sample(index, towards, pdf, sky.radiance(towards)))
-            }
+            Kind::Infinite(sky) => self.infinite_sample(index, sky, sky.sample(stream), chosen),
             Kind::Medium(volume) => {
                 let sample = self.volume_sample(index as u32, volume.emission.sample(stream))?;
                 let by_chance = self.connections.probability(index);
@@ -85,10 +77,10 @@ impl Lights {
         pdf: f32,
         reference: Vec3,
     ) -> Option<EmitterSample> {
-        let Kind::Area(area) = &self.all[index].emitter.kind else { return None };
+        let Kind::Surface(surface) = &self.all[index].emitter.kind else { return None };
         let (direction, _, _) = measure::between(point.position, reference)?;
-        let cosine = front(&point).dot(direction);
-        let value = area.radiance(point.uv, cosine) * cosine;
+        let cosine = point.front().dot(direction);
+        let value = surface.radiance(point.uv, cosine) * cosine;
         (value.max_element() > 0.0 && pdf > 0.0).then(|| EmitterSample {
             light: index as u32,
             point: EmitterPoint::Surface(point),
@@ -96,14 +88,14 @@ impl Lights {
             cosine,
             pdf,
             pdf_start: self.starts.probability(index) / geometry.area(point.shape),
-            pdf_direction: area.pdf_sr(cosine),
+            pdf_direction: surface.pdf_sr(cosine),
         })
     }
 
     fn point_sample(
         &self,
         index: usize,
-        point: &PointKind,
+        point: &PointEmitter,
         chosen: f32,
         reference: Vec3,
     ) -> Option<EmitterSample> {
@@ -121,16 +113,23 @@ impl Lights {
         })
     }
 
-    fn direction_sample(&self, index: usize, towards: Vec3, pdf: f32, value: Spectrum) -> EmitterSample {
-        EmitterSample {
+    fn infinite_sample(
+        &self,
+        index: usize,
+        sky: &InfiniteEmitter,
+        towards: Vec3,
+        chosen: f32,
+    ) -> Option<EmitterSample> {
+        let pdf = chosen * sky.pdf_sr(towards);
+        (pdf > 0.0).then(|| EmitterSample {
             light: index as u32,
             point: EmitterPoint::Direction(towards),
-            value,
+            value: sky.radiance(towards),
             cosine: 1.0,
             pdf,
             pdf_start: pdf * self.starts.probability(index) / self.connections.probability(index),
             pdf_direction: self.disk_pdf_area(),
-        }
+        })
     }
 
     /// A point of an emissive medium, however it was found; none where nothing is emitted there.
@@ -171,8 +170,7 @@ impl Lights {
     /// What a camera subpath found by leaving the scene in unit `direction`; none where nothing is there.
     pub fn infinity_hit(&self, direction: Vec3) -> Option<EmitterSample> {
         let index = self.environment? as usize;
-        let Kind::Environment(sky) = &self.all[index].emitter.kind else { return None };
-        let pdf = self.connections.probability(index) * sky.pdf_sr(direction);
-        (pdf > 0.0).then(|| self.direction_sample(index, direction, pdf, sky.radiance(direction)))
+        let sky = self.all[index].emitter.environment()?;
+        self.infinite_sample(index, sky, direction, self.connections.probability(index))
     }
 }

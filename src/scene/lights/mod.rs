@@ -22,7 +22,6 @@ use crate::{
     math::{Spectrum, Vec3},
     medium::{Emission, Medium, MediumIndex},
     sampling::Discrete,
-    shape::SurfacePoint,
 };
 use std::f32::consts::PI;
 
@@ -63,12 +62,6 @@ pub struct Lights {
     from_infinity: Spectrum,
 }
 
-/// The normal of the side that emits: geometric, turned to the side that the shading normal names.
-#[inline]
-fn front(point: &SurfacePoint) -> Vec3 {
-    if point.normal.dot(point.shading.normal) < 0.0 { -point.normal } else { point.normal }
-}
-
 impl Lights {
     /// Arranges `all` emitters of a scene within a sphere around `geometry` and what varies of the medium `outside`.
     pub fn new(all: Vec<Light>, geometry: &Geometry, outside: &Medium) -> Self {
@@ -87,7 +80,7 @@ impl Lights {
         let total: f64 = connectible.iter().sum();
         let count = connectible.iter().filter(|p| **p > 0.0).count() as f64;
         let mixed = |p: &f64| if *p > 0.0 { p / total + 1.0 / count } else { 0.0 };
-        let environment = all.iter().position(|light| light.emitter.is_environment());
+        let environment = all.iter().position(|light| light.emitter.environment().is_some());
         Self {
             starts: Discrete::new(powers.iter().copied()),
             connections: Discrete::new(connectible.iter().map(mixed)),

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     bsdf::{BsdfModel, Transport},
-    emitter::{Emitter, Kind},
+    emitter::{Emitter, Kind, PointModel, SurfaceModel},
     math::{Channels, DVec3},
     phase::{Deflection, PhaseModel},
     sampling::{Stream, stream::Purpose},
@@ -115,8 +115,7 @@ impl<'a> Reference<'a> {
 
     /// Density of the emitter's vertex as the start of a light subpath.
     pub fn start(&self, path: &Path) -> f64 {
-        if let (Kind::Environment(_), Place::Sky(direction)) = (&self.emitter(path).kind, path.nodes[0].place)
-        {
+        if let (Some(_), Place::Sky(direction)) = (self.emitter(path).environment(), path.nodes[0].place) {
             return self
                 .scene
                 .lights
@@ -179,11 +178,11 @@ impl<'a> Reference<'a> {
     /// Density of directions that leave an emitter [1/sr]; for one at infinity, of starts on its disk [1/m^2].
     pub fn emission(&self, light: u32, node: &Node, direction: DVec3) -> f64 {
         match &self.scene.lights.all[light as usize].emitter.kind {
-            Kind::Area(area) => f64::from(area.pdf_sr(node.cosine(direction) as f32)),
-            Kind::DirectionalArea(_) => 1.0,
+            Kind::Surface(surface) if surface.is_dirac() => 1.0,
+            Kind::Surface(surface) => f64::from(surface.pdf_sr(node.cosine(direction) as f32)),
             Kind::Point(point) => f64::from(point.pdf_sr(direction.as_vec3())),
             Kind::Medium(_) => 0.25 / std::f64::consts::PI,
-            Kind::Directional(_) | Kind::Environment(_) => {
+            Kind::Infinite(_) => {
                 self.starts[light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf_direction))
             }
         }
@@ -209,10 +208,12 @@ impl<'a> Reference<'a> {
         let (lights, geometry) = (&self.scene.lights, &self.scene.geometry);
         let reference = path.nodes[1].position();
         match (&self.emitter(path).kind, path.nodes[0].place) {
-            (Kind::Area(_), Place::Surface(point)) => {
+            (Kind::Surface(_), Place::Surface(point)) => {
                 lights.surface_hit(geometry, path.light, &point, reference)
             }
-            (Kind::Environment(_), Place::Sky(direction)) => lights.infinity_hit(direction),
+            (Kind::Infinite(_), Place::Sky(direction)) if self.emitter(path).environment().is_some() => {
+                lights.infinity_hit(direction)
+            }
             (Kind::Medium(_), Place::VolumeEmitter(position, light)) => lights.volume_sample(light, position),
             (_, place) => {
                 // Single points and directions come up as often as their emitter is chosen.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::shape::CurvedModel;
 
 /// Statistics of rays that leave surface points to both sides.
 #[derive(Default, Debug)]
@@ -165,13 +166,6 @@ fn distance_from_primitive(geometry: &Geometry, hit: &Hit, p: DVec3) -> f64 {
             (p - flat.corner.as_dvec3()).dot(normal).abs()
         }
         Primitive::Ball { center, radius } => (p.distance(center.as_dvec3()) - f64::from(radius)).abs(),
-        Primitive::Disk(disk) => {
-            let normal = disk.edge_u.as_dvec3().cross(disk.edge_v.as_dvec3()).normalize();
-            (p - disk.center.as_dvec3()).dot(normal).abs()
-        }
-        Primitive::Tube(tube) => {
-            let from = p - tube.base;
-            ((from - tube.axis * tube.axis.dot(from)).length() - tube.radius).abs()
-        }
+        Primitive::Curved(curved) => curved.distance(p),
     }
 }
