@@ -56,7 +56,7 @@ fn stopping_makes_no_bias() {
 fn covered(images: &[Image], truth: &[Spectrum], error: f32) -> f64 {
     let floor = 0.01 * truth.iter().map(|t| t.element_sum() / 3.0).sum::<f32>() / truth.len() as f32;
     let within = |value: &Spectrum, truth: &Spectrum| {
-        let allowed = truth.abs().max(Spectrum::splat(floor)) * error;
+        let allowed = (truth.abs() + floor) * error;
         (*value - *truth).abs().cmple(allowed).all()
     };
     let pairs = images.iter().flat_map(|image| image.pixels.iter().zip(truth));
