@@ -288,13 +288,8 @@ fn report(setup: &Setup, options: &Options, parts: &StrategyImages, times: &Time
         energy: share(parts.luminance_of(length), whole.luminance).unwrap_or(0.0),
     });
     let cells = parts.table.all().zip(&parts.images).enumerate().filter_map(|(index, (cell, images))| {
-        let (time, tries) =
-            (times.connections[index] / whole.seconds, times.tries[index] as f64 / whole.samples);
-        Some(CellReport {
-            time,
-            tries,
-            ..whole.cell(cell, images.as_ref()?, parts.luminance_of(cell.length()))
-        })
+        let spent = (times.connections[index], times.tries[index]);
+        Some(whole.cell(cell, images.as_ref()?, parts.luminance_of(cell.length()), spent))
     });
     let cells: Vec<CellReport> = cells.collect();
     let own: Option<f64> = cells.iter().map(|cell| cell.variance).sum();
@@ -325,8 +320,14 @@ struct Whole {
 }
 
 impl Whole {
-    /// A strategy, its time left out; of all paths of its length, `luminance`.
-    fn cell(&self, cell: StrategyCell, images: &CellImages, luminance: f64) -> CellReport {
+    /// A strategy, which took `seconds` for `tries`; `luminance` is that of all paths of its length.
+    fn cell(
+        &self,
+        cell: StrategyCell,
+        images: &CellImages,
+        luminance: f64,
+        (seconds, tries): (f64, u64),
+    ) -> CellReport {
         let relative = |image: &Accumulator| share(image.luminance_variance()?, self.variance?);
         let (s, t) = match cell {
             StrategyCell::Strategy { s, t } => (Some(s), Some(t)),
@@ -342,8 +343,8 @@ impl Whole {
             alone: cell.length().and_then(|_| share(mean_luminance(&images.alone), luminance)),
             variance: relative(&images.weighted),
             variance_alone: relative(&images.alone),
-            time: 0.0,
-            tries: 0.0,
+            time: seconds / self.seconds,
+            tries: tries as f64 / self.samples,
         }
     }
 }

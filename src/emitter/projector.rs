@@ -103,7 +103,7 @@ impl PointModel for Projector {
         self.cells.pdf(uv) / (area * cosine.powi(3))
     }
 
-    /// the mean of the texture counts. At distance 1 it falls on an area of `area`.
+    /// Of the texture the mean counts. At distance 1 it falls on an area of `area`.
     fn power(&self) -> DVec3 {
         let area = 4.0 * self.half.x * self.half.y;
         self.irradiance.mean().as_dvec3() * f64::from(PI * area) * f64::from(self.scale)

@@ -173,6 +173,32 @@ fn the_program_tells_what_a_render_holds() {
     }
 }
 
+/// A vertex nearer to a lamp than rays stay clear of it: with a length below nothing, the connection was amplified by
+/// the medium, infinitely in this one's red.
+#[test]
+fn no_connection_is_shorter_than_nothing() {
+    let view = json!([{"type": "lookat", "origin": [0.1, 0.2, 0.9], "target": [0, 0, -1], "up": [0, 1, 0]}]);
+    let film = json!({"type": "hdrfilm", "width": 12, "height": 12, "rfilter": {"type": "box"}});
+    let lamp = json!([
+        {"type": "scale", "value": 0.3},
+        {"type": "lookat", "origin": [0, 0.9, 0], "target": [0, 0, 0.1], "up": [0, 0, 1]},
+    ]);
+    let walls = json!({"type": "twosided", "side": diffuse(0.5)});
+    let scene = scene(&[
+        ("integrator", depth(64)),
+        ("fog", medium(rgb(1e12, 1.0, 1e3), 1.0, 0.0)),
+        (
+            "sensor",
+            json!({"type": "perspective", "fov": 40, "to_world": view, "film": film, "medium": named("fog")}),
+        ),
+        ("box", json!({"type": "cube", "interior": named("fog"), "bsdf": walls})),
+        ("lamp", with(lamp_panel([0.0; 3], 0.3, 4.0), &[("to_world", lamp), ("bsdf", diffuse(0.5))])),
+    ]);
+    let reported = Sandbox::with_scene(&scene).pixel("5 3 --sample 59 --integrator pt");
+    let value = reported["samples"][0]["value"].as_array().unwrap();
+    assert!(value.iter().all(Value::is_number), "{value:?}");
+}
+
 /// Densities by hand (LW96 eq. 13): that of the direction, times transmittance, times extinction in the medium or the
 /// cosine on a surface, over the square of the distance. Positions are those of the file.
 #[test]
