@@ -1,7 +1,7 @@
 //! The arguments of the command line.
 
 use super::{estimator::Estimator, study::Study};
-use crate::medium::DistanceMethod;
+use crate::{film::accumulator::MOST_PASSES, medium::DistanceMethod};
 use clap::{
     Args, Parser, Subcommand,
     builder::{PossibleValuesParser, TypedValueParser},
@@ -35,6 +35,11 @@ pub enum Command {
     /// same light vertices. Every vertex is listed with its pdfs and every contribution with its weight; the
     /// contributions sum to the value of the pixel.
     Pixel(super::pixel::Arguments),
+    /// Add up parts of one image, rendered with --samples, and write the image
+    ///
+    /// The parts are files of sums of the same scene, options and seed, with different samples. The image is the same,
+    /// bit for bit, as that of one render of all of these samples.
+    Merge(super::merge::Merge),
     /// Print a summary of a scene without rendering it
     Info(Info),
     /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML
@@ -127,6 +132,37 @@ pub struct Render {
     #[arg(long, value_name = "N", value_parser = batches, conflicts_with = "error", allow_negative_numbers = true)]
     pub batches: Option<u32>,
 
+    /// Continue from the sums of an earlier render: the rest of an interrupted one, or more samples for a finished one
+    ///
+    /// The image is the same, bit for bit, as if the render had never stopped; --spp is the total. Scene, files and
+    /// options that decide about the image must be the same.
+    #[arg(long, conflicts_with_all = ["error", "batches", "frames"])]
+    pub resume: bool,
+
+    /// File for the sums of all samples, from which --resume continues and tyndall merge makes one image
+    /// [default: the image's name with .sums, once the render has taken a minute]
+    ///
+    /// Written every minute (--sums-every), less often where it would take more than 1 % of the time, and at the end. The
+    /// format is safetensors.
+    #[arg(long, visible_alias = "checkpoint", value_name = "FILE", conflicts_with_all = ["error", "batches", "frames"])]
+    pub sums: Option<PathBuf>,
+
+    /// Time between two writes of the sums, at least [default: 1m]
+    #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
+    pub sums_every: Option<Duration>,
+
+    /// Render only the samples A to B - 1 of every pixel, for tyndall merge
+    ///
+    /// Parts with other samples of the same scene, options and seed, rendered anywhere, add up to exactly the image
+    /// that one render of all samples makes. An image is written only if -o is given.
+    #[arg(long, value_name = "A..B", value_parser = samples, requires = "sums", allow_hyphen_values = true,
+        conflicts_with_all = ["spp", "error", "batches", "frames"])]
+    pub samples: Option<Samples>,
+
+    /// Write the image so far, and its PNG, every five seconds
+    #[arg(long)]
+    pub preview: bool,
+
     /// Seed of all random numbers; the same seed gives the same image
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
@@ -213,6 +249,15 @@ pub struct Scene {
     pub definitions: Vec<(String, String)>,
 }
 
+/// Samples of every pixel, the last one excluded.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Samples {
+    /// The first.
+    pub first: u32,
+    /// After the last.
+    pub end: u32,
+}
+
 /// Frames of an animation, both included.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Frames {
@@ -256,6 +301,15 @@ fn frames(text: &str) -> Result<Frames, String> {
         return Err(format!("expected the first frame before the last: {last}..{first}"));
     }
     Ok(Frames { first, last })
+}
+
+fn samples(text: &str) -> Result<Samples, String> {
+    let pair = text.split_once("..").and_then(|(first, end)| Some((first.parse().ok()?, end.parse().ok()?)));
+    let pair = pair.filter(|(first, end)| first < end && u64::from(*end) <= MOST_PASSES);
+    let (first, end) = pair.ok_or_else(|| {
+        format!("expected two numbers from 0 to {MOST_PASSES}, the first below the second, such as 0..64")
+    })?;
+    Ok(Samples { first, end })
 }
 
 fn fps(text: &str) -> Result<f64, String> {
@@ -319,7 +373,7 @@ pub(super) fn definition(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), value.to_owned()))
 }
 
-fn image_file(text: &str) -> Result<PathBuf, String> {
+pub(super) fn image_file(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     match extension.as_deref() {

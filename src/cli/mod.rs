@@ -7,6 +7,10 @@ pub mod diff;
 mod estimator;
 pub mod flights;
 mod info;
+mod interrupt;
+mod keeper;
+mod made;
+pub mod merge;
 pub mod phase;
 mod pixel;
 mod render;
@@ -29,7 +33,8 @@ use std::{num::NonZeroUsize, process::ExitCode};
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     let outcome = match &arguments.command {
-        Command::Render(render) => render::run(render),
+        Command::Render(render) => return exit(render::run(render)),
+        Command::Merge(merge) => merge::run(merge),
         Command::Strategies(strategies) => strategies::run(strategies),
         Command::Pixel(pixel) => pixel::run(pixel),
         Command::Info(info) => info::run(info),
@@ -41,6 +46,11 @@ pub fn run() -> ExitCode {
         Command::Flights(flights) => return judged(flights::run(flights)),
     };
     judged(outcome.map(|()| true))
+}
+
+/// The exit code of a command that knows it, or 2 on an error, which is printed.
+fn exit(outcome: Result<ExitCode>) -> ExitCode {
+    outcome.unwrap_or_else(|error| judged(Err(error)))
 }
 
 /// 0 if the claim holds, 1 if it does not, 2 on an error, which is printed.

@@ -56,7 +56,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
-    let budget = Budget { samples_per_pixel: None, time: None };
+    let budget = Budget::ENDLESS;
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
     let at = [arguments.x, arguments.y];
     let pool = super::threads(arguments.threads)?;

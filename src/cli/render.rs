@@ -1,6 +1,10 @@
 //! `tyndall render`: a scene file in, an image and its PNG preview out.
 
-use super::{arguments, load, threads};
+use super::{
+    arguments, interrupt,
+    keeper::{self, Keeper},
+    load, made, threads,
+};
 use crate::{
     error::{Error, Result},
     film::{
@@ -8,36 +12,40 @@ use crate::{
         format::{FileKind, Format},
         layer::Content,
     },
-    render::{self, Image, Progress, Settings, adaptive::Precision, budget::Budget},
+    render::{self, Image, Progress, Settings, adaptive::Precision, budget::Budget, sums::Sums},
     sampling::Sampler,
     scene::build::Setup,
     transport::Strategies,
 };
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
 use std::{
     io::Write as _,
     path::{Path, PathBuf},
+    process::ExitCode,
     time::{Duration, Instant},
 };
 
 /// Runs the command.
-pub fn run(arguments: &arguments::Render) -> Result<()> {
+pub fn run(arguments: &arguments::Render) -> Result<ExitCode> {
+    interrupt::listen();
     let started = Instant::now();
     let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let settings = settings(arguments, &setup)?;
     let precision = precision(arguments, &setup, &settings)?;
-    let task = Task { settings, precision, batches: arguments.batches };
     let goal = Goal::new(arguments, &setup)?;
+    let made = made::made(made::settings(&arguments.scene, &setup, &settings)?);
+    let task = Task { settings, precision, arguments, made };
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
     let figures = match arguments.frames {
         None => vec![pool.install(|| shoot(&setup, &task, &goal, None))?],
         Some(frames) => pool.install(|| animate(arguments, &mut setup, &task, &goal, frames))?,
     };
-    match &arguments.report {
-        Some(path) => write_report(path, figures, load_time, arguments.frames.is_some()),
-        None => Ok(()),
+    if let Some(path) = &arguments.report {
+        write_report(path, figures, load_time, arguments.frames.is_some())?;
     }
+    Ok(interrupt::signal().map_or(ExitCode::SUCCESS, |(_, code)| ExitCode::from(code)))
 }
 
 /// Default number of frames per second.
@@ -47,10 +55,10 @@ const FPS: f64 = 24.0;
 fn animate(
     arguments: &arguments::Render,
     setup: &mut Setup,
-    task: &Task,
+    task: &Task<'_>,
     goal: &Goal,
     frames: arguments::Frames,
-) -> Result<Vec<serde_json::Value>> {
+) -> Result<Vec<Value>> {
     let arguments::Frames { first, last } = frames;
     let digits = last.to_string().len().max(4);
     let mut figures = Vec::new();
@@ -66,12 +74,16 @@ fn animate(
             );
         }
         let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };
-        let task = Task { settings, ..*task };
+        let task = Task { settings, made: task.made.clone(), ..*task };
         let label = format!("frame {frame} of {first}..{last}");
         let mut noise_text = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
         noise_text["frame"] = frame.into();
         noise_text["time"] = time.into();
         figures.push(noise_text);
+        if let Some((name, _)) = interrupt::signal() {
+            super::complain(&format!("{name} in frame {frame}: continue with --frames {frame}..{last}"));
+            break;
+        }
     }
     Ok(figures)
 }
@@ -82,11 +94,12 @@ fn seed_of(seed: u64, frame: u32) -> u64 {
 }
 
 /// What is to be rendered.
-struct Task {
+struct Task<'a> {
     settings: Settings,
     precision: Option<Precision>,
-    /// Independent images, if more than one.
-    batches: Option<u32>,
+    arguments: &'a arguments::Render,
+    /// See [`made::made`].
+    made: Value,
 }
 
 /// What every pixel is to be known with.
@@ -118,61 +131,98 @@ fn precision(arguments: &arguments::Render, setup: &Setup, settings: &Settings) 
 const CONFIDENCE: f64 = 0.95;
 
 /// Renders one image and writes it; its figures.
-fn shoot(setup: &Setup, task: &Task, goal: &Goal, label: Option<&str>) -> Result<serde_json::Value> {
-    let mut image = match task.batches {
-        None => watched(setup, task, label),
-        Some(count) => batches(setup, task, goal.format, count, label),
+fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<Value> {
+    let mut image = match task.arguments.batches {
+        None => watched(setup, task, goal, label)?,
+        Some(count) => batches(setup, task, goal, count, label)?,
     };
-    goal.write(&setup.film, &mut image)?;
-    let preview = goal.path.with_extension("png");
-    let (width, height) = (setup.film.width as usize, setup.film.height as usize);
-    film::png::write(&preview, width, height, &image.pixels)?;
-    print_summary(&image, task, &goal.path, &preview, label);
-    Ok(figures(&image, task))
+    let figures = figures(&image, task);
+    if task.arguments.samples.is_none() || task.arguments.output.is_some() {
+        goal.write(&setup.film, &mut image)?;
+        print_summary(&image, task, &goal.path, &goal.preview(), label);
+    }
+    Ok(figures)
 }
 
-/// Renders one image under a progress bar.
-fn watched(setup: &Setup, task: &Task, label: Option<&str>) -> Image {
-    let bar = Bar::new(task, setup.film.len(), label);
-    let image = render(setup, task, &mut |progress| bar.show(&progress));
+/// Renders one image under a progress bar, keeping what there is.
+fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<Image> {
+    let (bar, arguments) = (Bar::new(task, setup.film.len(), label), task.arguments);
+    let Setup { scene, film, integrator, .. } = setup;
+    let (layers, settings) = (&integrator.layers, &task.settings);
+    let image = if settings.options.strategies == Strategies::NONE {
+        render::preview(scene, film, settings, &integrator.fog, layers, &mut |progress| bar.show(&progress))
+    } else if let Some(precision) = task.precision {
+        render::render_to_precision(scene, film, settings, precision, layers, &mut |p| bar.show(&p))
+    } else {
+        let file = arguments.sums.clone().unwrap_or_else(|| goal.path.with_extension("sums"));
+        let mut sums = match arguments.resume {
+            true => keeper::resume(&file, &task.made)?,
+            false => render::sums_for(film, layers),
+        };
+        let draw = |sums: &Sums| goal.draw(film, sums);
+        let mut keeper = Keeper::new(file, task.made.clone(), arguments, &draw);
+        let image = render::render_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
+            bar.show(&progress);
+            keeper.watch(sums);
+        });
+        bar.bar.finish_and_clear();
+        let is_resumable = task.arguments.batches.is_none() && task.arguments.frames.is_none();
+        if is_resumable && let Some(kept) = keeper.finish(&sums, interrupt::came())? {
+            print_kept(&kept, &sums);
+        }
+        image
+    };
     bar.bar.finish_and_clear();
-    image
+    Ok(image)
 }
 
-/// Renders images with consecutive seeds; their mean, with each of them as a layer.
-fn batches(setup: &Setup, task: &Task, format: Format, count: u32, label: Option<&str>) -> Image {
-    let one = |k: u32| {
+fn print_kept(file: &Path, sums: &Sums) {
+    let file = file.display();
+    match interrupt::signal() {
+        Some((name, _)) => super::complain(&format!(
+            "{name} after {} samples/pixel: continue with the same command and --resume ({file} has the sums)",
+            sums.samples().count()
+        )),
+        None => super::say(&format!("samples {}: {file}", sums.samples())),
+    }
+}
+
+/// Renders images with consecutive seeds; their mean, with each of them as a layer. Where it is interrupted, those that
+/// are finished count, or the first one if none is.
+fn batches(setup: &Setup, task: &Task<'_>, goal: &Goal, count: u32, label: Option<&str>) -> Result<Image> {
+    let mut images = Vec::new();
+    for k in 0..count {
         let mut settings = task.settings;
         settings.seed = settings.seed.wrapping_add(k.into());
         let label =
             format!("{}batch {} of {count}", label.map_or(String::new(), |l| format!("{l}, ")), k + 1);
-        watched(setup, &Task { settings, ..*task }, Some(&label))
-    };
-    let images: Vec<Image> = (0..count).map(one).collect();
-    Image::mean_of(&images, &setup.integrator.layers, format)
-}
-
-fn render(setup: &Setup, task: &Task, show: &mut dyn FnMut(Progress)) -> Image {
-    let Setup { scene, film, integrator, .. } = setup;
-    let (layers, settings) = (&integrator.layers, &task.settings);
-    match task.precision {
-        _ if settings.options.strategies == Strategies::NONE => {
-            render::preview(scene, film, settings, &integrator.fog, layers, show)
+        let task = Task { settings, made: Value::Null, ..*task };
+        let image = watched(setup, &task, goal, Some(&label))?;
+        if interrupt::came() {
+            super::complain(&format!("interrupted in batch {} of {count}: the image has {k} batches", k + 1));
         }
-        Some(precision) => render::render_to_precision(scene, film, settings, precision, layers, show),
-        None => render::render_layers(scene, film, settings, layers, show),
+        if k == 0 || !interrupt::came() {
+            images.push(image);
+        }
+        if interrupt::came() {
+            break;
+        }
     }
+    Ok(match images.len() {
+        1 => images.remove(0),
+        _ => Image::mean_of(&images, &setup.integrator.layers, goal.format),
+    })
 }
 
 /// Figures of an image, for scripts.
-fn figures(image: &Image, task: &Task) -> serde_json::Value {
+fn figures(image: &Image, task: &Task<'_>) -> Value {
     let mut figures = serde_json::json!({
         "samples_per_pixel": image.samples_per_pixel,
         "render_seconds": image.elapsed.as_secs_f64(),
         "relative_error": image.noise,
         "profile": task.settings.profile.name(),
     });
-    if let Some(batches) = task.batches {
+    if let Some(batches) = task.arguments.batches {
         figures["batches"] = batches.into();
     }
     if let Some(reached) = &image.reached {
@@ -184,7 +234,7 @@ fn figures(image: &Image, task: &Task) -> serde_json::Value {
 }
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
-    let endless = Budget { samples_per_pixel: None, time: None };
+    let endless = Budget::ENDLESS;
     let settings = arguments.estimator.settings(setup, arguments.seed, endless)?;
     let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
     Ok(Settings { budget, ..settings })
@@ -201,18 +251,30 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
         (None, None) if is_preview => Some(setup.samples_per_pixel.min(PREVIEW_SAMPLES)),
         (None, None) => Some(setup.samples_per_pixel),
     };
-    Budget { samples_per_pixel, time: arguments.time_limit }
+    let all = Budget {
+        samples_per_pixel,
+        time: arguments.time_limit,
+        interrupted: interrupt::came,
+        ..Budget::ENDLESS
+    };
+    match arguments.samples {
+        None => all,
+        Some(arguments::Samples { first, end }) => {
+            Budget { first_sample: first.into(), samples_per_pixel: Some((end - first).into()), ..all }
+        }
+    }
 }
 
 /// The image file: where, and what is in it. The PNG is beside it.
-struct Goal {
-    path: PathBuf,
+pub struct Goal {
+    /// Where.
+    pub path: PathBuf,
     format: Format,
 }
 
 impl Goal {
     /// The kind of file is that of the output's name, else that of the scene's film.
-    fn new(arguments: &arguments::Render, setup: &Setup) -> Result<Self> {
+    pub fn new(arguments: &arguments::Render, setup: &Setup) -> Result<Self> {
         let scene = setup.film.format;
         let named = arguments.output.as_deref().and_then(|path| Some((path, path.extension()?)));
         let named =
@@ -247,8 +309,13 @@ impl Goal {
         Self { path: self.path.with_extension(format!("{frame:0digits$}.{end}")), format: self.format }
     }
 
-    /// Writes the image, and the layers that it then no longer has.
-    fn write(&self, film: &Film, image: &mut Image) -> Result<()> {
+    /// Where the PNG is.
+    fn preview(&self) -> PathBuf {
+        self.path.with_extension("png")
+    }
+
+    /// Writes the image, and the layers that it then no longer has; and its PNG.
+    pub fn write(&self, film: &Film, image: &mut Image) -> Result<()> {
         let (width, height) = (film.width as usize, film.height as usize);
         let mut channels = self.format.channels(&image.pixels, &image.alpha);
         match self.format.file {
@@ -258,7 +325,15 @@ impl Goal {
             }
             FileKind::Pfm => film::raster::write_pfm(&self.path, width, height, &channels),
             FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
-        }
+        }?;
+        film::png::write(&self.preview(), width, height, &image.pixels)
+    }
+
+    /// Writes the image so far: without alpha and layers, which are rendered at the end.
+    fn draw(&self, film: &Film, sums: &Sums) -> Result<()> {
+        let format = Format { alpha: false, ..self.format };
+        let goal = Self { path: self.path.clone(), format };
+        goal.write(film, &mut Image::so_far(sums))
     }
 }
 
@@ -277,7 +352,7 @@ enum By {
 }
 
 impl Bar {
-    fn new(task: &Task, pixels: usize, label: Option<&str>) -> Self {
+    fn new(task: &Task<'_>, pixels: usize, label: Option<&str>) -> Self {
         let (length, by) = match (task.precision, task.settings.budget) {
             (Some(Precision { error, .. }), _) => (pixels as u64, By::Pixels { within: error, all: pixels }),
             (None, Budget { samples_per_pixel: Some(spp), .. }) => {
@@ -338,7 +413,7 @@ fn percent(relative: f64) -> String {
     format!("{:.digits$} %", 100.0 * relative)
 }
 
-fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, label: Option<&str>) {
+fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: &Path, label: Option<&str>) {
     let noise_text = |noise| format!(", {}", noise_text(noise, task.settings.sampler));
     let noise = image.noise.map_or(String::new(), noise_text);
     let noise = match (&image.reached, task.precision) {
@@ -359,12 +434,7 @@ fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, labe
 }
 
 /// Figures for scripts, as JSON: those of one image, or of every frame.
-fn write_report(
-    path: &Path,
-    mut figures: Vec<serde_json::Value>,
-    load_seconds: f64,
-    is_animation: bool,
-) -> Result<()> {
+fn write_report(path: &Path, mut figures: Vec<Value>, load_seconds: f64, is_animation: bool) -> Result<()> {
     let mut report = match is_animation {
         true => serde_json::json!({ "frames": figures }),
         false => figures.pop().unwrap_or_default(),

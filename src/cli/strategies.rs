@@ -59,7 +59,7 @@ pub struct Arguments {
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
-    let budget = Budget { samples_per_pixel: None, time: None };
+    let budget = Budget::ENDLESS;
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
     let passes = arguments.spp.map_or(setup.samples_per_pixel, u64::from) as usize;
     let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);

@@ -9,7 +9,7 @@ use crate::{
         contender::{Contender, Entry, How, Renderer},
         external::{self, External},
         page,
-        question::{Effort, Question, ReferenceFile, SceneQuestion, Wanted, fingerprint},
+        question::{Effort, Question, ReferenceFile, SceneQuestion, Wanted},
         reference,
         run::{self, Progress, Signature},
         table,
@@ -28,7 +28,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
     num::NonZeroUsize,
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -221,12 +221,8 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
 
 /// Of all that a scene is read from.
 fn fingerprint_of(sources: &Sources) -> Result<String> {
-    let spectra = format!("{:?}", sources.spectra);
-    let mut all = vec![fingerprint(spectra.as_bytes())];
-    for file in &sources.files {
-        all.push(fingerprint(&read(file)?));
-    }
-    Ok(fingerprint(all.concat().as_bytes()))
+    let all: Vec<String> = sources.fingerprints()?.into_iter().map(|(_, fingerprint)| fingerprint).collect();
+    Ok(format::fingerprint(all.concat().as_bytes()))
 }
 
 fn wanted(arguments: &Study, contenders: &[Contender]) -> Result<Wanted> {
@@ -249,7 +245,7 @@ fn wanted(arguments: &Study, contenders: &[Contender]) -> Result<Wanted> {
     counted("--reference-error", errors.len())?;
     if !files.is_empty() {
         let file = |(index, path): (usize, &PathBuf)| {
-            let fingerprint = fingerprint(&read(path)?);
+            let fingerprint = format::file_fingerprint(path)?;
             let own_relmse = errors.get(index).copied();
             Ok(ReferenceFile { file: path.display().to_string(), fingerprint, own_relmse })
         };
@@ -268,10 +264,6 @@ fn wanted(arguments: &Study, contenders: &[Contender]) -> Result<Wanted> {
         false => arguments.by.iter().map(named).collect::<Result<_>>()?,
     };
     Ok(Wanted::Made { others, is_given: !arguments.by.is_empty(), effort })
-}
-
-fn read(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).map_err(|error| Error::io(path, "read", &error))
 }
 
 /// Loads every scene once before anything is rendered: what is wrong with the last one is said now, not in an hour.
@@ -353,7 +345,7 @@ impl<'a> Stage<'a> {
     fn own(&mut self, scene: usize, words: &str) -> Result<Entry> {
         let requested = contenders::parse("contender", words)?;
         let (setup, load_seconds) = self.setup(scene, requested.tracker)?;
-        let budget = Budget { samples_per_pixel: Some(1), time: None };
+        let budget = Budget::samples(1);
         let settings = requested.settings(&setup, 0, budget)?;
         if settings.options.strategies == Strategies::NONE {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");

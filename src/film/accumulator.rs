@@ -1,43 +1,84 @@
-//! Sums and square sums of the passes over an image: its mean, and how far the mean may be off.
+//! Sums and square sums of the passes over an image: its mean, and how far the mean may be off. They are the same to the
+//! last bit in whatever order, and from whatever parts, passes are added.
 
-use crate::math::{Spectrum, SpectrumExt, Vec3, relative::Relative, spectrum::LUMINANCE};
+use crate::math::{
+    Spectrum, SpectrumExt, Vec3,
+    exact_sum::{ExactSum, MOST_TERMS},
+    relative::Relative,
+    spectrum::LUMINANCE,
+};
+use rayon::prelude::*;
+
+/// Passes that an image can have at most.
+pub const MOST_PASSES: u64 = MOST_TERMS;
+
+/// Pixels that a thread adds at a time.
+const CHUNK: usize = 4096;
 
 /// Adds up passes; each pass is one independent estimate of the whole image.
 #[derive(Clone, Debug)]
 pub struct Accumulator {
-    sums: Vec<[f64; 3]>,
-    luminance_squares: Vec<f64>,
+    pixels: Vec<Pixel>,
     /// Sums of products of two channels, R R, R G, R B, G G, G B, B B; empty where not needed.
-    products: Vec<[f64; 6]>,
+    products: Vec<[ExactSum; 6]>,
     passes: u64,
+}
+
+/// The sums of a pixel.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pixel {
+    sum: [ExactSum; 3],
+    luminance_square: ExactSum,
+}
+
+impl Pixel {
+    fn add(&mut self, value: Spectrum) {
+        for (channel, v) in self.sum.iter_mut().zip(value.to_array()) {
+            channel.add(v.into());
+        }
+        self.luminance_square.add(f64::from(value.luminance()).powi(2));
+    }
+
+    fn values(&self) -> ([f64; 3], f64) {
+        (self.sum.each_ref().map(ExactSum::value), self.luminance_square.value())
+    }
 }
 
 impl Accumulator {
     /// Nothing seen yet, for an image of `pixels`.
     pub fn new(pixels: usize) -> Self {
-        let (sums, luminance_squares) = (vec![[0.0; 3]; pixels], vec![0.0; pixels]);
-        Self { sums, luminance_squares, products: Vec::new(), passes: 0 }
+        Self { pixels: vec![Pixel::default(); pixels], products: Vec::new(), passes: 0 }
     }
 
     /// The same, with second moments and variances.
     pub fn with_products(pixels: usize) -> Self {
-        Self { products: vec![[0.0; 6]; pixels], ..Self::new(pixels) }
+        Self { products: vec![[ExactSum::default(); 6]; pixels], ..Self::new(pixels) }
     }
 
     /// Adds one pass.
     pub fn add(&mut self, pass: &[Spectrum]) {
-        for ((sum, square), value) in self.sums.iter_mut().zip(&mut self.luminance_squares).zip(pass) {
-            for (channel, v) in sum.iter_mut().zip(value.to_array()) {
-                *channel += f64::from(v);
-            }
-            *square += f64::from(value.luminance()).powi(2);
-        }
+        let pixels = self.pixels.par_chunks_mut(CHUNK).zip(pass.par_chunks(CHUNK));
+        pixels.for_each(|(pixels, values)| {
+            pixels.iter_mut().zip(values).for_each(|(pixel, value)| pixel.add(*value));
+        });
         for (products, value) in self.products.iter_mut().zip(pass) {
             let [r, g, b] = value.to_array().map(f64::from);
             let pass = [r * r, r * g, r * b, g * g, g * b, b * b];
-            products.iter_mut().zip(pass).for_each(|(sum, product)| *sum += product);
+            products.iter_mut().zip(pass).for_each(|(sum, product)| sum.add(product));
         }
         self.passes += 1;
+    }
+
+    /// Adds all passes of `other`, of an image of as many pixels with sums of the same products.
+    pub fn merge(&mut self, other: &Self) {
+        for (pixel, other) in self.pixels.iter_mut().zip(&other.pixels) {
+            pixel.sum.iter_mut().zip(&other.sum).for_each(|(sum, other)| sum.merge(other));
+            pixel.luminance_square.merge(&other.luminance_square);
+        }
+        for (products, other) in self.products.iter_mut().zip(&other.products) {
+            products.iter_mut().zip(other).for_each(|(sum, other)| sum.merge(other));
+        }
+        self.passes += other.passes;
     }
 
     /// Passes added.
@@ -48,7 +89,10 @@ impl Accumulator {
     /// The mean of all passes.
     pub fn mean(&self) -> Vec<Spectrum> {
         let scale = 1.0 / self.passes.max(1) as f64;
-        self.sums.iter().map(|s| Spectrum::from_array(s.map(|channel| (channel * scale) as f32))).collect()
+        let of_pixel = |pixel: &Pixel| {
+            Spectrum::from_array(pixel.sum.each_ref().map(|sum| (sum.value() * scale) as f32))
+        };
+        self.pixels.par_iter().map(of_pixel).collect()
     }
 
     /// Mean over the passes of (`row` . rgb)^2: the second moment of a channel that combines R, G and B.
@@ -61,32 +105,57 @@ impl Accumulator {
     pub fn variance(&self, row: Vec3) -> Option<Vec<f32>> {
         let n = self.passes as f64;
         let [r, g, b] = row.to_array().map(f64::from);
-        let of_pixel = |(sum, products): (&[f64; 3], &[f64; 6])| {
+        let of_pixel = |(pixel, products): (&Pixel, &[ExactSum; 6])| {
+            let (sum, _) = pixel.values();
             let mean = (r * sum[0] + g * sum[1] + b * sum[2]) / n;
             ((square_of(row, products) / n - mean * mean) / (n - 1.0)).max(0.0) as f32
         };
-        (self.passes > 1).then(|| self.sums.iter().zip(&self.products).map(of_pixel).collect())
+        (self.passes > 1).then(|| self.pixels.iter().zip(&self.products).map(of_pixel).collect())
+    }
+
+    /// All sums, pixel by pixel: those of R, G, B and of the luminance's square; then the products, if there are any.
+    pub fn sums(&self) -> impl Iterator<Item = ExactSum> + '_ {
+        let pixels =
+            self.pixels.iter().flat_map(|pixel| pixel.sum.into_iter().chain([pixel.luminance_square]));
+        pixels.chain(self.products.iter().flatten().copied())
+    }
+
+    /// `passes` over an image of `pixels` from what [`Accumulator::sums`] gave; none if that is not as many.
+    pub fn from_sums(pixels: usize, passes: u64, sums: &[ExactSum]) -> Option<Self> {
+        let (own, products) = sums.split_at_checked(4 * pixels)?;
+        let pixel =
+            |sums: &[ExactSum; 4]| Pixel { sum: [sums[0], sums[1], sums[2]], luminance_square: sums[3] };
+        let (products, rest) = products.as_chunks();
+        let fits = rest.is_empty() && (products.is_empty() || products.len() == pixels);
+        let pixels = own.as_chunks().0.iter().map(pixel).collect();
+        fits.then(|| Self { pixels, products: products.to_vec(), passes })
+    }
+
+    /// True if it has sums of products.
+    pub fn has_products(&self) -> bool {
+        !self.products.is_empty()
     }
 
     /// Number of pixels.
     pub fn len(&self) -> usize {
-        self.sums.len()
+        self.pixels.len()
     }
 
     /// True for an image without pixels.
     pub fn is_empty(&self) -> bool {
-        self.sums.is_empty()
+        self.pixels.is_empty()
     }
 
     /// Estimated variance of the luminance of one pass, summed over pixels; none before the second pass.
     pub fn luminance_variance(&self) -> Option<f64> {
         let n = self.passes as f64;
         let [r, g, b] = LUMINANCE.to_array().map(f64::from);
-        let of_pixel = |(sum, square): (&[f64; 3], &f64)| {
+        let of_pixel = |pixel: &Pixel| {
+            let (sum, square) = pixel.values();
             let sum = r * sum[0] + g * sum[1] + b * sum[2];
             ((square - sum * sum / n) / (n - 1.0)).max(0.0)
         };
-        (self.passes > 1).then(|| self.sums.iter().zip(&self.luminance_squares).map(of_pixel).sum())
+        (self.passes > 1).then(|| self.pixels.iter().map(of_pixel).sum())
     }
 
     /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01 m^2), by
@@ -98,22 +167,24 @@ impl Accumulator {
         }
         let n = self.passes as f64;
         let [r, g, b] = LUMINANCE.to_array().map(f64::from);
-        let mean = |sum: &[f64; 3]| (r * sum[0] + g * sum[1] + b * sum[2]) / n;
-        let means = self.sums.iter().map(mean).filter(|mean| mean.is_finite());
-        let to = Relative::to_mean(means.sum::<f64>() / self.sums.len() as f64);
-        let relative = self.sums.iter().zip(&self.luminance_squares).map(|(sum, square)| {
-            let mean = mean(sum);
-            to.square(((square / n - mean * mean) / (n - 1.0)).max(0.0), mean)
-        });
-        Some((relative.sum::<f64>() / self.sums.len() as f64).sqrt())
+        let moments = |pixel: &Pixel| {
+            let (sum, square) = pixel.values();
+            ((r * sum[0] + g * sum[1] + b * sum[2]) / n, square / n)
+        };
+        let moments: Vec<(f64, f64)> = self.pixels.par_iter().map(moments).collect();
+        let total: f64 = moments.iter().map(|(mean, _)| mean).filter(|mean| mean.is_finite()).sum();
+        let to = Relative::to_mean(total / moments.len() as f64);
+        let of_pixel =
+            |(mean, square): &(f64, f64)| to.square(((square - mean * mean) / (n - 1.0)).max(0.0), *mean);
+        Some((moments.iter().map(of_pixel).sum::<f64>() / moments.len() as f64).sqrt())
     }
 }
 
 /// (`row` . rgb)^2 from the products of r, g and b.
-fn square_of(row: Vec3, products: &[f64; 6]) -> f64 {
+fn square_of(row: Vec3, products: &[ExactSum; 6]) -> f64 {
     let [r, g, b] = row.to_array().map(f64::from);
     let factors = [r * r, 2.0 * r * g, 2.0 * r * b, g * g, 2.0 * g * b, b * b];
-    factors.iter().zip(products).map(|(factor, product)| factor * product).sum()
+    factors.iter().zip(products).map(|(factor, product)| factor * product.value()).sum()
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use ::exr::{
     image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, write::WritableImage},
     math::Vec2,
     meta::{
-        attribute::Chromaticities,
+        attribute::{Chromaticities, LineOrder},
         header::{ImageAttributes, LayerAttributes},
     },
     prelude::f16,
@@ -32,7 +32,7 @@ pub fn write(path: &Path, width: usize, height: usize, channels: Vec<Channel>, f
         AnyChannel::new(name.as_str(), samples)
     });
     let list = AnyChannels::sort(list.collect());
-    let layer = Layer::new((width, height), LayerAttributes::default(), Encoding::FAST_LOSSLESS, list);
+    let layer = Layer::new((width, height), LayerAttributes::default(), ENCODING, list);
     let mut image = Image::new(ImageAttributes::with_size((width, height)), layer);
     image.attributes.chromaticities = (format.colours == Colours::Xyz).then_some(XYZ);
     output::write(path, |file| {
@@ -42,6 +42,9 @@ pub fn write(path: &Path, width: usize, height: usize, channels: Vec<Channel>, f
         })
     })
 }
+
+/// Lines from the top: in any other order the file depends on which thread is first.
+const ENCODING: Encoding = Encoding { line_order: LineOrder::Increasing, ..Encoding::FAST_LOSSLESS };
 
 /// What X, Y, Z and white are, for readers that would take them for R, G, B.
 const XYZ: Chromaticities = Chromaticities {

@@ -3,9 +3,14 @@
 use super::read::read_with_origins;
 use crate::{
     description::{Location, Object, Value},
-    error::Result,
+    error::{Error, Result},
 };
-use std::path::{Path, PathBuf};
+use std::{
+    fs::File,
+    io,
+    path::{Path, PathBuf},
+};
+use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 /// What decides about a scene, apart from the user's definitions: where none of it changes, the scene does not.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,7 +31,37 @@ pub fn sources(path: &Path, definitions: &[(String, String)]) -> Result<Sources>
     Ok(sources)
 }
 
+/// A fingerprint of `bytes`: XXH3, 128 bits.
+pub fn fingerprint(bytes: &[u8]) -> String {
+    format!("{:032x}", xxh3_128(bytes))
+}
+
+/// The same of all bytes of the file at `path`.
+pub fn file_fingerprint(path: &Path) -> Result<String> {
+    let mut sum = Xxh3::new();
+    let copied = File::open(path).and_then(|mut file| io::copy(&mut file, &mut sum));
+    copied.map_err(|error| Error::io(path, "read", &error))?;
+    Ok(format!("{:032x}", sum.digest128()))
+}
+
 impl Sources {
+    /// Fingerprints of all files by their names, which are relative to the folder of the scene if they lie in it; and of
+    /// the spectra.
+    pub fn fingerprints(&self) -> Result<Vec<(String, String)>> {
+        let folder = self.files.first().and_then(|scene| scene.parent()).unwrap_or(Path::new(""));
+        let of_file = |file: &PathBuf| {
+            let name = file.strip_prefix(folder).unwrap_or(file).display().to_string();
+            Ok((name, file_fingerprint(file)?))
+        };
+        let mut all: Vec<_> = self.files.iter().map(of_file).collect::<Result<_>>()?;
+        if !self.spectra.is_empty() {
+            let numbers = self.spectra.iter().flatten().flat_map(|(x, y)| [*x, *y]);
+            let bytes: Vec<u8> = numbers.flat_map(f64::to_le_bytes).collect();
+            all.push(("spectra".to_owned(), fingerprint(&bytes)));
+        }
+        Ok(all)
+    }
+
     fn walk(&mut self, object: &Object) {
         for property in &object.properties {
             match &property.value {

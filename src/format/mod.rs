@@ -13,6 +13,6 @@ mod text;
 mod write;
 mod xml;
 
-pub use files::{Sources, sources};
+pub use files::{Sources, file_fingerprint, fingerprint, sources};
 pub use read::{Spelling, read};
 pub use write::{Conversion, Naming, convert, write};

@@ -10,8 +10,7 @@
 
 use super::{
     Progress,
-    block::Outcome,
-    budget::Budget,
+    block::{Outcome, Pass},
     instrument::{BLOCKS_AT_ONCE, Instrument},
     monitor::Stopwatch,
 };
@@ -95,13 +94,14 @@ impl Half {
         }
     }
 
-    fn add(&mut self, camera: &[DVec3], light: &[DVec3], active: &[bool]) {
+    fn add(&mut self, camera: &[Spectrum], light: &[Spectrum], active: &[bool]) {
         self.passes += 1;
         for (pixel, (camera, light)) in camera.iter().zip(light).enumerate() {
-            self.light[pixel] += *light;
+            let (camera, light) = (camera.as_dvec3(), light.as_dvec3());
+            self.light[pixel] += light;
             if active[pixel] {
-                let both = *camera + *light;
-                self.camera[pixel] += *camera;
+                let both = camera + light;
+                self.camera[pixel] += camera;
                 self.squares[pixel] += both * both;
             }
         }
@@ -233,6 +233,9 @@ pub(super) struct Adaptive<'a> {
     active: Vec<bool>,
     /// Passes that a pixel has been active in.
     samples: Vec<u32>,
+    /// The unfinished pass, and how many of its blocks are done.
+    pass: Pass,
+    blocks: usize,
 }
 
 impl<'a> Adaptive<'a> {
@@ -240,7 +243,8 @@ impl<'a> Adaptive<'a> {
     pub fn new(bench: &'a Instrument<'a>, precision: Precision, stopwatch: &'a Stopwatch) -> Self {
         let pixels = bench.film.len();
         let halves = [Half::new(pixels), Half::new(pixels)];
-        Self { bench, stopwatch, precision, halves, active: vec![true; pixels], samples: vec![0; pixels] }
+        let (active, samples, pass) = (vec![true; pixels], vec![0; pixels], Pass::new(pixels));
+        Self { bench, stopwatch, precision, halves, active, samples, pass, blocks: 0 }
     }
 
     /// Renders until every pixel has converged or the budget is spent.
@@ -257,38 +261,36 @@ impl<'a> Adaptive<'a> {
         self.develop()
     }
 
-    /// Renders until both halves have `goal` passes; false if the budget ends before.
+    /// Renders until both halves have `goal` passes; false if the budget ends before. A pass that time does not suffice
+    /// for is left out, unless it is the first.
     fn advance(&mut self, goal: u64, progress: &mut dyn FnMut(Progress)) -> bool {
-        let count = self.bench.compiled.blocks().count();
-        let Budget { samples_per_pixel, time } = self.bench.settings.budget;
-        let end = samples_per_pixel.unwrap_or(u64::MAX).min(2 * goal);
-        let mut camera = vec![DVec3::ZERO; self.active.len()];
-        let mut light = camera.clone();
+        let (budget, count) = (self.bench.settings.budget, self.bench.compiled.blocks().count());
+        let end = budget.samples_per_pixel.unwrap_or(u64::MAX).min(2 * goal);
         let (mut next, end_task) = (self.passes() as usize * count, end as usize * count);
         while next < end_task {
             let tasks = next..end_task.min(next + BLOCKS_AT_ONCE);
-            for (task, outcome) in tasks.clone().zip(self.work(tasks.clone())) {
-                outcome.add_eye_to(&mut camera);
-                outcome.add_light_to(&mut light);
+            let outcomes = self.work(tasks.clone());
+            for (task, outcome) in tasks.clone().zip(&outcomes) {
+                self.pass.add(outcome);
+                self.blocks += 1;
                 if (task + 1) % count == 0 {
-                    self.take(&camera, &light);
-                    camera.fill(DVec3::ZERO);
-                    light.fill(DVec3::ZERO);
+                    self.take();
                 }
             }
-            next = tasks.end;
+            next += outcomes.len();
             progress(self.progress(next));
-            if time.is_some_and(|limit| self.stopwatch.elapsed() >= limit) && self.passes() >= 2 {
+            if outcomes.len() < tasks.len() {
                 return false;
             }
         }
         end == 2 * goal
     }
 
-    /// Renders the active pixels of blocks, and their light subpaths.
+    /// Renders the active pixels of blocks, and their light subpaths, as far as the budget goes.
     fn work(&self, tasks: std::ops::Range<usize>) -> Vec<Outcome> {
         let wants = |pixel: usize| self.active[pixel];
-        self.bench.work(tasks, |pass, block| self.bench.compiled.render(pass, block, &wants))
+        let is_over = || self.bench.settings.budget.is_over(self.stopwatch.elapsed());
+        self.bench.work_until(tasks, is_over, |pass, block| self.bench.compiled.render(pass, block, &wants))
     }
 
     fn passes(&self) -> u64 {
@@ -296,10 +298,13 @@ impl<'a> Adaptive<'a> {
     }
 
     /// Passes take turns: even ones belong to the first half.
-    fn take(&mut self, camera: &[DVec3], light: &[DVec3]) {
+    fn take(&mut self) {
         let half = (self.passes() % 2) as usize;
+        let (camera, light) = self.pass.parts();
         self.halves[half].add(camera, light, &self.active);
         self.samples.iter_mut().zip(&self.active).for_each(|(n, active)| *n += u32::from(*active));
+        self.pass.clear();
+        self.blocks = 0;
     }
 
     /// Ends what can be ended.
@@ -332,8 +337,14 @@ impl<'a> Adaptive<'a> {
         Progress { samples, passes, elapsed, noise: None, within: Some(self.share()) }
     }
 
-    /// The mean of the halves.
+    /// The mean of the halves; what there is of the first pass where there is no more.
     fn develop(self) -> Developed {
+        if self.passes() == 0 {
+            let reached = Reached { share: 0.0, samples: self.samples };
+            let width = self.bench.film.width as usize;
+            let pixels = self.pass.pixels(self.bench.compiled.blocks(), self.blocks, width);
+            return Developed { pixels, passes: 0, noise: None, reached };
+        }
         let halves: Vec<&Half> = self.halves.iter().filter(|half| half.passes > 0).collect();
         let value = |pixel| halves.iter().map(|half| half.value(pixel)).sum::<DVec3>() / halves.len() as f64;
         let pixels = (0..self.active.len()).map(|pixel| value(pixel).as_vec3()).collect();

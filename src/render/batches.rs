@@ -40,6 +40,7 @@ impl Image {
         Self {
             pixels: (0..images[0].pixels.len()).map(mean_pixel).collect(),
             samples_per_pixel: images.iter().map(|image| image.samples_per_pixel).sum(),
+            unfinished: images.iter().map(|image| image.unfinished).sum(),
             elapsed: images.iter().map(|image| image.elapsed).sum::<Duration>(),
             noise: squared_noise.map(|squares| squares.sqrt() / count),
             alpha: merged(&alphas, mean),
@@ -97,6 +98,7 @@ mod tests {
         let images = [1.0, 3.0, 5.0].map(|value| Image {
             pixels: vec![vec3(value, 2.0, 0.0)],
             samples_per_pixel: 4,
+            unfinished: 0.0,
             elapsed: Duration::from_secs(1),
             noise: Some(0.3),
             alpha: vec![value / 10.0],

@@ -2,11 +2,12 @@
 
 use super::{
     compiled::Ready,
+    fill,
     fog::{PILOT_RAYS, Preview},
 };
 use crate::{
     film::Film,
-    math::{Channels, DVec3, Spectrum, Vec2},
+    math::{Channels, Spectrum, Vec2},
     sampling::{Sampler, Stream, stream::Purpose},
     scene::Scene,
     shape::Ray,
@@ -54,22 +55,64 @@ pub struct Outcome {
     light: Vec<(u32, Spectrum)>,
 }
 
-impl Outcome {
-    /// Adds what camera subpaths contributed.
-    pub fn add_eye_to(&self, pass: &mut [DVec3]) {
-        self.camera.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
+/// A pass over the image, block by block.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    camera: Vec<Spectrum>,
+    light: Vec<Spectrum>,
+}
+
+impl Pass {
+    /// No block of it is done.
+    pub fn new(pixels: usize) -> Self {
+        Self { camera: vec![Spectrum::ZERO; pixels], light: vec![Spectrum::ZERO; pixels] }
     }
 
-    /// Adds what light subpaths contributed, in a fixed order.
-    pub fn add_light_to(&self, pass: &mut [DVec3]) {
-        self.light.iter().for_each(|(pixel, value)| pass[*pixel as usize] += value.as_dvec3());
+    /// Adds a block.
+    pub fn add(&mut self, outcome: &Outcome) {
+        outcome.camera.iter().for_each(|(pixel, value)| self.camera[*pixel as usize] += *value);
+        outcome.light.iter().for_each(|(pixel, value)| self.light[*pixel as usize] += *value);
     }
 
-    /// Adds it, in a fixed order.
-    pub fn add_to(&self, pass: &mut [Spectrum]) {
-        for (pixel, value) in self.camera.iter().chain(&self.light) {
-            pass[*pixel as usize] += *value;
+    /// Shows the pass, all of whose blocks have been added, to `see`, and starts the next one.
+    pub fn finish(&mut self, see: impl FnOnce(&[Spectrum])) {
+        self.camera.iter_mut().zip(&self.light).for_each(|(camera, light)| *camera += *light);
+        see(&self.camera);
+        self.clear();
+    }
+
+    /// What camera and light subpaths contributed to every pixel.
+    pub fn parts(&self) -> (&[Spectrum], &[Spectrum]) {
+        (&self.camera, &self.light)
+    }
+
+    /// A pass of these parts.
+    pub fn of(camera: Vec<Spectrum>, light: Vec<Spectrum>) -> Self {
+        Self { camera, light }
+    }
+
+    /// No block of it is done.
+    pub fn clear(&mut self) {
+        self.camera.fill(Spectrum::ZERO);
+        self.light.fill(Spectrum::ZERO);
+    }
+
+    /// What a pass says of `pixel`, whose block is among those added; they are the fraction `done` of all: the
+    /// light subpaths that have been traced stand for those that have not.
+    pub fn estimate(&self, pixel: usize, done: f32) -> Spectrum {
+        self.camera[pixel] + self.light[pixel] / done
+    }
+
+    /// The image as the first `done` of `blocks` show it; pixels of the others take the mean of those around them.
+    pub fn pixels(&self, blocks: &Blocks, done: usize, width: usize) -> Vec<Spectrum> {
+        let mut known = vec![false; self.camera.len()];
+        let mut pixels = vec![Spectrum::ZERO; known.len()];
+        for pixel in (0..done).flat_map(|block| blocks.pixels(block)) {
+            pixels[pixel] = self.estimate(pixel, done as f32 / blocks.count() as f32);
+            known[pixel] = true;
         }
+        fill::fill(&mut pixels, &known, width);
+        pixels
     }
 }
 

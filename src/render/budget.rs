@@ -1,38 +1,40 @@
 //! When a render stops.
 
-use std::time::Duration;
+use crate::film::accumulator::MOST_PASSES;
+use std::{ops::Range, time::Duration};
 
-/// Samples per pixel, or time, whichever ends first. At least one sample per pixel is always taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Samples per pixel, time, or an interruption, whichever comes first.
+#[derive(Clone, Copy, Debug)]
 pub struct Budget {
+    /// Number of the first sample; others belong to other renders of the same image.
+    pub first_sample: u64,
     /// Most samples per pixel; none for no limit.
     pub samples_per_pixel: Option<u64>,
     /// Most time; none for no limit.
     pub time: Option<Duration>,
+    /// True once the user wants the render to end.
+    pub interrupted: fn() -> bool,
 }
 
 impl Budget {
-    /// `wanted` tasks (blocks of `per_pass` each pass), cut where the sample budget ends.
-    pub(super) fn limit_tasks(&self, wanted: usize, per_pass: usize) -> usize {
-        match self.samples_per_pixel {
-            Some(samples) => wanted.min((samples as usize).saturating_mul(per_pass)),
-            None => wanted,
-        }
+    /// No limit.
+    pub const ENDLESS: Self =
+        Self { first_sample: 0, samples_per_pixel: None, time: None, interrupted: || false };
+
+    /// So many samples of every pixel.
+    pub fn samples(samples_per_pixel: u64) -> Self {
+        Self { samples_per_pixel: Some(samples_per_pixel), ..Self::ENDLESS }
     }
 
-    /// True if no further tasks should start. An image consists of whole passes, so time ends with the pass
-    /// that would overrun it by more than half.
-    pub(super) fn is_spent(&self, tasks: usize, per_pass: usize, elapsed: Duration) -> bool {
-        if self.limit_tasks(tasks + 1, per_pass) == tasks {
-            return true;
-        }
-        let Some(limit) = self.time else { return false };
-        if tasks < per_pass {
-            return false;
-        }
-        let whole_passes = tasks.is_multiple_of(per_pass) || per_pass < super::BLOCKS_AT_ONCE;
-        let half_pass = elapsed.mul_f64(0.5 * per_pass as f64 / tasks as f64);
-        elapsed >= limit || (whole_passes && elapsed + half_pass > limit)
+    /// The samples of every pixel, as far as time allows; no image has more than [`MOST_PASSES`].
+    pub(super) fn wanted(&self) -> Range<u64> {
+        let count = self.samples_per_pixel.unwrap_or(MOST_PASSES).min(MOST_PASSES);
+        self.first_sample..self.first_sample.saturating_add(count)
+    }
+
+    /// True if no further block should start after this time.
+    pub(super) fn is_over(&self, elapsed: Duration) -> bool {
+        self.time.is_some_and(|limit| elapsed >= limit) || (self.interrupted)()
     }
 }
 
@@ -41,15 +43,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn samples_end_exactly_and_time_after_a_whole_pass() {
+    fn samples_and_time_end_exactly() {
         let second = Duration::from_secs(1);
-        let samples = Budget { samples_per_pixel: Some(3), time: None };
-        assert_eq!(samples.limit_tasks(64, 10), 30);
-        assert!(samples.is_spent(30, 10, second) && !samples.is_spent(29, 10, second));
-        let time = Budget { samples_per_pixel: None, time: Some(2 * second) };
-        assert!(!time.is_spent(99, 100, 9 * second), "the first pass is always finished");
-        assert!(time.is_spent(100, 100, 2 * second));
-        assert!(!time.is_spent(100, 100, second), "another pass fits");
-        assert!(time.is_spent(100, 100, Duration::from_millis(1900)), "another pass would overrun");
+        let samples = Budget { first_sample: 5, ..Budget::samples(3) };
+        assert_eq!((samples.wanted(), Budget::ENDLESS.wanted().end), (5..8, MOST_PASSES));
+        assert!(!samples.is_over(1000 * second));
+        let time = Budget { time: Some(2 * second), ..Budget::ENDLESS };
+        assert!(time.is_over(2 * second) && !time.is_over(Duration::from_millis(1999)));
+        assert!(Budget { interrupted: || true, ..samples }.is_over(Duration::ZERO));
     }
 }

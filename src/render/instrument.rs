@@ -3,12 +3,13 @@
 
 use super::{
     Settings,
+    block::Pass,
     compiled::{self, Compiled},
 };
 use crate::{film::Film, math::Spectrum, scene::Scene};
-use rayon::prelude::*;
 use std::{
     ops::Range,
+    sync::atomic::{AtomicUsize, Ordering},
     time::{Duration, Instant},
 };
 
@@ -30,25 +31,50 @@ impl<'a> Instrument<'a> {
         Self { scene, film, settings: *settings, compiled: compiled::choose(scene, film, settings) }
     }
 
-    /// `work` on tasks, each a block of a pass, on all threads; the results in their order.
+    /// `work` on tasks, each a block of a pass, on all threads, until there are none left or `is_over`; the results in
+    /// their order. Threads take the tasks in turn and finish what they took: what is done is the first of them, and at
+    /// least one.
+    pub(super) fn work_until<T: Send>(
+        &self,
+        tasks: Range<usize>,
+        is_over: impl Fn() -> bool + Sync,
+        work: impl Fn(usize, usize) -> T + Sync,
+    ) -> Vec<T> {
+        let blocks = self.compiled.blocks().count();
+        let next = AtomicUsize::new(tasks.start);
+        let lists = rayon::broadcast(|_| {
+            let mut done = Vec::new();
+            while next.load(Ordering::Relaxed) == tasks.start || !is_over() {
+                let task = next.fetch_add(1, Ordering::Relaxed);
+                if task >= tasks.end {
+                    break;
+                }
+                done.push((task, work(task / blocks, task % blocks)));
+            }
+            done
+        });
+        let mut done: Vec<_> = lists.into_iter().flatten().collect();
+        done.sort_unstable_by_key(|(task, _)| *task);
+        done.into_iter().map(|(_, outcome)| outcome).collect()
+    }
+
+    /// The same for all tasks.
     pub(super) fn work<T: Send>(
         &self,
         tasks: Range<usize>,
         work: impl Fn(usize, usize) -> T + Sync,
     ) -> Vec<T> {
-        let blocks = self.compiled.blocks().count();
-        tasks.into_par_iter().map(|task| work(task / blocks, task % blocks)).collect()
+        self.work_until(tasks, || false, work)
     }
 
     /// Shows `see` the image of every one of `passes`, in order; the time that making them took.
     pub fn passes(&self, passes: Range<usize>, see: &mut dyn FnMut(&[Spectrum])) -> Duration {
-        let mut image = vec![Spectrum::ZERO; self.film.len()];
+        let mut image = Pass::new(self.film.len());
         let work = |pass, block| self.compiled.render(pass, block, &|_| true);
         self.in_order(passes, work, |outcome, ends_pass| {
-            outcome.add_to(&mut image);
+            image.add(&outcome);
             if ends_pass {
-                see(&image);
-                image.fill(Spectrum::ZERO);
+                image.finish(&mut *see);
             }
         })
     }

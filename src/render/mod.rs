@@ -8,13 +8,17 @@ mod batches;
 mod block;
 pub mod budget;
 mod compiled;
+mod fill;
 mod fog;
 pub mod instrument;
 mod monitor;
 mod observer;
 pub mod pixel_sample;
 mod primary;
+pub mod samples;
 pub mod strategy_images;
+pub mod sums;
+pub mod sums_file;
 pub mod timing;
 
 pub use monitor::Snapshot;
@@ -38,6 +42,7 @@ use fog::Preview;
 use instrument::{BLOCKS_AT_ONCE, Instrument};
 use monitor::{Monitor, Stopwatch};
 use std::time::Duration;
+use sums::Sums;
 
 /// What to render and for how long.
 #[derive(Clone, Copy, Debug)]
@@ -75,8 +80,10 @@ pub struct Progress {
 pub struct Image {
     /// Row-major radiance, top row first.
     pub pixels: Vec<Spectrum>,
-    /// Samples per pixel.
+    /// Samples of every pixel.
     pub samples_per_pixel: u64,
+    /// The fraction of the pixels that have one more, where the time ended before all had it.
+    pub unfinished: f64,
     /// Time spent on samples, pilot walks included.
     pub elapsed: Duration,
     /// See [`Accumulator::noise`].
@@ -88,6 +95,27 @@ pub struct Image {
     pub layers: Vec<Channel>,
     /// How far a requested precision was reached, if one was requested.
     pub reached: Option<Reached>,
+}
+
+impl Image {
+    /// The image that `sums` hold, without alpha and layers.
+    pub fn so_far(sums: &Sums) -> Self {
+        Self {
+            pixels: sums.pixels(),
+            samples_per_pixel: sums.samples().count(),
+            unfinished: sums.unfinished(),
+            elapsed: sums.elapsed,
+            noise: sums.noise,
+            alpha: Vec::new(),
+            layers: Vec::new(),
+            reached: None,
+        }
+    }
+
+    /// Samples per pixel, on average.
+    pub fn samples(&self) -> f64 {
+        self.samples_per_pixel as f64 + self.unfinished
+    }
 }
 
 /// Renders `scene` onto `film`, reporting to `progress` now and then.
@@ -103,8 +131,27 @@ pub fn render_layers(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    let mut monitor = Monitor { progress, marks: &[], show: &mut |_| {} };
-    dispatch(scene, film, settings, Mode::Budget, layers, &mut monitor)
+    let mut sums = sums_for(film, layers);
+    render_on(scene, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
+}
+
+/// No samples yet of `film` and `layers`.
+pub fn sums_for(film: &Film, layers: &[Layer]) -> Sums {
+    Sums::new(film, layers.iter().any(Layer::needs_squares))
+}
+
+/// Goes on from `sums`, which are of the same scene, film, layers and settings (but for the budget), with the samples of
+/// the budget that they do not have. `watch` sees the progress and the sums now and then.
+pub fn render_on(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    layers: &[Layer],
+    sums: &mut Sums,
+    watch: &mut dyn FnMut(Progress, &Sums),
+) -> Image {
+    let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
+    dispatch(scene, film, settings, Mode::Budget(sums), layers, &mut monitor)
 }
 
 /// Renders `scene` onto `film`, and shows the image after each of `marks` (samples per pixel, in growing order, none
@@ -117,7 +164,8 @@ pub fn render_in_steps(
     progress: &mut dyn FnMut(Progress),
     show: &mut dyn FnMut(Snapshot),
 ) -> Image {
-    dispatch(scene, film, settings, Mode::Budget, &[], &mut Monitor { progress, marks, show })
+    let mut monitor = Monitor { watch: &mut |reached, _| progress(reached), marks, show };
+    dispatch(scene, film, settings, Mode::Budget(&mut sums_for(film, &[])), &[], &mut monitor)
 }
 
 /// Renders `scene` onto `film`, and `layers` with it, until every pixel is known with `precision` or the budget of
@@ -130,8 +178,10 @@ pub fn render_to_precision(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    let mut monitor = Monitor { progress, marks: &[], show: &mut |_| {} };
-    dispatch(scene, film, settings, Mode::Precision(precision), layers, &mut monitor)
+    let stopwatch = Stopwatch::start();
+    let bench = Instrument::new(scene, film, settings);
+    let found = Adaptive::new(&bench, precision, &stopwatch).run(progress);
+    finish(&bench, &stopwatch, found, layers)
 }
 
 /// Shows `scene` on `film` as a preview that looks like `fog`, and `layers` with it. Of the options only the
@@ -145,19 +195,18 @@ pub fn preview(
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
     let options = Options { strategies: Strategies::NONE, heuristic: Heuristic::Balance, ..settings.options };
-    let mut monitor = Monitor { progress, marks: &[], show: &mut |_| {} };
-    dispatch(scene, film, &Settings { options, ..*settings }, Mode::Preview(fog), layers, &mut monitor)
+    let watch = &mut |reached, _: &Sums| progress(reached);
+    let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
+    let mode = Mode::Preview(fog, &mut sums_for(film, layers));
+    dispatch(scene, film, &Settings { options, ..*settings }, mode, layers, &mut monitor)
 }
 
 /// What a render computes from its samples.
-#[derive(Clone, Copy)]
 enum Mode<'a> {
     /// An image, as good as the budget allows.
-    Budget,
-    /// An image that is good enough everywhere.
-    Precision(Precision),
+    Budget(&'a mut Sums),
     /// A preview.
-    Preview(&'a FogSettings),
+    Preview(&'a FogSettings, &'a mut Sums),
 }
 
 fn dispatch(
@@ -170,85 +219,88 @@ fn dispatch(
 ) -> Image {
     let stopwatch = Stopwatch::start();
     let bench = Instrument::new(scene, film, settings);
-    let preview = match mode {
-        Mode::Precision(precision) => {
-            let found = Adaptive::new(&bench, precision, &stopwatch).run(monitor.progress);
-            return finish(&bench, &stopwatch, found, layers);
-        }
-        Mode::Preview(fog) => {
+    let (preview, sums) = match mode {
+        Mode::Preview(fog, sums) => {
             let rays = bench.compiled.blocks().pilot_rays(scene, film, settings.seed);
-            Some(Preview::new(scene, fog, settings.options.hide_emitters, rays))
+            (Some(Preview::new(scene, fog, settings.options.hide_emitters, rays)), sums)
         }
-        Mode::Budget => None,
+        Mode::Budget(sums) => (None, sums),
     };
-    let squares = layers.iter().any(Layer::needs_squares);
-    let accumulator = if squares { Accumulator::with_products } else { Accumulator::new }(film.len());
-    let (accumulator, noise, stopwatch) =
-        accumulate(&bench, preview.as_ref(), accumulator, stopwatch, monitor);
-    let passes = accumulator.passes();
-    let seen = primary::Pass::new(film, layers).run(&bench, passes);
-    let pixels = accumulator.mean();
-    let layers = layers.iter().flat_map(|layer| develop(layer, &pixels, &accumulator, &seen)).collect();
-    let elapsed = stopwatch.elapsed();
-    Image { pixels, samples_per_pixel: passes, elapsed, noise, alpha: seen.alpha, layers, reached: None }
+    accumulate(&bench, preview.as_ref(), sums, stopwatch, monitor);
+    let image = Image::so_far(sums);
+    let seen = primary::Pass::new(film, layers).run(&bench, image.samples_per_pixel.max(1));
+    let develop = |layer| develop(layer, &image.pixels, &sums.accumulator, &seen);
+    let layers = layers.iter().flat_map(develop).collect();
+    Image { alpha: seen.alpha, layers, ..image }
 }
 
 /// The image of an adaptive render, with a layer that shows how many samples its pixels took.
 fn finish(bench: &Instrument<'_>, stopwatch: &Stopwatch, found: Developed, layers: &[Layer]) -> Image {
     let Developed { pixels, passes, noise, reached } = found;
     let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
-    let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes);
+    let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes.max(1));
     let seen = primary::Pass::new(bench.film, layers).run(bench, mean);
     let none = Accumulator::new(0);
     let mut layers: Vec<_> = layers.iter().flat_map(|layer| develop(layer, &pixels, &none, &seen)).collect();
     let values = reached.samples.iter().map(|n| *n as f32).collect();
     layers.push(Channel { name: "samples.N".to_owned(), values });
     let (elapsed, reached) = (stopwatch.elapsed(), Some(reached));
-    Image { pixels, samples_per_pixel: mean, elapsed, noise, alpha: seen.alpha, layers, reached }
+    let alpha = seen.alpha;
+    Image { pixels, samples_per_pixel: mean, unfinished: 0.0, elapsed, noise, alpha, layers, reached }
 }
 
-/// Adds up passes until the budget is spent; with the noise of their mean. A preview is shown in place of what the
-/// estimator says.
+/// Adds samples until the budget is spent. A preview is shown in place of what the estimator says.
 fn accumulate(
     bench: &Instrument<'_>,
     preview: Option<&Preview<'_>>,
-    mut accumulator: Accumulator,
+    sums: &mut Sums,
     mut stopwatch: Stopwatch,
     monitor: &mut Monitor<'_>,
-) -> (Accumulator, Option<f64>, Stopwatch) {
+) {
     let Instrument { film, settings: Settings { budget, seed, .. }, compiled, .. } = bench;
-    let (blocks, count) = (compiled.blocks(), compiled.blocks().count());
-    let mut pass = vec![Spectrum::ZERO; film.len()];
-    let (mut next, mut noise) = (0, None);
+    let (blocks, count, before) = (compiled.blocks(), compiled.blocks().count(), sums.elapsed);
+    let (had, wanted) = (sums.samples.clone(), budget.wanted());
+    // Tasks are counted over the passes that are missing; of the first of them, some blocks may be done.
+    let sample = |task: usize| had.missing(wanted.start, (task / count) as u64);
+    let end =
+        usize::try_from(had.missing_of(&wanted)).map_or(usize::MAX, |passes| passes.saturating_mul(count));
+    if end > 0 {
+        sums.start(sample(0));
+    }
+    let mut next = sums.blocks.min(end);
     loop {
-        let wanted = budget.limit_tasks(next + BLOCKS_AT_ONCE, count);
-        let tasks = next..monitor.limit_tasks(wanted, accumulator.passes(), count);
-        let outcomes = bench.work(tasks.clone(), |pass, block| match preview {
-            None => compiled.render(pass, block, &|_| true),
-            Some(preview) => blocks.show(preview, film, *seed, pass, block),
+        let tasks = next..monitor.limit_tasks(end.min(next + BLOCKS_AT_ONCE), (next / count) as u64, count);
+        let is_over = || budget.is_over(stopwatch.elapsed());
+        let outcomes = bench.work_until(tasks.clone(), is_over, |pass, block| {
+            let sample = sample(pass * count) as usize;
+            match preview {
+                None => compiled.render(sample, block, &|_| true),
+                Some(preview) => blocks.show(preview, film, *seed, sample, block),
+            }
         });
         for (task, outcome) in tasks.clone().zip(&outcomes) {
-            outcome.add_to(&mut pass);
-            if (task + 1) % count == 0 {
-                accumulator.add(&pass);
-                pass.fill(Spectrum::ZERO);
-            }
+            sums.add(sample(task), outcome, count);
         }
-        if next / count != tasks.end / count {
-            noise = accumulator.noise();
-        }
-        next = tasks.end;
-        let (elapsed, passes) = (stopwatch.elapsed(), accumulator.passes());
+        next += outcomes.len();
+        let elapsed = stopwatch.elapsed();
+        sums.elapsed = before + elapsed;
+        sums.note_noise();
+        let passes = sums.samples.count();
         if next.is_multiple_of(count) && monitor.is_mark(passes) {
-            let show = || {
-                (monitor.show)(Snapshot { pixels: accumulator.mean(), samples_per_pixel: passes, elapsed })
+            let show = |monitor: &mut Monitor<'_>| {
+                (monitor.show)(Snapshot {
+                    pixels: sums.accumulator.mean(),
+                    samples_per_pixel: passes,
+                    elapsed,
+                });
             };
-            stopwatch.hold(show);
+            stopwatch.hold(|| show(monitor));
         }
-        let samples = (next as u64 * film.len() as u64) / count as u64;
-        (monitor.progress)(Progress { samples, passes, elapsed, noise, within: None });
-        if budget.is_spent(next, count, elapsed) {
-            return (accumulator, noise, stopwatch);
+        let samples = passes * film.len() as u64 + (sums.unfinished() * film.len() as f64) as u64;
+        let reached = Progress { samples, passes, elapsed, noise: sums.noise, within: None };
+        stopwatch.hold(|| (monitor.watch)(reached, sums));
+        if next == end || outcomes.len() < tasks.len() {
+            return;
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Watches a render: receives its progress, and the image at requested marks.
 
-use super::Progress;
+use super::{Progress, sums::Sums};
 use crate::math::Spectrum;
 use std::time::{Duration, Instant};
 
@@ -17,8 +17,8 @@ pub struct Snapshot {
 
 /// Marks at which the image is requested, and who receives it.
 pub(super) struct Monitor<'a> {
-    /// Called now and then.
-    pub progress: &'a mut dyn FnMut(Progress),
+    /// Called now and then, with the sums so far; its time does not count.
+    pub watch: &'a mut dyn FnMut(Progress, &Sums),
     /// Samples per pixel, in growing order.
     pub marks: &'a [u64],
     /// Shown the image at every mark.
@@ -71,7 +71,7 @@ mod tests {
     #[test]
     fn work_ends_at_every_mark() {
         let marks = [1, 4];
-        let monitor = Monitor { progress: &mut |_| {}, marks: &marks, show: &mut |_| {} };
+        let monitor = Monitor { watch: &mut |_, _| {}, marks: &marks, show: &mut |_| {} };
         assert_eq!(monitor.limit_tasks(64, 0, 10), 10);
         assert_eq!(monitor.limit_tasks(7, 0, 10), 7);
         assert_eq!(monitor.limit_tasks(74, 1, 10), 40);

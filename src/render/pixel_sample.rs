@@ -159,15 +159,9 @@ impl Instrument<'_> {
         let EyeSample { film, aperture, factor, hero, camera, tries } = compiled.eye_sample(pass, own, pixel);
         let radiance =
             sum(tries.iter().filter_map(|one| one.contribution.map(|contribution| contribution.value)));
-        let mut value = Spectrum::ZERO;
-        for (block, splats) in splats.iter().enumerate() {
-            // The order in which a pass adds up.
-            if block == own {
-                value += radiance * factor;
-            }
-            splats.iter().for_each(|splat| value += splat.value());
-        }
         let splats: Vec<Splat> = splats.into_iter().flatten().collect();
+        // The order in which a pass adds up.
+        let value = radiance * factor + sum(splats.iter().map(Splat::value));
         let contribution = tries.iter().filter_map(|one| match one.partner {
             Partner::Light { walk, .. } => Some(walk),
             _ => None,

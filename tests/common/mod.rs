@@ -69,7 +69,7 @@ impl Stage {
     pub fn settings(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Settings {
         let options = Options { strategies, ..self.setup.integrator.options };
         let sampler = self.setup.sampler;
-        let budget = Budget { samples_per_pixel: Some(samples_per_pixel), time: None };
+        let budget = Budget::samples(samples_per_pixel);
         Settings { options, sampler, budget, seed, profile: self.profile }
     }
 

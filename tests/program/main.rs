@@ -11,6 +11,7 @@ mod diff;
 mod errors;
 mod flights;
 mod html;
+mod keeping;
 mod layering;
 mod page;
 mod phase;

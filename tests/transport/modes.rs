@@ -72,7 +72,7 @@ const FOG: Spectrum = Spectrum::new(0.1, 0.4, 0.9);
 fn preview(scene: &Value) -> Vec<Spectrum> {
     let Stage { setup, profile } = Stage::new(scene);
     let options = Options { heuristic: Heuristic::Balance, max_depth: None, ..setup.integrator.options };
-    let budget = Budget { samples_per_pixel: Some(2), time: None };
+    let budget = Budget::samples(2);
     let settings = Settings { options, sampler: setup.sampler, budget, seed: 1, profile };
     render::preview(&setup.scene, &setup.film, &settings, &setup.integrator.fog, &[], &mut |_| {}).pixels
 }

@@ -90,9 +90,9 @@ pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> Result<u64> {
         Renderer::Own { .. } if !is_timed => 0.0,
         Renderer::Own { .. } => {
             let time = Some(Duration::from_secs_f64((PILOT_PART * seconds).clamp(1e-3, 60.0)));
-            let budget = Budget { samples_per_pixel: Some(PILOT_SAMPLES), time };
+            let budget = Budget { time, ..Budget::samples(PILOT_SAMPLES) };
             let image = unit::pilot(entry, seed, budget);
-            image.map_or(f64::INFINITY, |image| image.elapsed.as_secs_f64() / image.samples_per_pixel as f64)
+            image.map_or(f64::INFINITY, |image| image.elapsed.as_secs_f64() / image.samples())
         }
         Renderer::External(external) => {
             let mut spp = 1;
@@ -115,7 +115,7 @@ pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> Result<u64> {
 /// Relative variance of few samples of `entry`, the same number for everybody; NaN if unknown.
 pub fn variance(entry: &Entry, first_seed: u64) -> f64 {
     const SAMPLES: u64 = 16;
-    let budget = Budget { samples_per_pixel: Some(SAMPLES), time: None };
+    let budget = Budget::samples(SAMPLES);
     let image = unit::pilot(entry, first_seed ^ PILOT_SEED, budget);
     image.and_then(|image| image.noise).map_or(f64::NAN, |noise| noise * noise)
 }

@@ -123,7 +123,7 @@ pub fn shoot(
     match &entry.renderer {
         Renderer::Own { settings, load_seconds } => {
             let last = marks.last().copied().unwrap_or(1);
-            let settings = settled(settings, seed, Budget { samples_per_pixel: Some(last), time: None });
+            let settings = settled(settings, seed, Budget::samples(last));
             let film = plain_film(entry);
             let all = last as f64 * film.len() as f64;
             let progress = &mut |progress: render::Progress| notify(progress.samples as f64 / all);

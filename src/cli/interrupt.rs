@@ -1,0 +1,46 @@
+//! Ctrl-C and its like: the first one asks a render to end in order, the second one ends the program at once.
+
+use signal_hook::{consts, flag};
+use std::sync::{
+    Arc, OnceLock,
+    atomic::{AtomicBool, AtomicUsize, Ordering},
+};
+
+/// The signals that end a render, and what they are called.
+#[cfg(unix)]
+const SIGNALS: [(i32, &str); 3] =
+    [(consts::SIGINT, "Ctrl-C"), (consts::SIGTERM, "SIGTERM"), (consts::SIGHUP, "SIGHUP")];
+#[cfg(not(unix))]
+const SIGNALS: [(i32, &str); 2] = [(consts::SIGINT, "Ctrl-C"), (consts::SIGTERM, "SIGTERM")];
+
+/// The signal that came; 0 before.
+static CAME: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
+
+/// From here on signals are kept for [`signal`]. Where the machine allows no handlers, they end the program as before.
+pub fn listen() {
+    let came = CAME.get_or_init(|| Arc::new(AtomicUsize::new(0)));
+    for (signal, _) in SIGNALS {
+        let again = Arc::new(AtomicBool::new(false));
+        // In this order: the shutdown must not see the flag that the same signal sets.
+        let _ = flag::register_conditional_shutdown(signal, exit_code(signal).into(), again.clone());
+        let _ = flag::register(signal, again);
+        let _ = flag::register_usize(signal, came.clone(), signal as usize);
+    }
+}
+
+/// True once a signal came.
+pub fn came() -> bool {
+    signal().is_some()
+}
+
+/// The signal that came, by name, with the exit code that it gives.
+pub fn signal() -> Option<(&'static str, u8)> {
+    let came = CAME.get()?.load(Ordering::Relaxed);
+    let found = SIGNALS.iter().find(|(signal, _)| *signal as usize == came);
+    found.map(|(signal, name)| (*name, exit_code(*signal)))
+}
+
+/// As shells report a process that a signal ended.
+fn exit_code(signal: i32) -> u8 {
+    128 + signal as u8
+}

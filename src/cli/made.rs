@@ -1,0 +1,94 @@
+//! How an image is made: what its files say of themselves, and what must be equal for its samples to be added up.
+
+use super::arguments::Scene;
+use crate::{
+    analysis::study::question::differ,
+    error::{Error, Result},
+    format,
+    render::{Image, Settings},
+    scene::build::Setup,
+    transport::observer::StrategyKind,
+};
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// All that decides about the samples of an image.
+pub fn settings(scene: &Scene, setup: &Setup, settings: &Settings) -> Result<Value> {
+    let sources = format::sources(&scene.file, &scene.definitions)?;
+    let files: Map<String, Value> =
+        sources.fingerprints()?.into_iter().map(|(name, print)| (name, print.into())).collect();
+    let definitions: Map<String, Value> =
+        scene.definitions.iter().map(|(name, value)| (name.clone(), value.as_str().into())).collect();
+    let Settings { options, sampler, seed, profile, .. } = settings;
+    let kinds = StrategyKind::ALL.into_iter().filter(|kind| options.strategies.has(*kind));
+    let trackers = setup.scene.media.iter().filter_map(|medium| medium.heterogeneous());
+    let trackers: Vec<String> =
+        trackers.map(|medium| medium.forced().unwrap_or(medium.requested()).name().to_owned()).collect();
+    let film = &setup.film;
+    Ok(json!({
+        "program": program(),
+        "files": files,
+        "definitions": definitions,
+        "time": setup.time,
+        "film": {
+            "size": film.window.size,
+            "full_size": film.window.full_size,
+            "offset": film.window.offset,
+            "filter": format!("{:?}", film.filter),
+            "border": film.border,
+        },
+        "layers": setup.integrator.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
+        "strategies": kinds.map(StrategyKind::name).collect::<Vec<_>>(),
+        "heuristic": options.heuristic.to_string(),
+        "max_depth": options.max_depth,
+        "hide_emitters": options.hide_emitters,
+        "forced_interaction": options.forced_interaction,
+        "trackers": trackers,
+        "sampler": sampler.name(),
+        "seed": seed,
+        "profile": profile.name(),
+    }))
+}
+
+/// This program and its version.
+pub fn program() -> String {
+    format!("tyndall {}", env!("CARGO_PKG_VERSION"))
+}
+
+/// `settings` with the command that is running: enough to make the image again.
+pub fn made(settings: Value) -> Value {
+    let command: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    let folder = std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default();
+    json!({ "settings": settings, "command": command, "folder": folder })
+}
+
+/// The same with what became of it.
+pub fn metadata(made: &Value, samples: &str, image: &Image) -> Value {
+    let mut all = made.clone();
+    all["samples"] = samples.into();
+    all["render_seconds"] = image.elapsed.as_secs_f64().into();
+    all["relative_error"] = image.noise.into();
+    all["machine"] = machine().into();
+    all
+}
+
+fn machine() -> String {
+    let name = sysinfo::System::host_name().unwrap_or_default();
+    let threads = rayon::current_num_threads();
+    format!("{name} ({} {}, {threads} threads)", std::env::consts::OS, std::env::consts::ARCH)
+}
+
+/// Refuses sums in `file` whose image is made otherwise.
+pub fn must_equal(file: &Path, found: &Value, wanted: &Value) -> Result<()> {
+    let none = Value::Null;
+    let (found, wanted) = [found, wanted].map(|made| made.get("settings").unwrap_or(&none)).into();
+    match differ("", found, wanted) {
+        None => Ok(()),
+        Some((place, old, new)) => Err(Error::new(
+            file.display(),
+            format!("samples of the same image, with {place} = {new}"),
+            format!("{place} = {old}"),
+            "use the scene, the files and the options that these samples were rendered with, or start again without --resume",
+        )),
+    }
+}

@@ -1,0 +1,110 @@
+//! Which samples an image has: a set of their numbers.
+
+use std::ops::Range;
+
+/// Sample numbers, as ranges in growing order that neither overlap nor touch.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Samples(Vec<Range<u64>>);
+
+impl Samples {
+    /// Those of `ranges`; none if some are empty or overlap.
+    pub fn of(mut ranges: Vec<Range<u64>>) -> Option<Self> {
+        ranges.sort_by_key(|range| range.start);
+        let mut samples = Self::default();
+        ranges.into_iter().try_for_each(|range| samples.push(range))?;
+        Some(samples)
+    }
+
+    /// Adds a range behind all others.
+    fn push(&mut self, range: Range<u64>) -> Option<()> {
+        match self.0.last_mut() {
+            _ if range.is_empty() => return None,
+            Some(last) if last.end > range.start => return None,
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => self.0.push(range),
+        }
+        Some(())
+    }
+
+    /// These and `other`; none if they share some.
+    pub fn and(&self, other: &Self) -> Option<Self> {
+        Self::of(self.0.iter().chain(&other.0).cloned().collect())
+    }
+
+    /// Adds the sample `number`, which is none of them.
+    pub fn insert(&mut self, number: u64) {
+        match self.0.last_mut() {
+            Some(last) if last.end == number => last.end += 1,
+            _ => *self = self.and(&Self(vec![number..number + 1])).unwrap_or_default(),
+        }
+    }
+
+    /// How many.
+    pub fn count(&self) -> u64 {
+        self.0.iter().map(|range| range.end - range.start).sum()
+    }
+
+    /// The ranges.
+    pub fn ranges(&self) -> &[Range<u64>] {
+        &self.0
+    }
+
+    /// Number `index`, from 0, of those from `first` on that are missing.
+    pub fn missing(&self, first: u64, index: u64) -> u64 {
+        let mut number = first + index;
+        for range in self.0.iter().filter(|range| range.end > first) {
+            if range.start <= number {
+                number += range.end - range.start.max(first);
+            }
+        }
+        number
+    }
+
+    /// How many of `wanted` are missing.
+    pub fn missing_of(&self, wanted: &Range<u64>) -> u64 {
+        let shared =
+            |range: &Range<u64>| range.end.min(wanted.end).saturating_sub(range.start.max(wanted.start));
+        (wanted.end - wanted.start) - self.0.iter().map(shared).sum::<u64>()
+    }
+}
+
+impl std::fmt::Display for Samples {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let ranges: Vec<String> =
+            self.0.iter().map(|range| format!("{}..{}", range.start, range.end)).collect();
+        f.write_str(if ranges.is_empty() { "none" } else { "" })?;
+        f.write_str(&ranges.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_join_and_refuse_what_they_share() {
+        let samples = Samples::of(vec![8..9, 0..3, 3..5]).unwrap();
+        assert_eq!((samples.ranges(), samples.count()), (&[0..5, 8..9][..], 6));
+        assert_eq!(samples.to_string(), "0..5, 8..9");
+        assert_eq!(samples.and(&Samples::of(vec![4..6]).unwrap()), None);
+        assert_eq!(samples.and(&Samples::of(vec![5..8]).unwrap()).unwrap().ranges(), &[0..9]);
+        assert!(Samples::of(vec![3..3]).is_none() && Samples::default().to_string() == "none");
+    }
+
+    /// Against a list of all numbers.
+    #[test]
+    fn what_is_missing() {
+        let samples = Samples::of(vec![2..4, 5..6, 9..12]).unwrap();
+        for first in 0..14 {
+            let missing: Vec<u64> =
+                (first..40).filter(|n| !samples.ranges().iter().any(|r| r.contains(n))).collect();
+            let found: Vec<u64> =
+                (0..missing.len() as u64).map(|index| samples.missing(first, index)).collect();
+            assert_eq!(found, missing, "{first}");
+            assert_eq!(samples.missing_of(&(first..40)), missing.len() as u64, "{first}");
+        }
+        let mut grown = samples.clone();
+        (0..12).filter(|n| !samples.ranges().iter().any(|r| r.contains(n))).for_each(|n| grown.insert(n));
+        assert_eq!(grown.ranges(), &[0..12]);
+    }
+}

@@ -1,0 +1,152 @@
+//! An image that is being rendered: the sums of whole passes, and the blocks done of one more. From it a render goes on
+//! as if it had never stopped, and several of other samples make one.
+
+use super::{
+    block::{Blocks, Outcome, Pass},
+    samples::Samples,
+};
+use crate::{
+    film::{Film, accumulator::Accumulator},
+    math::Spectrum,
+    sampling::Sampler,
+};
+use std::time::Duration;
+
+/// What a render knows.
+#[derive(Clone, Debug)]
+pub struct Sums {
+    pub(super) accumulator: Accumulator,
+    /// The samples that the accumulator holds.
+    pub(super) samples: Samples,
+    /// The unfinished pass.
+    pub(super) pass: Pass,
+    /// Its sample number.
+    pub(super) sample: u64,
+    /// How many of its blocks are done: the first ones.
+    pub(super) blocks: usize,
+    /// Time spent on all of it.
+    pub(super) elapsed: Duration,
+    /// See [`Accumulator::noise`], of whole passes.
+    pub(super) noise: Option<f64>,
+    /// Of so many passes.
+    noted: u64,
+    width: usize,
+}
+
+impl Sums {
+    /// Nothing yet, for an image of `film`; with sums of products where layers of moments or variances need them.
+    pub fn new(film: &Film, with_products: bool) -> Self {
+        let accumulator =
+            if with_products { Accumulator::with_products } else { Accumulator::new }(film.len());
+        Self::of(accumulator, Samples::default(), film.width as usize)
+    }
+
+    /// Whole passes of `samples`, of an image of `width` pixels across.
+    pub(super) fn of(accumulator: Accumulator, samples: Samples, width: usize) -> Self {
+        let (pass, noise, noted) = (Pass::new(accumulator.len()), accumulator.noise(), accumulator.passes());
+        Self {
+            accumulator,
+            samples,
+            pass,
+            sample: 0,
+            blocks: 0,
+            elapsed: Duration::ZERO,
+            noise,
+            noted,
+            width,
+        }
+    }
+
+    /// The samples that every pixel has.
+    pub fn samples(&self) -> &Samples {
+        &self.samples
+    }
+
+    /// The fraction of the pixels that have one more.
+    pub fn unfinished(&self) -> f64 {
+        self.blocks as f64 / self.division().count() as f64
+    }
+
+    /// Time spent on them, on all machines.
+    pub fn elapsed(&self) -> Duration {
+        self.elapsed
+    }
+
+    /// See [`Accumulator::noise`].
+    pub fn noise(&self) -> Option<f64> {
+        self.noise
+    }
+
+    /// Pixels across and down.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.accumulator.len() / self.width)
+    }
+
+    /// Adds the whole passes of `other`, of the same image; the blocks of its unfinished pass are left out. False, and
+    /// nothing is added, if they share samples.
+    pub fn merge(&mut self, other: &Self) -> bool {
+        let Some(samples) = self.samples.and(&other.samples) else { return false };
+        self.samples = samples;
+        self.accumulator.merge(&other.accumulator);
+        self.note_noise();
+        self.elapsed += other.elapsed;
+        true
+    }
+
+    /// Leaves out the blocks of an unfinished pass; which fraction of a pass they are.
+    pub fn drop_unfinished(&mut self) -> f64 {
+        let fraction = self.unfinished();
+        self.pass.clear();
+        self.blocks = 0;
+        fraction
+    }
+
+    /// Goes on with the sample `sample`: what was done of another one is dropped.
+    pub(super) fn start(&mut self, sample: u64) {
+        if self.sample != sample {
+            self.pass = Pass::new(self.accumulator.len());
+            (self.sample, self.blocks) = (sample, 0);
+        }
+    }
+
+    /// Adds the next block of the pass of sample `sample`, of `count` blocks.
+    pub(super) fn add(&mut self, sample: u64, outcome: &Outcome, count: usize) {
+        self.sample = sample;
+        self.pass.add(outcome);
+        self.blocks += 1;
+        if self.blocks == count {
+            self.pass.finish(|pass| self.accumulator.add(pass));
+            self.samples.insert(sample);
+            self.blocks = 0;
+        }
+    }
+
+    /// Estimates the noise again where a pass was added since.
+    pub(super) fn note_noise(&mut self) {
+        if self.noted != self.accumulator.passes() {
+            (self.noise, self.noted) = (self.accumulator.noise(), self.accumulator.passes());
+        }
+    }
+
+    /// Which pixels a block has does not depend on how it is rendered.
+    pub(super) fn division(&self) -> Blocks {
+        Blocks::new(self.accumulator.len(), 1, Sampler::Independent)
+    }
+
+    /// The mean. Pixels of the unfinished pass's blocks count it by the fraction of it that is done, as the light that
+    /// it found is the less certain the fewer blocks there are: no pixel is biased. Pixels of no sample at all take the
+    /// mean of those around them.
+    pub fn pixels(&self) -> Vec<Spectrum> {
+        let blocks = self.division();
+        if self.accumulator.passes() == 0 {
+            return self.pass.pixels(&blocks, self.blocks, self.width);
+        }
+        let (mut pixels, passes) = (self.accumulator.mean(), self.accumulator.passes() as f32);
+        let done = self.unfinished() as f32;
+        for pixel in (0..self.blocks).flat_map(|block| blocks.pixels(block)) {
+            let both = pixels[pixel] * passes + self.pass.estimate(pixel, done) * done;
+            pixels[pixel] = both / (passes + done);
+        }
+        pixels
+    }
+}

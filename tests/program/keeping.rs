@@ -1,0 +1,201 @@
+//! Nothing is lost: renders that stop and go on, and parts of one image.
+
+use crate::sandbox::{Run, Sandbox};
+use serde_json::{Value, json};
+use std::{
+    fs,
+    path::Path,
+    process::{Child, Command, Stdio},
+    time::{Duration, Instant},
+};
+
+/// A room of fog: light comes by every strategy, and in every pass from other blocks.
+fn foggy() -> Sandbox {
+    Sandbox::with_files(&[("fog.json", include_str!("../../scenes/foggy_room.json"))])
+}
+
+const SIZE: &str = "--size 60x50";
+
+fn render(sandbox: &Sandbox, words: &str) -> Run {
+    sandbox.run(&format!("render fog.json {SIZE} {words}"))
+}
+
+fn good(run: Run) -> Run {
+    run.ends(0)
+}
+
+fn refused(run: Run, words: &[&str]) {
+    let error = run.ends(2).err();
+    words.iter().for_each(|word| assert!(error.contains(word), "{word}: {error}"));
+}
+
+fn assert_same(sandbox: &Sandbox, a: &str, b: &str) {
+    assert!(sandbox.bytes(a) == sandbox.bytes(b), "{a} and {b} differ");
+}
+
+fn started(sandbox: &Sandbox, words: &str) -> Child {
+    let all = format!("render fog.json {SIZE} {words}");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+    command
+        .args(all.split_whitespace())
+        .current_dir(sandbox.path(""))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    command.spawn().unwrap()
+}
+
+fn signal(child: &Child, name: &str) {
+    assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
+}
+
+#[test]
+fn any_partition_of_the_samples_makes_the_same_image() {
+    let sandbox = foggy();
+    good(render(&sandbox, "--spp 12 -o all.exr --threads 2"));
+    for (index, cuts) in [&[0, 12][..], &[0, 5, 12], &[0, 1, 2, 11, 12]].into_iter().enumerate() {
+        let mut parts: Vec<String> = Vec::new();
+        for (range, threads) in cuts.windows(2).zip([1, 3, 2, 7]) {
+            let (name, samples) =
+                (format!("{index}_{}.sums", range[0]), format!("{}..{}", range[0], range[1]));
+            good(render(&sandbox, &format!("--samples {samples} --sums {name} --threads {threads}")));
+            parts.insert(parts.len() / 2, name);
+        }
+        good(sandbox.run(&format!("merge {} -o merged.exr", parts.join(" "))));
+        assert_same(&sandbox, "all.exr", "merged.exr");
+        assert_same(&sandbox, "all.png", "merged.png");
+    }
+}
+
+#[test]
+fn sums_of_parts_go_on() {
+    let sandbox = foggy();
+    good(render(&sandbox, "--spp 7 -o all.exr"));
+    good(render(&sandbox, "--samples 1..3 --sums a.sums"));
+    good(render(&sandbox, "--samples 5..6 --sums b.sums"));
+    good(sandbox.run("merge b.sums a.sums --sums both.sums"));
+    good(render(&sandbox, "--spp 7 --resume --sums both.sums -o gone_on.exr"));
+    assert_same(&sandbox, "all.exr", "gone_on.exr");
+}
+
+#[test]
+fn layers_and_moments_are_merged() {
+    let mut scene: Value = serde_json::from_str(include_str!("../../scenes/foggy_room.json")).unwrap();
+    scene["integrator"] =
+        json!({"type": "aov", "aovs": "n:sh_normal", "inner": {"type": "moment", "path": {"type": "bdpt"}}});
+    let sandbox = Sandbox::with_files(&[("fog.json", &scene.to_string())]);
+    good(render(&sandbox, "--spp 5 -o all.exr"));
+    good(render(&sandbox, "--samples 0..2 --sums a.sums"));
+    good(render(&sandbox, "--samples 2..5 --sums b.sums"));
+    good(sandbox.run("merge b.sums a.sums -o merged.exr"));
+    assert_same(&sandbox, "all.exr", "merged.exr");
+}
+
+#[test]
+fn what_is_no_part_of_the_image_is_refused() {
+    let sandbox = foggy();
+    good(render(&sandbox, "--samples 0..2 --sums a.sums"));
+    good(render(&sandbox, "--samples 1..3 --sums b.sums"));
+    refused(sandbox.run("merge a.sums b.sums -o x.exr"), &["b.sums", "samples 1..3"]);
+    for (words, differs) in
+        [("--seed 1", "seed"), ("--integrator pt", "strategies"), ("--max-depth 3", "max_depth")]
+    {
+        good(render(&sandbox, &format!("--samples 2..3 --sums c.sums {words}")));
+        refused(sandbox.run("merge a.sums c.sums -o x.exr"), &["c.sums", differs]);
+        refused(render(&sandbox, &format!("--spp 9 --resume --sums a.sums {words}")), &["a.sums", differs]);
+    }
+    fs::write(sandbox.path("fog.json"), sandbox.text("fog.json") + " ").unwrap();
+    refused(render(&sandbox, "--spp 9 --resume --sums a.sums"), &["files.fog.json"]);
+    assert!(!sandbox.path("x.exr").exists());
+}
+
+#[test]
+fn damaged_sums_are_refused_and_the_ones_before_them_used() {
+    let sandbox = foggy();
+    good(render(&sandbox, "--samples 0..2 --sums a.sums"));
+    let whole = sandbox.bytes("a.sums");
+    let mut flipped = whole.clone();
+    flipped[whole.len() - 100] ^= 1;
+    for damaged in [&whole[..whole.len() - 1], &whole[..7], &[], &flipped, b"{\"width\": 3}"] {
+        fs::write(sandbox.path("a.sums"), damaged).unwrap();
+        refused(sandbox.run("merge a.sums -o x.exr"), &["a.sums"]);
+    }
+    refused(render(&sandbox, "--spp 3 --resume --sums a.sums -o x.exr"), &["a.sums", "damaged"]);
+    fs::write(sandbox.path("a.sums.previous"), whole).unwrap();
+    let warning = good(render(&sandbox, "--spp 3 --resume --sums a.sums -o x.exr")).err();
+    assert!(warning.contains("a.sums.previous"), "{warning}");
+    good(render(&sandbox, "--spp 3 -o all.exr"));
+    assert_same(&sandbox, "all.exr", "x.exr");
+}
+
+/// Signals end a render in order: the picture, its report and the sums are there, and it goes on to the same bits.
+#[cfg(unix)]
+#[test]
+fn what_a_signal_ends_goes_on() {
+    for (name, code) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
+        let sandbox = foggy();
+        let mut child = started(&sandbox, "--time-limit 100s -o fog.exr --report report.json");
+        std::thread::sleep(Duration::from_millis(700));
+        signal(&child, name);
+        assert_eq!(child.wait().unwrap().code(), Some(code), "{name}");
+        let done = sandbox.json("report.json")["samples_per_pixel"].as_u64().unwrap();
+        assert!(sandbox.path("fog.png").exists() && sandbox.path("fog.exr").exists());
+        good(render(&sandbox, &format!("--spp {} --resume -o fog.exr", done + 2)));
+        good(render(&sandbox, &format!("--spp {} -o all.exr", done + 2)));
+        assert_same(&sandbox, "fog.exr", "all.exr");
+    }
+}
+
+/// A second one ends it at once, even while it cannot end in order.
+#[cfg(unix)]
+#[test]
+fn a_second_signal_ends_at_once() {
+    let sandbox = foggy();
+    let mut child = started(&sandbox, "--time-limit 100s -o fog.exr");
+    std::thread::sleep(Duration::from_millis(500));
+    signal(&child, "-STOP");
+    signal(&child, "-INT");
+    signal(&child, "-CONT");
+    signal(&child, "-INT");
+    let begun = Instant::now();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(begun.elapsed() < Duration::from_secs(5));
+}
+
+/// Killed at any moment, also while it writes: what is there is whole, and goes on to the same bits.
+#[test]
+fn what_is_killed_goes_on_to_the_same_bits() {
+    let (sandbox, kills) =
+        (foggy(), std::env::var("TYNDALL_KILLS").map_or(10, |kills| kills.parse().unwrap()));
+    let mut moment = 1u64;
+    for kill in 0.. {
+        if kill >= kills && has_sums(&sandbox.path("")) {
+            break;
+        }
+        let resume = if has_sums(&sandbox.path("")) { "--resume" } else { "" };
+        let mut child =
+            started(&sandbox, &format!("--spp 400 --sums fog.sums --sums-every 0.05s {resume} -o fog.exr"));
+        moment = moment.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        std::thread::sleep(Duration::from_millis(50 + (moment >> 33) % 500));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    good(render(&sandbox, "--spp 1 --resume --sums fog.sums -o now.exr --report report.json"));
+    let done = sandbox.json("report.json")["samples_per_pixel"].as_u64().unwrap();
+    good(render(&sandbox, &format!("--spp {} --resume --sums fog.sums -o fog.exr", done + 1)));
+    good(render(&sandbox, &format!("--spp {} -o all.exr", done + 1)));
+    assert_same(&sandbox, "fog.exr", "all.exr");
+}
+
+fn has_sums(folder: &Path) -> bool {
+    ["fog.sums", "fog.sums.previous"].iter().any(|name| folder.join(name).exists())
+}
+
+/// The limit holds at any size, and what there is by then is an image without holes.
+#[test]
+fn time_ends_within_a_block() {
+    let sandbox = foggy();
+    let words = "render fog.json --size 3840x2160 --time-limit 0.5s -o large.exr --report report.json";
+    good(sandbox.run(words));
+    let seconds = sandbox.json("report.json")["render_seconds"].as_f64().unwrap();
+    assert!(seconds < 1.5, "{seconds} s");
+}
