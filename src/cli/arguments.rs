@@ -222,6 +222,13 @@ pub struct Frames {
     pub last: u32,
 }
 
+impl Frames {
+    /// Digits of their numbers in names of files.
+    pub fn digits(self) -> usize {
+        self.last.to_string().len().max(4)
+    }
+}
+
 /// Width and height of an image in pixels, both positive.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Size {
@@ -324,6 +331,7 @@ fn image_file(text: &str) -> Result<PathBuf, String> {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     match extension.as_deref() {
         Some("exr" | "pfm" | "rgbe" | "hdr" | "png") => Ok(path),
+        _ if crate::film::output::is_stream(&path) => Ok(path),
         _ => Err("expected a file name that ends in .exr, .pfm, .rgbe, .hdr or .png".into()),
     }
 }

@@ -2,12 +2,12 @@
 
 use super::{arguments, complain};
 use crate::{error::Result, film, format, format::Naming};
-use std::io::Write as _;
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Convert) -> Result<()> {
     let arguments::Convert { input, output, definitions, fill } = arguments;
     let naming = if *fill { Naming::Fill } else { Naming::Keep };
+    film::output::check(&[(output, 0)], &[])?;
     let conversion = format::convert(input, output, definitions, naming)?;
     film::output::write(output, |file| file.write_all(conversion.text.as_bytes()))?;
     for note in &conversion.notes {

@@ -7,6 +7,7 @@ pub mod diff;
 mod estimator;
 pub mod flights;
 mod info;
+mod outputs;
 pub mod phase;
 mod pixel;
 mod render;
@@ -23,12 +24,30 @@ use crate::{
 };
 use arguments::{Arguments, Command};
 use clap::Parser;
-use std::{num::NonZeroUsize, process::ExitCode};
+use std::{
+    io::{self, ErrorKind, Write as _},
+    num::NonZeroUsize,
+    process::ExitCode,
+    sync::OnceLock,
+};
 
-/// Runs the program; bad input ends it with code 2 and a message that says what to mend.
+/// Runs the program; bad input ends it with code 2 and a message that says what to mend. So does a standard output that
+/// takes no more, once all files are written; a closed pipe, whose reader has read enough, changes nothing.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
-    let outcome = match &arguments.command {
+    match Arguments::try_parse() {
+        Ok(arguments) => judged(obey(&arguments.command).and_then(|holds| heard().map(|()| holds))),
+        // Help, the version, or what is wrong with the arguments.
+        Err(answer) => {
+            note(answer.print());
+            let code = u8::try_from(answer.exit_code()).unwrap_or(2);
+            heard().map_or_else(|error| judged(Err(error)), |()| ExitCode::from(code))
+        }
+    }
+}
+
+/// True if what the command judges holds.
+fn obey(command: &Command) -> Result<bool> {
+    let outcome = match command {
         Command::Render(render) => render::run(render),
         Command::Strategies(strategies) => strategies::run(strategies),
         Command::Pixel(pixel) => pixel::run(pixel),
@@ -36,11 +55,11 @@ pub fn run() -> ExitCode {
         Command::Convert(convert) => convert::run(convert),
         Command::Report(report) => report::run(report),
         Command::Study(study) => study::run(study),
-        Command::Diff(diff) => return judged(diff::run(diff)),
-        Command::Phase(phase) => return judged(phase::run(phase)),
-        Command::Flights(flights) => return judged(flights::run(flights)),
+        Command::Diff(diff) => return diff::run(diff),
+        Command::Phase(phase) => return phase::run(phase),
+        Command::Flights(flights) => return flights::run(flights),
     };
-    judged(outcome.map(|()| true))
+    outcome.map(|()| true)
 }
 
 /// 0 if the claim holds, 1 if it does not, 2 on an error, which is printed.
@@ -81,14 +100,32 @@ fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
     })
 }
 
-/// To standard output. A reader that has gone away is no reason to fail.
+/// To standard output. Work goes on where that fails, so that nothing is lost; [`heard`] tells in the end.
 fn say(text: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stdout(), "{text}");
+    note(writeln!(io::stdout(), "{text}").and_then(|()| io::stdout().flush()));
+}
+
+/// Why standard output took no more.
+static UNHEARD: OnceLock<io::Error> = OnceLock::new();
+
+fn note(said: io::Result<()>) {
+    if let Err(error) = said {
+        let _ = UNHEARD.set(error);
+    }
+}
+
+/// An error unless all that was said was written, or nobody reads any more.
+fn heard() -> Result<()> {
+    match UNHEARD.get() {
+        Some(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let remedy = "write it to another place; the files of this command are not affected";
+            Err(Error::new("standard output", "to write what is reported", error.to_string(), remedy))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// To standard error.
 fn complain(text: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{text}");
 }

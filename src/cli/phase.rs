@@ -7,7 +7,7 @@ use crate::{
     film::output,
 };
 use clap::Args;
-use std::{io::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
 /// Test and draw a phase function.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -56,15 +56,16 @@ fn significance(text: &str) -> std::result::Result<f64, String> {
 /// Runs the command; true if the samples are as the density says.
 pub fn run(arguments: &Phase) -> Result<bool> {
     let phase = described::build(&arguments.name, &arguments.parameters)?;
+    let [svg, ply] = ["svg", "ply"].map(|end| arguments.output.join(format!("{}.{end}", arguments.name)));
+    output::check(&[(&svg, 0), (&ply, 0)], &[])?;
     let division = Division { parallels: arguments.parallels.into(), meridians: arguments.meridians.into() };
     let check = phase::check(&phase, &phase, division, arguments.samples, arguments.seed);
     let failures = check.failures(arguments.significance);
     say(&describe(arguments, &check, &failures));
     let title = std::iter::once(&arguments.name).chain(&arguments.parameters).cloned().collect::<Vec<_>>();
-    let [svg, ply] = ["svg", "ply"].map(|end| arguments.output.join(format!("{}.{end}", arguments.name)));
     let drawing = drawing::svg(&title.join(" "), &phase, &check)?;
     output::write(&svg, |file| file.write_all(drawing.as_bytes()))?;
-    output::write(&ply, |file| Lobe::new(&phase, division).write(file))?;
+    output::write(&ply, |mut file| Lobe::new(&phase, division).write(&mut file))?;
     say(&format!("{} and {}", svg.display(), ply.display()));
     Ok(failures.is_empty())
 }

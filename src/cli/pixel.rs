@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{analysis::pixel, error::Result, film, render::budget::Budget};
 use clap::Args;
-use std::{io::Write as _, num::NonZeroUsize, path::PathBuf};
+use std::{num::NonZeroUsize, path::PathBuf};
 
 /// Write the paths of one pixel's samples.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -55,6 +55,9 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    if let Some(path) = &arguments.output {
+        film::output::check(&[(path, 0)], &[&arguments.scene.file])?;
+    }
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let budget = Budget { samples_per_pixel: None, time: None };
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;

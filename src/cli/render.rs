@@ -15,7 +15,6 @@ use crate::{
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
-    io::Write as _,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -28,6 +27,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let precision = precision(arguments, &setup, &settings)?;
     let task = Task { settings, precision, batches: arguments.batches };
     let goal = Goal::new(arguments, &setup)?;
+    super::outputs::check_render(arguments, &setup, &goal)?;
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
     let figures = match arguments.frames {
@@ -52,7 +52,7 @@ fn animate(
     frames: arguments::Frames,
 ) -> Result<Vec<serde_json::Value>> {
     let arguments::Frames { first, last } = frames;
-    let digits = last.to_string().len().max(4);
+    let digits = frames.digits();
     let mut figures = Vec::new();
     for frame in first..=last {
         let time = setup.time + f64::from(frame) / arguments.fps.unwrap_or(FPS);
@@ -124,10 +124,12 @@ fn shoot(setup: &Setup, task: &Task, goal: &Goal, label: Option<&str>) -> Result
         Some(count) => batches(setup, task, goal.format, count, label),
     };
     goal.write(&setup.film, &mut image)?;
-    let preview = goal.path.with_extension("png");
-    let (width, height) = (setup.film.width as usize, setup.film.height as usize);
-    film::png::write(&preview, width, height, &image.pixels)?;
-    print_summary(&image, task, &goal.path, &preview, label);
+    let preview = goal.preview();
+    if let Some(preview) = &preview {
+        let (width, height) = (setup.film.width as usize, setup.film.height as usize);
+        film::png::write(preview, width, height, &image.pixels)?;
+    }
+    print_summary(&image, task, &goal.path, preview.as_deref(), label);
     Ok(figures(&image, task))
 }
 
@@ -205,9 +207,9 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
 }
 
 /// The image file: where, and what is in it. The PNG is beside it.
-struct Goal {
-    path: PathBuf,
-    format: Format,
+pub(super) struct Goal {
+    pub path: PathBuf,
+    pub format: Format,
 }
 
 impl Goal {
@@ -219,6 +221,7 @@ impl Goal {
             named.and_then(|(path, end)| Some((path, FileKind::of_extension(&end.to_string_lossy())?)));
         let (path, file) = match (named, &arguments.output) {
             (Some((path, file)), _) => (path.to_owned(), file),
+            (None, Some(path)) if film::output::is_stream(path) => (path.clone(), scene.file),
             (None, Some(path)) => (path.with_extension(scene.file.extension()), scene.file),
             (None, None) => {
                 let stem = PathBuf::from(arguments.scene.file.file_stem().unwrap_or_default());
@@ -241,8 +244,13 @@ impl Goal {
         Ok(Self { path, format })
     }
 
+    /// The PNG; none beside a device or pipe.
+    pub fn preview(&self) -> Option<PathBuf> {
+        (!film::output::is_stream(&self.path)).then(|| self.path.with_extension("png"))
+    }
+
     /// The same for one frame of an animation: its number before the ending.
-    fn numbered(&self, frame: u32, digits: usize) -> Self {
+    pub fn numbered(&self, frame: u32, digits: usize) -> Self {
         let end = self.path.extension().unwrap_or_default().to_string_lossy();
         Self { path: self.path.with_extension(format!("{frame:0digits$}.{end}")), format: self.format }
     }
@@ -338,7 +346,7 @@ fn percent(relative: f64) -> String {
     format!("{:.digits$} %", 100.0 * relative)
 }
 
-fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, label: Option<&str>) {
+fn print_summary(image: &Image, task: &Task, output: &Path, preview: Option<&Path>, label: Option<&str>) {
     let noise_text = |noise| format!(", {}", noise_text(noise, task.settings.sampler));
     let noise = image.noise.map_or(String::new(), noise_text);
     let noise = match (&image.reached, task.precision) {
@@ -349,12 +357,12 @@ fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, labe
         _ => noise,
     };
     let label = label.map_or(String::new(), |label| format!("{label}: "));
+    let preview = preview.map_or(String::new(), |preview| format!(" and {}", preview.display()));
     super::say(&format!(
-        "{label}{} samples/pixel in {:.1} s{noise}: {} and {}",
+        "{label}{} samples/pixel in {:.1} s{noise}: {}{preview}",
         image.samples_per_pixel,
         image.elapsed.as_secs_f64(),
         output.display(),
-        preview.display()
     ));
 }
 

@@ -278,6 +278,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
 fn check(stage: &mut Stage<'_>, question: &Question) -> Result<()> {
     for scene in 0..question.scenes.len() {
         let setup = stage.load(scene)?;
+        setup.film.check_memory(0, 1)?;
         for warning in &setup.warnings {
             complain(&format!("warning: {warning}"));
         }

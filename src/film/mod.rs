@@ -10,8 +10,12 @@ pub mod output;
 pub mod png;
 pub mod raster;
 
-use crate::math::{Spectrum, Vec2, vec2};
-use crate::sampling::Stream;
+use crate::{
+    error::Result,
+    math::{Spectrum, Vec2, vec2},
+    memory,
+    sampling::Stream,
+};
 use filter::{Axis, Filter};
 use format::Format;
 
@@ -46,6 +50,9 @@ impl Window {
         self.size == self.full_size
     }
 }
+
+/// What a render without layers keeps of every pixel, in numbers of four bytes: measured, and a fifth more.
+const WORKING_CHANNELS: usize = 40;
 
 /// The image's size and reconstruction filter. A pixel's value is the average of radiance over the film,
 /// weighted by the filter around the pixel's centre, the filter cut off at the image's border as in Mitsuba.
@@ -86,6 +93,22 @@ impl Film {
     /// True for a film without pixels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Bytes of an image of it with so many `channels` of four bytes.
+    pub fn bytes(&self, channels: usize) -> u64 {
+        [u64::from(self.width), u64::from(self.height), channels as u64]
+            .iter()
+            .fold(4, |bytes: u64, factor| bytes.saturating_mul(*factor))
+    }
+
+    /// An error unless memory holds a render onto it, with so many channels of layers, `batches` times at once.
+    pub fn check_memory(&self, layers: usize, batches: usize) -> Result<()> {
+        // Sums, products and passes; of every layer what is summed and what is written.
+        let bytes = self.bytes(WORKING_CHANNELS + 4 * layers + batches * (4 + layers));
+        let what = format!("{} x {} pixels with {layers} channels of layers", self.width, self.height);
+        let remedy = "choose a smaller --size, or fewer layers";
+        memory::check("the film", "a render", &what, Some(bytes), remedy)
     }
 
     /// A film position distributed by the magnitude of the filter of `pixel` (row-major index), and the weight

@@ -12,6 +12,7 @@ mod errors;
 mod flights;
 mod html;
 mod layering;
+mod outputs;
 mod page;
 mod phase;
 mod pixel;
