@@ -8,9 +8,13 @@ use clap::{
 };
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 
+/// At the end of the help.
+const EXIT_CODES: &str =
+    "Exit codes: 0, 1 if what is judged does not hold, 2 on an error; a closed pipe (| head) is none.";
+
 /// A bidirectional path tracer for fog, smoke and fire.
 #[derive(Clone, Debug, Parser, PartialEq)]
-#[command(version, about, propagate_version = true)]
+#[command(version, about, propagate_version = true, after_help = EXIT_CODES)]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]

@@ -1,6 +1,6 @@
 //! `tyndall diff`: how far an image is from another.
 
-use super::{complain, say};
+use super::{complain, outputs::check_short, say};
 use crate::{
     analysis::{
         diff::{self, Comparison, Difference, MEASURES, MapOf, Mapped, Tolerance, View},
@@ -147,8 +147,7 @@ fn limit(text: &str) -> std::result::Result<Limit, String> {
 /// Runs the command; true if no measure is above its limit.
 pub fn run(arguments: &Diff) -> Result<bool> {
     let files = [arguments.image.as_path(), arguments.reference.as_path()];
-    let outputs = [&arguments.map, &arguments.json].into_iter().flatten();
-    film::output::check(&outputs.map(|path| (path.as_path(), 0)).collect::<Vec<_>>(), &files)?;
+    check_short([&arguments.map, &arguments.json].into_iter().flatten(), &files)?;
     let image = picture::read_layer(files[0], arguments.layer.as_deref())?;
     let reference = picture::read_layer(files[1], arguments.layer.as_deref())?;
     let view = View {

@@ -1,6 +1,6 @@
 //! `tyndall flights`: ways of sampling flights, one against the other.
 
-use super::say;
+use super::{outputs::check_short, say};
 use crate::{
     analysis::{
         flights::{
@@ -105,8 +105,7 @@ pub fn run(arguments: &Flights) -> Result<bool> {
         let remedy = "increase --sigma-s, or use longer --steps";
         return Err(Error::new("--svg", "free flights that end in a scattering event", "none", remedy));
     }
-    let files = [&arguments.svg, &arguments.json].into_iter().flatten();
-    output::check(&files.map(|path| (path.as_path(), 0)).collect::<Vec<_>>(), &[])?;
+    check_short([&arguments.svg, &arguments.json].into_iter().flatten(), &[])?;
     let truth_photons = arguments.truth_photons.unwrap_or(4 * arguments.photons);
     let effort = Effort { photons: arguments.photons, truth_photons, seed: arguments.seed };
     let study = flights::study(&experiment, &steps, effort);

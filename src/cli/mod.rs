@@ -28,7 +28,10 @@ use std::{
     io::{self, ErrorKind, Write as _},
     num::NonZeroUsize,
     process::ExitCode,
-    sync::OnceLock,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 /// Runs the program; bad input ends it with code 2 and a message that says what to mend. So does a standard output that
@@ -100,10 +103,17 @@ fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
     })
 }
 
-/// To standard output. Work goes on where that fails, so that nothing is lost; [`heard`] tells in the end.
+/// To standard output, unless a file is written there. Work goes on where that fails, so that nothing is lost; [`heard`]
+/// tells in the end.
 fn say(text: &str) {
+    if STDOUT_IS_TAKEN.load(Ordering::Relaxed) {
+        return complain(text);
+    }
     note(writeln!(io::stdout(), "{text}").and_then(|()| io::stdout().flush()));
 }
+
+/// One of the outputs is standard output.
+static STDOUT_IS_TAKEN: AtomicBool = AtomicBool::new(false);
 
 /// Why standard output took no more.
 static UNHEARD: OnceLock<io::Error> = OnceLock::new();
@@ -118,7 +128,7 @@ fn note(said: io::Result<()>) {
 fn heard() -> Result<()> {
     match UNHEARD.get() {
         Some(error) if error.kind() != ErrorKind::BrokenPipe => {
-            let remedy = "write it to another place; the files of this command are not affected";
+            let remedy = "send it to another place; the files of this command are as they should be";
             Err(Error::new("standard output", "to write what is reported", error.to_string(), remedy))
         }
         _ => Ok(()),

@@ -1,6 +1,6 @@
 //! `tyndall phase`: a phase function by itself.
 
-use super::say;
+use super::{outputs::check_short, say};
 use crate::{
     analysis::phase::{self, Check, Division, described, drawing, mesh::Lobe},
     error::Result,
@@ -57,7 +57,7 @@ fn significance(text: &str) -> std::result::Result<f64, String> {
 pub fn run(arguments: &Phase) -> Result<bool> {
     let phase = described::build(&arguments.name, &arguments.parameters)?;
     let [svg, ply] = ["svg", "ply"].map(|end| arguments.output.join(format!("{}.{end}", arguments.name)));
-    output::check(&[(&svg, 0), (&ply, 0)], &[])?;
+    check_short([&svg, &ply], &[])?;
     let division = Division { parallels: arguments.parallels.into(), meridians: arguments.meridians.into() };
     let check = phase::check(&phase, &phase, division, arguments.samples, arguments.seed);
     let failures = check.failures(arguments.significance);

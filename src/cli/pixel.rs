@@ -3,7 +3,9 @@
 use super::{
     arguments::{Scene, Size, positive_u32, size, threads},
     estimator::Estimator,
-    load, say,
+    load,
+    outputs::check_short,
+    say,
 };
 use crate::{analysis::pixel, error::Result, film, render::budget::Budget};
 use clap::Args;
@@ -55,9 +57,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    if let Some(path) = &arguments.output {
-        film::output::check(&[(path, 0)], &[&arguments.scene.file])?;
-    }
+    check_short(&arguments.output, &[&arguments.scene.file])?;
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let budget = Budget { samples_per_pixel: None, time: None };
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;

@@ -51,9 +51,6 @@ impl Window {
     }
 }
 
-/// What a render without layers keeps of every pixel, in numbers of four bytes: measured, and a fifth more.
-const WORKING_CHANNELS: usize = 40;
-
 /// The image's size and reconstruction filter. A pixel's value is the average of radiance over the film,
 /// weighted by the filter around the pixel's centre, the filter cut off at the image's border as in Mitsuba.
 /// Film positions are in pixels of the window, (0, 0) its top left corner.
@@ -102,13 +99,11 @@ impl Film {
             .fold(4, |bytes: u64, factor| bytes.saturating_mul(*factor))
     }
 
-    /// An error unless memory holds a render onto it, with so many channels of layers, `batches` times at once.
-    pub fn check_memory(&self, layers: usize, batches: usize) -> Result<()> {
-        // Sums, products and passes; of every layer what is summed and what is written.
-        let bytes = self.bytes(WORKING_CHANNELS + 4 * layers + batches * (4 + layers));
-        let what = format!("{} x {} pixels with {layers} channels of layers", self.width, self.height);
-        let remedy = "choose a smaller --size, or fewer layers";
-        memory::check("the film", "a render", &what, Some(bytes), remedy)
+    /// An error unless memory holds what a render onto it keeps of every pixel, in numbers of four bytes.
+    pub fn check_memory(&self, numbers: usize) -> Result<()> {
+        let size = format!("{} x {} pixels", self.width, self.height);
+        let remedy = "choose a smaller --size, fewer layers or fewer --batches";
+        memory::check("the film", "a render", &size, Some(self.bytes(numbers)), remedy)
     }
 
     /// A film position distributed by the magnitude of the filter of `pixel` (row-major index), and the weight

@@ -41,6 +41,11 @@ pub fn is_stream(path: &Path) -> bool {
     !matches!(Target::of(path), Ok(Target::File(_)) | Err(_))
 }
 
+/// True if `path` is this program's own standard output.
+pub fn is_stdout(path: &Path) -> bool {
+    matches!(Target::of(path), Ok(Target::Stdout))
+}
+
 fn replace(goal: &Path, fill: impl FnOnce(&mut dyn Sink) -> io::Result<()>) -> io::Result<()> {
     let mut partial = Partial::begin(goal)?;
     let mut writer = BufWriter::new(partial.file());
@@ -68,20 +73,21 @@ fn folder(path: &Path) -> &Path {
 
 /// What hinders the writing of `path`, which leads to the file `at`.
 fn explain(path: &Path, at: &Path, error: &io::Error) -> Error {
-    let folder = folder(at).display();
+    let place = folder(at).display();
     let remedy = match error.kind() {
-        ErrorKind::NotFound => format!("create the folder {folder} first"),
+        ErrorKind::NotFound if folder(at).exists() => "check that it is still there".into(),
+        ErrorKind::NotFound => format!("create the folder {place} first"),
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            format!("choose another place, or allow yourself to write into {folder}")
+            format!("choose another place, or allow yourself to write into {place}")
         }
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => format!("make room on the disk of {folder}"),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => format!("make room on the disk of {place}"),
         ErrorKind::FileTooLarge => {
             "raise the limit on the size of files (ulimit -f), or write a smaller file".into()
         }
-        ErrorKind::NotADirectory => format!("choose a folder; {folder} is none"),
+        ErrorKind::NotADirectory => format!("choose a folder; {place} is none"),
         ErrorKind::InvalidFilename => "choose a shorter name".into(),
         ErrorKind::BrokenPipe => "let the reader of the pipe read to the end".into(),
-        _ => format!("check that {folder} can be written to"),
+        _ => format!("check that {place} can be written to"),
     };
     Error::new(path.display(), "to write the file", error.to_string(), remedy)
 }

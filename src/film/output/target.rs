@@ -62,10 +62,8 @@ fn descriptor(at: &Path) -> Option<Target> {
     let folder = folder(at).canonicalize().ok()?;
     let is_own =
         folder == Path::new("/dev/fd") || folder == Path::new(&format!("/proc/{}/fd", process::id()));
-    if !is_own && !(folder.starts_with("/proc") && folder.ends_with("fd")) {
-        return None;
-    }
-    Some(match at.file_name()?.to_str()? {
+    let is_of_any = is_own || (folder.starts_with("/proc") && folder.ends_with("fd"));
+    is_of_any.then_some(match at.file_name()?.to_str()? {
         "1" if is_own => Target::Stdout,
         "2" if is_own => Target::Stderr,
         _ => Target::Stream(at.to_owned()),
@@ -88,7 +86,8 @@ fn unfit(path: &Path, found: &str) -> Error {
     Error::new(path.display(), "a file to write", found, remedy)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(unix)]
+#[cfg(test)]
 mod tests {
     use super::*;
     use std::os::unix::{fs::symlink, net::UnixListener};
