@@ -142,7 +142,7 @@ pub fn examine(
 ) -> Result<Findings> {
     let options = settings.options;
     let cells = table_of(plan, &options);
-    check(&setup.film, cells, &options)?;
+    check(&setup.film, plan, &options)?;
     let subsets = subsets(options.strategies);
     let timed = plan.passes.div_ceil(4);
     let pilots = if plan.pilots > 0 { pilot::passes(plan.pilots) } else { 0 };
@@ -175,7 +175,9 @@ pub fn examine(
     Ok(Findings { report, parts, film })
 }
 
-fn check(film: &Film, cells: StrategyTable, options: &Options) -> Result<()> {
+/// An error where there is nothing to examine, or memory does not hold the images.
+pub fn check(film: &Film, plan: &Plan, options: &Options) -> Result<()> {
+    let cells = table_of(plan, options);
     if options.strategies == Strategies::NONE {
         let remedy = "choose --integrator bdpt, pt or lt";
         return Err(Error::new("the scene's integrator", "one that makes paths", "fog, a preview", remedy));

@@ -7,8 +7,8 @@ use crate::{error::Result, film, format, format::Naming};
 pub fn run(arguments: &arguments::Convert) -> Result<()> {
     let arguments::Convert { input, output, definitions, fill } = arguments;
     let naming = if *fill { Naming::Fill } else { Naming::Keep };
-    check_short([output], &[])?;
     let conversion = format::convert(input, output, definitions, naming)?;
+    check_short([output], &[])?;
     film::output::write(output, |file| file.write_all(conversion.text.as_bytes()))?;
     for note in &conversion.notes {
         complain(&format!("note: {note}"));

@@ -65,6 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let passes = arguments.spp.map_or(setup.samples_per_pixel, u64::from) as usize;
     let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);
     let plan = Plan { depth: arguments.depth, passes, pilots };
+    strategies::check(&setup.film, &plan, &settings.options)?;
     let folder = folder(arguments)?;
     strategies::check_files(&folder, &setup.film, &plan, &settings.options)?;
     let bar = ProgressBar::new(0);
