@@ -4,6 +4,7 @@
 
 pub mod error;
 pub mod math;
+pub mod memory;
 pub mod sampling;
 
 pub mod description;

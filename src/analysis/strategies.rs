@@ -13,6 +13,7 @@ use crate::{
     error::{Error, Result},
     film::{self, Channel, Film, accumulator::Accumulator, format::Format},
     math::{Spectrum, SpectrumExt},
+    memory,
     render::{
         Settings,
         instrument::Instrument,
@@ -24,10 +25,7 @@ use crate::{
 };
 use serde::Serialize;
 use sheet::Row;
-use std::{
-    io::Write as _,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// How much is done.
 #[derive(Clone, Copy, Debug)]
@@ -135,9 +133,6 @@ pub struct Findings {
     film: [usize; 2],
 }
 
-/// The images of a study may take no more [bytes].
-const MOST_BYTES: usize = 6 << 30;
-
 /// Examines all strategies of `setup`, rendered by `settings`. Reports how many steps are done of how many.
 pub fn examine(
     setup: &Setup,
@@ -146,8 +141,8 @@ pub fn examine(
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Findings> {
     let options = settings.options;
-    let cells = StrategyTable { depth: plan.depth.min(options.max_depth.unwrap_or(u32::MAX)).max(1) };
-    check(&setup.film, cells, &options)?;
+    let cells = table_of(plan, &options);
+    check(&setup.film, plan, &options)?;
     let subsets = subsets(options.strategies);
     let timed = plan.passes.div_ceil(4);
     let pilots = if plan.pilots > 0 { pilot::passes(plan.pilots) } else { 0 };
@@ -180,27 +175,33 @@ pub fn examine(
     Ok(Findings { report, parts, film })
 }
 
-fn check(film: &Film, cells: StrategyTable, options: &Options) -> Result<()> {
+/// An error where there is nothing to examine, or memory does not hold the images.
+pub fn check(film: &Film, plan: &Plan, options: &Options) -> Result<()> {
+    let cells = table_of(plan, options);
     if options.strategies == Strategies::NONE {
         let remedy = "choose --integrator bdpt, pt or lt";
         return Err(Error::new("the scene's integrator", "one that makes paths", "fog, a preview", remedy));
     }
-    let bytes = film.len().saturating_mul(StrategyImages::bytes_per_pixel(cells));
-    if bytes <= MOST_BYTES {
-        return Ok(());
-    }
-    Err(Error::new(
-        "tyndall strategies",
-        format!("images that take at most {} GiB of memory", MOST_BYTES >> 30),
-        format!(
-            "{} strategies on {} x {} pixels: {} GiB",
-            cells.count(),
-            film.width,
-            film.height,
-            bytes >> 30
-        ),
-        "use a smaller --size or a smaller --depth",
-    ))
+    let bytes = film.len().checked_mul(StrategyImages::bytes_per_pixel(cells)).map(|bytes| bytes as u64);
+    let size = format!("{} strategies on {} x {} pixels", cells.count(), film.width, film.height);
+    let remedy = "use a smaller --size or a smaller --depth";
+    memory::check("tyndall strategies", "images", &size, bytes, remedy)
+}
+
+fn table_of(plan: &Plan, options: &Options) -> StrategyTable {
+    StrategyTable { depth: plan.depth.min(options.max_depth.unwrap_or(u32::MAX)).max(1) }
+}
+
+/// What [`Findings::write`] writes.
+const FILES: [&str; 6] =
+    ["strategies.json", "strategies.csv", "weighted.exr", "weighted.png", "unweighted.exr", "unweighted.png"];
+
+/// An error unless the files of what [`examine`] finds can be written into `folder`, which exists.
+pub fn check_files(folder: &Path, film: &Film, plan: &Plan, options: &Options) -> Result<()> {
+    let layers = table_of(plan, options).count() + 1;
+    let bytes = |name: &str| if name.ends_with(".exr") { film.bytes(3 * layers) } else { 0 };
+    let files = FILES.map(|name| (folder.join(name), bytes(name)));
+    film::output::check(&files.each_ref().map(|(file, bytes)| (file.as_path(), *bytes)), &[])
 }
 
 /// The sets worth comparing with `full`: without one kind each, the path tracer's and the light tracer's.

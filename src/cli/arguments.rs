@@ -8,9 +8,13 @@ use clap::{
 };
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 
+/// At the end of the help.
+const EXIT_CODES: &str =
+    "Exit codes: 0, 1 if what is judged does not hold, 2 on an error; a closed pipe (| head) is none.";
+
 /// A bidirectional path tracer for fog, smoke and fire.
 #[derive(Clone, Debug, Parser, PartialEq)]
-#[command(version, about, propagate_version = true)]
+#[command(version, about, propagate_version = true, after_help = EXIT_CODES)]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -267,6 +271,13 @@ pub struct Frames {
     pub last: u32,
 }
 
+impl Frames {
+    /// Digits of their numbers in names of files.
+    pub fn digits(self) -> usize {
+        self.last.to_string().len().max(4)
+    }
+}
+
 /// Width and height of an image in pixels, both positive.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Size {
@@ -378,6 +389,7 @@ pub(super) fn image_file(text: &str) -> Result<PathBuf, String> {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     match extension.as_deref() {
         Some("exr" | "pfm" | "rgbe" | "hdr" | "png") => Ok(path),
+        _ if crate::film::output::is_stream(&path) => Ok(path),
         _ => Err("expected a file name that ends in .exr, .pfm, .rgbe, .hdr or .png".into()),
     }
 }

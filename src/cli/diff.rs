@@ -1,6 +1,6 @@
 //! `tyndall diff`: how far an image is from another.
 
-use super::{complain, say};
+use super::{complain, outputs::check_short, say};
 use crate::{
     analysis::{
         diff::{self, Comparison, Difference, MEASURES, MapOf, Mapped, Tolerance, View},
@@ -11,7 +11,7 @@ use crate::{
 };
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
-use std::{io::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
 /// Compare an image with a reference.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -147,6 +147,7 @@ fn limit(text: &str) -> std::result::Result<Limit, String> {
 /// Runs the command; true if no measure is above its limit.
 pub fn run(arguments: &Diff) -> Result<bool> {
     let files = [arguments.image.as_path(), arguments.reference.as_path()];
+    check_short([&arguments.map, &arguments.json].into_iter().flatten(), &files)?;
     let image = picture::read_layer(files[0], arguments.layer.as_deref())?;
     let reference = picture::read_layer(files[1], arguments.layer.as_deref())?;
     let view = View {

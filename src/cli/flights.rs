@@ -1,6 +1,6 @@
 //! `tyndall flights`: ways of sampling flights, one against the other.
 
-use super::say;
+use super::{outputs::check_short, say};
 use crate::{
     analysis::{
         flights::{
@@ -15,7 +15,7 @@ use crate::{
 };
 use clap::{Args, ValueEnum};
 use serde_json::json;
-use std::{io::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
 /// Compare methods of free-flight sampling.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -105,6 +105,7 @@ pub fn run(arguments: &Flights) -> Result<bool> {
         let remedy = "increase --sigma-s, or use longer --steps";
         return Err(Error::new("--svg", "free flights that end in a scattering event", "none", remedy));
     }
+    check_short([&arguments.svg, &arguments.json].into_iter().flatten(), &[])?;
     let truth_photons = arguments.truth_photons.unwrap_or(4 * arguments.photons);
     let effort = Effort { photons: arguments.photons, truth_photons, seed: arguments.seed };
     let study = flights::study(&experiment, &steps, effort);

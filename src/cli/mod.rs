@@ -11,6 +11,7 @@ mod interrupt;
 mod keeper;
 mod made;
 pub mod merge;
+mod outputs;
 pub mod phase;
 mod pixel;
 mod render;
@@ -27,13 +28,34 @@ use crate::{
 };
 use arguments::{Arguments, Command};
 use clap::Parser;
-use std::{num::NonZeroUsize, process::ExitCode};
+use std::{
+    io::{self, ErrorKind, Write as _},
+    num::NonZeroUsize,
+    process::ExitCode,
+    sync::{
+        OnceLock,
+        atomic::{AtomicBool, Ordering},
+    },
+};
 
-/// Runs the program; bad input ends it with code 2 and a message that says what to mend.
+/// Runs the program; bad input ends it with code 2 and a message that says what to mend. So does a standard output that
+/// takes no more, once all files are written; a closed pipe, whose reader has read enough, changes nothing.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
-    let outcome = match &arguments.command {
-        Command::Render(render) => return exit(render::run(render)),
+    match Arguments::try_parse() {
+        Ok(arguments) => judged(obey(&arguments.command).and_then(|holds| heard().map(|()| holds))),
+        // Help, the version, or what is wrong with the arguments.
+        Err(answer) => {
+            note(answer.print());
+            let code = u8::try_from(answer.exit_code()).unwrap_or(2);
+            heard().map_or_else(|error| judged(Err(error)), |()| ExitCode::from(code))
+        }
+    }
+}
+
+/// True if what the command judges holds.
+fn obey(command: &Command) -> Result<bool> {
+    let outcome = match command {
+        Command::Render(render) => render::run(render),
         Command::Merge(merge) => merge::run(merge),
         Command::Strategies(strategies) => strategies::run(strategies),
         Command::Pixel(pixel) => pixel::run(pixel),
@@ -41,22 +63,18 @@ pub fn run() -> ExitCode {
         Command::Convert(convert) => convert::run(convert),
         Command::Report(report) => report::run(report),
         Command::Study(study) => study::run(study),
-        Command::Diff(diff) => return judged(diff::run(diff)),
-        Command::Phase(phase) => return judged(phase::run(phase)),
-        Command::Flights(flights) => return judged(flights::run(flights)),
+        Command::Diff(diff) => return diff::run(diff),
+        Command::Phase(phase) => return phase::run(phase),
+        Command::Flights(flights) => return flights::run(flights),
     };
-    judged(outcome.map(|()| true))
+    outcome.map(|()| true)
 }
 
-/// The exit code of a command that knows it, or 2 on an error, which is printed.
-fn exit(outcome: Result<ExitCode>) -> ExitCode {
-    outcome.unwrap_or_else(|error| judged(Err(error)))
-}
-
-/// 0 if the claim holds, 1 if it does not, 2 on an error, which is printed.
+/// 0 if the claim holds, 1 if it does not, 2 on an error, which is printed; what shells expect of a signal that ended a
+/// render.
 fn judged(outcome: Result<bool>) -> ExitCode {
     match outcome {
-        Ok(true) => ExitCode::SUCCESS,
+        Ok(true) => interrupt::signal().map_or(ExitCode::SUCCESS, |(_, code)| ExitCode::from(code)),
         Ok(false) => ExitCode::from(1),
         Err(error) => {
             complain(&format!("error: {error}"));
@@ -91,14 +109,39 @@ fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
     })
 }
 
-/// To standard output. A reader that has gone away is no reason to fail.
+/// To standard output, unless a file is written there. Work goes on where that fails, so that nothing is lost; [`heard`]
+/// tells in the end.
 fn say(text: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stdout(), "{text}");
+    if STDOUT_IS_TAKEN.load(Ordering::Relaxed) {
+        return complain(text);
+    }
+    note(writeln!(io::stdout(), "{text}").and_then(|()| io::stdout().flush()));
+}
+
+/// One of the outputs is standard output.
+static STDOUT_IS_TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// Why standard output took no more.
+static UNHEARD: OnceLock<io::Error> = OnceLock::new();
+
+fn note(said: io::Result<()>) {
+    if let Err(error) = said {
+        let _ = UNHEARD.set(error);
+    }
+}
+
+/// An error unless all that was said was written, or nobody reads any more.
+fn heard() -> Result<()> {
+    match UNHEARD.get() {
+        Some(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let remedy = "send it to another place; the files of this command are as they should be";
+            Err(Error::new("standard output", "to write what is reported", error.to_string(), remedy))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// To standard error.
 fn complain(text: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{text}");
 }

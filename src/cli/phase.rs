@@ -1,13 +1,13 @@
 //! `tyndall phase`: a phase function by itself.
 
-use super::say;
+use super::{outputs::check_short, say};
 use crate::{
     analysis::phase::{self, Check, Division, described, drawing, mesh::Lobe},
     error::Result,
     film::output,
 };
 use clap::Args;
-use std::{io::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
 /// Test and draw a phase function.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -56,15 +56,16 @@ fn significance(text: &str) -> std::result::Result<f64, String> {
 /// Runs the command; true if the samples are as the density says.
 pub fn run(arguments: &Phase) -> Result<bool> {
     let phase = described::build(&arguments.name, &arguments.parameters)?;
+    let [svg, ply] = ["svg", "ply"].map(|end| arguments.output.join(format!("{}.{end}", arguments.name)));
+    check_short([&svg, &ply], &[])?;
     let division = Division { parallels: arguments.parallels.into(), meridians: arguments.meridians.into() };
     let check = phase::check(&phase, &phase, division, arguments.samples, arguments.seed);
     let failures = check.failures(arguments.significance);
     say(&describe(arguments, &check, &failures));
     let title = std::iter::once(&arguments.name).chain(&arguments.parameters).cloned().collect::<Vec<_>>();
-    let [svg, ply] = ["svg", "ply"].map(|end| arguments.output.join(format!("{}.{end}", arguments.name)));
     let drawing = drawing::svg(&title.join(" "), &phase, &check)?;
     output::write(&svg, |file| file.write_all(drawing.as_bytes()))?;
-    output::write(&ply, |file| Lobe::new(&phase, division).write(file))?;
+    output::write(&ply, |mut file| Lobe::new(&phase, division).write(&mut file))?;
     say(&format!("{} and {}", svg.display(), ply.display()));
     Ok(failures.is_empty())
 }

@@ -3,11 +3,13 @@
 use super::{
     arguments::{Scene, Size, positive_u32, size, threads},
     estimator::Estimator,
-    load, say,
+    load,
+    outputs::check_short,
+    say,
 };
 use crate::{analysis::pixel, error::Result, film, render::budget::Budget};
 use clap::Args;
-use std::{io::Write as _, num::NonZeroUsize, path::PathBuf};
+use std::{num::NonZeroUsize, path::PathBuf};
 
 /// Write the paths of one pixel's samples.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -55,6 +57,7 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    check_short(&arguments.output, &[&arguments.scene.file])?;
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let budget = Budget::ENDLESS;
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;

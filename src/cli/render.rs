@@ -20,14 +20,12 @@ use crate::{
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 use std::{
-    io::Write as _,
     path::{Path, PathBuf},
-    process::ExitCode,
     time::{Duration, Instant},
 };
 
 /// Runs the command.
-pub fn run(arguments: &arguments::Render) -> Result<ExitCode> {
+pub fn run(arguments: &arguments::Render) -> Result<()> {
     interrupt::listen();
     let started = Instant::now();
     let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
@@ -36,6 +34,7 @@ pub fn run(arguments: &arguments::Render) -> Result<ExitCode> {
     let goal = Goal::new(arguments, &setup)?;
     let made = made::made(made::settings(&arguments.scene, &setup, &settings)?);
     let task = Task { settings, precision, arguments, made };
+    super::outputs::check_render(arguments, &setup, &goal)?;
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
     let figures = match arguments.frames {
@@ -45,7 +44,7 @@ pub fn run(arguments: &arguments::Render) -> Result<ExitCode> {
     if let Some(path) = &arguments.report {
         write_report(path, figures, load_time, arguments.frames.is_some())?;
     }
-    Ok(interrupt::signal().map_or(ExitCode::SUCCESS, |(_, code)| ExitCode::from(code)))
+    Ok(())
 }
 
 /// Default number of frames per second.
@@ -60,7 +59,7 @@ fn animate(
     frames: arguments::Frames,
 ) -> Result<Vec<Value>> {
     let arguments::Frames { first, last } = frames;
-    let digits = last.to_string().len().max(4);
+    let digits = frames.digits();
     let mut figures = Vec::new();
     for frame in first..=last {
         let time = setup.time + f64::from(frame) / arguments.fps.unwrap_or(FPS);
@@ -139,7 +138,7 @@ fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Re
     let figures = figures(&image, task);
     if task.arguments.samples.is_none() || task.arguments.output.is_some() {
         goal.write(&setup.film, &mut image)?;
-        print_summary(&image, task, &goal.path, &goal.preview(), label);
+        print_summary(&image, task, &goal.path, goal.preview().as_deref(), label);
     }
     Ok(figures)
 }
@@ -266,10 +265,9 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
 }
 
 /// The image file: where, and what is in it. The PNG is beside it.
-pub struct Goal {
-    /// Where.
+pub(super) struct Goal {
     pub path: PathBuf,
-    format: Format,
+    pub format: Format,
 }
 
 impl Goal {
@@ -281,6 +279,7 @@ impl Goal {
             named.and_then(|(path, end)| Some((path, FileKind::of_extension(&end.to_string_lossy())?)));
         let (path, file) = match (named, &arguments.output) {
             (Some((path, file)), _) => (path.to_owned(), file),
+            (None, Some(path)) if film::output::is_stream(path) => (path.clone(), scene.file),
             (None, Some(path)) => (path.with_extension(scene.file.extension()), scene.file),
             (None, None) => {
                 let stem = PathBuf::from(arguments.scene.file.file_stem().unwrap_or_default());
@@ -303,15 +302,15 @@ impl Goal {
         Ok(Self { path, format })
     }
 
-    /// The same for one frame of an animation: its number before the ending.
-    fn numbered(&self, frame: u32, digits: usize) -> Self {
-        let end = self.path.extension().unwrap_or_default().to_string_lossy();
-        Self { path: self.path.with_extension(format!("{frame:0digits$}.{end}")), format: self.format }
+    /// The PNG; none beside a device or pipe.
+    pub fn preview(&self) -> Option<PathBuf> {
+        (!film::output::is_stream(&self.path)).then(|| self.path.with_extension("png"))
     }
 
-    /// Where the PNG is.
-    fn preview(&self) -> PathBuf {
-        self.path.with_extension("png")
+    /// The same for one frame of an animation: its number before the ending.
+    pub fn numbered(&self, frame: u32, digits: usize) -> Self {
+        let end = self.path.extension().unwrap_or_default().to_string_lossy();
+        Self { path: self.path.with_extension(format!("{frame:0digits$}.{end}")), format: self.format }
     }
 
     /// Writes the image, and the layers that it then no longer has; and its PNG.
@@ -326,7 +325,7 @@ impl Goal {
             FileKind::Pfm => film::raster::write_pfm(&self.path, width, height, &channels),
             FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
         }?;
-        film::png::write(&self.preview(), width, height, &image.pixels)
+        self.preview().map_or(Ok(()), |path| film::png::write(&path, width, height, &image.pixels))
     }
 
     /// Writes the image so far: without alpha and layers, which are rendered at the end.
@@ -413,7 +412,7 @@ fn percent(relative: f64) -> String {
     format!("{:.digits$} %", 100.0 * relative)
 }
 
-fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: &Path, label: Option<&str>) {
+fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: Option<&Path>, label: Option<&str>) {
     let noise_text = |noise| format!(", {}", noise_text(noise, task.settings.sampler));
     let noise = image.noise.map_or(String::new(), noise_text);
     let noise = match (&image.reached, task.precision) {
@@ -424,12 +423,12 @@ fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: &Path, 
         _ => noise,
     };
     let label = label.map_or(String::new(), |label| format!("{label}: "));
+    let preview = preview.map_or(String::new(), |preview| format!(" and {}", preview.display()));
     super::say(&format!(
-        "{label}{} samples/pixel in {:.1} s{noise}: {} and {}",
+        "{label}{} samples/pixel in {:.1} s{noise}: {}{preview}",
         image.samples_per_pixel,
         image.elapsed.as_secs_f64(),
         output.display(),
-        preview.display()
     ));
 }
 

@@ -7,7 +7,8 @@ use super::{
 };
 use crate::{
     analysis::strategies::{self, Plan},
-    error::{Error, Result},
+    error::Result,
+    film::output::create_folder,
     render::budget::Budget,
 };
 use clap::Args;
@@ -64,7 +65,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let passes = arguments.spp.map_or(setup.samples_per_pixel, u64::from) as usize;
     let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);
     let plan = Plan { depth: arguments.depth, passes, pilots };
+    strategies::check(&setup.film, &plan, &settings.options)?;
     let folder = folder(arguments)?;
+    strategies::check_files(&folder, &setup.film, &plan, &settings.options)?;
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left") {
         bar.set_style(style);
@@ -89,9 +92,6 @@ fn folder(arguments: &Arguments) -> Result<PathBuf> {
         let stem = arguments.scene.file.file_stem().unwrap_or_default().to_string_lossy();
         PathBuf::from(format!("{stem}-strategies"))
     });
-    std::fs::create_dir_all(&folder).map_err(|error| {
-        let remedy = "choose another place, or check that you may create a folder there";
-        Error::new(folder.display(), "a folder to write to", error.to_string(), remedy)
-    })?;
+    create_folder(&folder)?;
     Ok(folder)
 }

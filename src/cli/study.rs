@@ -2,7 +2,9 @@
 
 use super::{
     arguments::{Size, confidence, definition, duration, positive_u32, size, threads as threads_of},
-    complain, contenders, say, threads,
+    complain, contenders,
+    outputs::NUMBERS,
+    say, threads,
 };
 use crate::{
     analysis::study::{
@@ -270,6 +272,7 @@ fn wanted(arguments: &Study, contenders: &[Contender]) -> Result<Wanted> {
 fn check(stage: &mut Stage<'_>, question: &Question) -> Result<()> {
     for scene in 0..question.scenes.len() {
         let setup = stage.load(scene)?;
+        setup.film.check_memory(NUMBERS)?;
         for warning in &setup.warnings {
             complain(&format!("warning: {warning}"));
         }

@@ -10,8 +10,12 @@ pub mod output;
 pub mod png;
 pub mod raster;
 
-use crate::math::{Spectrum, Vec2, vec2};
-use crate::sampling::Stream;
+use crate::{
+    error::Result,
+    math::{Spectrum, Vec2, vec2},
+    memory,
+    sampling::Stream,
+};
 use filter::{Axis, Filter};
 use format::Format;
 
@@ -86,6 +90,20 @@ impl Film {
     /// True for a film without pixels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Bytes of an image of it with so many `channels` of four bytes.
+    pub fn bytes(&self, channels: usize) -> u64 {
+        [u64::from(self.width), u64::from(self.height), channels as u64]
+            .iter()
+            .fold(4, |bytes: u64, factor| bytes.saturating_mul(*factor))
+    }
+
+    /// An error unless memory holds what a render onto it keeps of every pixel, in numbers of four bytes.
+    pub fn check_memory(&self, numbers: usize) -> Result<()> {
+        let size = format!("{} x {} pixels", self.width, self.height);
+        let remedy = "choose a smaller --size, fewer layers or fewer --batches";
+        memory::check("the film", "a render", &size, Some(self.bytes(numbers)), remedy)
     }
 
     /// A film position distributed by the magnitude of the filter of `pixel` (row-major index), and the weight

@@ -34,11 +34,16 @@ pub fn write_bytes(path: &Path, width: usize, height: usize, bytes: &[u8]) -> Re
         let size = |n: usize| u32::try_from(n).map_err(io::Error::other);
         let encoder = PngEncoder::new(file);
         let written = encoder.write_image(bytes, size(width)?, size(height)?, ExtendedColorType::Rgb8);
-        written.map_err(|error| match error {
-            ImageError::IoError(error) => error,
-            other => io::Error::other(other),
-        })
+        written.map_err(plain_error)
     })
+}
+
+/// What the system said, where it was the system.
+pub(super) fn plain_error(error: ImageError) -> io::Error {
+    match error {
+        ImageError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
 }
 
 /// How radiance becomes what a screen shows.

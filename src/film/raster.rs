@@ -1,12 +1,9 @@
 //! The two older formats that Mitsuba writes: Portable Float Map and Radiance's RGBE.
 
-use super::{Channel, output};
+use super::{Channel, output, png::plain_error};
 use crate::{error::Result, math::Spectrum};
 use image::codecs::hdr::HdrEncoder;
-use std::{
-    io::{self, Write as _},
-    path::Path,
-};
+use std::path::Path;
 
 /// Writes one or three channels as a Portable Float Map: a line of text for kind, size and byte order each
 /// (negative: little-endian), then rows of floats from the bottom up.
@@ -31,7 +28,7 @@ pub fn write_rgbe(path: &Path, width: usize, height: usize, pixels: &[Spectrum])
     output::check_size(path, width, height, pixels.len())?;
     let pixels: Vec<_> =
         pixels.iter().map(|pixel| image::Rgb(pixel.max(Spectrum::ZERO).to_array())).collect();
-    output::write(path, |file| HdrEncoder::new(file).encode(&pixels, width, height).map_err(io::Error::other))
+    output::write(path, |file| HdrEncoder::new(file).encode(&pixels, width, height).map_err(plain_error))
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use safetensors::{
 };
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::{collections::HashMap, io::Write as _, ops::Range, path::Path, time::Duration};
+use std::{collections::HashMap, ops::Range, path::Path, time::Duration};
 use xxhash_rust::xxh3::Xxh3;
 
 /// The entry of the header.

@@ -21,6 +21,7 @@ use crate::{
     format::plugins,
     math::{DVec3, Vec2, Vec3},
     medium::{self, Medium, MediumDescription, MediumIndex, MediumOverrides},
+    memory,
     sampling::Sampler,
     sensor::{self, Crop, Sensor},
     settings::{
@@ -29,7 +30,7 @@ use crate::{
         only_one,
         sampler::{self, Sampling},
     },
-    shape::{self, Shape},
+    shape::{self, Shape, ShapeModel as _},
     volume::Place,
 };
 use std::collections::HashMap;
@@ -141,6 +142,9 @@ struct Placed<'a> {
     stated: Option<MediumIndex>,
     location: &'a Location,
 }
+
+/// What a primitive takes while the hierarchy is built [bytes]: measured 380, and some more.
+const MEMORY_PER_PRIMITIVE: u64 = 440;
 
 struct Builder<'a> {
     library: &'a Library,
@@ -323,6 +327,7 @@ impl<'a> Builder<'a> {
 
     /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
     fn finish(mut self, camera: Camera<'_>, medium_overrides: &MediumOverrides) -> Result<Scene> {
+        self.check_memory()?;
         let geometry = self.geometry();
         let (known, survey, sensor_medium) = self.survey(&geometry, &camera);
         let outside = known.infinity.most();
@@ -372,6 +377,14 @@ impl<'a> Builder<'a> {
         let all = emitters.chain(emissive(media, locator, outside)).collect();
         let around = if known.infinity.is_uniform() { outside } else { MediumIndex::VACUUM };
         Lights::new(all, geometry, &media[around.0 as usize])
+    }
+
+    /// An error unless memory holds the hierarchy over all shapes, as it is built.
+    fn check_memory(&self) -> Result<()> {
+        let primitives: u64 = self.shapes.iter().map(|shape| shape.primitive_count() as u64).sum();
+        let size = format!("{primitives} triangles and other primitives");
+        let remedy = "give meshes of fewer triangles, or more memory";
+        memory::check("the scene", "shapes", &size, primitives.checked_mul(MEMORY_PER_PRIMITIVE), remedy)
     }
 
     /// All shapes, indexed; their surfaces learn which of them may share faces.

@@ -11,6 +11,7 @@ use crate::{
     description::Params,
     error::{Error, Result},
     math::{DVec3, Frame, Vec2, Vec3, offset::LARGEST_COORDINATE, warp},
+    memory,
     sampling::Stream,
 };
 use std::path::Path;
@@ -26,6 +27,15 @@ pub struct MeshData {
     pub uvs: Vec<Vec2>,
     /// Vertex numbers, all in range.
     pub triangles: Vec<[u32; 3]>,
+}
+
+impl MeshData {
+    /// An error unless memory holds the mesh of `file`, whose `length` bytes become at most `factor` each.
+    pub fn check_memory(file: &Path, length: u64, factor: u64) -> Result<()> {
+        let remedy = "give a mesh of fewer triangles, or more memory";
+        let size = format!("a file of {length} bytes");
+        memory::check(file.display(), "a mesh", &size, length.checked_mul(factor), remedy)
+    }
 }
 
 /// Triangles in recentred world space.

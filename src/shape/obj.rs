@@ -13,10 +13,16 @@ use std::{collections::HashMap, path::Path};
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords", true)?;
-    let text = std::fs::read(&file).map_err(|e| Error::io(&file, "read", &e))?;
+    let unread = |e| Error::io(&file, "read", &e);
+    let length = std::fs::metadata(&file).map_err(unread)?.len();
+    MeshData::check_memory(&file, length, MEMORY_PER_BYTE)?;
+    let text = std::fs::read(&file).map_err(unread)?;
     let data = Reader::new(&file, flip).read(&text)?;
     Mesh::build(params, recentre, &file, data)
 }
+
+/// What a byte of text becomes, the text included: a short line of a face makes a triangle and perhaps three vertices.
+const MEMORY_PER_BYTE: u64 = 12;
 
 /// Numbers of position, texture coordinate and normal of a face's corner, from 0; `ABSENT` where not given.
 type Corner = [u32; 3];

@@ -17,6 +17,8 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords", false)?;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
+    let length = source.metadata().map_err(|e| Error::io(&file, "read", &e))?.len();
+    MeshData::check_memory(&file, length, MEMORY_PER_BYTE)?;
     let ply = Ply::open(&file, source)?;
     let unused = ply.unused();
     if !unused.is_empty() {
@@ -26,6 +28,9 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let data = ply.read(flip)?;
     Mesh::build(params, recentre, &file, data)
 }
+
+/// What a byte becomes: a triangle takes 13 of them, and an [`Element`] with its list, before it is one.
+const MEMORY_PER_BYTE: u64 = 16;
 
 /// All names under which each number of a vertex is known: position, normal, texture coordinates.
 const NAMES: [&[&str]; 8] =

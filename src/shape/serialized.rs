@@ -24,6 +24,8 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
     let mut container = Container::open(BufReader::new(source)).map_err(|fault| fault.at(&file))?;
     container.seek(index).map_err(|fault| fault.at(&file))?;
+    let length = container.source.get_ref().metadata().map_err(|e| Error::io(&file, "read", &e))?.len();
+    MeshData::check_memory(&file, length, MEMORY_PER_BYTE)?;
     let (data, has_colors) = container.read().map_err(|fault| fault.at(&file))?;
     if has_colors {
         let text = format!("{}: its vertex colours are not used", file.display());
@@ -31,6 +33,9 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     }
     Mesh::build(params, recentre, &file, data)
 }
+
+/// What a compressed byte becomes in most meshes; for those that are compressed more, see `numbers`.
+const MEMORY_PER_BYTE: u64 = 16;
 
 /// Bits that say what a mesh has. Those for tangents and face normals change nothing, as in Mitsuba 3.
 const NORMALS: u32 = 0x0001;
@@ -177,9 +182,16 @@ fn numbers(stream: &mut impl Read, double: bool, count: u64) -> std::result::Res
         if !value.is_finite() {
             return Err(Fault::new("finite numbers", value.to_string()));
         }
+        reserve(&mut list)?;
         list.push(value);
     }
     Ok(list)
+}
+
+/// Room for one more.
+fn reserve<T>(list: &mut Vec<T>) -> std::result::Result<(), Fault> {
+    list.try_reserve(1)
+        .map_err(|_| Fault::new("a mesh that fits into memory", format!("more than {} numbers", list.len())))
 }
 
 fn read_triangles(
@@ -197,6 +209,7 @@ fn read_triangles(
                 return Err(Fault::new("the number of a vertex", found));
             }
         }
+        reserve(&mut triangles)?;
         triangles.push(triangle);
     }
     Ok(triangles)

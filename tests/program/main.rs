@@ -13,6 +13,7 @@ mod flights;
 mod html;
 mod keeping;
 mod layering;
+mod outputs;
 mod page;
 mod phase;
 mod pixel;

@@ -51,6 +51,15 @@ impl Sandbox {
         Run { words: words.join(" "), output }
     }
 
+    /// Runs a script of the shell, in which `$TYNDALL` is the program.
+    #[cfg(unix)]
+    pub fn shell(&self, script: &str) -> Run {
+        let mut shell = Command::new("bash");
+        let shell = shell.env("TYNDALL", env!("CARGO_BIN_EXE_tyndall")).current_dir(self.0.path());
+        let output = shell.args(["-c", script]).output().unwrap();
+        Run { words: script.to_owned(), output }
+    }
+
     /// A file.
     pub fn bytes(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap()
@@ -92,6 +101,11 @@ impl Run {
     /// Exit code, standard output, standard error.
     pub fn reported(&self) -> (Option<i32>, String, String) {
         (self.output.status.code(), self.out(), self.err())
+    }
+
+    /// Exit code; none of a program that was killed.
+    pub fn code(&self) -> Option<i32> {
+        self.output.status.code()
     }
 
     /// Standard output.

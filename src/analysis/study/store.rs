@@ -17,7 +17,7 @@ use crate::{
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     fs::{self, File, TryLockError},
-    io::{ErrorKind, Write as _},
+    io::ErrorKind,
     path::{Path, PathBuf},
 };
 
@@ -34,13 +34,15 @@ const PLAN: &str = "runs/plan.json";
 /// What says that somebody is at work, in `runs`: a name that no scene has (see [`super::contender::slug`]).
 const LOCK: &str = ".lock";
 /// What a study writes besides `runs`.
-const PRODUCTS: [&str; 4] = ["study.json", "study.csv", "study.html", "images"];
+const PRODUCTS: [&str; 4] = [FILES[0], FILES[1], FILES[2], "images"];
+/// The files of these.
+const FILES: [&str; 3] = ["study.json", "study.csv", "study.html"];
 
 impl Store {
     /// Opens `root` for `question`, and reads what is already planned for it. With `restart` all that an earlier study
     /// left there is removed first.
     pub fn open(root: &Path, question: &Question, restart: bool) -> Result<(Self, Plan)> {
-        create(&root.join("runs"))?;
+        output::create_folder(&root.join("runs"))?;
         let store = Self { root: root.to_owned(), _lock: lock(&root.join("runs").join(LOCK))? };
         store.sweep()?;
         if restart && (store.has("study.json") || store.has_runs()?) {
@@ -52,6 +54,8 @@ impl Store {
             false if store.has_runs()? => return Err(store.taken("the runs of a study without their plan")),
             false => Plan::new(question.clone()),
         };
+        let files = FILES.map(|name| root.join(name));
+        output::check(&files.each_ref().map(|file| (file.as_path(), 0)), &[])?;
         store.write_json(PLAN, &plan)?;
         Ok((store, plan))
     }
@@ -153,7 +157,7 @@ impl Store {
     /// The path of `name`, in a folder that is there.
     fn ready(&self, name: impl AsRef<Path>) -> Result<PathBuf> {
         let path = self.root.join(name);
-        create(path.parent().unwrap_or(&self.root))?;
+        output::create_folder(path.parent().unwrap_or(&self.root))?;
         Ok(path)
     }
 }
@@ -174,13 +178,6 @@ fn is_partial(path: &Path) -> bool {
 
 fn is_lock(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name == LOCK)
-}
-
-fn create(folder: &Path) -> Result<()> {
-    fs::create_dir_all(folder).map_err(|error| {
-        let remedy = "choose another place for the folder, or allow yourself to write there";
-        Error::new(folder.display(), "a folder that can be made", error.to_string(), remedy)
-    })
 }
 
 fn lock(path: &Path) -> Result<File> {

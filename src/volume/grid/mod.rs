@@ -7,7 +7,6 @@
 
 mod file;
 mod lattice;
-mod memory;
 #[cfg(test)]
 mod tests;
 mod vol;
@@ -24,6 +23,7 @@ use crate::{
         boxes::{image, narrowed},
         cells::{Cells, Crossing},
     },
+    memory,
 };
 use lattice::{BRICK, Brick, Extent, Fault, Lattice};
 use std::{path::Path, sync::Arc};
@@ -146,13 +146,13 @@ impl Grid {
         let bricks = match values {
             Values::Grey(samples) => {
                 let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
-                memory::check(path, size, Some(bytes))?;
+                check_memory(path, size, Some(bytes))?;
                 let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
                 Bricks::Grey(Arc::new(lattice.map_err(|fault| refused(path, fault))?))
             }
             Values::Chromatic(samples) => {
                 let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
-                memory::check(path, size, Some(bytes))?;
+                check_memory(path, size, Some(bytes))?;
                 let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
                 drop(samples);
                 collapse(lattice.map_err(|fault| refused(path, fault))?)
@@ -360,10 +360,16 @@ fn reach(values: &Values, wrap: Wrap, [low, high]: [DVec3; 2]) -> [DVec3; 2] {
     if is_cube || is_empty_beyond() { cube } else { [low.min(cube[0]), high.max(cube[1])] }
 }
 
+/// So many bytes must be free for a grid of `size` voxels.
+fn check_memory(path: &Path, [x, y, z]: [usize; 3], bytes: Option<u64>) -> Result<()> {
+    let remedy = "give a coarser or smaller grid, or more memory";
+    memory::check(path.display(), "a grid", &format!("{x} x {y} x {z} voxels"), bytes, remedy)
+}
+
 /// The list of bricks, empty ones included, must fit in memory.
 fn check_bricks(path: &Path, size: [usize; 3], extent: &Extent) -> Result<()> {
     let count = extent.size().iter().try_fold(1u64, |count, n| count.checked_mul(*n as u64));
-    memory::check(path, size, count.and_then(|count| count.checked_mul(size_of::<Brick<Spectrum>>() as u64)))
+    check_memory(path, size, count.and_then(|count| count.checked_mul(size_of::<Brick<Spectrum>>() as u64)))
 }
 
 /// True if all samples on the border are 0.

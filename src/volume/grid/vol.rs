@@ -1,7 +1,7 @@
 //! Mitsuba's `.vol` files: a header of 48 bytes, then f32 values, channels fastest, then x, y, z; little endian.
 
 use super::file::{Source, Values};
-use super::{super::Samples, memory};
+use super::{super::Samples, check_memory};
 use crate::{
     error::{Error, Result},
     math::{DAffine3, DMat3, DVec3, Spectrum, vec3},
@@ -91,7 +91,7 @@ impl Header {
         let data = product(&[x, y, z, self.channels, 4]);
         let whole = data.and_then(|data| data.checked_add(HEADER as u64));
         if whole == Some(length) {
-            return memory::check(path, self.size, data);
+            return check_memory(path, self.size, data);
         }
         let needed = whole.map_or("more than 2^64".into(), |whole| whole.to_string());
         let channels = self.channels;

@@ -4,6 +4,8 @@
 //! the difference is to be read like code.
 
 mod cases;
+#[cfg(target_os = "linux")]
+mod commands;
 
 use cases::{Case, File};
 use std::{fmt::Write as _, fs, path::Path};
@@ -60,6 +62,8 @@ fn messages(cases: &[Case]) -> String {
 fn messages_are_as_written_down() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/errors/messages.txt");
     let found = messages(&cases::all());
+    #[cfg(target_os = "linux")]
+    let found = found + &commands::messages();
     if std::env::var_os("TYNDALL_BLESS").is_some() {
         fs::write(&file, &found).unwrap();
     }

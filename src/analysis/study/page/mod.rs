@@ -15,14 +15,8 @@ mod strips;
 mod tone;
 mod view;
 
-use crate::{
-    error::{Error, Result},
-    film::output,
-};
-use std::{
-    io::Write as _,
-    path::{Path, PathBuf},
-};
+use crate::{error::Result, film::output};
+use std::path::{Path, PathBuf};
 
 /// Writes `study.html` into the folder of a study, and says where it is.
 pub fn write(folder: &Path) -> Result<PathBuf> {
@@ -35,9 +29,11 @@ pub fn write(folder: &Path) -> Result<PathBuf> {
 pub fn record(folder: &Path, to: &Path) -> Result<Vec<PathBuf>> {
     let outcome = read::outcome(&folder.join("study.json"))?;
     let page = view::Page::new(folder, &outcome)?;
-    std::fs::create_dir_all(to).map_err(|error| Error::io(to, "make", &error))?;
+    output::create_folder(to)?;
     let files = record::files(&outcome, &page)?;
-    files.into_iter().map(|(name, content)| text(to.join(name), &content)).collect()
+    let paths: Vec<_> = files.iter().map(|(name, _)| to.join(name)).collect();
+    output::check(&paths.iter().map(|path| (path.as_path(), 0)).collect::<Vec<_>>(), &[])?;
+    paths.into_iter().zip(files).map(|(path, (_, content))| text(path, &content)).collect()
 }
 
 fn text(path: PathBuf, content: &str) -> Result<PathBuf> {

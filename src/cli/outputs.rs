@@ -1,0 +1,75 @@
+//! What is known to fail is said before any work is done.
+
+use super::{arguments::Render, render::Goal};
+use crate::{
+    error::Result,
+    film::{Film, output},
+    scene::build::Setup,
+};
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::Ordering,
+};
+
+/// Of the frames of an animation, so many have their names tried.
+const MOST_FRAMES: usize = 10_000;
+
+/// What a render keeps of every pixel, in numbers of four bytes, files in the making included. Measured: 11, with
+/// precision 69, with 22 channels of layers 3 for each, with batches 5 for each; and some more.
+pub const NUMBERS: usize = 32;
+const NUMBERS_OF_PRECISION: usize = 84;
+const NUMBERS_OF_LAYER: usize = 4;
+const NUMBERS_OF_BATCH: usize = 7;
+
+/// An error unless `outputs` can be written, as [`output::check`] says. Where one of them is standard output, reports go
+/// to standard error.
+pub fn check(outputs: &[(&Path, u64)], read: &[&Path]) -> Result<()> {
+    output::check(outputs, read)?;
+    if outputs.iter().any(|(path, _)| output::is_stdout(path)) {
+        super::STDOUT_IS_TAKEN.store(true, Ordering::Relaxed);
+    }
+    Ok(())
+}
+
+/// The same for files of which there may be none, all of them short.
+pub fn check_short<'a>(files: impl IntoIterator<Item = &'a PathBuf>, read: &[&Path]) -> Result<()> {
+    check(&files.into_iter().map(|path| (path.as_path(), 0)).collect::<Vec<_>>(), read)
+}
+
+/// Memory for the film of a render, its files, and room for them.
+pub fn check_render(arguments: &Render, setup: &Setup, goal: &Goal) -> Result<()> {
+    let Setup { film, integrator, .. } = setup;
+    let batches = arguments.batches.map_or(0, |batches| batches as usize);
+    let layers: usize = integrator.layers.iter().map(|layer| layer.suffixes().len()).sum();
+    let precision = if arguments.error.is_some() { NUMBERS_OF_PRECISION } else { 0 };
+    let each = NUMBERS_OF_BATCH + 2 * layers;
+    film.check_memory(NUMBERS + precision + NUMBERS_OF_LAYER * layers + batches * each)?;
+    let bytes = film.bytes(goal.format.names().len() + layers + batches * (3 + layers));
+    let images = images(arguments, goal);
+    let mut outputs: Vec<(&Path, u64)> = Vec::new();
+    for (index, (image, preview)) in images.iter().enumerate() {
+        // An animation that does not fit keeps the frames that did: room for the first is asked for.
+        let [bytes, shown] = if index == 0 { [bytes, preview_bytes(film)] } else { [0, 0] };
+        outputs.push((image, bytes));
+        outputs.extend(preview.as_deref().map(|preview| (preview, shown)));
+    }
+    outputs.extend(arguments.report.as_deref().map(|report| (report, 0)));
+    check(&outputs, &[&arguments.scene.file])
+}
+
+/// Images with their previews.
+fn images(arguments: &Render, goal: &Goal) -> Vec<(PathBuf, Option<PathBuf>)> {
+    let both = |goal: &Goal| (goal.path.clone(), goal.preview());
+    match arguments.frames {
+        None => vec![both(goal)],
+        Some(frames) => {
+            let numbers = (frames.first..=frames.last).take(MOST_FRAMES);
+            numbers.map(|frame| both(&goal.numbered(frame, frames.digits()))).collect()
+        }
+    }
+}
+
+/// Three bytes a pixel, before they are compressed.
+fn preview_bytes(film: &Film) -> u64 {
+    film.bytes(1) / 4 * 3
+}
