@@ -1,6 +1,6 @@
 //! `tyndall diff`: how far an image is from another.
 
-use super::{complain, say};
+use super::{complain, say, voice::Answer};
 use crate::{
     analysis::{
         diff::{self, Comparison, Difference, MEASURES, MapOf, Mapped, Tolerance, View},
@@ -11,7 +11,7 @@ use crate::{
 };
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
-use std::{io::Write as _, path::PathBuf};
+use std::path::PathBuf;
 
 /// Compare an image with a reference.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -43,9 +43,9 @@ pub struct Diff {
     #[arg(long, value_name = "N", default_value_t = 67.0, value_parser = per_degree, allow_negative_numbers = true)]
     pub pixels_per_degree: f32,
 
-    /// Also write all numbers to this JSON file (infinite values and NaN become null)
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
+    /// How the measures are given.
+    #[command(flatten)]
+    pub answer: Answer,
 
     /// Also write a false-colour image of the differences to this PNG file
     #[arg(long, value_name = "FILE", value_parser = png_file)]
@@ -163,10 +163,7 @@ pub fn run(arguments: &Diff) -> Result<bool> {
         film::png::write_bytes(path, image.width, image.height, &colours)?;
         say(&format!("{}: {}", path.display(), legend(arguments.map_of, &mapped)));
     }
-    if let Some(path) = &arguments.json {
-        let figures = figures(arguments, &image, &difference);
-        film::output::write(path, |file| writeln!(file, "{figures:#}"))?;
-    }
+    arguments.answer.give(&figures(arguments, &image, &difference))?;
     Ok(judge(&arguments.fail_above, &values))
 }
 

@@ -1,6 +1,6 @@
 //! `tyndall flights`: ways of sampling flights, one against the other.
 
-use super::say;
+use super::{say, voice::Answer};
 use crate::{
     analysis::{
         flights::{
@@ -64,9 +64,9 @@ pub struct Flights {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 
-    /// Also write all numbers to this JSON file
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
+    /// How the comparison is given.
+    #[command(flatten)]
+    pub answer: Answer,
 
     /// Also plot the mean distance of constant steps against the predicted mean, to this SVG file
     #[arg(long, value_name = "FILE")]
@@ -113,10 +113,7 @@ pub fn run(arguments: &Flights) -> Result<bool> {
         let drawing = drawing::svg(&study.laws, experiment.sigma_s)?;
         output::write(path, |file| file.write_all(drawing.as_bytes()))?;
     }
-    if let Some(path) = &arguments.json {
-        let figures = figures(arguments, &study, truth_photons);
-        output::write(path, |file| writeln!(file, "{figures:#}"))?;
-    }
+    arguments.answer.give(&figures(arguments, &study, truth_photons))?;
     let is_random = |found: &&Found| !found.method.starts_with("CDS");
     Ok(study.methods.iter().filter(is_random).all(|found| found.agrees))
 }

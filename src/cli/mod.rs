@@ -7,12 +7,15 @@ pub mod diff;
 mod estimator;
 pub mod flights;
 mod info;
+mod manual;
 pub mod phase;
 mod pixel;
+mod plan;
 mod render;
 mod report;
 mod strategies;
 mod study;
+mod voice;
 
 use crate::{
     error::{Error, Result},
@@ -24,10 +27,13 @@ use crate::{
 use arguments::{Arguments, Command};
 use clap::Parser;
 use std::{num::NonZeroUsize, process::ExitCode};
+use voice::{complain, say};
 
 /// Runs the program; bad input ends it with code 2 and a message that says what to mend.
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
+    let json = arguments.command.answer().is_some_and(|answer| answer.json);
+    voice::set(arguments.quiet, json);
     let outcome = match &arguments.command {
         Command::Render(render) => render::run(render),
         Command::Strategies(strategies) => strategies::run(strategies),
@@ -36,6 +42,8 @@ pub fn run() -> ExitCode {
         Command::Convert(convert) => convert::run(convert),
         Command::Report(report) => report::run(report),
         Command::Study(study) => study::run(study),
+        Command::Completions(completions) => manual::complete(completions),
+        Command::Man(man) => manual::run(man),
         Command::Diff(diff) => return judged(diff::run(diff)),
         Command::Phase(phase) => return judged(phase::run(phase)),
         Command::Flights(flights) => return judged(flights::run(flights)),
@@ -79,16 +87,4 @@ fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
         Error::new("--threads", "a number of threads this machine can start", error.to_string(), "use fewer")
     })
-}
-
-/// To standard output. A reader that has gone away is no reason to fail.
-fn say(text: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stdout(), "{text}");
-}
-
-/// To standard error.
-fn complain(text: &str) {
-    use std::io::Write as _;
-    let _ = writeln!(std::io::stderr(), "{text}");
 }

@@ -3,7 +3,7 @@
 use super::{
     arguments::{Scene, Size, positive_u32, size, threads},
     estimator::Estimator,
-    load, say,
+    load, say, voice,
 };
 use crate::{analysis::pixel, error::Result, film, render::budget::Budget};
 use clap::Args;
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         pool.install(|| pixel::examine(&setup, &settings, at, arguments.sample, arguments.samples))?;
     let json = found.json();
     let Some(path) = &arguments.output else {
-        say(&json);
+        voice::print(&json);
         return Ok(());
     };
     film::output::write(path, |file| writeln!(file, "{json}"))?;

@@ -1,6 +1,6 @@
 //! `tyndall render`: a scene file in, an image and its PNG preview out.
 
-use super::{arguments, load, threads};
+use super::{arguments, load, plan::Plan, threads, voice};
 use crate::{
     error::{Error, Result},
     film::{
@@ -15,7 +15,6 @@ use crate::{
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
-    io::Write as _,
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -28,16 +27,15 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let precision = precision(arguments, &setup, &settings)?;
     let task = Task { settings, precision, batches: arguments.batches };
     let goal = Goal::new(arguments, &setup)?;
+    let plan = Plan::new(&setup, &arguments.estimator, task.settings, arguments.error);
+    plan.announce();
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
     let figures = match arguments.frames {
         None => vec![pool.install(|| shoot(&setup, &task, &goal, None))?],
         Some(frames) => pool.install(|| animate(arguments, &mut setup, &task, &goal, frames))?,
     };
-    match &arguments.report {
-        Some(path) => write_report(path, figures, load_time, arguments.frames.is_some()),
-        None => Ok(()),
-    }
+    arguments.answer.give(&report(figures, load_time, arguments.frames.is_some(), &plan))
 }
 
 /// Default number of frames per second.
@@ -128,7 +126,9 @@ fn shoot(setup: &Setup, task: &Task, goal: &Goal, label: Option<&str>) -> Result
     let (width, height) = (setup.film.width as usize, setup.film.height as usize);
     film::png::write(&preview, width, height, &image.pixels)?;
     print_summary(&image, task, &goal.path, &preview, label);
-    Ok(figures(&image, task))
+    let mut figures = figures(&image, task);
+    figures["image"] = goal.path.display().to_string().into();
+    Ok(figures)
 }
 
 /// Renders one image under a progress bar.
@@ -220,10 +220,7 @@ impl Goal {
         let (path, file) = match (named, &arguments.output) {
             (Some((path, file)), _) => (path.to_owned(), file),
             (None, Some(path)) => (path.with_extension(scene.file.extension()), scene.file),
-            (None, None) => {
-                let stem = PathBuf::from(arguments.scene.file.file_stem().unwrap_or_default());
-                (stem.with_extension(scene.file.extension()), scene.file)
-            }
+            (None, None) => (arguments.scene.name().with_extension(scene.file.extension()), scene.file),
         };
         let has_layers = !setup.integrator.layers.is_empty();
         if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {
@@ -285,7 +282,7 @@ impl Bar {
             }
             (None, Budget { time, .. }) => (milliseconds(time.unwrap_or(Duration::MAX)), By::Time),
         };
-        let bar = ProgressBar::new(length);
+        let bar = voice::bar(length);
         if let Ok(style) = ProgressStyle::with_template("{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
         {
             bar.set_style(style);
@@ -358,17 +355,18 @@ fn print_summary(image: &Image, task: &Task, output: &Path, preview: &Path, labe
     ));
 }
 
-/// Figures for scripts, as JSON: those of one image, or of every frame.
-fn write_report(
-    path: &Path,
+/// Figures for scripts: those of one image, or of every frame.
+fn report(
     mut figures: Vec<serde_json::Value>,
     load_seconds: f64,
     is_animation: bool,
-) -> Result<()> {
+    plan: &Plan,
+) -> serde_json::Value {
     let mut report = match is_animation {
         true => serde_json::json!({ "frames": figures }),
         false => figures.pop().unwrap_or_default(),
     };
     report["load_seconds"] = load_seconds.into();
-    film::output::write(path, |file| writeln!(file, "{report:#}"))
+    report["plan"] = plan.json();
+    report
 }

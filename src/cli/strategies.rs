@@ -3,7 +3,8 @@
 use super::{
     arguments::{Scene, Size, positive_u32, size, threads},
     estimator::Estimator,
-    load, say,
+    load, say, voice,
+    voice::Answer,
 };
 use crate::{
     analysis::strategies::{self, Plan},
@@ -11,7 +12,7 @@ use crate::{
     render::budget::Budget,
 };
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressStyle;
 use std::{num::NonZeroUsize, path::PathBuf};
 
 /// Show what every strategy is worth.
@@ -54,6 +55,10 @@ pub struct Arguments {
     /// How paths are sampled.
     #[command(flatten)]
     pub estimator: Estimator,
+
+    /// How the shares are given.
+    #[command(flatten)]
+    pub answer: Answer,
 }
 
 /// Runs the command.
@@ -65,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);
     let plan = Plan { depth: arguments.depth, passes, pilots };
     let folder = folder(arguments)?;
-    let bar = ProgressBar::new(0);
+    let bar = voice::bar(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left") {
         bar.set_style(style);
     }
@@ -80,15 +85,15 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     say(&strategies::table(&findings.report));
     let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
     say(&format!("in {}: {}", folder.display(), names.collect::<Vec<_>>().join(", ")));
-    Ok(())
+    arguments.answer.give(&serde_json::json!(findings.report))
 }
 
 /// The folder, which then exists.
 fn folder(arguments: &Arguments) -> Result<PathBuf> {
-    let folder = arguments.output.clone().unwrap_or_else(|| {
-        let stem = arguments.scene.file.file_stem().unwrap_or_default().to_string_lossy();
-        PathBuf::from(format!("{stem}-strategies"))
-    });
+    let folder = arguments
+        .output
+        .clone()
+        .unwrap_or_else(|| PathBuf::from(format!("{}-strategies", arguments.scene.name().to_string_lossy())));
     std::fs::create_dir_all(&folder).map_err(|error| {
         let remedy = "choose another place, or check that you may create a folder there";
         Error::new(folder.display(), "a folder to write to", error.to_string(), remedy)
