@@ -35,8 +35,9 @@ fn command() -> Command {
 
 fn page(command: &Command) -> String {
     let mut page = Vec::new();
+    let program = concat!("tyndall ", env!("CARGO_PKG_VERSION"));
     // Nothing fails that is written to memory.
-    let _ = Man::new(command.clone()).render(&mut page);
+    let _ = Man::new(command.clone()).source(program).render(&mut page);
     String::from_utf8_lossy(&page).into_owned()
 }
 
