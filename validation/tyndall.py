@@ -107,7 +107,7 @@ def run(
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         output, report = Path(folder, "image.exr"), Path(folder, "report.json")
         arguments = [*flags({"output": output, "report": report, **options}), *definitions(scene.parameters)]
-        done = call([str(binary()), "render", str(scene_file(scene, Path(folder))), *arguments], patience)
+        done = call([str(binary()), "--quiet", "render", str(scene_file(scene, Path(folder))), *arguments], patience)
         found = rendering(output, report, done.stderr)
     if must_be_finite:
         finite(found.image if found.batches is None else found.batches)

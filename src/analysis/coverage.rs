@@ -4,7 +4,7 @@
 //! or not. Five vertices show all there is to see of the ends and of two neighbours between them.
 
 use crate::{
-    bsdf::BsdfModel,
+    bsdf::{Bsdf, BsdfModel},
     emitter::Kind,
     math::{Spectrum, Vec2, Vec3},
     medium::{Medium, distance::DistanceSampler},
@@ -33,10 +33,10 @@ impl From<&Options> for Paths {
 /// What of a scene decides which strategies can make its paths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traits {
-    /// One of every kind of emitters that differ in this.
-    emitters: Vec<EmitterTraits>,
-    /// Something scatters by Dirac lobes.
-    smooth: bool,
+    /// Every kind of emitters that differ in this, with the names of their plugins.
+    emitters: Vec<(EmitterTraits, Vec<&'static str>)>,
+    /// What scatters by Dirac lobes, in words; none where nothing does.
+    smooth: Option<&'static str>,
     /// Something scatters otherwise.
     rough: bool,
     /// Most segments of a path.
@@ -70,28 +70,29 @@ impl Traits {
                 // Parallel rays see one direction of what is at infinity, which no light subpath starts in.
                 to_lens: emitter.is_hittable() && !(emitter.is_infinite() && scene.sensor.is_parallel()),
             };
-            if !emitters.contains(&traits) {
-                emitters.push(traits);
-            }
+            add(&mut emitters, traits, emitter.name);
         }
         let bsdfs = || scene.surfaces.iter().map(|surface| &scene.bsdfs[surface.bsdf as usize]);
         let mut bounds = scene.media.iter().map(Medium::bound);
         let scatters = bounds.any(|m| m.sigma_t != Spectrum::ZERO && m.albedo != Spectrum::ZERO);
         Self {
             emitters,
-            smooth: bsdfs().any(|bsdf| bsdf.has_dirac() && bsdf.survival(Vec2::ZERO, Vec3::Z) > 0.0),
+            smooth: in_words_smooth(
+                bsdfs().filter(|bsdf| bsdf.has_dirac() && bsdf.survival(Vec2::ZERO, Vec3::Z) > 0.0),
+            ),
             rough: scatters || bsdfs().any(BsdfModel::is_connectible),
             max_depth: options.max_depth.unwrap_or(u32::MAX),
         }
     }
 
-    /// All kinds of paths that `set` cannot make, in words.
-    pub fn unreachable(&self, set: Strategies) -> Vec<String> {
-        let mut kinds = Vec::new();
-        for (emitter, dirac) in self.paths() {
-            let kind = in_words(emitter, &dirac);
-            if !makers(emitter, &dirac).iter().any(|kind| set.has(*kind)) && !kinds.contains(&kind) {
-                kinds.push(kind);
+    /// All kinds of paths that `set` cannot make.
+    pub fn unreached(&self, set: Strategies) -> Vec<Unreached> {
+        let mut kinds: Vec<Unreached> = Vec::new();
+        for path in self.paths().filter(|path| !path.is_made_by(set)) {
+            let (light, share) = (path.in_words(), Share::of(path.is_made_by(Strategies::BDPT)));
+            match kinds.iter_mut().find(|kind| kind.light == light) {
+                Some(kind) => kind.by_bdpt = kind.by_bdpt.with(share),
+                None => kinds.push(Unreached { light, by_bdpt: share }),
             }
         }
         kinds
@@ -99,27 +100,32 @@ impl Traits {
 
     /// A path that `all` can make and `some` cannot, in words; none where there is no such.
     pub fn missing(&self, some: Strategies, all: Strategies) -> Option<String> {
-        self.paths().find_map(|(emitter, dirac)| {
-            let makers = makers(emitter, &dirac);
-            let made = |set: Strategies| makers.iter().any(|kind| set.has(*kind));
-            (made(all) && !made(some)).then(|| in_words(emitter, &dirac))
-        })
+        let mut missing = self.paths().filter(|path| path.is_made_by(all) && !path.is_made_by(some));
+        missing.next().map(|path| path.in_words())
     }
 
-    /// Every kind of path, the shortest first: its emitter, and of every vertex from there to the lens whether it
-    /// scatters by a Dirac lobe.
-    fn paths(&self) -> impl Iterator<Item = (EmitterTraits, Vec<bool>)> + '_ {
+    fn path<'a>(
+        &'a self,
+        (emitter, names): &'a (EmitterTraits, Vec<&'static str>),
+        dirac: &[bool],
+    ) -> Path<'a> {
+        Path { emitter: *emitter, names, smooth: self.smooth.unwrap_or_default(), dirac: dirac.to_vec() }
+    }
+
+    /// Every kind of path, the shortest first.
+    fn paths(&self) -> impl Iterator<Item = Path<'_>> + '_ {
         let longest = VERTICES.min(self.max_depth.saturating_sub(1));
         let counts = (self.max_depth > 0).then_some(0..=longest).into_iter().flatten();
         counts.flat_map(move |count| {
             let patterns =
                 (0..1u32 << count).map(move |bits| (0..count).map(|i| bits >> i & 1 == 1).collect());
-            let real =
-                move |pattern: &Vec<bool>| pattern.iter().all(|d| if *d { self.smooth } else { self.rough });
+            let real = move |pattern: &Vec<bool>| {
+                pattern.iter().all(|d| if *d { self.smooth.is_some() } else { self.rough })
+            };
             // Of emitters in direct view alone there are paths without vertices between.
-            let lit = move |emitter: &&EmitterTraits| count > 0 || emitter.seen;
+            let lit = move |(emitter, _): &&(EmitterTraits, Vec<_>)| count > 0 || emitter.seen;
             patterns.filter(real).flat_map(move |pattern| {
-                self.emitters.iter().filter(lit).map(move |emitter| (*emitter, pattern.clone()))
+                self.emitters.iter().filter(lit).map(move |kind| self.path(kind, &pattern))
             })
         })
     }
@@ -138,32 +144,115 @@ fn makers(emitter: EmitterTraits, dirac: &[bool]) -> Vec<StrategyKind> {
     StrategyKind::ALL.into_iter().filter(can).collect()
 }
 
-/// A kind of path, in words.
-fn in_words(emitter: EmitterTraits, dirac: &[bool]) -> String {
-    let light = match (emitter.hittable, emitter.connectible) {
-        (true, _) => "light of area, sky or medium",
-        (false, true) => "light of a point or a single direction",
-        (false, false) => "light that leaves along a normal only",
-    };
-    let smooth = "smooth mirrors or lenses";
-    match (dirac.first(), dirac.last()) {
-        (Some(true), _) if !dirac.contains(&false) => {
-            format!("{light} that {smooth} alone lead to the camera")
+/// A kind of path.
+struct Path<'a> {
+    emitter: EmitterTraits,
+    /// The plugins of such emitters.
+    names: &'a [&'static str],
+    /// What scatters by Dirac lobes, in words.
+    smooth: &'static str,
+    /// Of every vertex from the emitter to the lens whether it scatters by a Dirac lobe.
+    dirac: Vec<bool>,
+}
+
+impl Path<'_> {
+    fn is_made_by(&self, set: Strategies) -> bool {
+        makers(self.emitter, &self.dirac).iter().any(|kind| set.has(*kind))
+    }
+
+    fn in_words(&self) -> String {
+        let (dirac, smooth) = (&self.dirac, self.smooth);
+        let light = format!("light of {} emitters", list(self.names));
+        match (dirac.first(), dirac.last()) {
+            (Some(true), _) if !dirac.contains(&false) => {
+                format!("{light} that comes to the camera by way of {smooth} alone")
+            }
+            (Some(true), Some(true)) => {
+                format!("{light} by way of {smooth} (caustics), seen by way of {smooth}")
+            }
+            (Some(true), _) => format!("{light} by way of {smooth} (caustics)"),
+            (_, Some(true)) => format!("{light} seen by way of {smooth}"),
+            (None, _) => format!("{light} seen directly"),
+            _ if dirac.len() == 1 => format!("{light} scattered once"),
+            _ => format!("{light} scattered more than once"),
         }
-        (Some(true), Some(true)) => format!("caustics of {light} seen in or through {smooth}"),
-        (Some(true), _) => format!("caustics of {light}"),
-        (_, Some(true)) => format!("{light} seen in or through {smooth}"),
-        (None, _) => format!("{light} seen directly"),
-        _ if dirac.len() == 1 => format!("{light} scattered once"),
-        _ => format!("{light} scattered more than once"),
     }
 }
 
-/// Kinds of paths of `scene` that no strategy among `strategies` can make.
-pub fn unreachable(scene: &Scene, strategies: Strategies, paths: Paths) -> Vec<String> {
-    match strategies {
+/// Words with "and" before the last.
+pub fn list(words: &[&str]) -> String {
+    match words {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [others @ .., last] => format!("{} and {last}", others.join(", ")),
+    }
+}
+
+/// Adds an emitter to those of its kind.
+fn add(emitters: &mut Vec<(EmitterTraits, Vec<&'static str>)>, traits: EmitterTraits, name: &'static str) {
+    match emitters.iter_mut().find(|(known, _)| *known == traits) {
+        None => emitters.push((traits, vec![name])),
+        Some((_, names)) if names.contains(&name) => {}
+        Some((_, names)) => names.push(name),
+    }
+}
+
+/// What these surfaces of Dirac lobes are; none where there are none.
+fn in_words_smooth<'a>(bsdfs: impl Iterator<Item = &'a Bsdf>) -> Option<&'static str> {
+    let (glass, mirrors): (Vec<_>, Vec<_>) = bsdfs.partition(|bsdf| bsdf.transmits());
+    match (glass.is_empty(), mirrors.is_empty()) {
+        (true, true) => None,
+        (false, true) => Some("smooth glass"),
+        (true, false) => Some("smooth mirrors"),
+        (false, false) => Some("smooth glass or mirrors"),
+    }
+}
+
+/// Light that strategies do not reach.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unreached {
+    /// Which, in words.
+    pub light: String,
+    /// How much of it bidirectional path tracing does.
+    pub by_bdpt: Share,
+}
+
+/// How much of some light is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Share {
+    /// All of it.
+    All,
+    /// Not all paths.
+    Some,
+    /// None of it.
+    None,
+}
+
+impl Share {
+    fn of(is_reached: bool) -> Self {
+        if is_reached { Self::All } else { Self::None }
+    }
+
+    /// Of this and other paths together.
+    fn with(self, other: Self) -> Self {
+        if self == other { self } else { Self::Some }
+    }
+
+    /// The name in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Some => "some",
+            Self::None => "none",
+        }
+    }
+}
+
+/// Light of `scene` that an estimator does not reach; the preview of no strategies is no estimate.
+pub fn unreached(scene: &Scene, options: &Options) -> Vec<Unreached> {
+    match options.strategies {
         Strategies::NONE => Vec::new(),
-        _ => Traits::of(scene, paths, true).unreachable(strategies),
+        strategies => Traits::of(scene, options.into(), true).unreached(strategies),
     }
 }
 
@@ -171,8 +260,8 @@ pub fn unreachable(scene: &Scene, strategies: Strategies, paths: Paths) -> Vec<S
 /// mean little.
 pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
     let Strategies { emitter_hit, next_event, lens, .. } = options.strategies;
-    let missing = unreachable(scene, options.strategies, options.into());
-    let mut notes: Vec<String> = missing.into_iter().map(|kind| format!("does not sample {kind}")).collect();
+    let missing = unreached(scene, options).into_iter();
+    let mut notes: Vec<String> = missing.map(|kind| format!("does not sample {}", kind.light)).collect();
     let around = &scene.media[scene.sensor_medium.0 as usize];
     if lens && !emitter_hit && !next_event && around.bound().sigma_t != Spectrum::ZERO {
         let why = "light scattered close to the camera is sampled by connections to the lens only";
@@ -187,7 +276,7 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
 
 /// True if the mean of an estimator's images of `scene` is the truth as far as any integrator's is.
 pub fn is_trustworthy(scene: &Scene, options: &Options) -> bool {
-    let missing = unreachable(scene, options.strategies, options.into()).len();
+    let missing = unreached(scene, options).len();
     let other_notes = notes(scene, options).len() - missing;
     other_notes == 0 && (missing == 0 || options.strategies == Strategies::BDPT)
 }
@@ -203,7 +292,13 @@ mod tests {
     const BEAM: EmitterTraits = EmitterTraits { connectible: false, ..POINT };
 
     fn traits(emitters: &[EmitterTraits], smooth: bool) -> Traits {
-        Traits { emitters: emitters.to_vec(), smooth, rough: true, max_depth: u32::MAX }
+        let named = |traits: &EmitterTraits| match (traits.hittable, traits.connectible) {
+            (true, _) => (*traits, vec!["area", "constant"]),
+            (_, true) => (*traits, vec!["point", "spot"]),
+            _ => (*traits, vec!["directionalarea"]),
+        };
+        let smooth = smooth.then_some("smooth glass");
+        Traits { emitters: emitters.iter().map(named).collect(), smooth, rough: true, max_depth: u32::MAX }
     }
 
     fn set(names: &str) -> Strategies {
@@ -243,26 +338,33 @@ mod tests {
         // Only light subpaths leave along a normal.
         assert!(covering(&traits(&[BEAM], false)).iter().all(|s| s.contains("lens")));
         let missing = traits(&[BEAM], false).missing(Strategies::PT, Strategies::BDPT).unwrap();
-        assert_eq!(missing, "light that leaves along a normal only scattered once");
+        assert_eq!(missing, "light of directionalarea emitters scattered once");
+    }
+
+    fn unreached(traits: &Traits, set: Strategies) -> Vec<(String, Share)> {
+        traits.unreached(set).into_iter().map(|kind| (kind.light, kind.by_bdpt)).collect()
     }
 
     #[test]
-    fn what_a_set_cannot_make_is_named_by_kinds() {
+    fn what_a_set_does_not_reach_is_named_by_kinds() {
+        let (all, some, none) = (Share::All, Share::Some, Share::None);
         let lamp = traits(&[LAMP], true);
-        assert_eq!(lamp.unreachable(Strategies::BDPT), [""; 0]);
-        let light = "light of area, sky or medium";
-        let of_light_tracing = ["alone lead to the camera", "seen in or through smooth mirrors or lenses"];
-        let found = lamp.unreachable(Strategies::LT);
-        assert!(found.len() == 3 && found[2].starts_with("caustics"), "{found:?}");
-        for (found, end) in found.iter().zip(of_light_tracing) {
-            assert!(found.starts_with(light) && found.ends_with(end), "{found}");
-        }
-        let point = traits(&[POINT], true).unreachable(Strategies::BDPT);
-        assert!(
-            point.iter().all(|kind| kind.ends_with("camera") || kind.starts_with("caustics")),
-            "{point:?}"
-        );
-        assert_eq!(traits(&[POINT], false).unreachable(Strategies::PT), [""; 0]);
+        assert_eq!(unreached(&lamp, Strategies::BDPT), []);
+        let light = "light of area and constant emitters";
+        let expected = [
+            (format!("{light} that comes to the camera by way of smooth glass alone"), all),
+            (format!("{light} seen by way of smooth glass"), all),
+            (format!("{light} by way of smooth glass (caustics), seen by way of smooth glass"), all),
+        ];
+        assert_eq!(unreached(&lamp, Strategies::LT), expected);
+        let light = "light of point and spot emitters";
+        let alone = (format!("{light} that comes to the camera by way of smooth glass alone"), none);
+        let caustics = format!("{light} by way of smooth glass (caustics)");
+        let seen = (format!("{caustics}, seen by way of smooth glass"), some);
+        let point = traits(&[POINT], true);
+        assert_eq!(unreached(&point, Strategies::PT), [alone.clone(), (caustics, all), seen.clone()]);
+        assert_eq!(unreached(&point, Strategies::BDPT), [alone, (seen.0, none)]);
+        assert_eq!(unreached(&traits(&[POINT], false), Strategies::PT), []);
     }
 
     /// What no strategy can make is missing from none.

@@ -1,25 +1,35 @@
 //! The arguments of the command line.
 
-use super::{estimator::Estimator, study::Study};
-use crate::{film::accumulator::MOST_PASSES, medium::DistanceMethod};
+use super::{estimator::Estimator, study::Study, voice::Answer};
+use crate::{film::accumulator::MOST_PASSES, format};
 use clap::{
     Args, Parser, Subcommand,
-    builder::{PossibleValuesParser, TypedValueParser},
+    builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser},
 };
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
-
-/// At the end of the help.
-const EXIT_CODES: &str =
-    "Exit codes: 0, 1 if what is judged does not hold, 2 on an error; a closed pipe (| head) is none.";
 
 /// A bidirectional path tracer for fog, smoke and fire.
 #[derive(Clone, Debug, Parser, PartialEq)]
 #[command(version, about, propagate_version = true, after_help = EXIT_CODES)]
 pub struct Arguments {
+    /// Print no progress, plan, summary or table; warnings, errors and what is asked for as data (--json) remain
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
+
+/// The codes that the program ends with, for scripts.
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    success
+  1    done, and what was tested does not hold (diff --fail-above, phase, flights)
+  2    a mistake in the arguments or files, or a fault of the machine such as a full disk (a closed pipe is none)
+  129  ended by SIGHUP
+  130  ended by Ctrl-C (SIGINT)
+  143  ended by SIGTERM";
 
 /// What to do.
 #[derive(Clone, Debug, PartialEq, Subcommand)]
@@ -79,6 +89,33 @@ pub enum Command {
     /// with sigma_t (RDS_t) or with sigma_s (RDS_s), or have their first collision forced. Exit code: 0, 1 if an
     /// unbiased method deviates from the expected values, 2 on an error.
     Flights(super::flights::Flights),
+    /// Print a script that completes commands, options and names in a shell
+    ///
+    /// For example: tyndall completions bash > ~/.local/share/bash-completion/completions/tyndall
+    Completions(Completions),
+    /// Print the manual page, or write the pages of all commands to a folder
+    Man(Manual),
+}
+
+impl Command {
+    /// How the command gives its result, where that is a choice.
+    pub fn answer(&self) -> Option<&Answer> {
+        match self {
+            Self::Render(render) => Some(&render.answer),
+            Self::Strategies(strategies) => Some(&strategies.answer),
+            Self::Info(info) => Some(&info.answer),
+            Self::Study(study) => Some(&study.answer),
+            Self::Diff(diff) => Some(&diff.answer),
+            Self::Phase(phase) => Some(&phase.answer),
+            Self::Flights(flights) => Some(&flights.answer),
+            Self::Pixel(_)
+            | Self::Convert(_)
+            | Self::Merge(_)
+            | Self::Report(_)
+            | Self::Completions(_)
+            | Self::Man(_) => None,
+        }
+    }
 }
 
 /// Render a scene to an image.
@@ -95,9 +132,9 @@ pub struct Render {
     #[arg(short, long, value_name = "FILE", value_parser = image_file)]
     pub output: Option<PathBuf>,
 
-    /// Also write statistics of the render (time, samples, noise) to this JSON file
-    #[arg(long, value_name = "FILE")]
-    pub report: Option<PathBuf>,
+    /// Where the statistics of the render go: time, samples, noise, how paths were sampled.
+    #[command(flatten)]
+    pub answer: Answer,
 
     /// Samples per pixel [default: the scene's sample_count]
     ///
@@ -204,16 +241,36 @@ pub struct Info {
     #[command(flatten)]
     pub scene: Scene,
 
-    /// Free-flight sampling method in heterogeneous media [default: the setting of each medium]
-    #[arg(long, value_name = "NAME", value_parser = one_of(&DistanceMethod::NAMES))]
-    pub tracker: Option<DistanceMethod>,
+    /// How paths would be sampled.
+    #[command(flatten)]
+    pub estimator: Estimator,
+
+    /// How the summary is given.
+    #[command(flatten)]
+    pub answer: Answer,
+}
+
+/// Print a script for a shell.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Completions {
+    /// The shell
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}
+
+/// Print or write manual pages.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Manual {
+    /// Folder for the pages of all commands, created if missing [default: print the page of tyndall]
+    #[arg(value_name = "FOLDER")]
+    pub folder: Option<PathBuf>,
 }
 
 /// Convert a scene.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Convert {
-    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json)
-    #[arg(value_name = "IN")]
+    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input
+    #[arg(value_name = "IN", value_parser = scene_file())]
     pub input: PathBuf,
 
     /// Scene file to write: .xml or .json
@@ -244,8 +301,11 @@ pub struct Report {
 /// A scene file and its parameters.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json)
-    #[arg(value_name = "SCENE")]
+    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input
+    ///
+    /// On standard input the first character tells the format. Names of other files in the scene then start at the
+    /// current folder, and outputs without a name of their own are called "stdin".
+    #[arg(value_name = "SCENE", value_parser = scene_file())]
     pub file: PathBuf,
 
     /// Set the parameter $name of the scene instead of its default; may be repeated
@@ -260,6 +320,16 @@ pub struct Samples {
     pub first: u32,
     /// After the last.
     pub end: u32,
+}
+
+impl Scene {
+    /// What outputs are called that have no name of their own.
+    pub fn name(&self) -> PathBuf {
+        match format::is_standard_input(&self.file) {
+            true => "stdin".into(),
+            false => self.file.file_stem().unwrap_or_default().into(),
+        }
+    }
 }
 
 /// Frames of an animation, both included.
@@ -384,6 +454,12 @@ pub(super) fn definition(text: &str) -> Result<(String, String), String> {
     Ok((name.to_owned(), value.to_owned()))
 }
 
+/// The path of a scene; - is that of standard input.
+fn scene_file() -> impl TypedValueParser<Value = PathBuf> {
+    let named = |path: PathBuf| if path.as_os_str() == "-" { format::STANDARD_INPUT.into() } else { path };
+    PathBufValueParser::new().map(named)
+}
+
 pub(super) fn image_file(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
@@ -401,6 +477,7 @@ mod tests {
         *,
     };
     use crate::{
+        medium::DistanceMethod,
         sampling::Sampler,
         transport::{Strategies, observer::StrategyKind},
     };

@@ -1,6 +1,6 @@
 //! `tyndall diff`: how far an image is from another.
 
-use super::{complain, outputs::check_short, say};
+use super::{complain, outputs::check_short, say, voice::Answer};
 use crate::{
     analysis::{
         diff::{self, Comparison, Difference, MEASURES, MapOf, Mapped, Tolerance, View},
@@ -43,9 +43,9 @@ pub struct Diff {
     #[arg(long, value_name = "N", default_value_t = 67.0, value_parser = per_degree, allow_negative_numbers = true)]
     pub pixels_per_degree: f32,
 
-    /// Also write all numbers to this JSON file (infinite values and NaN become null)
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
+    /// How the measures are given.
+    #[command(flatten)]
+    pub answer: Answer,
 
     /// Also write a false-colour image of the differences to this PNG file
     #[arg(long, value_name = "FILE", value_parser = png_file)]
@@ -147,7 +147,7 @@ fn limit(text: &str) -> std::result::Result<Limit, String> {
 /// Runs the command; true if no measure is above its limit.
 pub fn run(arguments: &Diff) -> Result<bool> {
     let files = [arguments.image.as_path(), arguments.reference.as_path()];
-    check_short([&arguments.map, &arguments.json].into_iter().flatten(), &files)?;
+    check_short([&arguments.map, &arguments.answer.report].into_iter().flatten(), &files)?;
     let image = picture::read_layer(files[0], arguments.layer.as_deref())?;
     let reference = picture::read_layer(files[1], arguments.layer.as_deref())?;
     let view = View {
@@ -164,10 +164,7 @@ pub fn run(arguments: &Diff) -> Result<bool> {
         film::png::write_bytes(path, image.width, image.height, &colours)?;
         say(&format!("{}: {}", path.display(), legend(arguments.map_of, &mapped)));
     }
-    if let Some(path) = &arguments.json {
-        let figures = figures(arguments, &image, &difference);
-        film::output::write(path, |file| writeln!(file, "{figures:#}"))?;
-    }
+    arguments.answer.give(&figures(arguments, &image, &difference))?;
     Ok(judge(&arguments.fail_above, &values))
 }
 

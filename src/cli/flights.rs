@@ -1,6 +1,6 @@
 //! `tyndall flights`: ways of sampling flights, one against the other.
 
-use super::{outputs::check_short, say};
+use super::{outputs::check_short, say, voice::Answer};
 use crate::{
     analysis::{
         flights::{
@@ -64,9 +64,9 @@ pub struct Flights {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
 
-    /// Also write all numbers to this JSON file
-    #[arg(long, value_name = "FILE")]
-    pub json: Option<PathBuf>,
+    /// How the comparison is given.
+    #[command(flatten)]
+    pub answer: Answer,
 
     /// Also plot the mean distance of constant steps against the predicted mean, to this SVG file
     #[arg(long, value_name = "FILE")]
@@ -105,7 +105,7 @@ pub fn run(arguments: &Flights) -> Result<bool> {
         let remedy = "increase --sigma-s, or use longer --steps";
         return Err(Error::new("--svg", "free flights that end in a scattering event", "none", remedy));
     }
-    check_short([&arguments.svg, &arguments.json].into_iter().flatten(), &[])?;
+    check_short([&arguments.svg, &arguments.answer.report].into_iter().flatten(), &[])?;
     let truth_photons = arguments.truth_photons.unwrap_or(4 * arguments.photons);
     let effort = Effort { photons: arguments.photons, truth_photons, seed: arguments.seed };
     let study = flights::study(&experiment, &steps, effort);
@@ -114,10 +114,7 @@ pub fn run(arguments: &Flights) -> Result<bool> {
         let drawing = drawing::svg(&study.laws, experiment.sigma_s)?;
         output::write(path, |file| file.write_all(drawing.as_bytes()))?;
     }
-    if let Some(path) = &arguments.json {
-        let figures = figures(arguments, &study, truth_photons);
-        output::write(path, |file| writeln!(file, "{figures:#}"))?;
-    }
+    arguments.answer.give(&figures(arguments, &study, truth_photons))?;
     let is_random = |found: &&Found| !found.method.starts_with("CDS");
     Ok(study.methods.iter().filter(is_random).all(|found| found.agrees))
 }

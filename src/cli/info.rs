@@ -1,8 +1,11 @@
 //! `tyndall info`: what a scene holds, and how it would be rendered.
 
-use super::{arguments, load, say};
+use super::{
+    arguments, load, picture,
+    plan::{self, Plan},
+    say,
+};
 use crate::{
-    analysis::coverage,
     emitter::Kind,
     error::Result,
     film::{
@@ -12,30 +15,34 @@ use crate::{
     },
     medium::{DistanceMethod, Heterogeneous, distance::DistanceSampler},
     phase::PhaseModel,
+    render::{Settings, budget::Budget},
     scene::{Infinity, Scene, build::Setup, lights::Light},
-    settings::integrator::{Integrator, Restriction},
+    settings::integrator::Restriction,
     shape::ShapeModel,
-    transport::{
-        Options, Strategies,
-        profile::{Needs, ProfileName},
-    },
+    transport::{Options, Strategies},
 };
+use serde_json::{Value, json};
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Info) -> Result<()> {
-    let setup = load(&arguments.scene, None, arguments.tracker)?;
-    say(&describe(&setup));
-    Ok(())
+    arguments.answer.check(&[&arguments.scene.file])?;
+    if let Some(made) = picture::made(&arguments.scene.file)? {
+        return picture::show(&made, &arguments.answer);
+    }
+    let setup = load(&arguments.scene, None, arguments.estimator.tracker)?;
+    let budget = Budget::samples(setup.samples_per_pixel);
+    let settings = arguments.estimator.settings(&setup, 0, budget)?;
+    let plan = Plan::new(&setup, &arguments.estimator, settings, None);
+    say(&describe(&setup, &settings, &plan));
+    arguments.answer.give(&figures(&setup, &plan))
 }
 
-fn describe(setup: &Setup) -> String {
+fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
     let Setup { scene, film, integrator, samples_per_pixel, .. } = setup;
-    let profile = ProfileName::leanest(Needs::of(scene, integrator.options.hide_emitters))
-        .weighing(integrator.options.heuristic);
-    let left_out = profile.left_out();
+    let estimator = describe_integrator(plan.integrator, &settings.options, integrator.restriction);
     let mut lines = vec![
         format!("image       {}", describe_film(film)),
-        format!("integrator  {}, {samples_per_pixel} samples/pixel", describe_integrator(integrator)),
+        format!("integrator  {estimator}, {samples_per_pixel} samples/pixel"),
         format!("shapes      {}", describe_shapes(scene)),
     ];
     if !integrator.layers.is_empty() {
@@ -50,10 +57,48 @@ fn describe(setup: &Setup) -> String {
     }
     lines
         .extend((1..scene.media.len()).map(|index| format!("medium      {}", describe_medium(setup, index))));
+    let left_out = settings.profile.left_out();
     let without = if left_out.is_empty() { "nothing".to_owned() } else { left_out.join(", ") };
-    lines.push(format!("profile     {}, leaving out: {without}", profile.name()));
-    lines.extend(unreachable(scene, integrator).into_iter().map(|text| format!("unreachable {text}")));
+    lines.push(format!("profile     {}, leaving out: {without}", settings.profile.name()));
+    lines.push(format!("plan        {}", plan.line()));
+    lines.extend(plan.unreached());
     lines.join("\n")
+}
+
+/// The same for scripts.
+fn figures(setup: &Setup, plan: &Plan) -> Value {
+    let Setup { scene, film, .. } = setup;
+    let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
+    let medium = |index: u32| medium_name(setup, index);
+    let emitters = scene.lights.all.iter();
+    json!({
+        "width": film.width,
+        "height": film.height,
+        "channels": film.format.names().concat(),
+        "layers": setup.integrator.layers.iter().map(|layer| &layer.name).collect::<Vec<_>>(),
+        "samples_per_pixel": setup.samples_per_pixel,
+        "shapes": scene.surfaces.len(),
+        "primitives": primitives,
+        "emitters": emitters
+            .map(|light| json!({ "type": light.emitter.name, "medium": medium(light.medium.0) }))
+            .collect::<Vec<_>>(),
+        "camera": { "medium": medium(scene.sensor_medium.0) },
+        "media": (1..scene.media.len()).map(|index| medium_figures(setup, index)).collect::<Vec<_>>(),
+        "plan": plan.json(),
+        "warnings": setup.warnings,
+    })
+}
+
+fn medium_figures(setup: &Setup, index: usize) -> Value {
+    let medium = &setup.scene.media[index];
+    json!({
+        "name": medium_name(setup, index as u32),
+        "heterogeneous": medium.heterogeneous().is_some(),
+        "largest_sigma_t": medium.bound().sigma_t.to_array(),
+        "largest_albedo": medium.bound().albedo.to_array(),
+        "mean_cosine": medium.phase.mean_cosine(),
+        "free_flights": plan::flight(medium).name(),
+    })
 }
 
 fn describe_film(film: &Film) -> String {
@@ -87,14 +132,12 @@ fn describe_layers(layers: &[Layer]) -> String {
     described.collect::<Vec<_>>().join(", ")
 }
 
-fn describe_integrator(integrator: &Integrator) -> String {
-    let Options { strategies, heuristic, max_depth, .. } = integrator.options;
+fn describe_integrator(name: &str, options: &Options, restriction: Restriction) -> String {
+    let Options { strategies, heuristic, max_depth, .. } = *options;
     if strategies == Strategies::NONE {
         return "fog, a preview of first surfaces".to_owned();
     }
-    let named = Strategies::INTEGRATORS.iter().find(|(_, known)| *known == strategies);
-    let method = named.map_or("", |(name, _)| name);
-    let media = match integrator.restriction {
+    let media = match restriction {
         Restriction::None => "",
         Restriction::SingleScattering { .. } => ", single scattering",
         Restriction::NonScattering => ", media absorb and emit only",
@@ -103,7 +146,7 @@ fn describe_integrator(integrator: &Integrator) -> String {
         Some(depth) => format!("at most {depth} segments"),
         None => "any length".to_owned(),
     };
-    format!("{method}, paths of {length}{media}, weighted by the {heuristic} heuristic")
+    format!("{name}, paths of {length}{media}, weighted by the {heuristic} heuristic")
 }
 
 fn describe_shapes(scene: &Scene) -> String {
@@ -171,10 +214,4 @@ fn describe_tracker(setup: &Setup, varying: &Heterogeneous) -> String {
         (None, _) => "chosen by cost",
     };
     format!("tracker {}{march}, {why}", tracker.choice().name())
-}
-
-/// Kinds of paths that no strategy of the integrator can make: they are black, not noisy.
-fn unreachable(scene: &Scene, integrator: &Integrator) -> Vec<String> {
-    let options = &integrator.options;
-    coverage::unreachable(scene, options.strategies, options.into())
 }

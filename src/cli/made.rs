@@ -62,14 +62,19 @@ pub fn made(settings: Value) -> Value {
     json!({ "settings": settings, "command": command, "folder": folder })
 }
 
-/// The same with what became of it.
-pub fn metadata(made: &Value, samples: &str, image: &Image) -> Value {
+/// The same with what became of it, as files hold it: ASCII.
+pub fn metadata(made: &Value, image: &Image) -> String {
     let mut all = made.clone();
-    all["samples"] = samples.into();
+    all["samples_per_pixel"] = image.samples().into();
     all["render_seconds"] = image.elapsed.as_secs_f64().into();
     all["relative_error"] = image.noise.into();
     all["machine"] = machine().into();
-    all
+    let escaped = |character: char| -> String {
+        let mut units = [0; 2];
+        character.encode_utf16(&mut units).iter().map(|unit| format!("\\u{unit:04x}")).collect()
+    };
+    let text = all.to_string();
+    text.chars().map(|c| if c.is_ascii() { c.to_string() } else { escaped(c) }).collect()
 }
 
 fn machine() -> String {

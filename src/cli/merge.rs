@@ -3,6 +3,7 @@
 use super::{
     arguments::{self, Arguments, Command},
     complain, load, made,
+    outputs::check_short,
     render::Goal,
     say,
 };
@@ -41,6 +42,8 @@ pub struct Merge {
 
 /// Runs the command.
 pub fn run(arguments: &Merge) -> Result<()> {
+    let parts: Vec<&Path> = arguments.parts.iter().map(PathBuf::as_path).collect();
+    check_short(arguments.output.iter().chain(&arguments.sums), &parts)?;
     let (mut sums, made) = part(&arguments.parts[0])?;
     for path in &arguments.parts[1..] {
         let (more, other) = part(path)?;
@@ -100,7 +103,7 @@ fn develop(arguments: &Merge, output: &Path, made: &Value, mut sums: Sums) -> Re
     let layers = &setup.integrator.layers;
     let mut image: Image =
         render::render_on(&setup.scene, &setup.film, &settings, layers, &mut sums, &mut |_, _| {});
-    goal.write(&setup.film, &mut image)?;
+    goal.write(&setup.film, &mut image, &now)?;
     say(&format!("{} samples/pixel: {}", sums.samples().count(), goal.path.display()));
     Ok(())
 }

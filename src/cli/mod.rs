@@ -10,14 +10,18 @@ mod info;
 mod interrupt;
 mod keeper;
 mod made;
+mod manual;
 pub mod merge;
 mod outputs;
 pub mod phase;
+mod picture;
 mod pixel;
+mod plan;
 mod render;
 mod report;
 mod strategies;
 mod study;
+mod voice;
 
 use crate::{
     error::{Error, Result},
@@ -28,21 +32,18 @@ use crate::{
 };
 use arguments::{Arguments, Command};
 use clap::Parser;
-use std::{
-    io::{self, ErrorKind, Write as _},
-    num::NonZeroUsize,
-    process::ExitCode,
-    sync::{
-        OnceLock,
-        atomic::{AtomicBool, Ordering},
-    },
-};
+use std::{num::NonZeroUsize, process::ExitCode};
+use voice::{complain, heard, note, say};
 
 /// Runs the program; bad input ends it with code 2 and a message that says what to mend. So does a standard output that
 /// takes no more, once all files are written; a closed pipe, whose reader has read enough, changes nothing.
 pub fn run() -> ExitCode {
     match Arguments::try_parse() {
-        Ok(arguments) => judged(obey(&arguments.command).and_then(|holds| heard().map(|()| holds))),
+        Ok(arguments) => {
+            let json = arguments.command.answer().is_some_and(|answer| answer.json);
+            voice::set(arguments.quiet, json);
+            judged(obey(&arguments.command).and_then(|holds| heard().map(|()| holds)))
+        }
         // Help, the version, or what is wrong with the arguments.
         Err(answer) => {
             note(answer.print());
@@ -63,6 +64,8 @@ fn obey(command: &Command) -> Result<bool> {
         Command::Convert(convert) => convert::run(convert),
         Command::Report(report) => report::run(report),
         Command::Study(study) => study::run(study),
+        Command::Completions(completions) => manual::complete(completions),
+        Command::Man(man) => manual::run(man),
         Command::Diff(diff) => return diff::run(diff),
         Command::Phase(phase) => return phase::run(phase),
         Command::Flights(flights) => return flights::run(flights),
@@ -107,41 +110,4 @@ fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
         Error::new("--threads", "a number of threads this machine can start", error.to_string(), "use fewer")
     })
-}
-
-/// To standard output, unless a file is written there. Work goes on where that fails, so that nothing is lost; [`heard`]
-/// tells in the end.
-fn say(text: &str) {
-    if STDOUT_IS_TAKEN.load(Ordering::Relaxed) {
-        return complain(text);
-    }
-    note(writeln!(io::stdout(), "{text}").and_then(|()| io::stdout().flush()));
-}
-
-/// One of the outputs is standard output.
-static STDOUT_IS_TAKEN: AtomicBool = AtomicBool::new(false);
-
-/// Why standard output took no more.
-static UNHEARD: OnceLock<io::Error> = OnceLock::new();
-
-fn note(said: io::Result<()>) {
-    if let Err(error) = said {
-        let _ = UNHEARD.set(error);
-    }
-}
-
-/// An error unless all that was said was written, or nobody reads any more.
-fn heard() -> Result<()> {
-    match UNHEARD.get() {
-        Some(error) if error.kind() != ErrorKind::BrokenPipe => {
-            let remedy = "send it to another place; the files of this command are as they should be";
-            Err(Error::new("standard output", "to write what is reported", error.to_string(), remedy))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// To standard error.
-fn complain(text: &str) {
-    let _ = writeln!(io::stderr(), "{text}");
 }

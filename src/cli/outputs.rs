@@ -6,10 +6,7 @@ use crate::{
     film::{Film, output},
     scene::build::Setup,
 };
-use std::{
-    path::{Path, PathBuf},
-    sync::atomic::Ordering,
-};
+use std::path::{Path, PathBuf};
 
 /// Of the frames of an animation, so many have their names tried.
 const MOST_FRAMES: usize = 10_000;
@@ -17,6 +14,8 @@ const MOST_FRAMES: usize = 10_000;
 /// What a render keeps of every pixel, in numbers of four bytes, files in the making included. Measured: 11, with
 /// precision 69, with 22 channels of layers 3 for each, with batches 5 for each; and some more.
 pub const NUMBERS: usize = 32;
+/// What a file of sums holds of every pixel, in the same numbers.
+const NUMBERS_OF_SUMS: usize = 24;
 const NUMBERS_OF_PRECISION: usize = 84;
 const NUMBERS_OF_LAYER: usize = 4;
 const NUMBERS_OF_BATCH: usize = 7;
@@ -26,7 +25,7 @@ const NUMBERS_OF_BATCH: usize = 7;
 pub fn check(outputs: &[(&Path, u64)], read: &[&Path]) -> Result<()> {
     output::check(outputs, read)?;
     if outputs.iter().any(|(path, _)| output::is_stdout(path)) {
-        super::STDOUT_IS_TAKEN.store(true, Ordering::Relaxed);
+        super::voice::take_stdout();
     }
     Ok(())
 }
@@ -45,15 +44,17 @@ pub fn check_render(arguments: &Render, setup: &Setup, goal: &Goal) -> Result<()
     let each = NUMBERS_OF_BATCH + 2 * layers;
     film.check_memory(NUMBERS + precision + NUMBERS_OF_LAYER * layers + batches * each)?;
     let bytes = film.bytes(goal.format.names().len() + layers + batches * (3 + layers));
-    let images = images(arguments, goal);
-    let mut outputs: Vec<(&Path, u64)> = Vec::new();
+    let is_part = arguments.samples.is_some() && arguments.output.is_none();
+    let images = if is_part { Vec::new() } else { images(arguments, goal) };
+    let sums = arguments.sums.as_deref().map(|sums| (sums, film.bytes(NUMBERS_OF_SUMS)));
+    let mut outputs: Vec<(&Path, u64)> = sums.into_iter().collect();
     for (index, (image, preview)) in images.iter().enumerate() {
         // An animation that does not fit keeps the frames that did: room for the first is asked for.
         let [bytes, shown] = if index == 0 { [bytes, preview_bytes(film)] } else { [0, 0] };
         outputs.push((image, bytes));
         outputs.extend(preview.as_deref().map(|preview| (preview, shown)));
     }
-    outputs.extend(arguments.report.as_deref().map(|report| (report, 0)));
+    outputs.extend(arguments.answer.report.as_deref().map(|report| (report, 0)));
     check(&outputs, &[&arguments.scene.file])
 }
 

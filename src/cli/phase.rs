@@ -1,12 +1,13 @@
 //! `tyndall phase`: a phase function by itself.
 
-use super::{outputs::check_short, say};
+use super::{outputs::check_short, say, voice::Answer};
 use crate::{
     analysis::phase::{self, Check, Division, described, drawing, mesh::Lobe},
     error::Result,
     film::output,
 };
 use clap::Args;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// Test and draw a phase function.
@@ -46,6 +47,10 @@ pub struct Phase {
     /// Folder for NAME.svg, a polar plot, and NAME.ply, a mesh
     #[arg(short, long, value_name = "FOLDER", default_value = ".")]
     pub output: PathBuf,
+
+    /// How the test is given.
+    #[command(flatten)]
+    pub answer: Answer,
 }
 
 fn significance(text: &str) -> std::result::Result<f64, String> {
@@ -67,7 +72,29 @@ pub fn run(arguments: &Phase) -> Result<bool> {
     output::write(&svg, |file| file.write_all(drawing.as_bytes()))?;
     output::write(&ply, |mut file| Lobe::new(&phase, division).write(&mut file))?;
     say(&format!("{} and {}", svg.display(), ply.display()));
+    arguments.answer.give(&figures(arguments, &check, &failures))?;
     Ok(failures.is_empty())
+}
+
+fn figures(arguments: &Phase, check: &Check, failures: &[&str]) -> Value {
+    json!({
+        "phase": arguments.name,
+        "parameters": arguments.parameters,
+        "samples": arguments.samples,
+        "seed": arguments.seed,
+        "parallels": arguments.parallels,
+        "meridians": arguments.meridians,
+        "significance": arguments.significance,
+        "normalisation": check.normalisation,
+        "mean_cosine": check.mean_cosine,
+        "stated_mean_cosine": check.stated_mean_cosine,
+        "sampled_mean_cosine": check.sampled_mean_cosine,
+        "standard_error": check.standard_error,
+        "z": check.z(),
+        "chi_square": check.fit,
+        "failures": failures,
+        "holds": failures.is_empty(),
+    })
 }
 
 fn describe(arguments: &Phase, check: &Check, failures: &[&str]) -> String {

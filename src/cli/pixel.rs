@@ -5,7 +5,7 @@ use super::{
     estimator::Estimator,
     load,
     outputs::check_short,
-    say,
+    say, voice,
 };
 use crate::{analysis::pixel, error::Result, film, render::budget::Budget};
 use clap::Args;
@@ -67,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         pool.install(|| pixel::examine(&setup, &settings, at, arguments.sample, arguments.samples))?;
     let json = found.json();
     let Some(path) = &arguments.output else {
-        say(&json);
+        voice::print(&json);
         return Ok(());
     };
     film::output::write(path, |file| writeln!(file, "{json}"))?;

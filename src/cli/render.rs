@@ -3,7 +3,9 @@
 use super::{
     arguments, interrupt,
     keeper::{self, Keeper},
-    load, made, threads,
+    load, made,
+    plan::Plan,
+    threads, voice,
 };
 use crate::{
     error::{Error, Result},
@@ -35,16 +37,15 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let made = made::made(made::settings(&arguments.scene, &setup, &settings)?);
     let task = Task { settings, precision, arguments, made };
     super::outputs::check_render(arguments, &setup, &goal)?;
+    let plan = Plan::new(&setup, &arguments.estimator, task.settings, arguments.error);
+    plan.announce();
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
     let figures = match arguments.frames {
         None => vec![pool.install(|| shoot(&setup, &task, &goal, None))?],
         Some(frames) => pool.install(|| animate(arguments, &mut setup, &task, &goal, frames))?,
     };
-    if let Some(path) = &arguments.report {
-        write_report(path, figures, load_time, arguments.frames.is_some())?;
-    }
-    Ok(())
+    arguments.answer.give(&report(figures, load_time, arguments.frames.is_some(), &plan))
 }
 
 /// Default number of frames per second.
@@ -73,7 +74,10 @@ fn animate(
             );
         }
         let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };
-        let task = Task { settings, made: task.made.clone(), ..*task };
+        let mut made = task.made.clone();
+        made["settings"]["seed"] = settings.seed.into();
+        made["settings"]["time"] = time.into();
+        let task = Task { settings, made, ..*task };
         let label = format!("frame {frame} of {first}..{last}");
         let mut noise_text = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
         noise_text["frame"] = frame.into();
@@ -135,10 +139,11 @@ fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Re
         None => watched(setup, task, goal, label)?,
         Some(count) => batches(setup, task, goal, count, label)?,
     };
-    let figures = figures(&image, task);
+    let mut figures = figures(&image, task);
     if task.arguments.samples.is_none() || task.arguments.output.is_some() {
-        goal.write(&setup.film, &mut image)?;
+        goal.write(&setup.film, &mut image, &task.made)?;
         print_summary(&image, task, &goal.path, goal.preview().as_deref(), label);
+        figures["image"] = goal.path.display().to_string().into();
     }
     Ok(figures)
 }
@@ -158,7 +163,7 @@ fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> 
             true => keeper::resume(&file, &task.made)?,
             false => render::sums_for(film, layers),
         };
-        let draw = |sums: &Sums| goal.draw(film, sums);
+        let draw = |sums: &Sums| goal.draw(film, sums, &task.made);
         let mut keeper = Keeper::new(file, task.made.clone(), arguments, &draw);
         let image = render::render_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
             bar.show(&progress);
@@ -281,10 +286,7 @@ impl Goal {
             (Some((path, file)), _) => (path.to_owned(), file),
             (None, Some(path)) if film::output::is_stream(path) => (path.clone(), scene.file),
             (None, Some(path)) => (path.with_extension(scene.file.extension()), scene.file),
-            (None, None) => {
-                let stem = PathBuf::from(arguments.scene.file.file_stem().unwrap_or_default());
-                (stem.with_extension(scene.file.extension()), scene.file)
-            }
+            (None, None) => (arguments.scene.name().with_extension(scene.file.extension()), scene.file),
         };
         let has_layers = !setup.integrator.layers.is_empty();
         if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {
@@ -314,25 +316,28 @@ impl Goal {
     }
 
     /// Writes the image, and the layers that it then no longer has; and its PNG.
-    pub fn write(&self, film: &Film, image: &mut Image) -> Result<()> {
+    /// Files that can say how they were `made` do.
+    pub fn write(&self, film: &Film, image: &mut Image, made: &Value) -> Result<()> {
+        let made = made::metadata(made, image);
         let (width, height) = (film.width as usize, film.height as usize);
         let mut channels = self.format.channels(&image.pixels, &image.alpha);
         match self.format.file {
             FileKind::OpenExr => {
                 channels.append(&mut image.layers);
-                film::exr::write(&self.path, width, height, channels, self.format)
+                film::exr::write_with(&self.path, width, height, channels, self.format, Some(&made))
             }
             FileKind::Pfm => film::raster::write_pfm(&self.path, width, height, &channels),
             FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
         }?;
-        self.preview().map_or(Ok(()), |path| film::png::write(&path, width, height, &image.pixels))
+        let write = |path: PathBuf| film::png::write_with(&path, width, height, &image.pixels, Some(&made));
+        self.preview().map_or(Ok(()), write)
     }
 
     /// Writes the image so far: without alpha and layers, which are rendered at the end.
-    fn draw(&self, film: &Film, sums: &Sums) -> Result<()> {
+    fn draw(&self, film: &Film, sums: &Sums, made: &Value) -> Result<()> {
         let format = Format { alpha: false, ..self.format };
         let goal = Self { path: self.path.clone(), format };
-        goal.write(film, &mut Image::so_far(sums))
+        goal.write(film, &mut Image::so_far(sums), made)
     }
 }
 
@@ -359,7 +364,7 @@ impl Bar {
             }
             (None, Budget { time, .. }) => (milliseconds(time.unwrap_or(Duration::MAX)), By::Time),
         };
-        let bar = ProgressBar::new(length);
+        let bar = voice::bar(length);
         if let Ok(style) = ProgressStyle::with_template("{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
         {
             bar.set_style(style);
@@ -432,12 +437,13 @@ fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: Option<
     ));
 }
 
-/// Figures for scripts, as JSON: those of one image, or of every frame.
-fn write_report(path: &Path, mut figures: Vec<Value>, load_seconds: f64, is_animation: bool) -> Result<()> {
+/// Figures for scripts: those of one image, or of every frame.
+fn report(mut figures: Vec<Value>, load_seconds: f64, is_animation: bool, plan: &Plan) -> Value {
     let mut report = match is_animation {
         true => serde_json::json!({ "frames": figures }),
         false => figures.pop().unwrap_or_default(),
     };
     report["load_seconds"] = load_seconds.into();
-    film::output::write(path, |file| writeln!(file, "{report:#}"))
+    report["plan"] = plan.json();
+    report
 }

@@ -3,7 +3,8 @@
 use super::{
     arguments::{Scene, Size, positive_u32, size, threads},
     estimator::Estimator,
-    load, say,
+    load, say, voice,
+    voice::Answer,
 };
 use crate::{
     analysis::strategies::{self, Plan},
@@ -12,7 +13,7 @@ use crate::{
     render::budget::Budget,
 };
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressStyle;
 use std::{num::NonZeroUsize, path::PathBuf};
 
 /// Show what every strategy is worth.
@@ -55,10 +56,15 @@ pub struct Arguments {
     /// How paths are sampled.
     #[command(flatten)]
     pub estimator: Estimator,
+
+    /// How the shares are given.
+    #[command(flatten)]
+    pub answer: Answer,
 }
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
+    arguments.answer.check(&[&arguments.scene.file])?;
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let budget = Budget::ENDLESS;
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
@@ -68,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     strategies::check(&setup.film, &plan, &settings.options)?;
     let folder = folder(arguments)?;
     strategies::check_files(&folder, &setup.film, &plan, &settings.options)?;
-    let bar = ProgressBar::new(0);
+    let bar = voice::bar(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left") {
         bar.set_style(style);
     }
@@ -83,15 +89,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     say(&strategies::table(&findings.report));
     let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
     say(&format!("in {}: {}", folder.display(), names.collect::<Vec<_>>().join(", ")));
-    Ok(())
+    arguments.answer.give(&serde_json::json!(findings.report))
 }
 
 /// The folder, which then exists.
 fn folder(arguments: &Arguments) -> Result<PathBuf> {
-    let folder = arguments.output.clone().unwrap_or_else(|| {
-        let stem = arguments.scene.file.file_stem().unwrap_or_default().to_string_lossy();
-        PathBuf::from(format!("{stem}-strategies"))
-    });
+    let named = || PathBuf::from(format!("{}-strategies", arguments.scene.name().to_string_lossy()));
+    let folder = arguments.output.clone().unwrap_or_else(named);
     create_folder(&folder)?;
     Ok(folder)
 }

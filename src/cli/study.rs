@@ -5,6 +5,7 @@ use super::{
     complain, contenders,
     outputs::NUMBERS,
     say, threads,
+    voice::{self, Answer},
 };
 use crate::{
     analysis::study::{
@@ -157,6 +158,10 @@ pub struct Study {
     /// Discard an earlier study in FOLDER
     #[arg(long)]
     pub restart: bool,
+
+    /// How the result is given, which is that of study.json.
+    #[command(flatten)]
+    pub answer: Answer,
 }
 
 /// Time of the largest budget [s].
@@ -169,6 +174,8 @@ fn error(text: &str) -> std::result::Result<f64, String> {
 
 /// Runs the command.
 pub fn run(arguments: &Study) -> Result<()> {
+    check_files(&arguments.scenes)?;
+    arguments.answer.check(&arguments.scenes.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let contenders = contenders::all(arguments)?;
     let pool = threads(arguments.threads)?;
     let question = question(arguments, contenders, pool.current_num_threads())?;
@@ -185,13 +192,24 @@ pub fn run(arguments: &Study) -> Result<()> {
     let outcome =
         pool.install(|| run::run(&arguments.output, arguments.restart, &question, &signature, enter, show));
     bar.bar.finish_and_clear();
-    say(table::text(&outcome?).trim_end());
+    let outcome = outcome?;
+    say(table::text(&outcome).trim_end());
     let page = page::write(&arguments.output)?;
     say(&format!(
         "{} shows the result; the numbers and images are next to it: study.json, study.csv, images",
         page.display()
     ));
-    Ok(())
+    arguments.answer.give(&serde_json::json!(outcome))
+}
+
+/// Scenes are read several times, and again when the study is continued.
+fn check_files(scenes: &[PathBuf]) -> Result<()> {
+    match scenes.iter().any(|scene| scene.as_os_str() == "-") {
+        false => Ok(()),
+        true => {
+            Err(Error::new("SCENE", "scene files", "- (standard input)", "save the scene to a file first"))
+        }
+    }
 }
 
 fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Result<Question> {
@@ -391,7 +409,7 @@ const STEPS: f64 = 1e6;
 
 impl Bar {
     fn new() -> Self {
-        let bar = ProgressBar::new(STEPS as u64);
+        let bar = voice::bar(STEPS as u64);
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {eta} left") {
             bar.set_style(style);
         }
@@ -409,7 +427,7 @@ impl Bar {
         let tenths = (share * 10.0) as u64;
         if self.is_hidden && tenths > self.tenths {
             self.tenths = tenths;
-            complain(&format!("{} % done: {doing}", 10 * tenths));
+            voice::announce(&format!("{} % done: {doing}", 10 * tenths));
         }
     }
 }

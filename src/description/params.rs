@@ -252,6 +252,12 @@ impl<'a> Params<'a> {
         }
     }
 
+    /// Reads and drops a parameter that cannot change what is rendered.
+    pub fn accept_silently(&self, name: &'static str) {
+        // Not requested: no user should be advised to use it.
+        let _ = self.take(name);
+    }
+
     /// An error at the parameter `name` (or at the object where it was not given).
     pub fn complain(&self, name: &str, expected: impl Into<String>, found: impl Into<String>) -> Error {
         let property = self.object.properties.iter().find(|p| p.name == name);

@@ -5,13 +5,14 @@ use super::{
     format::{Colours, Component, Format},
     output,
 };
-use crate::error::Result;
+use crate::error::{Error, Result};
 use ::exr::{
     error::Error as ExrError,
     image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, write::WritableImage},
     math::Vec2,
     meta::{
-        attribute::{Chromaticities, LineOrder},
+        MetaData,
+        attribute::{AttributeValue, Chromaticities, LineOrder, Text},
         header::{ImageAttributes, LayerAttributes},
     },
     prelude::f16,
@@ -20,6 +21,18 @@ use std::{io, path::Path};
 
 /// Writes `channels` to `path`. The window of a cropped film is an image of its own, as in Mitsuba.
 pub fn write(path: &Path, width: usize, height: usize, channels: Vec<Channel>, format: Format) -> Result<()> {
+    write_with(path, width, height, channels, format, None)
+}
+
+/// The same, with how the image was made, as [`made`] gives it again: ASCII.
+pub fn write_with(
+    path: &Path,
+    width: usize,
+    height: usize,
+    channels: Vec<Channel>,
+    format: Format,
+    made: Option<&str>,
+) -> Result<()> {
     for channel in &channels {
         output::check_size(path, width, height, channel.values.len())?;
     }
@@ -34,6 +47,9 @@ pub fn write(path: &Path, width: usize, height: usize, channels: Vec<Channel>, f
     let list = AnyChannels::sort(list.collect());
     let layer = Layer::new((width, height), LayerAttributes::default(), ENCODING, list);
     let mut image = Image::new(ImageAttributes::with_size((width, height)), layer);
+    if let Some(made) = made.and_then(Text::new_or_none) {
+        image.layer_data.attributes.other.insert(MADE.into(), AttributeValue::Text(made));
+    }
     image.attributes.chromaticities = (format.colours == Colours::Xyz).then_some(XYZ);
     output::write(path, |file| {
         image.write().to_buffered(file).map_err(|error| match error {
@@ -42,6 +58,24 @@ pub fn write(path: &Path, width: usize, height: usize, channels: Vec<Channel>, f
         })
     })
 }
+
+/// How the image at `path` was made, if it says so.
+pub fn made(path: &Path) -> Result<Option<String>> {
+    let refuse = |error: ExrError| {
+        let remedy = "name an OpenEXR file that a program has written whole";
+        Error::new(path.display(), "an OpenEXR image", error.to_string(), remedy)
+    };
+    let read = MetaData::read_from_file(path, false).map_err(refuse)?;
+    let attribute =
+        read.headers.first().and_then(|header| header.own_attributes.other.get(&Text::from(MADE)));
+    Ok(match attribute {
+        Some(AttributeValue::Text(text)) => Some(text.to_string()),
+        _ => None,
+    })
+}
+
+/// Name of the attribute.
+const MADE: &str = "tyndall";
 
 /// Lines from the top: in any other order the file depends on which thread is first.
 const ENCODING: Encoding = Encoding { line_order: LineOrder::Increasing, ..Encoding::FAST_LOSSLESS };

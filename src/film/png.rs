@@ -9,42 +9,74 @@
 
 use super::output;
 use crate::{
-    error::Result,
+    error::{Error, Result},
     math::{
         Spectrum, SpectrumExt,
         srgb::{Srgb as _, byte, shown, white},
     },
 };
-use image::{ExtendedColorType, ImageEncoder, ImageError, codecs::png::PngEncoder};
-use std::{io, path::Path};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder};
+use std::{
+    fs::File,
+    io::{self, BufReader},
+    path::Path,
+};
 
 /// The share of pixels that are not brighter than the white point.
 const BELOW_WHITE: f64 = 0.995;
 
 /// Writes `pixels` (row-major, top row first; linear sRGB) to `path`, tone-mapped.
 pub fn write(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> Result<()> {
+    write_with(path, width, height, pixels, None)
+}
+
+/// The same, with how the image was made, as [`made`] gives it again.
+pub fn write_with(
+    path: &Path,
+    width: usize,
+    height: usize,
+    pixels: &[Spectrum],
+    made: Option<&str>,
+) -> Result<()> {
     output::check_size(path, width, height, pixels.len())?;
-    write_bytes(path, width, height, &tone_mapped(pixels))
+    encode(path, width, height, &tone_mapped(pixels), made)
 }
 
 /// Writes `bytes`, 8-bit sRGB, three a pixel, as they are.
 pub fn write_bytes(path: &Path, width: usize, height: usize, bytes: &[u8]) -> Result<()> {
     output::check_size(path, width, height, bytes.len() / 3)?;
+    encode(path, width, height, bytes, None)
+}
+
+fn encode(path: &Path, width: usize, height: usize, bytes: &[u8], made: Option<&str>) -> Result<()> {
     output::write(path, |file| {
         let size = |n: usize| u32::try_from(n).map_err(io::Error::other);
-        let encoder = PngEncoder::new(file);
-        let written = encoder.write_image(bytes, size(width)?, size(height)?, ExtendedColorType::Rgb8);
-        written.map_err(plain_error)
+        let mut encoder = Encoder::new(file, size(width)?, size(height)?);
+        encoder.set_color(ColorType::Rgb);
+        encoder.set_depth(BitDepth::Eight);
+        if let Some(made) = made {
+            encoder.add_itxt_chunk(MADE.to_owned(), made.to_owned())?;
+        }
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(bytes)?;
+        Ok(writer.finish()?)
     })
 }
 
-/// What the system said, where it was the system.
-pub(super) fn plain_error(error: ImageError) -> io::Error {
-    match error {
-        ImageError::IoError(error) => error,
-        other => io::Error::other(other),
-    }
+/// How the image at `path` was made, if it says so.
+pub fn made(path: &Path) -> Result<Option<String>> {
+    let file = File::open(path).map_err(|error| Error::io(path, "read", &error))?;
+    let refuse = |error: DecodingError| {
+        let remedy = "name a PNG file that a program has written whole";
+        Error::new(path.display(), "a PNG image", error.to_string(), remedy)
+    };
+    let read = Decoder::new(BufReader::new(file)).read_info().map_err(refuse)?;
+    let texts = &read.info().utf8_text;
+    Ok(texts.iter().find(|text| text.keyword == MADE).and_then(|text| text.get_text().ok()))
 }
+
+/// Keyword of the text.
+const MADE: &str = "tyndall";
 
 /// How radiance becomes what a screen shows.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! The two older formats that Mitsuba writes: Portable Float Map and Radiance's RGBE.
 
-use super::{Channel, output, png::plain_error};
+use super::{Channel, output};
 use crate::{error::Result, math::Spectrum};
-use image::codecs::hdr::HdrEncoder;
-use std::path::Path;
+use image::{ImageError, codecs::hdr::HdrEncoder};
+use std::{io, path::Path};
 
 /// Writes one or three channels as a Portable Float Map: a line of text for kind, size and byte order each
 /// (negative: little-endian), then rows of floats from the bottom up.
@@ -29,6 +29,14 @@ pub fn write_rgbe(path: &Path, width: usize, height: usize, pixels: &[Spectrum])
     let pixels: Vec<_> =
         pixels.iter().map(|pixel| image::Rgb(pixel.max(Spectrum::ZERO).to_array())).collect();
     output::write(path, |file| HdrEncoder::new(file).encode(&pixels, width, height).map_err(plain_error))
+}
+
+/// What the system said, where it was the system.
+fn plain_error(error: ImageError) -> io::Error {
+    match error {
+        ImageError::IoError(error) => error,
+        other => io::Error::other(other),
+    }
 }
 
 #[cfg(test)]

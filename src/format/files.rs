@@ -1,6 +1,9 @@
 //! What a scene is read from: its own file, and all that it includes and names.
 
-use super::read::read_with_origins;
+use super::{
+    input::{bytes, is_standard_input},
+    read::read_with_origins,
+};
 use crate::{
     description::{Location, Object, Value},
     error::{Error, Result},
@@ -38,6 +41,9 @@ pub fn fingerprint(bytes: &[u8]) -> String {
 
 /// The same of all bytes of the file at `path`.
 pub fn file_fingerprint(path: &Path) -> Result<String> {
+    if is_standard_input(path) {
+        return bytes(path).map(|bytes| fingerprint(&bytes));
+    }
     let mut sum = Xxh3::new();
     let copied = File::open(path).and_then(|mut file| io::copy(&mut file, &mut sum));
     copied.map_err(|error| Error::io(path, "read", &error))?;

@@ -1,6 +1,7 @@
 //! Scene files: every reader and writer of them. JSON and Mitsuba's XML are two spellings of one description.
 
 mod files;
+mod input;
 mod json;
 mod origins;
 mod parameters;
@@ -14,5 +15,6 @@ mod write;
 mod xml;
 
 pub use files::{Sources, file_fingerprint, fingerprint, sources};
+pub use input::{STANDARD_INPUT, bytes, is_standard_input};
 pub use read::{Spelling, read};
 pub use write::{Conversion, Naming, convert, write};

@@ -1,6 +1,8 @@
 //! Reads a scene file of either format as a description in which every reference is resolved.
 
-use super::{json, origins::Origins, parameters::Parameters, references, references::Alias, xml};
+use super::{
+    input, json, origins::Origins, parameters::Parameters, references, references::Alias, text, xml,
+};
 use crate::{
     description::Object,
     error::{Error, Result},
@@ -30,7 +32,11 @@ pub fn read(path: &Path, definitions: &[(String, String)]) -> Result<Object> {
 /// [`read`], and what it replaced.
 pub(super) fn read_with_origins(path: &Path, definitions: &[(String, String)]) -> Result<(Object, Origins)> {
     let mut parameters = Parameters::new(definitions)?;
-    let draft = match spelling(path)? {
+    let found = match input::is_standard_input(path) {
+        true => spelling_of(path, &text::of_file(path)?)?,
+        false => spelling(path)?,
+    };
+    let draft = match found {
         Spelling::Xml => xml::read(path, &mut parameters)?,
         Spelling::Json => json::read(path, &mut parameters)?,
     };
@@ -45,6 +51,20 @@ pub enum Spelling {
     Xml,
     /// The dictionary of `mitsuba.load_dict`, as JSON.
     Json,
+}
+
+/// The format of `text`, which came without a name.
+fn spelling_of(path: &Path, text: &str) -> Result<Spelling> {
+    match text.trim_start().chars().next() {
+        Some('<') => Ok(Spelling::Xml),
+        Some('{') => Ok(Spelling::Json),
+        first => Err(Error::new(
+            path.display(),
+            "a scene that begins with < (Mitsuba XML) or { (JSON)",
+            first.map_or("nothing".into(), |first| format!("\"{first}\"")),
+            "check what is written to standard input",
+        )),
+    }
 }
 
 /// The format according to the extension of the file name.

@@ -1,5 +1,6 @@
 //! Numbers, colours and spectra written as text, as Mitsuba's XML writes them.
 
+use super::input::bytes;
 use crate::{
     description::{Location, Position},
     error::{Error, Result},
@@ -33,8 +34,7 @@ fn mistake<T>(expected: impl Into<String>, found: impl Into<String>) -> Parsed<T
 
 /// The text of a file; it must be UTF-8.
 pub(super) fn of_file(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path).map_err(|error| Error::io(path, "read", &error))?;
-    let text = String::from_utf8(bytes).map_err(|error| {
+    let text = String::from_utf8(bytes(path)?).map_err(|error| {
         let found = match error.as_bytes() {
             [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "text in UTF-16".into(),
             _ => format!("other bytes at offset {}", error.utf8_error().valid_up_to()),

@@ -35,7 +35,7 @@ impl Samples {
     pub fn insert(&mut self, number: u64) {
         match self.0.last_mut() {
             Some(last) if last.end == number => last.end += 1,
-            _ => *self = self.and(&Self(vec![number..number + 1])).unwrap_or_default(),
+            _ => *self = self.and(&Self::from(number..number + 1)).unwrap_or_default(),
         }
     }
 
@@ -68,6 +68,14 @@ impl Samples {
     }
 }
 
+impl From<Range<u64>> for Samples {
+    fn from(range: Range<u64>) -> Self {
+        let mut samples = Self::default();
+        let _ = samples.push(range);
+        samples
+    }
+}
+
 impl std::fmt::Display for Samples {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let ranges: Vec<String> =
@@ -86,9 +94,9 @@ mod tests {
         let samples = Samples::of(vec![8..9, 0..3, 3..5]).unwrap();
         assert_eq!((samples.ranges(), samples.count()), (&[0..5, 8..9][..], 6));
         assert_eq!(samples.to_string(), "0..5, 8..9");
-        assert_eq!(samples.and(&Samples::of(vec![4..6]).unwrap()), None);
-        assert_eq!(samples.and(&Samples::of(vec![5..8]).unwrap()).unwrap().ranges(), &[0..9]);
-        assert!(Samples::of(vec![3..3]).is_none() && Samples::default().to_string() == "none");
+        assert_eq!(samples.and(&Samples::from(4..6)), None);
+        assert_eq!(samples.and(&Samples::from(5..8)).unwrap(), Samples::from(0..9));
+        assert!(Samples::of(vec![1..2, 3..3]).is_none() && Samples::from(3..3).to_string() == "none");
     }
 
     /// Against a list of all numbers.
@@ -105,6 +113,6 @@ mod tests {
         }
         let mut grown = samples.clone();
         (0..12).filter(|n| !samples.ranges().iter().any(|r| r.contains(n))).for_each(|n| grown.insert(n));
-        assert_eq!(grown.ranges(), &[0..12]);
+        assert_eq!(grown, Samples::from(0..12));
     }
 }

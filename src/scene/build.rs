@@ -11,6 +11,7 @@ use super::{
     placement::{Names, Placement, place_camera},
     range,
     sections::Sections,
+    unseen::{self, Unseen},
 };
 use crate::{
     bsdf::{self, Bsdf, BsdfModel},
@@ -84,6 +85,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         MediumOverrides { tracker: overrides.tracker.or(medium_overrides.tracker), ..medium_overrides };
     let time = builder.place.time;
     let scene = builder.finish(view.camera, &medium_overrides)?;
+    unseen::warn_of_darkness(&scene.lights, &integrator, &root.location, &library);
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }
@@ -338,6 +340,12 @@ impl<'a> Builder<'a> {
         let media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
         range::check(&media[1..], &self.medium_locations, &extents, self.library)?;
         let lights = self.lights(&geometry, &known, &media, sensor_medium);
+        // Parallel rays start all over a plane: in a shape here, out of it there.
+        if !camera.sensor.is_parallel() {
+            let (surfaces, viewpoint) = (&self.surfaces, camera.start);
+            let unseen = Unseen { geometry: &geometry, surfaces, lights: &lights, viewpoint };
+            unseen.warn(&self.names(), camera.location);
+        }
         let Self { surfaces, bsdfs, recentre, .. } = self;
         let sensor = camera.sensor;
         Ok(Scene {

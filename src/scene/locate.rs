@@ -310,9 +310,38 @@ impl Locator<'_> {
                 }
                 Met::Nothing => {
                     survey.extend(medium, Vec3::NEG_INFINITY, Vec3::INFINITY);
-                    return survey.escapes.push((direction, medium));
+                    survey.escapes.push((direction, medium));
+                    return self.look_back(&ray, medium, from, survey, stream);
                 }
             }
+        }
+    }
+
+    /// Looks at a boundary from somewhere on a `ray` in `medium` that meets nothing: where that is open, as a cylinder is
+    /// at its ends, both of its sides are seen from one place.
+    fn look_back(
+        &self,
+        ray: &Ray,
+        medium: MediumIndex,
+        from: Option<u32>,
+        survey: &mut Survey,
+        stream: &mut Stream,
+    ) {
+        if self.known.boundaries.is_empty() {
+            return;
+        }
+        let (low, high) = self.geometry.bounds();
+        let origin = ray.origin + ray.direction * ((high - low).length() * stream.uniform());
+        let shape = self.known.boundaries[stream.below(self.known.boundaries.len())];
+        let target = self.geometry.sample_area(shape, stream).position;
+        let Some((direction, ..)) = measure::between(origin, target) else { return };
+        let back = Ray { origin, direction, t_max: f32::INFINITY };
+        if let Met::Side(at) = boundary::first(self.geometry, self.surfaces, back, false)
+            && at.medium != medium
+            && !at.is_doubtful()
+            && !self.share_a_plane(from, at.shape)
+        {
+            survey.contradictions.push(Contradiction { from, medium, at });
         }
     }
 

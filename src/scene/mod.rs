@@ -10,6 +10,7 @@ mod placement;
 mod range;
 mod sections;
 mod time;
+mod unseen;
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},

@@ -103,7 +103,7 @@ impl Names<'_> {
             n => format!(" (and {} more such pairs)", n - 1),
         };
         let text = format!(
-            "the boundaries of media contradict each other: a free line from {} in {} ends on the side of \
+            "the boundaries of media contradict each other: an unblocked way from {} in {} ends on the side of \
              \"{}\" in {}, near {place:.3}{others}. No image is right then, and camera and light subpaths may \
              differ. Close shapes that bound media, let none of them overlap, and state the exterior of those \
              that lie within a medium",
@@ -113,6 +113,26 @@ impl Names<'_> {
             self.medium(at.medium)
         );
         self.library.warn(&self.locations[at.shape as usize], &text);
+    }
+
+    /// No light gets to a camera at `location`.
+    pub fn warn_of_camera_shut_in(&self, shape: u32, location: &Location) {
+        let text = format!(
+            "the camera is inside the closed opaque shape {}, and no emitter is: the image will be black. Move the \
+             camera or an emitter, or give the shape a bsdf that light passes",
+            self.shape(Some(shape))
+        );
+        self.library.warn(location, &text);
+    }
+
+    /// No camera sees `medium` in `shape`.
+    pub fn warn_of_medium_shut_in(&self, medium: MediumIndex, shape: u32) {
+        let text = format!(
+            "the medium {} inside this closed shape is never seen: no light gets through its opaque surface. Give it \
+             a \"null\" or \"dielectric\" bsdf, or remove the medium",
+            self.medium(medium)
+        );
+        self.library.warn(&self.locations[shape as usize], &text);
     }
 
     /// The medium of a camera that states none is not what Mitsuba takes.

@@ -125,7 +125,12 @@ fn check_idle(definitions: &[Child<'_>], root: &Object, library: &Library, time:
         if object.id.as_deref().is_none_or(|id| !referred.contains(id)) {
             let name = object.id.as_deref().unwrap_or(&object.plugin);
             check_definition(object, library, time)?;
-            library.warn(location, &format!("\"{name}\" is not used: it is never referred to"));
+            let remedy = if medium::ROWS.has(object) {
+                ". Refer to it from a shape (\"interior\" or \"exterior\"), the sensor or an emitter, or remove it"
+            } else {
+                ""
+            };
+            library.warn(location, &format!("\"{name}\" is not used: it is never referred to{remedy}"));
         }
     }
     Ok(())

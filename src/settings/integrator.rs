@@ -122,7 +122,8 @@ fn build_as(params: &Params<'_>, strategies: Strategies) -> Result<Integrator> {
 
 /// `fog`: `fog_color`, `ambient`, `threshold` [m] (BMA02 sec. 3.1 and 4.2).
 fn build_fog(params: &Params<'_>) -> Result<Integrator> {
-    params.accept_unused(&["max_depth", "rr_depth"], "a preview shows the first surfaces only");
+    params.accept_unused(&["max_depth"], "a preview shows the first surfaces only");
+    params.accept_silently("rr_depth");
     accept_division(params);
     let threshold = match params.optional_float("threshold")? {
         Some(far) if !(far > 0.0 && far <= f64::from(f32::MAX)) => {

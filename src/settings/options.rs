@@ -64,7 +64,8 @@ impl Default for Options {
 impl Options {
     /// Reads the parameters of integrators that make paths.
     pub(super) fn read(params: &Params<'_>, strategies: Strategies) -> Result<Self> {
-        params.accept_unused(&["rr_depth"], "paths end by absorption, which is exact at any depth");
+        // Most scenes of Mitsuba have it. Paths end by absorption here, which is exact at any depth: nothing to warn of.
+        params.accept_silently("rr_depth");
         if strategies == Strategies::LT {
             params.accept_unused(&["forced_interaction"], "light subpaths have no primary rays");
         }

@@ -14,7 +14,7 @@ use crate::{
     memory,
     sampling::Stream,
 };
-use std::path::Path;
+use std::{collections::HashSet, path::Path};
 
 /// What a mesh file says, in object space.
 #[derive(Clone, Debug, Default)]
@@ -76,6 +76,25 @@ impl Mesh {
         let areas = AreaTable::new(data.triangles.iter().map(|t| double_area(&positions, t) * 0.5));
         let facing = if placement.flip_normals { -1.0 } else { 1.0 };
         Ok(Self { positions, normals, uvs: data.uvs, triangles: data.triangles, areas, facing })
+    }
+
+    /// True if every edge is shared: an even number of triangles has it. Vertices at one position are one.
+    pub fn is_closed(&self) -> bool {
+        let mut odd = HashSet::new();
+        for [a, b, c] in self.triangles.iter().map(|corners| corners.map(|i| self.place(i))) {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let edge = (from.min(to), from.max(to));
+                if !odd.remove(&edge) {
+                    odd.insert(edge);
+                }
+            }
+        }
+        odd.is_empty()
+    }
+
+    /// The position of vertex `index`, for comparison; 0 and -0 are one.
+    fn place(&self, index: u32) -> [u32; 3] {
+        (self.positions[index as usize] + Vec3::ZERO).to_array().map(f32::to_bits)
     }
 
     /// Triangle `index` as the ray tracer needs it.

@@ -266,6 +266,17 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
 }
 
 impl Shape {
+    /// True if it has an inside that no line leaves but through it.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Sphere(_) => true,
+            Self::Mesh(mesh) => mesh.is_closed(),
+            // A cube; a rectangle is one.
+            Self::Parallelograms(faces) => faces.primitive_count() == 6,
+            Self::Disk(_) | Self::Cylinder(_) => false,
+        }
+    }
+
     /// Least and greatest corner of the box around it.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let boxes = (0..self.primitive_count()).map(|index| self.primitive(index).bounds());

@@ -26,7 +26,7 @@ fn figures_are_printed_and_written() {
     let sandbox = Sandbox::new();
     exr(&sandbox, "a.exr", &pixels(Some(5.0)));
     exr(&sandbox, "b.exr", &pixels(None));
-    let run = sandbox.run("diff a.exr b.exr --json d.json --map d.png --tolerance 0.5").ends(0);
+    let run = sandbox.run("diff a.exr b.exr --report d.json --map d.png --tolerance 0.5").ends(0);
     for hint in [
         "b.exr (reference)",
         "3, 2, 1",

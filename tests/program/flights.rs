@@ -6,7 +6,7 @@ use crate::sandbox::Sandbox;
 fn methods_are_compared_in_a_table_a_file_and_a_drawing() {
     let sandbox = Sandbox::new();
     let words = "flights hg g=0.75 --sigma-a 0.1 --sigma-s 0.9 --size 2 --photons 20000 --steps 1,0.1 \
-                 --json f.json --svg f.svg";
+                 --report f.json --svg f.svg";
     let run = sandbox.run(words).ends(0);
     for hint in ["truth ", "RDS_t ", "RDS_s ", "forced ", "CDS 1 ", "CDS 0.1 ", "is biased", "mean free path"]
     {
@@ -30,7 +30,7 @@ fn methods_are_compared_in_a_table_a_file_and_a_drawing() {
 fn a_cube_has_sides_and_the_defaults_do() {
     let sandbox = Sandbox::new();
     let run = sandbox
-        .run("flights --sigma-a 0 --sigma-s 3 --shape cube --angle 30 --photons 5000 --json f.json")
+        .run("flights --sigma-a 0 --sigma-s 3 --shape cube --angle 30 --photons 5000 --report f.json")
         .ends(0);
     assert!(run.out().contains("cube of 1 m") && run.out().contains("isotropic"), "{}", run.out());
     let figures = sandbox.json("f.json");
@@ -43,7 +43,7 @@ fn a_cube_has_sides_and_the_defaults_do() {
 fn what_no_photon_has_met_is_no_bias() {
     for medium in ["--sigma-a 0 --sigma-s 1 --size 20", "--sigma-a 0 --sigma-s 1e-7"] {
         let sandbox = Sandbox::new();
-        let run = sandbox.run(&format!("flights {medium} --photons 2000 --json f.json")).ends(0);
+        let run = sandbox.run(&format!("flights {medium} --photons 2000 --report f.json")).ends(0);
         for method in &sandbox.json("f.json")["methods"].as_array().unwrap()[..3] {
             assert!(method["largest_z"].as_f64().is_some_and(|z| z < 4.0), "{medium}: {}", run.out());
         }

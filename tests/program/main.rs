@@ -18,5 +18,7 @@ mod page;
 mod phase;
 mod pixel;
 mod reading;
+mod saying;
 mod strategies;
 mod study;
+mod unseen;

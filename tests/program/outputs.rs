@@ -86,12 +86,12 @@ fn what_cannot_be_written_is_said_before_the_first_ray() {
         (format!("study scene.json {LONG} -o s"), folder),
         (format!("study scene.json {LONG} -o scene.json"), &["scene.json", "choose another place"]),
         (format!("strategies scene.json {LONG} -o t"), folder),
-        (format!("{flights} --json missing/f.json"), missing),
-        (format!("{flights} --svg f --json f"), same),
+        (format!("{flights} --report missing/f.json"), missing),
+        (format!("{flights} --svg f --report f"), same),
         ("phase hg --samples 1000000000000".into(), folder),
         ("phase isotropic --samples 1000000000000 -o missing".into(), missing),
-        ("diff scene.exr scene.png --json missing/d.json".into(), missing),
-        ("diff scene.exr scene.exr --map scene.png --json scene.exr".into(), same),
+        ("diff scene.exr scene.png --report missing/d.json".into(), missing),
+        ("diff scene.exr scene.exr --map scene.png --report scene.exr".into(), same),
         ("convert scene.json missing/a.xml".into(), missing),
     ] {
         sandbox.shell(&format!("timeout 60 $TYNDALL {words}")).refuses(hints);
@@ -174,7 +174,8 @@ fn a_closed_pipe_changes_nothing() {
     for (words, code) in [
         ("info scene.json", 0),
         ("--help", 0),
-        ("render scene.json --spp 1", 0),
+        ("render scene.json --spp 1 -q", 0),
+        ("render scene.json --spp 1 -q --json", 0),
         ("diff scene.exr scene.exr", 0),
         ("info missing.json", 2),
     ] {

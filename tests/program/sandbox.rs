@@ -3,8 +3,9 @@
 use exr::prelude::read_first_flat_layer_from_file;
 use std::{
     collections::BTreeMap,
+    io::Write as _,
     path::PathBuf,
-    process::{Command, Output},
+    process::{Command, Output, Stdio},
 };
 use tempfile::TempDir;
 
@@ -58,6 +59,17 @@ impl Sandbox {
         let shell = shell.env("TYNDALL", env!("CARGO_BIN_EXE_tyndall")).current_dir(self.0.path());
         let output = shell.args(["-c", script]).output().unwrap();
         Run { words: script.to_owned(), output }
+    }
+
+    /// The same as [`Self::run`] with `input` on standard input.
+    pub fn run_with(&self, words: &str, input: &str) -> Run {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"));
+        program.current_dir(self.0.path()).args(words.split_whitespace());
+        program.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = program.spawn().unwrap();
+        // What is refused before it is read leaves a closed pipe.
+        let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+        Run { words: words.to_owned(), output: child.wait_with_output().unwrap() }
     }
 
     /// A file.

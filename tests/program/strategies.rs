@@ -206,7 +206,7 @@ fn what_a_scene_needs_is_not_left_out() {
     let (code, out, err) =
         sandbox.run("strategies scene.json --spp 2 --pilots 1 --depth 2 --size 4x4").reported();
     assert_eq!(code, Some(0), "{err}");
-    assert!(out.contains("cannot make: light of area, sky or medium that smooth"), "{out}");
+    assert!(out.contains("cannot make: light of area emitters that comes"), "{out}");
     let subsets = sandbox.json("scene-strategies/strategies.json")["subsets"].clone();
     for set in subsets.as_array().unwrap() {
         let without_hit = set["without"].as_str().unwrap().contains("hit");

@@ -365,7 +365,7 @@ fn several_scenes_and_what_a_contender_cannot_show() {
     let reported = desk.study(&[&["room.json", "mirror.json", "-o", "out"], &words[..], &more].concat());
     for hint in [
         "lt: its variance is infinite",
-        "lt: does not sample light of area, sky or medium seen in or through smooth",
+        "lt: does not sample light of area emitters seen by way of smooth",
         "lt: its mean",
     ] {
         assert!(reported.contains(hint), "{hint}: {reported}");

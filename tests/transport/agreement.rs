@@ -9,7 +9,10 @@ use crate::common::{
     strategies,
 };
 use serde_json::{Value, json};
-use tyndall::{analysis::coverage, transport::Strategies};
+use tyndall::{
+    analysis::coverage,
+    transport::{Options, Strategies},
+};
 
 /// What decides which strategies can make all paths of a scene.
 #[derive(Clone, Copy, Default)]
@@ -521,7 +524,8 @@ fn paths_out_of_reach_are_told_of_every_set_that_does_not_cover() {
     ] {
         let stage = Stage::new(&scene);
         let reach = |set: Strategies| {
-            coverage::unreachable(&stage.setup.scene, set, (&stage.setup.integrator.options).into())
+            let options = Options { strategies: set, ..stage.setup.integrator.options };
+            coverage::unreached(&stage.setup.scene, &options)
         };
         for set in (1..16).map(|set: u32| [1, 2, 4, 8].map(|bit| set & bit > 0)) {
             let [emitter_hit, next_event, connection, lens] = set;

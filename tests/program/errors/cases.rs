@@ -358,5 +358,10 @@ pub fn all() -> Vec<Case> {
         Case::json("a mean free path below what positions tell", r#""a": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "homogeneous", "sigma_t": 1e7}}"#).warned(),
         Case::json("a medium too large for its densities", r#""a": {"type": "cube", "bsdf": {"type": "null"}, "to_world": [{"type": "scale", "value": 1e12}], "interior": {"type": "homogeneous", "sigma_t": 1e-12}}"#).warned(),
         Case::json("null collisions without end", r#""a": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "heterogeneous", "sigma_t": 1e9, "tracker": "null_collision"}}"#),
+        Case::json("a scene without light", r#""a": {"type": "rectangle"}"#).warned(),
+        Case::json("a camera shut in", r#""a": {"type": "sphere"}, "sky": {"type": "constant"}"#).warned(),
+        Case::json("a medium shut in", r#""a": {"type": "sphere", "center": [0, 0, 5], "interior": {"type": "homogeneous"}}, "sky": {"type": "constant"}"#).warned(),
+        Case::json("a medium in an open boundary", r#""a": {"type": "cylinder", "p0": [3, 0, 5], "p1": [3, 0, 6], "bsdf": {"type": "null"}, "interior": {"type": "homogeneous"}}, "lamp": {"type": "point"}"#).warned(),
+        Case::json("a medium that nothing refers to", r#""fog": {"type": "homogeneous"}, "sky": {"type": "constant"}"#).warned(),
     ]
 }

@@ -1,0 +1,57 @@
+//! `tyndall completions` and `tyndall man`: what the definition of the arguments says, for shells and for `man`.
+
+use super::{arguments, say, voice};
+use crate::{
+    error::{Error, Result},
+    film::output,
+};
+use clap::{Command, CommandFactory};
+use clap_mangen::Man;
+use std::path::Path;
+
+/// Prints the completions of a shell.
+pub fn complete(arguments: &arguments::Completions) -> Result<()> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut command(), "tyndall", &mut script);
+    voice::print(String::from_utf8_lossy(&script).trim_end());
+    Ok(())
+}
+
+/// Prints the manual page of the program, or writes those of all its commands to a folder.
+pub fn run(arguments: &arguments::Manual) -> Result<()> {
+    match &arguments.folder {
+        None => voice::print(page(&command()).trim_end()),
+        Some(folder) => write(folder)?,
+    }
+    Ok(())
+}
+
+/// The program as its arguments define it; `help` is no page of its own.
+fn command() -> Command {
+    let mut command = arguments::Arguments::command().disable_help_subcommand(true);
+    command.build();
+    command
+}
+
+fn page(command: &Command) -> String {
+    let mut page = Vec::new();
+    let program = concat!("tyndall ", env!("CARGO_PKG_VERSION"));
+    // Nothing fails that is written to memory.
+    let _ = Man::new(command.clone()).source(program).render(&mut page);
+    String::from_utf8_lossy(&page).into_owned()
+}
+
+fn write(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| {
+        let remedy = "choose another place, or check that you may create a folder there";
+        Error::new(folder.display(), "a folder to write to", error.to_string(), remedy)
+    })?;
+    let whole = command();
+    for command in std::iter::once(&whole).chain(whole.get_subcommands()) {
+        let name = command.get_display_name().unwrap_or(command.get_name());
+        let path = folder.join(format!("{name}.1"));
+        output::write(&path, |file| file.write_all(page(command).as_bytes()))?;
+        say(&path.display().to_string());
+    }
+    Ok(())
+}

@@ -1,0 +1,122 @@
+//! Warnings of what an image will not show: a scene without light, a camera shut in, a medium shut in.
+
+use super::{Surface, accel::Geometry, boundary, lights::Lights, placement::Names};
+use crate::{
+    description::{Library, Location},
+    emitter::Kind,
+    math::{Vec3, offset},
+    medium::MediumIndex,
+    sampling::{Stream, stream::Purpose},
+    settings::{integrator::Integrator, options::Strategies},
+    shape::Ray,
+};
+
+/// The scene at `location` has no light; a preview needs none, nor do layers without an image.
+pub fn warn_of_darkness(lights: &Lights, integrator: &Integrator, location: &Location, library: &Library) {
+    let options = &integrator.options;
+    if lights.is_empty() && options.strategies != Strategies::NONE && options.max_depth != Some(0) {
+        let found = if lights.all.is_empty() { "no emitter" } else { "no emitter with power above 0" };
+        let text = format!(
+            "{found} is in this scene: all integrators but fog give a black image. Add one, such as \"constant\" \
+             (a sky), \"point\", or \"area\" in a shape"
+        );
+        library.warn(location, &text);
+    }
+}
+
+/// What decides whether something is shut in by an opaque shape.
+pub struct Unseen<'a> {
+    /// All shapes.
+    pub geometry: &'a Geometry,
+    /// Their properties.
+    pub surfaces: &'a [Surface],
+    /// All emitters.
+    pub lights: &'a Lights,
+    /// Where camera rays start: one point, or nearly.
+    pub viewpoint: Vec3,
+}
+
+/// Most surfaces that are passed on the way out of a shape.
+const MOST_SURFACES: u32 = 10_000;
+
+impl Unseen<'_> {
+    /// Says of every closed opaque shape what it hides; the camera is at `camera` in the file.
+    pub fn warn(&self, names: &Names<'_>, camera: &Location) {
+        let shapes =
+            (0..self.surfaces.len() as u32).filter(|shape| !self.surfaces[*shape as usize].transmits);
+        for shape in shapes {
+            if self.shuts_in_camera(shape) {
+                names.warn_of_camera_shut_in(shape, camera);
+            } else if let Some(medium) = self.shut_in_medium(shape) {
+                names.warn_of_medium_shut_in(medium, shape);
+            }
+        }
+    }
+
+    /// The camera is inside an opaque `shape`, and no emitter is. What costs most is asked last.
+    fn shuts_in_camera(&self, shape: u32) -> bool {
+        let (low, high) = self.bounds(shape);
+        let is_around = self.viewpoint.cmpge(low).all() && self.viewpoint.cmple(high).all();
+        let is_lit = self.lights.is_empty() || self.may_hold_light(shape);
+        is_around && !is_lit && self.is_inside(shape, self.viewpoint) && self.is_closed(shape)
+    }
+
+    /// The medium inside an opaque `shape` that the camera is outside of. Lamps may say of what they are.
+    fn shut_in_medium(&self, shape: u32) -> Option<MediumIndex> {
+        let Surface { boundary, emitter, .. } = self.surfaces[shape as usize];
+        if !boundary.is_known() || emitter.is_some() {
+            return None;
+        }
+        let medium = self.inner_medium(shape)?;
+        (!self.is_inside(shape, self.viewpoint) && self.is_closed(shape)).then_some(medium)
+    }
+
+    fn is_closed(&self, shape: u32) -> bool {
+        self.geometry.shapes()[shape as usize].is_closed()
+    }
+
+    fn bounds(&self, shape: u32) -> (Vec3, Vec3) {
+        self.geometry.shapes()[shape as usize].bounds()
+    }
+
+    /// The medium inside a closed shape; none for vacuum, or where the file names none.
+    fn inner_medium(&self, shape: u32) -> Option<MediumIndex> {
+        let boundary = self.surfaces[shape as usize].boundary;
+        let point =
+            self.geometry.sample_area(shape, &mut Stream::new(6, u64::from(shape), 0, Purpose::Pilot));
+        let ahead = offset::leave_surface(point.position, point.error, point.normal, point.normal);
+        let inner = if self.is_inside(shape, ahead) { boundary.exterior } else { boundary.interior };
+        inner.filter(|medium| *medium != MediumIndex::VACUUM)
+    }
+
+    /// True if a closed `shape` is around `point`: most of a few rays leave it an odd number of times.
+    fn is_inside(&self, shape: u32, point: Vec3) -> bool {
+        (1..4).filter(|index| self.crossings(shape, point, boundary::direction(7 * index)) % 2 == 1).count()
+            >= 2
+    }
+
+    /// How often the ray from `origin` in `direction` hits `shape`.
+    fn crossings(&self, shape: u32, origin: Vec3, direction: Vec3) -> u32 {
+        let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
+        let mut count = 0;
+        for _ in 0..MOST_SURFACES {
+            let Some(hit) = self.geometry.closest(&ray) else { break };
+            let point = self.geometry.surface(&ray, &hit);
+            count += u32::from(point.shape == shape);
+            ray.origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+        }
+        count
+    }
+
+    /// An emitter may be within `shape`, or on it.
+    fn may_hold_light(&self, shape: u32) -> bool {
+        let (low, high) = self.bounds(shape);
+        let meets = |(l, h): (Vec3, Vec3)| l.cmple(high).all() && h.cmpge(low).all();
+        self.lights.all.iter().any(|light| match (&light.emitter.kind, light.shape) {
+            (Kind::Surface(_), Some(other)) => meets(self.bounds(other)),
+            (Kind::Infinite(_), _) => false,
+            (Kind::Point(_), _) => meets((light.position, light.position)),
+            (Kind::Surface(_) | Kind::Medium(_), _) => true,
+        })
+    }
+}

@@ -1,0 +1,227 @@
+//! What the program says of a render before it begins, and what it says to scripts.
+
+use crate::{
+    common::pieces::*,
+    sandbox::{Run, Sandbox},
+};
+use serde_json::{Value, json};
+
+fn foggy_room() -> Value {
+    scene(&[
+        ("sensor", with(camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8), &[("medium", named("fog"))])),
+        ("fog", medium(1.0, 0.8, 0.3)),
+        ("room", room(0.6, Some(named("fog")))),
+        ("lamp", lamp_ball([0.2, 0.3, -0.3], 0.3, 2.0)),
+    ])
+}
+
+/// A glass ball in a room lit by a point.
+fn glass_ball() -> Value {
+    scene(&[
+        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("room", room(0.6, None)),
+        ("ball", json!({"type": "sphere", "radius": 0.3, "bsdf": {"type": "dielectric"}})),
+        ("lamp", point([0.0, 0.8, 0.0], 1.0)),
+    ])
+}
+
+fn parsed(run: &Run) -> Value {
+    serde_json::from_str(&run.out()).unwrap_or_else(|error| panic!("{error}: {}", run.out()))
+}
+
+#[test]
+fn a_render_says_in_one_line_what_it_will_do() {
+    let sandbox = Sandbox::with_scene(&foggy_room());
+    for (words, line) in [
+        (
+            "",
+            "bdpt (hit, next-event, join, lens), independent samples, closed-form flights, 8x8, 4 samples/pixel, profile fog\n",
+        ),
+        (
+            "--integrator pt --sampler sobol --time-limit 0.1s",
+            "pt (hit, next-event), sobol samples, closed-form flights, 8x8, 0.1 s, profile fog\n",
+        ),
+        (
+            "--strategies hit,join --spp 2 --error 0.5 --profile everything",
+            "bdpt (hit, join), independent samples, closed-form flights, 8x8, 2 samples/pixel or error 0.5, profile everything\n",
+        ),
+        (
+            "--integrator fog --size 5x3",
+            "fog, a preview of first surfaces, independent samples, 5x3, 4 samples/pixel, profile fog\n",
+        ),
+    ] {
+        assert_eq!(sandbox.run(&format!("render scene.json {words}")).ends(0).err(), line, "{words}");
+    }
+}
+
+#[test]
+fn free_flights_are_named_by_their_methods() {
+    let ramp = json!({"type": "exponential", "value": 1.0});
+    let cloud = json!({"type": "heterogeneous", "sigma_t": ramp, "albedo": 0.5, "tracker": "null_collision"});
+    let parts = [
+        ("sensor", camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 4)),
+        ("cloud", null_box([-1.0; 3], [1.0; 3], Some(cloud))),
+        ("fog", null_ball([3.0, 0.0, 0.0], 0.5, medium(1.0, 0.8, 0.3))),
+        ("sky", sky(1.0)),
+    ];
+    let sandbox = Sandbox::with_scene(&scene(&parts));
+    let said = |words: &str| sandbox.run(&format!("render scene.json --spp 1 {words}")).ends(0).err();
+    assert!(said("").contains(", delta tracking and closed-form flights, 4x4"), "{}", said(""));
+    assert!(said("--tracker march").contains(", ray marching and closed-form flights, "));
+}
+
+#[test]
+fn light_that_is_not_reached_is_told_with_who_reaches_it() {
+    let sandbox = Sandbox::with_scene(&glass_ball());
+    let caustics = "light of point emitters by way of smooth glass (caustics)";
+    let of_pt = sandbox.run("render scene.json --spp 1 --integrator pt").ends(0).err();
+    for line in [
+        format!("not reached by pt: {caustics}; bdpt reaches it\n"),
+        format!("not reached by pt: {caustics}, seen by way of smooth glass; bdpt reaches a part of it\n"),
+        "not reached by pt: light of point emitters that comes to the camera by way of smooth glass alone; no integrator does\n".to_owned(),
+    ] {
+        assert!(of_pt.contains(&line), "no {line} in {of_pt}");
+    }
+    let of_some = sandbox.run("info scene.json --strategies next-event,join").ends(0).out();
+    assert!(
+        of_some.contains(&format!("not reached by these strategies: {caustics}; bdpt reaches it")),
+        "{of_some}"
+    );
+    let of_bdpt = sandbox.run("render scene.json --spp 1").ends(0).err();
+    assert!(!of_bdpt.contains("bdpt reaches it") && of_bdpt.contains("no integrator does"), "{of_bdpt}");
+    let room = Sandbox::with_scene(&foggy_room());
+    assert!(!room.run("render scene.json --spp 1 --integrator pt").ends(0).err().contains("not reached"));
+}
+
+#[test]
+fn info_shows_the_plan_of_any_integrator() {
+    let sandbox = Sandbox::with_scene(&glass_ball());
+    let run = sandbox.run("info scene.json --integrator lt --max-depth 3").ends(0);
+    assert!(run.out().contains("integrator  lt, paths of at most 3 segments"), "{}", run.out());
+    assert!(
+        run.out().contains("plan        lt (next-event, lens)")
+            || run.out().contains("plan        lt (lens)"),
+        "{}",
+        run.out()
+    );
+    sandbox.run("info scene.json --integrator pt --strategies lens").refuses(&["--strategies"]);
+}
+
+#[test]
+fn quiet_leaves_warnings_and_what_is_missing() {
+    let scene = with(glass_ball(), &[("idle", diffuse(0.5))]);
+    let sandbox = Sandbox::with_scene(&scene);
+    for words in ["-q render scene.json --integrator pt", "render scene.json --integrator pt --quiet"] {
+        let run = sandbox.run(words).ends(0);
+        assert_eq!(run.out(), "");
+        let mut lines = run.err().lines().map(str::to_owned).collect::<Vec<_>>();
+        assert!(lines.remove(0).starts_with("warning: "), "{}", run.err());
+        assert!(
+            !lines.is_empty() && lines.iter().all(|line| line.starts_with("not reached by pt: ")),
+            "{}",
+            run.err()
+        );
+    }
+    assert_eq!(sandbox.run("info -q scene.json").ends(0).out(), "");
+    let run = sandbox.run("diff -q scene.exr scene.exr").ends(0);
+    assert_eq!((run.out(), run.err()), (String::new(), String::new()));
+    assert!(parsed(&sandbox.run("pixel -q scene.json 1 1").ends(0)).is_object());
+    sandbox.run("-q render missing.json").refuses(&["missing.json"]);
+}
+
+#[test]
+fn every_report_can_be_json() {
+    let sandbox = Sandbox::with_scene(&glass_ball());
+    let render = parsed(&sandbox.run("render scene.json --integrator pt --json --report r.json").ends(0));
+    assert_eq!(render, sandbox.json("r.json"));
+    assert_eq!((&render["samples_per_pixel"], &render["image"]), (&json!(4), &json!("scene.exr")));
+    let plan = &render["plan"];
+    assert_eq!(plan["strategies"], json!(["hit", "next-event"]));
+    assert_eq!(
+        (&plan["width"], &plan["sampler"], &plan["integrator"]),
+        (&json!(8), &json!("independent"), &json!("pt"))
+    );
+    assert!(
+        plan["unreached"].as_array().unwrap().iter().any(|light| light["reached_by_bdpt"] == "all"),
+        "{plan}"
+    );
+    let info = parsed(&sandbox.run("info scene.json --json").ends(0));
+    assert_eq!((&info["shapes"], &info["emitters"][0]["type"]), (&json!(2), &json!("point")));
+    assert!(info["plan"]["unreached"].is_array() && info["warnings"] == json!([]), "{info}");
+    for (words, key) in [
+        ("diff scene.exr scene.exr", "/radiance/mse"),
+        ("phase hg g=0.5 --samples 1000", "/chi_square/p_value"),
+        ("flights --sigma-a 0 --sigma-s 3 --photons 1000", "/methods/0/method"),
+        ("strategies scene.json --spp 2 --pilots 0 --size 4x4", "/cells/0/name"),
+        ("render scene.json --frames 0..1 --spp 1", "/frames/1/samples_per_pixel"),
+    ] {
+        let run = sandbox.run(&format!("{words} --json"));
+        assert!(parsed(&run).pointer(key).is_some_and(|value| !value.is_null()), "{words}: {}", run.out());
+    }
+}
+
+#[test]
+fn a_scene_can_come_from_standard_input() {
+    let sandbox = Sandbox::with_scene(&foggy_room());
+    sandbox.run("convert scene.json scene.xml").ends(0);
+    sandbox.run("render scene.json").ends(0);
+    for name in ["scene.json", "scene.xml"] {
+        let text = format!("\n  {}", sandbox.text(name));
+        sandbox.run_with("render -", &text).ends(0);
+        assert_eq!(sandbox.channels("stdin.exr"), sandbox.channels("scene.exr"), "{name}");
+        std::fs::remove_file(sandbox.path("stdin.exr")).unwrap();
+    }
+    let text = sandbox.text("scene.json");
+    assert_eq!(sandbox.run_with("info -", &text).ends(0).out(), sandbox.run("info scene.json").out());
+    sandbox.run_with("convert - again.xml", &text).ends(0);
+    assert_eq!(sandbox.text("again.xml"), sandbox.text("scene.xml"));
+    sandbox.run_with("strategies - --spp 2 --pilots 0 --size 4x4", &text).ends(0);
+    assert!(sandbox.path("stdin-strategies").is_dir());
+    assert!(parsed(&sandbox.run_with("pixel - 1 1", &text).ends(0)).is_object());
+}
+
+#[test]
+fn files_of_a_scene_on_standard_input_start_at_the_current_folder() {
+    let sky = json!({"type": "envmap", "filename": "maps/sky.ppm"});
+    let scene = with(glass_ball(), &[("sky", sky)]).to_string();
+    let sandbox =
+        Sandbox::with_files(&[("maps/sky.ppm", "P3 2 3 1  1 1 1  1 1 1  1 1 1  1 1 1  1 1 1  1 1 1\n")]);
+    sandbox.run_with("info -", &scene).ends(0);
+    sandbox.run_with("info -", &scene.replace("maps/", "")).refuses(&["<stdin>", "sky.ppm"]);
+}
+
+#[test]
+fn what_is_no_scene_on_standard_input_is_refused() {
+    let sandbox = Sandbox::with_scene(&foggy_room());
+    sandbox.run_with("render -", "").refuses(&["<stdin>", "< (Mitsuba XML) or { (JSON)", "nothing"]);
+    sandbox.run_with("render -", " x").refuses(&["<stdin>", "\"x\""]);
+    sandbox.run_with("render -", "{\n  \"type\": ").refuses(&["<stdin>:2:"]);
+    sandbox.run_with("study - -o out", "{}").refuses(&["standard input", "save the scene to a file"]);
+    assert_eq!(sandbox.files(), ["scene.json"]);
+}
+
+#[test]
+fn shells_and_man_learn_the_arguments() {
+    let sandbox = Sandbox::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = sandbox.run(&format!("completions {shell}")).ends(0).out();
+        assert!(["strategies", "time-limit", "quiet"].iter().all(|word| script.contains(word)), "{shell}");
+    }
+    sandbox.run("completions tcsh").refuses(&["bash", "zsh"]);
+    let page = sandbox.run("man").ends(0).out();
+    assert!(page.contains(".TH") && page.contains("SIGTERM"), "{page}");
+    sandbox.run("man pages/1").ends(0);
+    let page = sandbox.text("pages/1/tyndall-render.1");
+    assert!(page.contains("time\\-limit") && page.contains("\\-\\-quiet"), "{page}");
+    assert!(sandbox.path("pages/1/tyndall.1").is_file() && !sandbox.path("pages/1/tyndall-help.1").exists());
+    std::fs::write(sandbox.path("file"), "").unwrap();
+    sandbox.run("man file").refuses(&["file", "a folder"]);
+}
+
+#[test]
+fn help_tells_the_exit_codes() {
+    let help = Sandbox::new().run("--help").ends(0).out();
+    for code in ["0    success", "1    done", "2    a mistake", "129", "130", "143"] {
+        assert!(help.contains(code), "no {code} in {help}");
+    }
+}
