@@ -111,6 +111,7 @@ def run(
         found = rendering(output, report, done.stderr)
     if must_be_finite:
         finite(found.image if found.batches is None else found.batches)
+        sound(found)
     return found
 
 
@@ -213,6 +214,12 @@ def call(command: list[str], patience: float | None = None) -> subprocess.Comple
         said = (done.stderr or done.stdout).strip()[-4000:]
         raise Failure(f"{' '.join(command)}\n  exit code {done.returncode}: {said}", "run the command by hand")
     return done
+
+
+def sound(found: Rendering) -> None:
+    """Refuses an image that the program left contributions out of: NaN, infinities, and what panicked."""
+    if found.report["faults"]:
+        raise Failure(found.messages.strip(), "mend the renderer")
 
 
 def finite(image: np.ndarray) -> None:

@@ -14,7 +14,9 @@ use crate::{
         format::{FileKind, Format},
         layer::Content,
     },
-    render::{self, Image, Progress, Settings, adaptive::Precision, budget::Budget, sums::Sums},
+    render::{
+        self, Image, Progress, Settings, adaptive::Precision, budget::Budget, faults::Faults, sums::Sums,
+    },
     sampling::Sampler,
     scene::build::Setup,
     transport::Strategies,
@@ -139,6 +141,7 @@ fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Re
         None => watched(setup, task, goal, label)?,
         Some(count) => batches(setup, task, goal, count, label)?,
     };
+    report_faults(&image, setup);
     let mut figures = figures(&image, task);
     if task.arguments.samples.is_none() || task.arguments.output.is_some() {
         goal.write(&setup.film, &mut image, &task.made)?;
@@ -218,6 +221,19 @@ fn batches(setup: &Setup, task: &Task<'_>, goal: &Goal, count: u32, label: Optio
     })
 }
 
+/// What went wrong inside, as a warning.
+fn report_faults(image: &Image, setup: &Setup) {
+    let Faults { count, first } = &image.faults;
+    if *count > 0 {
+        let described: Vec<String> =
+            first.iter().map(|fault| fault.describe(setup.film.width as usize)).collect();
+        super::complain(&format!(
+            "warning: {count} faults of the program itself; please report them, with the scene. The first ones:\n  {}",
+            described.join("\n  ")
+        ));
+    }
+}
+
 /// Figures of an image, for scripts.
 fn figures(image: &Image, task: &Task<'_>) -> Value {
     let mut figures = serde_json::json!({
@@ -225,6 +241,7 @@ fn figures(image: &Image, task: &Task<'_>) -> Value {
         "render_seconds": image.elapsed.as_secs_f64(),
         "relative_error": image.noise,
         "profile": task.settings.profile.name(),
+        "faults": image.faults.count,
     });
     if let Some(batches) = task.arguments.batches {
         figures["batches"] = batches.into();

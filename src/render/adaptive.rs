@@ -11,6 +11,7 @@
 use super::{
     Progress,
     block::{Outcome, Pass},
+    faults::Faults,
     instrument::{BLOCKS_AT_ONCE, Instrument},
     monitor::Stopwatch,
 };
@@ -47,6 +48,8 @@ pub(super) struct Developed {
     pub noise: Option<f64>,
     /// Where and how far.
     pub reached: Reached,
+    /// What went wrong on the way.
+    pub faults: Faults,
 }
 
 /// Passes of a half before it is first examined: variances of fewer are too uncertain.
@@ -236,6 +239,7 @@ pub(super) struct Adaptive<'a> {
     /// The unfinished pass, and how many of its blocks are done.
     pass: Pass,
     blocks: usize,
+    faults: Faults,
 }
 
 impl<'a> Adaptive<'a> {
@@ -244,7 +248,17 @@ impl<'a> Adaptive<'a> {
         let pixels = bench.film.len();
         let halves = [Half::new(pixels), Half::new(pixels)];
         let (active, samples, pass) = (vec![true; pixels], vec![0; pixels], Pass::new(pixels));
-        Self { bench, stopwatch, precision, halves, active, samples, pass, blocks: 0 }
+        Self {
+            bench,
+            stopwatch,
+            precision,
+            halves,
+            active,
+            samples,
+            pass,
+            blocks: 0,
+            faults: Faults::default(),
+        }
     }
 
     /// Renders until every pixel has converged or the budget is spent.
@@ -272,6 +286,7 @@ impl<'a> Adaptive<'a> {
             let outcomes = self.work(tasks.clone());
             for (task, outcome) in tasks.clone().zip(&outcomes) {
                 self.pass.add(outcome);
+                self.faults.add(&outcome.faults);
                 self.blocks += 1;
                 if (task + 1) % count == 0 {
                     self.take();
@@ -343,14 +358,20 @@ impl<'a> Adaptive<'a> {
             let reached = Reached { share: 0.0, samples: self.samples };
             let width = self.bench.film.width as usize;
             let pixels = self.pass.pixels(self.bench.compiled.blocks(), self.blocks, width);
-            return Developed { pixels, passes: 0, noise: None, reached };
+            return Developed { pixels, passes: 0, noise: None, reached, faults: self.faults };
         }
         let halves: Vec<&Half> = self.halves.iter().filter(|half| half.passes > 0).collect();
         let value = |pixel| halves.iter().map(|half| half.value(pixel)).sum::<DVec3>() / halves.len() as f64;
         let pixels = (0..self.active.len()).map(|pixel| value(pixel).as_vec3()).collect();
         let noise = (halves.iter().all(|half| half.errors[0].is_finite())).then(|| rms(&halves));
         let (passes, share) = (self.passes(), self.share());
-        Developed { pixels, passes, noise, reached: Reached { share, samples: self.samples } }
+        Developed {
+            pixels,
+            passes,
+            noise,
+            reached: Reached { share, samples: self.samples },
+            faults: self.faults,
+        }
     }
 }
 

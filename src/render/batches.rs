@@ -1,6 +1,6 @@
 //! Independent images of one scene as one: their mean, its standard error, and each of them.
 
-use super::Image;
+use super::{Image, faults::Faults};
 use crate::{
     film::{
         Channel,
@@ -46,6 +46,10 @@ impl Image {
             alpha: merged(&alphas, mean),
             layers: channels,
             reached: None,
+            faults: images.iter().fold(Faults::default(), |mut all, image| {
+                all.merge(&image.faults);
+                all
+            }),
         }
     }
 }
@@ -106,6 +110,7 @@ mod tests {
                 .map(|name| Channel { name: name.into(), values: vec![value] })
                 .to_vec(),
             reached: None,
+            faults: Faults::default(),
         });
         let layers = [Layer { name: "variance".into(), content: Content::Variance }];
         let all = Image::mean_of(&images, &layers, Format::default());

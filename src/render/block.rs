@@ -2,8 +2,10 @@
 
 use super::{
     compiled::Ready,
+    faults::{Cause, Fault},
     fill,
     fog::{PILOT_RAYS, Preview},
+    pixel_sample,
 };
 use crate::{
     film::Film,
@@ -17,7 +19,7 @@ use crate::{
         profile::Profile,
     },
 };
-use std::ops::Range;
+use std::{cell::Cell, ops::Range};
 
 /// Pixels (and light subpaths) of a block: a cache of this many walks still fits the processor's caches, and
 /// its noise is shared by few enough pixels.
@@ -50,9 +52,19 @@ pub struct CameraStart {
 }
 
 /// What a block adds to its pass.
+#[derive(Default)]
 pub struct Outcome {
     camera: Vec<(u32, Spectrum)>,
     light: Vec<(u32, Spectrum)>,
+    /// What went wrong.
+    pub faults: Vec<Fault>,
+}
+
+impl Outcome {
+    /// Nothing but what went wrong.
+    pub fn of_faults(faults: Vec<Fault>) -> Self {
+        Self { faults, ..Self::default() }
+    }
 }
 
 /// A pass over the image, block by block.
@@ -177,23 +189,29 @@ impl Blocks {
         self.sampler.stream(seed, index, sample, Purpose::Light)
     }
 
-    /// Renders one sample of every pixel of `block` that `wants` one.
+    /// Renders one sample of every pixel of `block` that `wants` one, and says which pixel it is `at`.
     pub fn render<P: Profile>(
         &self,
         ready: &Ready<'_, P>,
         pass: usize,
         block: usize,
         wants: &dyn Fn(usize) -> bool,
+        at: &Cell<Option<u32>>,
     ) -> Outcome {
         let Ready { estimator, scene, film, seed, .. } = ready;
-        let mut light = Splatted { film, values: Vec::new() };
+        let mut light = Splatted { film, values: Vec::new(), sample: pass as u64, faults: Vec::new() };
         let cache = self.trace_light(estimator, *seed, pass, block, &mut light);
+        let mut faults = light.faults;
         let camera = self.pixels(block).filter(|pixel| wants(*pixel)).map(|pixel| {
+            at.set(Some(pixel as u32));
             let start = self.camera_start(scene, film, *seed, pass, pixel);
-            let (weight, sum) = (start.weight, start.trace(estimator, &cache, Sum::default()));
+            let (weight, mut sum) = (start.weight, start.trace(estimator, &cache, Sum::default()));
+            if !sum.radiance.is_finite() {
+                sum.radiance = finite_part(ready, pass, block, pixel, &mut faults);
+            }
             (pixel as u32, sum.radiance * weight)
         });
-        Outcome { camera: camera.collect(), light: light.values }
+        Outcome { camera: camera.collect(), light: light.values, faults }
     }
 
     /// Traces the light subpaths of `block`, which `observer` sees; their cache.
@@ -250,7 +268,7 @@ impl Blocks {
             let ray = preview.scene.sensor.ray(start.position, start.aperture).ray;
             (pixel as u32, preview.radiance(ray, &mut start.stream) * start.weight)
         });
-        Outcome { camera: camera.collect(), light: Vec::new() }
+        Outcome { camera: camera.collect(), light: Vec::new(), faults: Vec::new() }
     }
 
     /// Rays through pixels all over the film, with random numbers of their own.
@@ -270,10 +288,34 @@ impl Blocks {
     }
 }
 
+/// What a sample of `pixel` adds up to without contributions that are no finite numbers: it is made again, and looked at
+/// one by one.
+#[cold]
+fn finite_part<P: Profile>(
+    ready: &Ready<'_, P>,
+    pass: usize,
+    block: usize,
+    pixel: usize,
+    faults: &mut Vec<Fault>,
+) -> Spectrum {
+    let mut sum = Spectrum::ZERO;
+    for (s, t, value) in pixel_sample::camera(ready, pass, block, pixel).contributions() {
+        if value.is_finite() {
+            sum += value;
+        } else {
+            let (cause, pixel) = (Cause::NotFinite { s, t }, Some(pixel as u32));
+            faults.push(Fault { cause, sample: pass as u64, pixel });
+        }
+    }
+    sum
+}
+
 /// What light subpaths contributed to the film.
 struct Splatted<'a> {
     film: &'a Film,
     values: Vec<(u32, Spectrum)>,
+    sample: u64,
+    faults: Vec<Fault>,
 }
 
 impl<S: MisSums> Observer<S> for Splatted<'_> {
@@ -283,11 +325,27 @@ impl<S: MisSums> Observer<S> for Splatted<'_> {
     }
 
     #[inline]
-    fn contribute(&mut self, _: u32, _: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
-        let values = &mut self.values;
-        if let (Meeting::Lens(film), Some(contribution)) = (meeting, contribution) {
-            self.film.spread(film, contribution.value, |pixel, value| values.push((pixel as u32, value)));
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
+        let (Meeting::Lens(film), Some(Contribution { value, .. })) = (meeting, contribution) else { return };
+        if !value.is_finite() {
+            let cause = Cause::NotFinite { s, t };
+            return self.faults.push(Fault { cause, sample: self.sample, pixel: None });
         }
+        let values = &mut self.values;
+        self.film.spread(film, *value, |pixel, value| values.push((pixel as u32, value)));
+    }
+}
+
+#[cfg(test)]
+impl Outcome {
+    /// A contribution to each of `pixels`.
+    pub fn of_pixels(pixels: impl Iterator<Item = usize>) -> Self {
+        Self { camera: pixels.map(|pixel| (pixel as u32, Spectrum::ONE)).collect(), ..Self::default() }
+    }
+
+    /// How many pixels have one.
+    pub fn pixels(&self) -> usize {
+        self.camera.len()
     }
 }
 

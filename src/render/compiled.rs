@@ -4,6 +4,7 @@
 use super::{
     Settings,
     block::{Blocks, Outcome},
+    faults::guarded,
     pixel_sample::{self, EyeSample, Splat, Walk},
     strategy_images::{self, CellContribution, StrategyTable},
     timing::{self, Times},
@@ -66,7 +67,9 @@ impl<P: Profile> Compiled for Ready<'_, P> {
         &self.blocks
     }
     fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
-        self.blocks.render(self, pass, block, wants)
+        guarded(pass, |works, at| {
+            self.blocks.render(self, pass, block, &|pixel| wants(pixel) && works(pixel), at)
+        })
     }
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
         self.estimator.transmittance(primary, stream)

@@ -8,6 +8,7 @@ mod batches;
 mod block;
 pub mod budget;
 mod compiled;
+pub mod faults;
 mod fill;
 mod fog;
 pub mod instrument;
@@ -38,6 +39,7 @@ use crate::{
 };
 use adaptive::{Adaptive, Developed, Precision, Reached};
 use budget::Budget;
+use faults::Faults;
 use fog::Preview;
 use instrument::{BLOCKS_AT_ONCE, Instrument};
 use monitor::{Monitor, Stopwatch};
@@ -95,6 +97,8 @@ pub struct Image {
     pub layers: Vec<Channel>,
     /// How far a requested precision was reached, if one was requested.
     pub reached: Option<Reached>,
+    /// What went wrong on the way.
+    pub faults: Faults,
 }
 
 impl Image {
@@ -109,6 +113,7 @@ impl Image {
             alpha: Vec::new(),
             layers: Vec::new(),
             reached: None,
+            faults: sums.faults.clone(),
         }
     }
 
@@ -236,7 +241,7 @@ fn dispatch(
 
 /// The image of an adaptive render, with a layer that shows how many samples its pixels took.
 fn finish(bench: &Instrument<'_>, stopwatch: &Stopwatch, found: Developed, layers: &[Layer]) -> Image {
-    let Developed { pixels, passes, noise, reached } = found;
+    let Developed { pixels, passes, noise, reached, faults } = found;
     let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
     let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes.max(1));
     let seen = primary::Pass::new(bench.film, layers).run(bench, mean);
@@ -246,7 +251,7 @@ fn finish(bench: &Instrument<'_>, stopwatch: &Stopwatch, found: Developed, layer
     layers.push(Channel { name: "samples.N".to_owned(), values });
     let (elapsed, reached) = (stopwatch.elapsed(), Some(reached));
     let alpha = seen.alpha;
-    Image { pixels, samples_per_pixel: mean, unfinished: 0.0, elapsed, noise, alpha, layers, reached }
+    Image { pixels, samples_per_pixel: mean, unfinished: 0.0, elapsed, noise, alpha, layers, reached, faults }
 }
 
 /// Adds samples until the budget is spent. A preview is shown in place of what the estimator says.

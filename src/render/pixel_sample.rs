@@ -182,6 +182,13 @@ pub(super) struct EyeSample {
     tries: Vec<Try>,
 }
 
+impl EyeSample {
+    /// What the strategies contributed, with their numbers of light and camera vertices.
+    pub fn contributions(&self) -> impl Iterator<Item = (u32, u32, Spectrum)> + '_ {
+        self.tries.iter().filter_map(|one| Some((one.s, one.t, one.contribution?.value)))
+    }
+}
+
 /// Makes the camera subpath of `pixel` in `pass` again, connected to the light subpaths of `block`.
 pub(super) fn camera<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize, pixel: usize) -> EyeSample {
     let lit = light(ready, pass, block, pixel);

@@ -3,6 +3,7 @@
 
 use super::{
     block::{Blocks, Outcome, Pass},
+    faults::Faults,
     samples::Samples,
 };
 use crate::{
@@ -30,6 +31,8 @@ pub struct Sums {
     pub(super) noise: Option<f64>,
     /// Of so many passes.
     noted: u64,
+    /// What went wrong on the way.
+    pub(super) faults: Faults,
     width: usize,
 }
 
@@ -53,6 +56,7 @@ impl Sums {
             elapsed: Duration::ZERO,
             noise,
             noted,
+            faults: Faults::default(),
             width,
         }
     }
@@ -89,6 +93,7 @@ impl Sums {
         self.samples = samples;
         self.accumulator.merge(&other.accumulator);
         self.note_noise();
+        self.faults.merge(&other.faults);
         self.elapsed += other.elapsed;
         true
     }
@@ -113,6 +118,7 @@ impl Sums {
     pub(super) fn add(&mut self, sample: u64, outcome: &Outcome, count: usize) {
         self.sample = sample;
         self.pass.add(outcome);
+        self.faults.add(&outcome.faults);
         self.blocks += 1;
         if self.blocks == count {
             self.pass.finish(|pass| self.accumulator.add(pass));

@@ -7,7 +7,7 @@
 //!
 //! The header's entry `tyndall` holds [`State`] as JSON, with a checksum of the arrays.
 
-use super::{block::Pass, samples::Samples, sums::Sums};
+use super::{block::Pass, faults::Faults, samples::Samples, sums::Sums};
 use crate::{
     error::{Error, Result},
     film::{accumulator::Accumulator, output},
@@ -36,6 +36,8 @@ struct State {
     unfinished: (u64, usize),
     /// Time spent [s].
     seconds: f64,
+    /// What went wrong on the way.
+    faults: Faults,
     /// XXH3 of all arrays, 128 bits.
     checksum: String,
     /// How the image is made.
@@ -56,6 +58,7 @@ pub fn write(path: &Path, sums: &Sums, made: &Value) -> Result<()> {
         samples: sums.samples.ranges().to_vec(),
         unfinished: (sums.sample, sums.blocks),
         seconds: sums.elapsed.as_secs_f64(),
+        faults: sums.faults.clone(),
         checksum: checksum([&windows, &parts, &camera, &light]),
         made: made.clone(),
     };
@@ -120,6 +123,7 @@ fn sums_of(state: State, [windows, parts, camera, light]: [&[u8]; 4]) -> Option<
     let samples = if state.samples.is_empty() { Samples::default() } else { Samples::of(state.samples)? };
     let accumulator = Accumulator::from_sums(pixels, samples.count(), &sums)?;
     let mut sums = Sums::of(accumulator, samples, state.width);
+    sums.faults = state.faults;
     sums.elapsed = Duration::try_from_secs_f64(state.seconds).ok()?;
     if state.unfinished.1 > 0 {
         let [camera, light] = [camera, light].map(spectra_of);

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use tyndall::{
     format,
     math::Spectrum,
-    render::{self, Image, Settings, budget::Budget},
+    render::{self, Image, Settings, budget::Budget, faults::Faults},
     scene::build::{self, Setup},
     settings::Overrides,
     transport::{
@@ -62,7 +62,9 @@ impl Stage {
     pub fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
         let Setup { scene, film, integrator, .. } = &self.setup;
         let settings = self.settings(strategies, samples_per_pixel, seed);
-        render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {})
+        let image = render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {});
+        assert_eq!(image.faults, Faults::default());
+        image
     }
 
     /// How it is rendered.

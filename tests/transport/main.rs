@@ -7,6 +7,7 @@ mod adaptive;
 mod agreement;
 mod determinism;
 mod extremes;
+mod faults;
 mod forced;
 mod glowing;
 mod heuristics;

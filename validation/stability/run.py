@@ -137,7 +137,8 @@ def spread(single: np.ndarray) -> np.ndarray:
 
 
 def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None, batches: int | None = None) -> np.ndarray:
-    """Independent images, or one, as they are in the file: NaN and infinities included."""
+    """Independent images, or one, as they are in the file: NaN and infinities included. A contribution that the program left
+    out because it was none counts as one."""
     integrator, _, tracker = method.partition(":")
     integrator, _, strategies = integrator.partition("/")
     done = tyndall.run(
@@ -153,7 +154,10 @@ def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None,
         patience=PATIENCE * (batches or 1),
         must_be_finite=False,
     )
-    return done.image[None] if done.batches is None else done.batches
+    images = done.image[None] if done.batches is None else done.batches
+    if done.report["faults"]:
+        images[0, 0, 0, 0] = np.nan
+    return images
 
 
 def single_precision(o: dict) -> dict:
