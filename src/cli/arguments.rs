@@ -1,6 +1,6 @@
 //! The arguments of the command line.
 
-use super::{estimator::Estimator, study::Study, voice::Answer};
+use super::{estimator::Estimator, study::Study, viewer, voice::Answer};
 use crate::{film::accumulator::MOST_PASSES, format};
 use clap::{
     Args, Parser, Subcommand,
@@ -204,6 +204,10 @@ pub struct Render {
     #[arg(long)]
     pub preview: bool,
 
+    /// Show the image so far in the viewer tev
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = viewer::ADDRESS, value_parser = address)]
+    pub tev: Option<String>,
+
     /// Seed of all random numbers; the same seed gives the same image
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
@@ -391,6 +395,13 @@ fn samples(text: &str) -> Result<Samples, String> {
         format!("expected two numbers from 0 to {MOST_PASSES}, the first below the second, such as 0..64")
     })?;
     Ok(Samples { first, end })
+}
+
+fn address(text: &str) -> Result<String, String> {
+    let port =
+        text.rsplit_once(':').and_then(|(host, port)| port.parse::<u16>().ok().filter(|_| !host.is_empty()));
+    port.map(|_| text.to_owned())
+        .ok_or_else(|| format!("expected a host and a port, such as {}", viewer::ADDRESS))
 }
 
 fn fps(text: &str) -> Result<f64, String> {

@@ -1,6 +1,6 @@
 //! Keeps what a render has: its sums, from which it can go on, and the picture so far.
 
-use super::{arguments::Render, complain, made};
+use super::{complain, made, render::Task, viewer::Viewer};
 use crate::{
     error::Result,
     render::{
@@ -18,6 +18,8 @@ use std::{
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Time between two writes over the time that one takes: what is kept costs less than a hundredth of a render.
 const RESTRAINT: u32 = 128;
+/// Time between two pictures in a viewer.
+const VIEW_EVERY: Duration = Duration::from_millis(500);
 /// Time between two pictures so far.
 const PICTURE_EVERY: Duration = Duration::from_secs(5);
 
@@ -50,46 +52,61 @@ impl Turn {
 
 /// Writes what there is while a render goes on.
 pub struct Keeper<'a> {
-    file: PathBuf,
-    made: Value,
+    /// Where the sums go; none where a render cannot go on from them.
+    file: Option<PathBuf>,
+    made: &'a Value,
     sums: Turn,
     picture: Option<Turn>,
     /// Writes the picture so far.
     draw: &'a dyn Fn(&Sums) -> Result<()>,
+    viewer: Option<(Viewer, Turn)>,
     /// The file is to be there at the end.
     is_wanted: bool,
 }
 
 impl<'a> Keeper<'a> {
-    /// Keeps sums in `file`, as `arguments` say; with --preview, has the picture so far drawn.
+    /// Keeps the sums of `task` in `file`; with --preview, has the picture so far drawn; with --tev, shows it.
     pub fn new(
-        file: PathBuf,
-        made: Value,
-        arguments: &Render,
+        file: Option<PathBuf>,
+        task: &'a Task<'a>,
         draw: &'a dyn Fn(&Sums) -> Result<()>,
-    ) -> Self {
-        let picture = arguments.preview.then(|| Turn::new(PICTURE_EVERY));
-        let sums = Turn::new(arguments.sums_every.unwrap_or(PATIENCE));
-        Self { file, made, sums, picture, draw, is_wanted: arguments.sums.is_some() || arguments.resume }
+    ) -> Result<Self> {
+        let Task { arguments, made, .. } = task;
+        let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
+        Ok(Self {
+            file,
+            made,
+            sums: Turn::new(arguments.sums_every.unwrap_or(PATIENCE)),
+            picture: arguments.preview.then(|| Turn::new(PICTURE_EVERY)),
+            draw,
+            viewer: viewer.map(|viewer| (viewer, Turn::new(VIEW_EVERY))),
+            is_wanted: arguments.sums.is_some() || arguments.resume,
+        })
     }
 
     /// Called now and then while rendering.
     pub fn watch(&mut self, sums: &Sums) {
         let Self { file, made, draw, .. } = self;
-        self.is_wanted |= self.sums.take("the checkpoint", || replace(file, sums, made));
+        if let Some(file) = file {
+            self.is_wanted |= self.sums.take("the checkpoint", || replace(file, sums, made));
+        }
         if let Some(turn) = &mut self.picture {
             turn.take("the picture so far", || draw(sums));
+        }
+        if let Some((viewer, turn)) = &mut self.viewer {
+            turn.take("the picture in tev", || viewer.show(sums));
         }
     }
 
     /// Called at the end: where the sums are, if they are kept; they are if the render was `interrupted`.
-    pub fn finish(self, sums: &Sums, interrupted: bool) -> Result<Option<PathBuf>> {
-        if !self.is_wanted && !interrupted {
-            return Ok(None);
+    pub fn finish(mut self, sums: &Sums, interrupted: bool) -> Result<Option<PathBuf>> {
+        if let Some((viewer, _)) = &mut self.viewer {
+            viewer.show(sums).unwrap_or_else(|error| complain(&format!("warning: {error}")));
         }
-        replace(&self.file, sums, &self.made)?;
-        let _ = std::fs::remove_file(previous(&self.file));
-        Ok(Some(self.file))
+        let Some(file) = self.file.filter(|_| self.is_wanted || interrupted) else { return Ok(None) };
+        replace(&file, sums, self.made)?;
+        let _ = std::fs::remove_file(previous(&file));
+        Ok(Some(file))
     }
 }
 

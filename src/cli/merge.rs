@@ -2,9 +2,10 @@
 
 use super::{
     arguments::{self, Arguments, Command},
-    complain, load, made,
+    complain,
+    goal::Goal,
+    load, made,
     outputs::check_short,
-    render::Goal,
     say,
 };
 use crate::{

@@ -6,6 +6,7 @@ mod convert;
 pub mod diff;
 mod estimator;
 pub mod flights;
+mod goal;
 mod info;
 mod interrupt;
 mod keeper;
@@ -17,10 +18,12 @@ pub mod phase;
 mod picture;
 mod pixel;
 mod plan;
+mod progress;
 mod render;
 mod report;
 mod strategies;
 mod study;
+mod viewer;
 mod voice;
 
 use crate::{

@@ -1,6 +1,6 @@
 //! What is known to fail is said before any work is done.
 
-use super::{arguments::Render, render::Goal};
+use super::{arguments::Render, goal::Goal};
 use crate::{
     error::Result,
     film::{Film, output},

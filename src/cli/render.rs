@@ -1,32 +1,25 @@
 //! `tyndall render`: a scene file in, an image and its PNG preview out.
 
 use super::{
-    arguments, interrupt,
+    arguments,
+    goal::Goal,
+    interrupt,
     keeper::{self, Keeper},
     load, made,
     plan::Plan,
-    threads, voice,
+    progress::{Bar, noise_text, percent},
+    threads,
 };
 use crate::{
     error::{Error, Result},
-    film::{
-        self, Film,
-        format::{FileKind, Format},
-        layer::Content,
-    },
-    render::{
-        self, Image, Progress, Settings, adaptive::Precision, budget::Budget, faults::Faults, sums::Sums,
-    },
+    film::layer::Content,
+    render::{self, Image, Settings, adaptive::Precision, budget::Budget, faults::Faults, sums::Sums},
     sampling::Sampler,
     scene::build::Setup,
     transport::Strategies,
 };
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
-use std::{
-    path::{Path, PathBuf},
-    time::{Duration, Instant},
-};
+use std::{path::Path, time::Instant};
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Render) -> Result<()> {
@@ -99,12 +92,14 @@ fn seed_of(seed: u64, frame: u32) -> u64 {
 }
 
 /// What is to be rendered.
-struct Task<'a> {
-    settings: Settings,
+pub struct Task<'a> {
+    /// How, and for how long.
+    pub settings: Settings,
     precision: Option<Precision>,
-    arguments: &'a arguments::Render,
+    /// What the user wants.
+    pub arguments: &'a arguments::Render,
     /// See [`made::made`].
-    made: Value,
+    pub made: Value,
 }
 
 /// What every pixel is to be known with.
@@ -153,7 +148,7 @@ fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Re
 
 /// Renders one image under a progress bar, keeping what there is.
 fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<Image> {
-    let (bar, arguments) = (Bar::new(task, setup.film.len(), label), task.arguments);
+    let (bar, arguments) = (Bar::new(task.settings, task.precision, setup.film.len(), label), task.arguments);
     let Setup { scene, film, integrator, .. } = setup;
     let (layers, settings) = (&integrator.layers, &task.settings);
     let image = if settings.options.strategies == Strategies::NONE {
@@ -161,25 +156,25 @@ fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> 
     } else if let Some(precision) = task.precision {
         render::render_to_precision(scene, film, settings, precision, layers, &mut |p| bar.show(&p))
     } else {
+        let is_resumable = arguments.batches.is_none() && arguments.frames.is_none();
         let file = arguments.sums.clone().unwrap_or_else(|| goal.path.with_extension("sums"));
         let mut sums = match arguments.resume {
             true => keeper::resume(&file, &task.made)?,
             false => render::sums_for(film, layers),
         };
         let draw = |sums: &Sums| goal.draw(film, sums, &task.made);
-        let mut keeper = Keeper::new(file, task.made.clone(), arguments, &draw);
+        let mut keeper = Keeper::new(is_resumable.then_some(file), task, &draw)?;
         let image = render::render_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
             bar.show(&progress);
             keeper.watch(sums);
         });
-        bar.bar.finish_and_clear();
-        let is_resumable = task.arguments.batches.is_none() && task.arguments.frames.is_none();
-        if is_resumable && let Some(kept) = keeper.finish(&sums, interrupt::came())? {
+        bar.finish();
+        if let Some(kept) = keeper.finish(&sums, interrupt::came())? {
             print_kept(&kept, &sums);
         }
         image
     };
-    bar.bar.finish_and_clear();
+    bar.finish();
     Ok(image)
 }
 
@@ -284,154 +279,6 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
             Budget { first_sample: first.into(), samples_per_pixel: Some((end - first).into()), ..all }
         }
     }
-}
-
-/// The image file: where, and what is in it. The PNG is beside it.
-pub(super) struct Goal {
-    pub path: PathBuf,
-    pub format: Format,
-}
-
-impl Goal {
-    /// The kind of file is that of the output's name, else that of the scene's film.
-    pub fn new(arguments: &arguments::Render, setup: &Setup) -> Result<Self> {
-        let scene = setup.film.format;
-        let named = arguments.output.as_deref().and_then(|path| Some((path, path.extension()?)));
-        let named =
-            named.and_then(|(path, end)| Some((path, FileKind::of_extension(&end.to_string_lossy())?)));
-        let (path, file) = match (named, &arguments.output) {
-            (Some((path, file)), _) => (path.to_owned(), file),
-            (None, Some(path)) if film::output::is_stream(path) => (path.clone(), scene.file),
-            (None, Some(path)) => (path.with_extension(scene.file.extension()), scene.file),
-            (None, None) => (arguments.scene.name().with_extension(scene.file.extension()), scene.file),
-        };
-        let has_layers = !setup.integrator.layers.is_empty();
-        if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {
-            let layers = if has_layers { "of the scene's aov or moment integrator" } else { "of --batches" };
-            let expected = format!("an OpenEXR file, to hold the layers {layers}");
-            let found = format!("a file that contains {}", file.holds());
-            let remedy = "use a name that ends in .exr, or set the film's file_format to openexr";
-            return Err(Error::new(path.display(), expected, found, remedy));
-        }
-        let format = scene.in_file(file);
-        if format.names() != scene.names() {
-            let (holds, names) = (file.holds(), format.names().concat());
-            super::complain(&format!("warning: {} contains {holds}; {names} is written", path.display()));
-        }
-        Ok(Self { path, format })
-    }
-
-    /// The PNG; none beside a device or pipe.
-    pub fn preview(&self) -> Option<PathBuf> {
-        (!film::output::is_stream(&self.path)).then(|| self.path.with_extension("png"))
-    }
-
-    /// The same for one frame of an animation: its number before the ending.
-    pub fn numbered(&self, frame: u32, digits: usize) -> Self {
-        let end = self.path.extension().unwrap_or_default().to_string_lossy();
-        Self { path: self.path.with_extension(format!("{frame:0digits$}.{end}")), format: self.format }
-    }
-
-    /// Writes the image, and the layers that it then no longer has; and its PNG.
-    /// Files that can say how they were `made` do.
-    pub fn write(&self, film: &Film, image: &mut Image, made: &Value) -> Result<()> {
-        let made = made::metadata(made, image);
-        let (width, height) = (film.width as usize, film.height as usize);
-        let mut channels = self.format.channels(&image.pixels, &image.alpha);
-        match self.format.file {
-            FileKind::OpenExr => {
-                channels.append(&mut image.layers);
-                film::exr::write_with(&self.path, width, height, channels, self.format, Some(&made))
-            }
-            FileKind::Pfm => film::raster::write_pfm(&self.path, width, height, &channels),
-            FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
-        }?;
-        let write = |path: PathBuf| film::png::write_with(&path, width, height, &image.pixels, Some(&made));
-        self.preview().map_or(Ok(()), write)
-    }
-
-    /// Writes the image so far: without alpha and layers, which are rendered at the end.
-    fn draw(&self, film: &Film, sums: &Sums, made: &Value) -> Result<()> {
-        let format = Format { alpha: false, ..self.format };
-        let goal = Self { path: self.path.clone(), format };
-        goal.write(film, &mut Image::so_far(sums), made)
-    }
-}
-
-/// A progress bar over pixel samples, or over time where only time ends the render.
-struct Bar {
-    bar: ProgressBar,
-    by: By,
-    sampler: Sampler,
-}
-
-/// What fills the bar.
-enum By {
-    Samples,
-    Time,
-    Pixels { within: f64, all: usize },
-}
-
-impl Bar {
-    fn new(task: &Task<'_>, pixels: usize, label: Option<&str>) -> Self {
-        let (length, by) = match (task.precision, task.settings.budget) {
-            (Some(Precision { error, .. }), _) => (pixels as u64, By::Pixels { within: error, all: pixels }),
-            (None, Budget { samples_per_pixel: Some(spp), .. }) => {
-                (spp.saturating_mul(pixels as u64), By::Samples)
-            }
-            (None, Budget { time, .. }) => (milliseconds(time.unwrap_or(Duration::MAX)), By::Time),
-        };
-        let bar = voice::bar(length);
-        if let Ok(style) = ProgressStyle::with_template("{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
-        {
-            bar.set_style(style);
-        }
-        bar.set_prefix(label.map_or(String::new(), |label| format!("{label}  ")));
-        Self { bar, by, sampler: task.settings.sampler }
-    }
-
-    fn show(&self, progress: &Progress) {
-        let state = match self.by {
-            By::Pixels { within, .. } => {
-                let share = 100.0 * progress.within.unwrap_or(0.0);
-                format!("{share:.1} % of the pixels within {}", percent(within))
-            }
-            _ => {
-                let noise_text = |noise| noise_text(noise, self.sampler);
-                progress.noise.map_or("noise not known yet".to_owned(), noise_text)
-            }
-        };
-        self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
-        self.bar.set_position(match self.by {
-            By::Time => milliseconds(progress.elapsed),
-            By::Samples => progress.samples,
-            By::Pixels { all, .. } => (progress.within.unwrap_or(0.0) * all as f64) as u64,
-        });
-    }
-}
-
-fn milliseconds(time: Duration) -> u64 {
-    u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
-}
-
-/// The noise of an image; where its samples are spread evenly, there is less than their variance says.
-fn noise_text(noise: f64, sampler: Sampler) -> String {
-    match sampler {
-        Sampler::Independent => format!("noise {}", percent(noise)),
-        Sampler::Sobol => format!("noise below {}", percent(noise)),
-    }
-}
-
-/// A relative error, in percent with two digits.
-fn percent(relative: f64) -> String {
-    let digits = if relative >= 0.1 {
-        0
-    } else if relative >= 0.01 {
-        1
-    } else {
-        2
-    };
-    format!("{:.digits$} %", 100.0 * relative)
 }
 
 fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: Option<&Path>, label: Option<&str>) {

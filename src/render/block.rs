@@ -338,9 +338,10 @@ impl<S: MisSums> Observer<S> for Splatted<'_> {
 
 #[cfg(test)]
 impl Outcome {
-    /// A contribution to each of `pixels`.
-    pub fn of_pixels(pixels: impl Iterator<Item = usize>) -> Self {
-        Self { camera: pixels.map(|pixel| (pixel as u32, Spectrum::ONE)).collect(), ..Self::default() }
+    /// Grey contributions to pixels by camera subpaths and by light subpaths.
+    pub fn of(camera: impl Iterator<Item = (usize, f32)>, light: impl Iterator<Item = (usize, f32)>) -> Self {
+        let grey = |(pixel, value): (usize, f32)| (pixel as u32, Spectrum::splat(value));
+        Self { camera: camera.map(grey).collect(), light: light.map(grey).collect(), faults: Vec::new() }
     }
 
     /// How many pixels have one.

@@ -130,7 +130,10 @@ mod tests {
                     at.set(Some(pixel as u32));
                     assert!(!bad.contains(&(pixel as u32)), "bad {pixel}");
                 }
-                Outcome::of_pixels((0..9).filter(|pixel| wants(*pixel)))
+                Outcome::of(
+                    (0..9).filter(|pixel| wants(*pixel)).map(|pixel| (pixel, 1.0)),
+                    std::iter::empty(),
+                )
             })
         };
         let (whole, some) = (outcome(&[]), outcome(&[2, 7]));

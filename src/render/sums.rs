@@ -156,3 +156,61 @@ impl Sums {
         pixels
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Window, filter::Filter, format::Format};
+
+    /// A film of four blocks.
+    fn film() -> Film {
+        Film::new(Window::whole(64, 64), Filter::Box, false, Format::default())
+    }
+
+    /// `block` with 1 for every pixel of its own, and half of it for every pixel by light.
+    fn outcome(blocks: &Blocks, block: usize, pixels: usize) -> Outcome {
+        Outcome::of(blocks.pixels(block).map(|pixel| (pixel, 1.0)), (0..pixels).map(|pixel| (pixel, 0.5)))
+    }
+
+    #[test]
+    fn a_pass_may_end_after_any_block() {
+        let (film, mut sums) = (film(), Sums::new(&film(), false));
+        let blocks = sums.division();
+        let count = blocks.count();
+        for task in 0..3 * count {
+            let sample = (task / count) as u64;
+            sums.start(sample);
+            sums.add(sample, &outcome(&blocks, task % count, film.len()), count);
+            let pixels = sums.pixels();
+            // Whatever is done: 1 by its own samples, and by light a half for each of the blocks.
+            let expected = 1.0 + 0.5 * count as f32;
+            assert!(
+                pixels.iter().all(|pixel| (pixel.x - expected).abs() < 1e-5),
+                "after {task}: {}",
+                pixels[0]
+            );
+        }
+        assert_eq!((sums.samples().count(), sums.unfinished()), (3, 0.0));
+    }
+
+    #[test]
+    fn a_file_holds_all_of_it() {
+        let (film, folder) = (film(), tempfile::tempdir().unwrap());
+        let path = folder.path().join("a.sums");
+        for (products, tasks) in [(false, 1), (true, 4), (true, 7)] {
+            let mut sums = Sums::new(&film, products);
+            let blocks = sums.division();
+            for task in 0..tasks {
+                let sample = (task / 4) as u64;
+                sums.start(sample);
+                sums.add(sample, &outcome(&blocks, task % 4, film.len()), 4);
+            }
+            sums.note_noise();
+            sums.elapsed = Duration::from_secs(3);
+            super::super::sums_file::write(&path, &sums, &"made".into()).unwrap();
+            let (read, made) = super::super::sums_file::read(&path).unwrap();
+            assert_eq!(format!("{read:?}"), format!("{sums:?}"));
+            assert_eq!(made, "made");
+        }
+    }
+}

@@ -4,6 +4,8 @@ use crate::sandbox::{Run, Sandbox};
 use serde_json::{Value, json};
 use std::{
     fs,
+    io::Read as _,
+    net::TcpListener,
     path::Path,
     process::{Child, Command, Stdio},
     time::{Duration, Instant},
@@ -188,6 +190,46 @@ fn what_is_killed_goes_on_to_the_same_bits() {
 
 fn has_sums(folder: &Path) -> bool {
     ["fog.sums", "fog.sums.previous"].iter().any(|name| folder.join(name).exists())
+}
+
+/// A viewer is sent the picture so far, and the last one.
+#[test]
+fn tev_shows_the_picture_so_far() {
+    let sandbox = foggy();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    let received = std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        listener.accept().unwrap().0.read_to_end(&mut bytes).unwrap();
+        bytes
+    });
+    good(render(&sandbox, &format!("--time-limit 1.5s -o fog.exr --tev {address}")));
+    let received = received.join().unwrap();
+    // Packets begin with their length; an update holds all of the picture's 32-bit numbers.
+    let (mut rest, mut packets, mut last) = (&received[..], 0, &received[..]);
+    while let Some(length) = rest.first_chunk().map(|length| u32::from_le_bytes(*length) as usize) {
+        (last, rest, packets) = (&rest[..length], &rest[length..], packets + 1);
+    }
+    assert!(packets >= 3, "{packets} packets: the picture, an update meanwhile, the last one");
+    let numbers: Vec<f32> =
+        last[last.len() - 60 * 50 * 12..].as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect();
+    let red: Vec<f32> = numbers.iter().step_by(3).copied().collect();
+    assert_eq!(sandbox.channels("fog.exr")["R"], red);
+    refused(render(&sandbox, &format!("--spp 1 --tev {address}")), &["--tev", "start tev first"]);
+}
+
+/// The picture so far is there long before the end.
+#[test]
+fn the_picture_so_far_is_written() {
+    let sandbox = foggy();
+    let mut child = started(&sandbox, "--time-limit 100s --preview -o fog.exr");
+    let begun = Instant::now();
+    while !sandbox.path("fog.png").exists() && begun.elapsed() < Duration::from_secs(60) {
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(sandbox.channels("fog.exr")["R"].len(), 60 * 50);
 }
 
 /// The limit holds at any size, and what there is by then is an image without holes.

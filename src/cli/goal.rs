@@ -1,0 +1,86 @@
+//! The image file of a render: where, and what is in it.
+
+use super::{arguments, complain, made};
+use crate::{
+    error::{Error, Result},
+    film::{
+        self, Film,
+        format::{FileKind, Format},
+    },
+    render::{Image, sums::Sums},
+    scene::build::Setup,
+};
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// The image file: where, and what is in it. The PNG is beside it.
+pub(super) struct Goal {
+    pub path: PathBuf,
+    pub format: Format,
+}
+
+impl Goal {
+    /// The kind of file is that of the output's name, else that of the scene's film.
+    pub fn new(arguments: &arguments::Render, setup: &Setup) -> Result<Self> {
+        let scene = setup.film.format;
+        let named = arguments.output.as_deref().and_then(|path| Some((path, path.extension()?)));
+        let named =
+            named.and_then(|(path, end)| Some((path, FileKind::of_extension(&end.to_string_lossy())?)));
+        let (path, file) = match (named, &arguments.output) {
+            (Some((path, file)), _) => (path.to_owned(), file),
+            (None, Some(path)) if film::output::is_stream(path) => (path.clone(), scene.file),
+            (None, Some(path)) => (path.with_extension(scene.file.extension()), scene.file),
+            (None, None) => (arguments.scene.name().with_extension(scene.file.extension()), scene.file),
+        };
+        let has_layers = !setup.integrator.layers.is_empty();
+        if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {
+            let layers = if has_layers { "of the scene's aov or moment integrator" } else { "of --batches" };
+            let expected = format!("an OpenEXR file, to hold the layers {layers}");
+            let found = format!("a file that contains {}", file.holds());
+            let remedy = "use a name that ends in .exr, or set the film's file_format to openexr";
+            return Err(Error::new(path.display(), expected, found, remedy));
+        }
+        let format = scene.in_file(file);
+        if format.names() != scene.names() {
+            let (holds, names) = (file.holds(), format.names().concat());
+            complain(&format!("warning: {} contains {holds}; {names} is written", path.display()));
+        }
+        Ok(Self { path, format })
+    }
+
+    /// The PNG; none beside a device or pipe.
+    pub fn preview(&self) -> Option<PathBuf> {
+        (!film::output::is_stream(&self.path)).then(|| self.path.with_extension("png"))
+    }
+
+    /// The same for one frame of an animation: its number before the ending.
+    pub fn numbered(&self, frame: u32, digits: usize) -> Self {
+        let end = self.path.extension().unwrap_or_default().to_string_lossy();
+        Self { path: self.path.with_extension(format!("{frame:0digits$}.{end}")), format: self.format }
+    }
+
+    /// Writes the image, and the layers that it then no longer has; and its PNG.
+    /// Files that can say how they were `made` do.
+    pub fn write(&self, film: &Film, image: &mut Image, made: &Value) -> Result<()> {
+        let made = made::metadata(made, image);
+        let (width, height) = (film.width as usize, film.height as usize);
+        let mut channels = self.format.channels(&image.pixels, &image.alpha);
+        match self.format.file {
+            FileKind::OpenExr => {
+                channels.append(&mut image.layers);
+                film::exr::write_with(&self.path, width, height, channels, self.format, Some(&made))
+            }
+            FileKind::Pfm => film::raster::write_pfm(&self.path, width, height, &channels),
+            FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
+        }?;
+        let write = |path: PathBuf| film::png::write_with(&path, width, height, &image.pixels, Some(&made));
+        self.preview().map_or(Ok(()), write)
+    }
+
+    /// Writes the image so far: without alpha and layers, which are rendered at the end.
+    pub fn draw(&self, film: &Film, sums: &Sums, made: &Value) -> Result<()> {
+        let format = Format { alpha: false, ..self.format };
+        let goal = Self { path: self.path.clone(), format };
+        goal.write(film, &mut Image::so_far(sums), made)
+    }
+}

@@ -1,0 +1,105 @@
+//! The progress bar of a render.
+
+use super::voice;
+use crate::{
+    render::{Progress, Settings, adaptive::Precision},
+    sampling::Sampler,
+};
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A progress bar that shows the nearest of the limits.
+pub struct Bar {
+    bar: ProgressBar,
+    settings: Settings,
+    precision: Option<Precision>,
+    pixels: usize,
+}
+
+/// Steps of the bar.
+const STEPS: f64 = 1e6;
+
+impl Bar {
+    /// That of an image of so many `pixels`; `label` says which one.
+    pub fn new(settings: Settings, precision: Option<Precision>, pixels: usize, label: Option<&str>) -> Self {
+        let bar = voice::bar(STEPS as u64);
+        if let Ok(style) = ProgressStyle::with_template("{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
+        {
+            bar.set_style(style);
+        }
+        bar.set_prefix(label.map_or(String::new(), |label| format!("{label}  ")));
+        Self { bar, settings, precision, pixels }
+    }
+
+    /// Shows how far the render is.
+    pub fn show(&self, progress: &Progress) {
+        let state = match (self.precision, progress.noise) {
+            (Some(Precision { error, .. }), _) => {
+                let share = 100.0 * progress.within.unwrap_or(0.0);
+                format!("{share:.1} % of the pixels within {}", percent(error))
+            }
+            (None, Some(noise)) => noise_text(noise, self.settings.sampler),
+            (None, None) => "noise not known yet".to_owned(),
+        };
+        self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
+        self.bar.set_position((STEPS * self.done(progress)) as u64);
+    }
+
+    /// The part of the way to the limit that is nearest.
+    fn done(&self, progress: &Progress) -> f64 {
+        let budget = &self.settings.budget;
+        let samples =
+            budget.samples_per_pixel.map(|spp| progress.samples as f64 / (spp as f64 * self.pixels as f64));
+        let time = budget.time.map(|limit| progress.elapsed.as_secs_f64() / limit.as_secs_f64());
+        let within = self.precision.and(progress.within);
+        [samples, time, within].into_iter().flatten().fold(0.0, f64::max).min(1.0)
+    }
+
+    /// Removes it.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The noise of an image; where its samples are spread evenly, there is less than their variance says.
+pub fn noise_text(noise: f64, sampler: Sampler) -> String {
+    match sampler {
+        Sampler::Independent => format!("noise {}", percent(noise)),
+        Sampler::Sobol => format!("noise below {}", percent(noise)),
+    }
+}
+
+/// A relative error, in percent with two digits.
+pub fn percent(relative: f64) -> String {
+    let digits = if relative >= 0.1 {
+        0
+    } else if relative >= 0.01 {
+        1
+    } else {
+        2
+    };
+    format!("{:.digits$} %", 100.0 * relative)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        render::budget::Budget,
+        transport::{Options, profile::ProfileName},
+    };
+    use std::time::Duration;
+
+    #[test]
+    fn the_nearest_limit_counts() {
+        let budget = Budget { time: Some(Duration::from_secs(10)), ..Budget::samples(4) };
+        let profile = ProfileName::Everything;
+        let settings =
+            Settings { options: Options::default(), sampler: Sampler::Independent, budget, seed: 0, profile };
+        let bar = Bar::new(settings, None, 100, None);
+        let at = |samples, seconds| {
+            let elapsed = Duration::from_secs(seconds);
+            bar.done(&Progress { samples, passes: 0, elapsed, noise: None, within: None })
+        };
+        assert_eq!([at(100, 1), at(100, 5), at(0, 20)], [0.25, 0.5, 1.0]);
+    }
+}

@@ -1,0 +1,69 @@
+//! The picture so far in the viewer tev, over the network.
+
+use crate::{
+    error::{Error, Result},
+    render::sums::Sums,
+};
+use std::{io, net::TcpStream};
+use tev_client::{PacketCreateImage, PacketUpdateImage, TevClient};
+
+/// Where tev listens unless it is told otherwise.
+pub const ADDRESS: &str = "127.0.0.1:14158";
+
+/// What the picture is called there.
+const NAME: &str = "tyndall";
+const CHANNELS: [&str; 3] = ["R", "G", "B"];
+
+/// A connection to tev.
+pub struct Viewer {
+    client: TevClient,
+    address: String,
+    is_new: bool,
+}
+
+impl Viewer {
+    /// Connects to `address`, a host and port.
+    pub fn connect(address: &str) -> Result<Self> {
+        let socket = TcpStream::connect(address).map_err(|error| explain(address, &error))?;
+        Ok(Self { client: TevClient::wrap(socket), address: address.to_owned(), is_new: true })
+    }
+
+    /// Shows the picture that `sums` hold.
+    pub fn show(&mut self, sums: &Sums) -> Result<()> {
+        self.send(sums).map_err(|error| explain(&self.address, &error))
+    }
+
+    fn send(&mut self, sums: &Sums) -> io::Result<()> {
+        let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
+        let (width, height) = sums.size();
+        let (width, height) = (size(width)?, size(height)?);
+        let (image_name, channel_names) = (NAME, &CHANNELS[..]);
+        if std::mem::take(&mut self.is_new) {
+            self.client.send(PacketCreateImage {
+                image_name,
+                grab_focus: true,
+                width,
+                height,
+                channel_names,
+            })?;
+        }
+        let data: Vec<f32> = sums.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
+        self.client.send(PacketUpdateImage {
+            image_name,
+            grab_focus: false,
+            channel_names,
+            channel_offsets: &[0, 1, 2],
+            channel_strides: &[3, 3, 3],
+            x: 0,
+            y: 0,
+            width,
+            height,
+            data: &data,
+        })
+    }
+}
+
+fn explain(address: &str, error: &io::Error) -> Error {
+    let remedy = "start tev first, or name the host and port where it listens";
+    Error::new("--tev", format!("tev at {address}"), error.to_string(), remedy)
+}
