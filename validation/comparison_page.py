@@ -44,7 +44,7 @@ class Page:
 
 def page(scene: Scene, effort: Effort, found: Mapping[str, Verdict | Failure]) -> Page:
     """The page of one scene's comparisons, by method."""
-    told = f"{effort.batches} independent images on both sides, {effort.spp} samples per pixel in each (a second trial: {RETRY} times as many)."
+    told = f"{effort.batches} independent images on both sides, {effort.spp} samples per pixel in each (where they disagree, further trials of {RETRY} times as many)."
     return Page(
         scene=scene.name,
         command=made_by_command(),

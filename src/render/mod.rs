@@ -303,7 +303,7 @@ fn accumulate(
         }
         let samples = passes * film.len() as u64 + (sums.unfinished() * film.len() as f64) as u64;
         let reached = Progress { samples, passes, elapsed, noise: sums.noise, within: None };
-        stopwatch.hold(|| (monitor.watch)(reached, sums));
+        (monitor.watch)(reached, sums);
         if next == end || outcomes.len() < tasks.len() {
             return;
         }

@@ -17,7 +17,7 @@ pub struct Snapshot {
 
 /// Marks at which the image is requested, and who receives it.
 pub(super) struct Monitor<'a> {
-    /// Called now and then, with the sums so far; its time does not count.
+    /// Called now and then, with the sums so far; its time counts.
     pub watch: &'a mut dyn FnMut(Progress, &Sums),
     /// Samples per pixel, in growing order.
     pub marks: &'a [u64],
