@@ -30,8 +30,10 @@ class Case:
     own: str = ""
     """A method of Tyndall's that stands in for Mitsuba, which has nothing like this scene."""
     trackers: tuple[str, ...] = ()
-    """Those to force in turn, besides the one that Tyndall chooses, for what starts at the camera: light tracing alone would
-    see little of what they get wrong."""
+    """Those to force in turn, besides the one that Tyndall chooses; the quick matrix, for what starts at the camera: light tracing
+    alone would see little of what they get wrong."""
+    deep_trackers: tuple[str, ...] = ()
+    """More of them for the deep matrix."""
     twin: str = ""
     """Another scene, whose picture must be the same: Mitsuba renders that one instead."""
     reference: str = ""
@@ -55,11 +57,12 @@ class Case:
         integrator = lambda o: {**o, "type": self.reference} if o["type"] in ("volpath", "volpathmis") else o
         return replace(derived(scene, integrator), name=f"{scene.name}-{self.reference}")
 
-    def all_methods(self) -> Iterator[str]:
+    def all_methods(self, deep: bool = False) -> Iterator[str]:
         """Integrators, and integrators with each forced tracker."""
         yield from self.methods
-        for tracker in self.trackers:
-            yield from (f"{method}:{tracker}" for method in self.methods if method in EYE)
+        for tracker in (*self.trackers, *(self.deep_trackers if deep else ())):
+            forced = [f"{method}:{tracker}" for method in self.methods if method in (ALL if deep else EYE)]
+            yield from (method for method in forced if method not in self.methods)
 
 
 def filters() -> tuple[Case, ...]:
@@ -95,7 +98,7 @@ def grids() -> tuple[Case, ...]:
         Case("grid_chromatic.json", ("bdpt",), reference="volpath"),
         Case("grid_chromatic_in_room.json", effort=0.5),
         Case("grid_constant.json", twin="cube_in_room.json"),
-        Case("grid_dense_white.json", (*ALL, "pt:march", "pt:null_collision", "bdpt:null_collision")),
+        Case("grid_dense_white.json", (*ALL, "pt:march", "pt:null_collision", "bdpt:null_collision"), deep_trackers=OTHERS),
         Case("grid_envmap.json"),
         Case("grid_in_frosted_cube.json", EYE, effort=2),
         Case("grid_in_glass.json", EYE, effort=0.7),

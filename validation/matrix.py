@@ -45,9 +45,9 @@ class Job:
         return references.cached(self.truth, variant=self.variant)
 
 
-def of_case(case: Case) -> Job:
-    """A cross-check scene."""
-    return Job(case.scene(), tuple(case.all_methods()), case.effort, case.truth(), case.variant, case.own)
+def of_case(case: Case, deep: bool = False) -> Job:
+    """A cross-check scene; `deep`, by every method with every tracker."""
+    return Job(case.scene(), tuple(case.all_methods(deep)), case.effort, case.truth(), case.variant, case.own)
 
 
 def of_cell(cell: cells.Cell) -> Job:
@@ -71,7 +71,8 @@ def live(only: str = "", count: int | None = None) -> bool:
     """All cross-check scenes and `count` of the generated ones, or all, against Mitsuba as it renders now, and so its images
     in the repository."""
     chosen = cells.cells() if count is None else cells.sample(count)
-    return all([run([*map(of_case, CASES), *map(of_cell, chosen)], lambda _: DEEP, only), still_recorded(only)])
+    deep = [of_case(case, deep=True) for case in CASES]
+    return all([run([*deep, *map(of_cell, chosen)], lambda _: DEEP, only), still_recorded(only)])
 
 
 def run(jobs: Iterable[Job], effort: Callable[[str], Effort], only: str = "", recorded: bool = False) -> bool:

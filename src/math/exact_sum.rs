@@ -28,21 +28,39 @@ impl ExactSum {
     #[inline]
     pub fn add(&mut self, term: f64) {
         let (exponent, fraction) = (term.to_bits() >> 52 & 0x7ff, term.to_bits() & ((1 << 52) - 1));
-        if exponent == 0x7ff {
+        if exponent == 0 || exponent == 0x7ff {
+            return self.add_rare(term);
+        }
+        // The last bit of the number is bit `exponent` of all that numbers can have.
+        let (lowest, digits) = (exponent as i32, fraction | 1 << 52);
+        let window = (lowest + 52) / WIDTH;
+        let shift = lowest - (window - 1) * WIDTH;
+        let lower = if shift >= 0 { digits << shift } else { digits >> -shift } & ((1 << WIDTH) - 1);
+        let (upper, lower) = ((digits >> (WIDTH - shift)) as i64, lower as i64);
+        let parts = if term < 0.0 { [-upper, -lower] } else { [upper, lower] };
+        if i32::from(self.window) == window {
+            self.parts = [self.parts[0] + parts[0], self.parts[1] + parts[1]];
+        } else {
+            self.merge(&Self { parts, window: window as i16 });
+        }
+    }
+
+    /// Adds 0, a number below the smallest that has all digits, or what is no number.
+    #[cold]
+    fn add_rare(&mut self, term: f64) {
+        if !term.is_finite() {
             self.window = NOT_FINITE;
-            return;
+        } else if term != 0.0 {
+            // Its highest bit is below those of all others, in window 0 or 1.
+            let scaled = term.abs().to_bits() as i64 * 2;
+            let (window, upper, lower) = if scaled < 1 << WIDTH {
+                (0, scaled, 0)
+            } else {
+                (1, scaled >> WIDTH, scaled & ((1 << WIDTH) - 1))
+            };
+            let sign = if term < 0.0 { -1 } else { 1 };
+            self.merge(&Self { parts: [sign * upper, sign * lower], window });
         }
-        // The last bit of the number is bit `lowest` of all that numbers can have; of the subnormal ones, bit 1.
-        let (lowest, digits) = (exponent.max(1) as i32, fraction | u64::from(exponent > 0) << 52);
-        if digits == 0 {
-            return;
-        }
-        let highest = lowest + 63 - digits.leading_zeros() as i32;
-        let window = highest / WIDTH;
-        let upper = part(digits, lowest - window * WIDTH);
-        let lower = part(digits, lowest - (window - 1) * WIDTH) & ((1 << WIDTH) - 1);
-        let sign = if term < 0.0 { -1 } else { 1 };
-        self.merge(&Self { parts: [sign * upper, sign * lower], window: window as i16 });
     }
 
     /// Adds all terms of `other`.
@@ -67,23 +85,23 @@ impl ExactSum {
         Self { parts, window }
     }
 
-    /// The sum, rounded once.
+    /// The sum, off by a rounding error or two.
+    #[inline]
     pub fn value(&self) -> f64 {
         if self.window == NOT_FINITE {
             return f64::NAN;
         }
-        let whole = i128::from(self.parts[0]) * (1 << WIDTH) + i128::from(self.parts[1]);
         // Of bit 1 of all that numbers can have, whose weight is 2^-1074.
         let scale = (i32::from(self.window) - 1) * WIDTH - 1075;
+        let whole = self.parts[0] as f64 * (1u64 << WIDTH) as f64 + self.parts[1] as f64;
         let half = scale / 2;
-        whole as f64 * 2f64.powi(half) * 2f64.powi(scale - half)
+        whole * power_of_two(half) * power_of_two(scale - half)
     }
 }
 
-/// `digits` shifted to the left; to the right where `by` is negative.
-#[inline]
-fn part(digits: u64, by: i32) -> i64 {
-    (if by >= 0 { digits << by.min(63) } else { digits >> (-by).min(63) }) as i64
+/// 2^`exponent`, which is that of a number with all digits.
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 
 #[cfg(test)]

@@ -18,8 +18,8 @@ use crate::{
     transport::{
         Estimator, Heuristic,
         profile::{
-            Bounded, ByCutoff, ByMaximum, ByPower, ByUniform, ChromaticFog, Everything, Fire, Fog, Profile,
-            ProfileName, Smoke, Vacuum,
+            Bounded, ByCompared, ByCutoff, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName, Smoke,
+            Vacuum,
         },
     },
 };
@@ -94,10 +94,8 @@ impl<P: Profile> Compiled for Ready<'_, P> {
 /// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for.
 pub(super) fn choose<'a>(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
     let prepare = match (settings.options.heuristic, settings.profile) {
-        (Heuristic::Power, _) => Ready::<ByPower>::prepare,
-        (Heuristic::Maximum, _) => Ready::<ByMaximum>::prepare,
+        (Heuristic::Power | Heuristic::Maximum | Heuristic::Uniform, _) => Ready::<ByCompared>::prepare,
         (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
-        (Heuristic::Uniform, _) => Ready::<ByUniform>::prepare,
         (Heuristic::Balance, ProfileName::Vacuum) => Ready::<Vacuum>::prepare,
         (Heuristic::Balance, ProfileName::Fog) => Ready::<Fog>::prepare,
         (Heuristic::Balance, ProfileName::Bounded) => Ready::<Bounded>::prepare,

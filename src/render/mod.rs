@@ -43,7 +43,7 @@ use faults::Faults;
 use fog::Preview;
 use instrument::{BLOCKS_AT_ONCE, Instrument};
 use monitor::{Monitor, Stopwatch};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use sums::Sums;
 
 /// What to render and for how long.
@@ -254,6 +254,9 @@ fn finish(bench: &Instrument<'_>, stopwatch: &Stopwatch, found: Developed, layer
     Image { pixels, samples_per_pixel: mean, unfinished: 0.0, elapsed, noise, alpha, layers, reached, faults }
 }
 
+/// Time between two estimates of the noise, which look at every pixel.
+const NOISE_EVERY: Duration = Duration::from_millis(100);
+
 /// Adds samples until the budget is spent. A preview is shown in place of what the estimator says.
 fn accumulate(
     bench: &Instrument<'_>,
@@ -272,7 +275,7 @@ fn accumulate(
     if end > 0 {
         sums.start(sample(0));
     }
-    let mut next = sums.blocks.min(end);
+    let (mut next, mut noted) = (sums.blocks.min(end), Instant::now());
     loop {
         let tasks = next..monitor.limit_tasks(end.min(next + BLOCKS_AT_ONCE), (next / count) as u64, count);
         let is_over = || budget.is_over(stopwatch.elapsed());
@@ -289,7 +292,11 @@ fn accumulate(
         next += outcomes.len();
         let elapsed = stopwatch.elapsed();
         sums.elapsed = before + elapsed;
-        sums.note_noise();
+        let is_over = next == end || outcomes.len() < tasks.len();
+        if is_over || noted.elapsed() > NOISE_EVERY {
+            sums.note_noise();
+            noted = Instant::now();
+        }
         let passes = sums.samples.count();
         if next.is_multiple_of(count) && monitor.is_mark(passes) {
             let show = |monitor: &mut Monitor<'_>| {
@@ -304,7 +311,7 @@ fn accumulate(
         let samples = passes * film.len() as u64 + (sums.unfinished() * film.len() as f64) as u64;
         let reached = Progress { samples, passes, elapsed, noise: sums.noise, within: None };
         (monitor.watch)(reached, sums);
-        if next == end || outcomes.len() < tasks.len() {
+        if is_over {
             return;
         }
     }

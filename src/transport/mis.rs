@@ -2,6 +2,7 @@
 //! have in common.
 
 mod balance;
+mod compared;
 mod cutoff;
 mod maximum;
 mod power;
@@ -9,13 +10,14 @@ mod sums;
 mod uniform;
 
 pub use balance::Balance;
+pub use compared::Compared;
 pub use cutoff::Cutoff;
-pub use maximum::Maximum;
+use maximum::Maximum;
 #[cfg(test)]
 pub use maximum::TIE;
-pub use power::Power;
+use power::Power;
 pub use sums::MisSums;
-pub use uniform::Uniform;
+use uniform::Uniform;
 
 use crate::{
     math::{Channels, Spectrum, Vec3},

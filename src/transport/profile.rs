@@ -3,7 +3,7 @@
 
 use super::{
     Heuristic,
-    mis::{Balance, Cutoff, Maximum, MisSums, Power, Uniform},
+    mis::{Balance, Compared, Cutoff, MisSums},
 };
 use crate::{
     bsdf::BsdfModel,
@@ -99,14 +99,10 @@ impl<S: MisSums<Channels = Spectrum>> Profile for Everything<S> {
     const NAME: &'static str = "everything";
 }
 
-/// [`Everything`] by the power heuristic.
-pub type ByPower = Everything<Power<Spectrum>>;
-/// [`Everything`] by the maximum heuristic.
-pub type ByMaximum = Everything<Maximum<Spectrum>>;
-/// [`Everything`] by the cutoff heuristic.
+/// [`Everything`] by the power, the maximum or the uniform heuristic.
+pub type ByCompared = Everything<Compared<Spectrum>>;
+/// [`Everything`] by the cutoff heuristic, which keeps more.
 pub type ByCutoff = Everything<Cutoff<Spectrum>>;
-/// [`Everything`] by the uniform heuristic.
-pub type ByUniform = Everything<Uniform<Spectrum>>;
 
 /// What a scene needs of its profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use std::fmt::Debug;
 /// as far as one heuristic needs to know them. Walks and connections only ever multiply all of them by what
 /// the next vertex completes, and add others: whatever can follow both has a fold in O(1) per vertex.
 ///
-/// The heuristic is chosen by type: the balance heuristic contains nothing of the others.
+/// The type is chosen once: the balance heuristic contains nothing of the others.
 pub trait MisSums: Copy + Send + Sync + Debug + 'static {
     /// Extinction per channel.
     type Channels: Channels;

@@ -15,10 +15,7 @@ pub mod scenes;
 
 use super::{
     Estimator, Heuristic, LightCache, Nowhere, Options, Strategies,
-    profile::{
-        Bounded, ByCutoff, ByMaximum, ByPower, ByUniform, ChromaticFog, Everything, Fire, Fog, Profile,
-        Smoke, Vacuum,
-    },
+    profile::{Bounded, ByCompared, ByCutoff, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum},
 };
 use crate::{
     math::{Channels, vec2, vec3},
@@ -214,11 +211,11 @@ fn examine_heuristics(name: &'static str, setup: &Setup, options: Options, pairs
     let open = options.max_depth;
     let bound = Some(open.unwrap_or(Heuristic::CUTOFF_EDGES));
     let reports = [
-        examine::<ByPower>(name, setup, by(Heuristic::Power, open), pairs),
-        examine::<ByMaximum>(name, setup, by(Heuristic::Maximum, open), pairs),
+        examine::<ByCompared>(name, setup, by(Heuristic::Power, open), pairs),
+        examine::<ByCompared>(name, setup, by(Heuristic::Maximum, open), pairs),
         examine::<ByCutoff>(name, setup, by(Heuristic::Cutoff { alpha: 0.1 }, bound), pairs),
         examine::<ByCutoff>(name, setup, by(Heuristic::Cutoff { alpha: 0.9 }, bound), pairs),
-        examine::<ByUniform>(name, setup, by(Heuristic::Uniform, open), pairs),
+        examine::<ByCompared>(name, setup, by(Heuristic::Uniform, open), pairs),
     ];
     for report in reports {
         assert!(report.compared >= 100, "{name}: {} paths", report.compared);
@@ -255,7 +252,7 @@ fn every_heuristic_under_the_sky_and_in_fire() {
 fn strategies_that_are_tied() {
     let setup = build(&[CLEAR, INSIDE, HOLLOW]);
     let options = Options { heuristic: Heuristic::Maximum, ..ALL };
-    let report = examine::<ByMaximum>("hollow ball", &setup, options, 300);
+    let report = examine::<ByCompared>("hollow ball", &setup, options, 300);
     assert!(report.divided >= 50, "{} of {} paths", report.divided, report.compared);
 }
 

@@ -1,0 +1,42 @@
+//! The sums of several heuristics side by side. Those that are there to be compared share one compiled estimator: the
+//! build takes less time, and they have less to keep of a strategy than the estimator has to do.
+
+use super::{Maximum, MisSums, Power, Uniform};
+use crate::{math::Channels, settings::heuristic::Heuristic};
+
+/// Sums for the power, the maximum and the uniform heuristic.
+#[derive(Clone, Copy, Debug)]
+pub struct Compared<L>(Power<L>, Maximum<L>, Uniform<L>);
+
+impl<L: Channels> MisSums for Compared<L> {
+    type Channels = L;
+
+    #[inline]
+    fn none() -> Self {
+        Self(Power::none(), Maximum::none(), Uniform::none())
+    }
+    #[inline]
+    fn of(strategy: L) -> Self {
+        Self(Power::of(strategy), Maximum::of(strategy), Uniform::of(strategy))
+    }
+    #[inline]
+    fn and(self, other: Self) -> Self {
+        Self(self.0.and(other.0), self.1.and(other.1), self.2.and(other.2))
+    }
+    #[inline]
+    fn times(self, channels: L) -> Self {
+        Self(self.0.times(channels), self.1.times(channels), self.2.times(channels))
+    }
+    #[inline]
+    fn scaled(self, factor: f32) -> Self {
+        Self(self.0.scaled(factor), self.1.scaled(factor), self.2.scaled(factor))
+    }
+    #[inline]
+    fn weight(self, heuristic: Heuristic, own: L) -> f32 {
+        match heuristic {
+            Heuristic::Maximum => self.1.weight(heuristic, own),
+            Heuristic::Uniform => self.2.weight(heuristic, own),
+            _ => self.0.weight(heuristic, own),
+        }
+    }
+}
