@@ -177,11 +177,11 @@ pub struct Render {
     ///
     /// The image is the same, bit for bit, as if the render had never stopped; --spp is the total. Scene, files and
     /// options that decide about the image must be the same.
-    #[arg(long, conflicts_with_all = ["error", "batches", "frames"])]
+    #[arg(long, overrides_with = "resume", conflicts_with_all = ["error", "batches", "frames"])]
     pub resume: bool,
 
     /// File for the sums of all samples, from which --resume continues and tyndall merge makes one image
-    /// [default: the image's name with .sums, once the render has taken a minute]
+    /// [default: the image's name and .sums, such as fog.exr.sums, once the render has taken a minute]
     ///
     /// Written every minute (--sums-every), less often where it would take more than 1 % of the time, and at the end. The
     /// format is safetensors.
@@ -201,11 +201,11 @@ pub struct Render {
     pub samples: Option<Samples>,
 
     /// Write the image so far, and its PNG, every five seconds
-    #[arg(long)]
+    #[arg(long, conflicts_with = "error")]
     pub preview: bool,
 
     /// Show the image so far in the viewer tev
-    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = viewer::ADDRESS, value_parser = address)]
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = viewer::ADDRESS, value_parser = address, conflicts_with = "error")]
     pub tev: Option<String>,
 
     /// Seed of all random numbers; the same seed gives the same image

@@ -53,6 +53,13 @@ impl Goal {
         (!film::output::is_stream(&self.path)).then(|| self.path.with_extension("png"))
     }
 
+    /// Where its sums are, unless the user wants them elsewhere: no other image has the same.
+    pub fn sums(&self) -> PathBuf {
+        let mut name = self.path.as_os_str().to_owned();
+        name.push(".sums");
+        name.into()
+    }
+
     /// The same for one frame of an animation: its number before the ending.
     pub fn numbered(&self, frame: u32, digits: usize) -> Self {
         let end = self.path.extension().unwrap_or_default().to_string_lossy();

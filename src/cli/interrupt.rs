@@ -19,13 +19,22 @@ static CAME: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 /// From here on signals are kept for [`signal`]. Where the machine allows no handlers, they end the program as before.
 pub fn listen() {
     let came = CAME.get_or_init(|| Arc::new(AtomicUsize::new(0)));
-    for (signal, _) in SIGNALS {
+    let ignored = ignored();
+    for (signal, _) in SIGNALS.into_iter().filter(|(signal, _)| ignored >> (signal - 1) & 1 == 0) {
         let again = Arc::new(AtomicBool::new(false));
         // In this order: the shutdown must not see the flag that the same signal sets.
         let _ = flag::register_conditional_shutdown(signal, exit_code(signal).into(), again.clone());
         let _ = flag::register(signal, again);
         let _ = flag::register_usize(signal, came.clone(), signal as usize);
     }
+}
+
+/// The signals that whoever started the program wants it to ignore (nohup does), as bits from 0; on other systems than
+/// Linux they are not known.
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 /// True once a signal came.

@@ -1,9 +1,10 @@
 //! Keeps what a render has: its sums, from which it can go on, and the picture so far.
 
-use super::{complain, made, render::Task, viewer::Viewer};
+use super::{complain, interrupt, made, render::Task};
 use crate::{
-    error::Result,
+    error::{Error, Result},
     render::{
+        Progress,
         sums::Sums,
         sums_file::{read, write},
     },
@@ -35,9 +36,13 @@ impl Turn {
         Self { every, last: Instant::now(), cost: Duration::ZERO }
     }
 
+    fn is_due(&self) -> bool {
+        self.last.elapsed() >= self.every.max(self.cost * RESTRAINT)
+    }
+
     /// True if it was done just now; a failure is no reason to stop rendering.
     fn take(&mut self, what: &str, work: impl FnOnce() -> Result<()>) -> bool {
-        if self.last.elapsed() < self.every.max(self.cost * RESTRAINT) {
+        if !self.is_due() {
             return false;
         }
         let started = Instant::now();
@@ -53,84 +58,134 @@ impl Turn {
 /// Writes what there is while a render goes on.
 pub struct Keeper<'a> {
     /// Where the sums go; none where a render cannot go on from them.
-    file: Option<PathBuf>,
-    made: &'a Value,
+    file: Option<SumsFile>,
+    task: &'a Task<'a>,
     sums: Turn,
     picture: Option<Turn>,
     /// Writes the picture so far.
     draw: &'a dyn Fn(&Sums) -> Result<()>,
-    viewer: Option<(Viewer, Turn)>,
+    view: Turn,
     /// The file is to be there at the end.
     is_wanted: bool,
+    /// The last sums are written, or cannot be.
+    last: Option<Result<()>>,
 }
 
 impl<'a> Keeper<'a> {
     /// Keeps the sums of `task` in `file`; with --preview, has the picture so far drawn; with --tev, shows it.
-    pub fn new(
-        file: Option<PathBuf>,
-        task: &'a Task<'a>,
-        draw: &'a dyn Fn(&Sums) -> Result<()>,
-    ) -> Result<Self> {
-        let Task { arguments, made, .. } = task;
-        let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
-        Ok(Self {
+    pub fn new(file: Option<SumsFile>, task: &'a Task<'a>, draw: &'a dyn Fn(&Sums) -> Result<()>) -> Self {
+        let arguments = task.arguments;
+        Self {
             file,
-            made,
+            task,
             sums: Turn::new(arguments.sums_every.unwrap_or(PATIENCE)),
             picture: arguments.preview.then(|| Turn::new(PICTURE_EVERY)),
             draw,
-            viewer: viewer.map(|viewer| (viewer, Turn::new(VIEW_EVERY))),
+            view: Turn::new(VIEW_EVERY),
             is_wanted: arguments.sums.is_some() || arguments.resume,
-        })
+            last: None,
+        }
     }
 
-    /// Called now and then while rendering.
-    pub fn watch(&mut self, sums: &Sums) {
-        let Self { file, made, draw, .. } = self;
+    /// Called now and then while rendering, and at the end of it: what is rendered of alpha and layers after that can be
+    /// rendered again, samples cannot.
+    pub fn watch(&mut self, progress: &Progress, sums: &Sums) {
+        let Self { file, draw, task, .. } = self;
         if let Some(file) = file {
-            self.is_wanted |= self.sums.take("the checkpoint", || replace(file, sums, made));
+            if progress.is_last && (self.is_wanted || interrupt::came()) {
+                self.last = Some(file.replace(sums, &task.made));
+            } else if !progress.is_last {
+                self.is_wanted |= self.sums.take("the checkpoint", || file.replace(sums, &task.made));
+            }
         }
-        if let Some(turn) = &mut self.picture {
+        if let Some(turn) = &mut self.picture
+            && !progress.is_last
+        {
             turn.take("the picture so far", || draw(sums));
         }
-        if let Some((viewer, turn)) = &mut self.viewer {
-            turn.take("the picture in tev", || viewer.show(sums));
+        if progress.is_last {
+            task.show(sums);
+        } else {
+            self.view.take("", || {
+                task.show(sums);
+                Ok(())
+            });
         }
     }
 
-    /// Called at the end: where the sums are, if they are kept; they are if the render was `interrupted`.
-    pub fn finish(mut self, sums: &Sums, interrupted: bool) -> Result<Option<PathBuf>> {
-        if let Some((viewer, _)) = &mut self.viewer {
-            viewer.show(sums).unwrap_or_else(|error| complain(&format!("warning: {error}")));
+    /// Where the sums are, if they are kept.
+    pub fn finish(self) -> Result<Option<PathBuf>> {
+        match (self.file, self.last) {
+            (Some(file), Some(written)) => written.map(|()| Some(file.finish())),
+            _ => Ok(None),
         }
-        let Some(file) = self.file.filter(|_| self.is_wanted || interrupted) else { return Ok(None) };
-        replace(&file, sums, self.made)?;
-        let _ = std::fs::remove_file(previous(&file));
-        Ok(Some(file))
     }
 }
 
-/// The file before the last: kept while the last may still be damaged.
-fn previous(file: &Path) -> PathBuf {
-    let mut name = file.as_os_str().to_owned();
-    name.push(".previous");
-    name.into()
+/// A file of sums and the one before it, which is kept while the last may still be damaged.
+pub struct SumsFile {
+    path: PathBuf,
+    /// What is there is whole, and of this render.
+    is_ours: bool,
 }
 
-fn replace(file: &Path, sums: &Sums, made: &Value) -> Result<()> {
-    if file.is_file() {
-        let _ = std::fs::rename(file, previous(file));
+impl SumsFile {
+    /// A file at `path`, links followed, for new sums.
+    pub fn new(path: &Path) -> Self {
+        Self { path: std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()), is_ours: false }
     }
-    write(file, sums, made)
-}
 
-/// The sums in `file`, or, where that is damaged or missing, in the one before it; of an image that is `made` so.
-pub fn resume(file: &Path, made: &Value) -> Result<Sums> {
-    let (sums, found) = read(file).or_else(|error| {
-        let older = read(&previous(file)).map_err(|_| error.clone())?;
-        complain(&format!("warning: {error}\n  going on from {}", previous(file).display()));
-        Ok(older)
-    })?;
-    made::must_equal(file, &found, made)?;
-    Ok(sums)
+    fn beside(&self, end: &str) -> PathBuf {
+        let mut name = self.path.as_os_str().to_owned();
+        name.push(end);
+        name.into()
+    }
+
+    fn previous(&self) -> PathBuf {
+        self.beside(".previous")
+    }
+
+    /// Writes `sums`. A file that another render wrote is put aside first.
+    fn replace(&mut self, sums: &Sums, made: &Value) -> Result<()> {
+        if self.is_ours {
+            let _ = std::fs::remove_file(self.previous());
+            // Where the file system has no links, the last file has no other name while it is replaced.
+            let _ = std::fs::hard_link(&self.path, self.previous());
+        } else if self.path.is_file() && !self.previous().is_file() {
+            let aside = self.beside(".before");
+            if std::fs::rename(&self.path, &aside).is_ok() {
+                complain(&format!("note: the sums of an earlier render are kept as {}", aside.display()));
+            }
+        }
+        write(&self.path, sums, made)?;
+        self.is_ours = true;
+        Ok(())
+    }
+
+    fn finish(self) -> PathBuf {
+        let _ = std::fs::remove_file(self.previous());
+        self.path
+    }
+
+    /// The sums in it, or, where that is damaged or missing, in the one before it; of an image that is `made` so.
+    pub fn resume(&mut self, made: &Value) -> Result<Sums> {
+        let previous = self.previous();
+        if !self.path.is_file() && !previous.is_file() {
+            let remedy = "leave out --resume, or name the file of sums with --sums";
+            return Err(Error::new(self.path.display(), "the sums of an earlier render", "no file", remedy));
+        }
+        let (sums, found) = match read(&self.path) {
+            Ok(whole) => {
+                self.is_ours = true;
+                whole
+            }
+            Err(error) => {
+                let older = read(&previous).map_err(|_| error.clone())?;
+                complain(&format!("warning: {error}\n  going on from {}", previous.display()));
+                older
+            }
+        };
+        made::must_equal(&self.path, &found, made)?;
+        Ok(sums)
+    }
 }

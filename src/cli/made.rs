@@ -15,8 +15,11 @@ use std::path::Path;
 /// All that decides about the samples of an image.
 pub fn settings(scene: &Scene, setup: &Setup, settings: &Settings) -> Result<Value> {
     let sources = format::sources(&scene.file, &scene.definitions)?;
-    let files: Map<String, Value> =
-        sources.fingerprints()?.into_iter().map(|(name, print)| (name, print.into())).collect();
+    // The scene may have another name elsewhere.
+    let names = |(index, (name, print)): (usize, (String, String))| {
+        (if index == 0 { "scene".to_owned() } else { name }, print.into())
+    };
+    let files: Map<String, Value> = sources.fingerprints()?.into_iter().enumerate().map(names).collect();
     let definitions: Map<String, Value> =
         scene.definitions.iter().map(|(name, value)| (name.clone(), value.as_str().into())).collect();
     let Settings { options, sampler, seed, profile, .. } = settings;
@@ -93,7 +96,7 @@ pub fn must_equal(file: &Path, found: &Value, wanted: &Value) -> Result<()> {
             file.display(),
             format!("samples of the same image, with {place} = {new}"),
             format!("{place} = {old}"),
-            "use the scene, the files and the options that these samples were rendered with, or start again without --resume",
+            "use the scene, the files and the options that these samples were rendered with",
         )),
     }
 }

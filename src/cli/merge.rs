@@ -101,11 +101,13 @@ fn develop(arguments: &Merge, output: &Path, made: &Value, mut sums: Sums) -> Re
     let now = made::made(made::settings(&render.scene, &setup, &settings)?);
     made::must_equal(&arguments.parts[0], made, &now)?;
     let goal = Goal::new(&render, &setup)?;
+    let others: Vec<&Path> = arguments.parts.iter().chain(&arguments.sums).map(PathBuf::as_path).collect();
+    check_short([&goal.path].into_iter().chain(&goal.preview()), &others)?;
     let layers = &setup.integrator.layers;
     let mut image: Image =
         render::render_on(&setup.scene, &setup.film, &settings, layers, &mut sums, &mut |_, _| {});
     goal.write(&setup.film, &mut image, &now)?;
-    say(&format!("{} samples/pixel: {}", sums.samples().count(), goal.path.display()));
+    say(&format!("samples {}: {}", sums.samples(), goal.path.display()));
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use super::{arguments::Render, goal::Goal};
 use crate::{
     error::Result,
-    film::{Film, output},
+    film::{Film, layer::Layer, output},
     scene::build::Setup,
 };
 use std::path::{Path, PathBuf};
@@ -11,9 +11,12 @@ use std::path::{Path, PathBuf};
 /// Of the frames of an animation, so many have their names tried.
 const MOST_FRAMES: usize = 10_000;
 
-/// What a render keeps of every pixel, in numbers of four bytes, files in the making included. Measured: 11, with
-/// precision 69, with 22 channels of layers 3 for each, with batches 5 for each; and some more.
-pub const NUMBERS: usize = 32;
+/// What a render keeps of every pixel, in numbers of four bytes, files in the making included: exact sums (24) and once
+/// more while they are written, the pass at hand (6), the image and its files. Measured with precision: 69, with 22 channels
+/// of layers 3 for each, with batches 5 for each; and some more.
+pub const NUMBERS: usize = 72;
+/// Sums of products, where layers need them, and once more while they are written.
+const NUMBERS_OF_PRODUCTS: usize = 72;
 /// What a file of sums holds of every pixel, in the same numbers.
 const NUMBERS_OF_SUMS: usize = 24;
 const NUMBERS_OF_PRECISION: usize = 84;
@@ -42,11 +45,14 @@ pub fn check_render(arguments: &Render, setup: &Setup, goal: &Goal) -> Result<()
     let layers: usize = integrator.layers.iter().map(|layer| layer.suffixes().len()).sum();
     let precision = if arguments.error.is_some() { NUMBERS_OF_PRECISION } else { 0 };
     let each = NUMBERS_OF_BATCH + 2 * layers;
-    film.check_memory(NUMBERS + precision + NUMBERS_OF_LAYER * layers + batches * each)?;
+    let products = integrator.layers.iter().any(Layer::needs_squares);
+    let products = if products { NUMBERS_OF_PRODUCTS } else { 0 };
+    film.check_memory(NUMBERS + products + precision + NUMBERS_OF_LAYER * layers + batches * each)?;
     let bytes = film.bytes(goal.format.names().len() + layers + batches * (3 + layers));
     let is_part = arguments.samples.is_some() && arguments.output.is_none();
     let images = if is_part { Vec::new() } else { images(arguments, goal) };
-    let sums = arguments.sums.as_deref().map(|sums| (sums, film.bytes(NUMBERS_OF_SUMS)));
+    // Two of them, while one replaces the other.
+    let sums = arguments.sums.as_deref().map(|sums| (sums, 2 * film.bytes(NUMBERS_OF_SUMS + products / 2)));
     let mut outputs: Vec<(&Path, u64)> = sums.into_iter().collect();
     for (index, (image, preview)) in images.iter().enumerate() {
         // An animation that does not fit keeps the frames that did: room for the first is asked for.

@@ -98,7 +98,7 @@ mod tests {
         let bar = Bar::new(settings, None, 100, None);
         let at = |samples, seconds| {
             let elapsed = Duration::from_secs(seconds);
-            bar.done(&Progress { samples, passes: 0, elapsed, noise: None, within: None })
+            bar.done(&Progress { samples, passes: 0, elapsed, noise: None, within: None, is_last: false })
         };
         assert_eq!([at(100, 1), at(100, 5), at(0, 20)], [0.25, 0.5, 1.0]);
     }

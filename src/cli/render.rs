@@ -4,22 +4,30 @@ use super::{
     arguments,
     goal::Goal,
     interrupt,
-    keeper::{self, Keeper},
+    keeper::{Keeper, SumsFile},
     load, made,
     plan::Plan,
     progress::{Bar, noise_text, percent},
     threads,
+    viewer::Viewer,
 };
 use crate::{
     error::{Error, Result},
-    film::layer::Content,
-    render::{self, Image, Settings, adaptive::Precision, budget::Budget, faults::Faults, sums::Sums},
+    film::{layer::Content, output},
+    render::{
+        self, Image, Settings, adaptive::Precision, budget::Budget, faults::Faults, samples::Samples,
+        sums::Sums,
+    },
     sampling::Sampler,
     scene::build::Setup,
     transport::Strategies,
 };
 use serde_json::Value;
-use std::{path::Path, time::Instant};
+use std::{
+    path::{Path, PathBuf},
+    sync::Mutex,
+    time::Instant,
+};
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Render) -> Result<()> {
@@ -30,8 +38,10 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let precision = precision(arguments, &setup, &settings)?;
     let goal = Goal::new(arguments, &setup)?;
     let made = made::made(made::settings(&arguments.scene, &setup, &settings)?);
-    let task = Task { settings, precision, arguments, made };
     super::outputs::check_render(arguments, &setup, &goal)?;
+    check_kept(arguments, &settings, &goal)?;
+    let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
+    let task = Task { settings, precision, arguments, made, viewer: &Mutex::new(viewer) };
     let plan = Plan::new(&setup, &arguments.estimator, task.settings, arguments.error);
     plan.announce();
     let load_time = started.elapsed().as_secs_f64();
@@ -74,10 +84,10 @@ fn animate(
         made["settings"]["time"] = time.into();
         let task = Task { settings, made, ..*task };
         let label = format!("frame {frame} of {first}..{last}");
-        let mut noise_text = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
-        noise_text["frame"] = frame.into();
-        noise_text["time"] = time.into();
-        figures.push(noise_text);
+        let mut figure = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
+        figure["frame"] = frame.into();
+        figure["time"] = time.into();
+        figures.push(figure);
         if let Some((name, _)) = interrupt::signal() {
             super::complain(&format!("{name} in frame {frame}: continue with --frames {frame}..{last}"));
             break;
@@ -100,6 +110,61 @@ pub struct Task<'a> {
     pub arguments: &'a arguments::Render,
     /// See [`made::made`].
     pub made: Value,
+    viewer: &'a Mutex<Option<Viewer>>,
+}
+
+impl Task<'_> {
+    /// Shows what there is in the viewer, if there is one; it goes when it fails.
+    pub fn show(&self, sums: &Sums) {
+        let Ok(mut viewer) = self.viewer.lock() else { return };
+        if let Some(Err(error)) = viewer.as_mut().map(|viewer| viewer.show(sums)) {
+            super::complain(&format!("warning: no more is shown: {error}"));
+            *viewer = None;
+        }
+    }
+
+    /// True if an image is to be written, and not only its sums.
+    fn wants_image(&self) -> bool {
+        self.arguments.samples.is_none() || self.arguments.output.is_some()
+    }
+}
+
+/// Options that keep what there is so far need samples to keep, and a place for it.
+fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -> Result<()> {
+    let kept = [
+        (arguments.sums.is_some(), "--sums"),
+        (arguments.resume, "--resume"),
+        (arguments.samples.is_some(), "--samples"),
+        (arguments.preview, "--preview"),
+        (arguments.tev.is_some(), "--tev"),
+    ];
+    let given = kept.into_iter().find_map(|(is_given, name)| is_given.then_some(name));
+    if let (Some(name), Strategies::NONE) = (given, settings.options.strategies) {
+        let expected = "an integrator that samples paths";
+        return Err(Error::new(
+            name,
+            expected,
+            "the preview fog",
+            format!("remove {name}; fog takes seconds"),
+        ));
+    }
+    let is_part = arguments.samples.is_some() && arguments.output.is_none();
+    if arguments.preview && (is_part || output::is_stream(&goal.path)) {
+        let found = if is_part { "only sums to write" } else { "a device or pipe" };
+        return Err(Error::new(
+            "--preview",
+            "an image file to write again and again",
+            found,
+            "name one with -o",
+        ));
+    }
+    match &arguments.sums {
+        Some(sums) if output::is_stream(sums) => {
+            let remedy = "name a plain file, or leave out --sums";
+            Err(Error::new(sums.display(), "a plain file for sums", "a device or pipe", remedy))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What every pixel is to be known with.
@@ -132,60 +197,88 @@ const CONFIDENCE: f64 = 0.95;
 
 /// Renders one image and writes it; its figures.
 fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<Value> {
-    let mut image = match task.arguments.batches {
+    let (mut image, kept) = match task.arguments.batches {
         None => watched(setup, task, goal, label)?,
-        Some(count) => batches(setup, task, goal, count, label)?,
+        Some(count) => (batches(setup, task, goal, count, label)?, Ok(None)),
     };
     report_faults(&image, setup);
     let mut figures = figures(&image, task);
-    if task.arguments.samples.is_none() || task.arguments.output.is_some() {
+    if task.wants_image() {
         goal.write(&setup.film, &mut image, &task.made)?;
         print_summary(&image, task, &goal.path, goal.preview().as_deref(), label);
         figures["image"] = goal.path.display().to_string().into();
     }
+    // The image is not lost where the sums are.
+    if let Some((file, samples)) = kept? {
+        print_kept(&file, &samples, task);
+    }
     Ok(figures)
 }
 
-/// Renders one image under a progress bar, keeping what there is.
-fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<Image> {
-    let (bar, arguments) = (Bar::new(task.settings, task.precision, setup.film.len(), label), task.arguments);
+/// A file of sums, and the samples in it.
+type Kept = Result<Option<(PathBuf, Samples)>>;
+
+/// Renders one image under a progress bar; where what there is was kept.
+fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<(Image, Kept)> {
+    let bar = Bar::new(task.settings, task.precision, setup.film.len(), label);
     let Setup { scene, film, integrator, .. } = setup;
     let (layers, settings) = (&integrator.layers, &task.settings);
-    let image = if settings.options.strategies == Strategies::NONE {
-        render::preview(scene, film, settings, &integrator.fog, layers, &mut |progress| bar.show(&progress))
+    let done = if settings.options.strategies == Strategies::NONE {
+        let show = &mut |progress| bar.show(&progress);
+        (render::preview(scene, film, settings, &integrator.fog, layers, show), Ok(None))
     } else if let Some(precision) = task.precision {
-        render::render_to_precision(scene, film, settings, precision, layers, &mut |p| bar.show(&p))
+        let show = &mut |progress| bar.show(&progress);
+        (render::render_to_precision(scene, film, settings, precision, layers, show), Ok(None))
     } else {
-        let is_resumable = arguments.batches.is_none() && arguments.frames.is_none();
-        let file = arguments.sums.clone().unwrap_or_else(|| goal.path.with_extension("sums"));
-        let mut sums = match arguments.resume {
-            true => keeper::resume(&file, &task.made)?,
-            false => render::sums_for(film, layers),
-        };
-        let draw = |sums: &Sums| goal.draw(film, sums, &task.made);
-        let mut keeper = Keeper::new(is_resumable.then_some(file), task, &draw)?;
-        let image = render::render_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
-            bar.show(&progress);
-            keeper.watch(sums);
-        });
-        bar.finish();
-        if let Some(kept) = keeper.finish(&sums, interrupt::came())? {
-            print_kept(&kept, &sums);
-        }
-        image
+        keeping(setup, task, goal, &bar)?
     };
     bar.finish();
-    Ok(image)
+    Ok(done)
 }
 
-fn print_kept(file: &Path, sums: &Sums) {
-    let file = file.display();
-    match interrupt::signal() {
-        Some((name, _)) => super::complain(&format!(
-            "{name} after {} samples/pixel: continue with the same command and --resume ({file} has the sums)",
-            sums.samples().count()
-        )),
-        None => super::say(&format!("samples {}: {file}", sums.samples())),
+/// Renders one image, from sums that there are and into those that are kept.
+fn keeping(setup: &Setup, task: &Task<'_>, goal: &Goal, bar: &Bar) -> Result<(Image, Kept)> {
+    let Setup { scene, film, integrator, .. } = setup;
+    let (arguments, layers) = (task.arguments, &integrator.layers);
+    let mut file = sums_file(arguments, goal);
+    let mut sums = match &mut file {
+        Some(file) if arguments.resume => file.resume(&task.made)?,
+        _ => render::sums_for(film, layers),
+    };
+    let draw = |sums: &Sums| goal.draw(film, sums, &task.made);
+    let mut keeper = Keeper::new(file, task, &draw);
+    let image = render::render_on(scene, film, &task.settings, layers, &mut sums, &mut |progress, sums| {
+        bar.show(&progress);
+        keeper.watch(&progress, sums);
+    });
+    let kept = keeper.finish();
+    Ok((image, kept.map(|path| path.map(|path| (path, sums.samples().clone())))))
+}
+
+/// Where the sums go: none where a render does not go on, or has no name to put them beside.
+fn sums_file(arguments: &arguments::Render, goal: &Goal) -> Option<SumsFile> {
+    if arguments.batches.is_some() || arguments.frames.is_some() {
+        return None;
+    }
+    let beside = || (!output::is_stream(&goal.path)).then(|| goal.sums());
+    arguments.sums.clone().or_else(beside).map(|path| SumsFile::new(&path))
+}
+
+fn print_kept(file: &Path, samples: &Samples, task: &Task<'_>) {
+    let (file, count) = (file.display(), samples.count());
+    if let Some((name, _)) = interrupt::signal() {
+        let text = format!("{name} after {count} samples/pixel: continue with the same command and --resume");
+        return super::complain(&format!("{text} ({file} has the sums)"));
+    }
+    super::say(&format!("samples {samples}: {file}"));
+    let wanted = task.settings.budget.samples_per_pixel.map(|spp| {
+        let first = task.settings.budget.first_sample;
+        Samples::from(first..first + spp)
+    });
+    if let Some(wanted) = wanted.filter(|wanted| wanted != samples && task.arguments.time_limit.is_none()) {
+        super::complain(&format!(
+            "warning: {file} has other samples than {wanted}: the image is of {samples}"
+        ));
     }
 }
 
@@ -199,9 +292,10 @@ fn batches(setup: &Setup, task: &Task<'_>, goal: &Goal, count: u32, label: Optio
         let label =
             format!("{}batch {} of {count}", label.map_or(String::new(), |l| format!("{l}, ")), k + 1);
         let task = Task { settings, made: Value::Null, ..*task };
-        let image = watched(setup, &task, goal, Some(&label))?;
+        let (image, _) = watched(setup, &task, goal, Some(&label))?;
         if interrupt::came() {
-            super::complain(&format!("interrupted in batch {} of {count}: the image has {k} batches", k + 1));
+            let has = if k == 0 { "a part of one".to_owned() } else { k.to_string() };
+            super::complain(&format!("interrupted in batch {} of {count}: the image has {has}", k + 1));
         }
         if k == 0 || !interrupt::came() {
             images.push(image);

@@ -4,11 +4,18 @@ use crate::{
     error::{Error, Result},
     render::sums::Sums,
 };
-use std::{io, net::TcpStream};
+use std::{
+    io,
+    net::{TcpStream, ToSocketAddrs},
+    time::Duration,
+};
 use tev_client::{PacketCreateImage, PacketUpdateImage, TevClient};
 
 /// Where tev listens unless it is told otherwise.
 pub const ADDRESS: &str = "127.0.0.1:14158";
+
+/// A viewer that takes longer is not there.
+const PATIENCE: Duration = Duration::from_secs(2);
 
 /// What the picture is called there.
 const NAME: &str = "tyndall";
@@ -24,7 +31,7 @@ pub struct Viewer {
 impl Viewer {
     /// Connects to `address`, a host and port.
     pub fn connect(address: &str) -> Result<Self> {
-        let socket = TcpStream::connect(address).map_err(|error| explain(address, &error))?;
+        let socket = connected(address).map_err(|error| explain(address, &error))?;
         Ok(Self { client: TevClient::wrap(socket), address: address.to_owned(), is_new: true })
     }
 
@@ -61,6 +68,14 @@ impl Viewer {
             data: &data,
         })
     }
+}
+
+/// A socket that blocks for [`PATIENCE`] at most.
+fn connected(address: &str) -> io::Result<TcpStream> {
+    let first = address.to_socket_addrs()?.next().ok_or(io::ErrorKind::NotFound)?;
+    let socket = TcpStream::connect_timeout(&first, PATIENCE)?;
+    socket.set_write_timeout(Some(PATIENCE))?;
+    Ok(socket)
 }
 
 fn explain(address: &str, error: &io::Error) -> Error {

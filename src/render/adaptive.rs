@@ -349,7 +349,7 @@ impl<'a> Adaptive<'a> {
     fn progress(&self, tasks: usize) -> Progress {
         let samples = (tasks as u64 * self.active.len() as u64) / self.bench.compiled.blocks().count() as u64;
         let (passes, elapsed) = (self.passes(), self.stopwatch.elapsed());
-        Progress { samples, passes, elapsed, noise: None, within: Some(self.share()) }
+        Progress { samples, passes, elapsed, noise: None, within: Some(self.share()), is_last: false }
     }
 
     /// The mean of the halves; what there is of the first pass where there is no more.

@@ -75,6 +75,8 @@ pub struct Progress {
     pub noise: Option<f64>,
     /// The part of the pixels that have the requested precision, if one was requested.
     pub within: Option<f64>,
+    /// No more samples follow.
+    pub is_last: bool,
 }
 
 /// A finished render.
@@ -274,6 +276,8 @@ fn accumulate(
         usize::try_from(had.missing_of(&wanted)).map_or(usize::MAX, |passes| passes.saturating_mul(count));
     if end > 0 {
         sums.start(sample(0));
+    } else {
+        sums.drop_unfinished();
     }
     let (mut next, mut noted) = (sums.blocks.min(end), Instant::now());
     loop {
@@ -309,7 +313,8 @@ fn accumulate(
             stopwatch.hold(|| show(monitor));
         }
         let samples = passes * film.len() as u64 + (sums.unfinished() * film.len() as f64) as u64;
-        let reached = Progress { samples, passes, elapsed, noise: sums.noise, within: None };
+        let reached =
+            Progress { samples, passes, elapsed, noise: sums.noise, within: None, is_last: is_over };
         (monitor.watch)(reached, sums);
         if is_over {
             return;

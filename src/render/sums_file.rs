@@ -5,7 +5,7 @@
 //! | `windows`, `parts` | i16 \[n\], i64 \[n, 2\] | exact sums over samples, see [`ExactSum::to_parts`]: of R, G, B and the luminance's square of each pixel, row by row; then, where layers need them, of R R, R G, R B, G G, G B, B B |
 //! | `camera`, `light` | f32 \[pixels, 3\] | what camera and light subpaths of the unfinished sample contributed so far, if there is one |
 //!
-//! The header's entry `tyndall` holds [`State`] as JSON, with a checksum of the arrays.
+//! The header's entries are `tyndall`, which holds [`State`] as JSON, and a checksum of it and the arrays.
 
 use super::{block::Pass, faults::Faults, samples::Samples, sums::Sums};
 use crate::{
@@ -13,17 +13,18 @@ use crate::{
     film::{accumulator::Accumulator, output},
     math::{Spectrum, exact_sum::ExactSum},
 };
-use safetensors::{
-    SafeTensors,
-    tensor::{Dtype, TensorView, serialize},
-};
+use safetensors::SafeTensors;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
-use std::{collections::HashMap, ops::Range, path::Path, time::Duration};
+use serde_json::{Value, json};
+use std::{ops::Range, path::Path, time::Duration};
 use xxhash_rust::xxh3::Xxh3;
 
 /// The entry of the header.
 const ENTRY: &str = "tyndall";
+/// And that of the XXH3 of this entry and all arrays, 128 bits.
+const CHECKSUM: &str = "checksum";
+/// The arrays, and the types of their numbers.
+const NAMES: [(&str, &str); 4] = [("parts", "I64"), ("windows", "I16"), ("camera", "F32"), ("light", "F32")];
 
 /// What is known besides the arrays.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -38,8 +39,6 @@ struct State {
     seconds: f64,
     /// What went wrong on the way.
     faults: Faults,
-    /// XXH3 of all arrays, 128 bits.
-    checksum: String,
     /// How the image is made.
     made: Value,
 }
@@ -52,35 +51,42 @@ pub fn write(path: &Path, sums: &Sums, made: &Value) -> Result<()> {
     let (camera, light) = if sums.blocks > 0 { sums.pass.parts() } else { (&[][..], &[][..]) };
     let [camera, light] = [camera, light].map(bytes_of);
     let (width, height) = sums.size();
-    let state = State {
+    let state = json!(State {
         width,
         height,
         samples: sums.samples.ranges().to_vec(),
         unfinished: (sums.sample, sums.blocks),
         seconds: sums.elapsed.as_secs_f64(),
         faults: sums.faults.clone(),
-        checksum: checksum([&windows, &parts, &camera, &light]),
         made: made.clone(),
-    };
-    let file = || -> std::result::Result<Vec<u8>, Box<dyn std::error::Error>> {
-        let arrays = [
-            ("windows", TensorView::new(Dtype::I16, vec![windows.len() / 2], &windows)?),
-            ("parts", TensorView::new(Dtype::I64, vec![windows.len() / 2, 2], &parts)?),
-            ("camera", TensorView::new(Dtype::F32, vec![camera.len() / 12, 3], &camera)?),
-            ("light", TensorView::new(Dtype::F32, vec![light.len() / 12, 3], &light)?),
-        ];
-        let entry = (ENTRY.to_owned(), serde_json::to_string(&state)?);
-        Ok(serialize(arrays, Some(HashMap::from([entry])))?)
-    };
-    let file = file().map_err(|error| {
-        Error::new(
-            path.display(),
-            "sums to write",
-            error.to_string(),
-            "report this, with the command that you ran",
-        )
-    })?;
-    output::write(path, |to| to.write_all(&file))
+    });
+    let arrays = [&parts, &windows, &camera, &light];
+    let shapes = [
+        vec![windows.len() / 2, 2],
+        vec![windows.len() / 2],
+        vec![camera.len() / 12, 3],
+        vec![light.len() / 12, 3],
+    ];
+    let header = header(&state.to_string(), shapes, arrays);
+    output::write(path, |to| {
+        to.write_all(&(header.len() as u64).to_le_bytes())?;
+        to.write_all(header.as_bytes())?;
+        arrays.into_iter().try_for_each(|array| to.write_all(array))
+    })
+}
+
+/// The header of a safetensors file, padded so that the arrays begin at a multiple of 8 bytes.
+fn header(state: &str, shapes: [Vec<usize>; 4], arrays: [&Vec<u8>; 4]) -> String {
+    let mut header =
+        json!({ "__metadata__": { ENTRY: state, CHECKSUM: checksum(state, arrays.map(Vec::as_slice)) } });
+    let mut end = 0;
+    for (((name, kind), shape), array) in NAMES.into_iter().zip(shapes).zip(arrays) {
+        let begin = end;
+        end += array.len();
+        header[name] = json!({ "dtype": kind, "shape": shape, "data_offsets": [begin, end] });
+    }
+    let text = header.to_string();
+    format!("{text:width$}", width = text.len().next_multiple_of(8))
 }
 
 /// Reads what [`write`] wrote: the sums, and how their image is made.
@@ -94,26 +100,26 @@ pub fn read(path: &Path) -> Result<(Sums, Value)> {
         refuse(&format!("a file that is damaged or of another kind ({error})"))
     };
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(|error| broken(&error))?;
-    let entry = header.metadata().as_ref().and_then(|entries| entries.get(ENTRY));
-    let state: State = match entry.map(|text| serde_json::from_str(text)) {
-        Some(Ok(state)) => state,
-        Some(Err(error)) => return Err(broken(&error)),
-        None => return Err(refuse("arrays that another program wrote")),
+    let entry = |name: &str| header.metadata().as_ref().and_then(|entries| entries.get(name));
+    let (Some(text), Some(wanted)) = (entry(ENTRY), entry(CHECKSUM)) else {
+        return Err(refuse("arrays that another program wrote"));
     };
     let arrays = SafeTensors::deserialize(&bytes).map_err(|error| broken(&error))?;
-    let array =
-        |name: &str| arrays.tensor(name).map(|array| array.data().to_vec()).map_err(|error| broken(&error));
-    let [windows, parts, camera, light] = ["windows", "parts", "camera", "light"].map(array);
-    let (windows, parts, camera, light) = (windows?, parts?, camera?, light?);
-    if checksum([&windows, &parts, &camera, &light]) != state.checksum {
+    let array = |(name, _): (&str, &str)| {
+        arrays.tensor(name).map(|array| array.data()).map_err(|error| broken(&error))
+    };
+    let [parts, windows, camera, light] = NAMES.map(array);
+    let arrays = [parts?, windows?, camera?, light?];
+    if checksum(text, arrays) != *wanted {
         return Err(refuse("a damaged file: its checksum is another"));
     }
+    let state: State = serde_json::from_str(text).map_err(|error| broken(&error))?;
     let made = state.made.clone();
-    let sums = sums_of(state, [&windows, &parts, &camera, &light]);
+    let sums = sums_of(state, arrays);
     Ok((sums.ok_or_else(|| refuse("arrays that do not fit each other"))?, made))
 }
 
-fn sums_of(state: State, [windows, parts, camera, light]: [&[u8]; 4]) -> Option<Sums> {
+fn sums_of(state: State, [parts, windows, camera, light]: [&[u8]; 4]) -> Option<Sums> {
     let parts = parts.as_chunks().0.iter().map(|part| i64::from_le_bytes(*part));
     let parts: Vec<i64> = parts.collect();
     let windows = windows.as_chunks().0.iter().map(|window| i16::from_le_bytes(*window));
@@ -145,8 +151,9 @@ fn spectra_of(bytes: &[u8]) -> Vec<Spectrum> {
     values.as_chunks().0.iter().map(|value| Spectrum::from_array(*value)).collect()
 }
 
-fn checksum(arrays: [&[u8]; 4]) -> String {
+fn checksum(text: &str, arrays: [&[u8]; 4]) -> String {
     let mut sum = Xxh3::new();
+    sum.update(text.as_bytes());
     arrays.into_iter().for_each(|array| sum.update(array));
     format!("{:032x}", sum.digest128())
 }

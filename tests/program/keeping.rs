@@ -106,7 +106,7 @@ fn what_is_no_part_of_the_image_is_refused() {
         refused(render(&sandbox, &format!("--spp 9 --resume --sums a.sums {words}")), &["a.sums", differs]);
     }
     fs::write(sandbox.path("fog.json"), sandbox.text("fog.json") + " ").unwrap();
-    refused(render(&sandbox, "--spp 9 --resume --sums a.sums"), &["files.fog.json"]);
+    refused(render(&sandbox, "--spp 9 --resume --sums a.sums"), &["files.scene"]);
     assert!(!sandbox.path("x.exr").exists());
 }
 
@@ -117,7 +117,10 @@ fn damaged_sums_are_refused_and_the_ones_before_them_used() {
     let whole = sandbox.bytes("a.sums");
     let mut flipped = whole.clone();
     flipped[whole.len() - 100] ^= 1;
-    for damaged in [&whole[..whole.len() - 1], &whole[..7], &[], &flipped, b"{\"width\": 3}"] {
+    let text = String::from_utf8_lossy(&whole).find("end\\\":2").unwrap();
+    let mut other = whole.clone();
+    other[text + 6] = b'1';
+    for damaged in [&whole[..whole.len() - 1], &whole[..7], &[], &flipped, &other, b"{\"width\": 3}"] {
         fs::write(sandbox.path("a.sums"), damaged).unwrap();
         refused(sandbox.run("merge a.sums -o x.exr"), &["a.sums"]);
     }
@@ -275,4 +278,90 @@ fn pictures_say_how_they_were_made() {
     assert_same(&sandbox, "fog.exr", "first.exr");
     fs::write(sandbox.path("fog.png"), &sandbox.bytes("fog.png")[..60]).unwrap();
     refused(sandbox.run("info fog.png"), &["fog.png"]);
+}
+
+/// Who forgets --resume loses nothing.
+#[test]
+fn sums_of_an_earlier_render_are_put_aside() {
+    let sandbox = foggy();
+    good(render(&sandbox, "--samples 0..4 --sums a.sums"));
+    let note = good(render(&sandbox, "--samples 0..1 --sums a.sums")).err();
+    assert!(note.contains("a.sums.before"), "{note}");
+    good(sandbox.run("merge a.sums.before --sums all.sums"));
+    assert!(good(sandbox.run("info all.sums")).out().contains("0..4"));
+}
+
+/// Going on from the file before the last keeps that until a new one is there.
+#[cfg(unix)]
+#[test]
+fn the_last_good_sums_outlive_a_damaged_file() {
+    let sandbox = foggy();
+    good(render(&sandbox, "--samples 0..4 --sums a.sums"));
+    fs::rename(sandbox.path("a.sums"), sandbox.path("a.sums.previous")).unwrap();
+    fs::write(sandbox.path("a.sums"), "damaged").unwrap();
+    let words = "render fog.json --size 60x50 --spp 6 --resume --sums a.sums -o a.exr";
+    sandbox.shell(&format!("ulimit -f 8; trap '' XFSZ; $TYNDALL {words}")).ends(2);
+    good(sandbox.run("merge a.sums.previous --sums whole.sums"));
+    good(sandbox.run(words));
+    good(render(&sandbox, "--spp 6 -o all.exr"));
+    assert_same(&sandbox, "a.exr", "all.exr");
+}
+
+/// The image does not depend on the sums.
+#[test]
+fn sums_that_cannot_be_written_do_not_cost_the_image() {
+    let sandbox = foggy();
+    fs::create_dir(sandbox.path("fog.exr.sums")).unwrap();
+    let mut child = started(&sandbox, "--time-limit 100s -o fog.exr");
+    std::thread::sleep(Duration::from_millis(700));
+    signal(&child, "-INT");
+    assert_eq!(child.wait().unwrap().code(), Some(2));
+    assert!(sandbox.path("fog.exr").exists() && sandbox.path("fog.png").exists());
+}
+
+/// nohup and scripts start programs that are to ignore signals.
+#[cfg(target_os = "linux")]
+#[test]
+fn ignored_signals_stay_ignored() {
+    let sandbox = foggy();
+    let script = "trap '' HUP; $TYNDALL render fog.json --size 60x50 --time-limit 2s -o fog.exr & \
+        sleep 0.7; kill -HUP $!; wait $!";
+    sandbox.shell(script).ends(0);
+    assert!(sandbox.path("fog.exr").exists() && !sandbox.path("fog.exr.sums").exists());
+}
+
+/// A link stays one, and the mode of what it leads to is kept.
+#[cfg(unix)]
+#[test]
+fn sums_go_through_links() {
+    use std::os::unix::fs::PermissionsExt;
+    let sandbox = foggy();
+    good(render(&sandbox, "--samples 0..1 --sums real.sums"));
+    fs::set_permissions(sandbox.path("real.sums"), fs::Permissions::from_mode(0o664)).unwrap();
+    std::os::unix::fs::symlink("real.sums", sandbox.path("link.sums")).unwrap();
+    good(render(&sandbox, "--spp 3 --resume --sums link.sums -o fog.exr"));
+    assert!(sandbox.path("link.sums").is_symlink());
+    assert_eq!(sandbox.path("real.sums").metadata().unwrap().permissions().mode() & 0o777, 0o664);
+    assert!(good(sandbox.run("info real.sums")).out().contains("0..3"));
+}
+
+/// Options that would have no effect are refused before the first ray.
+#[test]
+fn what_cannot_be_kept_is_refused() {
+    let sandbox = foggy();
+    for (words, hints) in [
+        ("--integrator fog --samples 0..4 --sums a.sums", &["--sums", "preview fog"][..]),
+        ("--samples 0..4 --sums a.sums --preview", &["--preview", "-o"]),
+        ("--preview -o /dev/stdout", &["--preview", "device"]),
+        ("--sums /dev/null", &["/dev/null", "plain file"]),
+        ("--resume", &["fog.exr.sums", "leave out --resume"]),
+        ("--error 0.1 --preview", &["--preview"]),
+        ("--samples 4..4 --sums a.sums", &["0..64"]),
+    ] {
+        refused(render(&sandbox, words), hints);
+    }
+    good(render(&sandbox, "--samples 0..4 --sums a.sums"));
+    let more = good(render(&sandbox, "--spp 2 --resume --sums a.sums -o a.exr")).err();
+    assert!(more.contains("0..2") && more.contains("0..4"), "{more}");
+    refused(sandbox.run("merge a.sums -o a.sums.exr --sums a.sums.png"), &["a.sums.png"]);
 }
