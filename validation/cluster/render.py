@@ -79,7 +79,14 @@ def alone(folder: Path) -> Iterator[None]:
             raise Failure(f"{folder}: another driver is at work on this picture", "wait for it, or end it") from None
         try:
             yield
-        finally:
-            Path(lock.name).unlink(missing_ok=True)
-            if not any(folder.iterdir()):
-                folder.rmdir()
+        except Failure:
+            remove(folder)
+            raise
+        remove(folder)
+
+
+def remove(folder: Path) -> None:
+    """Removes the folder of parts unless there is something in it. Not after an interruption: parts may still be saved."""
+    Path(folder, ".lock").unlink(missing_ok=True)
+    if not any(folder.iterdir()):
+        folder.rmdir()
