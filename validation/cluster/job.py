@@ -48,7 +48,8 @@ def job(scene: str, output: Path, options: list[str], spp: int | None, folder: P
     for word in options:
         refuse(word.partition("=")[0])
     parent = (folder or output.parent).absolute()
-    return Job(path, output, options, spp or own_spp(path, options), parent / f"{output.name}.parts")
+    spp = own_spp(path, options) if spp is None else spp
+    return Job(path, output, options, spp, parent / f"{output.name}.parts")
 
 
 def refuse(option: str) -> None:
