@@ -63,7 +63,7 @@ def name(samples: Range) -> str:
     return f"samples-{samples[0]:07}-{samples[1]:07}"
 
 
-def named(name: str) -> list[Range]:
-    """The samples of the part that a file is called after."""
-    first, end = map(int, re.findall(r"\d+", name)[:2])
-    return [(first, end)]
+def named(file: str) -> Range:
+    """The samples of a part, by the name of its file."""
+    first, end = map(int, re.findall(r"\d+", file)[:2])
+    return first, end

@@ -62,10 +62,10 @@ class Sums:
         """Merges parts, those whose samples are not there yet; their files are no longer needed then."""
         new, there = [], list(self.there)
         for path in map(Path, paths):
-            if parts.overlap(parts.named(path.name), there):
+            if parts.overlap([parts.named(path.name)], there):
                 continue
             samples = parts.parsed(info(awaited(path))["samples"])
-            if not parts.overlap(samples, there):
+            if samples:
                 new.append(path)
                 there += samples
         if new:

@@ -7,6 +7,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +69,8 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     scene["sensor"]["film"] |= {"width": 6, "height": 4}
     (tmp_path / "fog.json").write_text(json.dumps(scene))
     (programs / "tyndall").symlink_to(tyndall.binary().absolute())
-    for name, text in (("sbatch", SBATCH), ("srun", '#!/bin/sh\nexec "$@"\n'), ("cuecmd", CUECMD), ("curl", CURL)):
+    python = f'#!/bin/sh\nexec {shlex.quote(sys.executable)} "$@"\n'  # this environment: a test makes none
+    for name, text in (("python3", python), ("sbatch", SBATCH), ("srun", '#!/bin/sh\nexec "$@"\n'), ("cuecmd", CUECMD), ("curl", CURL)):
         (programs / name).write_text(text)
         (programs / name).chmod(0o755)
     monkeypatch.setenv("PATH", f"{programs}:{os.environ['PATH']}")
