@@ -4,6 +4,7 @@ it is needed, as it is there only once this package's commands have been used.""
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 from validation.cluster import task
@@ -18,10 +19,8 @@ CONNECT = 30
 @contextmanager
 def connected(scheduler: str | None, workers: int, retries: int) -> Iterator[Client]:
     """A client of the scheduler at an address, or of `workers` processes on this machine."""
-    import cloudpickle
     from distributed import Client
 
-    cloudpickle.register_pickle_by_value(task)
     if scheduler is None:
         with local(workers, retries) as cluster, Client(cluster) as client:
             yield client
@@ -52,7 +51,23 @@ def slots(client: Client) -> int:
 
 def submit(client: Client, function: Callable[..., str], words: list[Any], label: str, retries: int) -> Future:
     """One task; Dask tries it again where it fails, and elsewhere where its worker is killed."""
-    return client.submit(function, *words, key=f"{label}-{os.urandom(8).hex()}", retries=retries, pure=False)
+    return client.submit(Sent(function), *words, key=f"{label}-{os.urandom(8).hex()}", retries=retries, pure=False)
+
+
+@dataclass(frozen=True)
+class Sent:
+    """A function of `task`, which workers get by value: Dask would send its name, for a module that they need not have."""
+
+    function: Callable[..., str]
+
+    def __call__(self, *words: Any) -> str:
+        return self.function(*words)
+
+    def __reduce__(self) -> tuple[Callable[[bytes], Any], tuple[bytes]]:
+        import cloudpickle
+
+        cloudpickle.register_pickle_by_value(task)
+        return cloudpickle.loads, (cloudpickle.dumps(self.function),)
 
 
 def finished(client: Client, futures: list[Future], take: Callable[[list[str]], None]) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -174,6 +175,13 @@ def test_a_picture_survives_a_worker_killed_midway_and_a_part_delivered_twice(cl
     render.run(client, picture, 8, retries=0)
     assert killed and killed[0] not in client.run(os.getpid).values()
     assert equal(picture.output, single(picture, tmp_path)) and not picture.folder.exists()
+
+
+def test_workers_need_nothing_of_this_package(client: Any, tmp_path: Path) -> None:
+    sent = pickle.dumps(farm.Sent(task.study))
+    call = f"import pickle, sys; pickle.loads({sent!r})(['touch', 'made'], '.'); assert 'validation' not in sys.modules"
+    subprocess.run([sys.executable, "-I", "-c", call], cwd=tmp_path, check=True)
+    assert (tmp_path / "made").is_file()
 
 
 def test_a_mistake_ends_it_with_the_programs_own_message(client: Any, tmp_path: Path) -> None:
