@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from validation import tyndall
 from validation.cluster import farm, parts, task
@@ -17,7 +17,6 @@ from validation.failure import Failure
 
 def run(client: Any, job: Job, size: int, retries: int) -> None:
     """Renders what is missing of a picture, in parts of `size` samples, and writes it."""
-    job.folder.mkdir(parents=True, exist_ok=True)
     with alone(job.folder):
         sums = Sums(job.output, job.folder)
         begin(job, sums)
@@ -35,16 +34,16 @@ def submit(client: Any, job: Job, samples: Range, retries: int) -> Any:
 
 
 def begin(job: Job, sums: Sums) -> None:
-    """Looks what is there already. If it is of another picture the program says so: the samples asked for here are
-    there, so that it renders nothing."""
+    """Takes what is there already, and renders one sample here if nothing is: whatever is wrong with the scene, the options
+    or the output, the program says before anything is sent. It refuses samples of another picture too."""
     sums.read()
-    if sums.there:
-        first = sums.there[0][0]
-        try:
-            tyndall.call([*job.part((first, first + 1)), "--sums", str(sums.file), "--resume"])
-        except Failure as failure:
-            remedy = f"correct the command; if another picture is meant, give another -o, or remove {sums.file}"
-            raise Failure(failure.problem, remedy) from None
+    first = sums.there[0][0] if sums.there else 0
+    resume = ["--resume"] if sums.there else []
+    try:
+        tyndall.call([*job.part((first, first + 1)), "--sums", str(sums.file), "-o", str(job.output), *resume])
+    except Failure as failure:
+        raise Failure(failure.problem, f"correct the command; {sums.file} may be of another picture") from None
+    sums.read()
     sums.gather()
 
 
@@ -72,7 +71,7 @@ def tell(job: Job, sums: Sums, what: str) -> None:
 @contextmanager
 def alone(folder: Path) -> Iterator[None]:
     """Keeps a second driver of the same picture out."""
-    with open(folder / ".lock", "w") as lock:
+    with lock_file(folder) as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -83,6 +82,15 @@ def alone(folder: Path) -> Iterator[None]:
             remove(folder)
             raise
         remove(folder)
+
+
+def lock_file(folder: Path) -> TextIO:
+    """A file to be locked, in a folder that is made if need be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        return open(folder / ".lock", "w")
+    except OSError as error:
+        raise Failure(f"{folder}: no folder that can be written: {error.strerror}", "give another --folder, or -o") from None
 
 
 def remove(folder: Path) -> None:

@@ -184,11 +184,24 @@ def test_workers_need_nothing_of_this_package(client: Any, tmp_path: Path) -> No
     assert (tmp_path / "made").is_file()
 
 
-def test_a_mistake_ends_it_with_the_programs_own_message(client: Any, tmp_path: Path) -> None:
-    picture = job(str(ROOM), tmp_path / "a.exr", ["--sead", "1"], 8, None)
-    with pytest.raises(Failure, match="unexpected argument '--sead'"):
-        render.run(client, picture, 4, retries=1)
-    assert not picture.folder.exists() and not picture.output.exists()
+@pytest.mark.parametrize(("name", "option", "complaint"), [("a.exr", "--sead=1", "unexpected argument '--sead'"), ("a.xyz", "--seed=1", "a.xyz")])
+def test_a_mistake_is_told_before_anything_is_sent(tmp_path: Path, name: str, option: str, complaint: str) -> None:
+    picture = job(str(ROOM), tmp_path / name, [option], 8, None)
+    with pytest.raises(Failure, match=complaint):
+        render.run(None, picture, 4, retries=1)
+    assert not any(tmp_path.iterdir())
+    with pytest.raises(Failure, match="no folder that can be written"):
+        render.run(None, job(str(ROOM), tmp_path / "a.exr", [], 8, Path("/proc")), 4, retries=1)
+
+
+def test_what_fails_is_tried_again_and_told(client: Any, tmp_path: Path) -> None:
+    script = f"echo x >>{tmp_path}/tried; echo no such luck; exit 3"
+    scripts = ["true", script]
+    came: list[str] = []
+    tasks = [farm.submit(client, task.study, [["sh", "-c", text], str(tmp_path)], f"task-{i}", 2) for i, text in enumerate(scripts)]
+    with pytest.raises(Failure, match="1 of 2 tasks failed, 1 succeeded.*\n.*\n.*exit code 3: no such luck"):
+        farm.finished(client, tasks, came.extend)
+    assert came == [str(tmp_path)] and (tmp_path / "tried").read_text() == "x\n" * 3
 
 
 def test_studies_of_scenes_become_one(client: Any, tmp_path: Path) -> None:
