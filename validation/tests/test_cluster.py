@@ -3,19 +3,24 @@
 import json
 import os
 import pickle
+import shlex
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from validation import exr, tyndall
-from validation.cluster import farm, parts, render, study, task
+from validation import cli as whole_cli
+from validation import environment, exr, tyndall
+from validation.cluster import cli, farm, parts, render, study, task
 from validation.cluster.job import Job, job
 from validation.cluster.sums import Sums
 from validation.failure import Failure
@@ -83,6 +88,41 @@ def test_options_that_no_part_can_have_are_refused(tmp_path: Path) -> None:
         job("32x24", tmp_path / "a.exr", [], 8, None)
     assert job(str(SCENES / "lampbox_up.xml"), tmp_path / "a.exr", ["-D", "res=8"], None, None).spp == 32
     assert job(str(ROOM), tmp_path / "a.exr", [], None, None).spp == 64
+
+
+def test_what_the_driver_does_not_know_is_for_the_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pictures: list[tuple[Job, int]] = []
+    workers = SimpleNamespace(nthreads=lambda: {"one": 1, "other": 1})
+    monkeypatch.setattr(environment, "extra", lambda _: None)
+    monkeypatch.setattr(farm, "connected", lambda *_: nullcontext(workers))
+    monkeypatch.setattr(render, "run", lambda _, picture, size, retries: pictures.append((picture, size)))
+    words = f"render {SCENES}/lampbox_up.xml --max-depth -1 -o {tmp_path}/a.exr -D res=8 --workers 1000 --size 8x6 --spp 64 --parts 4"
+    assert cli.main(words.split()) == 0
+    [(picture, size)] = pictures
+    assert picture.options == "-D res=8 --max-depth -1 --size 8x6 --threads 1".split() and (picture.spp, size) == (64, 16)
+    tyndall.call([*picture.render(), "--spp", "1", "-o", str(tmp_path / "b.exr")])
+
+
+def test_command_lines_of_parts_make_the_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = f"cluster commands {ROOM} -o {tmp_path}/a.exr --size 8x6 --spp 10 --parts 3".split()
+    assert whole_cli.main(words) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 3
+    for line in lines:
+        tyndall.call(shlex.split(line))
+    picture = job(str(ROOM), tmp_path / "a.exr", ["--size", "8x6"], 10, None)
+    sums = Sums(picture.output, picture.folder)
+    sums.gather()
+    assert sums.there == [(0, 10)] and equal(picture.output, single(picture, tmp_path))
+
+
+def test_two_workers_at_one_part_are_not_in_each_others_way(tmp_path: Path) -> None:
+    picture = job(str(ROOM), tmp_path / "a.exr", ["--size", "96x72", "--threads", "1"], 64, None)
+    with ThreadPoolExecutor(2) as workers:
+        found = set(workers.map(lambda _: rendered(picture, 0, 64), range(2)))
+    sums = Sums(picture.output, picture.folder)
+    sums.add(list(found))
+    assert len(found) == 1 and equal(picture.output, single(picture, tmp_path)) and not list(picture.folder.iterdir())
 
 
 def test_a_part_that_comes_twice_counts_once_and_what_is_there_is_a_picture(tmp_path: Path) -> None:
