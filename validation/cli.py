@@ -6,6 +6,7 @@ from pathlib import Path
 
 from validation import assets, cells, compare, comparison_page, coverage, full, matrix, package_tests, page, plume, references, selftest
 from validation import studies, truths, tyndall
+from validation.cluster import cli as cluster
 from validation.compare import Effort
 from validation.failure import Failure
 from validation.places import OUTPUT, REPORTS, SCENES
@@ -32,6 +33,7 @@ def parser() -> argparse.ArgumentParser:
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
+    add_cluster(commands)
     add_selftest(commands)
     add_record(commands)
     add(commands, "full", lambda _: full.run(), full.TEXT)
@@ -221,3 +223,13 @@ def run_stability(options: argparse.Namespace) -> bool:
         raise Failure("--batches is below 2: no variance can be known", "give at least 8")
     effort = stability.Effort(options.batches, options.spp or (128 if options.quick else 2048), options.seed)
     return stability.run(effort, options.output, options.only, options.perturb, quick=options.quick)
+
+
+def add_cluster(commands: Commands) -> None:
+    text = "Renders and studies by many processes or machines, over Dask distributed; `python3 -m validation.cluster` too."
+    command = add(commands, "cluster", run_cluster, text)
+    command.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="render, commands or study, and their options; --help explains them")
+
+
+def run_cluster(options: argparse.Namespace) -> bool:
+    return cluster.main(options.arguments or ["--help"]) == 0

@@ -7,6 +7,8 @@ import shutil
 import subprocess
 import sys
 import venv
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from validation.failure import Failure
@@ -29,12 +31,19 @@ def enter(module: str = "validation") -> None:
 
 def make_once() -> None:
     """Makes the environment unless it is there already. Processes that start together wait for the first."""
-    ENVIRONMENT.parent.mkdir(parents=True, exist_ok=True)
-    with open(ENVIRONMENT.with_suffix(".lock"), "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with locked():
         if not STAMP.exists() or STAMP.read_text() != wanted_stamp():
             make()
             STAMP.write_text(wanted_stamp())
+
+
+@contextmanager
+def locked() -> Iterator[None]:
+    """Keeps other processes from changing the environment."""
+    ENVIRONMENT.parent.mkdir(parents=True, exist_ok=True)
+    with open(ENVIRONMENT.with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def wanted_stamp() -> str:
@@ -50,7 +59,23 @@ def make() -> None:
         venv.create(ENVIRONMENT, with_pip=True)
     except (subprocess.CalledProcessError, OSError) as error:
         raise Failure(f"no virtual environment could be made: {error}", "install Python's venv module (Debian: python3-venv)")
-    install: list[str | Path] = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile", "-r", REQUIREMENTS_DEV]
-    # pip's messages go to stderr: stdout belongs to the command's table
-    if subprocess.run(install, stdout=sys.stderr).returncode != 0:
-        raise Failure("pip could not install the requirements", f"see its message above; then run again ({REQUIREMENTS_DEV})")
+    install(REQUIREMENTS_DEV)
+
+
+def extra(requirements: Path) -> None:
+    """Adds what few commands need, on first use. An environment of the user's own is left as it is."""
+    stamp = ENVIRONMENT / f"{requirements.stem}.stamp"
+    if Path(sys.prefix).resolve() != ENVIRONMENT.resolve():
+        return
+    with locked():
+        if not stamp.exists() or stamp.read_text() != requirements.read_text():
+            print(f"validation: installing {requirements.name} into {ENVIRONMENT} (once)", file=sys.stderr)
+            install(requirements)
+            stamp.write_text(requirements.read_text())
+
+
+def install(requirements: Path) -> None:
+    """Installs by pip. Its messages go to stderr: stdout belongs to the command's table."""
+    command: list[str | Path] = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile", "-r", requirements]
+    if subprocess.run(command, stdout=sys.stderr).returncode != 0:
+        raise Failure("pip could not install the requirements", f"see its message above; then run again ({requirements})")

@@ -5,10 +5,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from validation import matrix, package_tests, page, truths, tyndall
+from validation import environment, matrix, package_tests, page, truths, tyndall
 from validation.compare import Effort
 from validation.failure import Failure
-from validation.places import CROSSCHECK, OUTPUT
+from validation.places import CROSSCHECK, OUTPUT, REQUIREMENTS_CLUSTER
 from validation.stability import run as stability
 
 TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and a page in a browser, at full depth: under 40 minutes of two cores."
@@ -17,7 +17,7 @@ TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and a 
 def run() -> bool:
     """Runs every part, whatever the others find; true if all hold."""
     parts: dict[str, Callable[[], bool]] = {
-        "package": package_tests.run,
+        "package": package,
         "page in a browser": study_page,
         "closed forms": lambda: truths.run(Effort(batches=16, spp=512)),
         "stability": lambda: stability.run(stability.Effort(), OUTPUT / "stability"),
@@ -42,6 +42,12 @@ def timed(name: str, part: Callable[[], bool]) -> tuple[bool, float]:
         print(failure, flush=True)
         holds = False
     return holds, time.perf_counter() - start
+
+
+def package() -> bool:
+    """The tests of this package, those that need Dask too."""
+    environment.extra(REQUIREMENTS_CLUSTER)
+    return package_tests.run()
 
 
 def study_page() -> bool:

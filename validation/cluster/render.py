@@ -1,0 +1,100 @@
+"""Renders a picture by parts, each of which is a task, and merges them as they come."""
+
+import fcntl
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, TextIO
+
+from validation import tyndall
+from validation.cluster import farm, parts, task
+from validation.cluster.job import Job
+from validation.cluster.parts import Range
+from validation.cluster.sums import Sums
+from validation.failure import Failure
+
+
+def run(client: Any, job: Job, size: int, retries: int) -> None:
+    """Renders what is missing of a picture, in parts of `size` samples, and writes it."""
+    with alone(job.folder):
+        sums = Sums(job.output, job.folder)
+        begin(job, sums)
+        gaps = parts.cut(parts.missing(sums.there, job.spp), size)
+        tell(job, sums, f"{len(gaps)} parts to render")
+        futures = [submit(client, job, samples, retries) for samples in gaps]
+        farm.finished(client, futures, lambda paths: take(job, sums, paths))
+        finish(job, sums)
+
+
+def submit(client: Any, job: Job, samples: Range, retries: int) -> Any:
+    """One part as a task."""
+    name = parts.name(samples)
+    return farm.submit(client, task.render_part, [job.part(samples), str(job.folder), name], name, retries)
+
+
+def begin(job: Job, sums: Sums) -> None:
+    """Takes what is there already, and renders one sample here if nothing is: whatever is wrong with the scene, the options
+    or the output, the program says before anything is sent. It refuses samples of another picture too."""
+    sums.read()
+    first = sums.there[0][0] if sums.there else 0
+    resume = ["--resume"] if sums.there else []
+    try:
+        tyndall.call([*job.part((first, first + 1)), "--sums", str(sums.file), "-o", str(job.output), *resume])
+    except Failure as failure:
+        raise Failure(failure.problem, f"correct the command; {sums.file} may be of another picture") from None
+    sums.read()
+    sums.gather()
+
+
+def take(job: Job, sums: Sums, paths: list[str]) -> None:
+    """Merges parts that came."""
+    sums.add(paths)
+    tell(job, sums, str(job.output))
+
+
+def finish(job: Job, sums: Sums) -> None:
+    """Writes the picture from the sums, as one render would that was resumed."""
+    tyndall.call(job.whole(sums.file))
+    sums.read()
+    sums.sweep()
+    tell(job, sums, f"{job.output} is done")
+
+
+def tell(job: Job, sums: Sums, what: str) -> None:
+    """A line of progress."""
+    done = parts.count(sums.there)
+    noise = "" if sums.noise is None else f", noise {100 * sums.noise:.2g} %"
+    print(f"{done} of {job.spp} samples/pixel ({100 * done / job.spp:.0f} %){noise}: {what}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """Keeps a second driver of the same picture out."""
+    with lock_file(folder) as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Failure(f"{folder}: another driver is at work on this picture", "wait for it, or end it") from None
+        try:
+            yield
+        except Failure:
+            remove(folder)
+            raise
+        remove(folder)
+
+
+def lock_file(folder: Path) -> TextIO:
+    """A file to be locked, in a folder that is made if need be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        return open(folder / ".lock", "w")
+    except OSError as error:
+        raise Failure(f"{folder}: no folder that can be written: {error.strerror}", "give another --folder, or -o") from None
+
+
+def remove(folder: Path) -> None:
+    """Removes the folder of parts unless there is something in it. Not after an interruption: parts may still be saved."""
+    Path(folder, ".lock").unlink(missing_ok=True)
+    if not any(folder.iterdir()):
+        folder.rmdir()
