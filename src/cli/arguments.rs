@@ -146,7 +146,8 @@ pub struct Render {
     /// [default: no limit]
     ///
     /// The samples completed by then are written. With --spp as well, the render stops at whichever limit is
-    /// reached first. Alpha and the layers of an aov integrator are rendered afterwards, in a short time.
+    /// reached first. Alpha and the layers of an aov integrator are rendered afterwards, within a tenth of a second or one
+    /// pass over the image.
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]
     pub time_limit: Option<Duration>,
 

@@ -224,7 +224,7 @@ fn dispatch(
     layers: &[Layer],
     monitor: &mut Monitor<'_>,
 ) -> Image {
-    let stopwatch = Stopwatch::start();
+    let (stopwatch, started) = (Stopwatch::start(), Instant::now());
     let bench = Instrument::new(scene, film, settings);
     let (preview, sums) = match mode {
         Mode::Preview(fog, sums) => {
@@ -235,10 +235,19 @@ fn dispatch(
     };
     accumulate(&bench, preview.as_ref(), sums, stopwatch, monitor);
     let image = Image::so_far(sums);
-    let seen = primary::Pass::new(film, layers).run(&bench, image.samples_per_pixel.max(1));
+    let seen =
+        primary::Pass::new(film, layers).run(&bench, image.samples_per_pixel.max(1), late(settings, started));
     let develop = |layer| develop(layer, &image.pixels, &sums.accumulator, &seen);
     let layers = layers.iter().flat_map(develop).collect();
     Image { alpha: seen.alpha, layers, ..image }
+}
+
+/// True once alpha and layers, which come after the samples, take too long for the budget of a render that began at
+/// `started`.
+fn late(settings: &Settings, started: Instant) -> impl Fn() -> bool {
+    const GRACE: Duration = Duration::from_millis(100);
+    let budget = settings.budget;
+    move || budget.is_over(started.elapsed().saturating_sub(GRACE))
 }
 
 /// The image of an adaptive render, with a layer that shows how many samples its pixels took.
@@ -246,7 +255,8 @@ fn finish(bench: &Instrument<'_>, stopwatch: &Stopwatch, found: Developed, layer
     let Developed { pixels, passes, noise, reached, faults } = found;
     let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
     let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes.max(1));
-    let seen = primary::Pass::new(bench.film, layers).run(bench, mean);
+    let is_over = late(&bench.settings, Instant::now() - stopwatch.elapsed());
+    let seen = primary::Pass::new(bench.film, layers).run(bench, mean, is_over);
     let none = Accumulator::new(0);
     let mut layers: Vec<_> = layers.iter().flat_map(|layer| develop(layer, &pixels, &none, &seen)).collect();
     let values = reached.samples.iter().map(|n| *n as f32).collect();

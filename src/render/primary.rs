@@ -8,7 +8,7 @@ use crate::{
         Film,
         layer::{Content, Layer, Quantity},
     },
-    math::{Spectrum, Vec2, Vec3, vec2, vec3},
+    math::{DVec3, Spectrum, Vec2, Vec3, vec2, vec3},
     sampling::Stream,
     scene::Scene,
     shape::{Hit, Ray, SurfacePoint},
@@ -51,34 +51,32 @@ impl Pass {
         Self { alpha, quantities }
     }
 
-    /// Traces as many primary rays per pixel as there were `passes`.
-    pub fn run(&self, bench: &Instrument<'_>, passes: u64) -> Seen {
+    /// Traces as many primary rays per pixel as there were `passes`, or fewer once `is_over`, but one at least.
+    pub fn run(&self, bench: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
         let Instrument { scene, film, settings, compiled } = bench;
         let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
             return Seen { alpha: Vec::new(), planes: Vec::new() };
         }
         let environment = scene.lights.environment.is_some();
-        let mut means = vec![Vec3::ZERO; film.len() * width];
-        means.par_chunks_mut(width).enumerate().for_each(|(pixel, means)| {
-            let mut sums = vec![[0f64; 3]; width];
-            for pass in 0..passes {
+        let mut sums = vec![DVec3::ZERO; film.len() * width];
+        let mut done = 0;
+        while done == 0 || done < passes && !is_over() {
+            sums.par_chunks_mut(width).enumerate().for_each(|(pixel, sums)| {
                 let blocks = compiled.blocks();
-                let mut start = blocks.camera_start(scene, film, settings.seed, pass as usize, pixel);
+                let mut start = blocks.camera_start(scene, film, settings.seed, done as usize, pixel);
                 let view = View::new(bench, environment, &start, passes);
                 let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
                 let values = self.quantities.iter().map(|quantity| view.quantity(*quantity));
                 for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
-                    let value = (value * start.weight).as_dvec3().to_array();
-                    sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value);
+                    *sum += (value * start.weight).as_dvec3();
                 }
-            }
-            for (mean, sum) in means.iter_mut().zip(sums) {
-                *mean = Vec3::from_array(sum.map(|component| (component / passes as f64) as f32));
-            }
-        });
+            });
+            done += 1;
+        }
         let plane = |item: usize, component: usize| -> Vec<f32> {
-            means.iter().skip(item).step_by(width).map(|mean| mean[component]).collect()
+            let sums = sums.iter().skip(item).step_by(width);
+            sums.map(|sum| (sum[component] / done as f64) as f32).collect()
         };
         let first = usize::from(self.alpha);
         let planes = self.quantities.iter().enumerate().map(|(i, quantity)| {
