@@ -208,6 +208,11 @@ fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Re
         print_summary(&image, task, &goal.path, goal.preview().as_deref(), label);
         figures["image"] = goal.path.display().to_string().into();
     }
+    if let (Some((name, _)), Some(_)) = (interrupt::signal(), task.precision) {
+        super::complain(&format!(
+            "{name}: the image so far is written; a render with --error cannot be continued"
+        ));
+    }
     // The image is not lost where the sums are.
     if let Some((file, samples)) = kept? {
         print_kept(&file, &samples, task);
