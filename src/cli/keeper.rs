@@ -36,22 +36,15 @@ impl Turn {
         Self { every, last: Instant::now(), cost: Duration::ZERO }
     }
 
-    fn is_due(&self) -> bool {
-        self.last.elapsed() >= self.every.max(self.cost * RESTRAINT)
-    }
-
-    /// True if it was done just now; a failure is no reason to stop rendering.
-    fn take(&mut self, what: &str, work: impl FnOnce() -> Result<()>) -> bool {
-        if !self.is_due() {
-            return false;
+    /// What `work` gives, if it is its turn.
+    fn take<T>(&mut self, work: impl FnOnce() -> T) -> Option<T> {
+        if self.last.elapsed() < self.every.max(self.cost * RESTRAINT) {
+            return None;
         }
         let started = Instant::now();
         let done = work();
         (self.last, self.cost) = (Instant::now(), started.elapsed());
-        if let Err(error) = &done {
-            complain(&format!("warning: {what} is not written: {error}"));
-        }
-        done.is_ok()
+        Some(done)
     }
 }
 
@@ -91,26 +84,22 @@ impl<'a> Keeper<'a> {
     /// rendered again, samples cannot.
     pub fn watch(&mut self, progress: &Progress, sums: &Sums) {
         let Self { file, draw, task, .. } = self;
-        if let Some(file) = file {
-            if progress.is_last && (self.is_wanted || interrupt::came()) {
-                self.last = Some(file.replace(sums, &task.made));
-            } else if !progress.is_last {
-                self.is_wanted |= self.sums.take("the checkpoint", || file.replace(sums, &task.made));
-            }
-        }
-        if let Some(turn) = &mut self.picture
-            && !progress.is_last
-        {
-            turn.take("the picture so far", || draw(sums));
-        }
+        let mut replace = || file.as_mut().map(|file| file.replace(sums, &task.made));
         if progress.is_last {
             task.show(sums);
-        } else {
-            self.view.take("", || {
-                task.show(sums);
-                Ok(())
-            });
+            self.last = if self.is_wanted || interrupt::came() { replace() } else { None };
+            return;
         }
+        let kept = self.sums.take(replace).flatten();
+        self.is_wanted |= matches!(kept, Some(Ok(())));
+        let drawn = self.picture.as_mut().and_then(|turn| turn.take(|| draw(sums)));
+        for (what, done) in [("the checkpoint", kept), ("the picture so far", drawn)] {
+            // No reason to stop rendering.
+            if let Some(Err(error)) = done {
+                complain(&format!("warning: {what} is not written: {error}"));
+            }
+        }
+        self.view.take(|| task.show(sums));
     }
 
     /// Where the sums are, if they are kept.
@@ -127,12 +116,15 @@ pub struct SumsFile {
     path: PathBuf,
     /// What is there is whole, and of this render.
     is_ours: bool,
+    /// This render goes on from what was there.
+    is_resumed: bool,
 }
 
 impl SumsFile {
     /// A file at `path`, links followed, for new sums.
     pub fn new(path: &Path) -> Self {
-        Self { path: std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()), is_ours: false }
+        let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        Self { path, is_ours: false, is_resumed: false }
     }
 
     fn beside(&self, end: &str) -> PathBuf {
@@ -151,15 +143,21 @@ impl SumsFile {
             let _ = std::fs::remove_file(self.previous());
             // Where the file system has no links, the last file has no other name while it is replaced.
             let _ = std::fs::hard_link(&self.path, self.previous());
-        } else if self.path.is_file() && !self.previous().is_file() {
-            let aside = self.beside(".before");
-            if std::fs::rename(&self.path, &aside).is_ok() {
-                complain(&format!("note: the sums of an earlier render are kept as {}", aside.display()));
-            }
+        } else if !self.is_resumed {
+            self.put_aside();
         }
         write(&self.path, sums, made)?;
         self.is_ours = true;
         Ok(())
+    }
+
+    /// Keeps the newest sums of an earlier render, which may have been killed.
+    fn put_aside(&self) {
+        let aside = self.beside(".before");
+        let newest = [self.path.clone(), self.previous()].into_iter().find(|file| file.is_file());
+        if newest.is_some_and(|newest| std::fs::rename(newest, &aside).is_ok()) {
+            complain(&format!("note: the sums of an earlier render are kept as {}", aside.display()));
+        }
     }
 
     fn finish(self) -> PathBuf {
@@ -186,6 +184,7 @@ impl SumsFile {
             }
         };
         made::must_equal(&self.path, &found, made)?;
+        self.is_resumed = true;
         Ok(sums)
     }
 }

@@ -225,7 +225,7 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
         (None, seconds) => Effort::Seconds(seconds.map_or(SECONDS, |seconds| seconds.as_secs_f64())),
     };
     Ok(Question {
-        program: format!("tyndall {}", env!("CARGO_PKG_VERSION")),
+        program: super::made::program(),
         scenes: names.into_iter().zip(&arguments.scenes).map(scene).collect::<Result<_>>()?,
         definitions: arguments.definitions.clone(),
         size: arguments.size.map(|size| [size.width, size.height]),

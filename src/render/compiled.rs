@@ -67,8 +67,9 @@ impl<P: Profile> Compiled for Ready<'_, P> {
         &self.blocks
     }
     fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
-        guarded(pass, |works, at| {
-            self.blocks.render(self, pass, block, &|pixel| wants(pixel) && works(pixel), at)
+        guarded(pass, |failed, at| {
+            let wants = |pixel: usize| wants(pixel) && !failed.contains(&(pixel as u32));
+            self.blocks.render(self, pass, block, &wants, at)
         })
     }
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {

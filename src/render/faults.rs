@@ -87,16 +87,13 @@ impl fmt::Display for Cause {
 /// Pixels of a block that may fail before all of it is given up.
 const MOST_FAILURES: usize = 64;
 
-/// A block by `render`, which gets the pixels to leave out and says which one it is at. A pixel where it panics is left
+/// A block by `render`, which gets the pixels to leave out, and says which one it is at. A pixel where it panics is left
 /// out, and the others rendered again; where a panic is not that of a pixel, the block adds nothing.
-pub(super) fn guarded(
-    sample: usize,
-    render: impl Fn(&dyn Fn(usize) -> bool, &Cell<Option<u32>>) -> Outcome,
-) -> Outcome {
+pub(super) fn guarded(sample: usize, render: impl Fn(&[u32], &Cell<Option<u32>>) -> Outcome) -> Outcome {
     let (mut failed, mut faults) = (Vec::new(), Vec::new());
     loop {
         let at = Cell::new(None);
-        let attempt = AssertUnwindSafe(|| render(&|pixel| !failed.contains(&(pixel as u32)), &at));
+        let attempt = AssertUnwindSafe(|| render(&failed, &at));
         match catch_unwind(attempt) {
             Ok(mut outcome) => {
                 outcome.faults.append(&mut faults);
@@ -125,15 +122,13 @@ mod tests {
         let hook = std::panic::take_hook();
         std::panic::set_hook(Box::new(|_| {}));
         let outcome = |bad: &'static [u32]| {
-            guarded(5, move |wants, at| {
-                for pixel in (0..9).filter(|pixel| wants(*pixel)) {
+            guarded(5, move |failed, at| {
+                let wants = |pixel: &usize| !failed.contains(&(*pixel as u32));
+                for pixel in (0..9).filter(wants) {
                     at.set(Some(pixel as u32));
                     assert!(!bad.contains(&(pixel as u32)), "bad {pixel}");
                 }
-                Outcome::of(
-                    (0..9).filter(|pixel| wants(*pixel)).map(|pixel| (pixel, 1.0)),
-                    std::iter::empty(),
-                )
+                Outcome::of((0..9).filter(wants).map(|pixel| (pixel, 1.0)), std::iter::empty())
             })
         };
         let (whole, some) = (outcome(&[]), outcome(&[2, 7]));

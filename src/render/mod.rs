@@ -43,6 +43,7 @@ use faults::Faults;
 use fog::Preview;
 use instrument::{BLOCKS_AT_ONCE, Instrument};
 use monitor::{Monitor, Stopwatch};
+use samples::Samples;
 use std::time::{Duration, Instant};
 use sums::Sums;
 
@@ -278,57 +279,68 @@ fn accumulate(
     monitor: &mut Monitor<'_>,
 ) {
     let Instrument { film, settings: Settings { budget, seed, .. }, compiled, .. } = bench;
-    let (blocks, count, before) = (compiled.blocks(), compiled.blocks().count(), sums.elapsed);
-    let (had, wanted) = (sums.samples.clone(), budget.wanted());
-    // Tasks are counted over the passes that are missing; of the first of them, some blocks may be done.
-    let sample = |task: usize| had.missing(wanted.start, (task / count) as u64);
-    let end =
-        usize::try_from(had.missing_of(&wanted)).map_or(usize::MAX, |passes| passes.saturating_mul(count));
-    if end > 0 {
-        sums.start(sample(0));
-    } else {
-        sums.drop_unfinished();
-    }
-    let (mut next, mut noted) = (sums.blocks.min(end), Instant::now());
+    let (blocks, before) = (compiled.blocks(), sums.elapsed);
+    let queue = Queue::new(budget, sums, blocks.count());
+    let (mut next, mut noted) = (sums.blocks.min(queue.end), Instant::now());
     loop {
-        let tasks = next..monitor.limit_tasks(end.min(next + BLOCKS_AT_ONCE), (next / count) as u64, count);
+        let end = queue.end.min(next + BLOCKS_AT_ONCE);
+        let tasks = next..monitor.limit_tasks(end, (next / queue.per_pass) as u64, queue.per_pass);
         let is_over = || budget.is_over(stopwatch.elapsed());
         let outcomes = bench.work_until(tasks.clone(), is_over, |pass, block| {
-            let sample = sample(pass * count) as usize;
+            let sample = queue.sample(pass * queue.per_pass) as usize;
             match preview {
                 None => compiled.render(sample, block, &|_| true),
                 Some(preview) => blocks.show(preview, film, *seed, sample, block),
             }
         });
         for (task, outcome) in tasks.clone().zip(&outcomes) {
-            sums.add(sample(task), outcome, count);
+            sums.add(queue.sample(task), outcome, queue.per_pass);
         }
         next += outcomes.len();
-        let elapsed = stopwatch.elapsed();
+        let (elapsed, samples_per_pixel) = (stopwatch.elapsed(), sums.samples.count());
         sums.elapsed = before + elapsed;
-        let is_over = next == end || outcomes.len() < tasks.len();
-        if is_over || noted.elapsed() > NOISE_EVERY {
+        let is_last = next == queue.end || outcomes.len() < tasks.len();
+        if is_last || noted.elapsed() > NOISE_EVERY {
             sums.note_noise();
             noted = Instant::now();
         }
-        let passes = sums.samples.count();
-        if next.is_multiple_of(count) && monitor.is_mark(passes) {
-            let show = |monitor: &mut Monitor<'_>| {
-                (monitor.show)(Snapshot {
-                    pixels: sums.accumulator.mean(),
-                    samples_per_pixel: passes,
-                    elapsed,
-                });
-            };
-            stopwatch.hold(|| show(monitor));
+        if next.is_multiple_of(queue.per_pass) && monitor.is_mark(samples_per_pixel) {
+            let pixels = || sums.accumulator.mean();
+            stopwatch.hold(|| (monitor.show)(Snapshot { pixels: pixels(), samples_per_pixel, elapsed }));
         }
-        let samples = passes * film.len() as u64 + (sums.unfinished() * film.len() as f64) as u64;
-        let reached =
-            Progress { samples, passes, elapsed, noise: sums.noise, within: None, is_last: is_over };
-        (monitor.watch)(reached, sums);
-        if is_over {
+        (monitor.watch)(sums.progress(elapsed, is_last), sums);
+        if is_last {
             return;
         }
+    }
+}
+
+/// The blocks that are to be rendered, numbered over the passes that are missing. Of the first of these, some may be done.
+struct Queue {
+    had: Samples,
+    first: u64,
+    per_pass: usize,
+    /// How many.
+    end: usize,
+}
+
+impl Queue {
+    /// What `budget` wants besides what `sums` have; blocks of another pass are left out of them.
+    fn new(budget: &Budget, sums: &mut Sums, per_pass: usize) -> Self {
+        let (had, wanted) = (sums.samples.clone(), budget.wanted());
+        let passes = usize::try_from(had.missing_of(&wanted));
+        let end = passes.map_or(usize::MAX, |passes| passes.saturating_mul(per_pass));
+        let queue = Self { had, first: wanted.start, per_pass, end };
+        match end {
+            0 => drop(sums.drop_unfinished()),
+            _ => sums.start(queue.sample(0)),
+        }
+        queue
+    }
+
+    /// The number of the sample that `task` belongs to.
+    fn sample(&self, task: usize) -> u64 {
+        self.had.missing(self.first, (task / self.per_pass) as u64)
     }
 }
 

@@ -2,6 +2,7 @@
 //! as if it had never stopped, and several of other samples make one.
 
 use super::{
+    Progress,
     block::{Blocks, Outcome, Pass},
     faults::Faults,
     samples::Samples,
@@ -125,6 +126,13 @@ impl Sums {
             self.samples.insert(sample);
             self.blocks = 0;
         }
+    }
+
+    /// How far the render is that makes them, `elapsed` after it began.
+    pub(super) fn progress(&self, elapsed: Duration, is_last: bool) -> Progress {
+        let (passes, pixels) = (self.samples.count(), self.accumulator.len() as f64);
+        let samples = ((passes as f64 + self.unfinished()) * pixels) as u64;
+        Progress { samples, passes, elapsed, noise: self.noise, within: None, is_last }
     }
 
     /// Estimates the noise again where a pass was added since.

@@ -298,6 +298,11 @@ fn sums_of_an_earlier_render_are_put_aside() {
     assert!(note.contains("a.sums.before"), "{note}");
     good(sandbox.run("merge a.sums.before --sums all.sums"));
     assert!(good(sandbox.run("info all.sums")).out().contains("0..4"));
+    // As a killed render leaves them: the newer ones are kept.
+    fs::rename(sandbox.path("a.sums.before"), sandbox.path("a.sums")).unwrap();
+    fs::write(sandbox.path("a.sums.previous"), "older").unwrap();
+    good(render(&sandbox, "--samples 0..1 --sums a.sums"));
+    assert!(good(sandbox.run("merge a.sums.before -o all.exr")).out().contains("0..4"));
 }
 
 /// Going on from the file before the last keeps that until a new one is there.

@@ -18,7 +18,7 @@ const RANDOM: usize = 12;
 const ENDING: &str = ".partial";
 /// Of the goal's name, to leave room for the rest in 255 bytes [characters].
 const LONGEST_STEM: usize = 56;
-/// Times to begin anew where others take a new file for an abandoned one.
+/// Times to begin again where others take a new file for an abandoned one.
 const ATTEMPTS: usize = 100;
 
 impl Partial {
