@@ -7,7 +7,7 @@ use super::{
     keeper::{Keeper, SumsFile},
     load, made,
     plan::Plan,
-    progress::{Bar, noise_text, percent},
+    progress::{Bar, percent},
     threads,
     viewer::Viewer,
 };
@@ -18,7 +18,6 @@ use crate::{
         self, Image, Settings, adaptive::Precision, budget::Budget, faults::Faults, samples::Samples,
         sums::Sums,
     },
-    sampling::Sampler,
     scene::build::Setup,
     transport::Strategies,
 };
@@ -171,15 +170,9 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
 fn precision(arguments: &arguments::Render, setup: &Setup, settings: &Settings) -> Result<Option<Precision>> {
     let Some(error) = arguments.error else { return Ok(None) };
     let refuse = |found: &str, remedy: &str| {
-        let expected = "an image of independent samples, without layers of moments";
+        let expected = "an image without layers of moments";
         Err(Error::new("--error", expected, found, remedy))
     };
-    if settings.sampler == Sampler::Sobol {
-        return refuse(
-            "samples of a Sobol sequence (--sampler sobol, or the scene's sampler)",
-            "remove --error, or use --sampler independent",
-        );
-    }
     if settings.options.strategies == Strategies::NONE {
         return refuse("the preview fog", "remove --error, or choose another --integrator");
     }
@@ -381,8 +374,7 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
 }
 
 fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: Option<&Path>, label: Option<&str>) {
-    let noise_text = |noise| format!(", {}", noise_text(noise, task.settings.sampler));
-    let noise = image.noise.map_or(String::new(), noise_text);
+    let noise = image.noise.map_or(String::new(), |noise| format!(", noise {}", percent(noise)));
     let noise = match (&image.reached, task.precision) {
         (Some(reached), Some(Precision { error, .. })) => {
             let share = 100.0 * reached.share;

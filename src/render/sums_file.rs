@@ -127,7 +127,7 @@ fn sums_of(state: State, [parts, windows, camera, light]: [&[u8]; 4]) -> Option<
     let sums: Vec<ExactSum> = sums.collect();
     let pixels = state.width.checked_mul(state.height).filter(|pixels| *pixels > 0)?;
     let samples = if state.samples.is_empty() { Samples::default() } else { Samples::of(state.samples)? };
-    let accumulator = Accumulator::from_sums(pixels, samples.count(), &sums)?;
+    let accumulator = Accumulator::from_sums(pixels, samples.halves(), &sums)?;
     let mut sums = Sums::of(accumulator, samples, state.width);
     sums.faults = state.faults;
     sums.elapsed = Duration::try_from_secs_f64(state.seconds).ok()?;

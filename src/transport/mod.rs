@@ -194,8 +194,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
         self.connections_per_vertex > 0 || self.counts.lens > 0.0
     }
 
-    /// True if the first vertex of a light subpath is connected to the lens: only where no camera subpath hits emitters,
-    /// which finds those in view with far less noise, as every pixel sample does.
+    /// True if the first vertex of a light subpath is connected to the lens, see [`Strategies::runs`].
     fn starts_seen(&self) -> bool {
         self.counts.lens > 0.0 && self.counts.emitter_hit <= 0.0
     }
