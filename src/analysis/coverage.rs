@@ -248,6 +248,11 @@ impl Share {
     }
 }
 
+/// True if `set` reaches all light of `scene` that the strategies of `options` do.
+pub fn is_complete(scene: &Scene, options: &Options, set: Strategies) -> bool {
+    Traits::of(scene, options.into(), true).missing(set, options.strategies).is_none()
+}
+
 /// Light of `scene` that an estimator does not reach; the preview of no strategies is no estimate.
 pub fn unreached(scene: &Scene, options: &Options) -> Vec<Unreached> {
     match options.strategies {

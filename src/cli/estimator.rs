@@ -2,10 +2,15 @@
 
 use super::arguments::one_of;
 use crate::{
+    analysis::coverage,
     error::{Error, Result},
     film::layer::Content,
     medium::DistanceMethod,
-    render::{Settings, budget::Budget},
+    render::{
+        Settings,
+        budget::Budget,
+        pilot::{self, Choice},
+    },
     sampling::Sampler,
     scene::build::Setup,
     settings::integrator::Restriction,
@@ -37,7 +42,10 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&Strategies::INTEGRATORS))]
     pub integrator: Option<Strategies>,
 
-    /// Sampling strategies to use, separated by commas [default: all of the integrator]
+    /// Sampling strategies to use, separated by commas [default: those of the integrator that are worth their time]
+    ///
+    /// Without this option, a short pilot finds out which strategies of bdpt lower the error most for their time in this
+    /// scene, and how many samples each should have; strategies that are named all have as many.
     ///
     /// hit: the camera subpath hits an emitter; next-event: it connects to a point sampled on an emitter; join: one of its
     /// vertices connects to one of a light subpath; lens: a light subpath connects to the lens.
@@ -113,8 +121,26 @@ fn heuristic(text: &str) -> std::result::Result<Heuristic, String> {
 }
 
 impl Estimator {
-    /// A render of `setup`, its paths made as these options say, or else as the scene says.
+    /// A render of `setup`, its paths made as these options say, or else as the scene says, or else as a pilot chooses.
     pub fn settings(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
+        self.chosen(setup, seed, budget).map(|(settings, _)| settings)
+    }
+
+    /// The same, and what the pilot chose, if there was one.
+    pub fn chosen(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<(Settings, Option<Choice>)> {
+        let mut settings = self.requested(setup, seed, budget)?;
+        let Options { strategies, heuristic, .. } = settings.options;
+        if !self.strategies.is_empty() || strategies != Strategies::BDPT || heuristic != Heuristic::Balance {
+            return Ok((settings, None));
+        }
+        let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);
+        let choice = pilot::choose(&setup.scene, &setup.film, &settings, is_complete);
+        (settings.options.strategies, settings.options.effort) = (choice.strategies, choice.effort);
+        Ok((settings, Some(choice)))
+    }
+
+    /// The same without a pilot: all strategies that are not left out.
+    pub fn requested(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
         let options = self.options(setup)?;
         let profile = match self.profile {
             Profile::Everything => ProfileName::Everything,

@@ -31,8 +31,8 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     }
     let setup = load(&arguments.scene, None, arguments.estimator.tracker)?;
     let budget = Budget::samples(setup.samples_per_pixel);
-    let settings = arguments.estimator.settings(&setup, 0, budget)?;
-    let plan = Plan::new(&setup, &arguments.estimator, settings, None);
+    let (settings, chosen) = arguments.estimator.chosen(&setup, 0, budget)?;
+    let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, None);
     say(&describe(&setup, &settings, &plan));
     arguments.answer.give(&figures(&setup, &plan))
 }

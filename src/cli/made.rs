@@ -42,6 +42,8 @@ pub fn settings(scene: &Scene, setup: &Setup, settings: &Settings) -> Result<Val
         },
         "layers": setup.integrator.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
         "strategies": kinds.map(StrategyKind::name).collect::<Vec<_>>(),
+        "light_walks": options.effort.light_walks,
+        "connections": options.effort.connections,
         "heuristic": options.heuristic.to_string(),
         "max_depth": options.max_depth,
         "hide_emitters": options.hide_emitters,

@@ -5,9 +5,9 @@ use crate::{
     analysis::coverage::{self, Share, Unreached, list},
     math::Spectrum,
     medium::{DistanceMethod, Medium},
-    render::{Settings, budget::Budget},
+    render::{Settings, budget::Budget, pilot::Choice},
     scene::build::Setup,
-    transport::{Options, Strategies, observer::StrategyKind},
+    transport::{Effort, Options, Strategies, observer::StrategyKind},
 };
 use serde_json::{Value, json};
 
@@ -17,6 +17,8 @@ pub struct Plan {
     pub integrator: &'static str,
     strategies: Vec<&'static str>,
     settings: Settings,
+    /// What all strategies at equal effort would take for the same error, over what these do, by the pilot.
+    gain: Option<f64>,
     /// Free-flight sampling methods in use.
     flights: Vec<DistanceMethod>,
     size: [u32; 2],
@@ -26,8 +28,14 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// That of a render of `setup` by `settings`, which `estimator` gave.
-    pub fn new(setup: &Setup, estimator: &Estimator, settings: Settings, error: Option<f64>) -> Self {
+    /// That of a render of `setup` by `settings`, which `estimator` gave, as a pilot has `chosen` if there was one.
+    pub fn new(
+        setup: &Setup,
+        estimator: &Estimator,
+        settings: Settings,
+        chosen: Option<Choice>,
+        error: Option<f64>,
+    ) -> Self {
         let wanted = estimator.integrator.unwrap_or(setup.integrator.options.strategies);
         let known = Strategies::INTEGRATORS.iter().find(|(_, strategies)| *strategies == wanted);
         let strategies = settings.options.strategies;
@@ -38,6 +46,7 @@ impl Plan {
             flights: if strategies == Strategies::NONE { Vec::new() } else { flights(&setup.scene.media) },
             size: [setup.film.width, setup.film.height],
             unreached: coverage::unreached(&setup.scene, &settings.options),
+            gain: chosen.map(|choice| choice.gain),
             settings,
             error,
         }
@@ -47,7 +56,7 @@ impl Plan {
     pub fn line(&self) -> String {
         let integrator = match self.strategies.as_slice() {
             [] => format!("{}, a preview of first surfaces", self.integrator),
-            strategies => format!("{} ({})", self.integrator, strategies.join(", ")),
+            strategies => format!("{} ({}{})", self.integrator, strategies.join(", "), self.effort()),
         };
         let [width, height] = self.size;
         let mut parts = vec![integrator, format!("{} samples", self.settings.sampler.name())];
@@ -57,6 +66,28 @@ impl Plan {
         parts.extend([format!("{width}x{height}"), self.limits()]);
         parts.push(format!("profile {}", self.settings.profile.name()));
         parts.join(", ")
+    }
+
+    /// How often strategies run that do not all run equally often.
+    fn effort(&self) -> String {
+        let Options { strategies, effort: Effort { light_walks, connections }, .. } = self.settings.options;
+        let mut text = String::new();
+        if connections != 1 {
+            text += &format!("; {connections} joins a vertex");
+        }
+        if light_walks != 1.0 {
+            text += &format!("; {light_walks} light subpaths a sample");
+        }
+        let left_out = if self.gain.is_some() { StrategyKind::ALL.to_vec() } else { Vec::new() };
+        let left_out: Vec<&str> =
+            left_out.into_iter().filter(|kind| !strategies.has(*kind)).map(StrategyKind::name).collect();
+        if !left_out.is_empty() {
+            text += &format!("; without {}", list(&left_out));
+        }
+        match self.gain {
+            Some(gain) if !text.is_empty() => format!("{text}: all alike would take {gain:.1} times as long"),
+            _ => text,
+        }
     }
 
     /// Says it, to standard error. What is missing from the image is said even when little else is.
@@ -92,11 +123,14 @@ impl Plan {
     /// The same facts for scripts.
     pub fn json(&self) -> Value {
         let Settings { options, sampler: points, budget, seed, profile } = self.settings;
-        let Options { heuristic, max_depth, hide_emitters, forced_interaction, .. } = options;
+        let Options { effort, heuristic, max_depth, hide_emitters, forced_interaction, .. } = options;
         let unreached = self.unreached.iter();
         json!({
             "integrator": self.integrator,
             "strategies": self.strategies,
+            "light_walks": effort.light_walks,
+            "connections": effort.connections,
+            "time_of_all_strategies": self.gain,
             "sampler": points.name(),
             "free_flights": self.flights.iter().map(|method| method.name()).collect::<Vec<_>>(),
             "width": self.size[0],

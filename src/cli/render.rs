@@ -15,8 +15,8 @@ use crate::{
     error::{Error, Result},
     film::{layer::Content, output},
     render::{
-        self, Image, Settings, adaptive::Precision, budget::Budget, faults::Faults, samples::Samples,
-        sums::Sums,
+        self, Image, Settings, adaptive::Precision, budget::Budget, faults::Faults, pilot::Choice,
+        samples::Samples, sums::Sums,
     },
     scene::build::Setup,
     transport::Strategies,
@@ -33,7 +33,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     interrupt::listen();
     let started = Instant::now();
     let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
-    let settings = settings(arguments, &setup)?;
+    let (settings, chosen) = settings(arguments, &setup)?;
     let precision = precision(arguments, &setup, &settings)?;
     let goal = Goal::new(arguments, &setup)?;
     let made = made::made(made::settings(&arguments.scene, &setup, &settings)?);
@@ -41,7 +41,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     check_kept(arguments, &settings, &goal)?;
     let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
     let task = Task { settings, precision, arguments, made, viewer: &Mutex::new(viewer) };
-    let plan = Plan::new(&setup, &arguments.estimator, task.settings, arguments.error);
+    let plan = Plan::new(&setup, &arguments.estimator, task.settings, chosen, arguments.error);
     plan.announce();
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
@@ -341,11 +341,11 @@ fn figures(image: &Image, task: &Task<'_>) -> Value {
     figures
 }
 
-fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<Settings> {
+fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<(Settings, Option<Choice>)> {
     let endless = Budget::ENDLESS;
-    let settings = arguments.estimator.settings(setup, arguments.seed, endless)?;
+    let (settings, chosen) = arguments.estimator.chosen(setup, arguments.seed, endless)?;
     let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
-    Ok(Settings { budget, ..settings })
+    Ok((Settings { budget, ..settings }, chosen))
 }
 
 /// Maximum number of samples per pixel of a preview, unless --spp is given.

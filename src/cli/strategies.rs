@@ -67,7 +67,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     arguments.answer.check(&[&arguments.scene.file])?;
     let setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
     let budget = Budget::ENDLESS;
-    let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
+    let settings = arguments.estimator.requested(&setup, arguments.seed, budget)?;
     let passes = arguments.spp.map_or(setup.samples_per_pixel, u64::from) as usize;
     let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);
     let plan = Plan { depth: arguments.depth, passes, pilots };

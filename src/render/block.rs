@@ -129,13 +129,15 @@ impl Pass {
 }
 
 impl Blocks {
-    /// Divides `pixels` for estimators of so many hero channels, whose walks draw from streams of `sampler`.
-    pub fn new(pixels: usize, heroes: usize, sampler: Sampler) -> Self {
+    /// Divides `pixels`, each of which has `light_walks` light subpaths in a pass, for estimators of so many hero channels,
+    /// whose walks draw from streams of `sampler`.
+    pub fn new(pixels: usize, heroes: usize, sampler: Sampler, light_walks: f32) -> Self {
         let count = pixels.div_ceil(PIXELS_PER_BLOCK).max(1);
         let golden = (pixels as f64 * 0.618_033_988_75) as usize;
         let stride = (golden.max(1)..).find(|s| gcd(*s, pixels) == 1).unwrap_or(1);
         let heroes = heroes as u64;
-        let walks_per_block = (pixels.div_ceil(count) as u64).div_ceil(heroes) * heroes;
+        let walks = (pixels.div_ceil(count) as f64 * f64::from(light_walks)).ceil() as u64;
+        let walks_per_block = walks.div_ceil(heroes) * heroes;
         Self { pixels, count, stride, walks_per_block, heroes, sampler }
     }
 
@@ -357,11 +359,11 @@ mod tests {
     #[test]
     fn blocks_hold_every_pixel_once() {
         for pixels in [1, 2, 7, 1024, 1025, 48 * 48, 640 * 480] {
-            let blocks = Blocks::new(pixels, 1, Sampler::Independent);
+            let blocks = Blocks::new(pixels, 1, Sampler::Independent, 1.0);
             let mut seen = vec![0; pixels];
             (0..blocks.count()).flat_map(|b| blocks.pixels(b)).for_each(|p| seen[p] += 1);
             assert!(seen.iter().all(|n| *n == 1), "{pixels}");
-            assert_eq!(Blocks::new(pixels, 3, Sampler::Sobol).walks_per_block() % 3, 0);
+            assert_eq!(Blocks::new(pixels, 3, Sampler::Sobol, 0.25).walks_per_block() % 3, 0);
         }
     }
 }

@@ -5,6 +5,7 @@ use super::{
     Settings,
     block::{Blocks, Outcome},
     faults::guarded,
+    pilot::Pilot,
     pixel_sample::{self, EyeSample, Splat, Walk},
     strategy_images::{self, CellContribution, StrategyTable},
     timing::{self, Times},
@@ -18,8 +19,8 @@ use crate::{
     transport::{
         Estimator, Heuristic,
         profile::{
-            Bounded, ByCompared, ByCutoff, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName, Smoke,
-            Vacuum,
+            Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName,
+            Smoke, Vacuum,
         },
     },
 };
@@ -54,11 +55,16 @@ pub(super) struct Ready<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Ready<'a, P> {
-    fn prepare(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
-        let blocks = Blocks::new(film.len(), P::Channels::COUNT, settings.sampler);
+    fn new(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
+        let light_walks = settings.options.effort.light_walks;
+        let blocks = Blocks::new(film.len(), P::Channels::COUNT, settings.sampler, light_walks);
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let estimator = Estimator::<P>::new(scene, settings.options, settings.seed, per_pass, per_block);
-        Box::new(Self { estimator, blocks, scene, film, seed: settings.seed })
+        Self { estimator, blocks, scene, film, seed: settings.seed }
+    }
+
+    fn prepare(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
+        Box::new(Self::new(scene, film, settings))
     }
 }
 
@@ -106,4 +112,9 @@ pub(super) fn choose<'a>(scene: &'a Scene, film: &'a Film, settings: &Settings) 
         (Heuristic::Balance, ProfileName::Everything) => Ready::<Everything>::prepare,
     };
     prepare(scene, film, settings)
+}
+
+/// What a pilot by `settings` says.
+pub(super) fn pilot(scene: &Scene, film: &Film, settings: &Settings) -> Pilot {
+    Pilot::fly(&Ready::<ByKind>::new(scene, film, settings))
 }

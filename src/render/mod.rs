@@ -14,6 +14,7 @@ mod fog;
 pub mod instrument;
 mod monitor;
 mod observer;
+pub mod pilot;
 pub mod pixel_sample;
 mod primary;
 pub mod samples;

@@ -144,7 +144,7 @@ impl Sums {
 
     /// Which pixels a block has does not depend on how it is rendered.
     pub(super) fn division(&self) -> Blocks {
-        Blocks::new(self.accumulator.len(), 1, Sampler::Independent)
+        Blocks::new(self.accumulator.len(), 1, Sampler::Independent, 1.0)
     }
 
     /// The mean. Pixels of the unfinished pass's blocks count it by the fraction of it that is done, as the light that

@@ -73,14 +73,14 @@ pub struct Integrator {
     pub layers: Vec<Layer>,
 }
 
-/// Every integrator.
+/// Every integrator. Mitsuba's path tracers say no more than that an image of the scene is wanted: strategies are chosen here.
 pub const ROWS: Registry<Build<Integrator>> = Registry::new(
     "an integrator",
     &[
         ("bdpt", |p| build_as(p, Strategies::BDPT)),
-        ("path", |p| build_as(p, Strategies::PT)),
-        ("volpath", |p| build_as(p, Strategies::PT)),
-        ("volpathmis", |p| build_as(p, Strategies::PT)),
+        ("path", |p| build_as(p, Strategies::BDPT)),
+        ("volpath", |p| build_as(p, Strategies::BDPT)),
+        ("volpathmis", |p| build_as(p, Strategies::BDPT)),
         ("ptracer", |p| build_as(p, Strategies::LT)),
         ("fog", build_fog),
         ("single_scattering", build_single_scattering),

@@ -31,12 +31,29 @@ impl Strategies {
         [("bdpt", Self::BDPT), ("pt", Self::PT), ("lt", Self::LT), ("fog", Self::NONE)];
 }
 
+/// How many samples the strategies take, for each pixel sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Light subpaths, above 0.
+    pub light_walks: f32,
+    /// Connections from each vertex of the camera subpath to vertices of light subpaths, above 0.
+    pub connections: u32,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { light_walks: 1.0, connections: 1 }
+    }
+}
+
 /// How paths are sampled and weighted. A new option is a field here, with the parameter of a scene that it is read
 /// from, and a flag of the command line (`cli/estimator.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Which strategies run.
     pub strategies: Strategies,
+    /// How often.
+    pub effort: Effort,
     /// By which they share the paths that several of them can make. All but [`Heuristic::Balance`] run on the profile
     /// `everything`.
     pub heuristic: Heuristic,
@@ -53,6 +70,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             strategies: Strategies::BDPT,
+            effort: Effort::default(),
             heuristic: Heuristic::default(),
             max_depth: None,
             hide_emitters: false,
@@ -71,6 +89,7 @@ impl Options {
         }
         Ok(Self {
             strategies,
+            effort: Effort::default(),
             max_depth: max_depth(params)?,
             hide_emitters: params.boolean("hide_emitters", false)?,
             forced_interaction: params.boolean("forced_interaction", false)?,

@@ -5,8 +5,8 @@ use super::{
     Estimator,
     cache::LightCache,
     connect::{self, Contribution, Span},
-    mis::{self, MisSums},
-    observer::{Meeting, Observer},
+    mis::{self, MisSums, Weight},
+    observer::{Meeting, Observer, StrategyKind},
     profile::Profile,
     segment::{FlightPart, Interaction, Passed},
     vertex::{Subpath, Vertex},
@@ -71,6 +71,11 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Ve
 }
 
 impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
+    #[inline]
+    fn kind(edges: u32) -> StrategyKind {
+        if edges == 1 { StrategyKind::Lens } else { StrategyKind::Connection }
+    }
+
     #[inline]
     fn connections(&self, edges: u32, _: Vec3) -> f32 {
         if edges == 1 { self.estimator.counts.lens } else { self.estimator.counts.connection }
@@ -232,11 +237,13 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         let connections = if has_other { counts.next_event * sample.pdf } else { 0.0 };
         let unit = subpath.inv_pdf / counts.emitter_hit;
         let by_light = subpath.others_over_pdf_rev.scaled(sample.pdf_direction * sample.pdf_start * unit);
-        let others = P::MisSums::of(subpath.pdf_over_hero_before.scaled(connections * unit)).and(by_light);
+        let next_event = subpath.pdf_over_hero_before.scaled(connections * unit);
+        let others = P::MisSums::of(StrategyKind::NextEvent, next_event).and(by_light);
         // `value` is radiance x cosine on shapes: the walk's density already contains that cosine. The rate
         // of media is used only in weights.
         let radiance = sample.value / sample.cosine;
-        let weight = mis::emitter_hit_weight(subpath.pdf_over_hero, others, self.estimator.heuristic);
+        let strategy = self.estimator.strategy(StrategyKind::EmitterHit);
+        let Weight { value: weight, shares } = strategy.weight(others, subpath.pdf_over_hero);
         let weight_alone = mis::weight_alone(subpath.pdf_over_hero);
         Some(Contribution {
             value: subpath.throughput * radiance * (weight / counts.emitter_hit),
@@ -244,6 +251,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
             alone: subpath.throughput * radiance * (weight_alone / counts.emitter_hit),
             weight_alone,
             transmittance: Spectrum::ONE,
+            shares,
         })
     }
 
@@ -272,7 +280,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         let (direction, distance_squared) = sample.point.seen_from(vertex.position())?;
         let camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
         let light = connect::emitter_end::<P>(scene, sample, camera.medium, -direction, counts.emitter_hit);
-        let strategy = self.estimator.strategy(1.0);
+        let strategy = self.estimator.strategy(StrategyKind::NextEvent);
         if P::INFINITE && sample.point.is_infinite() {
             let ray = Ray { origin: camera.origin?, direction, t_max: f32::INFINITY };
             let span = Span { ray, cut: 0.0, distance_squared, hidden: false };
@@ -315,7 +323,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         let (direction, _, distance_squared) = measure::between(vertex.position(), other.position())?;
         let camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
         let light = connect::vertex_end(scene, other, -direction, Transport::Importance)?;
-        let strategy = self.estimator.strategy(self.estimator.counts.connection);
+        let strategy = self.estimator.strategy(StrategyKind::Connection);
         connect::connect::<P>(scene, &camera, &light, distance_squared, strategy, false, stream)
     }
 }

@@ -2,7 +2,8 @@
 //! contribution (LW96 eq. 10) and weight (eq. 14).
 
 use super::{
-    mis::{self, End, MisSums, Strategy},
+    mis::{self, End, MisSums, Strategy, Weight},
+    observer::StrategyKind,
     profile::Profile,
     segment,
     vertex::Vertex,
@@ -74,7 +75,7 @@ pub fn emitter_end<P: Profile>(
         inv_pdf: 1.0 / sample.pdf,
         sigma_t: rate_at::<P>(&sample.point),
         pdf_over_hero: P::Channels::splat(1.0),
-        others_before: P::MisSums::of(P::Channels::splat(emitter_hits)),
+        others_before: P::MisSums::of(StrategyKind::EmitterHit, P::Channels::splat(emitter_hits)),
     }
 }
 
@@ -110,6 +111,8 @@ pub struct Contribution {
     pub weight_alone: f32,
     /// What remains of radiance along the connecting segment; 1 where there is none.
     pub transmittance: Spectrum,
+    /// See [`MisSums::shares`].
+    pub shares: [f32; StrategyKind::ALL.len()],
 }
 
 impl Contribution {
@@ -192,9 +195,9 @@ pub fn connect_along<P: Profile>(
         return None;
     }
     let geometry = 1.0 / distance_squared;
-    let weight = mis::connection_weight(a, b, between.pdf, geometry, strategy);
+    let Weight { value: weight, shares } = mis::connection_weight(a, b, between.pdf, geometry, strategy);
     let value = a.value * b.value * between.transmittance * (geometry * weight);
     let weight_alone = mis::weight_alone(a.pdf_over_hero * b.pdf_over_hero);
     let alone = a.value * b.value * between.transmittance * (geometry * weight_alone);
-    Some(Contribution { value, weight, alone, weight_alone, transmittance: between.transmittance })
+    Some(Contribution { value, weight, alone, weight_alone, transmittance: between.transmittance, shares })
 }

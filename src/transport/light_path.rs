@@ -7,7 +7,7 @@ use super::{
     connect::{self, Contribution, Span},
     forced,
     mis::{End, MisSums},
-    observer::{Meeting, Observer},
+    observer::{Meeting, Observer, StrategyKind},
     profile::Profile,
     segment::Interaction,
     vertex::Vertex,
@@ -93,6 +93,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) 
         throughput: start.throughput * arriving,
         pdf_fwd: start.pdf_direction,
         others_before_segment: P::MisSums::of(
+            StrategyKind::EmitterHit,
             connect::rate_at::<P>(&start.point).scaled(emitter_hits * start.cosine / start.pdf),
         ),
         pdf_over_hero: P::Channels::splat(1.0),
@@ -100,6 +101,11 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) 
 }
 
 impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for LightPath<'_, P, R> {
+    #[inline]
+    fn kind(edges: u32) -> StrategyKind {
+        if edges == 1 { StrategyKind::NextEvent } else { StrategyKind::Connection }
+    }
+
     #[inline]
     fn connections(&self, edges: u32, position: Vec3) -> f32 {
         if edges > 1 {
@@ -209,7 +215,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
         infinite: bool,
         stream: &mut Stream,
     ) -> Option<Contribution> {
-        let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
+        let scene = self.estimator.scene;
         let Projection { ray, pdf, distance_squared, .. } = *seen;
         let hidden = self.estimator.hide_emitters;
         let lens = End {
@@ -225,7 +231,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
             pdf_over_hero: P::Channels::splat(1.0),
             others_before: P::MisSums::none(),
         };
-        let strategy = self.estimator.strategy(counts.lens);
+        let strategy = self.estimator.strategy(StrategyKind::Lens);
         if P::INFINITE && infinite {
             let span = Span { ray, cut: 0.0, distance_squared, hidden };
             connect::connect_along::<P>(scene, &span, &lens, end, strategy, stream)

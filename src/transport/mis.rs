@@ -2,6 +2,7 @@
 //! have in common.
 
 mod balance;
+mod by_kind;
 mod compared;
 mod cutoff;
 mod maximum;
@@ -10,6 +11,7 @@ mod sums;
 mod uniform;
 
 pub use balance::Balance;
+pub use by_kind::ByKind;
 pub use compared::Compared;
 pub use cutoff::Cutoff;
 use maximum::Maximum;
@@ -19,6 +21,7 @@ use power::Power;
 pub use sums::MisSums;
 use uniform::Uniform;
 
+use super::observer::StrategyKind;
 use crate::{
     math::{Channels, Spectrum, Vec3},
     medium::MediumIndex,
@@ -65,14 +68,34 @@ impl<S: MisSums> End<S> {
 /// A strategy as the weights use it.
 #[derive(Clone, Copy, Debug)]
 pub struct Strategy {
+    /// Of which kind it is.
+    pub kind: StrategyKind,
     /// Expected samples.
     pub count: f32,
     /// The heuristic by which it shares paths with the others.
     pub heuristic: Heuristic,
 }
 
-/// Weight of the connection of `a` and `b` by `strategy`, times the number of channels; for the balance heuristic
-/// n p^h / ((1/C) sum_c sum_j n_j p_j^c). `pdf` is the surface flight density of the connecting segment.
+/// The weight of a strategy's sample of a path.
+#[derive(Clone, Copy, Debug)]
+pub struct Weight {
+    /// Times the number of channels; for the balance heuristic n p^h / ((1/C) sum_c sum_j n_j p_j^c).
+    pub value: f32,
+    /// See [`MisSums::shares`].
+    pub shares: [f32; StrategyKind::ALL.len()],
+}
+
+impl Strategy {
+    /// The weight of this strategy where `others` are all other strategies in units of its own n p^h, and `own` its n p^c.
+    ///
+    /// LW96 eq. 14.
+    #[inline]
+    pub fn weight<S: MisSums>(&self, others: S, own: S::Channels) -> Weight {
+        Weight { value: others.weight(self.heuristic, own), shares: others.shares(self.kind, own) }
+    }
+}
+
+/// Weight of the connection of `a` and `b` by `strategy`. `pdf` is the surface flight density of the connecting segment.
 ///
 /// LW96 eq. 14, all densities in units of the strategy's own.
 #[inline]
@@ -82,25 +105,16 @@ pub fn connection_weight<S: MisSums>(
     pdf: S::Channels,
     inverse_distance_squared: f32,
     strategy: Strategy,
-) -> f32 {
+) -> Weight {
     let before_a = a.before(b.pdf_fwd, pdf, inverse_distance_squared);
     let before_b = b.before(a.pdf_fwd, pdf, inverse_distance_squared);
     let others = before_a.times(b.pdf_over_hero).and(before_b.times(a.pdf_over_hero));
-    others.scaled(1.0 / strategy.count).weight(strategy.heuristic, a.pdf_over_hero * b.pdf_over_hero)
-}
-
-/// The same where a camera subpath has hit the emitter itself (s = 0): `others` are all other strategies in units of
-/// the walk's own density, whose channels are `pdf_over_hero`.
-///
-/// LW96 eq. 14.
-#[inline]
-pub fn emitter_hit_weight<S: MisSums>(pdf_over_hero: S::Channels, others: S, heuristic: Heuristic) -> f32 {
-    others.weight(heuristic, pdf_over_hero)
+    strategy.weight(others.scaled(1.0 / strategy.count), a.pdf_over_hero * b.pdf_over_hero)
 }
 
 /// The weight of a strategy that runs alone, times the number of channels: only the channels share the path.
 /// `pdf_over_hero` is the product of both ends'. The weight among all strategies is that of
-/// [`connection_weight`] or [`emitter_hit_weight`] over this one.
+/// [`Strategy::weight`] over this one.
 #[inline]
 pub fn weight_alone<L: Channels>(pdf_over_hero: L) -> f32 {
     L::COUNT as f32 / pdf_over_hero.sum()

@@ -52,7 +52,7 @@
 //! | LW96 eq. 10, the contribution | [`connect::connect_along`]; its g is [`vertex::Vertex::scatter_towards`] |
 //! | LW96 eq. 11 and 12, densities of paths | [`vertex::Subpath`]: as ratios, by [`walk::arrive`] and [`walk::set_out`] |
 //! | LW96 eq. 13, density of a vertex | [`walk::arrive`] |
-//! | LW96 eq. 14, the weight | [`mis::connection_weight`], [`mis::emitter_hit_weight`], [`mis::Balance`] |
+//! | LW96 eq. 14, the weight | [`mis::connection_weight`], [`mis::Strategy::weight`], [`mis::Balance`] |
 //! | LW96 sec. 5, media that vary | [`crate::medium::distance`] |
 //! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], sampled in [`camera_path::Eye::meet`] |
 //! | P03T eq. 2.9, media that only absorb | [`crate::medium::MediumOverrides`] |
@@ -83,7 +83,7 @@ pub use walk::Departure;
 
 pub use crate::{
     settings::heuristic::Heuristic,
-    settings::options::{Options, Strategies},
+    settings::options::{Effort, Options, Strategies},
 };
 
 use crate::{
@@ -93,7 +93,7 @@ use crate::{
     shape::Ray,
 };
 use mis::Strategy;
-use observer::{Meeting, Observer};
+use observer::{Meeting, Observer, StrategyKind};
 use profile::Profile;
 
 /// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
@@ -105,8 +105,6 @@ pub struct Counts {
     lens: f32,
 }
 
-/// Draws from the light cache at every camera vertex.
-const CONNECTIONS_PER_VERTEX: u32 = 1;
 /// Vertices that the cache of a block should hold at most, on average: it has to fit the processor's caches.
 const CACHE_VERTICES: f32 = 16_384.0;
 /// Light subpaths that measure how many vertices a light subpath leaves.
@@ -136,7 +134,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
         walks_per_pass: u64,
         walks_per_block: u64,
     ) -> Self {
-        let Options { strategies, heuristic, max_depth, hide_emitters, forced_interaction } = options;
+        let Options { strategies, effort, heuristic, max_depth, hide_emitters, forced_interaction } = options;
         let lit = !scene.lights.is_empty();
         let count = |on: bool, n: f32| if on && lit { n } else { 0.0 };
         let mut estimator = Self {
@@ -156,7 +154,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             profile: std::marker::PhantomData,
         };
         if strategies.connection && lit {
-            estimator.plan_connections(seed, walks_per_block);
+            estimator.plan_connections(effort.connections, seed, walks_per_block);
         }
         estimator
     }
@@ -164,7 +162,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// Measures how many vertices a light subpath leaves: n of a connection is draws over vertices per walk,
     /// however many of them are kept. The weights need a constant that does not depend on the very walks they
     /// weight, hence a measurement beforehand.
-    fn plan_connections(&mut self, seed: u64, walks_per_block: u64) {
+    fn plan_connections(&mut self, per_vertex: u32, seed: u64, walks_per_block: u64) {
         self.keep = 1.0;
         let mut vertices = 0;
         // Compiled for instruments in any case; pilot walks are few.
@@ -179,14 +177,20 @@ impl<'a, P: Profile> Estimator<'a, P> {
         }
         let per_walk = (vertices as f32 / PILOT_WALKS as f32).max(1.0 / PILOT_WALKS as f32);
         self.keep = (CACHE_VERTICES / (per_walk * walks_per_block as f32)).min(1.0);
-        self.connections_per_vertex = CONNECTIONS_PER_VERTEX;
-        self.counts.connection = CONNECTIONS_PER_VERTEX as f32 / per_walk;
+        self.connections_per_vertex = per_vertex;
+        self.counts.connection = per_vertex as f32 / per_walk;
     }
 
-    /// The strategy of `count` expected samples.
+    /// The strategies of `kind`, as the weights use them.
     #[inline]
-    fn strategy(&self, count: f32) -> Strategy {
-        Strategy { count, heuristic: self.heuristic }
+    fn strategy(&self, kind: StrategyKind) -> Strategy {
+        let count = match kind {
+            StrategyKind::EmitterHit => self.counts.emitter_hit,
+            StrategyKind::NextEvent => self.counts.next_event,
+            StrategyKind::Connection => self.counts.connection,
+            StrategyKind::Lens => self.counts.lens,
+        };
+        Strategy { kind, count, heuristic: self.heuristic }
     }
 
     /// True if light subpaths have something to do.

@@ -3,7 +3,7 @@
 
 use super::{
     Heuristic,
-    mis::{Balance, Compared, Cutoff, MisSums},
+    mis::{self, Balance, Compared, Cutoff, MisSums},
 };
 use crate::{
     bsdf::BsdfModel,
@@ -103,6 +103,9 @@ impl<S: MisSums<Channels = Spectrum>> Profile for Everything<S> {
 pub type ByCompared = Everything<Compared<Spectrum>>;
 /// [`Everything`] by the cutoff heuristic, which keeps more.
 pub type ByCutoff = Everything<Cutoff<Spectrum>>;
+
+/// [`Everything`] by the balance heuristic, with sums by kind of strategies.
+pub type ByKind = Everything<mis::ByKind<Spectrum>>;
 
 /// What a scene needs of its profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

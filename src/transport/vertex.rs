@@ -1,6 +1,6 @@
 //! A path vertex: where it is, how it scatters, and what the balance heuristic needs of the walk behind it.
 
-use super::{mis::MisSums, segment::Interaction};
+use super::{mis::MisSums, observer::StrategyKind, segment::Interaction};
 use crate::{
     bsdf::{BsdfModel, Transport},
     math::{Channels, Spectrum, Vec3, offset},
@@ -63,6 +63,8 @@ pub struct Vertex<S: MisSums> {
     pub interaction: Interaction,
     /// n_i: expected samples of the strategy that connects across the segment before; 0 where none can.
     pub connections: f32,
+    /// Of which kind that strategy is.
+    pub kind: StrategyKind,
     /// How the walk came here.
     pub subpath: Subpath<S>,
 }
@@ -111,7 +113,7 @@ impl<S: MisSums> Vertex<S> {
     /// vertex before is known: pdf_over_hero_{i-1} n_i + D_{i-1}.
     #[inline]
     pub fn others_before(&self, pdf_rev: f32) -> S {
-        S::of(self.subpath.pdf_over_hero_before.scaled(self.connections))
+        S::of(self.kind, self.subpath.pdf_over_hero_before.scaled(self.connections))
             .and(self.subpath.others_over_pdf_rev.scaled(pdf_rev))
     }
 

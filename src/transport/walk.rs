@@ -3,6 +3,7 @@
 
 use super::{
     mis::MisSums,
+    observer::StrategyKind,
     profile::Profile,
     segment::{EmitterCrossing, FlightState, FreeFlight, Interaction, Passed, Segment, sample_free_flight},
     vertex::{Subpath, Vertex, shading_correction},
@@ -54,6 +55,9 @@ impl<S: MisSums> Departure<S> {
 
 /// What happens at the vertices of a walk.
 pub trait Visitor<P: Profile> {
+    /// Of which kind the strategy is that connects across segment `edges` of the walk.
+    fn kind(edges: u32) -> StrategyKind;
+
     /// n of the strategy that connects across the segment to the vertex at `position`, `edges` segments from
     /// the start.
     fn connections(&self, edges: u32, position: Vec3) -> f32;
@@ -131,7 +135,7 @@ pub fn go_on<P: Profile>(
         }
         return None;
     };
-    let mut vertex = land::<P>(departure, flight, interaction, kind.hero, visitor)?;
+    let mut vertex = land::<P, _>(departure, flight, interaction, kind.hero, visitor)?;
     adjusted(&mut vertex.subpath);
     visitor.arrive(&vertex, stream);
     if vertex.subpath.edges == kind.max_edges {
@@ -174,12 +178,12 @@ impl<L: Channels> Arrival<L> {
 
 /// The vertex at the end of a flight; none if its density is not finite and positive.
 #[inline]
-pub fn land<P: Profile>(
+pub fn land<P: Profile, V: Visitor<P>>(
     departure: &Departure<P::MisSums>,
     flight: &FreeFlight<P::Channels>,
     interaction: Interaction,
     hero: usize,
-    visitor: &impl Visitor<P>,
+    visitor: &V,
 ) -> Option<Vertex<P::MisSums>> {
     let position = interaction.position();
     let at = Arrival {
@@ -189,7 +193,7 @@ pub fn land<P: Profile>(
     };
     let subpath = arrive::<P>(departure, &flight.state, flight.medium, &at, hero)?;
     let connections = if departure.dirac { 0.0 } else { visitor.connections(subpath.edges, position) };
-    Some(Vertex { interaction, connections, subpath })
+    Some(Vertex { interaction, connections, kind: V::kind(subpath.edges), subpath })
 }
 
 /// The subpath that a flight extends to `at`; none if its density is not finite and positive.

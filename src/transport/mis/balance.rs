@@ -1,7 +1,7 @@
 //! The balance heuristic (LW96 eq. 14): plain sums.
 
 use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic};
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
 
 /// Sum of n p over strategies.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +15,7 @@ impl<L: Channels> MisSums for Balance<L> {
         Self(L::splat(0.0))
     }
     #[inline]
-    fn of(strategy: L) -> Self {
+    fn of(_: StrategyKind, strategy: L) -> Self {
         Self(strategy)
     }
     #[inline]

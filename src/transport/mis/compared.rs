@@ -2,7 +2,7 @@
 //! build takes less time, and they have less to keep of a strategy than the estimator has to do.
 
 use super::{Maximum, MisSums, Power, Uniform};
-use crate::{math::Channels, settings::heuristic::Heuristic};
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
 
 /// Sums for the power, the maximum and the uniform heuristic.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +16,8 @@ impl<L: Channels> MisSums for Compared<L> {
         Self(Power::none(), Maximum::none(), Uniform::none())
     }
     #[inline]
-    fn of(strategy: L) -> Self {
-        Self(Power::of(strategy), Maximum::of(strategy), Uniform::of(strategy))
+    fn of(kind: StrategyKind, strategy: L) -> Self {
+        Self(Power::of(kind, strategy), Maximum::of(kind, strategy), Uniform::of(kind, strategy))
     }
     #[inline]
     fn and(self, other: Self) -> Self {

@@ -1,7 +1,7 @@
 //! The cutoff heuristic (Veach 1997, sec. 9.2): the balance heuristic without strategies that hardly ever make the path.
 
 use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic};
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
 
 /// As many strategies as the longest path has, besides the one at hand.
 const CAPACITY: usize = Heuristic::CUTOFF_EDGES as usize;
@@ -34,7 +34,7 @@ impl<L: Channels> MisSums for Cutoff<L> {
         Self { strategies: [L::splat(0.0); CAPACITY], count: 0 }
     }
     #[inline]
-    fn of(strategy: L) -> Self {
+    fn of(_: StrategyKind, strategy: L) -> Self {
         let mut all = Self::none();
         all.strategies[0] = strategy;
         all.count = usize::from(strategy.sum() > 0.0);

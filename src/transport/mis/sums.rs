@@ -1,6 +1,6 @@
 //! The sum over the strategies that connect elsewhere along a path, for each heuristic.
 
-use crate::{math::Channels, settings::heuristic::Heuristic};
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
 use std::fmt::Debug;
 
 /// n_j p_j^c of some strategies j and all channels c, in units of the density of the walk that carries them,
@@ -16,8 +16,8 @@ pub trait MisSums: Copy + Send + Sync + Debug + 'static {
 
     /// No strategy.
     fn none() -> Self;
-    /// One strategy: n p per channel. It does not count where that is 0.
-    fn of(strategy: Self::Channels) -> Self;
+    /// One strategy of `kind`: n p per channel. It does not count where that is 0.
+    fn of(kind: StrategyKind, strategy: Self::Channels) -> Self;
     /// These and those.
     fn and(self, other: Self) -> Self;
     /// All of them times `channels`.
@@ -28,4 +28,10 @@ pub trait MisSums: Copy + Send + Sync + Debug + 'static {
     /// All in units of its own n p^h: `own` is n p^c in them, so 1 for the hero. `heuristic` is the one that
     /// these are for, with its parameters.
     fn weight(self, heuristic: Heuristic, own: Self::Channels) -> f32;
+    /// The parts that strategies of each kind have in the sum of n p over all, where the one at hand is of `kind`: what
+    /// pilots want to know, and zeros where nothing is known.
+    #[inline]
+    fn shares(self, _kind: StrategyKind, _own: Self::Channels) -> [f32; StrategyKind::ALL.len()] {
+        [0.0; StrategyKind::ALL.len()]
+    }
 }

@@ -5,7 +5,7 @@
 //! densities. A hero that is very unlikely to sample a path could not compensate for an equal share of it.
 
 use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic};
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
 use std::marker::PhantomData;
 
 /// How many strategies can make a path.
@@ -30,7 +30,7 @@ impl<L: Channels> MisSums for Uniform<L> {
         Self::count(0.0)
     }
     #[inline]
-    fn of(strategy: L) -> Self {
+    fn of(_: StrategyKind, strategy: L) -> Self {
         Self::count(if strategy.sum() > 0.0 { 1.0 } else { 0.0 })
     }
     #[inline]

@@ -15,7 +15,7 @@ use crate::{
         connect::Contribution,
         light_path::{self, LightPath},
         mis::MisSums,
-        observer::{Meeting, Observer, Sum},
+        observer::{Meeting, Observer, StrategyKind, Sum},
         profile::Profile,
         segment::{Interaction, Passed},
         vertex::{Subpath, Vertex},
@@ -58,6 +58,9 @@ impl<V, S: MisSums> Trail<V, S> {
 }
 
 impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::MisSums> {
+    fn kind(edges: u32) -> StrategyKind {
+        V::kind(edges)
+    }
     fn connections(&self, edges: u32, position: Vec3) -> f32 {
         self.visitor.connections(edges, position)
     }

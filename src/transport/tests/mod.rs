@@ -14,7 +14,7 @@ mod report;
 pub mod scenes;
 
 use super::{
-    Estimator, Heuristic, LightCache, Nowhere, Options, Strategies,
+    Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies,
     profile::{Bounded, ByCompared, ByCutoff, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum},
 };
 use crate::{
@@ -29,6 +29,7 @@ use scenes::*;
 
 const ALL: Options = Options {
     strategies: Strategies::BDPT,
+    effort: Effort { light_walks: 1.0, connections: 1 },
     heuristic: Heuristic::Balance,
     max_depth: None,
     hide_emitters: false,

@@ -178,7 +178,9 @@ impl Lead<'_> {
                 }
             };
             let flight = FreeFlight { interaction: Some(interaction), medium: node.medium, state };
-            let Some(vertex) = land::<P>(&departure, &flight, interaction, self.hero, visitor) else { break };
+            let Some(vertex) = land::<P, _>(&departure, &flight, interaction, self.hero, visitor) else {
+                break;
+            };
             if is_last {
                 led.end = Some(vertex.subpath);
             } else {

@@ -1,0 +1,347 @@
+//! Pilots: a few samples by all strategies, which tell how well any other counts of samples would do.
+//!
+//! By the balance heuristic, a sample that brought y has the second moment y^2 (sum of n p) / (sum of n' p) under counts n'
+//! in place of n (after Grittmann et al. 2022, Efficiency-Aware Multiple Importance Sampling). So paths that strategies left
+//! out would have to make count in full, however rarely the others make them: the strategies that do run have seen them.
+//! What samples of one pixel have in common is taken to stay as it is.
+
+use super::{
+    Settings,
+    block::Blocks,
+    compiled::{self, Ready},
+};
+use crate::{
+    film::Film,
+    math::{Spectrum, SpectrumExt, Vec2},
+    sampling::Sampler,
+    scene::Scene,
+    settings::options::Effort,
+    transport::{
+        Contribution, Departure, MisSums, Options, Strategies,
+        observer::{Meeting, Observer, StrategyKind},
+        profile::Profile,
+    },
+};
+use rayon::prelude::*;
+
+/// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
+const SEED: u64 = 0x7079_6c6f_7473;
+/// Samples of each pixel that takes part: enough for a variance.
+const PASSES: usize = 8;
+/// Blocks of pixels that take part, at most.
+const BLOCKS: usize = 2;
+/// The image is divided into so many tiles across and down, at most, whose pixels count as one.
+const TILES: u32 = 16;
+/// Tiles with the greatest errors that are left out, as few samples decide there.
+const OUTLIERS: f64 = 0.02;
+/// Of a tile's second moment: variances below are rounding errors.
+const LEAST_VARIANCE: f64 = 1e-3;
+/// Other counts than all strategies' must be so much better: pilots are noisy.
+const WORTHWHILE: f64 = 1.1;
+
+/// Time of parts of a sample, over that of a segment of a walk, as measured in scenes of fog and smoke.
+mod time {
+    /// Setting out from the sensor or an emitter.
+    pub const START: f64 = 0.5;
+    /// A connection tried, by kind of strategy.
+    pub const TRY: [f64; 4] = [0.1, 1.3, 0.7, 0.4];
+}
+
+/// What was chosen, and how much it is worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// Strategies that run.
+    pub strategies: Strategies,
+    /// How often.
+    pub effort: Effort,
+    /// Error x time by all strategies at equal effort, over that of this choice, as the pilot sees it.
+    pub gain: f64,
+}
+
+/// The strategies among those of `settings` that are worth their time on `film`, and how often; `is_complete` says which sets
+/// leave no light out.
+pub fn choose(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    is_complete: impl Fn(Strategies) -> bool,
+) -> Choice {
+    let all = settings.options.strategies;
+    let base = Choice { strategies: all, effort: Effort::default(), gain: 1.0 };
+    if scene.lights.is_empty() || !(all.connection || all.lens) {
+        return base;
+    }
+    let options = Options { effort: Effort::default(), ..settings.options };
+    let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*settings };
+    let pilot = compiled::pilot(scene, film, &settings);
+    let worth = |choice: &Choice| pilot.error(choice) * pilot.time(choice);
+    let reference = worth(&base);
+    let gain = |choice: Choice| Choice { gain: reference / worth(&choice), ..choice };
+    let candidates = candidates(all).filter(|choice| is_complete(choice.strategies)).map(gain);
+    let best = candidates.max_by(|a, b| a.gain.total_cmp(&b.gain));
+    best.filter(|best| best.gain > WORTHWHILE && best.gain.is_finite()).unwrap_or(base)
+}
+
+/// Every choice among the strategies of `all`.
+fn candidates(all: Strategies) -> impl Iterator<Item = Choice> {
+    let sets = (0..8u32).map(move |bits| Strategies {
+        next_event: all.next_event && bits & 1 == 0,
+        connection: all.connection && bits & 2 == 0,
+        lens: all.lens && bits & 4 == 0,
+        ..all
+    });
+    sets.flat_map(|strategies| {
+        let connections: &[u32] = if strategies.connection { &[1, 2, 4] } else { &[1] };
+        let light_walks: &[f32] =
+            if strategies.connection || strategies.lens { &[0.5, 1.0, 2.0] } else { &[1.0] };
+        let efforts = connections.iter().flat_map(move |connections| {
+            light_walks
+                .iter()
+                .map(|light_walks| Effort { light_walks: *light_walks, connections: *connections })
+        });
+        efforts.map(move |effort| Choice { strategies, effort, gain: 1.0 })
+    })
+}
+
+/// A contribution to a tile.
+struct Found {
+    pixel: u32,
+    /// Squared luminance; from [`Pilot`] on, its part in the second moment of a pixel sample in the tile.
+    square: f64,
+    shares: [f32; StrategyKind::ALL.len()],
+}
+
+/// How often something was done.
+#[derive(Clone, Copy, Default)]
+struct Work {
+    walks: f64,
+    segments: f64,
+    tries: [f64; StrategyKind::ALL.len()],
+}
+
+impl Work {
+    fn and(mut self, other: &Self) -> Self {
+        self.walks += other.walks;
+        self.segments += other.segments;
+        self.tries.iter_mut().zip(other.tries).for_each(|(tries, other)| *tries += other);
+        self
+    }
+}
+
+/// What the samples of one kind of walk bring.
+#[derive(Default)]
+struct Gathered {
+    found: Vec<Found>,
+    work: Work,
+}
+
+/// Sees walks and what they contribute; those of the camera to one pixel.
+struct Gather<'a> {
+    film: &'a Film,
+    pixel: u32,
+    weight: f32,
+    sum: f64,
+    gathered: Gathered,
+}
+
+impl<'a> Gather<'a> {
+    fn new(film: &'a Film) -> Self {
+        Self { film, pixel: 0, weight: 1.0, sum: 0.0, gathered: Gathered::default() }
+    }
+
+    /// The sum of what a camera subpath contributes to `pixel` follows, times `weight`.
+    fn begin(&mut self, pixel: usize, weight: f32) {
+        (self.pixel, self.weight, self.sum) = (pixel as u32, weight, 0.0);
+        self.gathered.work.walks += 1.0;
+    }
+}
+
+impl<S: MisSums> Observer<S> for Gather<'_> {
+    fn covers(&self, film: Vec2) -> bool {
+        self.film.covers(film)
+    }
+
+    fn depart(&mut self, _: &Departure<S>) {
+        self.gathered.work.segments += 1.0;
+    }
+
+    fn stop(&mut self, s: u32, t: u32) {
+        self.gathered.work.tries[StrategyKind::of(s, t) as usize] += 1.0;
+    }
+
+    fn contribute(&mut self, _: u32, _: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
+        let Some(Contribution { value, shares, .. }) = contribution.filter(|c| c.value.is_finite()) else {
+            return;
+        };
+        let found = &mut self.gathered.found;
+        let mut add = |pixel: u32, value: Spectrum| {
+            let luminance = f64::from(value.luminance());
+            found.push(Found { pixel, square: luminance * luminance, shares: *shares });
+        };
+        if let Meeting::Lens(film) = meeting {
+            return self.film.spread(film, *value, |pixel, value| add(pixel as u32, value));
+        }
+        let value = *value * self.weight;
+        add(self.pixel, value);
+        self.sum += f64::from(value.luminance());
+    }
+}
+
+/// What one block of one pass brings.
+pub(super) struct Part {
+    camera: Gathered,
+    light: Gathered,
+    /// Pixels with what camera subpaths contribute to them.
+    sums: Vec<(u32, f64)>,
+}
+
+/// The samples of `block` in `pass`.
+pub(super) fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
+    let Ready { estimator, blocks, scene, film, seed } = ready;
+    let (mut light, mut camera) = (Gather::new(film), Gather::new(film));
+    let mut observer: &mut dyn Observer<P::MisSums> = &mut light;
+    let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
+    light.gathered.work.walks = blocks.walks_per_block() as f64;
+    let sums = blocks.pixels(block).map(|pixel| {
+        let start = blocks.camera_start(scene, film, *seed, pass, pixel);
+        camera.begin(pixel, start.weight);
+        let observer: &mut dyn Observer<P::MisSums> = &mut camera;
+        start.trace(estimator, &cache, observer);
+        (pixel as u32, camera.sum)
+    });
+    let sums = sums.collect();
+    Part { camera: camera.gathered, light: light.gathered, sums }
+}
+
+/// A set of pixels that lie together.
+#[derive(Clone, Copy, Default)]
+struct Tile {
+    pixels: f64,
+    /// Camera subpaths.
+    samples: f64,
+    mean: f64,
+    /// The variance of a pixel sample by all strategies less its second moment as the sum of those of its contributions.
+    rest: f64,
+}
+
+/// What the samples say.
+pub(super) struct Pilot {
+    tiles: Vec<Tile>,
+    /// Tile of every pixel.
+    found: Vec<(u32, Found)>,
+    camera: Work,
+    light: Work,
+}
+
+impl Pilot {
+    /// Gathers the samples of `ready`.
+    pub fn fly<P: Profile>(ready: &Ready<'_, P>) -> Self {
+        let blocks = ready.blocks.count().min(BLOCKS);
+        let tasks: Vec<(usize, usize)> =
+            (0..PASSES).flat_map(|pass| (0..blocks).map(move |block| (pass, block))).collect();
+        let parts: Vec<Part> = tasks.par_iter().map(|(pass, block)| part(ready, *pass, *block)).collect();
+        Self::of(parts, ready.film, &ready.blocks)
+    }
+
+    fn of(parts: Vec<Part>, film: &Film, blocks: &Blocks) -> Self {
+        let (width, height) = (film.width, film.len() as u32 / film.width);
+        let (across, down) = (width.min(TILES), height.min(TILES));
+        let tile =
+            |pixel: u32| (pixel / width * down / height * across + pixel % width * across / width) as usize;
+        let mut tiles = vec![Tile::default(); (across * down) as usize];
+        (0..film.len() as u32).for_each(|pixel| tiles[tile(pixel)].pixels += 1.0);
+        for (pixel, _) in parts.iter().flat_map(|part| &part.sums) {
+            tiles[tile(*pixel)].samples += 1.0;
+        }
+        let [camera, light] = [|part: &Part| part.camera.work, |part: &Part| part.light.work]
+            .map(|work| parts.iter().fold(Work::default(), |sum, part| sum.and(&work(part))));
+        // Light subpaths traced stand for those of a pass.
+        let per_pass = blocks.walks_per_pass() as f64 / light.walks.max(1.0);
+        let variances = variances(&parts, film.len());
+        let mut found = Vec::new();
+        for part in parts {
+            for (pixel, sum) in part.sums {
+                let tile = &mut tiles[tile(pixel)];
+                tile.mean += sum / tile.samples;
+                tile.rest += variances[pixel as usize] / tile.samples;
+            }
+            for Found { pixel, square, shares } in part.camera.found {
+                let (index, square) = (tile(pixel), square / tiles[tile(pixel)].samples);
+                tiles[index].rest -= square;
+                found.push((index as u32, Found { pixel, square, shares }));
+            }
+            for Found { pixel, square, shares } in part.light.found {
+                let index = tile(pixel);
+                let scale = per_pass / tiles[index].pixels;
+                tiles[index].mean += square.sqrt() * scale;
+                found.push((index as u32, Found { pixel, square: square * scale, shares }));
+            }
+        }
+        Self { tiles, found, camera, light }
+    }
+
+    /// Time of a pixel sample, in segments.
+    fn time(&self, Choice { strategies, effort, .. }: &Choice) -> f64 {
+        let Self { camera, light, .. } = self;
+        let mut camera_time = time::START * camera.walks + camera.segments;
+        let mut light_time = time::START * light.walks + light.segments;
+        for kind in StrategyKind::ALL.into_iter().filter(|kind| strategies.has(*kind)) {
+            let factor = if kind == StrategyKind::Connection { f64::from(effort.connections) } else { 1.0 };
+            camera_time += factor * time::TRY[kind as usize] * camera.tries[kind as usize];
+            light_time += time::TRY[kind as usize] * light.tries[kind as usize];
+        }
+        let light_walks =
+            if strategies.connection || strategies.lens { f64::from(effort.light_walks) } else { 0.0 };
+        camera_time / camera.walks.max(1.0) + light_walks * light_time / light.walks.max(1.0)
+    }
+
+    /// The squared relative error of a pixel sample, on average over the image; infinite where something is left out.
+    fn error(&self, choice: &Choice) -> f64 {
+        let counts = choice.counts();
+        let mut moments = vec![0.0; self.tiles.len()];
+        for (tile, Found { square, shares, .. }) in self.found.iter().filter(|(_, found)| found.square > 0.0)
+        {
+            let left: f64 = shares.iter().zip(counts).map(|(share, count)| f64::from(*share) * count).sum();
+            moments[*tile as usize] += square / left;
+        }
+        let seen = || self.tiles.iter().zip(&moments).filter(|(tile, _)| tile.samples > 0.0);
+        let pixels: f64 = seen().map(|(tile, _)| tile.pixels).sum();
+        let mean = seen().map(|(tile, _)| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
+        let floor = 0.01 * mean * mean;
+        let relative = |(tile, moment): (&Tile, &f64)| {
+            let variance = (moment + tile.rest).max(LEAST_VARIANCE * moment);
+            tile.pixels * variance / (tile.mean * tile.mean + floor)
+        };
+        let mut errors: Vec<f64> = seen().map(relative).collect();
+        errors.sort_unstable_by(f64::total_cmp);
+        let kept = errors.len() - (OUTLIERS * errors.len() as f64) as usize;
+        errors[..kept].iter().sum::<f64>() / pixels.max(1.0)
+    }
+}
+
+impl Choice {
+    /// Samples of every kind of strategies, over those of all at equal effort.
+    fn counts(&self) -> [f64; StrategyKind::ALL.len()] {
+        StrategyKind::ALL.map(|kind| match kind {
+            _ if !self.strategies.has(kind) => 0.0,
+            StrategyKind::Connection => f64::from(self.effort.connections),
+            StrategyKind::Lens => f64::from(self.effort.light_walks),
+            _ => 1.0,
+        })
+    }
+}
+
+/// Sample variance of what camera subpaths contribute to each of `pixels`, 0 where there are none.
+fn variances(parts: &[Part], pixels: usize) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0, 0.0); pixels];
+    for (pixel, value) in parts.iter().flat_map(|part| &part.sums) {
+        let (n, sum, square) = &mut sums[*pixel as usize];
+        *n += 1.0;
+        *sum += value;
+        *square += value * value;
+    }
+    let variance = |(n, sum, square): &(f64, f64, f64)| {
+        ((square - sum * sum / n.max(1.0)) / (n - 1.0).max(1.0)).max(0.0)
+    };
+    sums.iter().map(variance).collect()
+}
