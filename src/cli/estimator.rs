@@ -1,13 +1,13 @@
 //! How paths are made: the options of the command line, put over what the scene says.
 
-use super::arguments::one_of;
+use super::arguments::{Size, one_of};
 use crate::{
     error::{Error, Result},
     medium::DistanceMethod,
     render::{Settings, budget::Budget},
     sampling::Sampler,
     scene::build::Setup,
-    settings::integrator::Restriction,
+    settings::{Overrides, integrator::Restriction},
     transport::{
         Heuristic, Options, Strategies,
         observer::StrategyKind,
@@ -110,6 +110,11 @@ fn heuristic(text: &str) -> std::result::Result<Heuristic, String> {
 }
 
 impl Estimator {
+    /// What these options and a `size` override in a scene.
+    pub fn overrides(&self, size: Option<Size>) -> Overrides {
+        Overrides { size: size.map(Into::into), crop: None, tracker: self.tracker }
+    }
+
     /// A render of `setup`, its paths made as these options say, or else as the scene says.
     pub fn settings(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
         let options = self.options(setup)?;

@@ -49,8 +49,7 @@ pub fn check_render(arguments: &Render, setup: &Setup, goal: &Goal) -> Result<()
     let products = if products { NUMBERS_OF_PRODUCTS } else { 0 };
     film.check_memory(NUMBERS + products + precision + NUMBERS_OF_LAYER * layers + batches * each)?;
     let bytes = film.bytes(goal.format.names().len() + layers + batches * (3 + layers));
-    let is_part = arguments.samples.is_some() && arguments.output.is_none();
-    let images = if is_part { Vec::new() } else { images(arguments, goal) };
+    let images = if arguments.is_part() { Vec::new() } else { images(arguments, goal) };
     // Two of them, while one replaces the other.
     let sums = arguments.sums.as_deref().map(|sums| (sums, 2 * film.bytes(NUMBERS_OF_SUMS + products / 2)));
     let mut outputs: Vec<(&Path, u64)> = sums.into_iter().collect();

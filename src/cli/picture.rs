@@ -33,9 +33,13 @@ pub fn made(path: &Path) -> Result<Option<Value>> {
 
 fn of_sums(path: &Path) -> Result<Value> {
     let (sums, mut made) = sums_file::read(path)?;
-    made["samples"] = sums.samples().to_string().into();
-    made["render_seconds"] = sums.elapsed().as_secs_f64().into();
-    made["relative_error"] = sums.noise().into();
+    let image = sums.kept().image();
+    made["samples"] = sums.kept().samples().to_string().into();
+    made["render_seconds"] = image.elapsed.as_secs_f64().into();
+    made["relative_error"] = image.noise.into();
+    if let Some(reached) = image.reached {
+        made["pixels_within_error"] = reached.share.into();
+    }
     Ok(made)
 }
 
