@@ -53,10 +53,11 @@ pub enum Command {
     /// same light vertices. Every vertex is listed with its pdfs and every contribution with its weight; the
     /// contributions sum to the value of the pixel.
     Pixel(super::pixel::Arguments),
-    /// Add up parts of one image, rendered with --samples, and write the image
+    /// Put together parts of one image, rendered with --samples or --crop, and write the image
     ///
-    /// The parts are files of sums of the same scene, options and seed, with different samples. The image is the same,
-    /// bit for bit, as that of one render of all of these samples.
+    /// The parts are files of sums of the same scene, options and seed. Those with other samples of the same pixels
+    /// (--samples) are added up: the image is the same, bit for bit, as that of one render of all of these samples. Those
+    /// with other pixels (--crop) are put side by side; they must cover the image and not overlap.
     Merge(super::merge::Merge),
     /// Print a summary of a scene without rendering it
     Info(Info),
@@ -243,11 +244,12 @@ pub struct Render {
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
 
-    /// Render only the part of the image of WIDTHxHEIGHT pixels whose top left corner is pixel X, Y
+    /// Render only the part of the image of WIDTHxHEIGHT pixels whose top left corner is at pixel X, Y
     ///
-    /// With --sums it is a part for tyndall merge, which puts parts side by side that cover the image, and an image of it
-    /// is written only if -o is given. Every part has light subpaths of its own, as many as it has pixels: what they
-    /// contribute to the image is noisier than in a render of all of it. --error is relative to the part's mean luminance.
+    /// With --sums it is a part for tyndall merge, which puts together parts that cover the image; an image of the part is
+    /// written only if -o is given. Every part traces light subpaths of its own, as many as it has pixels: what they
+    /// contribute by the strategy lens is noisier than in a render of the whole image, so prefer --samples to cut a render
+    /// without --error. --error is relative to the mean luminance of the part.
     #[arg(long, value_name = "WIDTHxHEIGHT+X+Y", value_parser = crop, allow_hyphen_values = true)]
     pub crop: Option<Crop>,
 }
@@ -256,6 +258,13 @@ impl Render {
     /// What the options override in the scene.
     pub fn overrides(&self) -> Overrides {
         Overrides { crop: self.crop, ..self.estimator.overrides(self.size) }
+    }
+
+    /// Seed of the random numbers: of parts of an image, no two share one, or the noise of one would be repeated in others.
+    pub fn seed_of_part(&self) -> u64 {
+        let Some(Crop { corner: [x, y], .. }) = self.crop else { return self.seed };
+        let corner = u64::from(y) << 32 | u64::from(x);
+        self.seed ^ corner.wrapping_add(1).wrapping_mul(0xd1b5_4a32_d192_ed03)
     }
 
     /// True if no image is to be written but sums, for tyndall merge.
@@ -576,6 +585,15 @@ mod tests {
         );
         assert_eq!(r.estimator.strategies, [StrategyKind::EmitterHit, StrategyKind::NextEvent]);
         assert_eq!((r.estimator.sampler, r.estimator.forced_interaction), (Some(Sampler::Sobol), true));
+    }
+
+    #[test]
+    fn parts_have_random_numbers_of_their_own() {
+        let crops = ["", "--crop 4x4+0+0", "--crop 4x4+4+0", "--crop 4x4+0+4", "--crop 4x4+4+4"];
+        let mut seeds = crops.map(|crop| render(&format!("{crop} --seed 5")).seed_of_part());
+        assert_eq!(seeds[0], 5);
+        seeds.sort_unstable();
+        assert!(seeds.windows(2).all(|pair| pair[0] != pair[1]), "{seeds:?}");
     }
 
     #[test]

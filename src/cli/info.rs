@@ -29,7 +29,8 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     if let Some(made) = picture::made(&arguments.scene.file)? {
         return picture::show(&made, &arguments.answer);
     }
-    let setup = load(&arguments.scene, Overrides { tracker: arguments.estimator.tracker, ..Overrides::default() })?;
+    let setup =
+        load(&arguments.scene, Overrides { tracker: arguments.estimator.tracker, ..Overrides::default() })?;
     let budget = Budget::samples(setup.samples_per_pixel);
     let settings = arguments.estimator.settings(&setup, 0, budget)?;
     let plan = Plan::new(&setup, &arguments.estimator, settings, None);

@@ -66,7 +66,11 @@ pub struct Keeper<'a> {
 
 impl<'a> Keeper<'a> {
     /// Keeps the sums of `task` in `file`; with --preview, has the picture so far drawn; with --tev, shows it.
-    pub fn new(file: Option<SumsFile>, task: &'a Task<'a>, draw: &'a dyn Fn(&dyn Kept) -> Result<()>) -> Self {
+    pub fn new(
+        file: Option<SumsFile>,
+        task: &'a Task<'a>,
+        draw: &'a dyn Fn(&dyn Kept) -> Result<()>,
+    ) -> Self {
         let arguments = task.arguments;
         Self {
             file,

@@ -102,9 +102,11 @@ pub fn without_window(made: &Value) -> Value {
 pub fn must_equal(file: &Path, found: &Value, wanted: &Value) -> Result<()> {
     let none = Value::Null;
     let (found, wanted) = [found, wanted].map(|made| made.get("settings").unwrap_or(&none)).into();
-    let kind = |settings: &Value| if settings["error"].is_null() { "without --error" } else { "with --error" };
+    let kind =
+        |settings: &Value| if settings["error"].is_null() { "without --error" } else { "with --error" };
     if kind(found) != kind(wanted) {
-        let [expected, found] = [wanted, found].map(|settings| format!("the sums of a render {}", kind(settings)));
+        let [expected, found] =
+            [wanted, found].map(|settings| format!("the sums of a render {}", kind(settings)));
         let remedy = "name another file, or use the options that these sums were rendered with";
         return Err(Error::new(file.display(), expected, found, remedy));
     }

@@ -82,14 +82,12 @@ impl Part {
     fn read(path: &Path) -> Result<Self> {
         let (mut sums, made) = sums_file::read(path)?;
         let left_out = match &mut sums {
-            AnySums::Samples(sums) => {
-                Some(sums.drop_unfinished()).filter(|fraction| *fraction > 0.0).map(|fraction| {
-                    format!("{:.0} % of one more sample is left out", 100.0 * fraction)
-                })
-            }
-            AnySums::Adaptive(halves) => Some(halves.share()).filter(|share| *share < 1.0).map(|share| {
-                format!("only {:.1} % of its pixels are within the error", 100.0 * share)
-            }),
+            AnySums::Samples(sums) => Some(sums.drop_unfinished())
+                .filter(|fraction| *fraction > 0.0)
+                .map(|fraction| format!("{:.0} % of one more sample is left out", 100.0 * fraction)),
+            AnySums::Adaptive(halves) => Some(halves.share())
+                .filter(|share| *share < 1.0)
+                .map(|share| format!("only {:.1} % of its pixels are within the error", 100.0 * share)),
         };
         if let Some(left_out) = left_out {
             complain(&format!("note: {}: {left_out}; complete it with render --resume", path.display()));
@@ -109,6 +107,12 @@ impl Part {
         let found = format!("samples {more}, some of which are in {sums} already");
         let remedy = "leave it out, or render it again with other --samples or another --crop";
         Err(Error::new(other.path.display(), "samples that no other part has", found, remedy))
+    }
+
+    /// Which samples, of which pixels.
+    fn describe(&self) -> String {
+        let of = self.render.crop.map_or(String::new(), |crop| format!(" of {crop}"));
+        format!("samples {}{of}", self.sums.kept().samples())
     }
 
     /// What it shows of `setup`, a scene with a film of its pixels.
@@ -161,7 +165,7 @@ fn write(arguments: &Merge, output: &Path, mut parts: Vec<Part>) -> Result<()> {
     let others: Vec<&Path> = arguments.parts.iter().chain(&arguments.sums).map(PathBuf::as_path).collect();
     check_short([&goal.path].into_iter().chain(&goal.preview()), &others)?;
     let (mut image, what) = match parts.as_mut_slice() {
-        [part] => (part.image(&setup)?, format!("samples {}", part.sums.kept().samples())),
+        [part] => (part.image(&setup)?, part.describe()),
         parts => (side_by_side(parts, &root, &setup)?, format!("{} parts", parts.len())),
     };
     goal.write(&setup.film, &mut image, &made_again(&whole, &setup)?.0)?;
@@ -204,7 +208,8 @@ fn check_cover(parts: &[Part], windows: &[Window], whole: &Window) -> Result<()>
 fn made_again(render: &Render, setup: &Setup) -> Result<(Value, Settings)> {
     let settings = render.estimator.settings(setup, render.seed, Budget::samples(0))?;
     let precision = precision(render, setup, &settings)?;
-    Ok((made(made::settings(&render.scene, setup, &settings, precision)?), settings))
+    let now = made(made::settings(&render.scene, setup, &settings, precision)?);
+    Ok((now, Settings { seed: render.seed_of_part(), ..settings }))
 }
 
 /// The command that a part was rendered with.

@@ -96,7 +96,8 @@ fn load(scene: &arguments::Scene, overrides: Overrides) -> Result<Setup> {
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
     }
-    if overrides.tracker.is_some() && setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none()) {
+    if overrides.tracker.is_some() && setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none())
+    {
         complain("warning: --tracker has no effect: this scene has no heterogeneous medium");
     }
     Ok(setup)

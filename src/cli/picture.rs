@@ -9,10 +9,11 @@ use crate::{
 use serde_json::Value;
 use std::path::Path;
 
-/// What the file at `path` says of itself, if its name is that of a picture or of sums.
+/// What the file at `path` says of itself, if it is sums by its content, or a picture or sums by its name.
 pub fn made(path: &Path) -> Result<Option<Value>> {
     let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let text = match end.as_str() {
+        _ if sums_file::is_one(path) => return of_sums(path).map(Some),
         "exr" => exr::made(path)?,
         "png" => png::made(path)?,
         "sums" => return of_sums(path).map(Some),

@@ -44,8 +44,9 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     super::outputs::check_render(arguments, &setup, &goal)?;
     check_kept(arguments, &settings, &goal)?;
     let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
+    let plan = Plan::new(&setup, &arguments.estimator, settings, arguments.error);
+    let settings = Settings { seed: arguments.seed_of_part(), ..settings };
     let task = Task { settings, precision, arguments, made, viewer: &Mutex::new(viewer) };
-    let plan = Plan::new(&setup, &arguments.estimator, task.settings, arguments.error);
     // Before this there is nothing that a signal should save.
     interrupt::listen();
     plan.announce();

@@ -174,13 +174,20 @@ mod tests {
                 for (x, y) in [(0, 0), (size[0] - 1, size[1] - 1)] {
                     let pixel = (y * size[0] + x) as usize;
                     let same = ((y + corner[1]) * 9 + x + corner[0]) as usize;
-                    let sampled = |film: &Film, pixel| film.sample(pixel, &mut Stream::new(3, 0, 0, Purpose::Study));
-                    let ((at, weight), (at_whole, weight_whole)) = (sampled(&part, pixel), sampled(&whole, same));
+                    let sampled =
+                        |film: &Film, pixel| film.sample(pixel, &mut Stream::new(3, 0, 0, Purpose::Study));
+                    let ((at, weight), (at_whole, weight_whole)) =
+                        (sampled(&part, pixel), sampled(&whole, same));
                     let moved = at + vec2(corner[0] as f32, corner[1] as f32);
-                    assert!((moved - at_whole).length() < 1e-5 && weight == weight_whole, "{corner:?} {size:?}");
+                    assert!(
+                        (moved - at_whole).length() < 1e-5 && weight == weight_whole,
+                        "{corner:?} {size:?}"
+                    );
                     let share = |film: &Film, at, pixel| {
                         let mut sum = 0.0;
-                        film.spread(at, Spectrum::ONE, |p, value| sum += if p == pixel { value.x } else { 0.0 });
+                        film.spread(at, Spectrum::ONE, |p, value| {
+                            sum += if p == pixel { value.x } else { 0.0 }
+                        });
                         sum
                     };
                     assert!((share(&part, at, pixel) - share(&whole, moved, same)).abs() < 1e-5);

@@ -258,3 +258,45 @@ impl Adaptive<'_> {
         (self.watch)(halves.progress(self.stopwatch.elapsed(), is_last), halves);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        film::{Window, filter::Filter, format::Format},
+        render::{any_sums::AnySums, sums_file},
+    };
+
+    /// A film of four blocks, after some of them and a check after 32 passes; the lower half of it is `noisy`.
+    fn halves(blocks: usize, noisy: bool) -> Halves {
+        let film = Film::new(Window::whole(64, 64), Filter::Box, false, Format::default());
+        let mut halves = Halves::new(&film, Precision { error: 0.5, confidence: 0.9 });
+        for block in 0..blocks {
+            let pass = block / 4;
+            let rare = if pass % 16 == 0 { 50.0 } else { 0.0 };
+            let value = |pixel| if noisy && pixel >= 2048 { rare } else { (1 + pass % 2) as f32 };
+            let camera =
+                halves.division().pixels(block % 4).map(|pixel| (pixel, value(pixel))).collect::<Vec<_>>();
+            halves.add(&Outcome::of(camera.into_iter(), [(pass % 5, 0.1)].into_iter()), 4);
+            if block + 1 == 32 * 4 {
+                halves.look();
+            }
+        }
+        halves
+    }
+
+    #[test]
+    fn a_file_holds_all_of_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sums");
+        for (blocks, noisy, done) in [(1, true, 0.0), (7, true, 0.0), (162, true, 0.5), (130, false, 1.0)] {
+            let mut halves = halves(blocks, noisy);
+            halves.elapsed = Duration::from_secs(3);
+            assert!((halves.share() - done).abs() < 0.02, "{blocks}: {}", halves.share());
+            sums_file::write(&path, &halves, &"made".into()).unwrap();
+            let (read, made) = sums_file::read(&path).unwrap();
+            assert_eq!(format!("{read:?}"), format!("{:?}", AnySums::Adaptive(halves)));
+            assert_eq!(made, "made");
+        }
+    }
+}

@@ -40,8 +40,8 @@ use crate::{
     settings::integrator::FogSettings,
     transport::{Heuristic, Options, Strategies, profile::ProfileName},
 };
-use any_sums::{AnySums, Kept};
 use adaptive::{Adaptive, Halves, Precision, Reached};
+use any_sums::{AnySums, Kept};
 use budget::Budget;
 use faults::Faults;
 use fog::Preview;
