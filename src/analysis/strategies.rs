@@ -11,7 +11,7 @@ use super::coverage::Traits;
 use crate::{
     analysis::study::outcome::Interval,
     error::{Error, Result},
-    film::{self, Channel, Film, accumulator::Accumulator, format::Format},
+    film::{self, Channel, Film, format::Format, moments::Moments},
     math::{Spectrum, SpectrumExt},
     memory,
     render::{
@@ -329,7 +329,7 @@ impl Whole {
         luminance: f64,
         (seconds, tries): (f64, u64),
     ) -> CellReport {
-        let relative = |image: &Accumulator| share(image.luminance_variance()?, self.variance?);
+        let relative = |image: &Moments| share(image.luminance_variance()?, self.variance?);
         let (s, t) = match cell {
             StrategyCell::Strategy { s, t } => (Some(s), Some(t)),
             StrategyCell::Longer(_) => (None, None),
@@ -355,7 +355,7 @@ fn share(part: f64, whole: f64) -> Option<f64> {
     (whole != 0.0).then(|| part / whole)
 }
 
-fn mean_luminance(image: &Accumulator) -> f64 {
+fn mean_luminance(image: &Moments) -> f64 {
     let mean = image.mean();
     mean.iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / mean.len() as f64
 }

@@ -3,6 +3,7 @@
 use super::arguments::{Size, one_of};
 use crate::{
     error::{Error, Result},
+    film::layer::Content,
     medium::DistanceMethod,
     render::{Settings, budget::Budget},
     sampling::Sampler,
@@ -55,11 +56,13 @@ pub struct Estimator {
     #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
     pub max_depth: Option<MaxDepth>,
 
-    /// Source of random numbers for the samples of a pixel and for light subpaths [default: the scene's sampler]
+    /// Source of random numbers for the samples of a pixel and for light subpaths [default: sobol, but independent where
+    /// the scene asks for layers of variances]
     ///
-    /// independent: independent random numbers; sobol: the first dimensions of every subpath are points of an
-    /// Owen-scrambled Sobol sequence. With sobol the noise is estimated as if samples were independent and
-    /// reported as an upper bound.
+    /// independent: independent random numbers; sobol: the first dimensions of every subpath are points of
+    /// Owen-scrambled Sobol sequences, one for the even and one for the odd samples, whose difference shows the noise.
+    /// Variances of single pixels, which layers and --error are about, are estimated as if samples were
+    /// independent: with sobol they are upper bounds.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Sampler::NAMES))]
     pub sampler: Option<Sampler>,
 
@@ -122,7 +125,7 @@ impl Estimator {
             Profile::Everything => ProfileName::Everything,
             Profile::Fitted => ProfileName::leanest(Needs::of(&setup.scene, options.hide_emitters)),
         };
-        let (sampler, profile) = (self.sampler.unwrap_or(setup.sampler), profile.weighing(options.heuristic));
+        let (sampler, profile) = (self.sampler(setup), profile.weighing(options.heuristic));
         Ok(Settings { options, sampler, budget, seed, profile })
     }
 
@@ -138,6 +141,12 @@ impl Estimator {
         }
         let forced_interaction = self.forced_interaction(setup, strategies);
         Ok(Options { strategies, heuristic, max_depth, forced_interaction, ..scene })
+    }
+
+    fn sampler(&self, setup: &Setup) -> Sampler {
+        let has_variances = setup.integrator.layers.iter().any(|layer| layer.content == Content::Variance);
+        let default = if has_variances { Sampler::Independent } else { Sampler::default() };
+        self.sampler.or(setup.sampler).unwrap_or(default)
     }
 
     fn warn_of_preview(&self) {

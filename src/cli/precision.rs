@@ -5,7 +5,6 @@ use crate::{
     error::{Error, Result},
     film::layer::Content,
     render::{Settings, adaptive::Precision},
-    sampling::Sampler,
     scene::build::Setup,
     transport::Strategies,
 };
@@ -18,15 +17,9 @@ pub fn precision(
 ) -> Result<Option<Precision>> {
     let Some(error) = arguments.error else { return Ok(None) };
     let refuse = |found: &str, remedy: &str| {
-        let expected = "an image of independent samples, without layers of moments";
+        let expected = "an image without layers of moments";
         Err(Error::new("--error", expected, found, remedy))
     };
-    if settings.sampler == Sampler::Sobol {
-        return refuse(
-            "samples of a Sobol sequence (--sampler sobol, or the scene's sampler)",
-            "remove --error, or use --sampler independent",
-        );
-    }
     if settings.options.strategies == Strategies::NONE {
         return refuse("the preview fog", "remove --error, or choose another --integrator");
     }

@@ -1,10 +1,7 @@
 //! The progress bar of a render.
 
 use super::voice;
-use crate::{
-    render::{Progress, Settings, adaptive::Precision},
-    sampling::Sampler,
-};
+use crate::render::{Progress, Settings, adaptive::Precision};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A progress bar that shows the nearest of the limits.
@@ -37,7 +34,7 @@ impl Bar {
                 let share = 100.0 * progress.within.unwrap_or(0.0);
                 format!("{share:.1} % of the pixels within {}", percent(error))
             }
-            (None, Some(noise)) => noise_text(noise, self.settings.sampler),
+            (None, Some(noise)) => format!("noise {}", percent(noise)),
             (None, None) => "noise not known yet".to_owned(),
         };
         self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
@@ -57,14 +54,6 @@ impl Bar {
     /// Removes it.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
-    }
-}
-
-/// The noise of an image; where its samples are spread evenly, there is less than their variance says.
-pub fn noise_text(noise: f64, sampler: Sampler) -> String {
-    match sampler {
-        Sampler::Independent => format!("noise {}", percent(noise)),
-        Sampler::Sobol => format!("noise below {}", percent(noise)),
     }
 }
 
@@ -94,6 +83,7 @@ mod tests {
     use super::*;
     use crate::{
         render::budget::Budget,
+        sampling::Sampler,
         transport::{Options, profile::ProfileName},
     };
     use std::time::Duration;

@@ -8,7 +8,7 @@ use super::{
     load, made,
     plan::Plan,
     precision::precision,
-    progress::{Bar, noise_text, percent, samples_text},
+    progress::{Bar, percent, samples_text},
     threads,
     viewer::Viewer,
 };
@@ -350,8 +350,7 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
 }
 
 fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: Option<&Path>, label: Option<&str>) {
-    let noise_text = |noise| format!(", {}", noise_text(noise, task.settings.sampler));
-    let noise = image.noise.map_or(String::new(), noise_text);
+    let noise = image.noise.map_or(String::new(), |noise| format!(", noise {}", percent(noise)));
     let noise = match (&image.reached, task.precision) {
         (Some(reached), Some(Precision { error, .. })) => {
             let share = 100.0 * reached.share;

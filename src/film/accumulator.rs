@@ -1,5 +1,8 @@
-//! Sums and square sums of the passes over an image: its mean, and how far the mean may be off. They are the same to the
-//! last bit in whatever order, and from whatever parts, passes are added.
+//! Sums of the passes over an image: its mean, and how far the mean may be off. They are the same to the last bit in whatever
+//! order, and from whatever parts, passes are added.
+//!
+//! How far the mean may be off is what its halves say, the passes of even and those of odd number: these are independent of
+//! each other whatever the sampler, while passes of one half may be spread evenly together.
 
 use crate::math::{
     Spectrum, SpectrumExt, Vec3,
@@ -15,39 +18,41 @@ pub const MOST_PASSES: u64 = MOST_TERMS;
 /// Pixels that a thread adds at a time.
 const CHUNK: usize = 4096;
 
-/// Adds up passes; each pass is one independent estimate of the whole image.
+/// Adds up passes; each pass is one estimate of the whole image.
 #[derive(Clone, Debug)]
 pub struct Accumulator {
     pixels: Vec<Pixel>,
     /// Sums of products of two channels, R R, R G, R B, G G, G B, B B; empty where not needed.
     products: Vec<[ExactSum; 6]>,
-    passes: u64,
+    /// Of even and of odd number.
+    passes: [u64; 2],
 }
 
 /// The sums of a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 struct Pixel {
     sum: [ExactSum; 3],
-    luminance_square: ExactSum,
+    /// Luminance of the passes of even number less that of the others.
+    contrast: ExactSum,
 }
 
 impl Pixel {
-    fn add(&mut self, value: Spectrum) {
+    fn add(&mut self, value: Spectrum, sign: f64) {
         for (channel, v) in self.sum.iter_mut().zip(value.to_array()) {
             channel.add(v.into());
         }
-        self.luminance_square.add(f64::from(value.luminance()).powi(2));
+        self.contrast.add(sign * f64::from(value.luminance()));
     }
 
-    fn values(&self) -> ([f64; 3], f64) {
-        (self.sum.each_ref().map(ExactSum::value), self.luminance_square.value())
+    fn sums(&self) -> [f64; 3] {
+        self.sum.each_ref().map(ExactSum::value)
     }
 }
 
 impl Accumulator {
     /// Nothing seen yet, for an image of `pixels`.
     pub fn new(pixels: usize) -> Self {
-        Self { pixels: vec![Pixel::default(); pixels], products: Vec::new(), passes: 0 }
+        Self { pixels: vec![Pixel::default(); pixels], products: Vec::new(), passes: [0; 2] }
     }
 
     /// The same, with second moments and variances.
@@ -55,40 +60,42 @@ impl Accumulator {
         Self { products: vec![[ExactSum::default(); 6]; pixels], ..Self::new(pixels) }
     }
 
-    /// Adds one pass.
-    pub fn add(&mut self, pass: &[Spectrum]) {
+    /// Adds the pass `number`.
+    pub fn add(&mut self, number: u64, pass: &[Spectrum]) {
+        let half = (number % 2) as usize;
+        let sign = [1.0, -1.0][half];
         let pixels = self.pixels.par_chunks_mut(CHUNK).zip(pass.par_chunks(CHUNK));
         pixels.for_each(|(pixels, values)| {
-            pixels.iter_mut().zip(values).for_each(|(pixel, value)| pixel.add(*value));
+            pixels.iter_mut().zip(values).for_each(|(pixel, value)| pixel.add(*value, sign));
         });
         for (products, value) in self.products.iter_mut().zip(pass) {
             let [r, g, b] = value.to_array().map(f64::from);
             let pass = [r * r, r * g, r * b, g * g, g * b, b * b];
             products.iter_mut().zip(pass).for_each(|(sum, product)| sum.add(product));
         }
-        self.passes += 1;
+        self.passes[half] += 1;
     }
 
     /// Adds all passes of `other`, of an image of as many pixels with sums of the same products.
     pub fn merge(&mut self, other: &Self) {
         for (pixel, other) in self.pixels.iter_mut().zip(&other.pixels) {
             pixel.sum.iter_mut().zip(&other.sum).for_each(|(sum, other)| sum.merge(other));
-            pixel.luminance_square.merge(&other.luminance_square);
+            pixel.contrast.merge(&other.contrast);
         }
         for (products, other) in self.products.iter_mut().zip(&other.products) {
             products.iter_mut().zip(other).for_each(|(sum, other)| sum.merge(other));
         }
-        self.passes += other.passes;
+        self.passes.iter_mut().zip(other.passes).for_each(|(passes, other)| *passes += other);
     }
 
     /// Passes added.
     pub fn passes(&self) -> u64 {
-        self.passes
+        self.passes.iter().sum()
     }
 
     /// The mean of all passes.
     pub fn mean(&self) -> Vec<Spectrum> {
-        let scale = 1.0 / self.passes.max(1) as f64;
+        let scale = 1.0 / self.passes().max(1) as f64;
         let of_pixel = |pixel: &Pixel| {
             Spectrum::from_array(pixel.sum.each_ref().map(|sum| (sum.value() * scale) as f32))
         };
@@ -97,34 +104,34 @@ impl Accumulator {
 
     /// Mean over the passes of (`row` . rgb)^2: the second moment of a channel that combines R, G and B.
     pub fn second_moment(&self, row: Vec3) -> Vec<f32> {
-        let scale = 1.0 / self.passes.max(1) as f64;
+        let scale = 1.0 / self.passes().max(1) as f64;
         self.products.iter().map(|products| (square_of(row, products) * scale) as f32).collect()
     }
 
-    /// Estimated variance of the mean of `row` . rgb; none before the second pass.
+    /// Estimated variance of the mean of `row` . rgb; none before the second pass. Passes are taken for independent: where a
+    /// sampler spreads their random numbers evenly, the variance is less.
     pub fn variance(&self, row: Vec3) -> Option<Vec<f32>> {
-        let n = self.passes as f64;
+        let n = self.passes() as f64;
         let [r, g, b] = row.to_array().map(f64::from);
         let of_pixel = |(pixel, products): (&Pixel, &[ExactSum; 6])| {
-            let (sum, _) = pixel.values();
+            let sum = pixel.sums();
             let mean = (r * sum[0] + g * sum[1] + b * sum[2]) / n;
             ((square_of(row, products) / n - mean * mean) / (n - 1.0)).max(0.0) as f32
         };
-        (self.passes > 1).then(|| self.pixels.iter().zip(&self.products).map(of_pixel).collect())
+        (n > 1.0).then(|| self.pixels.iter().zip(&self.products).map(of_pixel).collect())
     }
 
-    /// All sums, pixel by pixel: those of R, G, B and of the luminance's square; then the products, if there are any.
+    /// All sums, pixel by pixel: those of R, G, B and the difference of the halves; then the products, if there are any.
     pub fn sums(&self) -> impl Iterator<Item = ExactSum> + '_ {
-        let pixels =
-            self.pixels.iter().flat_map(|pixel| pixel.sum.into_iter().chain([pixel.luminance_square]));
+        let pixels = self.pixels.iter().flat_map(|pixel| pixel.sum.into_iter().chain([pixel.contrast]));
         pixels.chain(self.products.iter().flatten().copied())
     }
 
-    /// `passes` over an image of `pixels` from what [`Accumulator::sums`] gave; none if that is not as many.
-    pub fn from_sums(pixels: usize, passes: u64, sums: &[ExactSum]) -> Option<Self> {
+    /// `passes` of even and of odd number over an image of `pixels`, from what [`Accumulator::sums`] gave; none if that is
+    /// not as many.
+    pub fn from_sums(pixels: usize, passes: [u64; 2], sums: &[ExactSum]) -> Option<Self> {
         let (own, products) = sums.split_at_checked(4 * pixels)?;
-        let pixel =
-            |sums: &[ExactSum; 4]| Pixel { sum: [sums[0], sums[1], sums[2]], luminance_square: sums[3] };
+        let pixel = |sums: &[ExactSum; 4]| Pixel { sum: [sums[0], sums[1], sums[2]], contrast: sums[3] };
         let (products, rest) = products.as_chunks();
         let fits = rest.is_empty() && (products.is_empty() || products.len() == pixels);
         let pixels = own.as_chunks().0.iter().map(pixel).collect();
@@ -146,37 +153,26 @@ impl Accumulator {
         self.pixels.is_empty()
     }
 
-    /// Estimated variance of the luminance of one pass, summed over pixels; none before the second pass.
-    pub fn luminance_variance(&self) -> Option<f64> {
-        let n = self.passes as f64;
-        let [r, g, b] = LUMINANCE.to_array().map(f64::from);
-        let of_pixel = |pixel: &Pixel| {
-            let (sum, square) = pixel.values();
-            let sum = r * sum[0] + g * sum[1] + b * sum[2];
-            ((square - sum * sum / n) / (n - 1.0)).max(0.0)
-        };
-        (self.passes > 1).then(|| self.pixels.iter().map(of_pixel).sum())
-    }
-
     /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01 m^2), by
-    /// luminance, where m is that of the whole image; none before the second pass. Passes are taken for independent:
-    /// where a sampler spreads their random numbers evenly, the error is less than this.
+    /// luminance, where m is that of the whole image; none before each half has a pass.
     pub fn noise(&self) -> Option<f64> {
-        if self.passes < 2 {
+        let [even, odd] = self.passes.map(|passes| passes as f64);
+        if even == 0.0 || odd == 0.0 {
             return None;
         }
-        let n = self.passes as f64;
         let [r, g, b] = LUMINANCE.to_array().map(f64::from);
         let moments = |pixel: &Pixel| {
-            let (sum, square) = pixel.values();
-            ((r * sum[0] + g * sum[1] + b * sum[2]) / n, square / n)
+            let (sum, contrast) = (pixel.sums(), pixel.contrast.value());
+            let sum = r * sum[0] + g * sum[1] + b * sum[2];
+            let halves = [(sum + contrast) / (2.0 * even), (sum - contrast) / (2.0 * odd)];
+            // The halves differ by the root of twice the variance of either, their mean varies by half of it.
+            (sum / (even + odd), (0.5 * (halves[0] - halves[1])).powi(2))
         };
         let moments: Vec<(f64, f64)> = self.pixels.par_iter().map(moments).collect();
         let total: f64 = moments.iter().map(|(mean, _)| mean).filter(|mean| mean.is_finite()).sum();
         let to = Relative::to_mean(total / moments.len() as f64);
-        let of_pixel =
-            |(mean, square): &(f64, f64)| to.square(((square - mean * mean) / (n - 1.0)).max(0.0), *mean);
-        Some((moments.iter().map(of_pixel).sum::<f64>() / moments.len() as f64).sqrt())
+        let sum: f64 = moments.iter().map(|(mean, variance)| to.square(*variance, *mean)).sum();
+        Some((sum / moments.len() as f64).sqrt())
     }
 }
 
@@ -190,7 +186,10 @@ fn square_of(row: Vec3, products: &[ExactSum; 6]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::vec3;
+    use crate::{
+        math::vec3,
+        sampling::{Stream, stream::Purpose},
+    };
 
     #[test]
     fn moments_and_variances_of_known_passes() {
@@ -198,8 +197,10 @@ mod tests {
         let row = vec3(1.0, 2.0, -1.0);
         assert_eq!(film.variance(row), None);
         // The row makes 0, 6 and 3 of them.
-        for pass in [vec3(1.0, 0.0, 1.0), vec3(2.0, 3.0, 2.0), vec3(0.0, 2.0, 1.0)] {
-            film.add(&[pass]);
+        for (number, pass) in
+            [vec3(1.0, 0.0, 1.0), vec3(2.0, 3.0, 2.0), vec3(0.0, 2.0, 1.0)].iter().enumerate()
+        {
+            film.add(number as u64, &[*pass]);
         }
         assert_eq!(film.second_moment(row), [15.0]);
         // Sample variance 9, of the mean a third of it.
@@ -210,22 +211,46 @@ mod tests {
     #[test]
     fn mean_and_noise_of_known_passes() {
         let mut film = Accumulator::new(1);
-        film.add(&[Spectrum::splat(1.0)]);
+        film.add(0, &[Spectrum::splat(1.0)]);
         assert_eq!(film.noise(), None);
-        film.add(&[Spectrum::splat(3.0)]);
+        film.add(1, &[Spectrum::splat(3.0)]);
         assert_eq!(film.mean(), vec![Spectrum::splat(2.0)]);
         // Variance of the mean of {1, 3} is 1; relative to 2^2 + 0.01 2^2.
         let expected = (1.0f64 / 4.04).sqrt();
         assert!((film.noise().unwrap() - expected).abs() < 1e-5);
-        assert!((film.luminance_variance().unwrap() - 2.0).abs() < 1e-5);
+        // A third pass: the halves' means are 3 and 3.
+        film.add(2, &[Spectrum::splat(5.0)]);
+        assert!(film.noise().unwrap() < 1e-7);
+    }
+
+    /// Over many pixels it is the error of the mean, for any numbers of passes in the halves.
+    #[test]
+    fn noise_is_unbiased() {
+        for passes in [[1u64, 1], [8, 8], [5, 4]] {
+            let pixels = 40_000;
+            let mut film = Accumulator::new(pixels);
+            for (half, count) in passes.iter().enumerate() {
+                for pass in 0..*count {
+                    let mut stream = Stream::new(3, half as u64, pass, Purpose::Study);
+                    let values: Vec<_> =
+                        (0..pixels).map(|_| Spectrum::splat(1.0 + 0.1 * stream.normal())).collect();
+                    film.add(2 * pass + half as u64, &values);
+                }
+            }
+            // Where the halves are not equal, this is a little more than the variance of the mean.
+            let variance = 0.01 * passes.iter().map(|passes| 0.25 / *passes as f64).sum::<f64>();
+            let relative = film.noise().unwrap().powi(2) / (variance / 1.01);
+            let z = (relative - 1.0) / (2.0 / pixels as f64).sqrt();
+            assert!(z.abs() < 4.0, "{passes:?}: {z}");
+        }
     }
 
     #[test]
     fn noise_does_not_depend_on_the_unit_of_radiance() {
         let noise = |unit: f32| {
             let mut film = Accumulator::new(3);
-            for pass in [[0.0, 1.0, 5.0], [0.0, 3.0, 4.0], [0.1, 2.0, 6.0]] {
-                film.add(&pass.map(|value| Spectrum::splat(unit * value)));
+            for (number, pass) in [[0.0, 1.0, 5.0], [0.0, 3.0, 4.0], [0.1, 2.0, 6.0]].iter().enumerate() {
+                film.add(number as u64, &pass.map(|value| Spectrum::splat(unit * value)));
             }
             film.noise().unwrap()
         };

@@ -6,6 +6,7 @@ pub mod filter;
 pub mod format;
 pub mod layer;
 mod lobes;
+pub mod moments;
 pub mod output;
 pub mod png;
 pub mod raster;

@@ -23,6 +23,7 @@ pub trait Kept {
 
 /// That of a render of either kind.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a render has one, whose arrays are far larger")]
 pub enum AnySums {
     /// By samples or time.
     Samples(Sums),

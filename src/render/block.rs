@@ -170,7 +170,7 @@ impl Blocks {
         pass: usize,
         pixel: usize,
     ) -> CameraStart {
-        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, Purpose::Camera);
+        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, 0, 1, Purpose::Camera);
         let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
         let (position, weight) = film.sample(pixel, &mut stream);
         let aperture = scene.sensor.sample_aperture(&mut stream);
@@ -181,12 +181,8 @@ impl Blocks {
     /// pixels: a sampler that distributes them evenly distributes all of them together, pass after pass.
     #[inline]
     pub fn light_stream(&self, seed: u64, pass: usize, walk: u64) -> Stream {
-        let (pass, per_block) = (pass as u64, self.walks_per_block);
-        let (index, sample) = match self.sampler {
-            Sampler::Independent => (walk, pass),
-            Sampler::Sobol => (walk / per_block, pass * per_block + walk % per_block),
-        };
-        self.sampler.stream(seed, index, sample, Purpose::Light)
+        let per_block = self.walks_per_block;
+        self.sampler.stream(seed, walk / per_block, pass as u64, walk % per_block, per_block, Purpose::Light)
     }
 
     /// Renders one sample of every pixel of `block` that `wants` one, and says which pixel it is `at`.

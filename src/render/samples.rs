@@ -44,6 +44,12 @@ impl Samples {
         self.0.iter().map(|range| range.end - range.start).sum()
     }
 
+    /// How many of even and of odd number.
+    pub fn halves(&self) -> [u64; 2] {
+        let odd = self.0.iter().map(|range| range.end / 2 - range.start / 2).sum();
+        [self.count() - odd, odd]
+    }
+
     /// The ranges.
     pub fn ranges(&self) -> &[Range<u64>] {
         &self.0
@@ -94,6 +100,7 @@ mod tests {
         let samples = Samples::of(vec![8..9, 0..3, 3..5]).unwrap();
         assert_eq!((samples.ranges(), samples.count()), (&[0..5, 8..9][..], 6));
         assert_eq!(samples.to_string(), "0..5, 8..9");
+        assert_eq!((samples.halves(), Samples::from(3..8).halves()), ([4, 2], [2, 3]));
         assert_eq!(samples.and(&Samples::from(4..6)), None);
         assert_eq!(samples.and(&Samples::from(5..8)).unwrap(), Samples::from(0..9));
         assert!(Samples::of(vec![1..2, 3..3]).is_none() && Samples::from(3..3).to_string() == "none");

@@ -3,10 +3,10 @@
 
 use super::{compiled::Ready, instrument::Instrument};
 use crate::{
-    film::{Film, accumulator::Accumulator},
+    film::{Film, moments::Moments},
     math::{Spectrum, Vec2},
     transport::{
-        Contribution, MisSums,
+        Contribution, MisSums, Strategies,
         observer::{Meeting, Observer, StrategyKind},
         profile::Profile,
     },
@@ -39,6 +39,14 @@ impl StrategyCell {
         match self {
             Self::Strategy { s, t } => StrategyKind::of(s, t),
             Self::Longer(kind) => kind,
+        }
+    }
+
+    /// True if its strategies are among those of `strategies` that run.
+    pub fn runs(self, strategies: Strategies) -> bool {
+        match self {
+            Self::Strategy { s, t } => strategies.runs(s, t),
+            Self::Longer(kind) => strategies.has(kind),
         }
     }
 
@@ -178,19 +186,19 @@ impl<S: MisSums> Observer<S> for CameraPathObserver {
 pub struct StrategyImages {
     /// Which there are.
     pub table: StrategyTable,
-    /// One a cell; none where its kind of strategies does not run.
+    /// One a cell; none where its strategies do not run.
     pub images: Vec<Option<CellImages>>,
     /// The image that they make together.
-    pub whole: Accumulator,
+    pub whole: Moments,
 }
 
 /// The images of one cell.
 #[derive(Clone)]
 pub struct CellImages {
     /// As it counts in the image.
-    pub weighted: Accumulator,
+    pub weighted: Moments,
     /// As if it ran alone.
-    pub alone: Accumulator,
+    pub alone: Moments,
     /// The pass at hand.
     pass: [Vec<Spectrum>; 2],
 }
@@ -198,7 +206,7 @@ pub struct CellImages {
 impl CellImages {
     fn new(pixels: usize) -> Self {
         let pass = || vec![Spectrum::ZERO; pixels];
-        let (weighted, alone) = (Accumulator::new(pixels), Accumulator::new(pixels));
+        let (weighted, alone) = (Moments::new(pixels), Moments::new(pixels));
         Self { weighted, alone, pass: [pass(), pass()] }
     }
 
@@ -235,14 +243,10 @@ impl Instrument<'_> {
         progress: &mut dyn FnMut(usize),
     ) -> StrategyImages {
         let pixels = self.film.len();
-        let images = |cell: StrategyCell| {
-            self.settings.options.strategies.has(cell.kind()).then(|| CellImages::new(pixels))
-        };
-        let mut parts = StrategyImages {
-            table,
-            images: table.all().map(images).collect(),
-            whole: Accumulator::new(pixels),
-        };
+        let images =
+            |cell: StrategyCell| cell.runs(self.settings.options.strategies).then(|| CellImages::new(pixels));
+        let mut parts =
+            StrategyImages { table, images: table.all().map(images).collect(), whole: Moments::new(pixels) };
         let mut whole = vec![Spectrum::ZERO; pixels];
         let work = |pass, block| self.compiled.parts(table, pass, block);
         self.in_order(0..passes, work, |block, ends_pass| {

@@ -112,7 +112,7 @@ impl Sums {
         self.faults.add(&outcome.faults);
         self.blocks += 1;
         if self.blocks == count {
-            self.pass.finish(|pass| self.accumulator.add(pass));
+            self.pass.finish(|pass| self.accumulator.add(sample, pass));
             self.samples.insert(sample);
             self.blocks = 0;
         }

@@ -6,10 +6,10 @@ use super::{Stream, stream::Purpose};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampler {
     /// Independent random numbers.
-    #[default]
     Independent,
     /// The first of every stream are the coordinates of a point of an Owen-scrambled Sobol sequence: those of
     /// consecutive samples are spread evenly.
+    #[default]
     Sobol,
 }
 
@@ -22,12 +22,15 @@ impl Sampler {
         Self::NAMES.iter().find(|(_, sampler)| *sampler == self).map_or("", |(name, _)| name)
     }
 
-    /// The stream of (`seed`, `index`, `sample`, `purpose`). Samples of one index are spread evenly together.
+    /// The stream of walk `walk` of those that `index` has in pass `pass`, `walks` of them, for `purpose`.
+    ///
+    /// Walks of one index are spread evenly together, those of all passes of even number and those of all passes of odd
+    /// number: the two halves of an image are independent, so that their difference shows how far it may be off.
     #[inline]
-    pub fn stream(self, seed: u64, index: u64, sample: u64, purpose: Purpose) -> Stream {
+    pub fn stream(self, seed: u64, index: u64, pass: u64, walk: u64, walks: u64, purpose: Purpose) -> Stream {
         match self {
-            Self::Independent => Stream::new(seed, index, sample, purpose),
-            Self::Sobol => Stream::sobol(seed, index, sample, purpose),
+            Self::Independent => Stream::new(seed, index * walks + walk, pass, purpose),
+            Self::Sobol => Stream::sobol(seed, 2 * index + pass % 2, pass / 2 * walks + walk, purpose),
         }
     }
 }

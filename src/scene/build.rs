@@ -46,8 +46,8 @@ pub struct Setup {
     pub integrator: Integrator,
     /// Samples per pixel that the sampler requests.
     pub samples_per_pixel: u64,
-    /// How the sampler distributes random numbers.
-    pub sampler: Sampler,
+    /// How the sampler distributes random numbers; none for the default.
+    pub sampler: Option<Sampler>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Id (or plugin name) of each medium after vacuum, for listings.

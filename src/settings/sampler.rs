@@ -7,16 +7,16 @@ use crate::{
 };
 
 /// Every sampler. Those of Mitsuba that stratify do so to spread numbers evenly, each in a way of its own; here all that
-/// is Sobol's sequence.
-pub(crate) const ROWS: Registry<Sampler> = Registry::new(
+/// is Sobol's sequence. Its default, `independent`, says no more than that nothing was chosen.
+pub(crate) const ROWS: Registry<Option<Sampler>> = Registry::new(
     "a sampler",
     &[
-        ("independent", Sampler::Independent),
-        ("ldsampler", Sampler::Sobol),
-        ("multijitter", Sampler::Sobol),
-        ("orthogonal", Sampler::Sobol),
-        ("sobol", Sampler::Sobol),
-        ("stratified", Sampler::Sobol),
+        ("independent", None),
+        ("ldsampler", Some(Sampler::Sobol)),
+        ("multijitter", Some(Sampler::Sobol)),
+        ("orthogonal", Some(Sampler::Sobol)),
+        ("sobol", Some(Sampler::Sobol)),
+        ("stratified", Some(Sampler::Sobol)),
     ],
 );
 
@@ -25,12 +25,13 @@ pub(crate) const ROWS: Registry<Sampler> = Registry::new(
 pub(crate) struct Sampling {
     /// Samples per pixel.
     pub samples_per_pixel: u64,
-    pub sampler: Sampler,
+    /// None for the default.
+    pub sampler: Option<Sampler>,
 }
 
 impl Default for Sampling {
     fn default() -> Self {
-        Self { samples_per_pixel: 4, sampler: Sampler::Independent }
+        Self { samples_per_pixel: 4, sampler: None }
     }
 }
 

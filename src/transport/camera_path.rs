@@ -226,16 +226,10 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         if counts.emitter_hit <= 0.0 || (subpath.edges == 1 && hidden) {
             return None;
         }
-        // Both ends of the segment before must be connectible; s = 1 connects across it, which from the
-        // sensor is a light subpath's first vertex and from anywhere else next-event estimation. Parallel
-        // rays reach what is at infinity in one direction, in which no light subpath starts.
-        let unseen = P::INFINITE && sample.point.is_infinite() && self.estimator.scene.sensor.is_parallel();
-        let connections = match (subpath.after_dirac, subpath.edges) {
-            (true, _) => 0.0,
-            (false, 1) if unseen => 0.0,
-            (false, 1) => counts.lens * sample.pdf_start,
-            (false, _) => counts.next_event * sample.pdf,
-        };
+        // Both ends of the segment before must be connectible for next-event estimation to connect across it. An
+        // emitter that the camera sees is left to this strategy alone, see [`Estimator::starts_seen`].
+        let has_other = !subpath.after_dirac && subpath.edges > 1;
+        let connections = if has_other { counts.next_event * sample.pdf } else { 0.0 };
         let unit = subpath.inv_pdf / counts.emitter_hit;
         let by_light = subpath.others_over_pdf_rev.scaled(sample.pdf_direction * sample.pdf_start * unit);
         let others = P::MisSums::of(subpath.pdf_over_hero_before.scaled(connections * unit)).and(by_light);

@@ -50,8 +50,8 @@ pub fn trace<P: Profile>(
     let kind =
         Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
     let mut light = LightPath::new(estimator, cache, observer, start, hero);
-    let aperture = scene.sensor.sample_aperture(stream);
-    if estimator.counts.lens > 0.0 {
+    if estimator.starts_seen() {
+        let aperture = scene.sensor.sample_aperture(stream);
         light.observer.start();
         let contribution = light.connect_start_to_lens(aperture, stream);
         light.splat(1, contribution);
@@ -181,14 +181,14 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
         Some((seen.film, contribution))
     }
 
-    /// s = 1, t = 1: the emitter itself as the sensor sees it, where a camera subpath could have hit it.
+    /// s = 1, t = 1: the emitter itself as the sensor sees it, where a camera subpath could hit it but none does.
     pub fn connect_start_to_lens(&self, aperture: Vec2, stream: &mut Stream) -> Option<(Vec2, Contribution)> {
         let (estimator, start) = (self.estimator, &self.start);
         let scene = estimator.scene;
         let hidden = estimator.hide_emitters && !(P::EMISSIVE && start.point.is_volume());
         let seen_directly = estimator.max_edges > 0 && !hidden;
         let hittable = scene.lights.all[start.light as usize].emitter.is_hittable();
-        if estimator.counts.lens <= 0.0 || !hittable || !seen_directly {
+        if !estimator.starts_seen() || !hittable || !seen_directly {
             return None;
         }
         let seen = match start.point {
@@ -257,6 +257,6 @@ fn start_end<P: Profile>(
         inv_pdf: 1.0 / start.pdf,
         sigma_t: connect::rate_at::<P>(&start.point),
         pdf_over_hero: P::Channels::splat(1.0),
-        others_before: P::MisSums::of(P::Channels::splat(estimator.counts.emitter_hit)),
+        others_before: P::MisSums::none(),
     })
 }

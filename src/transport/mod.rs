@@ -194,6 +194,11 @@ impl<'a, P: Profile> Estimator<'a, P> {
         self.connections_per_vertex > 0 || self.counts.lens > 0.0
     }
 
+    /// True if the first vertex of a light subpath is connected to the lens, see [`Strategies::runs`].
+    fn starts_seen(&self) -> bool {
+        self.counts.lens > 0.0 && self.counts.emitter_hit <= 0.0
+    }
+
     /// Traces one light subpath of channel `hero` into `cache`; what it contributes goes to `observer`.
     pub fn trace_light(
         &self,

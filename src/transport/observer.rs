@@ -67,6 +67,12 @@ impl Strategies {
         }
     }
 
+    /// True if the strategy of `s` light and `t` camera vertices runs. Emitters in view are left to camera subpaths that hit
+    /// them, with far less noise than light subpaths' starts that are connected to the lens.
+    pub fn runs(self, s: u32, t: u32) -> bool {
+        self.has(StrategyKind::of(s, t)) && !((s, t) == (1, 1) && self.emitter_hit)
+    }
+
     /// The same without those of `kind`.
     pub fn without(mut self, kind: StrategyKind) -> Self {
         match kind {

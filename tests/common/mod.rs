@@ -12,6 +12,7 @@ use tyndall::{
     format,
     math::Spectrum,
     render::{self, Image, Settings, budget::Budget, faults::Faults},
+    sampling::Sampler,
     scene::build::{self, Setup},
     settings::Overrides,
     transport::{
@@ -70,7 +71,8 @@ impl Stage {
     /// How it is rendered.
     pub fn settings(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Settings {
         let options = Options { strategies, ..self.setup.integrator.options };
-        let sampler = self.setup.sampler;
+        // Tests of means want batches whose errors are what their own variance says.
+        let sampler = self.setup.sampler.unwrap_or(Sampler::Independent);
         let budget = Budget::samples(samples_per_pixel);
         Settings { options, sampler, budget, seed, profile: self.profile }
     }

@@ -35,7 +35,7 @@ fn a_render_says_in_one_line_what_it_will_do() {
     for (words, line) in [
         (
             "",
-            "bdpt (hit, next-event, join, lens), independent samples, closed-form flights, 8x8, 4 samples/pixel, profile fog\n",
+            "bdpt (hit, next-event, join, lens), sobol samples, closed-form flights, 8x8, 4 samples/pixel, profile fog\n",
         ),
         (
             "--integrator pt --sampler sobol --time-limit 0.1s",
@@ -43,11 +43,11 @@ fn a_render_says_in_one_line_what_it_will_do() {
         ),
         (
             "--strategies hit,join --spp 2 --error 0.5 --profile everything",
-            "bdpt (hit, join), independent samples, closed-form flights, 8x8, 2 samples/pixel or error 0.5, profile everything\n",
+            "bdpt (hit, join), sobol samples, closed-form flights, 8x8, 2 samples/pixel or error 0.5, profile everything\n",
         ),
         (
             "--integrator fog --size 5x3",
-            "fog, a preview of first surfaces, independent samples, 5x3, 4 samples/pixel, profile fog\n",
+            "fog, a preview of first surfaces, sobol samples, 5x3, 4 samples/pixel, profile fog\n",
         ),
     ] {
         assert_eq!(sandbox.run(&format!("render scene.json {words}")).ends(0).err(), line, "{words}");
@@ -139,7 +139,7 @@ fn every_report_can_be_json() {
     assert_eq!(plan["strategies"], json!(["hit", "next-event"]));
     assert_eq!(
         (&plan["width"], &plan["sampler"], &plan["integrator"]),
-        (&json!(8), &json!("independent"), &json!("pt"))
+        (&json!(8), &json!("sobol"), &json!("pt"))
     );
     assert!(
         plan["unreached"].as_array().unwrap().iter().any(|light| light["reached_by_bdpt"] == "all"),

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use tyndall::{
     math::{RaySegment, Spectrum, Vec3},
     render::{self, Settings, budget::Budget},
+    sampling::Sampler,
     transport::{Heuristic, Options, Strategies},
 };
 
@@ -73,7 +74,7 @@ fn preview(scene: &Value) -> Vec<Spectrum> {
     let Stage { setup, profile } = Stage::new(scene);
     let options = Options { heuristic: Heuristic::Balance, max_depth: None, ..setup.integrator.options };
     let budget = Budget::samples(2);
-    let settings = Settings { options, sampler: setup.sampler, budget, seed: 1, profile };
+    let settings = Settings { options, sampler: Sampler::default(), budget, seed: 1, profile };
     render::preview(&setup.scene, &setup.film, &settings, &setup.integrator.fog, &[], &mut |_| {}).pixels
 }
 

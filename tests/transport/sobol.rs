@@ -7,12 +7,17 @@ use crate::common::{
     strategies,
 };
 use serde_json::{Value, json};
-use tyndall::{math::Spectrum, sampling::Sampler, transport::Strategies};
+use tyndall::{
+    math::{Spectrum, SpectrumExt},
+    render::Image,
+    sampling::Sampler,
+    transport::Strategies,
+};
 
 /// A scene rendered with points of Sobol's sequence.
 fn even(scene: &Value) -> Stage {
     let mut stage = Stage::new(scene);
-    stage.setup.sampler = Sampler::Sobol;
+    stage.setup.sampler = Some(Sampler::Sobol);
     stage
 }
 
@@ -87,12 +92,13 @@ fn the_number_of_threads_changes_nothing() {
 #[test]
 fn a_scene_says_which_sampler() {
     for (name, sampler) in [
-        ("independent", Sampler::Independent),
-        ("sobol", Sampler::Sobol),
-        ("ldsampler", Sampler::Sobol),
-        ("multijitter", Sampler::Sobol),
-        ("orthogonal", Sampler::Sobol),
-        ("stratified", Sampler::Sobol),
+        // The default of Mitsuba's scenes: no choice.
+        ("independent", None),
+        ("sobol", Some(Sampler::Sobol)),
+        ("ldsampler", Some(Sampler::Sobol)),
+        ("multijitter", Some(Sampler::Sobol)),
+        ("orthogonal", Some(Sampler::Sobol)),
+        ("stratified", Some(Sampler::Sobol)),
     ] {
         let requested = json!({"type": name, "sample_count": 9});
         let view = with(camera([0.0, 1.0, 3.0], [0.0; 3], 8), &[("sampler", requested)]);
@@ -113,18 +119,51 @@ fn variance(stage: &Stage, set: Strategies, samples: u64) -> f64 {
     (0..images[0].len()).map(pixel).sum::<f64>() / images[0].len() as f64
 }
 
-#[test]
-fn images_are_less_noisy() {
-    // Light that reaches the eye by one reflection: few dimensions, all of them spread evenly.
-    let parts = [
+/// Light that reaches the eye by one reflection: few dimensions, all of them spread evenly.
+fn one_reflection() -> Value {
+    scene(&[
         ("sensor", camera([0.0, 1.0, 3.0], [0.0, 0.0, 0.0], 8)),
         ("floor", floor(-0.6, 4.0, 0.5)),
         ("lamp", lamp_panel([0.0, 1.5, 0.0], 0.5, 3.0)),
         ("integrator", depth(2)),
-    ];
-    let scene = scene(&parts);
+    ])
+}
+
+#[test]
+fn images_are_less_noisy() {
+    let scene = one_reflection();
     for (set, factor) in [(strategies("next-event"), 8.0), (Strategies::PT, 1.5), (Strategies::BDPT, 1.2)] {
         let (plain, even) = (variance(&Stage::new(&scene), set, 64), variance(&even(&scene), set, 64));
         assert!(factor * even < plain, "{}: {plain} {even}", common::name_of(set));
     }
+}
+
+/// The noise that a render shows is that of its image, squared and on average, however evenly its samples are spread.
+#[test]
+fn the_noise_shown_is_that_of_the_image() {
+    for (stage, set) in
+        [(even(&one_reflection()), Strategies::PT), (even(&room_of(None, 8)), Strategies::BDPT)]
+    {
+        let (seeds, samples) = (200u64, 16);
+        let images: Vec<Image> =
+            (0..seeds).map(|seed| stage.render_layers(set, samples, 900 + seed)).collect();
+        let mean = |i: usize| images.iter().map(|image| luminance(image, i)).sum::<f64>() / seeds as f64;
+        let means: Vec<f64> = (0..images[0].pixels.len()).map(mean).collect();
+        let floor = 0.01 * (means.iter().sum::<f64>() / means.len() as f64).powi(2);
+        let error = |image: &Image| {
+            let of = |(i, mean): (usize, &f64)| (luminance(image, i) - mean).powi(2) / (mean * mean + floor);
+            means.iter().enumerate().map(of).sum::<f64>() / means.len() as f64 * seeds as f64
+                / (seeds - 1) as f64
+        };
+        let excess: Vec<f64> =
+            images.iter().map(|image| image.noise.expect("noise").powi(2) - error(image)).collect();
+        let average = excess.iter().sum::<f64>() / seeds as f64;
+        let variance = excess.iter().map(|e| (e - average).powi(2)).sum::<f64>() / (seeds - 1) as f64;
+        let z = average / (variance / seeds as f64).sqrt();
+        assert!(z.abs() < 3.5, "{}: {z}, {average} more than {}", common::name_of(set), error(&images[0]));
+    }
+}
+
+fn luminance(image: &Image, pixel: usize) -> f64 {
+    f64::from(image.pixels[pixel].luminance())
 }

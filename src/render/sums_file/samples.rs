@@ -2,7 +2,7 @@
 //!
 //! | array | type, shape | is |
 //! |---|---|---|
-//! | `windows`, `parts` | i16 \[n\], i64 \[n, 2\] | exact sums over samples, see [`ExactSum::to_parts`]: of R, G, B and the luminance's square of each pixel, row by row; then, where layers need them, of R R, R G, R B, G G, G B, B B |
+//! | `windows`, `parts` | i16 \[n\], i64 \[n, 2\] | exact sums over samples, see [`ExactSum::to_parts`]: of R, G, B and the difference of the halves of each pixel, row by row; then, where layers need them, of R R, R G, R B, G G, G B, B B |
 //! | `camera`, `light` | f32 \[pixels, 3\] | what camera and light subpaths of the unfinished sample contributed so far, if there is one |
 
 use super::{
@@ -79,7 +79,7 @@ pub(super) fn sums(state: Value, arrays: &Arrays<'_>) -> Option<Sums> {
     let sums: Vec<ExactSum> = sums.map(|(window, parts)| ExactSum::from_parts(window, *parts)).collect();
     let pixels = state.width.checked_mul(state.height).filter(|pixels| *pixels > 0)?;
     let samples = if state.samples.is_empty() { Samples::default() } else { Samples::of(state.samples)? };
-    let accumulator = Accumulator::from_sums(pixels, samples.count(), &sums)?;
+    let accumulator = Accumulator::from_sums(pixels, samples.halves(), &sums)?;
     let mut sums = Sums::of(accumulator, samples, state.width);
     sums.faults = state.faults;
     sums.elapsed = Duration::try_from_secs_f64(state.seconds).ok()?;

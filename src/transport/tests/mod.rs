@@ -167,7 +167,7 @@ fn media_that_shine() {
     examine_all::<Fire>("glowing fog", &build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, BALL]), 300);
     examine_all::<Fire>("fire ball", &build(&[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP, POINT]), 600);
     examine_all::<Fire>("fire in a box", &build(&[OUTSIDE, FIRE_BOX, GROUND, SKY]), 600);
-    examine_all::<Fire>("no matter", &build(&[OUTSIDE, NEON, GROUND, MIRROR, BALL]), 1500);
+    examine_all::<Fire>("no matter", &build(&[OUTSIDE, NEON, GROUND, MIRROR, BALL]), 3000);
     examine_all::<Everything>("colours", &build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]), 600);
     examine_all::<Everything>("tracked", &build(&[OUTSIDE, TRACKED_FIRE, GROUND, LAMP]), 600);
     examine_all::<Everything>(

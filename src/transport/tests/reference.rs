@@ -90,7 +90,7 @@ impl<'a> Reference<'a> {
             0 if hittable => self.counts.emitter_hit,
             0 => 0.0,
             _ if path.nodes[s - 1].dirac || path.nodes[s].dirac => 0.0,
-            1 if length == 2 && !hittable => 0.0,
+            1 if length == 2 && !(hittable && self.counts.emitter_hit == 0.0) => 0.0,
             _ if s == length - 1 => self.counts.lens,
             1 => self.counts.next_event,
             _ => self.counts.connection,
