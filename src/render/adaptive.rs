@@ -227,8 +227,8 @@ impl Adaptive<'_> {
         self.tell(halves, true);
     }
 
-    /// Renders until both halves have passes up to the next check; false if the budget ends before. A pass that time does
-    /// not suffice for is left out, unless it is the first.
+    /// Renders until both halves have passes up to the next check; false if the budget ends before. An unfinished pass is
+    /// left out of the image, unless it is the first.
     fn advance(&mut self, halves: &mut Halves, before: Duration) -> bool {
         let (budget, count) = (self.bench.settings.budget, self.bench.compiled.blocks().count());
         let end = budget.samples_per_pixel.unwrap_or(u64::MAX).min(2 * halves.goal);
