@@ -1,18 +1,5 @@
-"""Entry: any bare Python 3.11+ makes the environment it needs, then runs the command in it."""
+"""Entry of `python3 -m validation`."""
 
-import sys
+from validation import entry
 
-from validation import environment
-from validation.failure import Failure
-
-try:
-    environment.enter()
-    from validation import cli  # only importable inside the environment
-
-    sys.exit(cli.main(sys.argv[1:]))
-except KeyboardInterrupt:
-    print("interrupted", file=sys.stderr)
-    sys.exit(130)
-except Failure as failure:
-    print(failure, file=sys.stderr)
-    sys.exit(2)
+entry.run("validation", "interrupted")

@@ -1,7 +1,11 @@
 //! The arguments of the command line.
 
 use super::{estimator::Estimator, study::Study, viewer, voice::Answer};
-use crate::{film::accumulator::MOST_PASSES, format};
+use crate::{
+    film::accumulator::MOST_PASSES,
+    format,
+    settings::{Crop, Overrides},
+};
 use clap::{
     Args, Parser, Subcommand,
     builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser},
@@ -49,10 +53,11 @@ pub enum Command {
     /// same light vertices. Every vertex is listed with its pdfs and every contribution with its weight; the
     /// contributions sum to the value of the pixel.
     Pixel(super::pixel::Arguments),
-    /// Add up parts of one image, rendered with --samples, and write the image
+    /// Put together parts of one image, rendered with --samples or --crop, and write the image
     ///
-    /// The parts are files of sums of the same scene, options and seed, with different samples. The image is the same,
-    /// bit for bit, as that of one render of all of these samples.
+    /// The parts are files of sums of the same scene, options and seed. Those with other samples of the same pixels
+    /// (--samples) are added up: the image is the same, bit for bit, as that of one render of all of these samples. Those
+    /// with other pixels (--crop) are put side by side; they must cover the image and not overlap.
     Merge(super::merge::Merge),
     /// Print a summary of a scene without rendering it
     Info(Info),
@@ -178,7 +183,7 @@ pub struct Render {
     ///
     /// The image is the same, bit for bit, as if the render had never stopped; --spp is the total. Scene, files and
     /// options that decide about the image must be the same.
-    #[arg(long, overrides_with = "resume", conflicts_with_all = ["error", "batches", "frames"])]
+    #[arg(long, overrides_with = "resume", conflicts_with_all = ["batches", "frames"])]
     pub resume: bool,
 
     /// File for the sums of all samples, from which --resume continues and tyndall merge makes one image
@@ -186,7 +191,7 @@ pub struct Render {
     ///
     /// Written every minute (--sums-every), less often where it would take more than 1 % of the time, and at the end. The
     /// format is safetensors.
-    #[arg(long, visible_alias = "checkpoint", value_name = "FILE", conflicts_with_all = ["error", "batches", "frames"])]
+    #[arg(long, visible_alias = "checkpoint", value_name = "FILE", conflicts_with_all = ["batches", "frames"])]
     pub sums: Option<PathBuf>,
 
     /// Time between two writes of the sums, at least [default: 1m]
@@ -196,17 +201,18 @@ pub struct Render {
     /// Render only the samples A to B - 1 of every pixel, for tyndall merge
     ///
     /// Parts with other samples of the same scene, options and seed, rendered anywhere, add up to exactly the image
-    /// that one render of all samples makes. An image is written only if -o is given.
+    /// that one render of all samples makes. An image is written only if -o is given. Renders with --error are cut by
+    /// --crop instead.
     #[arg(long, value_name = "A..B", value_parser = samples, requires = "sums", allow_hyphen_values = true,
         conflicts_with_all = ["spp", "error", "batches", "frames"])]
     pub samples: Option<Samples>,
 
     /// Write the image so far, and its PNG, every five seconds
-    #[arg(long, conflicts_with = "error")]
+    #[arg(long)]
     pub preview: bool,
 
     /// Show the image so far in the viewer tev
-    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = viewer::ADDRESS, value_parser = address, conflicts_with = "error")]
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, default_missing_value = viewer::ADDRESS, value_parser = address)]
     pub tev: Option<String>,
 
     /// Seed of all random numbers; the same seed gives the same image
@@ -237,6 +243,35 @@ pub struct Render {
     /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
+
+    /// Render only the part of the image of WIDTHxHEIGHT pixels whose top left corner is at pixel X, Y
+    ///
+    /// With --sums it is a part for tyndall merge, which puts together parts that cover the image; an image of the part is
+    /// written only if -o is given. Every part traces light subpaths of its own, as many as it has pixels: what they
+    /// contribute by the strategy lens is noisier than in a render of the whole image, so prefer --samples to cut a render
+    /// without --error. --error is relative to the mean luminance of the part.
+    #[arg(long, value_name = "WIDTHxHEIGHT+X+Y", value_parser = crop, allow_hyphen_values = true)]
+    pub crop: Option<Crop>,
+}
+
+impl Render {
+    /// What the options override in the scene.
+    pub fn overrides(&self) -> Overrides {
+        Overrides { crop: self.crop, ..self.estimator.overrides(self.size) }
+    }
+
+    /// Seed of the random numbers: of parts of an image, no two share one, or the noise of one would be repeated in others.
+    pub fn seed_of_part(&self) -> u64 {
+        let Some(Crop { corner: [x, y], .. }) = self.crop else { return self.seed };
+        let corner = u64::from(y) << 32 | u64::from(x);
+        self.seed ^ corner.wrapping_add(1).wrapping_mul(0xd1b5_4a32_d192_ed03)
+    }
+
+    /// True if no image is to be written but sums, for tyndall merge.
+    pub fn is_part(&self) -> bool {
+        let is_cut = self.samples.is_some() || self.crop.is_some();
+        is_cut && self.sums.is_some() && self.output.is_none()
+    }
 }
 
 /// Print a summary of a scene.
@@ -362,6 +397,12 @@ pub struct Size {
     pub height: u32,
 }
 
+impl From<Size> for (u32, u32) {
+    fn from(size: Size) -> Self {
+        (size.width, size.height)
+    }
+}
+
 /// No film needs more pixels on a side; a size beyond is a slip of the finger.
 const LARGEST_SIDE: u32 = 65_536;
 
@@ -445,6 +486,15 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     Ok(Size { width: side(width)?, height: side(height)? })
 }
 
+fn crop(text: &str) -> Result<Crop, String> {
+    let parts = text.split_once('+').and_then(|(pixels, corner)| {
+        let (x, y) = corner.split_once('+')?;
+        let Size { width, height } = size(pixels).ok()?;
+        Some(Crop { corner: [x.parse().ok()?, y.parse().ok()?], size: [width, height] })
+    });
+    parts.ok_or_else(|| "expected WIDTHxHEIGHT+X+Y in pixels, such as 320x240+640+0".to_owned())
+}
+
 pub(super) fn duration(text: &str) -> Result<Duration, String> {
     let expected = || "expected a time above 0, such as 90, 90s, 5m or 1.5h".to_owned();
     let (number, seconds) = match text.char_indices().next_back() {
@@ -517,7 +567,7 @@ mod tests {
         let r = render(
             "-o a.exr --spp 8 --time-limit 5m --seed 3 --threads 2 --integrator lt -D res=48 -D t=a=b \
              --size 64x32 --profile everything --strategies hit,next-event --max-depth -1 --sampler sobol \
-             --forced-interaction",
+             --crop 8x4+10+0 --forced-interaction",
         );
         assert_eq!(r.output, Some("a.exr".into()));
         assert_eq!((r.spp, r.seed, r.time_limit), (Some(8), 3, Some(Duration::from_secs(300))));
@@ -528,12 +578,22 @@ mod tests {
         let definitions = [("res".to_owned(), "48".to_owned()), ("t".to_owned(), "a=b".to_owned())];
         assert_eq!(r.scene.definitions, definitions);
         assert_eq!(r.size, Some(Size { width: 64, height: 32 }));
+        assert_eq!(r.crop.map(|crop| (crop.corner, crop.size)), Some(([10, 0], [8, 4])));
         assert_eq!(
             (r.estimator.profile, r.estimator.max_depth),
             (Profile::Everything, Some(MaxDepth::Unbounded))
         );
         assert_eq!(r.estimator.strategies, [StrategyKind::EmitterHit, StrategyKind::NextEvent]);
         assert_eq!((r.estimator.sampler, r.estimator.forced_interaction), (Some(Sampler::Sobol), true));
+    }
+
+    #[test]
+    fn parts_have_random_numbers_of_their_own() {
+        let crops = ["", "--crop 4x4+0+0", "--crop 4x4+4+0", "--crop 4x4+0+4", "--crop 4x4+4+4"];
+        let mut seeds = crops.map(|crop| render(&format!("{crop} --seed 5")).seed_of_part());
+        assert_eq!(seeds[0], 5);
+        seeds.sort_unstable();
+        assert!(seeds.windows(2).all(|pair| pair[0] != pair[1]), "{seeds:?}");
     }
 
     #[test]
@@ -590,6 +650,10 @@ mod tests {
             ("render a.xml --size 0x5", "from 1 to"),
             ("render a.xml --size 5", "640x480"),
             ("render a.xml --size -5x5", "from 1 to"),
+            ("render a.xml --crop 64x32", "320x240+640+0"),
+            ("render a.xml --crop 64x0+1+2", "320x240+640+0"),
+            ("render a.xml --crop 64x32+-1+2", "320x240+640+0"),
+            ("render a.xml --error 0.1 --samples 0..4 --sums a.sums", "cannot be used with"),
             ("render a.xml --spp 0", "at least 1"),
             ("render a.xml --batches 1", "from 2 to 1000"),
             ("render a.xml --batches -4", "from 2 to 1000"),

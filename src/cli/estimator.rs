@@ -1,6 +1,6 @@
 //! How paths are made: the options of the command line, put over what the scene says.
 
-use super::arguments::one_of;
+use super::arguments::{Size, one_of};
 use crate::{
     analysis::coverage,
     error::{Error, Result},
@@ -13,7 +13,7 @@ use crate::{
     },
     sampling::Sampler,
     scene::build::Setup,
-    settings::integrator::Restriction,
+    settings::{Overrides, integrator::Restriction},
     transport::{
         Heuristic, Options, Strategies,
         observer::StrategyKind,
@@ -121,6 +121,11 @@ fn heuristic(text: &str) -> std::result::Result<Heuristic, String> {
 }
 
 impl Estimator {
+    /// What these options and a `size` override in a scene.
+    pub fn overrides(&self, size: Option<Size>) -> Overrides {
+        Overrides { size: size.map(Into::into), crop: None, tracker: self.tracker }
+    }
+
     /// A render of `setup`, its paths made as these options say, or else as the scene says, or else as a pilot chooses.
     pub fn settings(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
         self.chosen(setup, seed, budget).map(|(settings, _)| settings)

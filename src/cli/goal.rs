@@ -7,7 +7,7 @@ use crate::{
         self, Film,
         format::{FileKind, Format},
     },
-    render::{Image, sums::Sums},
+    render::{Image, any_sums::Kept},
     scene::build::Setup,
 };
 use serde_json::Value;
@@ -85,9 +85,9 @@ impl Goal {
     }
 
     /// Writes the image so far: without alpha and layers, which are rendered at the end.
-    pub fn draw(&self, film: &Film, sums: &Sums, made: &Value) -> Result<()> {
+    pub fn draw(&self, film: &Film, sums: &dyn Kept, made: &Value) -> Result<()> {
         let format = Format { alpha: false, ..self.format };
         let goal = Self { path: self.path.clone(), format };
-        goal.write(film, &mut Image::so_far(sums), made)
+        goal.write(film, &mut sums.image(), made)
     }
 }

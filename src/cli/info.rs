@@ -17,7 +17,7 @@ use crate::{
     phase::PhaseModel,
     render::{Settings, budget::Budget},
     scene::{Infinity, Scene, build::Setup, lights::Light},
-    settings::integrator::Restriction,
+    settings::{Overrides, integrator::Restriction},
     shape::ShapeModel,
     transport::{Options, Strategies},
 };
@@ -29,7 +29,8 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     if let Some(made) = picture::made(&arguments.scene.file)? {
         return picture::show(&made, &arguments.answer);
     }
-    let setup = load(&arguments.scene, None, arguments.estimator.tracker)?;
+    let setup =
+        load(&arguments.scene, Overrides { tracker: arguments.estimator.tracker, ..Overrides::default() })?;
     let budget = Budget::samples(setup.samples_per_pixel);
     let (settings, chosen) = arguments.estimator.chosen(&setup, 0, budget)?;
     let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, None);
@@ -108,7 +109,7 @@ fn describe_film(film: &Film) -> String {
     } else {
         format!(" (the window at {x}, {y} of {width} x {height})")
     };
-    let border = if film.border > 0 { ", sampled beyond its border" } else { "" };
+    let border = if film.border != [[0; 2]; 2] { ", sampled beyond its border" } else { "" };
     let format = film.format;
     let numbers = match (format.file, format.component) {
         (FileKind::Rgbe, _) => "a common exponent",

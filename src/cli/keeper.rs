@@ -5,7 +5,7 @@ use crate::{
     error::{Error, Result},
     render::{
         Progress,
-        sums::Sums,
+        any_sums::{AnySums, Kept},
         sums_file::{read, write},
     },
 };
@@ -56,7 +56,7 @@ pub struct Keeper<'a> {
     sums: Turn,
     picture: Option<Turn>,
     /// Writes the picture so far.
-    draw: &'a dyn Fn(&Sums) -> Result<()>,
+    draw: &'a dyn Fn(&dyn Kept) -> Result<()>,
     view: Turn,
     /// The file is to be there at the end.
     is_wanted: bool,
@@ -66,7 +66,11 @@ pub struct Keeper<'a> {
 
 impl<'a> Keeper<'a> {
     /// Keeps the sums of `task` in `file`; with --preview, has the picture so far drawn; with --tev, shows it.
-    pub fn new(file: Option<SumsFile>, task: &'a Task<'a>, draw: &'a dyn Fn(&Sums) -> Result<()>) -> Self {
+    pub fn new(
+        file: Option<SumsFile>,
+        task: &'a Task<'a>,
+        draw: &'a dyn Fn(&dyn Kept) -> Result<()>,
+    ) -> Self {
         let arguments = task.arguments;
         Self {
             file,
@@ -82,7 +86,7 @@ impl<'a> Keeper<'a> {
 
     /// Called now and then while rendering, and at the end of it: what is rendered of alpha and layers after that can be
     /// rendered again, samples cannot.
-    pub fn watch(&mut self, progress: &Progress, sums: &Sums) {
+    pub fn watch(&mut self, progress: &Progress, sums: &dyn Kept) {
         let Self { file, draw, task, .. } = self;
         let mut replace = || file.as_mut().map(|file| file.replace(sums, &task.made));
         if progress.is_last {
@@ -138,7 +142,7 @@ impl SumsFile {
     }
 
     /// Writes `sums`. A file that another render wrote is put aside first.
-    fn replace(&mut self, sums: &Sums, made: &Value) -> Result<()> {
+    fn replace(&mut self, sums: &dyn Kept, made: &Value) -> Result<()> {
         if self.is_ours {
             let _ = std::fs::remove_file(self.previous());
             // Where the file system has no links, the last file has no other name while it is replaced.
@@ -166,7 +170,7 @@ impl SumsFile {
     }
 
     /// The sums in it, or, where that is damaged or missing, in the one before it; of an image that is `made` so.
-    pub fn resume(&mut self, made: &Value) -> Result<Sums> {
+    pub fn resume(&mut self, made: &Value) -> Result<AnySums> {
         let previous = self.previous();
         if !self.path.is_file() && !previous.is_file() {
             let remedy = "leave out --resume, or name the file of sums with --sums";

@@ -5,7 +5,7 @@ use crate::{
     analysis::study::question::differ,
     error::{Error, Result},
     format,
-    render::{Image, Settings},
+    render::{Image, Settings, adaptive::Precision},
     scene::build::Setup,
     transport::observer::StrategyKind,
 };
@@ -13,7 +13,12 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// All that decides about the samples of an image.
-pub fn settings(scene: &Scene, setup: &Setup, settings: &Settings) -> Result<Value> {
+pub fn settings(
+    scene: &Scene,
+    setup: &Setup,
+    settings: &Settings,
+    precision: Option<Precision>,
+) -> Result<Value> {
     let sources = format::sources(&scene.file, &scene.definitions)?;
     // The scene may have another name elsewhere.
     let names = |(index, (name, print)): (usize, (String, String))| {
@@ -34,11 +39,9 @@ pub fn settings(scene: &Scene, setup: &Setup, settings: &Settings) -> Result<Val
         "definitions": definitions,
         "time": setup.time,
         "film": {
-            "size": film.window.size,
             "full_size": film.window.full_size,
-            "offset": film.window.offset,
             "filter": format!("{:?}", film.filter),
-            "border": film.border,
+            "window": { "size": film.window.size, "offset": film.window.offset, "border": film.border },
         },
         "layers": setup.integrator.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
         "strategies": kinds.map(StrategyKind::name).collect::<Vec<_>>(),
@@ -52,6 +55,8 @@ pub fn settings(scene: &Scene, setup: &Setup, settings: &Settings) -> Result<Val
         "sampler": sampler.name(),
         "seed": seed,
         "profile": profile.name(),
+        "error": precision.map(|precision| precision.error),
+        "confidence": precision.map(|precision| precision.confidence),
     }))
 }
 
@@ -88,10 +93,25 @@ fn machine() -> String {
     format!("{name} ({} {}, {threads} threads)", std::env::consts::OS, std::env::consts::ARCH)
 }
 
+/// The same of any part of the image.
+pub fn without_window(made: &Value) -> Value {
+    let mut made = made.clone();
+    made["settings"]["film"]["window"].take();
+    made
+}
+
 /// Refuses sums in `file` whose image is made otherwise.
 pub fn must_equal(file: &Path, found: &Value, wanted: &Value) -> Result<()> {
     let none = Value::Null;
     let (found, wanted) = [found, wanted].map(|made| made.get("settings").unwrap_or(&none)).into();
+    let kind =
+        |settings: &Value| if settings["error"].is_null() { "without --error" } else { "with --error" };
+    if kind(found) != kind(wanted) {
+        let [expected, found] =
+            [wanted, found].map(|settings| format!("the sums of a render {}", kind(settings)));
+        let remedy = "name another file, or use the options that these sums were rendered with";
+        return Err(Error::new(file.display(), expected, found, remedy));
+    }
     match differ("", found, wanted) {
         None => Ok(()),
         Some((place, old, new)) => Err(Error::new(

@@ -1,27 +1,34 @@
-//! `tyndall merge`: parts of one image, added up.
+//! `tyndall merge`: parts of one image, their samples added up, their pixels put side by side.
 
 use super::{
-    arguments::{self, Arguments, Command},
+    arguments::{self, Arguments, Command, Render},
     complain,
     goal::Goal,
-    load, made,
+    made::{self, made, must_equal},
     outputs::check_short,
+    precision::precision,
     say,
 };
 use crate::{
+    description::Object,
     error::{Error, Result},
+    film::Window,
+    format,
     render::{
-        self, Image,
+        self, Image, Settings,
+        any_sums::AnySums,
         budget::Budget,
-        sums::Sums,
-        sums_file::{self, read},
+        sums_file,
+        tiles::{self, Tile},
     },
+    scene::build::{Setup, build},
+    settings::Crop,
 };
 use clap::{Args, Parser};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Add up parts of one image.
+/// Put parts of one image together.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Merge {
     /// Files of sums, as render --sums writes them
@@ -32,7 +39,7 @@ pub struct Merge {
     #[arg(short, long, value_name = "FILE", value_parser = arguments::image_file, required_unless_present = "sums")]
     pub output: Option<PathBuf>,
 
-    /// Also write the sums of all parts to this file, from which render --resume continues
+    /// Also write the sums of all parts, which must be of the same pixels, to this file, from which render --resume continues
     #[arg(long, value_name = "FILE")]
     pub sums: Option<PathBuf>,
 
@@ -43,76 +50,170 @@ pub struct Merge {
 
 /// Runs the command.
 pub fn run(arguments: &Merge) -> Result<()> {
-    let parts: Vec<&Path> = arguments.parts.iter().map(PathBuf::as_path).collect();
-    check_short(arguments.output.iter().chain(&arguments.sums), &parts)?;
-    let (mut sums, made) = part(&arguments.parts[0])?;
-    for path in &arguments.parts[1..] {
-        let (more, other) = part(path)?;
-        made::must_equal(path, &other, &made)?;
-        if !sums.merge(&more) {
-            let found =
-                format!("samples {}, some of which are in {} already", more.samples(), sums.samples());
-            let remedy = "leave it out, or render it again with other --samples";
-            return Err(Error::new(path.display(), "samples that no other part has", found, remedy));
-        }
-    }
-    let count = sums.samples().count();
-    if count == 0 {
-        let place = arguments.parts[0].display();
-        let found = "no sample of every pixel";
-        return Err(Error::new(
-            place,
-            "at least one sample",
-            found,
-            "complete the part with render --resume",
-        ));
-    }
+    let paths: Vec<&Path> = arguments.parts.iter().map(PathBuf::as_path).collect();
+    check_short(arguments.output.iter().chain(&arguments.sums), &paths)?;
+    let parts = gathered(&paths)?;
     if let Some(path) = &arguments.sums {
-        sums_file::write(path, &sums, &made)?;
-        say(&format!("samples {}: {}", sums.samples(), path.display()));
+        let [Part { sums, made, .. }] = parts.as_slice() else {
+            let found = format!("{} parts side by side", parts.len());
+            let remedy = "merge the samples of each part on its own, or leave out --sums";
+            return Err(Error::new("--sums", "samples of the same pixels", found, remedy));
+        };
+        sums_file::write(path, sums.kept(), made)?;
+        say(&format!("samples {}: {}", sums.kept().samples(), path.display()));
     }
     match &arguments.output {
-        Some(output) => develop(arguments, output, &made, sums),
+        Some(output) => write(arguments, output, parts),
         None => Ok(()),
     }
 }
 
-/// A part, of which whole passes count only.
-fn part(path: &Path) -> Result<(Sums, Value)> {
-    let (mut sums, made) = read(path)?;
-    let unfinished = sums.drop_unfinished();
-    if unfinished > 0.0 {
-        let (path, percent) = (path.display(), 100.0 * unfinished);
-        complain(&format!(
-            "warning: {path}: {percent:.0} % of one more sample is left out; complete it with render --resume"
-        ));
+/// Samples of some pixels of the image.
+struct Part {
+    /// The first file of them.
+    path: PathBuf,
+    sums: AnySums,
+    made: Value,
+    /// The command that rendered them.
+    render: Render,
+}
+
+impl Part {
+    fn read(path: &Path) -> Result<Self> {
+        let (mut sums, made) = sums_file::read(path)?;
+        let left_out = match &mut sums {
+            AnySums::Samples(sums) => Some(sums.drop_unfinished())
+                .filter(|fraction| *fraction > 0.0)
+                .map(|fraction| format!("{:.0} % of one more sample is left out", 100.0 * fraction)),
+            AnySums::Adaptive(halves) => Some(halves.share())
+                .filter(|share| *share < 1.0)
+                .map(|share| format!("only {:.1} % of its pixels are within the error", 100.0 * share)),
+        };
+        if let Some(left_out) = left_out {
+            complain(&format!("note: {}: {left_out}; complete it with render --resume", path.display()));
+        }
+        let render = recorded(&made, path)?;
+        Ok(Self { path: path.to_owned(), sums, made, render })
     }
-    Ok((sums, made))
+
+    /// Adds the samples of another, which has the same pixels.
+    fn add(&mut self, other: &Self) -> Result<()> {
+        if let (AnySums::Samples(sums), AnySums::Samples(more)) = (&mut self.sums, &other.sums)
+            && sums.merge(more)
+        {
+            return Ok(());
+        }
+        let [more, sums] = [other, self].map(|part| part.sums.kept().samples());
+        let found = format!("samples {more}, some of which are in {sums} already");
+        let remedy = "leave it out, or render it again with other --samples or another --crop";
+        Err(Error::new(other.path.display(), "samples that no other part has", found, remedy))
+    }
+
+    /// Which samples, of which pixels.
+    fn describe(&self) -> String {
+        let of = self.render.crop.map_or(String::new(), |crop| format!(" of {crop}"));
+        format!("samples {}{of}", self.sums.kept().samples())
+    }
+
+    /// What it shows of `setup`, a scene with a film of its pixels.
+    fn image(&mut self, setup: &Setup) -> Result<Image> {
+        let (now, settings) = made_again(&self.render, setup)?;
+        must_equal(&self.path, &self.made, &now)?;
+        let Setup { scene, film, integrator, .. } = setup;
+        Ok(render::go_on(scene, film, &settings, &integrator.layers, &mut self.sums, &mut |_, _| {}))
+    }
+}
+
+/// The parts in files, those of the same pixels added up.
+fn gathered(paths: &[&Path]) -> Result<Vec<Part>> {
+    let mut parts: Vec<Part> = Vec::new();
+    for path in paths {
+        let part = Part::read(path)?;
+        if let Some(first) = parts.first() {
+            let [made, first] = [&part, first].map(|part| made::without_window(&part.made));
+            must_equal(path, &made, &first)?;
+        }
+        let window = |part: &Part| part.made["settings"]["film"]["window"].clone();
+        match parts.iter_mut().find(|other| window(other) == window(&part)) {
+            Some(other) => other.add(&part)?,
+            None => parts.push(part),
+        }
+    }
+    match parts.iter().find(|part| part.sums.kept().samples().count() == 0) {
+        Some(part) => Err(Error::new(
+            part.path.display(),
+            "at least one sample",
+            "no sample of every pixel",
+            "complete the part with render --resume",
+        )),
+        None => Ok(parts),
+    }
 }
 
 /// Writes the image. The scene is read for its film, and for alpha and layers, which are rendered again.
-fn develop(arguments: &Merge, output: &Path, made: &Value, mut sums: Sums) -> Result<()> {
-    let mut render = recorded(made, &arguments.parts[0])?;
-    let folder = PathBuf::from(made["folder"].as_str().unwrap_or_default());
-    render.scene.file = arguments.scene.clone().unwrap_or_else(|| folder.join(&render.scene.file));
-    render.output = Some(output.to_owned());
-    let setup = load(&render.scene, render.size, render.estimator.tracker)?;
-    let settings = render.estimator.settings(&setup, render.seed, Budget::samples(0))?;
-    let now = made::made(made::settings(&render.scene, &setup, &settings)?);
-    made::must_equal(&arguments.parts[0], made, &now)?;
-    let goal = Goal::new(&render, &setup)?;
+fn write(arguments: &Merge, output: &Path, mut parts: Vec<Part>) -> Result<()> {
+    for part in &mut parts {
+        let folder = PathBuf::from(part.made["folder"].as_str().unwrap_or_default());
+        let scene = &mut part.render.scene;
+        scene.file = arguments.scene.clone().unwrap_or_else(|| folder.join(&scene.file));
+    }
+    let crop = parts[0].render.crop.filter(|_| parts.len() == 1);
+    let whole = Render { output: Some(output.to_owned()), crop, ..parts[0].render.clone() };
+    let root = format::read(&whole.scene.file, &whole.scene.definitions)?;
+    let setup = build(&root, whole.overrides())?;
+    let goal = Goal::new(&whole, &setup)?;
     let others: Vec<&Path> = arguments.parts.iter().chain(&arguments.sums).map(PathBuf::as_path).collect();
     check_short([&goal.path].into_iter().chain(&goal.preview()), &others)?;
-    let layers = &setup.integrator.layers;
-    let mut image: Image =
-        render::render_on(&setup.scene, &setup.film, &settings, layers, &mut sums, &mut |_, _| {});
-    goal.write(&setup.film, &mut image, &now)?;
-    say(&format!("samples {}: {}", sums.samples(), goal.path.display()));
+    let (mut image, what) = match parts.as_mut_slice() {
+        [part] => (part.image(&setup)?, part.describe()),
+        parts => (side_by_side(parts, &root, &setup)?, format!("{} parts", parts.len())),
+    };
+    goal.write(&setup.film, &mut image, &made_again(&whole, &setup)?.0)?;
+    say(&format!("{what}: {}", goal.path.display()));
     Ok(())
 }
 
+/// The image of parts that cover the film of `setup`.
+fn side_by_side(parts: &mut [Part], root: &Object, setup: &Setup) -> Result<Image> {
+    let whole = setup.film.window;
+    let window = |part: &Part| part.render.crop.map_or(whole, |crop| crop.within(&whole));
+    let windows: Vec<Window> = parts.iter().map(window).collect();
+    check_cover(parts, &windows, &whole)?;
+    let tile = |(part, window): (&mut Part, &Window)| {
+        let image = part.image(&build(root, part.render.overrides())?)?;
+        Ok(Tile { window: *window, image })
+    };
+    let tiles = parts.iter_mut().zip(&windows).map(tile).collect::<Result<Vec<_>>>()?;
+    Ok(Image::of_tiles(&whole, &tiles))
+}
+
+/// Refuses parts that overlap or do not cover `whole`.
+fn check_cover(parts: &[Part], windows: &[Window], whole: &Window) -> Result<()> {
+    for (k, window) in windows.iter().enumerate() {
+        if let Some(other) = (0..k).find(|other| tiles::overlap(&windows[*other], window)) {
+            let (crop, path) = (Crop::of(window, whole), parts[other].path.display());
+            let found = format!("{crop}, some of which are in {path} already");
+            let remedy = "leave it out, or render it again with another --crop";
+            return Err(Error::new(parts[k].path.display(), "pixels that no other part has", found, remedy));
+        }
+    }
+    let Some(missing) = tiles::missing(whole, windows) else { return Ok(()) };
+    let (missing, [width, height]) = (Crop::of(&missing, whole), whole.size);
+    let expected = format!("parts that cover the image of {width} x {height} pixels");
+    let remedy = format!("add the part that render --crop {missing} --sums FILE makes");
+    Err(Error::new("merge", expected, format!("no part with {missing}"), remedy))
+}
+
+/// How the command `render` would make the image of `setup` now, and the settings for that, without samples to add.
+fn made_again(render: &Render, setup: &Setup) -> Result<(Value, Settings)> {
+    let settings = render.estimator.settings(setup, render.seed, Budget::samples(0))?;
+    let precision = precision(render, setup, &settings)?;
+    let now = made(made::settings(&render.scene, setup, &settings, precision)?);
+    Ok((now, Settings { seed: render.seed_of_part(), ..settings }))
+}
+
 /// The command that a part was rendered with.
-fn recorded(made: &Value, part: &Path) -> Result<arguments::Render> {
+fn recorded(made: &Value, part: &Path) -> Result<Render> {
     let words = made["command"].as_array().into_iter().flatten().filter_map(Value::as_str);
     match Arguments::try_parse_from(words) {
         Ok(Arguments { command: Command::Render(render), .. }) => Ok(render),

@@ -18,6 +18,7 @@ pub mod phase;
 mod picture;
 mod pixel;
 mod plan;
+mod precision;
 mod progress;
 mod render;
 mod report;
@@ -29,7 +30,6 @@ mod voice;
 use crate::{
     error::{Error, Result},
     format,
-    medium::DistanceMethod,
     scene::{self, build::Setup},
     settings::Overrides,
 };
@@ -90,18 +90,14 @@ fn judged(outcome: Result<bool>) -> ExitCode {
 }
 
 /// Reads and builds a scene; warnings go to standard error.
-fn load(
-    scene: &arguments::Scene,
-    size: Option<arguments::Size>,
-    tracker: Option<DistanceMethod>,
-) -> Result<Setup> {
+fn load(scene: &arguments::Scene, overrides: Overrides) -> Result<Setup> {
     let root = format::read(&scene.file, &scene.definitions)?;
-    let overrides = Overrides { size: size.map(|size| (size.width, size.height)), tracker };
     let setup = scene::build::build(&root, overrides)?;
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
     }
-    if tracker.is_some() && setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none()) {
+    if overrides.tracker.is_some() && setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none())
+    {
         complain("warning: --tracker has no effect: this scene has no heterogeneous medium");
     }
     Ok(setup)

@@ -12,14 +12,16 @@ use std::path::{Path, PathBuf};
 const MOST_FRAMES: usize = 10_000;
 
 /// What a render keeps of every pixel, in numbers of four bytes, files in the making included: exact sums (24) and once
-/// more while they are written, the pass at hand (6), the image and its files. Measured with precision: 69, with 22 channels
-/// of layers 3 for each, with batches 5 for each; and some more.
+/// more while they are written, the pass at hand (6), the image and its files. Measured: 51, with 22 channels of layers 3 for
+/// each, with batches 5 for each, with precision 134 in all; and some more.
 pub const NUMBERS: usize = 72;
 /// Sums of products, where layers need them, and once more while they are written.
 const NUMBERS_OF_PRODUCTS: usize = 72;
 /// What a file of sums holds of every pixel, in the same numbers.
 const NUMBERS_OF_SUMS: usize = 24;
-const NUMBERS_OF_PRECISION: usize = 84;
+/// And one of a render to a precision.
+const NUMBERS_OF_HALVES: usize = 72;
+const NUMBERS_OF_PRECISION: usize = 100;
 const NUMBERS_OF_LAYER: usize = 4;
 const NUMBERS_OF_BATCH: usize = 7;
 
@@ -49,10 +51,10 @@ pub fn check_render(arguments: &Render, setup: &Setup, goal: &Goal) -> Result<()
     let products = if products { NUMBERS_OF_PRODUCTS } else { 0 };
     film.check_memory(NUMBERS + products + precision + NUMBERS_OF_LAYER * layers + batches * each)?;
     let bytes = film.bytes(goal.format.names().len() + layers + batches * (3 + layers));
-    let is_part = arguments.samples.is_some() && arguments.output.is_none();
-    let images = if is_part { Vec::new() } else { images(arguments, goal) };
+    let images = if arguments.is_part() { Vec::new() } else { images(arguments, goal) };
+    let kept = if arguments.error.is_some() { NUMBERS_OF_HALVES } else { NUMBERS_OF_SUMS + products / 2 };
     // Two of them, while one replaces the other.
-    let sums = arguments.sums.as_deref().map(|sums| (sums, 2 * film.bytes(NUMBERS_OF_SUMS + products / 2)));
+    let sums = arguments.sums.as_deref().map(|sums| (sums, 2 * film.bytes(kept)));
     let mut outputs: Vec<(&Path, u64)> = sums.into_iter().collect();
     for (index, (image, preview)) in images.iter().enumerate() {
         // An animation that does not fit keeps the frames that did: room for the first is asked for.

@@ -9,10 +9,11 @@ use crate::{
 use serde_json::Value;
 use std::path::Path;
 
-/// What the file at `path` says of itself, if its name is that of a picture or of sums.
+/// What the file at `path` says of itself, if it is sums by its content, or a picture or sums by its name.
 pub fn made(path: &Path) -> Result<Option<Value>> {
     let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let text = match end.as_str() {
+        _ if sums_file::is_one(path) => return of_sums(path).map(Some),
         "exr" => exr::made(path)?,
         "png" => png::made(path)?,
         "sums" => return of_sums(path).map(Some),
@@ -33,9 +34,13 @@ pub fn made(path: &Path) -> Result<Option<Value>> {
 
 fn of_sums(path: &Path) -> Result<Value> {
     let (sums, mut made) = sums_file::read(path)?;
-    made["samples"] = sums.samples().to_string().into();
-    made["render_seconds"] = sums.elapsed().as_secs_f64().into();
-    made["relative_error"] = sums.noise().into();
+    let image = sums.kept().image();
+    made["samples"] = sums.kept().samples().to_string().into();
+    made["render_seconds"] = image.elapsed.as_secs_f64().into();
+    made["relative_error"] = image.noise.into();
+    if let Some(reached) = image.reached {
+        made["pixels_within_error"] = reached.share.into();
+    }
     Ok(made)
 }
 

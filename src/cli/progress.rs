@@ -57,6 +57,15 @@ impl Bar {
     }
 }
 
+/// A number of samples per pixel, with two decimal places unless it is whole.
+pub fn samples_text(samples: f64) -> String {
+    match samples {
+        _ if samples.fract() == 0.0 => samples.to_string(),
+        _ if samples < 0.01 => "less than 0.01".to_owned(),
+        _ => format!("{samples:.2}"),
+    }
+}
+
 /// A relative error, in percent with two digits.
 pub fn percent(relative: f64) -> String {
     let digits = if relative >= 0.1 {

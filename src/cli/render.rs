@@ -7,16 +7,22 @@ use super::{
     keeper::{Keeper, SumsFile},
     load, made,
     plan::Plan,
-    progress::{Bar, percent},
+    precision::precision,
+    progress::{Bar, percent, samples_text},
     threads,
     viewer::Viewer,
 };
 use crate::{
     error::{Error, Result},
-    film::{layer::Content, output},
+    film::output,
     render::{
-        self, Image, Settings, adaptive::Precision, budget::Budget, faults::Faults, pilot::Choice,
-        samples::Samples, sums::Sums,
+        self, Image, Settings,
+        adaptive::Precision,
+        any_sums::{AnySums, Kept},
+        budget::Budget,
+        faults::Faults,
+        pilot::Choice,
+        samples::Samples,
     },
     scene::build::Setup,
     transport::Strategies,
@@ -30,18 +36,20 @@ use std::{
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Render) -> Result<()> {
-    interrupt::listen();
     let started = Instant::now();
-    let mut setup = load(&arguments.scene, arguments.size, arguments.estimator.tracker)?;
+    let mut setup = load(&arguments.scene, arguments.overrides())?;
     let (settings, chosen) = settings(arguments, &setup)?;
     let precision = precision(arguments, &setup, &settings)?;
     let goal = Goal::new(arguments, &setup)?;
-    let made = made::made(made::settings(&arguments.scene, &setup, &settings)?);
+    let made = made::made(made::settings(&arguments.scene, &setup, &settings, precision)?);
     super::outputs::check_render(arguments, &setup, &goal)?;
     check_kept(arguments, &settings, &goal)?;
     let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
+    let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, arguments.error);
+    let settings = Settings { seed: arguments.seed_of_part(), ..settings };
     let task = Task { settings, precision, arguments, made, viewer: &Mutex::new(viewer) };
-    let plan = Plan::new(&setup, &arguments.estimator, task.settings, chosen, arguments.error);
+    // Before this there is nothing that a signal should save.
+    interrupt::listen();
     plan.announce();
     let load_time = started.elapsed().as_secs_f64();
     let pool = threads(arguments.threads)?;
@@ -114,17 +122,12 @@ pub struct Task<'a> {
 
 impl Task<'_> {
     /// Shows what there is in the viewer, if there is one; it goes when it fails.
-    pub fn show(&self, sums: &Sums) {
+    pub fn show(&self, sums: &dyn Kept) {
         let Ok(mut viewer) = self.viewer.lock() else { return };
         if let Some(Err(error)) = viewer.as_mut().map(|viewer| viewer.show(sums)) {
             super::complain(&format!("warning: no more is shown: {error}"));
             *viewer = None;
         }
-    }
-
-    /// True if an image is to be written, and not only its sums.
-    fn wants_image(&self) -> bool {
-        self.arguments.samples.is_none() || self.arguments.output.is_some()
     }
 }
 
@@ -147,7 +150,7 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
             format!("remove {name}; fog takes seconds"),
         ));
     }
-    let is_part = arguments.samples.is_some() && arguments.output.is_none();
+    let is_part = arguments.is_part();
     if arguments.preview && (is_part || output::is_stream(&goal.path)) {
         let found = if is_part { "only sums to write" } else { "a device or pipe" };
         return Err(Error::new(
@@ -166,67 +169,37 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
     }
 }
 
-/// What every pixel is to be known with.
-fn precision(arguments: &arguments::Render, setup: &Setup, settings: &Settings) -> Result<Option<Precision>> {
-    let Some(error) = arguments.error else { return Ok(None) };
-    let refuse = |found: &str, remedy: &str| {
-        let expected = "an image without layers of moments";
-        Err(Error::new("--error", expected, found, remedy))
-    };
-    if settings.options.strategies == Strategies::NONE {
-        return refuse("the preview fog", "remove --error, or choose another --integrator");
-    }
-    if setup.integrator.layers.iter().any(|layer| layer.needs_squares() || layer.content == Content::Mean) {
-        return refuse(
-            "the integrator moment",
-            "remove --error, or remove the integrator moment from the scene",
-        );
-    }
-    Ok(Some(Precision { error, confidence: arguments.confidence.unwrap_or(CONFIDENCE) }))
-}
-
-/// Default probability that a pixel is within the error.
-const CONFIDENCE: f64 = 0.95;
-
 /// Renders one image and writes it; its figures.
 fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<Value> {
-    let (mut image, kept) = match task.arguments.batches {
+    let (mut image, written) = match task.arguments.batches {
         None => watched(setup, task, goal, label)?,
         Some(count) => (batches(setup, task, goal, count, label)?, Ok(None)),
     };
     report_faults(&image, setup);
     let mut figures = figures(&image, task);
-    if task.wants_image() {
+    if !task.arguments.is_part() {
         goal.write(&setup.film, &mut image, &task.made)?;
         print_summary(&image, task, &goal.path, goal.preview().as_deref(), label);
         figures["image"] = goal.path.display().to_string().into();
     }
-    if let (Some((name, _)), Some(_)) = (interrupt::signal(), task.precision) {
-        super::complain(&format!(
-            "{name}: the image so far is written; a render with --error cannot be continued"
-        ));
-    }
     // The image is not lost where the sums are.
-    if let Some((file, samples)) = kept? {
-        print_kept(&file, &samples, task);
+    if let Some((file, samples)) = written? {
+        print_kept(&file, &samples, &image, task);
     }
     Ok(figures)
 }
 
 /// A file of sums, and the samples in it.
-type Kept = Result<Option<(PathBuf, Samples)>>;
+type Written = Result<Option<(PathBuf, Samples)>>;
 
 /// Renders one image under a progress bar; where what there is was kept.
-fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<(Image, Kept)> {
+fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<(Image, Written)> {
     let bar = Bar::new(task.settings, task.precision, setup.film.len(), label);
     let Setup { scene, film, integrator, .. } = setup;
     let (layers, settings) = (&integrator.layers, &task.settings);
     let done = if settings.options.strategies == Strategies::NONE {
         let show = &mut |progress| bar.show(&progress);
         (render::preview(scene, film, settings, &integrator.fog, layers, show), Ok(None))
-    } else if let Some(precision) = task.precision {
-        let show = &mut |progress| bar.show(&progress);
-        (render::render_to_precision(scene, film, settings, precision, layers, show), Ok(None))
     } else {
         keeping(setup, task, goal, &bar)?
     };
@@ -235,22 +208,22 @@ fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> 
 }
 
 /// Renders one image, from sums that there are and into those that are kept.
-fn keeping(setup: &Setup, task: &Task<'_>, goal: &Goal, bar: &Bar) -> Result<(Image, Kept)> {
+fn keeping(setup: &Setup, task: &Task<'_>, goal: &Goal, bar: &Bar) -> Result<(Image, Written)> {
     let Setup { scene, film, integrator, .. } = setup;
-    let (arguments, layers) = (task.arguments, &integrator.layers);
+    let (arguments, settings, layers) = (task.arguments, &task.settings, &integrator.layers);
     let mut file = sums_file(arguments, goal);
     let mut sums = match &mut file {
         Some(file) if arguments.resume => file.resume(&task.made)?,
-        _ => render::sums_for(film, layers),
+        _ => AnySums::new(film, layers, task.precision),
     };
-    let draw = |sums: &Sums| goal.draw(film, sums, &task.made);
+    let draw = |sums: &dyn Kept| goal.draw(film, sums, &task.made);
     let mut keeper = Keeper::new(file, task, &draw);
-    let image = render::render_on(scene, film, &task.settings, layers, &mut sums, &mut |progress, sums| {
+    let image = render::go_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
         bar.show(&progress);
         keeper.watch(&progress, sums);
     });
     let kept = keeper.finish();
-    Ok((image, kept.map(|path| path.map(|path| (path, sums.samples().clone())))))
+    Ok((image, kept.map(|path| path.map(|path| (path, sums.kept().samples())))))
 }
 
 /// Where the sums go: none where a render does not go on, or has no name to put them beside.
@@ -262,13 +235,17 @@ fn sums_file(arguments: &arguments::Render, goal: &Goal) -> Option<SumsFile> {
     arguments.sums.clone().or_else(beside).map(|path| SumsFile::new(&path))
 }
 
-fn print_kept(file: &Path, samples: &Samples, task: &Task<'_>) {
-    let (file, count) = (file.display(), samples.count());
+fn print_kept(file: &Path, samples: &Samples, image: &Image, task: &Task<'_>) {
+    let file = file.display();
     if let Some((name, _)) = interrupt::signal() {
+        let count = samples_text(image.samples());
         let text = format!("{name} after {count} samples/pixel: continue with the same command and --resume");
         return super::complain(&format!("{text} ({file} has the sums)"));
     }
     super::say(&format!("samples {samples}: {file}"));
+    if task.precision.is_some() {
+        return;
+    }
     let wanted = task.settings.budget.samples_per_pixel.map(|spp| {
         let first = task.settings.budget.first_sample;
         Samples::from(first..first + spp)
@@ -386,7 +363,7 @@ fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: Option<
     let preview = preview.map_or(String::new(), |preview| format!(" and {}", preview.display()));
     super::say(&format!(
         "{label}{} samples/pixel in {:.1} s{noise}: {}{preview}",
-        image.samples_per_pixel,
+        samples_text(image.samples()),
         image.elapsed.as_secs_f64(),
         output.display(),
     ));

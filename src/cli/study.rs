@@ -338,8 +338,8 @@ impl<'a> Stage<'a> {
             return Ok((setup.clone(), *seconds));
         }
         let started = Instant::now();
-        let size = self.arguments.size.map(|size| (size.width, size.height));
-        let overrides = Overrides { size, tracker };
+        let size = self.arguments.size.map(Into::into);
+        let overrides = Overrides { size, crop: None, tracker };
         let setup = Arc::new(build::build(root, overrides)?);
         let seconds = reading + started.elapsed().as_secs_f64();
         self.setups.push((tracker, setup.clone(), seconds));

@@ -2,7 +2,7 @@
 
 use crate::{
     error::{Error, Result},
-    render::sums::Sums,
+    render::any_sums::Kept,
 };
 use std::{
     io,
@@ -36,11 +36,11 @@ impl Viewer {
     }
 
     /// Shows the picture that `sums` hold.
-    pub fn show(&mut self, sums: &Sums) -> Result<()> {
+    pub fn show(&mut self, sums: &dyn Kept) -> Result<()> {
         self.send(sums).map_err(|error| explain(&self.address, &error))
     }
 
-    fn send(&mut self, sums: &Sums) -> io::Result<()> {
+    fn send(&mut self, sums: &dyn Kept) -> io::Result<()> {
         let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
         let (width, height) = sums.size();
         let (width, height) = (size(width)?, size(height)?);
@@ -54,7 +54,7 @@ impl Viewer {
                 channel_names,
             })?;
         }
-        let data: Vec<f32> = sums.pixels().iter().flat_map(|pixel| pixel.to_array()).collect();
+        let data: Vec<f32> = sums.image().pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
         self.client.send(PacketUpdateImage {
             image_name,
             grab_focus: false,

@@ -244,9 +244,9 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// An axis of `size` pixels, sampled up to `border` pixels beyond its ends.
-    pub fn new(filter: Filter, size: u32, border: u32) -> Self {
-        let (low, high) = (-f64::from(border), f64::from(size) + f64::from(border));
+    /// An axis of `size` pixels, sampled up to so many pixels `before` and `after` them.
+    pub fn new(filter: Filter, size: u32, [before, after]: [u32; 2]) -> Self {
+        let (low, high) = (-f64::from(before), f64::from(size) + f64::from(after));
         let radius = f64::from(filter.radius());
         let parts = |from: f64, to: f64| {
             let parts = lobes::integrals(&filter, from, to);
@@ -331,7 +331,7 @@ mod tests {
         Filter::Lanczos { lobes: 1 },
     ];
     /// Films as narrow as a pixel too, with and without samples beyond their ends.
-    const AXES: [(u32, u32); 4] = [(5, 0), (1, 0), (2, 0), (2, 3)];
+    const AXES: [(u32, [u32; 2]); 5] = [(5, [0, 0]), (1, [0, 0]), (2, [0, 0]), (2, [3, 3]), (2, [1, 3])];
 
     /// Mitsuba 3.9.1's own values (`eval` of its plugins).
     #[test]
@@ -369,8 +369,8 @@ mod tests {
             let steps = 20_000;
             let axis = Axis::new(filter, size, border);
             let mut sums = vec![0.0; size as usize];
-            for i in 0..steps * (size + 2 * border) {
-                let x = (i as f32 + 0.5) / steps as f32 - border as f32;
+            for i in 0..steps * (size + border[0] + border[1]) {
+                let x = (i as f32 + 0.5) / steps as f32 - border[0] as f32;
                 assert!(axis.covers(x));
                 axis.weights(x).for_each(|(pixel, w)| sums[pixel] += f64::from(w) / f64::from(steps));
             }
@@ -390,13 +390,13 @@ mod tests {
             for pixel in [0, size as usize / 2] {
                 let axis = Axis::new(filter, size, border);
                 let mut stream = Stream::new(7, pixel as u64, 0, Purpose::Study);
-                let (n, width) = (200_000, f64::from(size + 2 * border) / CELLS as f64);
+                let (n, width) = (200_000, f64::from(size + border[0] + border[1]) / CELLS as f64);
                 // Of the magnitude, per cell; the weight of every sample.
                 let pdf = |x: f64| {
                     let weight = axis.weights(x as f32).find(|(i, _)| *i == pixel).map_or(0.0, |(_, w)| w);
                     f64::from(weight)
                 };
-                let start = |cell: usize| cell as f64 * width - f64::from(border);
+                let start = |cell: usize| cell as f64 * width - f64::from(border[0]);
                 let mass = |cell: usize| {
                     (0..400)
                         .map(|k| pdf(start(cell) + (f64::from(k) + 0.5) / 400.0 * width).abs())
@@ -409,7 +409,7 @@ mod tests {
                 let mut observed = vec![0; CELLS];
                 for _ in 0..n {
                     let (x, weight) = axis.sample(pixel, &mut stream);
-                    observed[((f64::from(x) + f64::from(border)) / width) as usize] += 1;
+                    observed[((f64::from(x) + f64::from(border[0])) / width) as usize] += 1;
                     let expected = magnitude.copysign(pdf(f64::from(x)));
                     // At a root rounding decides the sign.
                     let at_root = pdf(f64::from(x)).abs() < 1e-5;
@@ -420,7 +420,7 @@ mod tests {
                 }
                 let expected: Vec<f64> = masses.iter().map(|m| m / magnitude * f64::from(n)).collect();
                 let p = chi_square(&observed, &expected);
-                assert!(p > level, "{filter:?} pixel {pixel} of {size} + {border}: p {p}");
+                assert!(p > level, "{filter:?} pixel {pixel} of {size} + {border:?}: p {p}");
             }
         }
     }
@@ -440,9 +440,9 @@ mod tests {
                 sum += value;
                 squares += value * value;
             }
-            let step = f64::from(size + 2 * border) / f64::from(steps);
+            let step = f64::from(size + border[0] + border[1]) / f64::from(steps);
             let truth: f64 = (0..steps)
-                .map(|i| (f64::from(i) + 0.5) * step - f64::from(border))
+                .map(|i| (f64::from(i) + 0.5) * step - f64::from(border[0]))
                 .map(|x| {
                     let weight = axis.weights(x as f32).find(|(i, _)| *i == 0).map_or(0.0, |(_, w)| w);
                     f64::from(weight) * (-x).exp() * step

@@ -65,8 +65,9 @@ pub struct Film {
     pub window: Window,
     /// The same filter along both axes.
     pub filter: Filter,
-    /// Also sampled this far beyond the window, where the filter still reaches its pixels [pixels].
-    pub border: u32,
+    /// Also sampled this far beyond the window, where the filter still reaches its pixels: left and right, above and
+    /// below [pixels].
+    pub border: [[u32; 2]; 2],
     /// What is written.
     pub format: Format,
     across: Axis,
@@ -77,10 +78,26 @@ impl Film {
     /// A film of which `window` is rendered; its sizes are > 0. With `sample_border` the filter is not cut off
     /// at the window's border.
     pub fn new(window: Window, filter: Filter, sample_border: bool, format: Format) -> Self {
-        let border = if sample_border { (filter.radius() - 0.5).ceil() as u32 } else { 0 };
+        let border = if sample_border { reach(filter) } else { 0 };
+        Self::bordered(window, filter, [[border; 2]; 2], format)
+    }
+
+    fn bordered(window: Window, filter: Filter, border: [[u32; 2]; 2], format: Format) -> Self {
         let [width, height] = window.size;
-        let (across, down) = (Axis::new(filter, width, border), Axis::new(filter, height, border));
+        let (across, down) = (Axis::new(filter, width, border[0]), Axis::new(filter, height, border[1]));
         Self { width, height, window, filter, border, format, across, down }
+    }
+
+    /// The part of it of `size` pixels from `corner` on, both within it. What its pixels are to show is what they show in
+    /// the whole: filters are cut off where those of the whole are.
+    pub fn part(&self, corner: [u32; 2], size: [u32; 2]) -> Self {
+        let border = [0, 1].map(|axis| {
+            let [before, after] = self.border[axis];
+            let behind = self.window.size[axis] - corner[axis] - size[axis];
+            [corner[axis] + before, behind + after].map(|sampled| sampled.min(reach(self.filter)))
+        });
+        let offset = [0, 1].map(|axis| self.window.offset[axis] + corner[axis]);
+        Self::bordered(Window { offset, size, ..self.window }, self.filter, border, self.format)
     }
 
     /// Number of pixels.
@@ -137,9 +154,48 @@ impl Film {
     }
 }
 
+/// How far beyond a pixel its filter is not 0 [pixels].
+fn reach(filter: Filter) -> u32 {
+    (filter.radius() - 0.5).ceil() as u32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sampling::stream::Purpose;
+
+    /// Pixels of a part take the same samples, and give the same shares, as in the whole.
+    #[test]
+    fn parts_show_what_the_whole_shows() {
+        let filter = Filter::Lanczos { lobes: 3 };
+        for border in [false, true] {
+            let whole = Film::new(Window::whole(9, 8), filter, border, Format::default());
+            for (corner, size) in [([0, 0], [9, 8]), ([0, 2], [3, 6]), ([4, 3], [1, 2]), ([3, 0], [6, 1])] {
+                let part = whole.part(corner, size);
+                for (x, y) in [(0, 0), (size[0] - 1, size[1] - 1)] {
+                    let pixel = (y * size[0] + x) as usize;
+                    let same = ((y + corner[1]) * 9 + x + corner[0]) as usize;
+                    let sampled =
+                        |film: &Film, pixel| film.sample(pixel, &mut Stream::new(3, 0, 0, Purpose::Study));
+                    let ((at, weight), (at_whole, weight_whole)) =
+                        (sampled(&part, pixel), sampled(&whole, same));
+                    let moved = at + vec2(corner[0] as f32, corner[1] as f32);
+                    assert!(
+                        (moved - at_whole).length() < 1e-5 && weight == weight_whole,
+                        "{corner:?} {size:?}"
+                    );
+                    let share = |film: &Film, at, pixel| {
+                        let mut sum = 0.0;
+                        film.spread(at, Spectrum::ONE, |p, value| {
+                            sum += if p == pixel { value.x } else { 0.0 }
+                        });
+                        sum
+                    };
+                    assert!((share(&part, at, pixel) - share(&whole, moved, same)).abs() < 1e-5);
+                }
+            }
+        }
+    }
 
     /// What is spread evenly over the film makes every pixel 1, by negative shares too.
     #[test]
@@ -151,9 +207,10 @@ mod tests {
         {
             let film = Film::new(Window::whole(4, 3), filter, border, Format::default());
             let mut image = vec![0.0; film.len()];
-            let at = |i: u32| (i as f32 + 0.5) / STEPS as f32 - film.border as f32;
-            for y in 0..(film.height + 2 * film.border) * STEPS {
-                for x in 0..(film.width + 2 * film.border) * STEPS {
+            let border = film.border[0][0];
+            let at = |i: u32| (i as f32 + 0.5) / STEPS as f32 - border as f32;
+            for y in 0..(film.height + 2 * border) * STEPS {
+                for x in 0..(film.width + 2 * border) * STEPS {
                     assert!(film.covers(vec2(at(x), at(y))));
                     let share = Spectrum::splat(1.0 / (STEPS * STEPS) as f32);
                     film.spread(vec2(at(x), at(y)), share, |pixel, value| image[pixel] += f64::from(value.x));

@@ -9,19 +9,26 @@
 //! a half where the last pixel of the other half has converged.
 
 use super::{
-    Progress,
-    block::{Outcome, Pass},
+    Image, Progress,
+    block::{Blocks, Outcome, Pass},
     faults::Faults,
+    half::{Half, Limits},
     instrument::{BLOCKS_AT_ONCE, Instrument},
     monitor::Stopwatch,
 };
-use crate::math::{DVec3, Spectrum, relative::Relative, spectrum::LUMINANCE};
-use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use crate::{
+    film::Film,
+    math::{DVec3, Spectrum},
+    sampling::Sampler,
+};
+use serde::{Deserialize, Serialize};
+use std::{ops::Range, time::Duration};
 
 /// The precision required of every pixel: that its value is off by less than `error`, relative to it and a hundredth of
 /// the image's mean luminance together (see [`Relative::difference`]); in every channel, with probability `confidence`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// [`Relative::difference`]: crate::math::relative::Relative::difference
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Precision {
     /// In (0, 1].
     pub error: f64,
@@ -38,278 +45,87 @@ pub struct Reached {
     pub samples: Vec<u32>,
 }
 
-/// The result of an adaptive render.
-pub(super) struct Developed {
-    /// The image.
-    pub pixels: Vec<Spectrum>,
-    /// Passes over the image, both halves together.
-    pub passes: u64,
-    /// Root of the mean squared relative error, as what ends pixels measures it.
-    pub noise: Option<f64>,
-    /// Where and how far.
-    pub reached: Reached,
-    /// What went wrong on the way.
-    pub faults: Faults,
-}
-
 /// Passes of a half before it is first examined: variances of fewer are too uncertain.
 const FIRST_LOOK: u64 = 16;
 /// Passes up to the next check over those up to the last: few checks, so that chance has few opportunities to
 /// stop early.
 const GROWTH: f64 = 1.25;
-/// An image is black if light does not come in more than this part of the samples.
-const RAREST: f64 = 1e-3;
 
-/// The passes of one half.
-struct Half {
-    passes: u64,
-    /// Sums over passes while a pixel is active.
-    camera: Vec<DVec3>,
-    /// Of squares of what a pass contributes, light subpaths included.
-    squares: Vec<DVec3>,
-    /// Sums over all passes.
-    light: Vec<DVec3>,
-    /// Squared relative error as this half's samples estimate it, kept once it is small enough.
-    errors: Vec<f64>,
-    /// The pixel has converged by this half.
-    content: Vec<bool>,
-    /// Mean luminance of the image; 0 before it is known.
-    mean: f64,
-    /// Means of camera subpaths, where the other half has ended them.
-    ended: Vec<Option<DVec3>>,
-    /// The same of light subpaths.
-    ended_light: Option<Vec<DVec3>>,
-}
-
-impl Half {
-    fn new(pixels: usize) -> Self {
-        let zeros = || vec![DVec3::ZERO; pixels];
-        Self {
-            passes: 0,
-            camera: zeros(),
-            squares: zeros(),
-            light: zeros(),
-            errors: vec![f64::INFINITY; pixels],
-            content: vec![false; pixels],
-            mean: 0.0,
-            ended: vec![None; pixels],
-            ended_light: None,
-        }
-    }
-
-    fn add(&mut self, camera: &[Spectrum], light: &[Spectrum], active: &[bool]) {
-        self.passes += 1;
-        for (pixel, (camera, light)) in camera.iter().zip(light).enumerate() {
-            let (camera, light) = (camera.as_dvec3(), light.as_dvec3());
-            self.light[pixel] += light;
-            if active[pixel] {
-                let both = camera + light;
-                self.camera[pixel] += camera;
-                self.squares[pixel] += both * both;
-            }
-        }
-    }
-
-    /// Mean and variance of a pass at a pixel that is active.
-    fn moments(&self, pixel: usize) -> (DVec3, DVec3) {
-        let n = self.passes as f64;
-        let mean = (self.camera[pixel] + self.light[pixel]) / n;
-        let variance = (self.squares[pixel] / n - mean * mean) * (n / (n - 1.0));
-        (mean, variance.max(DVec3::ZERO))
-    }
-
-    /// Examines the samples of the active pixels.
-    fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
-        if self.mean == 0.0 {
-            let luminances = (0..self.camera.len()).map(|pixel| luminance(self.moments(pixel).0));
-            // One broken sample must not decide for all pixels.
-            let sum: f64 = luminances.filter(|luminance| luminance.is_finite()).sum();
-            self.mean = sum / self.camera.len() as f64;
-        }
-        for pixel in (0..active.len()).filter(|pixel| active[*pixel]) {
-            if !self.content[pixel] {
-                self.errors[pixel] = self.error(pixel);
-            }
-        }
-        let newly: Vec<usize> = (0..active.len())
-            .into_par_iter()
-            .filter(|pixel| active[*pixel] && !self.content[*pixel] && self.is_calm(*pixel, width, limits))
-            .collect();
-        newly.into_iter().for_each(|pixel| self.content[pixel] = true);
-        self.judge_black(limits);
-    }
-
-    /// Pixels without any light yet have no variance to judge by. They end with the last of the others, or in an image
-    /// that is all black, after enough samples.
-    fn judge_black(&mut self, limits: &Limits) {
-        let is_black = |pixel: usize| self.squares[pixel] == DVec3::ZERO;
-        let pixels = || 0..self.content.len();
-        // What has no variance, such as an emitter in view, does not show that light was found elsewhere.
-        let light_was_found = pixels().any(|pixel| !is_black(pixel) && self.errors[pixel] > 0.0);
-        let waited = light_was_found || self.passes >= limits.passes_without_light;
-        if waited && pixels().all(|pixel| is_black(pixel) || self.content[pixel]) {
-            self.content.fill(true);
-        }
-    }
-
-    /// Squared relative error that the mean over both halves has at a pixel, the greatest of its channels.
-    fn error(&self, pixel: usize) -> f64 {
-        let (mean, variance) = self.moments(pixel);
-        if !mean.is_finite() {
-            return f64::INFINITY;
-        }
-        let (to, passes) = (Relative::to_mean(self.mean), 2.0 * self.passes as f64);
-        let of = |c: usize| to.difference((variance[c] / passes).sqrt(), mean[c]).powi(2);
-        of(0).max(of(1)).max(of(2))
-    }
-
-    /// Neighbours are checked as well: a few samples may all have missed what makes a pixel's variance.
-    fn is_calm(&self, pixel: usize, width: usize, limits: &Limits) -> bool {
-        self.squares[pixel] != DVec3::ZERO
-            && self.errors[pixel].max(self.around(pixel, width)) <= limits.squared_error
-    }
-
-    /// The mean over a pixel and its up to eight neighbours.
-    fn around(&self, pixel: usize, width: usize) -> f64 {
-        let height = self.errors.len() / width;
-        let (x, y) = (pixel % width, pixel / width);
-        let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
-        let columns = x.saturating_sub(1)..=(x + 1).min(width - 1);
-        let (mut sum, mut count) = (0.0, 0.0);
-        for row in rows {
-            for column in columns.clone() {
-                sum += self.errors[row * width + column];
-                count += 1.0;
-            }
-        }
-        sum / count
-    }
-
-    /// Ends the means of this half where `other` has converged.
-    fn end(&mut self, other: &Self) {
-        let n = self.passes as f64;
-        for (pixel, ended) in self.ended.iter_mut().enumerate() {
-            if ended.is_none() && other.content[pixel] {
-                *ended = Some(self.camera[pixel] / n);
-            }
-        }
-        if self.ended_light.is_none() && other.content.iter().all(|content| *content) {
-            self.ended_light = Some(self.light.iter().map(|sum| *sum / n).collect());
-        }
-    }
-
-    /// The half's estimate of a pixel.
-    fn value(&self, pixel: usize) -> DVec3 {
-        let n = self.passes as f64;
-        let light = self.ended_light.as_ref().map_or(self.light[pixel] / n, |light| light[pixel]);
-        self.ended[pixel].unwrap_or(self.camera[pixel] / n) + light
-    }
-}
-
-/// What ends a pixel, after some number of passes.
-struct Limits {
-    /// Of the relative error's standard deviation.
-    squared_error: f64,
-    /// Passes of a half without any light that make an image black.
-    passes_without_light: u64,
-}
-
-impl Limits {
-    /// Student's t makes up for variances that are estimates themselves (P03T A.2.3).
-    fn after(passes: u64, precision: Precision) -> Self {
-        let Precision { error, confidence } = precision;
-        let tail = 0.5 * (1.0 - confidence);
-        let t = StudentsT::new(0.0, 1.0, (passes - 1) as f64).map_or(f64::INFINITY, |t| -t.inverse_cdf(tail));
-        // With this many passes, light that comes in more than a thousandth of all samples of every pixel has shown
-        // itself somewhere with probability `confidence`, even if there were only one pixel.
-        let unseen = (1.0 - confidence).ln() / (-RAREST).ln_1p();
-        Self { squared_error: (error / t).powi(2), passes_without_light: unseen.ceil() as u64 }
-    }
-}
-
-/// The two halves at work.
-pub(super) struct Adaptive<'a> {
-    bench: &'a Instrument<'a>,
-    stopwatch: &'a Stopwatch,
-    precision: Precision,
-    halves: [Half; 2],
-    active: Vec<bool>,
+/// What a render to a precision knows: two halves of whole passes, and the blocks done of one more. From it the render
+/// goes on as if it had never stopped.
+#[derive(Clone, Debug)]
+pub struct Halves {
+    pub(super) precision: Precision,
+    pub(super) halves: [Half; 2],
+    /// Passes of each half up to the next check.
+    pub(super) goal: u64,
     /// Passes that a pixel has been active in.
-    samples: Vec<u32>,
-    /// The unfinished pass, and how many of its blocks are done.
-    pass: Pass,
-    blocks: usize,
-    faults: Faults,
+    pub(super) samples: Vec<u32>,
+    /// The unfinished pass.
+    pub(super) pass: Pass,
+    /// How many of its blocks are done: the first ones.
+    pub(super) blocks: usize,
+    /// Time spent on all of it.
+    pub(super) elapsed: Duration,
+    /// What went wrong on the way.
+    pub(super) faults: Faults,
+    pub(super) width: usize,
+    /// Pixels that need more samples.
+    active: Vec<bool>,
 }
 
-impl<'a> Adaptive<'a> {
-    /// Nothing done yet.
-    pub fn new(bench: &'a Instrument<'a>, precision: Precision, stopwatch: &'a Stopwatch) -> Self {
-        let pixels = bench.film.len();
-        let halves = [Half::new(pixels), Half::new(pixels)];
-        let (active, samples, pass) = (vec![true; pixels], vec![0; pixels], Pass::new(pixels));
+impl Halves {
+    /// Nothing done yet, for an image of `film` that is to have this precision.
+    pub fn new(film: &Film, precision: Precision) -> Self {
+        Self::of([0; 2].map(|_| Half::new(film.len())), precision, FIRST_LOOK, film.width as usize)
+    }
+
+    /// Whole passes, of an image of `width` pixels across.
+    pub(super) fn of(halves: [Half; 2], precision: Precision, goal: u64, width: usize) -> Self {
+        let active = active(&halves);
+        let pixels = active.len();
         Self {
-            bench,
-            stopwatch,
             precision,
             halves,
-            active,
-            samples,
-            pass,
+            goal,
+            samples: vec![0; pixels],
+            pass: Pass::new(pixels),
             blocks: 0,
+            elapsed: Duration::ZERO,
             faults: Faults::default(),
+            width,
+            active,
         }
     }
 
-    /// Renders until every pixel has converged or the budget is spent.
-    pub fn run(mut self, progress: &mut dyn FnMut(Progress)) -> Developed {
-        let mut goal = FIRST_LOOK;
-        while self.active.iter().any(|active| *active) {
-            let is_spent = !self.advance(goal, progress);
-            self.look();
-            if is_spent {
-                break;
-            }
-            goal = (goal + 1).max((goal as f64 * GROWTH) as u64);
-        }
-        self.develop()
-    }
-
-    /// Renders until both halves have `goal` passes; false if the budget ends before. A pass that time does not suffice
-    /// for is left out, unless it is the first.
-    fn advance(&mut self, goal: u64, progress: &mut dyn FnMut(Progress)) -> bool {
-        let (budget, count) = (self.bench.settings.budget, self.bench.compiled.blocks().count());
-        let end = budget.samples_per_pixel.unwrap_or(u64::MAX).min(2 * goal);
-        let (mut next, end_task) = (self.passes() as usize * count, end as usize * count);
-        while next < end_task {
-            let tasks = next..end_task.min(next + BLOCKS_AT_ONCE);
-            let outcomes = self.work(tasks.clone());
-            for (task, outcome) in tasks.clone().zip(&outcomes) {
-                self.pass.add(outcome);
-                self.faults.add(&outcome.faults);
-                self.blocks += 1;
-                if (task + 1) % count == 0 {
-                    self.take();
-                }
-            }
-            next += outcomes.len();
-            progress(self.progress(next));
-            if outcomes.len() < tasks.len() {
-                return false;
-            }
-        }
-        end == 2 * goal
-    }
-
-    /// Renders the active pixels of blocks, and their light subpaths, as far as the budget goes.
-    fn work(&self, tasks: std::ops::Range<usize>) -> Vec<Outcome> {
-        let wants = |pixel: usize| self.active[pixel];
-        let is_over = || self.bench.settings.budget.is_over(self.stopwatch.elapsed());
-        self.bench.work_until(tasks, is_over, |pass, block| self.bench.compiled.render(pass, block, &wants))
-    }
-
-    fn passes(&self) -> u64 {
+    /// Passes over the image, both halves together.
+    pub fn passes(&self) -> u64 {
         self.halves.iter().map(|half| half.passes).sum()
+    }
+
+    /// The fraction of the pixels that have converged.
+    pub fn share(&self) -> f64 {
+        self.active.iter().filter(|active| !**active).count() as f64 / self.active.len() as f64
+    }
+
+    /// Pixels across and down.
+    pub fn size(&self) -> (usize, usize) {
+        (self.width, self.active.len() / self.width)
+    }
+
+    /// Which pixels a block has does not depend on how it is rendered.
+    pub(super) fn division(&self) -> Blocks {
+        Blocks::new(self.active.len(), 1, Sampler::Independent, 1.0)
+    }
+
+    /// Adds the next of `count` blocks of a pass.
+    fn add(&mut self, outcome: &Outcome, count: usize) {
+        self.pass.add(outcome);
+        self.faults.add(&outcome.faults);
+        self.blocks += 1;
+        if self.blocks == count {
+            self.take();
+        }
     }
 
     /// Passes take turns: even ones belong to the first half.
@@ -330,58 +146,157 @@ impl<'a> Adaptive<'a> {
         if passes < 2 {
             return;
         }
-        let width = self.bench.film.width as usize;
         let limits = Limits::after(passes, self.precision);
-        self.halves.iter_mut().for_each(|half| half.judge(&self.active, width, &limits));
+        self.halves.iter_mut().for_each(|half| half.judge(&self.active, self.width, &limits));
         let [first, second] = &mut self.halves;
         first.end(second);
         second.end(first);
-        for (pixel, active) in self.active.iter_mut().enumerate() {
-            *active = first.ended[pixel].is_none() || second.ended[pixel].is_none();
-        }
+        self.active = active(&self.halves);
     }
 
-    /// The fraction of the pixels that have converged.
-    fn share(&self) -> f64 {
-        self.active.iter().filter(|active| !**active).count() as f64 / self.active.len().max(1) as f64
-    }
-
-    fn progress(&self, tasks: usize) -> Progress {
-        let samples = (tasks as u64 * self.active.len() as u64) / self.bench.compiled.blocks().count() as u64;
-        let (passes, elapsed) = (self.passes(), self.stopwatch.elapsed());
-        Progress { samples, passes, elapsed, noise: None, within: Some(self.share()), is_last: false }
+    fn progress(&self, elapsed: Duration, is_last: bool) -> Progress {
+        let (passes, pixels) = (self.passes(), self.active.len() as f64);
+        let done = self.blocks as f64 / self.division().count() as f64;
+        let samples = ((passes as f64 + done) * pixels) as u64;
+        Progress { samples, passes, elapsed, noise: None, within: Some(self.share()), is_last }
     }
 
     /// The mean of the halves; what there is of the first pass where there is no more.
-    fn develop(self) -> Developed {
+    fn pixels(&self) -> Vec<Spectrum> {
         if self.passes() == 0 {
-            let reached = Reached { share: 0.0, samples: self.samples };
-            let width = self.bench.film.width as usize;
-            let pixels = self.pass.pixels(self.bench.compiled.blocks(), self.blocks, width);
-            return Developed { pixels, passes: 0, noise: None, reached, faults: self.faults };
+            return self.pass.pixels(&self.division(), self.blocks, self.width);
         }
         let halves: Vec<&Half> = self.halves.iter().filter(|half| half.passes > 0).collect();
         let value = |pixel| halves.iter().map(|half| half.value(pixel)).sum::<DVec3>() / halves.len() as f64;
-        let pixels = (0..self.active.len()).map(|pixel| value(pixel).as_vec3()).collect();
-        let noise = (halves.iter().all(|half| half.errors[0].is_finite())).then(|| rms(&halves));
-        let (passes, share) = (self.passes(), self.share());
-        Developed {
-            pixels,
-            passes,
-            noise,
-            reached: Reached { share, samples: self.samples },
-            faults: self.faults,
+        (0..self.active.len()).map(|pixel| value(pixel).as_vec3()).collect()
+    }
+
+    /// Root of the mean squared relative error, as the halves estimated it last, if they did.
+    fn noise(&self) -> Option<f64> {
+        let errors = || self.halves.iter().flat_map(|half| &half.errors);
+        let is_known = self.halves.iter().all(|half| half.errors[0].is_finite());
+        is_known.then(|| (errors().sum::<f64>() / (2 * self.active.len()) as f64).sqrt())
+    }
+
+    /// The image so far, without alpha and layers.
+    pub(super) fn image(&self) -> Image {
+        let samples = match self.passes() {
+            0 => self.blocks as f64 / self.division().count() as f64,
+            _ => self.samples.iter().map(|n| f64::from(*n)).sum::<f64>() / self.samples.len() as f64,
+        };
+        Image {
+            pixels: self.pixels(),
+            samples_per_pixel: samples as u64,
+            unfinished: samples.fract(),
+            elapsed: self.elapsed,
+            noise: self.noise(),
+            alpha: Vec::new(),
+            layers: Vec::new(),
+            reached: Some(Reached { share: self.share(), samples: self.samples.clone() }),
+            faults: self.faults.clone(),
         }
     }
 }
 
-/// Root of the mean squared relative error, as the halves estimated it last.
-fn rms(halves: &[&Half]) -> f64 {
-    let errors = halves.iter().flat_map(|half| &half.errors);
-    let count = halves.iter().map(|half| half.errors.len()).sum::<usize>().max(1);
-    (errors.sum::<f64>() / count as f64).sqrt()
+/// A pixel is active until both of its means have ended.
+fn active([first, second]: &[Half; 2]) -> Vec<bool> {
+    first.ended.iter().zip(&second.ended).map(|(first, second)| first.is_none() || second.is_none()).collect()
 }
 
-fn luminance(rgb: DVec3) -> f64 {
-    rgb.dot(LUMINANCE.as_dvec3())
+/// A render to a precision at work.
+pub(super) struct Adaptive<'a> {
+    pub bench: &'a Instrument<'a>,
+    pub stopwatch: &'a Stopwatch,
+    /// Called now and then; what it sees at the end is that from which the render can go on.
+    pub watch: &'a mut dyn FnMut(Progress, &Halves),
+}
+
+impl Adaptive<'_> {
+    /// Goes on from `halves` until every pixel has converged or the budget is spent.
+    pub fn run(mut self, halves: &mut Halves) {
+        let before = halves.elapsed;
+        while halves.active.contains(&true) {
+            if !self.advance(halves, before) {
+                self.tell(halves, true);
+                // Not what the checks of a render that goes on would see: they come after other numbers of passes.
+                return halves.look();
+            }
+            halves.look();
+            halves.goal = (halves.goal + 1).max((halves.goal as f64 * GROWTH) as u64);
+        }
+        self.tell(halves, true);
+    }
+
+    /// Renders until both halves have passes up to the next check; false if the budget ends before. An unfinished pass is
+    /// left out of the image, unless it is the first.
+    fn advance(&mut self, halves: &mut Halves, before: Duration) -> bool {
+        let (budget, count) = (self.bench.settings.budget, self.bench.compiled.blocks().count());
+        let end = budget.samples_per_pixel.unwrap_or(u64::MAX).min(2 * halves.goal);
+        let (mut next, end_task) = (halves.passes() as usize * count + halves.blocks, end as usize * count);
+        while next < end_task {
+            let tasks = next..end_task.min(next + BLOCKS_AT_ONCE);
+            let outcomes = self.work(tasks.clone(), &halves.active);
+            outcomes.iter().for_each(|outcome| halves.add(outcome, count));
+            next += outcomes.len();
+            halves.elapsed = before + self.stopwatch.elapsed();
+            self.tell(halves, false);
+            if outcomes.len() < tasks.len() {
+                return false;
+            }
+        }
+        end == 2 * halves.goal
+    }
+
+    /// Renders the active pixels of blocks, and their light subpaths, as far as the budget goes.
+    fn work(&self, tasks: Range<usize>, active: &[bool]) -> Vec<Outcome> {
+        let wants = |pixel: usize| active[pixel];
+        let is_over = || self.bench.settings.budget.is_over(self.stopwatch.elapsed());
+        self.bench.work_until(tasks, is_over, |pass, block| self.bench.compiled.render(pass, block, &wants))
+    }
+
+    fn tell(&mut self, halves: &Halves, is_last: bool) {
+        (self.watch)(halves.progress(self.stopwatch.elapsed(), is_last), halves);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        film::{Window, filter::Filter, format::Format},
+        render::{any_sums::AnySums, sums_file},
+    };
+
+    /// A film of four blocks, after some of them and a check after 32 passes; the lower half of it is `noisy`.
+    fn halves(blocks: usize, noisy: bool) -> Halves {
+        let film = Film::new(Window::whole(64, 64), Filter::Box, false, Format::default());
+        let mut halves = Halves::new(&film, Precision { error: 0.5, confidence: 0.9 });
+        for block in 0..blocks {
+            let pass = block / 4;
+            let rare = if pass % 16 == 0 { 50.0 } else { 0.0 };
+            let value = |pixel| if noisy && pixel >= 2048 { rare } else { (1 + pass % 2) as f32 };
+            let camera =
+                halves.division().pixels(block % 4).map(|pixel| (pixel, value(pixel))).collect::<Vec<_>>();
+            halves.add(&Outcome::of(camera.into_iter(), [(pass % 5, 0.1)].into_iter()), 4);
+            if block + 1 == 32 * 4 {
+                halves.look();
+            }
+        }
+        halves
+    }
+
+    #[test]
+    fn a_file_holds_all_of_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.sums");
+        for (blocks, noisy, done) in [(1, true, 0.0), (7, true, 0.0), (162, true, 0.5), (130, false, 1.0)] {
+            let mut halves = halves(blocks, noisy);
+            (halves.elapsed, halves.goal) = (Duration::from_secs(3), 20);
+            assert!((halves.share() - done).abs() < 0.02, "{blocks}: {}", halves.share());
+            sums_file::write(&path, &halves, &"made".into()).unwrap();
+            let (read, made) = sums_file::read(&path).unwrap();
+            assert_eq!(format!("{read:?}"), format!("{:?}", AnySums::Adaptive(halves)));
+            assert_eq!(made, "made");
+        }
+    }
 }

@@ -4,6 +4,7 @@
 //! their results are added up in block order, whichever thread made them.
 
 pub mod adaptive;
+pub mod any_sums;
 mod batches;
 mod block;
 pub mod budget;
@@ -11,6 +12,7 @@ mod compiled;
 pub mod faults;
 mod fill;
 mod fog;
+mod half;
 pub mod instrument;
 mod monitor;
 mod observer;
@@ -21,6 +23,7 @@ pub mod samples;
 pub mod strategy_images;
 pub mod sums;
 pub mod sums_file;
+pub mod tiles;
 pub mod timing;
 
 pub use monitor::Snapshot;
@@ -38,7 +41,8 @@ use crate::{
     settings::integrator::FogSettings,
     transport::{Heuristic, Options, Strategies, profile::ProfileName},
 };
-use adaptive::{Adaptive, Developed, Precision, Reached};
+use adaptive::{Adaptive, Halves, Precision, Reached};
+use any_sums::{AnySums, Kept};
 use budget::Budget;
 use faults::Faults;
 use fog::Preview;
@@ -106,21 +110,6 @@ pub struct Image {
 }
 
 impl Image {
-    /// The image that `sums` hold, without alpha and layers.
-    pub fn so_far(sums: &Sums) -> Self {
-        Self {
-            pixels: sums.pixels(),
-            samples_per_pixel: sums.samples().count(),
-            unfinished: sums.unfinished(),
-            elapsed: sums.elapsed,
-            noise: sums.noise,
-            alpha: Vec::new(),
-            layers: Vec::new(),
-            reached: None,
-            faults: sums.faults.clone(),
-        }
-    }
-
     /// Samples per pixel, on average.
     pub fn samples(&self) -> f64 {
         self.samples_per_pixel as f64 + self.unfinished
@@ -140,27 +129,8 @@ pub fn render_layers(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    let mut sums = sums_for(film, layers);
-    render_on(scene, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
-}
-
-/// No samples yet of `film` and `layers`.
-pub fn sums_for(film: &Film, layers: &[Layer]) -> Sums {
-    Sums::new(film, layers.iter().any(Layer::needs_squares))
-}
-
-/// Goes on from `sums`, which are of the same scene, film, layers and settings (but for the budget), with the samples of
-/// the budget that they do not have. `watch` sees the progress and the sums now and then.
-pub fn render_on(
-    scene: &Scene,
-    film: &Film,
-    settings: &Settings,
-    layers: &[Layer],
-    sums: &mut Sums,
-    watch: &mut dyn FnMut(Progress, &Sums),
-) -> Image {
-    let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
-    dispatch(scene, film, settings, Mode::Budget(sums), layers, &mut monitor)
+    let mut sums = AnySums::new(film, layers, None);
+    go_on(scene, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
 }
 
 /// Renders `scene` onto `film`, and shows the image after each of `marks` (samples per pixel, in growing order, none
@@ -174,7 +144,7 @@ pub fn render_in_steps(
     show: &mut dyn FnMut(Snapshot),
 ) -> Image {
     let mut monitor = Monitor { watch: &mut |reached, _| progress(reached), marks, show };
-    dispatch(scene, film, settings, Mode::Budget(&mut sums_for(film, &[])), &[], &mut monitor)
+    dispatch(scene, film, settings, Mode::Budget(&mut Sums::new(film, false)), &[], &mut monitor)
 }
 
 /// Renders `scene` onto `film`, and `layers` with it, until every pixel is known with `precision` or the budget of
@@ -187,10 +157,34 @@ pub fn render_to_precision(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    let stopwatch = Stopwatch::start();
-    let bench = Instrument::new(scene, film, settings);
-    let found = Adaptive::new(&bench, precision, &stopwatch).run(progress);
-    finish(&bench, &stopwatch, found, layers)
+    let mut sums = AnySums::new(film, layers, Some(precision));
+    go_on(scene, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
+}
+
+/// Goes on from `sums`, which are of the same scene, film, layers and settings (but for the budget). `watch` sees the
+/// progress and the sums now and then.
+pub fn go_on(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    layers: &[Layer],
+    sums: &mut AnySums,
+    watch: &mut dyn FnMut(Progress, &dyn Kept),
+) -> Image {
+    match sums {
+        AnySums::Samples(sums) => {
+            let watch = &mut |progress, sums: &Sums| watch(progress, sums);
+            let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
+            dispatch(scene, film, settings, Mode::Budget(sums), layers, &mut monitor)
+        }
+        AnySums::Adaptive(halves) => {
+            let (stopwatch, started) = (Stopwatch::start(), Instant::now());
+            let bench = &Instrument::new(scene, film, settings);
+            let watch = &mut |progress, halves: &Halves| watch(progress, halves);
+            Adaptive { bench, stopwatch: &stopwatch, watch }.run(halves);
+            finish(bench, started, halves.image(), layers)
+        }
+    }
 }
 
 /// Shows `scene` on `film` as a preview that looks like `fog`, and `layers` with it. Of the options only the
@@ -206,7 +200,7 @@ pub fn preview(
     let options = Options { strategies: Strategies::NONE, heuristic: Heuristic::Balance, ..settings.options };
     let watch = &mut |reached, _: &Sums| progress(reached);
     let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
-    let mode = Mode::Preview(fog, &mut sums_for(film, layers));
+    let mode = Mode::Preview(fog, &mut Sums::new(film, layers.iter().any(Layer::needs_squares)));
     dispatch(scene, film, &Settings { options, ..*settings }, mode, layers, &mut monitor)
 }
 
@@ -236,7 +230,7 @@ fn dispatch(
         Mode::Budget(sums) => (None, sums),
     };
     accumulate(&bench, preview.as_ref(), sums, stopwatch, monitor);
-    let image = Image::so_far(sums);
+    let image = sums.image();
     let seen =
         primary::Pass::new(film, layers).run(&bench, image.samples_per_pixel.max(1), late(settings, started));
     let develop = |layer| develop(layer, &image.pixels, &sums.accumulator, &seen);
@@ -252,20 +246,17 @@ fn late(settings: &Settings, started: Instant) -> impl Fn() -> bool {
     move || budget.is_over(started.elapsed().saturating_sub(GRACE))
 }
 
-/// The image of an adaptive render, with a layer that shows how many samples its pixels took.
-fn finish(bench: &Instrument<'_>, stopwatch: &Stopwatch, found: Developed, layers: &[Layer]) -> Image {
-    let Developed { pixels, passes, noise, reached, faults } = found;
-    let taken: u64 = reached.samples.iter().map(|n| u64::from(*n)).sum();
-    let mean = (taken / reached.samples.len().max(1) as u64).clamp(1, passes.max(1));
-    let is_over = late(&bench.settings, Instant::now() - stopwatch.elapsed());
-    let seen = primary::Pass::new(bench.film, layers).run(bench, mean, is_over);
+/// The image of an adaptive render that began at `started`, with alpha, `layers`, and one more that shows how many samples
+/// its pixels took.
+fn finish(bench: &Instrument<'_>, started: Instant, image: Image, layers: &[Layer]) -> Image {
+    let (passes, is_over) = (image.samples_per_pixel.max(1), late(&bench.settings, started));
+    let seen = primary::Pass::new(bench.film, layers).run(bench, passes, is_over);
     let none = Accumulator::new(0);
-    let mut layers: Vec<_> = layers.iter().flat_map(|layer| develop(layer, &pixels, &none, &seen)).collect();
-    let values = reached.samples.iter().map(|n| *n as f32).collect();
-    layers.push(Channel { name: "samples.N".to_owned(), values });
-    let (elapsed, reached) = (stopwatch.elapsed(), Some(reached));
-    let alpha = seen.alpha;
-    Image { pixels, samples_per_pixel: mean, unfinished: 0.0, elapsed, noise, alpha, layers, reached, faults }
+    let mut layers: Vec<_> =
+        layers.iter().flat_map(|layer| develop(layer, &image.pixels, &none, &seen)).collect();
+    let samples = image.reached.iter().flat_map(|reached| &reached.samples);
+    layers.push(Channel { name: "samples.N".to_owned(), values: samples.map(|n| *n as f32).collect() });
+    Image { alpha: seen.alpha, layers, ..image }
 }
 
 /// Time between two estimates of the noise, which look at every pixel.

@@ -11,7 +11,7 @@ use super::{
     compiled::{self, Ready},
 };
 use crate::{
-    film::Film,
+    film::{Film, Window},
     math::{Spectrum, SpectrumExt, Vec2},
     sampling::Sampler,
     scene::Scene,
@@ -23,6 +23,7 @@ use crate::{
     },
 };
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
 const SEED: u64 = 0x7079_6c6f_7473;
@@ -73,7 +74,10 @@ pub fn choose(
     }
     let options = Options { effort: Effort::default(), ..settings.options };
     let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*settings };
-    let pilot = compiled::pilot(scene, film, &settings);
+    // Parts of one image are made alike.
+    let [width, height] = film.window.full_size;
+    let whole = Film::new(Window::whole(width, height), film.filter, false, film.format);
+    let pilot = compiled::pilot(scene, &whole, &settings);
     let worth = |choice: &Choice| pilot.error(choice) * pilot.time(choice);
     let reference = worth(&base);
     let gain = |choice: Choice| Choice { gain: reference / worth(&choice), ..choice };
@@ -257,13 +261,13 @@ impl Pilot {
             .map(|work| parts.iter().fold(Work::default(), |sum, part| sum.and(&work(part))));
         // Light subpaths traced stand for those of a pass.
         let per_pass = blocks.walks_per_pass() as f64 / light.walks.max(1.0);
-        let variances = variances(&parts, film.len());
+        let variances = variances(&parts);
         let mut found = Vec::new();
         for part in parts {
             for (pixel, sum) in part.sums {
                 let tile = &mut tiles[tile(pixel)];
                 tile.mean += sum / tile.samples;
-                tile.rest += variances[pixel as usize] / tile.samples;
+                tile.rest += variances[&pixel] / tile.samples;
             }
             for Found { pixel, square, shares } in part.camera.found {
                 let (index, square) = (tile(pixel), square / tiles[tile(pixel)].samples);
@@ -331,17 +335,15 @@ impl Choice {
     }
 }
 
-/// Sample variance of what camera subpaths contribute to each of `pixels`, 0 where there are none.
-fn variances(parts: &[Part], pixels: usize) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0.0, 0.0); pixels];
+/// Sample variance of what camera subpaths contribute to each pixel that takes part.
+fn variances(parts: &[Part]) -> HashMap<u32, f64> {
+    let mut sums: HashMap<u32, (f64, f64, f64)> = HashMap::new();
     for (pixel, value) in parts.iter().flat_map(|part| &part.sums) {
-        let (n, sum, square) = &mut sums[*pixel as usize];
+        let (n, sum, square) = sums.entry(*pixel).or_default();
         *n += 1.0;
         *sum += value;
         *square += value * value;
     }
-    let variance = |(n, sum, square): &(f64, f64, f64)| {
-        ((square - sum * sum / n.max(1.0)) / (n - 1.0).max(1.0)).max(0.0)
-    };
-    sums.iter().map(variance).collect()
+    let variance = |(n, sum, square): (f64, f64, f64)| ((square - sum * sum / n) / (n - 1.0)).max(0.0);
+    sums.into_iter().map(|(pixel, sums)| (pixel, variance(sums))).collect()
 }

@@ -2,7 +2,7 @@
 //! as if it had never stopped, and several of other samples make one.
 
 use super::{
-    Progress,
+    Image, Progress,
     block::{Blocks, Outcome, Pass},
     faults::Faults,
     samples::Samples,
@@ -70,16 +70,6 @@ impl Sums {
     /// The fraction of the pixels that have one more.
     pub fn unfinished(&self) -> f64 {
         self.blocks as f64 / self.division().count() as f64
-    }
-
-    /// Time spent on them, on all machines.
-    pub fn elapsed(&self) -> Duration {
-        self.elapsed
-    }
-
-    /// See [`Accumulator::noise`].
-    pub fn noise(&self) -> Option<f64> {
-        self.noise
     }
 
     /// Pixels across and down.
@@ -163,6 +153,21 @@ impl Sums {
         }
         pixels
     }
+
+    /// The image so far, without alpha and layers.
+    pub(super) fn image(&self) -> Image {
+        Image {
+            pixels: self.pixels(),
+            samples_per_pixel: self.samples.count(),
+            unfinished: self.unfinished(),
+            elapsed: self.elapsed,
+            noise: self.noise,
+            alpha: Vec::new(),
+            layers: Vec::new(),
+            reached: None,
+            faults: self.faults.clone(),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -217,7 +222,7 @@ mod tests {
             sums.elapsed = Duration::from_secs(3);
             super::super::sums_file::write(&path, &sums, &"made".into()).unwrap();
             let (read, made) = super::super::sums_file::read(&path).unwrap();
-            assert_eq!(format!("{read:?}"), format!("{sums:?}"));
+            assert_eq!(format!("{read:?}"), format!("Samples({sums:?})"));
             assert_eq!(made, "made");
         }
     }

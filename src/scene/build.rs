@@ -313,6 +313,7 @@ impl<'a> Builder<'a> {
             [one] => film::build(one.object, self.library, overrides)?,
             [_, second, ..] => return Err(only_one(second, "film")),
         };
+        let film = film::cropped(film, overrides.crop)?;
         let sampling = match params.children(|child| sampler::ROWS.has(child.object))?.as_slice() {
             [] => Sampling::default(),
             [one] => sampler::build(one.object, self.library)?,

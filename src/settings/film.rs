@@ -8,7 +8,7 @@ use crate::{
         filter::{self, Filter},
         format::{COMPONENT_FORMATS, FILE_FORMATS, Format, PIXEL_FORMATS},
     },
-    settings::{Overrides, only_one},
+    settings::{Crop, Overrides, only_one},
 };
 
 /// The size of a film that says nothing [pixels].
@@ -86,6 +86,22 @@ fn window(params: &Params<'_>, overrides: Overrides) -> Result<Window> {
             "leave --size out, or remove the crop window from the scene",
         )),
     }
+}
+
+/// The part of `film` that is to be rendered.
+pub fn cropped(film: Film, crop: Option<Crop>) -> Result<Film> {
+    let Some(crop) = crop else { return Ok(film) };
+    let [width, height] = film.window.size;
+    let end = |axis: usize| crop.corner[axis].checked_add(crop.size[axis]);
+    if (0..2).any(|axis| end(axis).is_none_or(|end| end > film.window.size[axis])) {
+        return Err(Error::new(
+            "--crop",
+            format!("a part of the image of {width} x {height} pixels"),
+            crop.to_string(),
+            "choose WIDTHxHEIGHT+X+Y so that it ends inside",
+        ));
+    }
+    Ok(film.part(crop.corner, crop.size))
 }
 
 fn size(params: &Params<'_>, name: &'static str, default: u32) -> Result<u32> {

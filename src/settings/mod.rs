@@ -6,15 +6,47 @@ pub mod integrator;
 pub mod options;
 pub mod sampler;
 
-use crate::{description::params::Child, error::Error, medium::DistanceMethod};
+use crate::{description::params::Child, error::Error, film::Window, medium::DistanceMethod};
 
 /// Settings of the command line that override those of the scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
     /// Width and height [pixels].
     pub size: Option<(u32, u32)>,
+    /// The only part of the image to render.
+    pub crop: Option<Crop>,
     /// Free-flight sampling methods in heterogeneous media.
     pub tracker: Option<DistanceMethod>,
+}
+
+/// A part of an image [pixels].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// Its top left corner.
+    pub corner: [u32; 2],
+    /// Pixels across and down, both positive.
+    pub size: [u32; 2],
+}
+
+impl Crop {
+    /// That of `window`, a part of the image `whole`.
+    pub fn of(window: &Window, whole: &Window) -> Self {
+        let corner = [0, 1].map(|axis| window.offset[axis] - whole.offset[axis]);
+        Self { corner, size: window.size }
+    }
+
+    /// Where in its film this part of the image `whole` lies.
+    pub fn within(&self, whole: &Window) -> Window {
+        let offset = [0, 1].map(|axis| whole.offset[axis] + self.corner[axis]);
+        Window { offset, size: self.size, ..*whole }
+    }
+}
+
+impl std::fmt::Display for Crop {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { corner: [x, y], size: [width, height] } = self;
+        write!(f, "{width}x{height}+{x}+{y}")
+    }
 }
 
 /// The error of a second one where there may be one.

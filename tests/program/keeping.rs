@@ -157,6 +157,41 @@ fn what_a_signal_ends_goes_on() {
     }
 }
 
+/// The same to a precision: it says so, and goes on.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_render_to_a_precision_goes_on_after_a_signal() {
+    let sandbox = foggy();
+    let mut child = started(&sandbox, "--error 0.5 -o fog.exr --report report.json");
+    std::thread::sleep(Duration::from_millis(300));
+    signal(&child, "-INT");
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(sandbox.json("report.json")["pixels_within_error"].as_f64().unwrap() < 1.0);
+    let said = good(sandbox.run("info fog.exr.sums")).out();
+    assert!(said.contains("pixels_within_error") && said.contains("confidence           0.95"), "{said}");
+    good(render(&sandbox, "--error 0.5 --resume -o fog.exr"));
+    good(render(&sandbox, "--error 0.5 -o all.exr"));
+    assert_same(&sandbox, "fog.exr", "all.exr");
+}
+
+/// Sums of one kind are no use to a render of the other, nor those of another precision.
+#[test]
+fn sums_of_another_precision_are_refused() {
+    let sandbox = foggy();
+    good(render(&sandbox, "--spp 3 --sums plain.sums -o x.exr"));
+    good(render(&sandbox, "--spp 3 --error 0.5 --sums fog.sums -o x.exr"));
+    let with = ["found the sums of a render with --error", "without"];
+    refused(render(&sandbox, "--spp 9 --resume --sums fog.sums -o x.exr"), &with);
+    refused(sandbox.run("merge plain.sums fog.sums -o x.exr"), &with);
+    let without = ["found the sums of a render without --error"];
+    refused(render(&sandbox, "--error 0.5 --resume --sums plain.sums -o x.exr"), &without);
+    for (words, differs) in
+        [("--error 0.4", "error = 0.4"), ("--error 0.5 --confidence 0.9", "confidence = 0.9")]
+    {
+        refused(render(&sandbox, &format!("{words} --resume --sums fog.sums -o x.exr")), &[differs]);
+    }
+}
+
 /// A second one ends it at once, even while it cannot end in order.
 #[cfg(target_os = "linux")]
 #[test]
@@ -173,29 +208,90 @@ fn a_second_signal_ends_at_once() {
     assert!(begun.elapsed() < Duration::from_secs(5));
 }
 
+/// While a scene is being read there is nothing to save: the first signal ends it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_before_the_first_sample_ends_at_once() {
+    let mut command = Command::new("env");
+    command.args(["--default-signal=INT", env!("CARGO_BIN_EXE_tyndall"), "render", "-"]);
+    let mut child = command.stdin(Stdio::piped()).spawn().unwrap();
+    let waits_for_its_scene = || {
+        let calls = fs::read_to_string(format!("/proc/{}/wchan", child.id())).unwrap();
+        calls.contains("pipe_read")
+    };
+    let begun = Instant::now();
+    while !waits_for_its_scene() && begun.elapsed() < Duration::from_secs(5) {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    signal(&child, "-INT");
+    std::thread::sleep(Duration::from_millis(500));
+    let ended = child.try_wait().unwrap();
+    child.kill().unwrap();
+    assert!(ended.is_some(), "it waits for its scene");
+}
+
 /// Killed at any moment, also while it writes: what is there is whole, and goes on to the same bits.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_is_killed_goes_on_to_the_same_bits() {
-    let (sandbox, kills) =
-        (foggy(), std::env::var("TYNDALL_KILLS").map_or(10, |kills| kills.parse().unwrap()));
+    let sandbox = foggy();
+    kill_often(&sandbox, "--spp 400");
+    good(render(&sandbox, "--spp 1 --resume --sums fog.sums -o now.exr --report report.json"));
+    let done = sandbox.json("report.json")["samples_per_pixel"].as_u64().unwrap();
+    good(render(&sandbox, &format!("--spp {} --resume --sums fog.sums -o fog.exr", done + 1)));
+    good(render(&sandbox, &format!("--spp {} -o all.exr", done + 1)));
+    assert_same(&sandbox, "fog.exr", "all.exr");
+}
+
+/// The same of renders to a precision, with other numbers of threads each time, and with limits of time between.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_killed_render_to_a_precision_goes_on_to_the_same_bits() {
+    let sandbox = foggy();
+    kill_often(&sandbox, "--error 0.5");
+    for (limit, threads) in [("--time-limit 0.1s", 3), ("--time-limit 0.15s", 1), ("--spp 40", 2), ("", 7)] {
+        let words = format!("--error 0.5 {limit} --threads {threads} --resume --sums fog.sums -o fog.exr");
+        good(render(&sandbox, &words));
+    }
+    good(render(&sandbox, "--error 0.5 -o all.exr"));
+    assert_same(&sandbox, "fog.exr", "all.exr");
+    // What is finished stays as it is.
+    good(render(&sandbox, "--error 0.5 --resume --sums fog.sums -o again.exr"));
+    good(sandbox.run("merge fog.sums -o merged.exr"));
+    assert_same(&sandbox, "again.exr", "all.exr");
+    assert_same(&sandbox, "merged.exr", "all.exr");
+}
+
+/// Kills a render at random moments, each time going on from what it kept.
+#[cfg(target_os = "linux")]
+fn kill_often(sandbox: &Sandbox, words: &str) {
+    let kills = std::env::var("TYNDALL_KILLS").map_or(10, |kills| kills.parse().unwrap());
     let mut moment = 1u64;
     for kill in 0.. {
         if kill >= kills && has_sums(&sandbox.path("")) {
             break;
         }
         let resume = if has_sums(&sandbox.path("")) { "--resume" } else { "" };
-        let mut child =
-            started(&sandbox, &format!("--spp 400 --sums fog.sums --sums-every 0.05s {resume} -o fog.exr"));
+        let threads = [2, 1, 3, 7][kill % 4];
+        let words =
+            format!("{words} --threads {threads} --sums fog.sums --sums-every 0.05s {resume} -o fog.exr");
+        let mut child = started(sandbox, &words);
         moment = moment.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         std::thread::sleep(Duration::from_millis(50 + (moment >> 33) % 500));
         child.kill().unwrap();
         child.wait().unwrap();
     }
-    good(render(&sandbox, "--spp 1 --resume --sums fog.sums -o now.exr --report report.json"));
-    let done = sandbox.json("report.json")["samples_per_pixel"].as_u64().unwrap();
-    good(render(&sandbox, &format!("--spp {} --resume --sums fog.sums -o fog.exr", done + 1)));
-    good(render(&sandbox, &format!("--spp {} -o all.exr", done + 1)));
+}
+
+/// A limit may end any of the passes up to the next check; the check that it then makes is none of the render's.
+#[test]
+fn limits_of_samples_make_no_difference_to_a_precision() {
+    let sandbox = foggy();
+    good(render(&sandbox, "--error 0.5 --spp 1 --sums fog.sums -o fog.exr"));
+    for spp in [2, 3, 31, 32, 33, 35, 5, 47, 100] {
+        good(render(&sandbox, &format!("--error 0.5 --spp {spp} --resume --sums fog.sums -o fog.exr")));
+    }
+    good(render(&sandbox, "--error 0.5 --spp 100 -o all.exr"));
     assert_same(&sandbox, "fog.exr", "all.exr");
 }
 
@@ -207,6 +303,13 @@ fn has_sums(folder: &Path) -> bool {
 #[test]
 fn tev_shows_the_picture_so_far() {
     let sandbox = foggy();
+    for words in ["--time-limit 3s", "--error 0.1 --time-limit 3s"] {
+        shows_in_tev(&sandbox, words);
+    }
+    refused(render(&sandbox, "--spp 1 --tev 127.0.0.1:1"), &["--tev", "start tev first"]);
+}
+
+fn shows_in_tev(sandbox: &Sandbox, words: &str) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     let received = std::thread::spawn(move || {
@@ -214,7 +317,7 @@ fn tev_shows_the_picture_so_far() {
         listener.accept().unwrap().0.read_to_end(&mut bytes).unwrap();
         bytes
     });
-    good(render(&sandbox, &format!("--time-limit 4s -o fog.exr --tev {address}")));
+    good(render(sandbox, &format!("{words} -o fog.exr --tev {address}")));
     let received = received.join().unwrap();
     // Packets begin with their length; an update holds all of the picture's 32-bit numbers.
     let (mut rest, mut packets, mut last) = (&received[..], 0, &received[..]);
@@ -226,15 +329,21 @@ fn tev_shows_the_picture_so_far() {
         last[last.len() - 60 * 50 * 12..].as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect();
     let red: Vec<f32> = numbers.iter().step_by(3).copied().collect();
     assert_eq!(sandbox.channels("fog.exr")["R"], red);
-    refused(render(&sandbox, &format!("--spp 1 --tev {address}")), &["--tev", "start tev first"]);
 }
 
 /// The picture so far is there long before the end.
 #[cfg(target_os = "linux")]
 #[test]
 fn the_picture_so_far_is_written() {
+    for words in ["--time-limit 100s", "--error 0.01"] {
+        writes_the_picture_so_far(words);
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn writes_the_picture_so_far(words: &str) {
     let sandbox = foggy();
-    let mut child = started(&sandbox, "--time-limit 100s --preview -o fog.exr");
+    let mut child = started(&sandbox, &format!("{words} --preview -o fog.exr"));
     let begun = Instant::now();
     while !sandbox.path("fog.png").exists() && begun.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(100));
@@ -249,7 +358,8 @@ fn the_picture_so_far_is_written() {
 fn time_ends_within_a_block() {
     let sandbox = foggy();
     let words = "render fog.json --size 3840x2160 --time-limit 0.5s -o large.exr --report report.json";
-    good(sandbox.run(words));
+    let said = good(sandbox.run(words)).out();
+    assert!(!said.starts_with("0 samples/pixel"), "{said}");
     let seconds = sandbox.json("report.json")["render_seconds"].as_f64().unwrap();
     assert!(seconds < 1.5, "{seconds} s");
 }
@@ -285,6 +395,8 @@ fn pictures_say_how_they_were_made() {
     fs::rename(sandbox.path("fog.exr"), sandbox.path("first.exr")).unwrap();
     good(sandbox.run(again));
     assert_same(&sandbox, "fog.exr", "first.exr");
+    fs::rename(sandbox.path("fog.sums"), sandbox.path("fog.json.kept")).unwrap();
+    assert!(good(sandbox.run("info fog.json.kept")).out().contains("\nseed                 7"));
     fs::write(sandbox.path("fog.png"), &sandbox.bytes("fog.png")[..60]).unwrap();
     refused(sandbox.run("info fog.png"), &["fog.png"]);
 }
@@ -370,7 +482,6 @@ fn what_cannot_be_kept_is_refused() {
         ("--preview -o /dev/stdout", &["--preview", "device"]),
         ("--sums /dev/null", &["/dev/null", "plain file"]),
         ("--resume", &["fog.exr.sums", "leave out --resume"]),
-        ("--error 0.1 --preview", &["--preview"]),
         ("--samples 4..4 --sums a.sums", &["0..64"]),
     ] {
         refused(render(&sandbox, words), hints);

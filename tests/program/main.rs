@@ -7,6 +7,7 @@ mod sandbox;
 
 mod command_line;
 mod converting;
+mod cropping;
 mod diff;
 mod errors;
 mod flights;

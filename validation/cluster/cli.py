@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 
 from validation import environment
-from validation.cluster import farm, parts, render, study
+from validation.cluster import farm, parts, render, study, tiles
 from validation.cluster.job import Job, job
 from validation.cluster.parts import part_size
+from validation.failure import Failure
 from validation.places import REQUIREMENTS_CLUSTER
 
 TEXT = "One picture, or one study, by many processes or machines over Dask distributed (validation/cluster/README.md)."
@@ -56,7 +57,7 @@ def add_picture(command: argparse.ArgumentParser) -> None:
     """What picture, and how it is cut."""
     command.add_argument("scene", metavar="SCENE", help="scene file, before all options; at this path on every machine")
     command.add_argument("-o", "--output", type=Path, required=True, metavar="FILE", help="image to write")
-    command.add_argument("--spp", type=int, metavar="N", help="samples per pixel (default: the scene's)")
+    command.add_argument("--spp", type=int, metavar="N", help="samples per pixel (default: the scene's), or with --error the most of them")
     size = command.add_mutually_exclusive_group()
     size.add_argument("--parts", type=int, metavar="N", help="number of parts (default: 4 for each worker, at least 16)")
     size.add_argument("--samples-per-part", type=int, metavar="N", help="samples per pixel of a part, instead")
@@ -82,14 +83,22 @@ def run_render(options: argparse.Namespace, more: list[str], _: str) -> None:
         more = shared(more, options.workers)
     picture = wanted(options, more)
     with farm.connected(options.scheduler, options.workers, options.retries) as client:
-        render.run(client, picture, size_of(options, picture, farm.slots(client)), options.retries)
+        workers = farm.slots(client)
+        if picture.is_to_error:
+            tiles.run(client, picture, count(options, workers), options.retries)
+        else:
+            render.run(client, picture, size_of(options, picture, workers), options.retries)
 
 
 def run_commands(options: argparse.Namespace, more: list[str], _: str) -> None:
     picture = wanted(options, more)
-    for samples in parts.cut([(0, picture.spp)], size_of(options, picture, 1)):
-        file = picture.folder / f"{parts.name(samples)}.sums"
-        print(shlex.join([*picture.part(samples), "--sums", str(file)]))
+    if picture.is_to_error:
+        found = [(tiles.name(crop), picture.tile(crop)) for crop in tiles.cut(*picture.size(), count(options, 1))]
+    else:
+        samples = parts.cut([(0, picture.spp)], size_of(options, picture, 1))
+        found = [(parts.name(some), picture.part(some)) for some in samples]
+    for name, words in found:
+        print(shlex.join([*words, "--sums", str(picture.folder / f"{name}.sums")]))
     picture.folder.mkdir(parents=True, exist_ok=True)
     print(f"then: tyndall merge {shlex.quote(str(picture.folder))}/*.sums -o {shlex.quote(str(picture.output))}", file=sys.stderr)
 
@@ -104,6 +113,15 @@ def run_study(options: argparse.Namespace, more: list[str], command: str) -> Non
 def wanted(options: argparse.Namespace, more: list[str]) -> Job:
     """The picture that was asked for."""
     return job(options.scene, options.output, more, options.spp, options.folder)
+
+
+def count(options: argparse.Namespace, workers: int) -> int:
+    """Parts of a picture to an error."""
+    if options.samples_per_part is not None:
+        raise Failure("--samples-per-part is given: a render to an --error is cut into parts of the image", "give --parts instead")
+    if options.parts is not None and options.parts < 1:
+        raise Failure(f"--parts is {options.parts}", "give at least 1")
+    return options.parts or parts.number(workers)
 
 
 def size_of(options: argparse.Namespace, picture: Job, workers: int) -> int:

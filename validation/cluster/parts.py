@@ -49,7 +49,12 @@ def part_size(total: int, parts: int | None, samples: int | None, workers: int) 
     for name, value in (("--parts", parts), ("--samples-per-part", samples), ("--spp", total)):
         if value is not None and value < 1:
             raise Failure(f"{name} is {value}", "give at least 1")
-    return samples or -(-total // (parts or max(FEWEST, PER_WORKER * workers)))
+    return samples or -(-total // (parts or number(workers)))
+
+
+def number(workers: int) -> int:
+    """Of parts, unless the user wants another."""
+    return max(FEWEST, PER_WORKER * workers)
 
 
 FEWEST = 16

@@ -1,15 +1,12 @@
 """Renders a picture by parts, each of which is a task, and merges them as they come."""
 
-import fcntl
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 from validation import tyndall
 from validation.cluster import farm, parts, task
 from validation.cluster.job import Job
+from validation.cluster.locked import alone
 from validation.cluster.parts import Range
 from validation.cluster.sums import Sums
 from validation.failure import Failure
@@ -66,35 +63,3 @@ def tell(job: Job, sums: Sums, what: str) -> None:
     done = parts.count(sums.there)
     noise = "" if sums.noise is None else f", noise {100 * sums.noise:.2g} %"
     print(f"{done} of {job.spp} samples/pixel ({100 * done / job.spp:.0f} %){noise}: {what}", file=sys.stderr, flush=True)
-
-
-@contextmanager
-def alone(folder: Path) -> Iterator[None]:
-    """Keeps a second driver of the same picture out."""
-    with lock_file(folder) as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise Failure(f"{folder}: another driver is at work on this picture", "wait for it, or end it") from None
-        try:
-            yield
-        except Failure:
-            remove(folder)
-            raise
-        remove(folder)
-
-
-def lock_file(folder: Path) -> TextIO:
-    """A file to be locked, in a folder that is made if need be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        return open(folder / ".lock", "w")
-    except OSError as error:
-        raise Failure(f"{folder}: no folder that can be written: {error.strerror}", "give another --folder, or -o") from None
-
-
-def remove(folder: Path) -> None:
-    """Removes the folder of parts unless there is something in it. Not after an interruption: parts may still be saved."""
-    Path(folder, ".lock").unlink(missing_ok=True)
-    if not any(folder.iterdir()):
-        folder.rmdir()

@@ -20,7 +20,7 @@ import pytest
 
 from validation import cli as whole_cli
 from validation import environment, exr, tyndall
-from validation.cluster import cli, farm, parts, render, study, task
+from validation.cluster import cli, farm, locked, parts, render, study, task, tiles
 from validation.cluster.job import Job, job
 from validation.cluster.sums import Sums
 from validation.failure import Failure
@@ -81,7 +81,7 @@ def test_workers_get_several_parts_unless_the_user_says_how_many() -> None:
 
 
 def test_options_that_no_part_can_have_are_refused(tmp_path: Path) -> None:
-    for word in ("--samples=0..4", "--resume", "--time-limit", "--error=0.1", "--frames"):
+    for word in ("--samples=0..4", "--resume", "--time-limit", "--crop=2x2+0+0", "--frames"):
         with pytest.raises(Failure, match=word.partition("=")[0]):
             job(str(ROOM), tmp_path / "a.exr", [word], 8, None)
     with pytest.raises(Failure, match="no such scene"):
@@ -151,7 +151,7 @@ def test_a_driver_that_starts_again_takes_what_is_there_and_only_of_its_picture(
     other = job(str(ROOM), tmp_path / "a.exr", ["--size", "12x8", "--seed", "5"], 24, None)
     with pytest.raises(Failure, match="seed = 5"):
         render.begin(other, Sums(other.output, other.folder))
-    with render.alone(picture.folder), pytest.raises(Failure, match="another driver"), render.alone(picture.folder):
+    with locked.alone(picture.folder), pytest.raises(Failure, match="another driver"), locked.alone(picture.folder):
         pass
 
 
@@ -215,6 +215,46 @@ def test_a_picture_survives_a_worker_killed_midway_and_a_part_delivered_twice(cl
     render.run(client, picture, 8, retries=0)
     assert killed and killed[0] not in client.run(os.getpid).values()
     assert equal(picture.output, single(picture, tmp_path)) and not picture.folder.exists()
+
+
+def test_an_image_is_cut_into_parts_that_hold_every_pixel_once() -> None:
+    for width, height, count in [(60, 50, 16), (1, 9, 4), (7, 1, 16), (640, 480, 1), (3, 3, 100)]:
+        pixels = [[0] * width for _ in range(height)]
+        crops = tiles.cut(width, height, count)
+        for w, h, x, y in (map(int, crop.replace("x", "+").split("+")) for crop in crops):
+            for row in pixels[y : y + h]:
+                row[x : x + w] = [n + 1 for n in row[x : x + w]]
+        assert pixels == [[1] * width] * height and min(count, width * height) <= 2 * len(crops) <= 4 * count + 2
+
+
+def test_a_picture_to_an_error_is_cut_into_parts_of_the_image(client: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--size", "24x18", "--error", "0.5", "--threads", "1"]
+    picture = job(str(ROOM), tmp_path / "a.exr", words, None, None)
+    assert picture.spp == 0 and picture.size() == (24, 18)
+    assert whole_cli.main(["cluster", "commands", str(ROOM), "-o", str(tmp_path / "b.exr"), "--parts", "4", *words]) == 0
+    for line in capsys.readouterr().out.splitlines():
+        tyndall.call(shlex.split(line))
+    files = map(str, (tmp_path / "b.exr.parts").glob("*.sums"))
+    tyndall.call([str(tyndall.binary()), "merge", *files, "-o", str(tmp_path / "b.exr")])
+    part = Path(tmp_path, "b.exr.parts", "crop-12x9+12+9.sums")
+    picture.folder.mkdir()
+    there = part.replace(picture.folder / part.name)
+    tyndall.call([*picture.tile("12x9+0+0"), "--spp", "2", "--sums", str(picture.folder / "crop-12x9+0+0.0.attempt")])
+    tiles.run(client, picture, 4, retries=0)
+    told = capsys.readouterr().err
+    assert "0 of 4 parts" not in told and "1 of 4 parts" in told and "4 of 4 parts" in told and not there.exists() and not picture.folder.exists()
+    assert equal(picture.output, tmp_path / "b.exr") and exr.read(picture.output)["samples"]["N"].min() >= 32
+
+
+def test_parts_of_another_picture_are_refused(tmp_path: Path) -> None:
+    words = ["--size", "8x6", "--error", "0.9"]
+    picture = job(str(ROOM), tmp_path / "a.exr", words, 4, None)
+    picture.folder.mkdir()
+    tyndall.call([*job(str(ROOM), tmp_path / "a.exr", [*words, "--seed", "2"], 4, None).tile("8x6+0+0"), "--sums", str(tiles.file(picture, "8x6+0+0"))])
+    with pytest.raises(Failure, match="a part of another picture"):
+        tiles.run(None, picture, 1, retries=0)
+    with pytest.raises(Failure, match="--samples-per-part is given"):
+        cli.main(["commands", str(ROOM), "-o", str(tmp_path / "a.exr"), "--samples-per-part", "4", *words])
 
 
 def test_workers_need_nothing_of_this_package(client: Any, tmp_path: Path) -> None:

@@ -1,0 +1,36 @@
+//! The options --error and --confidence.
+
+use super::arguments;
+use crate::{
+    error::{Error, Result},
+    film::layer::Content,
+    render::{Settings, adaptive::Precision},
+    scene::build::Setup,
+    transport::Strategies,
+};
+
+/// What every pixel is to be known with.
+pub fn precision(
+    arguments: &arguments::Render,
+    setup: &Setup,
+    settings: &Settings,
+) -> Result<Option<Precision>> {
+    let Some(error) = arguments.error else { return Ok(None) };
+    let refuse = |found: &str, remedy: &str| {
+        let expected = "an image without layers of moments";
+        Err(Error::new("--error", expected, found, remedy))
+    };
+    if settings.options.strategies == Strategies::NONE {
+        return refuse("the preview fog", "remove --error, or choose another --integrator");
+    }
+    if setup.integrator.layers.iter().any(|layer| layer.needs_squares() || layer.content == Content::Mean) {
+        return refuse(
+            "the integrator moment",
+            "remove --error, or remove the integrator moment from the scene",
+        );
+    }
+    Ok(Some(Precision { error, confidence: arguments.confidence.unwrap_or(CONFIDENCE) }))
+}
+
+/// Default probability that a pixel is within the error.
+const CONFIDENCE: f64 = 0.95;

@@ -1,0 +1,50 @@
+//! What a render knows, whichever way it goes.
+
+use super::{
+    Image,
+    adaptive::{Halves, Precision},
+    samples::Samples,
+    sums::Sums,
+    sums_file::Stored,
+};
+use crate::film::{Film, layer::Layer};
+
+/// What a render knows, from which it can go on.
+pub trait Kept {
+    /// The image so far, without alpha and layers.
+    fn image(&self) -> Image;
+    /// Samples of pixels; where some pixels need fewer, not all have all of them.
+    fn samples(&self) -> Samples;
+    /// Pixels across and down.
+    fn size(&self) -> (usize, usize);
+    /// What a file of it holds.
+    fn store(&self) -> Stored;
+}
+
+/// That of a render of either kind.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "a render has one, whose arrays are far larger")]
+pub enum AnySums {
+    /// By samples or time.
+    Samples(Sums),
+    /// To a precision.
+    Adaptive(Halves),
+}
+
+impl AnySums {
+    /// Nothing yet of `film` and `layers`.
+    pub fn new(film: &Film, layers: &[Layer], precision: Option<Precision>) -> Self {
+        match precision {
+            Some(precision) => Self::Adaptive(Halves::new(film, precision)),
+            None => Self::Samples(Sums::new(film, layers.iter().any(Layer::needs_squares))),
+        }
+    }
+
+    /// What is known, of whichever kind.
+    pub fn kept(&self) -> &dyn Kept {
+        match self {
+            Self::Samples(sums) => sums,
+            Self::Adaptive(halves) => halves,
+        }
+    }
+}
