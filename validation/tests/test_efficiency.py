@@ -40,6 +40,7 @@ def test_the_better_of_mitsubas_counts() -> None:
 def test_what_is_surely_better_is_said() -> None:
     assert efficiency.row_of(scene(pt=1.2, mitsuba_volpath=1.2)).is_outdone
     assert efficiency.row_of(scene(pt=1.2, mitsuba_volpath=1.2)).is_beaten
+    assert not efficiency.row_of(scene(pt=1.15, mitsuba_volpath=0.5)).is_outdone, "surely, but not by more than it may be"
     unsure = efficiency.row_of(scene(pt=1.1, mitsuba_volpath=1.05))
     assert not unsure.is_outdone and not unsure.is_beaten
     study = {"made_by": "tyndall", "machine": "two cores", "confidence": 0.95, "scenes": [scene()]}
