@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from validation import assets, cells, compare, comparison_page, coverage, full, matrix, package_tests, page, plume, references, selftest
+from validation import assets, cells, compare, comparison_page, coverage, efficiency, full, instructions, matrix, package_tests, page, plume, references, selftest
 from validation import studies, truths, tyndall
 from validation.cluster import cli as cluster
 from validation.compare import Effort
@@ -30,6 +30,8 @@ def parser() -> argparse.ArgumentParser:
     add_matrix(commands)
     add_closed_forms(commands)
     add_studies(commands)
+    add_efficiency(commands)
+    add_instructions(commands)
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
@@ -163,6 +165,16 @@ def add_studies(commands: Commands) -> None:
     command.add_argument("scene", nargs="?", type=Path, default=SCENES / "church.json")
     studies.add_options(command, "bdpt,pt", "pane")
     add_timing(command, seconds=10)
+
+
+def add_efficiency(commands: Commands) -> None:
+    command = add(commands, "efficiency", efficiency.run, "Time to equal error against Mitsuba on the scenes of scenes/efficiency.")
+    efficiency.add_options(command)
+
+
+def add_instructions(commands: Commands) -> None:
+    command = add(commands, "instructions", lambda options: instructions.run(options.record), "Instructions per sample of three scenes, by valgrind, against those recorded.")
+    command.add_argument("--record", action="store_true", help="record them anew")
 
 
 def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:

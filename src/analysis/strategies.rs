@@ -59,6 +59,10 @@ pub struct Report {
     pub eye_walks: f64,
     /// Share of time of light subpaths, without connections.
     pub light_walks: f64,
+    /// Vertices of camera subpaths at which light may scatter on, per pixel and pass.
+    pub eye_vertices: f64,
+    /// Those of light subpaths.
+    pub light_vertices: f64,
     /// Share of variance that is none of a single strategy's: covariances between them. Often negative or positive by
     /// a lot, as strategies share their walks.
     pub covariances: Option<f64>,
@@ -304,6 +308,8 @@ fn report(setup: &Setup, options: &Options, parts: &StrategyImages, times: &Time
         seconds: whole.seconds / timed as f64,
         eye_walks: times.camera_paths / whole.seconds,
         light_walks: times.light_paths / whole.seconds,
+        eye_vertices: times.camera_vertices as f64 / whole.samples,
+        light_vertices: times.light_vertices as f64 / whole.samples,
         covariances: own.map(|own| 1.0 - own),
         rows: rows.collect(),
         cells,

@@ -135,7 +135,7 @@ impl Estimator {
     pub fn chosen(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<(Settings, Option<Choice>)> {
         let mut settings = self.requested(setup, seed, budget)?;
         let Options { strategies, heuristic, .. } = settings.options;
-        if !self.strategies.is_empty() || strategies != Strategies::BDPT || heuristic != Heuristic::Balance {
+        if !self.strategies.is_empty() || strategies == Strategies::NONE || heuristic != Heuristic::Balance {
             return Ok((settings, None));
         }
         let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);

@@ -45,6 +45,7 @@ pub fn settings(
         },
         "layers": setup.integrator.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
         "strategies": kinds.map(StrategyKind::name).collect::<Vec<_>>(),
+        "survival": options.effort.survival.name(),
         "light_walks": options.effort.light_walks,
         "connections": options.effort.connections,
         "heuristic": options.heuristic.to_string(),

@@ -7,7 +7,7 @@ use crate::{
     medium::{DistanceMethod, Medium},
     render::{Settings, budget::Budget, pilot::Choice},
     scene::build::Setup,
-    transport::{Effort, Options, Strategies, observer::StrategyKind},
+    transport::{Effort, Options, Strategies, Survival, observer::StrategyKind},
 };
 use serde_json::{Value, json};
 
@@ -17,6 +17,8 @@ pub struct Plan {
     pub integrator: &'static str,
     strategies: Vec<&'static str>,
     settings: Settings,
+    /// Those of the integrator.
+    wanted: Strategies,
     /// What all strategies at equal effort would take for the same error, over what these do, by the pilot.
     gain: Option<f64>,
     /// Free-flight sampling methods in use.
@@ -46,6 +48,7 @@ impl Plan {
             flights: if strategies == Strategies::NONE { Vec::new() } else { flights(&setup.scene.media) },
             size: [setup.film.width, setup.film.height],
             unreached: coverage::unreached(&setup.scene, &settings.options),
+            wanted,
             gain: chosen.map(|choice| choice.gain),
             settings,
             error,
@@ -70,7 +73,8 @@ impl Plan {
 
     /// How often strategies run that do not all run equally often.
     fn effort(&self) -> String {
-        let Options { strategies, effort: Effort { light_walks, connections }, .. } = self.settings.options;
+        let Options { strategies, effort, .. } = self.settings.options;
+        let Effort { survival, light_walks, connections } = effort;
         let mut text = String::new();
         if connections != 1 {
             text += &format!("; {connections} joins a vertex");
@@ -78,9 +82,15 @@ impl Plan {
         if light_walks != 1.0 {
             text += &format!("; {light_walks} light subpaths a sample");
         }
+        if survival == Survival::FourthRoot {
+            text += "; longer walks";
+        }
         let left_out = if self.gain.is_some() { StrategyKind::ALL.to_vec() } else { Vec::new() };
-        let left_out: Vec<&str> =
-            left_out.into_iter().filter(|kind| !strategies.has(*kind)).map(StrategyKind::name).collect();
+        let left_out: Vec<&str> = left_out
+            .into_iter()
+            .filter(|kind| self.wanted.has(*kind) && !strategies.has(*kind))
+            .map(StrategyKind::name)
+            .collect();
         if !left_out.is_empty() {
             text += &format!("; without {}", list(&left_out));
         }
@@ -128,6 +138,7 @@ impl Plan {
         json!({
             "integrator": self.integrator,
             "strategies": self.strategies,
+            "survival": effort.survival.name(),
             "light_walks": effort.light_walks,
             "connections": effort.connections,
             "time_of_all_strategies": self.gain,

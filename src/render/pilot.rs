@@ -15,7 +15,7 @@ use crate::{
     math::{Spectrum, SpectrumExt, Vec2},
     sampling::Sampler,
     scene::Scene,
-    settings::options::Effort,
+    settings::options::{Effort, Survival},
     transport::{
         Contribution, Departure, MisSums, Options, Strategies,
         observer::{Meeting, Observer, StrategyKind},
@@ -59,8 +59,8 @@ pub struct Choice {
     pub gain: f64,
 }
 
-/// The strategies among those of `settings` that are worth their time on `film`, and how often; `is_complete` says which sets
-/// leave no light out.
+/// The strategies among those of `settings` that are worth their time on `film`, how often, and when walks end; `is_complete`
+/// says which sets of strategies leave no light out.
 pub fn choose(
     scene: &Scene,
     film: &Film,
@@ -69,41 +69,51 @@ pub fn choose(
 ) -> Choice {
     let all = settings.options.strategies;
     let base = Choice { strategies: all, effort: Effort::default(), gain: 1.0 };
-    if scene.lights.is_empty() || !(all.connection || all.lens) {
+    if scene.lights.is_empty() {
         return base;
     }
-    let options = Options { effort: Effort::default(), ..settings.options };
+    let survivals = [Survival::Albedo, Survival::FourthRoot];
+    let pilots = survivals.map(|survival| pilot(scene, film, settings, survival));
+    let reference = pilots[0].error(&base) * pilots[0].time(&base);
+    let choices = survivals.iter().zip(&pilots).flat_map(|(survival, pilot)| {
+        let complete = candidates(all, *survival).filter(|choice| is_complete(choice.strategies));
+        complete.map(move |choice| Choice {
+            gain: reference / (pilot.error(&choice) * pilot.time(&choice)),
+            ..choice
+        })
+    });
+    let best = choices.max_by(|a, b| a.gain.total_cmp(&b.gain));
+    best.filter(|best| best.gain > WORTHWHILE && best.gain.is_finite()).unwrap_or(base)
+}
+
+/// A few samples of all strategies of `settings` at equal effort.
+fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival) -> Pilot {
+    let options = Options { effort: Effort { survival, ..Effort::default() }, ..settings.options };
     let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*settings };
     // Parts of one image are made alike.
     let [width, height] = film.window.full_size;
     let whole = Film::new(Window::whole(width, height), film.filter, false, film.format);
-    let pilot = compiled::pilot(scene, &whole, &settings);
-    let worth = |choice: &Choice| pilot.error(choice) * pilot.time(choice);
-    let reference = worth(&base);
-    let gain = |choice: Choice| Choice { gain: reference / worth(&choice), ..choice };
-    let candidates = candidates(all).filter(|choice| is_complete(choice.strategies)).map(gain);
-    let best = candidates.max_by(|a, b| a.gain.total_cmp(&b.gain));
-    best.filter(|best| best.gain > WORTHWHILE && best.gain.is_finite()).unwrap_or(base)
+    compiled::pilot(scene, &whole, &settings)
 }
 
-/// Every choice among the strategies of `all`.
-fn candidates(all: Strategies) -> impl Iterator<Item = Choice> {
+/// Every choice among the strategies of `all` where walks end by `survival`.
+fn candidates(all: Strategies, survival: Survival) -> impl Iterator<Item = Choice> {
     let sets = (0..8u32).map(move |bits| Strategies {
         next_event: all.next_event && bits & 1 == 0,
         connection: all.connection && bits & 2 == 0,
         lens: all.lens && bits & 4 == 0,
         ..all
     });
-    sets.flat_map(|strategies| {
+    sets.flat_map(move |strategies| {
         let connections: &[u32] = if strategies.connection { &[1, 2, 4] } else { &[1] };
         let light_walks: &[f32] =
             if strategies.connection || strategies.lens { &[0.5, 1.0, 2.0] } else { &[1.0] };
-        let efforts = connections.iter().flat_map(move |connections| {
-            light_walks
-                .iter()
-                .map(|light_walks| Effort { light_walks: *light_walks, connections: *connections })
-        });
-        efforts.map(move |effort| Choice { strategies, effort, gain: 1.0 })
+        let pairs = connections.iter().flat_map(|count| light_walks.iter().map(|walks| (*count, *walks)));
+        pairs.map(move |(connections, light_walks)| Choice {
+            strategies,
+            effort: Effort { survival, light_walks, connections },
+            gain: 1.0,
+        })
     })
 }
 

@@ -1,11 +1,11 @@
-//! How long each strategy takes: the time of its connections, and that of the walks.
+//! What each strategy costs: number and time of its connections, and vertices and time of the walks.
 
 use super::{compiled::Ready, instrument::Instrument, strategy_images::StrategyTable};
 use crate::{
     film::Film,
     math::Vec2,
     transport::{
-        Contribution, MisSums,
+        Contribution, MisSums, Vertex,
         observer::{Meeting, Observer},
         profile::Profile,
     },
@@ -23,12 +23,17 @@ pub struct Times {
     pub camera_paths: f64,
     /// Of light subpaths without their connections [s].
     pub light_paths: f64,
+    /// Vertices of camera subpaths at which light may scatter on.
+    pub camera_vertices: u64,
+    /// Those of light subpaths.
+    pub light_vertices: u64,
 }
 
 impl Times {
     fn new(table: StrategyTable) -> Self {
-        let count = table.count();
-        Self { connections: vec![0.0; count], tries: vec![0; count], camera_paths: 0.0, light_paths: 0.0 }
+        let (connections, tries) = (vec![0.0; table.count()], vec![0; table.count()]);
+        let (camera_vertices, light_vertices) = (0, 0);
+        Self { connections, tries, camera_paths: 0.0, light_paths: 0.0, camera_vertices, light_vertices }
     }
 
     fn add(&mut self, other: &Self) {
@@ -36,6 +41,8 @@ impl Times {
         self.tries.iter_mut().zip(&other.tries).for_each(|(sum, tries)| *sum += tries);
         self.camera_paths += other.camera_paths;
         self.light_paths += other.light_paths;
+        self.camera_vertices += other.camera_vertices;
+        self.light_vertices += other.light_vertices;
     }
 
     /// All of it [s].
@@ -56,6 +63,7 @@ pub(super) fn block<P: Profile>(
     let mut observer: &mut dyn Observer<P::MisSums> = &mut timing;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
     let light_paths = timing.rest();
+    let light_vertices = std::mem::take(&mut timing.vertices);
     for pixel in blocks.pixels(block) {
         let observer: &mut dyn Observer<P::MisSums> = &mut timing;
         blocks.camera_start(scene, film, *seed, pass, pixel).trace(estimator, &cache, observer);
@@ -67,6 +75,8 @@ pub(super) fn block<P: Profile>(
         tries,
         camera_paths,
         light_paths,
+        camera_vertices: timing.vertices,
+        light_vertices,
     }
 }
 
@@ -99,12 +109,14 @@ struct TimingObserver<'a> {
     connections: Vec<Vec<f32>>,
     /// Spans between them [s].
     between: Vec<f32>,
+    /// Where walks may scatter on.
+    vertices: u64,
 }
 
 impl<'a> TimingObserver<'a> {
     fn new(film: &'a Film, table: StrategyTable) -> Self {
         let (connections, between) = (vec![Vec::new(); table.count()], Vec::new());
-        Self { film, table, look: look(), connections, between, last: Instant::now() }
+        Self { film, table, look: look(), connections, between, vertices: 0, last: Instant::now() }
     }
 
     /// The time since the last look.
@@ -141,6 +153,10 @@ impl<S: MisSums> Observer<S> for TimingObserver<'_> {
 
     fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Contribution>) {}
 
+    fn arrive(&mut self, _: &Vertex<S>) {
+        self.vertices += 1;
+    }
+
     fn start(&mut self) {
         let span = self.span();
         self.between.push(span);
@@ -171,6 +187,53 @@ impl Instrument<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        format,
+        render::{Settings, budget::Budget},
+        sampling::Sampler,
+        scene::{accel::RAYS, build},
+        settings::Overrides,
+        transport::{
+            Options, Strategies,
+            profile::{Needs, ProfileName},
+        },
+    };
+    use std::path::Path;
+
+    /// What all strategies do for a pixel sample of `scene`: vertices of camera and light subpaths, connections, rays.
+    fn work(scene: &str) -> [f64; 4] {
+        const SIZE: u32 = 32;
+        const PASSES: usize = 16;
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
+        let overrides = Overrides { size: Some((SIZE, SIZE)), ..Overrides::default() };
+        let setup = build::build(&format::read(&path, &[]).unwrap(), overrides).unwrap();
+        let options = Options { strategies: Strategies::BDPT, ..setup.integrator.options };
+        let profile = ProfileName::leanest(Needs::of(&setup.scene, false));
+        let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
+        let settings = Settings { options, sampler, budget, seed: 0, profile };
+        let instrument = Instrument::new(&setup.scene, &setup.film, &settings);
+        let (table, mut times) = (StrategyTable { depth: 1 }, Times::new(StrategyTable { depth: 1 }));
+        let blocks = instrument.compiled.blocks().count();
+        let before = RAYS.get();
+        for task in 0..PASSES * blocks {
+            times.add(&instrument.compiled.time(table, task / blocks, task % blocks));
+        }
+        let counts =
+            [times.camera_vertices, times.light_vertices, times.tries.iter().sum(), RAYS.get() - before];
+        counts.map(|count| count as f64 / (PASSES * setup.film.len()) as f64)
+    }
+
+    /// Work per sample needs no clock. If it is to be another, say why where these numbers are changed.
+    #[test]
+    fn samples_take_the_work_that_they_took() {
+        let scenes = ["lampbox_up.xml", "efficiency/glass_fog_sky.xml", "crosscheck/grid_sparse.json"];
+        let recorded =
+            [[4.200, 3.349, 12.576, 13.048], [2.233, 0.378, 5.183, 7.176], [0.897, 0.353, 3.902, 6.580]];
+        let found = scenes.map(work);
+        let mut pairs = found.iter().flatten().zip(recorded.iter().flatten());
+        let is_kept = pairs.all(|(found, recorded)| (found / recorded - 1.0).abs() <= 0.02);
+        assert!(is_kept, "{scenes:?}: found {found:.3?}, recorded {recorded:?}");
+    }
 
     #[test]
     fn interruptions_count_as_the_mean_and_long_joins_as_they_are() {

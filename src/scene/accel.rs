@@ -12,6 +12,12 @@ use crate::{
 };
 use tree::Tree;
 
+#[cfg(test)]
+thread_local! {
+    /// Rays that this thread has traced: tests hold their number.
+    pub static RAYS: std::cell::Cell<u64> = const { std::cell::Cell::new(0) };
+}
+
 /// All shapes of a scene, ready for ray queries.
 #[derive(Clone, Debug)]
 pub struct Geometry {
@@ -45,12 +51,16 @@ impl Geometry {
     /// The nearest hit with t in (0, `t_max`).
     #[inline]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+        #[cfg(test)]
+        RAYS.set(RAYS.get() + 1);
         self.tree.closest(ray)
     }
 
     /// True if anything is hit with t in (0, `t_max`).
     #[inline]
     pub fn occluded(&self, ray: &Ray) -> bool {
+        #[cfg(test)]
+        RAYS.set(RAYS.get() + 1);
         self.tree.occluded(ray)
     }
 

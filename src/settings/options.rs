@@ -31,9 +31,42 @@ impl Strategies {
         [("bdpt", Self::BDPT), ("pt", Self::PT), ("lt", Self::LT), ("fog", Self::NONE)];
 }
 
-/// How many samples the strategies take, for each pixel sample.
+/// The probability that a walk goes on from a vertex (LW96 eq. 8 and 9), as a function of its albedo: a function of the vertex
+/// alone, so that it can be part of all densities.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Survival {
+    /// The albedo.
+    #[default]
+    Albedo,
+    /// The fourth root of the albedo, by which fewer walks end and those that go on weigh less. It pays where walks soon leave
+    /// the scene anyway.
+    FourthRoot,
+}
+
+impl Survival {
+    /// At a vertex of `albedo`, in [0, 1].
+    #[inline]
+    pub fn of(self, albedo: f32) -> f32 {
+        match self {
+            Self::Albedo => albedo,
+            Self::FourthRoot => albedo.sqrt().sqrt(),
+        }
+    }
+
+    /// Name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Albedo => "albedo",
+            Self::FourthRoot => "fourth root of albedo",
+        }
+    }
+}
+
+/// How many samples the strategies take, for each pixel sample, and how long walks are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
+    /// When walks end.
+    pub survival: Survival,
     /// Light subpaths, above 0.
     pub light_walks: f32,
     /// Connections from each vertex of the camera subpath to vertices of light subpaths, above 0.
@@ -42,7 +75,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { light_walks: 1.0, connections: 1 }
+        Self { survival: Survival::Albedo, light_walks: 1.0, connections: 1 }
     }
 }
 

@@ -42,7 +42,12 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     observer: R,
     stream: &mut Stream,
 ) -> R {
-    let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
+    let kind = Kind {
+        transport: Transport::Radiance,
+        hero,
+        max_edges: estimator.max_edges,
+        survival: estimator.survival,
+    };
     let departure = depart(estimator, film, aperture);
     let mut camera = CameraPath::new(estimator, cache, hero, observer);
     walk(estimator.scene, kind, departure, &mut camera, stream);

@@ -47,8 +47,12 @@ pub fn trace<P: Profile>(
     let Some(start) = begin::<P>(scene, stream) else { return };
     observer.emit(&start);
     let departure = depart(estimator, &start);
-    let kind =
-        Kind { transport: Transport::Importance, hero, max_edges: estimator.max_edges.saturating_sub(1) };
+    let kind = Kind {
+        transport: Transport::Importance,
+        hero,
+        max_edges: estimator.max_edges.saturating_sub(1),
+        survival: estimator.survival,
+    };
     let mut light = LightPath::new(estimator, cache, observer, start, hero);
     if estimator.starts_seen() {
         let aperture = scene.sensor.sample_aperture(stream);

@@ -83,7 +83,7 @@ pub use walk::Departure;
 
 pub use crate::{
     settings::heuristic::Heuristic,
-    settings::options::{Effort, Options, Strategies},
+    settings::options::{Effort, Options, Strategies, Survival},
 };
 
 use crate::{
@@ -115,6 +115,7 @@ pub struct Estimator<'a, P: Profile> {
     scene: &'a Scene,
     counts: Counts,
     heuristic: Heuristic,
+    survival: Survival,
     connections_per_vertex: u32,
     /// Probability that a light vertex is kept for connections.
     keep: f32,
@@ -146,6 +147,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
                 lens: count(strategies.lens, walks_per_pass as f32),
             },
             heuristic,
+            survival: effort.survival,
             connections_per_vertex: 0,
             keep: 0.0,
             max_edges: max_depth.unwrap_or(u32::MAX).min(P::MisSums::MOST_EDGES),

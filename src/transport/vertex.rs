@@ -61,6 +61,8 @@ pub struct Subpath<S: MisSums> {
 pub struct Vertex<S: MisSums> {
     /// Surface or medium.
     pub interaction: Interaction,
+    /// Probability that the walk goes on from here.
+    pub survival: f32,
     /// n_i: expected samples of the strategy that connects across the segment before; 0 where none can.
     pub connections: f32,
     /// Of which kind that strategy is.
@@ -141,7 +143,7 @@ impl<S: MisSums> Vertex<S> {
             Interaction::Medium(_, properties) => {
                 let medium = &scene.media[self.subpath.medium.0 as usize];
                 let phase = medium.phase.pdf_sr(Deflection::between(-self.subpath.incoming, outgoing));
-                let pdf = phase * properties.survival();
+                let pdf = phase * self.survival;
                 Scattering { value: properties.albedo * phase, pdf_fwd: pdf, pdf_rev: pdf }
             }
             Interaction::Surface(point) => self.reflect_towards(scene, point, outgoing, transport),
@@ -159,10 +161,13 @@ impl<S: MisSums> Vertex<S> {
         let bsdf = scene.bsdf(point.shape);
         let (wi, wo) = (point.shading.to_local(self.subpath.incoming), point.shading.to_local(outgoing));
         let f = bsdf.evaluate(point.uv, wi, wo, transport);
-        let survival = bsdf.survival(point.uv, wi);
         let cosine =
             wo.z.abs() * shading_correction(point, self.subpath.incoming, outgoing, wi, wo, transport);
-        Scattering { value: f.value * cosine, pdf_fwd: f.pdf_fwd * survival, pdf_rev: f.pdf_rev * survival }
+        Scattering {
+            value: f.value * cosine,
+            pdf_fwd: f.pdf_fwd * self.survival,
+            pdf_rev: f.pdf_rev * self.survival,
+        }
     }
 }
 

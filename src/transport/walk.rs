@@ -15,6 +15,7 @@ use crate::{
     phase::{Deflection, PhaseModel},
     sampling::Stream,
     scene::Scene,
+    settings::options::Survival,
     shape::{Ray, SurfacePoint},
 };
 
@@ -92,6 +93,8 @@ pub struct Kind {
     pub hero: usize,
     /// Most segments.
     pub max_edges: u32,
+    /// When it ends before.
+    pub survival: Survival,
 }
 
 /// Walks from `departure` until absorption, escape or the depth limit, showing every vertex to `visitor`.
@@ -135,7 +138,7 @@ pub fn go_on<P: Profile>(
         }
         return None;
     };
-    let mut vertex = land::<P, _>(departure, flight, interaction, kind.hero, visitor)?;
+    let mut vertex = land::<P, _>(scene, kind, departure, flight, interaction, visitor)?;
     adjusted(&mut vertex.subpath);
     visitor.arrive(&vertex, stream);
     if vertex.subpath.edges == kind.max_edges {
@@ -179,10 +182,11 @@ impl<L: Channels> Arrival<L> {
 /// The vertex at the end of a flight; none if its density is not finite and positive.
 #[inline]
 pub fn land<P: Profile, V: Visitor<P>>(
+    scene: &Scene,
+    kind: Kind,
     departure: &Departure<P::MisSums>,
     flight: &FreeFlight<P::Channels>,
     interaction: Interaction,
-    hero: usize,
     visitor: &V,
 ) -> Option<Vertex<P::MisSums>> {
     let position = interaction.position();
@@ -191,9 +195,10 @@ pub fn land<P: Profile, V: Visitor<P>>(
         cosine: interaction.cosine(departure.ray.direction),
         sigma_t: interaction.sigma_t(),
     };
-    let subpath = arrive::<P>(departure, &flight.state, flight.medium, &at, hero)?;
+    let subpath = arrive::<P>(departure, &flight.state, flight.medium, &at, kind.hero)?;
     let connections = if departure.dirac { 0.0 } else { visitor.connections(subpath.edges, position) };
-    Some(Vertex { interaction, connections, kind: V::kind(subpath.edges), subpath })
+    let survival = kind.survival.of(interaction.albedo_bound(scene, subpath.incoming));
+    Some(Vertex { interaction, survival, connections, kind: V::kind(subpath.edges), subpath })
 }
 
 /// The subpath that a flight extends to `at`; none if its density is not finite and positive.
@@ -348,7 +353,7 @@ fn collide<S: MisSums>(
     stream: &mut Stream,
 ) -> Option<ScatterSample> {
     let medium = &scene.media[vertex.subpath.medium.0 as usize];
-    let survival = properties.survival();
+    let survival = vertex.survival;
     if stream.uniform() >= survival {
         return None;
     }
@@ -369,7 +374,7 @@ fn reflect<S: MisSums>(
 ) -> Option<ScatterSample> {
     let bsdf = scene.bsdf(point.shape);
     let wi = point.shading.to_local(vertex.subpath.incoming);
-    let survival = bsdf.survival(point.uv, wi);
+    let survival = vertex.survival;
     if stream.uniform() >= survival {
         return None;
     }

@@ -152,7 +152,11 @@ fn every_strategy_alone_shows_the_same() {
     claims.settle();
 }
 
-/// All channels of an OpenEXR file.
+fn of_kind(cells: &[Value], kind: &str) -> Vec<Value> {
+    cells.iter().filter(|cell| cell["kind"] == kind).cloned().collect()
+}
+
+/// The sum of a number over cells.
 fn shares(cells: &[Value], key: &str) -> f64 {
     cells.iter().map(|cell| cell[key].as_f64().unwrap()).sum()
 }
@@ -179,6 +183,12 @@ fn the_program_writes_tables_layers_and_sheets() {
     // Next-event estimation is tried once at every vertex that is no black lamp; lamps in view are left to camera subpaths.
     let tries = |name: &str| cells.iter().find(|c| c["name"] == name).unwrap()["tries"].as_f64().unwrap();
     assert!(tries("s1t2") > 0.5 && tries("s1t2") <= 1.0 && tries("s2t2") <= tries("s1t2"));
+    // Every light vertex tries the lens; camera vertices on the lamp, which is black, sample no lamp.
+    let all_tries = |kind: &str| shares(&of_kind(cells, kind), "tries");
+    let vertices = |name: &str| report[name].as_f64().unwrap();
+    assert!((all_tries("lens") - vertices("light_vertices")).abs() < 1e-9);
+    let next_event = all_tries("next-event");
+    assert!(next_event > 0.0 && next_event <= vertices("eye_vertices"), "{next_event}");
     let csv = std::fs::read_to_string(sandbox.path("deep/er/strategies.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + cells.len());
     assert!(csv.lines().all(|line| line.split(',').count() == 11), "{csv}");

@@ -30,21 +30,14 @@ pub fn table(report: &Report) -> String {
         ),
     ];
     lines.extend(report.cells.iter().filter(|cell| cell.tries > 0.0 || cell.energy > 0.0).map(line));
-    let rest = |name: &str, variance: Option<f64>, time: Option<f64>| {
-        format!(
-            "{:>6} {:>3} {:>3}  {name:<12}{:>10}{:>10}{:>10}{:>10}",
-            "",
-            "",
-            "",
-            "",
-            "",
-            percent(variance),
-            percent(time)
-        )
+    let walks = |name: &str, time: f64, vertices: f64| {
+        format!("{:15}{name:<12}{:30}{:>10}{vertices:>10.3}", "", "", percent(Some(time)))
     };
-    lines.push(rest("eye walks", None, Some(report.eye_walks)));
-    lines.push(rest("light walks", None, Some(report.light_walks)));
-    lines.push(rest("covariances", report.covariances, None));
+    lines.push(walks("eye walks", report.eye_walks, report.eye_vertices));
+    lines.push(walks("light walks", report.light_walks, report.light_vertices));
+    lines.push(
+        format!("{:15}{:<32}{:>10}", "", "covariances", percent(report.covariances)).trim_end().to_owned(),
+    );
     lines.push(String::new());
     lines.extend(EXPLANATION.iter().map(|text| (*text).to_owned()));
     let rows = report.rows.iter().map(|row| format!("{} {:.3}", length(row.length), row.exposure));
@@ -64,7 +57,8 @@ const SUBSETS: &str = "with less: relMSE x seconds of all strategies over that o
 const EXPLANATION: [&str; 3] = [
     "energy: share of the mean luminance. alone: the unweighted contribution of the strategy, relative to all light on paths of its length.",
     "variance: of its weighted part in one pass, over that of the image (luminance, summed over pixels; covariances apart).",
-    "time: share of the time of all threads spent on its connections. tries: number of connections per pixel and pass.",
+    "time: share of the time of all threads spent on its connections. tries: number of connections per pixel and pass; \
+     of walks, number of vertices.",
 ];
 
 fn line(cell: &CellReport) -> String {

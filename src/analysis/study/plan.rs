@@ -79,7 +79,8 @@ const PILOT_SAMPLES: u64 = 1 << 20;
 const PILOT_PART: f64 = 0.25;
 
 /// Samples per pixel that `effort` buys `entry`: as many as are requested, or measured by a pilot of a quarter of the
-/// time. Another renderer always shows first that it can render the scene.
+/// time. Another renderer always shows first that it can render the scene; as what it spends on starting a pass may exceed
+/// what few samples take, its pilot counts from half of that quarter on.
 pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> Result<u64> {
     let seed = first_seed ^ PILOT_SEED;
     let (seconds, is_timed) = match effort {
@@ -99,7 +100,7 @@ pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> Result<u64> {
             loop {
                 let rendered = external.render(seed, &[spp])?;
                 let taken = rendered.snapshots[0].elapsed.as_secs_f64().max(1e-6);
-                if taken >= PILOT_PART * PILOT_PART * seconds || spp >= PILOT_SAMPLES {
+                if taken >= 0.5 * PILOT_PART * seconds || spp >= PILOT_SAMPLES {
                     break taken / spp as f64;
                 }
                 spp = (2 * spp).max((spp as f64 * PILOT_PART * seconds / taken) as u64).min(PILOT_SAMPLES);

@@ -2,6 +2,7 @@
 
 use super::{NullCrossing, Segment};
 use crate::{
+    bsdf::BsdfModel,
     math::{Channels, RaySegment, Spectrum, Vec3},
     medium::{Medium, MediumIndex, MediumInterval, MediumProperties, distance::collision_ratio},
     sampling::Stream,
@@ -35,6 +36,17 @@ impl Interaction {
         match self {
             Self::Surface(_) => L::splat(1.0),
             Self::Medium(_, properties) => L::from_spectrum(properties.sigma_t),
+        }
+    }
+
+    /// The largest channel of the albedo, or a bound on it, where the walk came from `incoming`.
+    #[inline]
+    pub fn albedo_bound(&self, scene: &Scene, incoming: Vec3) -> f32 {
+        match self {
+            Self::Surface(point) => {
+                scene.bsdf(point.shape).survival(point.uv, point.shading.to_local(incoming))
+            }
+            Self::Medium(_, properties) => properties.survival(),
         }
     }
 

@@ -83,7 +83,12 @@ pub fn camera_walk<'a, P: Profile>(
     hero: usize,
     stream: &mut Stream,
 ) -> Trail<CameraPath<'a, P, Sum>, P::MisSums> {
-    let kind = Kind { transport: Transport::Radiance, hero, max_edges: estimator.max_edges };
+    let kind = Kind {
+        transport: Transport::Radiance,
+        hero,
+        max_edges: estimator.max_edges,
+        survival: estimator.survival,
+    };
     let departure = camera_path::depart(estimator, film, APERTURE);
     let mut trail = Trail::new(CameraPath::new(estimator, cache, hero, Sum::default()));
     walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
@@ -99,7 +104,7 @@ fn light_walk<'a, P: Profile>(
     stream: &mut Stream,
 ) -> Trail<LightPath<'a, P, WideFilm>, P::MisSums> {
     let max_edges = estimator.max_edges.saturating_sub(1);
-    let kind = Kind { transport: Transport::Importance, hero, max_edges };
+    let kind = Kind { transport: Transport::Importance, hero, max_edges, survival: estimator.survival };
     let mut trail = Trail::new(visitor);
     walk::<P>(estimator.scene, kind, light_path::depart(estimator, start), &mut trail, stream);
     trail

@@ -14,7 +14,7 @@ mod report;
 pub mod scenes;
 
 use super::{
-    Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies,
+    Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
     profile::{Bounded, ByCompared, ByCutoff, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum},
 };
 use crate::{
@@ -29,7 +29,7 @@ use scenes::*;
 
 const ALL: Options = Options {
     strategies: Strategies::BDPT,
-    effort: Effort { light_walks: 1.0, connections: 1 },
+    effort: Effort { survival: Survival::Albedo, light_walks: 1.0, connections: 1 },
     heuristic: Heuristic::Balance,
     max_depth: None,
     hide_emitters: false,
@@ -68,6 +68,19 @@ fn fog_in_a_closed_box() {
     examine_all::<Fog>("fog", &setup, 400);
     examine_all::<Everything>("fog by everything", &setup, 200);
     examine_all::<Vacuum>("vacuum", &build(&[CLEAR, INSIDE, ROOM, LAMP, BALL]), 400);
+}
+
+#[test]
+fn other_efforts() {
+    let effort = Effort { survival: Survival::FourthRoot, light_walks: 1.0, connections: 4 };
+    let options = Options { effort, ..ALL };
+    for (name, parts) in [
+        ("long walks", &[FOG, INSIDE, ROOM, LAMP, GLASS_BALL][..]),
+        ("long walks, open", &[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]),
+    ] {
+        let report = examine::<Everything>(name, &build(parts), options, 200);
+        assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
+    }
 }
 
 #[test]

@@ -16,7 +16,7 @@ use crate::{
         lights::{EmissionSample, EmitterPoint, EmitterSample},
     },
     shape::SurfacePoint,
-    transport::{Counts, Estimator, Heuristic, profile::Profile},
+    transport::{Counts, Estimator, Heuristic, Survival, profile::Profile},
 };
 
 /// Expected samples, over those of the likeliest strategy, that never come.
@@ -27,6 +27,7 @@ pub struct Reference<'a> {
     pub scene: &'a Scene,
     pub counts: Counts,
     pub heuristic: Heuristic,
+    pub survival: Survival,
     pub channels: usize,
     /// A sampled start on every emitter: those of one emitter have equal densities, but for environments
     /// and media.
@@ -42,7 +43,7 @@ struct Written {
 impl<'a> Reference<'a> {
     /// Gathers what is needed of the emitters.
     pub fn new<P: Profile>(estimator: &Estimator<'a, P>) -> Self {
-        let Estimator { scene, counts, heuristic, .. } = *estimator;
+        let Estimator { scene, counts, heuristic, survival, .. } = *estimator;
         let mut starts = vec![None; scene.lights.all.len()];
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
         for _ in 0..10_000 {
@@ -50,7 +51,7 @@ impl<'a> Reference<'a> {
                 starts[start.light as usize].get_or_insert(start);
             }
         }
-        Self { scene, counts, heuristic, channels: P::Channels::COUNT, starts }
+        Self { scene, counts, heuristic, survival, channels: P::Channels::COUNT, starts }
     }
 
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
@@ -196,9 +197,9 @@ impl<'a> Reference<'a> {
             Place::Volume(position) => {
                 let medium = &self.scene.media[here.medium.0 as usize];
                 f64::from(medium.phase.pdf_sr(Deflection::between(-back.as_vec3(), on.as_vec3())))
-                    * f64::from(properties(self.scene, here.medium, *position).survival())
+                    * f64::from(self.survival.of(properties(self.scene, here.medium, *position).survival()))
             }
-            Place::Surface(point) => reflect(self.scene, point, back, on, here.dirac, transport),
+            Place::Surface(point) => reflect(self, point, back, on, here.dirac, transport),
             _ => 0.0,
         }
     }
@@ -238,16 +239,16 @@ fn rest(written: &Written, s: usize, channel: usize) -> f64 {
 
 /// Density of the direction `on` given `back`, survival included.
 pub fn reflect(
-    scene: &Scene,
+    reference: &Reference<'_>,
     point: &SurfacePoint,
     back: DVec3,
     on: DVec3,
     dirac: bool,
     transport: Transport,
 ) -> f64 {
-    let bsdf = scene.bsdf(point.shape);
+    let bsdf = reference.scene.bsdf(point.shape);
     let (wi, wo) = (point.shading.to_local(back.as_vec3()), point.shading.to_local(on.as_vec3()));
-    let survival = f64::from(bsdf.survival(point.uv, wi));
+    let survival = f64::from(reference.survival.of(bsdf.survival(point.uv, wi)));
     if !dirac {
         return survival * f64::from(bsdf.evaluate(point.uv, wi, wo, transport).pdf_fwd);
     }

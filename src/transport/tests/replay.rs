@@ -21,7 +21,7 @@ use crate::{
         profile::Profile,
         segment::{FlightState, FreeFlight, Interaction},
         vertex::{Subpath, Vertex},
-        walk::{Arrival, Departure, ScatterSample, Visitor, arrive, land, set_out},
+        walk::{Arrival, Departure, Kind, ScatterSample, Visitor, arrive, land, set_out},
     },
 };
 
@@ -160,6 +160,8 @@ impl Lead<'_> {
         visitor: &impl Visitor<P>,
     ) -> Led<P::MisSums> {
         let scene = self.reference.scene;
+        let survival = self.reference.survival;
+        let kind = Kind { transport: self.transport, hero: self.hero, max_edges: u32::MAX, survival };
         let mut led = Led { vertices: Vec::new(), end: None };
         if let [first, second, ..] = self.nodes.as_slice() {
             departure.ray.direction = first.towards(second).as_vec3();
@@ -178,7 +180,7 @@ impl Lead<'_> {
                 }
             };
             let flight = FreeFlight { interaction: Some(interaction), medium: node.medium, state };
-            let Some(vertex) = land::<P, _>(&departure, &flight, interaction, self.hero, visitor) else {
+            let Some(vertex) = land::<P, _>(scene, kind, &departure, &flight, interaction, visitor) else {
                 break;
             };
             if is_last {
@@ -213,8 +215,8 @@ impl Lead<'_> {
         let (back, on) = (here.towards(&self.nodes[i - 1]), here.towards(&self.nodes[i + 1]));
         let (direction, weight, dirac) = (on.as_vec3(), Spectrum::ONE, here.dirac);
         if let (true, Place::Surface(point)) = (dirac, &here.place) {
-            let pdf_fwd = reflect(scene, point, back, on, true, self.transport) as f32;
-            let pdf_rev = reflect(scene, point, on, back, true, self.transport) as f32;
+            let pdf_fwd = reflect(self.reference, point, back, on, true, self.transport) as f32;
+            let pdf_rev = reflect(self.reference, point, on, back, true, self.transport) as f32;
             return ScatterSample { direction, weight, pdf_fwd, pdf_rev, dirac };
         }
         let scattering = vertex.scatter_towards(scene, direction, self.transport);
