@@ -186,7 +186,8 @@ pub fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
         Some(MaxDepth::Edges(edges)) => format!(" --max-depth {edges}"),
     };
     let options = |name| How::Options(format!("--integrator {name} --tracker auto{depth}"));
-    Ok(["bdpt", "pt"].map(options).into())
+    // All of them, whatever a pilot finds worth its time: light that contenders miss is not to be missed here.
+    Ok(["bdpt --strategies hit,next-event,join,lens", "pt"].map(options).into())
 }
 
 /// Names for scenes out of their files' names, each its own.

@@ -5,9 +5,9 @@ use crate::{
     analysis::study::question::differ,
     error::{Error, Result},
     format,
-    render::{Image, Settings, adaptive::Precision},
+    render::{Image, Settings, adaptive::Precision, pilot::Choice},
     scene::build::Setup,
-    transport::observer::StrategyKind,
+    transport::{Strategies, observer::StrategyKind},
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -17,6 +17,7 @@ pub fn settings(
     scene: &Scene,
     setup: &Setup,
     settings: &Settings,
+    chosen: Option<Choice>,
     precision: Option<Precision>,
 ) -> Result<Value> {
     let sources = format::sources(&scene.file, &scene.definitions)?;
@@ -28,7 +29,6 @@ pub fn settings(
     let definitions: Map<String, Value> =
         scene.definitions.iter().map(|(name, value)| (name.clone(), value.as_str().into())).collect();
     let Settings { options, sampler, seed, profile, .. } = settings;
-    let kinds = StrategyKind::ALL.into_iter().filter(|kind| options.strategies.has(*kind));
     let trackers = setup.scene.media.iter().filter_map(|medium| medium.heterogeneous());
     let trackers: Vec<String> =
         trackers.map(|medium| medium.forced().unwrap_or(medium.requested()).name().to_owned()).collect();
@@ -44,10 +44,7 @@ pub fn settings(
             "window": { "size": film.window.size, "offset": film.window.offset, "border": film.border },
         },
         "layers": setup.integrator.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
-        "strategies": kinds.map(StrategyKind::name).collect::<Vec<_>>(),
-        "survival": options.effort.survival.name(),
-        "light_walks": options.effort.light_walks,
-        "connections": options.effort.connections,
+        "strategies": names_of(chosen.map_or(options.strategies, |choice| choice.among)),
         "heuristic": options.heuristic.to_string(),
         "max_depth": options.max_depth,
         "hide_emitters": options.hide_emitters,
@@ -56,9 +53,19 @@ pub fn settings(
         "sampler": sampler.name(),
         "seed": seed,
         "profile": profile.name(),
+        "chosen_by_pilot": chosen.map(|Choice { strategies, effort, .. }| json!({
+            "strategies": names_of(strategies),
+            "survival": effort.survival.name(),
+            "light_walks": effort.light_walks,
+            "connections": effort.connections,
+        })),
         "error": precision.map(|precision| precision.error),
         "confidence": precision.map(|precision| precision.confidence),
     }))
+}
+
+fn names_of(strategies: Strategies) -> Vec<&'static str> {
+    StrategyKind::ALL.into_iter().filter(|kind| strategies.has(*kind)).map(StrategyKind::name).collect()
 }
 
 /// This program and its version.
@@ -94,10 +101,12 @@ fn machine() -> String {
     format!("{name} ({} {}, {threads} threads)", std::env::consts::OS, std::env::consts::ARCH)
 }
 
-/// The same of any part of the image.
+/// The same of any part of the image, each of which a pilot may have chosen other strategies for.
 pub fn without_window(made: &Value) -> Value {
     let mut made = made.clone();
-    made["settings"]["film"]["window"].take();
+    let settings = &mut made["settings"];
+    settings["film"]["window"].take();
+    settings["chosen_by_pilot"].take();
     made
 }
 

@@ -135,7 +135,10 @@ fn gathered(paths: &[&Path]) -> Result<Vec<Part>> {
         }
         let window = |part: &Part| part.made["settings"]["film"]["window"].clone();
         match parts.iter_mut().find(|other| window(other) == window(&part)) {
-            Some(other) => other.add(&part)?,
+            Some(other) => {
+                must_equal(path, &part.made, &other.made)?;
+                other.add(&part)?;
+            }
             None => parts.push(part),
         }
     }
@@ -206,9 +209,9 @@ fn check_cover(parts: &[Part], windows: &[Window], whole: &Window) -> Result<()>
 
 /// How the command `render` would make the image of `setup` now, and the settings for that, without samples to add.
 fn made_again(render: &Render, setup: &Setup) -> Result<(Value, Settings)> {
-    let settings = render.estimator.settings(setup, render.seed, Budget::samples(0))?;
+    let (settings, chosen) = render.estimator.chosen(setup, render.seed, Budget::samples(0))?;
     let precision = precision(render, setup, &settings)?;
-    let now = made(made::settings(&render.scene, setup, &settings, precision)?);
+    let now = made(made::settings(&render.scene, setup, &settings, chosen, precision)?);
     Ok((now, Settings { seed: render.seed_of_part(), ..settings }))
 }
 

@@ -17,10 +17,8 @@ pub struct Plan {
     pub integrator: &'static str,
     strategies: Vec<&'static str>,
     settings: Settings,
-    /// Those of the integrator.
-    wanted: Strategies,
-    /// What all strategies at equal effort would take for the same error, over what these do, by the pilot.
-    gain: Option<f64>,
+    /// What a pilot chose.
+    chosen: Option<Choice>,
     /// Free-flight sampling methods in use.
     flights: Vec<DistanceMethod>,
     size: [u32; 2],
@@ -48,8 +46,7 @@ impl Plan {
             flights: if strategies == Strategies::NONE { Vec::new() } else { flights(&setup.scene.media) },
             size: [setup.film.width, setup.film.height],
             unreached: coverage::unreached(&setup.scene, &settings.options),
-            wanted,
-            gain: chosen.map(|choice| choice.gain),
+            chosen,
             settings,
             error,
         }
@@ -85,19 +82,14 @@ impl Plan {
         if survival == Survival::FourthRoot {
             text += "; longer walks";
         }
-        let left_out = if self.gain.is_some() { StrategyKind::ALL.to_vec() } else { Vec::new() };
-        let left_out: Vec<&str> = left_out
-            .into_iter()
-            .filter(|kind| self.wanted.has(*kind) && !strategies.has(*kind))
-            .map(StrategyKind::name)
-            .collect();
+        let Some(Choice { among, gain, .. }) = self.chosen else { return text };
+        let is_left_out = |kind: &StrategyKind| among.has(*kind) && !strategies.has(*kind);
+        let left_out: Vec<&str> =
+            StrategyKind::ALL.into_iter().filter(is_left_out).map(StrategyKind::name).collect();
         if !left_out.is_empty() {
             text += &format!("; without {}", list(&left_out));
         }
-        match self.gain {
-            Some(gain) if !text.is_empty() => format!("{text}: all alike would take {gain:.1} times as long"),
-            _ => text,
-        }
+        if text.is_empty() { text } else { format!("{text}: all alike would take {gain:.1} times as long") }
     }
 
     /// Says it, to standard error. What is missing from the image is said even when little else is.
@@ -141,7 +133,7 @@ impl Plan {
             "survival": effort.survival.name(),
             "light_walks": effort.light_walks,
             "connections": effort.connections,
-            "time_of_all_strategies": self.gain,
+            "time_of_all_strategies": self.chosen.map(|choice| choice.gain),
             "sampler": points.name(),
             "free_flights": self.flights.iter().map(|method| method.name()).collect::<Vec<_>>(),
             "width": self.size[0],

@@ -41,7 +41,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let (settings, chosen) = settings(arguments, &setup)?;
     let precision = precision(arguments, &setup, &settings)?;
     let goal = Goal::new(arguments, &setup)?;
-    let made = made::made(made::settings(&arguments.scene, &setup, &settings, precision)?);
+    let made = made::made(made::settings(&arguments.scene, &setup, &settings, chosen, precision)?);
     super::outputs::check_render(arguments, &setup, &goal)?;
     check_kept(arguments, &settings, &goal)?;
     let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;

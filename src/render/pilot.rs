@@ -11,7 +11,7 @@ use super::{
     compiled::{self, Ready},
 };
 use crate::{
-    film::{Film, Window},
+    film::Film,
     math::{Spectrum, SpectrumExt, Vec2},
     sampling::Sampler,
     scene::Scene,
@@ -51,6 +51,8 @@ mod time {
 /// What was chosen, and how much it is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
+    /// Strategies that it could choose among.
+    pub among: Strategies,
     /// Strategies that run.
     pub strategies: Strategies,
     /// How often.
@@ -68,7 +70,7 @@ pub fn choose(
     is_complete: impl Fn(Strategies) -> bool,
 ) -> Choice {
     let all = settings.options.strategies;
-    let base = Choice { strategies: all, effort: Effort::default(), gain: 1.0 };
+    let base = Choice { among: all, strategies: all, effort: Effort::default(), gain: 1.0 };
     if scene.lights.is_empty() {
         return base;
     }
@@ -90,10 +92,7 @@ pub fn choose(
 fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival) -> Pilot {
     let options = Options { effort: Effort { survival, ..Effort::default() }, ..settings.options };
     let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*settings };
-    // Parts of one image are made alike.
-    let [width, height] = film.window.full_size;
-    let whole = Film::new(Window::whole(width, height), film.filter, false, film.format);
-    compiled::pilot(scene, &whole, &settings)
+    compiled::pilot(scene, film, &settings)
 }
 
 /// Every choice among the strategies of `all` where walks end by `survival`.
@@ -110,6 +109,7 @@ fn candidates(all: Strategies, survival: Survival) -> impl Iterator<Item = Choic
             if strategies.connection || strategies.lens { &[0.5, 1.0, 2.0] } else { &[1.0] };
         let pairs = connections.iter().flat_map(|count| light_walks.iter().map(|walks| (*count, *walks)));
         pairs.map(move |(connections, light_walks)| Choice {
+            among: all,
             strategies,
             effort: Effort { survival, light_walks, connections },
             gain: 1.0,
@@ -356,4 +356,64 @@ fn variances(parts: &[Part]) -> HashMap<u32, f64> {
     }
     let variance = |(n, sum, square): (f64, f64, f64)| ((square - sum * sum / n) / (n - 1.0)).max(0.0);
     sums.into_iter().map(|(pixel, sums)| (pixel, variance(sums))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        format,
+        render::{budget::Budget, instrument::Instrument},
+        scene::build,
+        settings::Overrides,
+        transport::profile::ProfileName,
+    };
+    use std::path::Path;
+
+    /// Relative variance of pixel samples, as their images show it.
+    fn measured(instrument: &Instrument<'_>) -> f64 {
+        let mut sums = vec![(0.0, 0.0); instrument.film.len()];
+        let n = 400.0;
+        instrument.passes(0..n as usize, &mut |image| {
+            for ((sum, square), value) in sums.iter_mut().zip(image) {
+                let luminance = f64::from(value.luminance());
+                *sum += luminance;
+                *square += luminance * luminance;
+            }
+        });
+        let mean = sums.iter().map(|(sum, _)| sum / n).sum::<f64>() / sums.len() as f64;
+        let relative = |(sum, square): &(f64, f64)| {
+            let of_pixel = sum / n;
+            (square / n - of_pixel * of_pixel) / (of_pixel * of_pixel + 0.01 * mean * mean)
+        };
+        let mut all: Vec<f64> = sums.iter().map(relative).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        all[..(0.98 * sums.len() as f64) as usize].iter().sum::<f64>() / sums.len() as f64
+    }
+
+    /// From the samples of all strategies, the noise of others is known before they run. What samples have in common is not.
+    #[test]
+    fn pilots_foresee_the_noise_of_other_counts() {
+        for scene in ["lampbox_down.xml", "efficiency/glass_fog_sky.xml"] {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
+            let overrides = Overrides { size: Some((24, 24)), ..Overrides::default() };
+            let setup = build::build(&format::read(&path, &[]).unwrap(), overrides).unwrap();
+            let options = Options { strategies: Strategies::BDPT, ..setup.integrator.options };
+            let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
+            let settings = Settings { options, sampler, budget, seed: 0, profile: ProfileName::Everything };
+            let pilot = pilot(&setup.scene, &setup.film, &settings, Survival::Albedo);
+            let relative = |choice: Choice| {
+                let Choice { strategies, effort, .. } = choice;
+                let settings = Settings { options: Options { strategies, effort, ..options }, ..settings };
+                pilot.error(&choice) / measured(&Instrument::new(&setup.scene, &setup.film, &settings))
+            };
+            let (among, effort) = (Strategies::BDPT, Effort::default());
+            let all = Choice { among, strategies: among, effort, gain: 1.0 };
+            let four = Effort { connections: 4, ..all.effort };
+            for other in [Choice { strategies: Strategies::PT, ..all }, Choice { effort: four, ..all }] {
+                let (found, usual) = (relative(other), relative(all));
+                assert!((0.6..1.7).contains(&(found / usual)), "{scene}, {other:?}: {found} {usual}");
+            }
+        }
+    }
 }

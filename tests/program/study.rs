@@ -377,7 +377,7 @@ fn several_scenes_and_what_a_contender_cannot_show() {
     for hint in [
         "lt: its variance is infinite",
         "lt: does not sample light of area emitters seen by way of smooth",
-        "lt: its mean",
+        "bdpt: its mean",
     ] {
         assert!(reported.contains(hint), "{hint}: {reported}");
     }

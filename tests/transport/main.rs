@@ -6,6 +6,7 @@ mod common;
 mod adaptive;
 mod agreement;
 mod determinism;
+mod efforts;
 mod extremes;
 mod faults;
 mod forced;

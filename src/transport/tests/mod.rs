@@ -15,7 +15,9 @@ pub mod scenes;
 
 use super::{
     Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
-    profile::{Bounded, ByCompared, ByCutoff, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum},
+    profile::{
+        Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum,
+    },
 };
 use crate::{
     math::{Channels, vec2, vec3},
@@ -78,7 +80,8 @@ fn other_efforts() {
         ("long walks", &[FOG, INSIDE, ROOM, LAMP, GLASS_BALL][..]),
         ("long walks, open", &[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]),
     ] {
-        let report = examine::<Everything>(name, &build(parts), options, 200);
+        let report = examine::<Everything>(name, &build(parts), options, 500);
+        assert_eq!(report.paths, examine::<ByKind>(name, &build(parts), options, 500).paths);
         assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
     }
 }
