@@ -138,7 +138,9 @@ def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int 
     integrator, _, tracker = method.partition(":")
     # Samples that are spread evenly leave so little noise that the test would be one of Mitsuba's own approximations,
     # such as filters in tables, and of how independent the batches of its even samplers are.
-    options = {"integrator": integrator, "tracker": tracker or None, "size": size, "sampler": "independent"}
+    # All strategies, whether or not a pilot finds them worth their time.
+    strategies = tyndall.ALL_STRATEGIES if integrator == "bdpt" else None
+    options = {"integrator": integrator, "strategies": strategies, "tracker": tracker or None, "size": size, "sampler": "independent"}
     render = lambda effort: tyndall.render_batches(scene, effort.batches, spp=effort.spp, seed=effort.seed, threads=threads, **options)
     return lambda effort: Measured.of(render(effort))
 

@@ -59,6 +59,10 @@ def binary() -> Path:
     return path
 
 
+ALL_STRATEGIES = "hit,next-event,join,lens"
+"""Those of `bdpt`, for `strategies`: named, all of them run; otherwise a pilot chooses among them."""
+
+
 @overload
 def render(scene: AnyScene, *, layers: Literal[False] = False, **options: Any) -> np.ndarray: ...
 @overload

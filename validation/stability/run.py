@@ -144,7 +144,7 @@ def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None,
     done = tyndall.run(
         Scene(changed(scene.source, single_precision), scene.name, {}, scene.base),
         integrator=integrator,
-        strategies=strategies or None,
+        strategies=strategies or (tyndall.ALL_STRATEGIES if integrator == "bdpt" else None),
         tracker=tracker or None,
         spp=spp,
         seed=seed,
