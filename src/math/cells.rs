@@ -1,12 +1,12 @@
 //! The cells of a lattice that a straight line crosses, in order (Amanatides & Woo 1987).
 
-use super::{RaySegment, Vec3};
+use super::RaySegment;
 
 /// A cell that is crossed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Its indices.
-    pub cell: [u32; 3],
+    /// Its number, x fastest.
+    pub cell: u32,
     /// t where the line enters it.
     pub first: f32,
     /// t where it leaves, >= `first`.
@@ -18,16 +18,65 @@ pub struct Crossing {
 /// rounding.
 #[derive(Clone, Debug)]
 pub struct Cells {
-    cell: [i32; 3],
-    size: [u32; 3],
-    step: [i32; 3],
-    /// t at the next boundary of every axis.
-    next: [f32; 3],
-    origin: Vec3,
-    direction: Vec3,
+    cell: i32,
+    axes: [Axis; 3],
     at: f32,
     last: f32,
     done: bool,
+}
+
+/// Progress along an axis.
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    /// t at the next boundary.
+    next: f32,
+    /// Its coordinate.
+    plane: f32,
+    /// From it to the one after.
+    step: f32,
+    /// From a cell's number to that of the one behind the boundary.
+    stride: i32,
+    /// The border of the lattice. The cells there reach as far as the line does: rounding may have put their end a
+    /// little short.
+    border: f32,
+    origin: f32,
+    /// 1 over the direction.
+    inverse: f32,
+}
+
+impl Axis {
+    /// In cell `cell` of `size`, whose neighbours' numbers differ by `stride`.
+    #[inline]
+    fn new(origin: f32, direction: f32, cell: i32, size: u32, stride: i32) -> Self {
+        let (step, border) = if direction < 0.0 { (-1, 0) } else { (1, size as i32) };
+        // A line that never meets a boundary has none but the border's.
+        let plane = if direction == 0.0 { border } else { cell + i32::from(step > 0) };
+        let mut axis = Self {
+            next: f32::INFINITY,
+            plane: plane as f32,
+            step: step as f32,
+            stride: stride * step,
+            border: border as f32,
+            origin,
+            inverse: 1.0 / direction,
+        };
+        axis.next = axis.boundary();
+        axis
+    }
+
+    /// t at `plane`: from the coordinate itself, so that it does not drift.
+    #[inline(always)]
+    fn boundary(&self) -> f32 {
+        if self.plane == self.border { f32::INFINITY } else { (self.plane - self.origin) * self.inverse }
+    }
+
+    /// Passes the boundary; the change of the cell's number.
+    #[inline(always)]
+    fn advance(&mut self) -> i32 {
+        self.plane += self.step;
+        self.next = self.boundary();
+        self.stride
+    }
 }
 
 impl Cells {
@@ -35,46 +84,40 @@ impl Cells {
     #[inline]
     pub fn new(segment: &RaySegment, first: f32, last: f32, size: [u32; 3]) -> Self {
         let (start, direction) = (segment.at(first), segment.direction);
-        let cell = std::array::from_fn(|i| (start[i].floor() as i32).clamp(0, size[i] as i32 - 1));
-        let step = std::array::from_fn(|i| if direction[i] < 0.0 { -1 } else { 1 });
-        let (origin, next) = (segment.origin, [0.0; 3]);
-        let mut cells =
-            Self { cell, size, step, next, origin, direction, at: first, last, done: first >= last };
-        (0..3).for_each(|axis| cells.next[axis] = cells.boundary(axis));
-        cells
-    }
-
-    /// t at the boundary where `axis` leaves the current cell: from the index itself, so that it does not drift.
-    #[inline]
-    fn boundary(&self, axis: usize) -> f32 {
-        if self.direction[axis] == 0.0 {
-            return f32::INFINITY;
-        }
-        let plane = self.cell[axis] + i32::from(self.step[axis] > 0);
-        (plane as f32 - self.origin[axis]) / self.direction[axis]
+        let at: [i32; 3] = std::array::from_fn(|i| (start[i].floor() as i32).clamp(0, size[i] as i32 - 1));
+        let strides = [1, size[0] as i32, (size[0] * size[1]) as i32];
+        let axes =
+            std::array::from_fn(|i| Axis::new(segment.origin[i], direction[i], at[i], size[i], strides[i]));
+        let cell = (0..3).map(|i| at[i] * strides[i]).sum();
+        Self { cell, axes, at: first, last, done: first >= last }
     }
 }
 
 impl Iterator for Cells {
     type Item = Crossing;
 
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> Option<Crossing> {
         if self.done {
             return None;
         }
-        let [x, y, z] = self.next;
-        let axis = if x <= y && x <= z { 0 } else { usize::from(y > z) + 1 };
-        let cell = self.cell.map(|index| index as u32);
-        let (first, until) = (self.at, self.next[axis].max(self.at));
-        self.cell[axis] += self.step[axis];
-        let outside = self.cell[axis] < 0 || self.cell[axis] >= self.size[axis] as i32;
-        // The border cell reaches as far as the line does: rounding may have put its end a little short.
-        self.done = outside || until >= self.last;
-        let last = if self.done { self.last } else { until };
-        self.next[axis] = self.boundary(axis);
-        self.at = last;
-        Some(Crossing { cell, first, last })
+        let [x, y, z] = &mut self.axes;
+        let (cell, first) = (self.cell as u32, self.at);
+        let nearest = if x.next <= y.next && x.next <= z.next {
+            x
+        } else if y.next <= z.next {
+            y
+        } else {
+            z
+        };
+        let until = nearest.next;
+        self.done = until >= self.last;
+        // Not f32::min and f32::max, which check for NaN.
+        let until = if until < self.last { until } else { self.last };
+        let until = if until > first { until } else { first };
+        self.cell += nearest.advance();
+        self.at = until;
+        Some(Crossing { cell, first, last: until })
     }
 }
 
@@ -82,7 +125,7 @@ impl Iterator for Cells {
 mod tests {
     use super::*;
     use crate::{
-        math::vec3,
+        math::{Vec3, vec3},
         sampling::{Stream, stream::Purpose},
     };
 
@@ -107,7 +150,8 @@ mod tests {
                 assert!(last >= first);
                 at = last;
                 let inside = segment.at(0.5 * (first + last));
-                let corner = vec3(cell[0] as f32, cell[1] as f32, cell[2] as f32);
+                let along = [cell % size[0], cell / size[0] % size[1], cell / (size[0] * size[1])];
+                let corner = Vec3::from_array(along.map(|i| i as f32));
                 let off = (inside - corner - 0.5).abs().max_element();
                 assert!(last - first < 1e-4 || off <= 0.5 + 1e-4, "{off}");
                 crossed += 1;
