@@ -1,6 +1,7 @@
 //! The cells of a lattice that a straight line crosses, in order (Amanatides & Woo 1987).
 
 use super::RaySegment;
+use glam::{Vec3A, Vec3Swizzles};
 
 /// A cell that is crossed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,77 +20,63 @@ pub struct Crossing {
 #[derive(Clone, Debug)]
 pub struct Cells {
     cell: i32,
-    axes: [Axis; 3],
+    /// t at the next boundary of every axis.
+    next: Vec3A,
+    /// The coordinate of that boundary.
+    plane: Vec3A,
+    /// From it to the one after.
+    step: Vec3A,
+    /// The border of the lattice, which has no boundary: cells there reach as far as the line does, for rounding may
+    /// have put their end a little short.
+    border: Vec3A,
+    origin: Vec3A,
+    /// 1 over the direction.
+    inverse: Vec3A,
+    /// How the cell's number changes where boundaries of the axes in the index's bits are passed.
+    strides: [i32; 8],
     at: f32,
     last: f32,
     done: bool,
-}
-
-/// Progress along an axis.
-#[derive(Clone, Copy, Debug)]
-struct Axis {
-    /// t at the next boundary.
-    next: f32,
-    /// Its coordinate.
-    plane: f32,
-    /// From it to the one after.
-    step: f32,
-    /// From a cell's number to that of the one behind the boundary.
-    stride: i32,
-    /// The border of the lattice. The cells there reach as far as the line does: rounding may have put their end a
-    /// little short.
-    border: f32,
-    origin: f32,
-    /// 1 over the direction.
-    inverse: f32,
-}
-
-impl Axis {
-    /// In cell `cell` of `size`, whose neighbours' numbers differ by `stride`.
-    #[inline]
-    fn new(origin: f32, direction: f32, cell: i32, size: u32, stride: i32) -> Self {
-        let (step, border) = if direction < 0.0 { (-1, 0) } else { (1, size as i32) };
-        // A line that never meets a boundary has none but the border's.
-        let plane = if direction == 0.0 { border } else { cell + i32::from(step > 0) };
-        let mut axis = Self {
-            next: f32::INFINITY,
-            plane: plane as f32,
-            step: step as f32,
-            stride: stride * step,
-            border: border as f32,
-            origin,
-            inverse: 1.0 / direction,
-        };
-        axis.next = axis.boundary();
-        axis
-    }
-
-    /// t at `plane`: from the coordinate itself, so that it does not drift.
-    #[inline(always)]
-    fn boundary(&self) -> f32 {
-        if self.plane == self.border { f32::INFINITY } else { (self.plane - self.origin) * self.inverse }
-    }
-
-    /// Passes the boundary; the change of the cell's number.
-    #[inline(always)]
-    fn advance(&mut self) -> i32 {
-        self.plane += self.step;
-        self.next = self.boundary();
-        self.stride
-    }
 }
 
 impl Cells {
     /// Starts at `first`; cells beyond the lattice are taken for those at its border.
     #[inline]
     pub fn new(segment: &RaySegment, first: f32, last: f32, size: [u32; 3]) -> Self {
-        let (start, direction) = (segment.at(first), segment.direction);
-        let at: [i32; 3] = std::array::from_fn(|i| (start[i].floor() as i32).clamp(0, size[i] as i32 - 1));
-        let strides = [1, size[0] as i32, (size[0] * size[1]) as i32];
-        let axes =
-            std::array::from_fn(|i| Axis::new(segment.origin[i], direction[i], at[i], size[i], strides[i]));
-        let cell = (0..3).map(|i| at[i] * strides[i]).sum();
-        Self { cell, axes, at: first, last, done: first >= last }
+        let (origin, direction) = (Vec3A::from(segment.origin), Vec3A::from(segment.direction));
+        let end = Vec3A::from_array(size.map(|n| n as f32));
+        let cell = (origin + direction * first).floor().clamp(Vec3A::ZERO, end - 1.0);
+        let is_down = direction.cmplt(Vec3A::ZERO);
+        let step = Vec3A::select(is_down, Vec3A::NEG_ONE, Vec3A::ONE);
+        let border = Vec3A::select(is_down, Vec3A::ZERO, end);
+        let plane = Vec3A::select(is_down, cell, cell + 1.0);
+        let inverse = direction.recip();
+        // A line that never meets a boundary has none but the border's.
+        let plane = Vec3A::select(inverse.abs().cmpeq(Vec3A::INFINITY), border, plane);
+        let widths = [1, size[0] as i32, (size[0] * size[1]) as i32];
+        let [x, y, z] = std::array::from_fn(|i| if direction[i] < 0.0 { -widths[i] } else { widths[i] });
+        let mut cells = Self {
+            cell: (0..3).map(|i| cell[i] as i32 * widths[i]).sum(),
+            next: Vec3A::INFINITY,
+            plane,
+            step,
+            border,
+            origin,
+            inverse,
+            strides: [0, x, y, x + y, z, x + z, y + z, x + y + z],
+            at: first,
+            last,
+            done: first >= last,
+        };
+        cells.next = cells.boundaries();
+        cells
+    }
+
+    /// t at every `plane`: from the coordinates themselves, so that it does not drift.
+    #[inline(always)]
+    fn boundaries(&self) -> Vec3A {
+        let is_border = self.plane.cmpeq(self.border);
+        Vec3A::select(is_border, Vec3A::INFINITY, (self.plane - self.origin) * self.inverse)
     }
 }
 
@@ -101,22 +88,18 @@ impl Iterator for Cells {
         if self.done {
             return None;
         }
-        let [x, y, z] = &mut self.axes;
         let (cell, first) = (self.cell as u32, self.at);
-        let nearest = if x.next <= y.next && x.next <= z.next {
-            x
-        } else if y.next <= z.next {
-            y
-        } else {
-            z
-        };
-        let until = nearest.next;
+        let until = self.next.min_element();
         self.done = until >= self.last;
         // Not f32::min and f32::max, which check for NaN.
         let until = if until < self.last { until } else { self.last };
         let until = if until > first { until } else { first };
-        self.cell += nearest.advance();
         self.at = until;
+        // No branches: which axis comes next is unpredictable. Two at once go to the cell across the edge.
+        let nearest = self.next.cmple(self.next.yzx()) & self.next.cmple(self.next.zxy());
+        self.plane += Vec3A::select(nearest, self.step, Vec3A::ZERO);
+        self.cell += self.strides[nearest.bitmask() as usize & 7];
+        self.next = self.boundaries();
         Some(Crossing { cell, first, last: until })
     }
 }

@@ -61,9 +61,9 @@ fn pays_exactly(medium: &Extinction, tracking: &NullCollision) -> bool {
 
 /// Integrating a cell of a grid, entering a coarse cell, and looking up a density, in the same unit (about a
 /// nanosecond on the machines it was measured on; see the timing test of the trackers).
-const COST_OF_CELL: f64 = 12.0;
-const COST_OF_PIECE: f64 = 8.0;
-const COST_OF_LOOKUP: f64 = 40.0;
+const COST_OF_CELL: f64 = 16.0;
+const COST_OF_PIECE: f64 = 10.0;
+const COST_OF_LOOKUP: f64 = 45.0;
 
 /// Cells of a grid that a segment crosses.
 fn cells(medium: &Extinction, segment: &RaySegment) -> f64 {

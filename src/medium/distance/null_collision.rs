@@ -78,11 +78,17 @@ impl NullCollision {
         self.cells.pieces_within(segment, medium.clip(segment).unwrap_or([0.0, 0.0]))
     }
 
-    /// How many pieces an estimate of the transmittance of `segment` goes through, and how many collisions it has.
+    /// How many pieces an estimate of the transmittance of `segment` goes through, and about how many collisions it
+    /// has: none in pieces that it hardly reaches.
     pub fn work(&self, medium: &Extinction, segment: &RaySegment) -> [f64; 2] {
-        self.pieces(medium, segment).fold([0.0; 2], |[pieces, collisions], Piece { cell, first, last }| {
-            [pieces + 1.0, collisions + f64::from(self.cells.cell(cell).rate * (last - first))]
-        })
+        let (mut pieces, mut collisions, mut depth) = (0.0, 0.0, 0.0);
+        for Piece { cell, first, last } in self.pieces(medium, segment) {
+            let Cell { rate, mean, .. } = self.cells.cell(cell);
+            pieces += 1.0;
+            collisions += if depth < -ROULETTE.ln() { f64::from(rate * (last - first)) } else { 0.0 };
+            depth += mean.max_element() * (last - first);
+        }
+        [pieces, collisions]
     }
 
     /// The deterministic depth that replaces the medium's own.
