@@ -117,15 +117,16 @@ impl<T> Coarse<T> {
     /// The pieces of `segment` in the cells that it crosses, in order.
     #[inline]
     pub fn pieces(&self, segment: &RaySegment) -> Cells {
-        let [x, y, z] = self.size.map(|n| n as f32);
-        let range = segment.mapped(&self.to_cells).within(Vec3::ZERO, vec3(x, y, z));
-        self.pieces_within(segment, range.unwrap_or([0.0, 0.0]))
+        self.pieces_within(segment, [0.0, segment.length])
     }
 
-    /// The same of the part of `segment` from `first` to `last`, which lies within the lattice up to rounding.
+    /// The same of the part of `segment` from `first` to `last`.
     #[inline]
     pub fn pieces_within(&self, segment: &RaySegment, [first, last]: [f32; 2]) -> Cells {
-        Cells::new(&segment.mapped(&self.to_cells), first, last, self.size)
+        let [x, y, z] = self.size.map(|n| n as f32);
+        let mapped = segment.mapped(&self.to_cells);
+        let [enters, leaves] = mapped.within(Vec3::ZERO, vec3(x, y, z)).unwrap_or([0.0, 0.0]);
+        Cells::new(&mapped, first.max(enters), last.min(leaves), self.size)
     }
 }
 

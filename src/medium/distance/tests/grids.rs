@@ -152,6 +152,25 @@ fn the_stand_in_is_that_of_both_directions_and_of_flights() {
     }
 }
 
+/// A ball that does not reach the border.
+fn ball(at: [usize; 3]) -> f32 {
+    let off = at.map(|i| (i as f32 - 9.5).powi(2));
+    if off.iter().sum::<f32>() < 60.0 { 1.0 } else { 0.0 }
+}
+
+/// The box around a turned grid has corners that its bricks do not reach.
+#[test]
+fn nothing_is_met_beside_a_turned_grid() {
+    let turned = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_4);
+    let medium = medium(grey(20, ball), Filter::Trilinear, turned, 3.0);
+    let corner = between(vec3(-0.69, 0.2, 0.5), vec3(-0.2, 0.05, 0.45));
+    for method in RANDOM {
+        let tracker = choose(&medium, method, None, 1e-3);
+        assert_eq!(tracker.depth::<f32>(&medium, &corner), 0.0, "{}", method.name());
+        assert_eq!(moments(&tracker, &medium, &corner, 10), [DVec3::ONE, DVec3::ZERO]);
+    }
+}
+
 /// What does not vary within a brick is not estimated, and nothing is no work.
 #[test]
 fn an_even_grid_has_no_noise() {
