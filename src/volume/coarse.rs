@@ -11,6 +11,8 @@ const CELLS: f32 = 32.0;
 const FEWEST: f32 = 8.0;
 /// Points along each side of a cell whose average is taken for its mean.
 const POINTS: u32 = 3;
+/// What lies so little outside a lattice is taken for its border [cells].
+const ROUNDING: f32 = 1e-3;
 
 /// Something per cell of a lattice: of volumes a [`Summary`].
 #[derive(Clone, Debug)]
@@ -117,16 +119,31 @@ impl<T> Coarse<T> {
     /// The pieces of `segment` in the cells that it crosses, in order.
     #[inline]
     pub fn pieces(&self, segment: &RaySegment) -> Cells {
-        self.pieces_within(segment, [0.0, segment.length])
+        self.pieces_within(segment, self.clip(segment))
     }
 
-    /// The same of the part of `segment` from `first` to `last`.
+    /// The same of the part of `segment` from `first` to `last`, which lies within the lattice up to rounding.
     #[inline]
     pub fn pieces_within(&self, segment: &RaySegment, [first, last]: [f32; 2]) -> Cells {
+        Cells::new(&segment.mapped(&self.to_cells), first, last, self.size)
+    }
+
+    /// From where to where `segment` is in the lattice.
+    #[inline]
+    pub fn clip(&self, segment: &RaySegment) -> [f32; 2] {
         let [x, y, z] = self.size.map(|n| n as f32);
-        let mapped = segment.mapped(&self.to_cells);
-        let [enters, leaves] = mapped.within(Vec3::ZERO, vec3(x, y, z)).unwrap_or([0.0, 0.0]);
-        Cells::new(&mapped, first.max(enters), last.min(leaves), self.size)
+        segment.mapped(&self.to_cells).within(Vec3::ZERO, vec3(x, y, z)).unwrap_or([0.0, 0.0])
+    }
+
+    /// True if the box from `low` to `high` lies within the lattice up to rounding.
+    pub fn covers(&self, low: Vec3, high: Vec3) -> bool {
+        let end = Vec3::from_array(self.size.map(|n| n as f32));
+        (0..8).all(|corner| {
+            let high_at = |axis: usize| corner >> axis & 1 == 1;
+            let corner = Vec3::from_array(std::array::from_fn(|i| if high_at(i) { high[i] } else { low[i] }));
+            let at = self.to_cells.transform_point3(corner);
+            at.cmpge(Vec3::splat(-ROUNDING)).all() && at.cmple(end + ROUNDING).all()
+        })
     }
 }
 

@@ -16,6 +16,8 @@ use crate::{
 pub struct NullCollision {
     method: DistanceMethod,
     cells: Coarse<Cell>,
+    /// All of the medium lies in them; the box around a turned grid is larger.
+    covers: bool,
 }
 
 /// What is known of extinction in a cell [1/m].
@@ -64,7 +66,7 @@ impl NullCollision {
         // A flat box has cells without volume, and the control there is the mean.
         let reach = is_residual.then(|| MOST_TAKEN / side);
         let cells = coarse.map(|summary| Cell::new(summary, medium.scale, reach));
-        Self { method, cells }
+        Self { method, cells, covers: coarse.covers(medium.low, medium.high) }
     }
 
     /// Which it is.
@@ -75,7 +77,12 @@ impl NullCollision {
     /// The pieces of `segment` in the cells that it crosses within the medium.
     #[inline]
     fn pieces(&self, medium: &Extinction, segment: &RaySegment) -> Cells {
-        self.cells.pieces_within(segment, medium.clip(segment).unwrap_or([0.0, 0.0]))
+        let [first, last] = medium.clip(segment).unwrap_or([0.0, 0.0]);
+        if self.covers {
+            return self.cells.pieces_within(segment, [first, last]);
+        }
+        let [enters, leaves] = self.cells.clip(segment);
+        self.cells.pieces_within(segment, [first.max(enters), last.min(leaves)])
     }
 
     /// How many pieces an estimate of the transmittance of `segment` goes through, and about how many collisions it
