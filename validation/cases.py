@@ -83,7 +83,7 @@ def filters() -> tuple[Case, ...]:
     )
 
 
-OTHERS = ("march", "null_collision")
+OTHERS = ("march", "null_collision", "residual_ratio")
 """The trackers to force: the exact one of a grid, the closed form of a function, are what these get anyway."""
 
 
@@ -98,7 +98,11 @@ def grids() -> tuple[Case, ...]:
         Case("grid_chromatic.json", ("bdpt",), reference="volpath"),
         Case("grid_chromatic_in_room.json", effort=0.5),
         Case("grid_constant.json", twin="cube_in_room.json"),
-        Case("grid_dense_white.json", (*ALL, "pt:march", "pt:null_collision", "bdpt:null_collision"), deep_trackers=OTHERS),
+        Case(
+            "grid_dense_white.json",
+            (*ALL, "pt:march", "pt:null_collision", "bdpt:null_collision", "bdpt:residual_ratio"),
+            deep_trackers=OTHERS,
+        ),
         Case("grid_envmap.json"),
         Case("grid_in_frosted_cube.json", EYE, effort=2),
         Case("grid_in_glass.json", EYE, effort=0.7),

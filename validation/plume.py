@@ -287,7 +287,5 @@ def timing(tracker: dict, overhead: float) -> Timing:
     bias = f"mean off by {100 * tracker['bias']:+.4f} +- {100 * tracker['error']:.4f} %"
     if name == "march":
         bias += f"; step {tracker['step']:.2g} m, largest error {tracker['worst']:.1e}"
-    if name == "null_collision":
-        bias += f"; {less(tracker['alone'])[1]:.0f} ns without the stand-in for weights"
-    off = tracker["off"] if name == "null_collision" else None
+    off = tracker["off"] or None
     return Timing(f"tyndall {name}, with what weights need", less(tracker["query"]), off, less(tracker["flight"]), bias)

@@ -29,7 +29,8 @@ pub struct Estimator {
     ///
     /// auto: the cheapest unbiased method; closed_form: closed-form optical depth, not available for every
     /// volume; exact: regular tracking of grids, cell by cell; march: ray marching, biased by its step size;
-    /// null_collision: delta tracking and ratio tracking.
+    /// null_collision: delta tracking and ratio tracking; residual_ratio: delta tracking and residual ratio
+    /// tracking.
     #[arg(long, value_name = "NAME", value_parser = one_of(&DistanceMethod::NAMES))]
     pub tracker: Option<DistanceMethod>,
 

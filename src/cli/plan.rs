@@ -177,6 +177,8 @@ fn in_words(method: DistanceMethod) -> &'static str {
         DistanceMethod::RegularTracking => "regular tracking",
         DistanceMethod::RayMarching => "ray marching",
         // The others are what `auto` chooses among.
-        DistanceMethod::DeltaTracking | DistanceMethod::Auto => "delta tracking",
+        DistanceMethod::RatioTracking | DistanceMethod::ResidualRatioTracking | DistanceMethod::Auto => {
+            "delta tracking"
+        }
     }
 }

@@ -1,12 +1,13 @@
 //! The cells of a lattice that a straight line crosses, in order (Amanatides & Woo 1987).
 
-use super::{RaySegment, Vec3};
+use super::RaySegment;
+use glam::{Vec3A, Vec3Swizzles};
 
 /// A cell that is crossed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Its indices.
-    pub cell: [u32; 3],
+    /// Its number, x fastest.
+    pub cell: u32,
     /// t where the line enters it.
     pub first: f32,
     /// t where it leaves, >= `first`.
@@ -18,13 +19,21 @@ pub struct Crossing {
 /// rounding.
 #[derive(Clone, Debug)]
 pub struct Cells {
-    cell: [i32; 3],
-    size: [u32; 3],
-    step: [i32; 3],
+    cell: i32,
     /// t at the next boundary of every axis.
-    next: [f32; 3],
-    origin: Vec3,
-    direction: Vec3,
+    next: Vec3A,
+    /// The coordinate of that boundary.
+    plane: Vec3A,
+    /// From it to the one after.
+    step: Vec3A,
+    /// The border of the lattice, which has no boundary: cells there reach as far as the line does, for rounding may
+    /// have put their end a little short.
+    border: Vec3A,
+    origin: Vec3A,
+    /// 1 over the direction.
+    inverse: Vec3A,
+    /// How the cell's number changes where boundaries of the axes in the index's bits are passed.
+    strides: [i32; 8],
     at: f32,
     last: f32,
     done: bool,
@@ -34,47 +43,64 @@ impl Cells {
     /// Starts at `first`; cells beyond the lattice are taken for those at its border.
     #[inline]
     pub fn new(segment: &RaySegment, first: f32, last: f32, size: [u32; 3]) -> Self {
-        let (start, direction) = (segment.at(first), segment.direction);
-        let cell = std::array::from_fn(|i| (start[i].floor() as i32).clamp(0, size[i] as i32 - 1));
-        let step = std::array::from_fn(|i| if direction[i] < 0.0 { -1 } else { 1 });
-        let (origin, next) = (segment.origin, [0.0; 3]);
-        let mut cells =
-            Self { cell, size, step, next, origin, direction, at: first, last, done: first >= last };
-        (0..3).for_each(|axis| cells.next[axis] = cells.boundary(axis));
+        let (origin, direction) = (Vec3A::from(segment.origin), Vec3A::from(segment.direction));
+        let end = Vec3A::from_array(size.map(|n| n as f32));
+        let cell = (origin + direction * first).floor().clamp(Vec3A::ZERO, end - 1.0);
+        let is_down = direction.cmplt(Vec3A::ZERO);
+        let step = Vec3A::select(is_down, Vec3A::NEG_ONE, Vec3A::ONE);
+        let border = Vec3A::select(is_down, Vec3A::ZERO, end);
+        let plane = Vec3A::select(is_down, cell, cell + 1.0);
+        let inverse = direction.recip();
+        // A line that never meets a boundary has none but the border's.
+        let plane = Vec3A::select(inverse.abs().cmpeq(Vec3A::INFINITY), border, plane);
+        let widths = [1, size[0] as i32, (size[0] * size[1]) as i32];
+        let [x, y, z] = std::array::from_fn(|i| if direction[i] < 0.0 { -widths[i] } else { widths[i] });
+        let mut cells = Self {
+            cell: (0..3).map(|i| cell[i] as i32 * widths[i]).sum(),
+            next: Vec3A::INFINITY,
+            plane,
+            step,
+            border,
+            origin,
+            inverse,
+            strides: [0, x, y, x + y, z, x + z, y + z, x + y + z],
+            at: first,
+            last,
+            done: first >= last,
+        };
+        cells.next = cells.boundaries();
         cells
     }
 
-    /// t at the boundary where `axis` leaves the current cell: from the index itself, so that it does not drift.
-    #[inline]
-    fn boundary(&self, axis: usize) -> f32 {
-        if self.direction[axis] == 0.0 {
-            return f32::INFINITY;
-        }
-        let plane = self.cell[axis] + i32::from(self.step[axis] > 0);
-        (plane as f32 - self.origin[axis]) / self.direction[axis]
+    /// t at every `plane`: from the coordinates themselves, so that it does not drift.
+    #[inline(always)]
+    fn boundaries(&self) -> Vec3A {
+        let is_border = self.plane.cmpeq(self.border);
+        Vec3A::select(is_border, Vec3A::INFINITY, (self.plane - self.origin) * self.inverse)
     }
 }
 
 impl Iterator for Cells {
     type Item = Crossing;
 
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> Option<Crossing> {
         if self.done {
             return None;
         }
-        let [x, y, z] = self.next;
-        let axis = if x <= y && x <= z { 0 } else { usize::from(y > z) + 1 };
-        let cell = self.cell.map(|index| index as u32);
-        let (first, until) = (self.at, self.next[axis].max(self.at));
-        self.cell[axis] += self.step[axis];
-        let outside = self.cell[axis] < 0 || self.cell[axis] >= self.size[axis] as i32;
-        // The border cell reaches as far as the line does: rounding may have put its end a little short.
-        self.done = outside || until >= self.last;
-        let last = if self.done { self.last } else { until };
-        self.next[axis] = self.boundary(axis);
-        self.at = last;
-        Some(Crossing { cell, first, last })
+        let (cell, first) = (self.cell as u32, self.at);
+        let until = self.next.min_element();
+        self.done = until >= self.last;
+        // Not f32::min and f32::max, which check for NaN.
+        let until = if until < self.last { until } else { self.last };
+        let until = if until > first { until } else { first };
+        self.at = until;
+        // No branches: which axis comes next is unpredictable. Two at once go to the cell across the edge.
+        let nearest = self.next.cmple(self.next.yzx()) & self.next.cmple(self.next.zxy());
+        self.plane += Vec3A::select(nearest, self.step, Vec3A::ZERO);
+        self.cell += self.strides[nearest.bitmask() as usize & 7];
+        self.next = self.boundaries();
+        Some(Crossing { cell, first, last: until })
     }
 }
 
@@ -82,7 +108,7 @@ impl Iterator for Cells {
 mod tests {
     use super::*;
     use crate::{
-        math::vec3,
+        math::{Vec3, vec3},
         sampling::{Stream, stream::Purpose},
     };
 
@@ -107,7 +133,8 @@ mod tests {
                 assert!(last >= first);
                 at = last;
                 let inside = segment.at(0.5 * (first + last));
-                let corner = vec3(cell[0] as f32, cell[1] as f32, cell[2] as f32);
+                let along = [cell % size[0], cell / size[0] % size[1], cell / (size[0] * size[1])];
+                let corner = Vec3::from_array(along.map(|i| i as f32));
                 let off = (inside - corner - 0.5).abs().max_element();
                 assert!(last - first < 1e-4 || off <= 0.5 + 1e-4, "{off}");
                 crossed += 1;

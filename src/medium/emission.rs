@@ -10,7 +10,7 @@ use crate::{
     error::{Error, Result},
     math::{Affine3A, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3, black_body, vec3},
     sampling::{Discrete, Stream},
-    volume::{self, Coarse, Place, Volume, VolumeModel, check_non_negative},
+    volume::{self, Coarse, Place, Summary, Volume, VolumeModel, check_non_negative},
 };
 use std::f64::consts::PI;
 
@@ -181,11 +181,12 @@ impl Field {
     /// A coarse view of it: one cell where it is the same everywhere.
     fn coarse(&self) -> Coarse {
         if !self.is_uniform() {
-            return Coarse::of(self.low, self.high, |p| self.at(p), |low, high| self.most(low, high));
+            return Coarse::of(self.low, self.high, |p| self.at(p), |low, high| [0.0, self.most(low, high)]);
         }
         let (size, gain) = (self.high - self.low, self.at(0.5 * (self.low + self.high)));
         let to_cells = Affine3A::from_scale(1.0 / size) * Affine3A::from_translation(-self.low);
-        Coarse::from_cells([1; 3], to_cells, vec![gain.max_element()], vec![gain])
+        let all = Summary { least: gain.min_element(), most: gain.max_element(), mean: gain };
+        Coarse::from_cells([1; 3], to_cells, vec![all])
     }
 }
 
@@ -247,15 +248,15 @@ impl Emission {
     }
 
     fn of(field: Field, coarse: Coarse) -> Option<Self> {
-        let cells = || 0..coarse.len() as u32;
-        let weight = |cell| f64::from(coarse.mean(cell).luminance() + FLOOR * coarse.most(cell));
+        let cells = || coarse.cells().iter();
+        let weight = |cell: &Summary| f64::from(cell.mean.luminance() + FLOOR * cell.most);
         let chosen = Discrete::new(cells().map(weight));
         let size = (field.high - field.low).as_dvec3();
         // A box's mean chord is 4 V / S (Cauchy).
         let surface = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
-        let most: f64 = cells().map(|cell| f64::from(coarse.most(cell))).sum();
+        let most: f64 = cells().map(|cell| f64::from(cell.most)).sum();
         let per_line = surface / (4.0 * most * coarse.cell_volume());
-        let mean: DVec3 = cells().map(|cell| coarse.mean(cell).as_dvec3()).sum();
+        let mean: DVec3 = cells().map(|cell| cell.mean.as_dvec3()).sum();
         let power = mean * (coarse.cell_volume() * 4.0 * PI);
         (!chosen.is_empty()).then_some(Self {
             field,
@@ -305,7 +306,7 @@ impl Emission {
     /// are of a mean free path.
     #[inline]
     pub fn rate(&self, position: Vec3) -> Spectrum {
-        let most = self.coarse.cell_at(position).map_or(0.0, |cell| self.coarse.most(cell));
+        let most = self.coarse.cell_at(position).map_or(0.0, |cell| self.coarse.cell(cell).most);
         self.field.within.at(position).sigma_t + self.per_line * most
     }
 
@@ -313,7 +314,7 @@ impl Emission {
     /// [1/m]; none where nothing emits.
     #[inline]
     pub fn sample_along(&self, segment: &RaySegment, stream: &mut Stream) -> Option<(f32, f32)> {
-        let most = |piece: &volume::Piece| self.coarse.most(piece.cell);
+        let most = |piece: &volume::Piece| self.coarse.cell(piece.cell).most;
         let total: f32 =
             self.coarse.pieces(segment).map(|piece| most(&piece) * (piece.last - piece.first)).sum();
         if !(total > 0.0 && total < f32::INFINITY) {

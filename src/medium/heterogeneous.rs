@@ -2,7 +2,7 @@
 
 use super::{
     DistanceMethod, DistanceSample, Extinction, MediumOverrides, MediumProperties, Unforced,
-    distance::{self, DistanceSampler},
+    distance::{self, Attenuation, DistanceSampler},
     emission::Within,
 };
 use crate::{
@@ -162,10 +162,14 @@ impl Heterogeneous {
         self.tracker.depth(&self.extinction, segment)
     }
 
-    /// See [`DistanceSampler::transmittance`].
+    /// See [`DistanceSampler::attenuation`].
     #[inline]
-    pub fn transmittance<L: Channels>(&self, segment: &RaySegment, depth: L, stream: &mut Stream) -> L {
-        self.tracker.transmittance(&self.extinction, segment, depth, stream)
+    pub fn attenuation<L: Channels>(
+        &self,
+        segment: &RaySegment,
+        stream: &mut Stream,
+    ) -> Option<Attenuation<L>> {
+        self.tracker.attenuation(&self.extinction, segment, stream)
     }
 
     /// See [`DistanceSampler::ratio`].
@@ -194,7 +198,8 @@ impl Heterogeneous {
         hero: usize,
         stream: &mut Stream,
     ) -> Unforced<L> {
-        let transmittance = self.transmittance(segment, depth, stream);
+        let found = self.attenuation(segment, stream);
+        let transmittance = found.map_or(L::splat(0.0), |found| found.transmittance);
         let depth = self.tracker.forced_depth(&self.extinction, segment, depth, hero);
         Unforced { transmittance, depth, ratio: transmittance.scaled(depth.min(DEEPEST).exp()) }
     }

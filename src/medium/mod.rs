@@ -15,7 +15,7 @@ use crate::{
     sampling::Stream,
 };
 pub use description::{MediumBounds, MediumDescription, ROWS, build};
-pub use distance::{DistanceMethod, DistanceSample};
+pub use distance::{Attenuation, DistanceMethod, DistanceSample};
 pub use emission::Emission;
 use emission::{EmissionDescription, Within};
 pub use extinction::Extinction;
@@ -214,18 +214,18 @@ impl Medium {
         }
     }
 
-    /// The transmittance of an interval whose optical depth is `depth`, or an unbiased random estimate of it.
+    /// What crosses an interval; none where an estimate of it is 0.
     #[inline(always)]
-    pub fn transmittance<M: MediaProfile>(
+    pub fn attenuation<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
-        depth: M::Channels,
         stream: &mut Stream,
-    ) -> M::Channels {
-        match self.varying::<M>() {
-            Some(varying) => varying.transmittance(&interval.segment, depth, stream),
-            None => depth.exp_neg(),
+    ) -> Option<Attenuation<M::Channels>> {
+        if let Some(varying) = self.varying::<M>() {
+            return varying.attenuation(&interval.segment, stream);
         }
+        let depth: M::Channels = self.bound.optical_depth(interval.length());
+        Some(Attenuation { depth, transmittance: depth.exp_neg() })
     }
 
     /// The transmittance of every channel over the hero's, or an unbiased random estimate of that.

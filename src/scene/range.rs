@@ -55,7 +55,8 @@ fn check_mean_free_path(
 ) -> Result<()> {
     let step = 2.0 * ROUNDOFF;
     let tracker = medium.heterogeneous().map(|varying: &Heterogeneous| varying.tracker().choice());
-    if tracker == Some(DistanceMethod::DeltaTracking) && free_path < step * farthest {
+    let by_collisions = [DistanceMethod::RatioTracking, DistanceMethod::ResidualRatioTracking];
+    if tracker.is_some_and(|tracker| by_collisions.contains(&tracker)) && free_path < step * farthest {
         return Err(Error::new(
             location,
             format!(

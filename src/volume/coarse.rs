@@ -1,7 +1,9 @@
-//! What a volume is like from afar: its maximum and its mean in every cell of a coarse lattice.
+//! What a volume is like from afar: its range and its mean in every cell of a coarse lattice.
 
 use super::{Volume, VolumeModel};
-use crate::math::{Affine3A, Channels, RaySegment, Spectrum, Vec3, cells::Cells, vec3};
+use crate::math::{Affine3A, RaySegment, Spectrum, Vec3, cells::Cells, vec3};
+
+pub use crate::math::cells::Crossing as Piece;
 
 /// Cells along the longest side of a box.
 const CELLS: f32 = 32.0;
@@ -9,28 +11,29 @@ const CELLS: f32 = 32.0;
 const FEWEST: f32 = 8.0;
 /// Points along each side of a cell whose average is taken for its mean.
 const POINTS: u32 = 3;
+/// What lies so little outside a lattice is taken for its border [cells].
+const ROUNDING: f32 = 1e-3;
 
-/// Maximum and mean per cell: bounds for null-collision tracking, and a deterministic stand-in for the volume.
+/// Something per cell of a lattice: of volumes a [`Summary`].
 #[derive(Clone, Debug)]
-pub struct Coarse {
+pub struct Coarse<T = Summary> {
     /// From the world to cells: cell (i, j, k) is the unit cube at (i, j, k).
     to_cells: Affine3A,
     to_world: Affine3A,
     size: [u32; 3],
-    /// Largest value of any channel.
-    most: Vec<f32>,
-    mean: Vec<Spectrum>,
+    /// x fastest.
+    cells: Vec<T>,
 }
 
-/// A piece of a segment within one cell.
+/// A volume in one cell.
 #[derive(Clone, Copy, Debug)]
-pub struct Piece {
-    /// The cell.
-    pub cell: u32,
-    /// Where the segment enters it [m].
-    pub first: f32,
-    /// Where it leaves it [m].
-    pub last: f32,
+pub struct Summary {
+    /// No channel is less anywhere in it.
+    pub least: f32,
+    /// No channel is more.
+    pub most: f32,
+    /// The mean of every channel.
+    pub mean: Spectrum,
 }
 
 impl Coarse {
@@ -39,67 +42,58 @@ impl Coarse {
         if let Some(grid) = volume.grid() {
             return grid.coarse();
         }
-        let range = |low, high| volume.range(low, high)[1].max_element();
+        let range = |low, high| {
+            let [least, most] = volume.range(low, high);
+            [least.min_element(), most.max_element()]
+        };
         Self::of(low, high, |p| volume.eval::<Spectrum>(p), range)
     }
 
-    /// The same of any function `value` of position, whose channels do not exceed `most` within a box.
+    /// The same of any function `value` of position, whose channels lie in `range` within a box.
     pub fn of(
         low: Vec3,
         high: Vec3,
         value: impl Fn(Vec3) -> Spectrum,
-        most: impl Fn(Vec3, Vec3) -> f32,
+        range: impl Fn(Vec3, Vec3) -> [f32; 2],
     ) -> Self {
         let extent = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
         let counts = (extent * (CELLS / extent.max_element())).ceil().max(Vec3::splat(FEWEST));
         let size = counts.to_array().map(|count| count as u32);
         let to_world = Affine3A::from_scale_rotation_translation(extent / counts, glam::Quat::IDENTITY, low);
         let to_cells = Affine3A::from_scale(counts / extent) * Affine3A::from_translation(-low);
-        let corner = |index: u32| {
+        let summary = |index| {
             let [x, y, z] = cell_of(index, size);
-            vec3(x as f32, y as f32, z as f32)
+            let corner = vec3(x as f32, y as f32, z as f32);
+            let [least, most] =
+                range(to_world.transform_point3(corner), to_world.transform_point3(corner + 1.0));
+            Summary { least, most, mean: mean_of(|p| value(to_world.transform_point3(corner + p))) }
         };
-        let count = size.iter().product::<u32>();
-        let bound = |index| {
-            let corner = corner(index);
-            most(to_world.transform_point3(corner), to_world.transform_point3(corner + 1.0))
-        };
-        let mean = |index| mean_of(|p| value(to_world.transform_point3(corner(index) + p)));
-        Self {
-            to_cells,
-            to_world,
-            size,
-            most: (0..count).map(bound).collect(),
-            mean: (0..count).map(mean).collect(),
-        }
+        let cells = (0..size.iter().product::<u32>()).map(summary).collect();
+        Self { to_cells, to_world, size, cells }
+    }
+}
+
+impl<T> Coarse<T> {
+    /// From what is known of every cell, x fastest, of a lattice of the given size; `to_cells` maps from the world to it.
+    pub fn from_cells(size: [u32; 3], to_cells: Affine3A, cells: Vec<T>) -> Self {
+        Self { to_cells, to_world: to_cells.inverse(), size, cells }
     }
 
-    /// From what is known of every cell, x fastest: their lattice's size, the map from the world to it, the largest
-    /// value of any channel and the mean of each.
-    pub fn from_cells(size: [u32; 3], to_cells: Affine3A, most: Vec<f32>, mean: Vec<Spectrum>) -> Self {
-        Self { to_cells, to_world: to_cells.inverse(), size, most, mean }
+    /// What `change` makes of every cell.
+    pub fn map<U>(&self, change: impl Fn(&T) -> U) -> Coarse<U> {
+        let Self { to_cells, to_world, size, .. } = *self;
+        Coarse { to_cells, to_world, size, cells: self.cells.iter().map(change).collect() }
     }
 
-    /// Number of cells.
-    pub fn len(&self) -> usize {
-        self.most.len()
+    /// All cells, x fastest.
+    pub fn cells(&self) -> &[T] {
+        &self.cells
     }
 
-    /// True if there are no cells.
-    pub fn is_empty(&self) -> bool {
-        self.most.is_empty()
-    }
-
-    /// Largest value of any channel in `cell`.
+    /// One cell, by its number.
     #[inline]
-    pub fn most(&self, cell: u32) -> f32 {
-        self.most[cell as usize]
-    }
-
-    /// Mean value of every channel in `cell`.
-    #[inline]
-    pub fn mean(&self, cell: u32) -> Spectrum {
-        self.mean[cell as usize]
+    pub fn cell(&self, cell: u32) -> &T {
+        &self.cells[cell as usize]
     }
 
     /// Volume of a cell [m^3]; all are alike.
@@ -124,24 +118,32 @@ impl Coarse {
 
     /// The pieces of `segment` in the cells that it crosses, in order.
     #[inline]
-    pub fn pieces(&self, segment: &RaySegment) -> impl Iterator<Item = Piece> + use<'_> {
-        let mapped = segment.mapped(&self.to_cells);
-        let [x, y, z] = self.size.map(|n| n as f32);
-        let range = mapped.within(Vec3::ZERO, vec3(x, y, z));
-        let [first, last] = range.unwrap_or([0.0, 0.0]);
-        let piece = |crossing: crate::math::cells::Crossing| Piece {
-            cell: index_of(crossing.cell, self.size),
-            first: crossing.first,
-            last: crossing.last,
-        };
-        Cells::new(&mapped, first, last, self.size).map(piece)
+    pub fn pieces(&self, segment: &RaySegment) -> Cells {
+        self.pieces_within(segment, self.clip(segment))
     }
 
-    /// The integral along `segment` of the mean of the cells: the same from either end.
+    /// The same of the part of `segment` from `first` to `last`, which lies within the lattice up to rounding.
     #[inline]
-    pub fn integral<L: Channels>(&self, segment: &RaySegment) -> L {
-        let piece = |piece: Piece| L::from_spectrum(self.mean(piece.cell)).scaled(piece.last - piece.first);
-        self.pieces(segment).map(piece).fold(L::splat(0.0), |sum, part| sum + part)
+    pub fn pieces_within(&self, segment: &RaySegment, [first, last]: [f32; 2]) -> Cells {
+        Cells::new(&segment.mapped(&self.to_cells), first, last, self.size)
+    }
+
+    /// From where to where `segment` is in the lattice.
+    #[inline]
+    pub fn clip(&self, segment: &RaySegment) -> [f32; 2] {
+        let [x, y, z] = self.size.map(|n| n as f32);
+        segment.mapped(&self.to_cells).within(Vec3::ZERO, vec3(x, y, z)).unwrap_or([0.0, 0.0])
+    }
+
+    /// True if the box from `low` to `high` lies within the lattice up to rounding.
+    pub fn covers(&self, low: Vec3, high: Vec3) -> bool {
+        let end = Vec3::from_array(self.size.map(|n| n as f32));
+        (0..8).all(|corner| {
+            let high_at = |axis: usize| corner >> axis & 1 == 1;
+            let corner = Vec3::from_array(std::array::from_fn(|i| if high_at(i) { high[i] } else { low[i] }));
+            let at = self.to_cells.transform_point3(corner);
+            at.cmpge(Vec3::splat(-ROUNDING)).all() && at.cmple(end + ROUNDING).all()
+        })
     }
 }
 
@@ -173,41 +175,22 @@ mod tests {
     /// x + 2 y + 4 z: its mean over a cell is its value at the centre.
     fn ramp() -> Coarse {
         let value = |p: Vec3| Spectrum::splat(p.dot(vec3(1.0, 2.0, 4.0)));
-        Coarse::of(vec3(1.0, 0.0, -1.0), vec3(3.0, 1.0, 3.0), value, |_, high| high.dot(vec3(1.0, 2.0, 4.0)))
+        let range = |low: Vec3, high: Vec3| [low, high].map(|p| p.dot(vec3(1.0, 2.0, 4.0)));
+        Coarse::of(vec3(1.0, 0.0, -1.0), vec3(3.0, 1.0, 3.0), value, range)
     }
 
     #[test]
-    fn cells_hold_mean_and_maximum() {
+    fn cells_hold_range_and_mean() {
         let coarse = ramp();
         assert_eq!(coarse.size, [16, 8, 32]);
         let cell = coarse.cell_at(vec3(1.01, 0.01, -0.99)).unwrap();
-        assert!((coarse.mean(cell).x - (1.0625 + 2.0 * 0.0625 + 4.0 * -0.9375)).abs() < 1e-5);
-        assert!((coarse.most(cell) - (1.125 + 0.25 - 3.5)).abs() < 1e-5);
+        let Summary { least, most, mean } = coarse.cell(cell);
+        assert!((mean.x - (1.0625 + 2.0 * 0.0625 + 4.0 * -0.9375)).abs() < 1e-5);
+        assert!((most - (1.125 + 0.25 - 3.5)).abs() < 1e-5);
+        assert!((least - (1.0 - 4.0)).abs() < 1e-5);
         assert!((coarse.cell_volume() - 0.125f64.powi(3)).abs() < 1e-9);
         assert_eq!(coarse.cell_at(vec3(0.99, 0.5, 0.0)), None);
         let middle = coarse.position(cell, Vec3::splat(0.5));
         assert!((middle - vec3(1.0625, 0.0625, -0.9375)).abs().max_element() < 1e-5);
-    }
-
-    #[test]
-    fn the_integral_is_symmetric_and_that_of_the_means() {
-        let coarse = ramp();
-        let (a, b) = (vec3(0.3, 0.1, 0.2), vec3(4.0, 0.9, 2.0));
-        let way = |a: Vec3, b: Vec3| RaySegment {
-            origin: a,
-            direction: (b - a).normalize(),
-            length: a.distance(b),
-        };
-        let (there, back): (f32, f32) = (coarse.integral(&way(a, b)), coarse.integral(&way(b, a)));
-        assert!((there - back).abs() < 1e-5 * there);
-        let segment = way(a, b);
-        let n = 100_000;
-        let step = segment.length / n as f32;
-        let value = |i: i32| {
-            let p = segment.at((i as f32 + 0.5) * step);
-            coarse.cell_at(p).map_or(0.0, |cell| f64::from(coarse.mean(cell).x))
-        };
-        let expected = (0..n).map(value).sum::<f64>() * f64::from(step);
-        assert!((f64::from(there) - expected).abs() < 1e-4 * expected, "{there} {expected}");
     }
 }

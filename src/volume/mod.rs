@@ -21,7 +21,7 @@ mod tests;
 mod wind;
 
 pub use check::{Negative, check_non_negative};
-pub use coarse::{Coarse, Piece};
+pub use coarse::{Coarse, Piece, Summary};
 pub use constant::Constant;
 pub use cosine::Cosine;
 pub use equipotential::Equipotential;

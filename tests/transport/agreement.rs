@@ -378,7 +378,7 @@ fn fogs() -> [(&'static str, Value); 2] {
 #[test]
 fn in_smoke_that_varies_by_every_tracker() {
     for (name, fog) in fogs() {
-        for tracker in ["closed_form", "march", "null_collision"] {
+        for tracker in ["closed_form", "march", "null_collision", "residual_ratio"] {
             if tracker == "closed_form" && name != "waves" {
                 continue;
             }
@@ -394,7 +394,7 @@ fn within_chromatic_smoke_that_varies() {
     let colours =
         json!({"type": "product", "a": {"type": "constvolume", "value": rgb(0.3, 1.0, 2.5)}, "b": waves});
     let albedo = json!({"type": "cosine", "constant": 0.6, "a": {"type": "wave", "amplitude": 0.3, "vector": [0, 5, 3]}});
-    for tracker in ["closed_form", "null_collision"] {
+    for tracker in ["closed_form", "null_collision", "residual_ratio"] {
         for inside in [false, true] {
             let scene = smoky(colours.clone(), albedo.clone(), tracker, inside);
             // From within, a vertex next to the lens counts 1/d^2: without the camera subpaths that meet the same

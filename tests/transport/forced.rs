@@ -124,7 +124,7 @@ fn waves() -> Value {
 
 #[test]
 fn in_smoke_that_varies_by_every_tracker() {
-    for tracker in ["closed_form", "march", "null_collision"] {
+    for tracker in ["closed_form", "march", "null_collision", "residual_ratio"] {
         for (scale, inside) in [(0.05, false), (2.0, false), (2.0, true)] {
             let name = format!("smoke of {scale} by {tracker}, inside {inside}");
             agrees(&name, &smoky(waves(), tracker, inside, scale), &USUAL[..1], 64);
@@ -139,7 +139,9 @@ fn in_chromatic_wisps_by_null_collisions() {
     let noise = json!({"type": "noise", "octaves": 3, "frequency": 3, "bias": -0.2, "amplitude": 1});
     let wisps =
         json!({"type": "product", "a": {"type": "constvolume", "value": rgb(0.3, 1.0, 2.5)}, "b": noise});
-    agrees("wisps", &smoky(wisps, "null_collision", false, 2.0), &USUAL, 96);
+    for tracker in ["null_collision", "residual_ratio"] {
+        agrees(&format!("wisps by {tracker}"), &smoky(wisps.clone(), tracker, false, 2.0), &USUAL, 96);
+    }
 }
 
 /// Two clouds, a boundary that is half there, panes, and a lamp that is not seen.

@@ -44,7 +44,7 @@ fn a_slab_that_emits_and_absorbs() {
     // A number would fill the unit cube alone.
     let around = json!([{"type": "scale", "value": 2}, {"type": "translate", "value": [-1, -1, -1]}]);
     let even = json!({"type": "constvolume", "value": 2, "to_world": around});
-    for tracker in ["auto", "march", "null_collision"] {
+    for tracker in ["auto", "march", "null_collision", "residual_ratio"] {
         let more = [("sigma_t", even.clone()), ("tracker", json!(tracker))];
         let medium = with(absorbing("heterogeneous", 2.0), &more);
         shows(&mut claims, tracker, &slab(medium), -f64::exp_m1(-2.0), &ALONE, 400);
@@ -71,7 +71,7 @@ fn a_slab_of_exponential_density() {
     let tau = 0.3 * 2.0 * ((0.7f64 / 0.3).exp() - (-0.3f64 / 0.3).exp());
     let expected = 0.75 * -f64::exp_m1(-tau);
     let mut claims = Claims::new();
-    for tracker in ["auto", "null_collision"] {
+    for tracker in ["auto", "null_collision", "residual_ratio"] {
         let given =
             json!({"type": "heterogeneous", "sigma_t": layers, "scale": 2, "albedo": 0, "tracker": tracker});
         for (name, factor) in [("emission", 1.5), ("radiance", 0.75)] {

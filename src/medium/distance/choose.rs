@@ -1,11 +1,11 @@
 //! Measurements before a render: which tracker costs least, and how long a marching step may be. Costs are counted,
 //! not timed, so that the same scene is rendered the same way on any machine.
 
-use super::{DistanceMethod, DistanceSampler, Extinction, RayMarching, null_collision};
+use super::{DistanceMethod, DistanceSampler, Extinction, NullCollision, RayMarching};
 use crate::{
     math::{Channels, RaySegment, Spectrum, Vec3, vec3, warp},
     sampling::{Stream, stream::Purpose},
-    volume::{Coarse, VolumeModel},
+    volume::VolumeModel,
 };
 
 /// Sections that are tried.
@@ -26,37 +26,44 @@ pub fn choose(
     step: Option<f64>,
     march_error: f64,
 ) -> DistanceSampler {
-    let coarse = || Box::new(Coarse::over(&medium.volume, medium.low, medium.high));
+    let tracking = |method| Box::new(NullCollision::new(medium, method));
     match choice {
         DistanceMethod::ClosedForm => DistanceSampler::ClosedForm,
         DistanceMethod::RegularTracking => DistanceSampler::RegularTracking,
         DistanceMethod::RayMarching => DistanceSampler::RayMarching(RayMarching {
             step: step.map_or_else(|| longest_step(medium, march_error), |s| s as f32),
         }),
-        DistanceMethod::DeltaTracking => DistanceSampler::DeltaTracking(coarse()),
+        DistanceMethod::RatioTracking | DistanceMethod::ResidualRatioTracking => {
+            DistanceSampler::NullCollision(tracking(choice))
+        }
         DistanceMethod::Auto if DistanceMethod::ClosedForm.applies_to(&medium.volume) => {
             DistanceSampler::ClosedForm
         }
-        DistanceMethod::Auto if DistanceMethod::RegularTracking.applies_to(&medium.volume) => {
-            let coarse = coarse();
-            let exact = COST_OF_CELL * mean(medium, |segment, _| cells(medium, segment));
-            let work = work_of_tracking(medium, &coarse);
-            // Noise only makes tracking more expensive; and where it costs a lot, so would measuring it.
-            if exact <= work || exact <= work * (1.0 + noise_of_tracking(medium, &coarse)) {
-                DistanceSampler::RegularTracking
-            } else {
-                DistanceSampler::DeltaTracking(coarse)
+        DistanceMethod::Auto => {
+            let tracking = tracking(DistanceMethod::ResidualRatioTracking);
+            match DistanceMethod::RegularTracking.applies_to(&medium.volume)
+                && pays_exactly(medium, &tracking)
+            {
+                true => DistanceSampler::RegularTracking,
+                false => DistanceSampler::NullCollision(tracking),
             }
         }
-        DistanceMethod::Auto => DistanceSampler::DeltaTracking(coarse()),
     }
+}
+
+/// True if a grid's cells cost less than `tracking` and its noise.
+fn pays_exactly(medium: &Extinction, tracking: &NullCollision) -> bool {
+    let exact = COST_OF_CELL * mean(medium, |segment, _| cells(medium, segment));
+    let work = work_of_tracking(medium, tracking);
+    // Noise only makes tracking more expensive; and where it costs a lot, so would measuring it.
+    exact <= work || exact <= work * (1.0 + noise_of_tracking(medium, tracking))
 }
 
 /// Integrating a cell of a grid, entering a coarse cell, and looking up a density, in the same unit (about a
 /// nanosecond on the machines it was measured on; see the timing test of the trackers).
-const COST_OF_CELL: f64 = 12.0;
-const COST_OF_PIECE: f64 = 8.0;
-const COST_OF_LOOKUP: f64 = 40.0;
+const COST_OF_CELL: f64 = 16.0;
+const COST_OF_PIECE: f64 = 10.0;
+const COST_OF_LOOKUP: f64 = 45.0;
 
 /// Cells of a grid that a segment crosses.
 fn cells(medium: &Extinction, segment: &RaySegment) -> f64 {
@@ -64,21 +71,18 @@ fn cells(medium: &Extinction, segment: &RaySegment) -> f64 {
 }
 
 /// Cost of an estimate of transmittance by null collisions.
-fn work_of_tracking(medium: &Extinction, coarse: &Coarse) -> f64 {
+fn work_of_tracking(medium: &Extinction, tracking: &NullCollision) -> f64 {
     mean(medium, |segment, _| {
-        let pieces = coarse.pieces(segment).count() as f64;
-        let lookups: f64 = coarse
-            .pieces(segment)
-            .map(|piece| f64::from(coarse.most(piece.cell) * medium.scale * (piece.last - piece.first)))
-            .sum();
+        let [pieces, lookups] = tracking.work(medium, segment);
         COST_OF_PIECE * pieces + COST_OF_LOOKUP * lookups
     })
 }
 
 /// The relative variance that such estimates add to that of the light they attenuate (taken to vary by its own mean).
-fn noise_of_tracking(medium: &Extinction, coarse: &Coarse) -> f64 {
+fn noise_of_tracking(medium: &Extinction, tracking: &NullCollision) -> f64 {
     let estimate = |segment: &RaySegment, stream: &mut Stream| {
-        f64::from(null_collision::transmittance::<Spectrum>(medium, coarse, segment, stream).max_element())
+        let found = tracking.attenuation::<Spectrum>(medium, segment, stream);
+        found.map_or(0.0, |found| f64::from(found.transmittance.max_element()))
     };
     let first = mean(medium, |segment, stream| {
         (0..ESTIMATES).map(|_| estimate(segment, stream)).sum::<f64>().powi(2)

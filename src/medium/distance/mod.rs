@@ -9,13 +9,14 @@ mod regular_tracking;
 mod tests;
 
 pub use choose::choose;
+pub use null_collision::NullCollision;
 pub use ray_marching::RayMarching;
 
 use super::Extinction;
 use crate::{
     math::{Channels, RaySegment, Spectrum},
     sampling::Stream,
-    volume::{Coarse, Volume, VolumeModel},
+    volume::{Volume, VolumeModel},
 };
 
 /// A distance sampled along a segment: where it ended in a collision, or that it passed.
@@ -32,6 +33,15 @@ pub struct DistanceSample<L> {
     pub spent: f32,
 }
 
+/// What a medium leaves of the light that crosses a segment.
+#[derive(Clone, Copy, Debug)]
+pub struct Attenuation<L> {
+    /// Deterministic optical depth per channel, the same from either end: what the weights use.
+    pub depth: L,
+    /// The fraction of radiance that remains: exp(-depth), or an unbiased random estimate of what it really is.
+    pub transmittance: L,
+}
+
 /// A method, forced by name or chosen by cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DistanceMethod {
@@ -44,17 +54,20 @@ pub enum DistanceMethod {
     /// Ray marching (LW96 sec. 5).
     RayMarching,
     /// Delta tracking for distances, ratio tracking for transmittance, by local majorants.
-    DeltaTracking,
+    RatioTracking,
+    /// Delta tracking for distances, residual ratio tracking for transmittance, by local means and ranges.
+    ResidualRatioTracking,
 }
 
 impl DistanceMethod {
     /// Name in scene files and on the command line.
-    pub const NAMES: [(&'static str, Self); 5] = [
+    pub const NAMES: [(&'static str, Self); 6] = [
         ("auto", Self::Auto),
         ("closed_form", Self::ClosedForm),
         ("exact", Self::RegularTracking),
         ("march", Self::RayMarching),
-        ("null_collision", Self::DeltaTracking),
+        ("null_collision", Self::RatioTracking),
+        ("residual_ratio", Self::ResidualRatioTracking),
     ];
 
     /// Name in scene files and on the command line.
@@ -65,7 +78,7 @@ impl DistanceMethod {
     /// True if the method works for `volume`.
     pub fn applies_to(self, volume: &Volume) -> bool {
         match self {
-            Self::Auto | Self::RayMarching | Self::DeltaTracking => true,
+            Self::Auto | Self::RayMarching | Self::RatioTracking | Self::ResidualRatioTracking => true,
             Self::ClosedForm => volume.has_integral() && volume.grid().is_none(),
             Self::RegularTracking => volume.grid().is_some(),
         }
@@ -81,8 +94,8 @@ pub enum DistanceSampler {
     RegularTracking,
     /// See [`DistanceMethod::RayMarching`].
     RayMarching(RayMarching),
-    /// See [`DistanceMethod::DeltaTracking`].
-    DeltaTracking(Box<Coarse>),
+    /// See [`DistanceMethod::RatioTracking`] and [`DistanceMethod::ResidualRatioTracking`].
+    NullCollision(Box<NullCollision>),
 }
 
 impl DistanceSampler {
@@ -93,24 +106,23 @@ impl DistanceSampler {
             Self::ClosedForm => closed_form::depth(medium, segment),
             Self::RegularTracking => regular_tracking::depth(medium, segment),
             Self::RayMarching(march) => march.depth(medium, segment),
-            Self::DeltaTracking(coarse) => null_collision::stand_in(medium, coarse, segment),
+            Self::NullCollision(tracking) => tracking.stand_in(medium, segment),
         }
     }
 
-    /// The fraction of radiance that remains along `segment`, whose [`Self::depth`] is `depth`: exp(-depth),
-    /// or an unbiased random estimate of what it really is.
+    /// What crosses `segment`; none where it is certain that nothing does, or a random estimate of it is 0.
     #[inline]
-    pub fn transmittance<L: Channels>(
+    pub fn attenuation<L: Channels>(
         &self,
         medium: &Extinction,
         segment: &RaySegment,
-        depth: L,
         stream: &mut Stream,
-    ) -> L {
-        match self {
-            Self::DeltaTracking(coarse) => null_collision::transmittance(medium, coarse, segment, stream),
-            _ => depth.exp_neg(),
+    ) -> Option<Attenuation<L>> {
+        if let Self::NullCollision(tracking) = self {
+            return tracking.attenuation(medium, segment, stream);
         }
+        let depth: L = self.depth(medium, segment);
+        Some(Attenuation { depth, transmittance: depth.exp_neg() })
     }
 
     /// Transmittance of every channel over the hero's along `segment`, whose [`Self::depth`] is `depth`, or an
@@ -125,9 +137,7 @@ impl DistanceSampler {
         stream: &mut Stream,
     ) -> L {
         match self {
-            Self::DeltaTracking(coarse) => {
-                null_collision::transmittance_ratio(medium, coarse, segment, hero, stream)
-            }
+            Self::NullCollision(tracking) => tracking.transmittance_ratio(medium, segment, hero, stream),
             _ => depth.flight_ratio(L::splat(1.0), hero),
         }
     }
@@ -147,9 +157,7 @@ impl DistanceSampler {
             Self::ClosedForm => closed_form::sample_distance(medium, segment, hero, remaining),
             Self::RegularTracking => regular_tracking::sample_distance(medium, segment, hero, remaining),
             Self::RayMarching(march) => march.sample_distance(medium, segment, hero, remaining),
-            Self::DeltaTracking(coarse) => {
-                null_collision::sample_distance(medium, coarse, segment, hero, stream)
-            }
+            Self::NullCollision(tracking) => tracking.sample_distance(medium, segment, hero, stream),
         }
     }
 
@@ -163,7 +171,7 @@ impl DistanceSampler {
         hero: usize,
     ) -> f32 {
         match self {
-            Self::DeltaTracking(coarse) => null_collision::forced_depth::<L>(medium, coarse, segment, hero),
+            Self::NullCollision(tracking) => tracking.forced_depth::<L>(medium, segment, hero),
             _ => depth.hero(hero),
         }
     }
@@ -180,9 +188,7 @@ impl DistanceSampler {
         stream: &mut Stream,
     ) -> Option<DistanceSample<L>> {
         match self {
-            Self::DeltaTracking(coarse) => {
-                null_collision::force(medium, coarse, segment, hero, remaining, stream)
-            }
+            Self::NullCollision(tracking) => tracking.force(medium, segment, hero, remaining, stream),
             _ => Some(self.sample_distance(medium, segment, hero, remaining, stream)),
         }
         .filter(|sample| sample.collision.is_some())
@@ -194,7 +200,7 @@ impl DistanceSampler {
             Self::ClosedForm => DistanceMethod::ClosedForm,
             Self::RegularTracking => DistanceMethod::RegularTracking,
             Self::RayMarching(_) => DistanceMethod::RayMarching,
-            Self::DeltaTracking(_) => DistanceMethod::DeltaTracking,
+            Self::NullCollision(tracking) => tracking.method(),
         }
     }
 }
@@ -216,7 +222,7 @@ impl<L: Channels> DistanceSample<L> {
 /// Optical depth along `segment`, for display and not for measurement: never random.
 pub fn quick_depth<L: Channels>(tracker: &DistanceSampler, medium: &Extinction, segment: &RaySegment) -> L {
     match tracker {
-        DistanceSampler::DeltaTracking(_) if medium.volume.has_integral() => {
+        DistanceSampler::NullCollision(_) if medium.volume.has_integral() => {
             closed_form::depth(medium, segment)
         }
         tracker => tracker.depth(medium, segment),

@@ -168,7 +168,9 @@ impl<L: Channels> FlightPart<L> {
         let depth = medium.optical_depth::<P>(&interval);
         let ratio = match self.certain {
             false => medium.transmittance_ratio::<P>(&interval, depth, hero, stream),
-            true => medium.transmittance::<P>(&interval, depth, stream),
+            true => {
+                medium.attenuation::<P>(&interval, stream).map_or(L::splat(0.0), |found| found.transmittance)
+            }
         };
         let FlightState { depth: before, ratio: ratio_before, tint } = self.before;
         FlightState { depth: before + depth, ratio: ratio_before * ratio, tint }

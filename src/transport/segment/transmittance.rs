@@ -3,7 +3,7 @@
 use super::Segment;
 use crate::{
     math::{Channels, RaySegment, Spectrum},
-    medium::{Medium, MediumIndex, MediumInterval},
+    medium::{Attenuation, Medium, MediumIndex, MediumInterval},
     sampling::Stream,
     scene::Scene,
     shape::Ray,
@@ -23,7 +23,7 @@ pub struct SegmentTransmittance<L> {
 }
 
 /// What remains of radiance along `ray` (its `t_max` is the segment's length, infinite for an emitter at
-/// infinity), starting in `medium`; none where a surface blocks it. The ray stops `cut` short of the segment's
+/// infinity), starting in `medium`; none where a surface blocks it or an estimate is 0. The ray stops `cut` short of the segment's
 /// end to be clear of the surface there: the medium reaches on to the end. Emitters that are `hidden` do not block.
 ///
 /// LW96 eq. 10: T and the visibility in g(x, y).
@@ -45,7 +45,7 @@ pub fn transmittance<P: Profile>(
     let mut product = Product::<P>::new();
     let Ray { origin, direction, t_max } = ray;
     let interval = MediumInterval::of(RaySegment { origin, direction, length: t_max + cut });
-    product.add(&scene.media[medium.0 as usize], &interval, stream);
+    product.add(&scene.media[medium.0 as usize], &interval, stream)?;
     Some(product.ending_in(medium))
 }
 
@@ -61,7 +61,7 @@ fn across_boundaries<P: Profile>(
         let (mut interval, hit) = segment.next(f32::INFINITY);
         let Some(hit) = hit else {
             interval.segment.length += cut;
-            product.add(segment.medium(), &interval, stream);
+            product.add(segment.medium(), &interval, stream)?;
             return Some(product.ending_in(segment.medium));
         };
         let point = segment.surface(&hit);
@@ -71,7 +71,7 @@ fn across_boundaries<P: Profile>(
         }
         product.passing *= through.max_element();
         product.tint *= through;
-        product.add(segment.medium(), &interval, stream);
+        product.add(segment.medium(), &interval, stream)?;
         segment.cross(&point);
         if let Some(end) = end {
             segment.aim(end);
@@ -97,16 +97,17 @@ impl<P: Profile> Product<P> {
         Self { depth: zero, estimate: one, passing: 1.0, tint: Spectrum::ONE }
     }
 
+    /// Goes on through `interval` of `medium`; none where nothing gets through.
     #[inline(always)]
-    fn add(&mut self, medium: &Medium, interval: &MediumInterval, stream: &mut Stream) {
-        if !P::MEDIA {
-            return;
-        }
-        let depth = medium.optical_depth::<P>(interval);
-        self.depth = self.depth + depth;
+    fn add(&mut self, medium: &Medium, interval: &MediumInterval, stream: &mut Stream) -> Option<()> {
         if P::HETEROGENEOUS {
-            self.estimate = self.estimate * medium.transmittance::<P>(interval, depth, stream);
+            let Attenuation { depth, transmittance } = medium.attenuation::<P>(interval, stream)?;
+            self.depth = self.depth + depth;
+            self.estimate = self.estimate * transmittance;
+        } else if P::MEDIA {
+            self.depth = self.depth + medium.optical_depth::<P>(interval);
         }
+        Some(())
     }
 
     #[inline(always)]

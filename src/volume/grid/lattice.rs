@@ -1,7 +1,7 @@
 //! Values on a lattice, kept in bricks of 8 x 8 x 8 cells. A brick holds the 9 x 9 x 9 corners of its cells, so that
 //! no cell looks outside its brick; one whose corners are all equal, as in empty space, holds a single value.
 
-use super::super::Samples;
+use super::super::{Samples, Summary};
 use super::voxel::{SIDE, VALUES, Voxel, corners, weights};
 use crate::math::Wrap;
 
@@ -181,6 +181,15 @@ impl<V: Voxel> Brick<V> {
     /// The same value everywhere.
     fn of(value: V) -> Self {
         Self { values: None, mean: value, least: value, most: value }
+    }
+
+    /// What it is like from afar.
+    pub fn summary(&self) -> Summary {
+        Summary {
+            least: self.least.to_spectrum().min_element(),
+            most: self.most.to_spectrum().max_element(),
+            mean: self.mean.to_spectrum(),
+        }
     }
 
     fn map<W: Voxel>(self, change: impl Fn(V) -> W) -> Brick<W> {

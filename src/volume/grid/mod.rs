@@ -164,12 +164,8 @@ impl Grid {
 
     /// The grid from afar: a cell a brick. The means are those of the parts of bricks that lie in the box.
     pub fn coarse(&self) -> Coarse {
-        let (most, mean) = each!(self, lattice => {
-            let all = || lattice.bricks.iter();
-            let most = all().map(|brick| brick.most.to_spectrum().max_element()).collect();
-            (most, all().map(|brick| brick.mean.to_spectrum()).collect())
-        });
-        Coarse::from_cells(self.bricks(), self.to_bricks(), most, mean)
+        let cells = each!(self, lattice => lattice.bricks.iter().map(Brick::summary).collect());
+        Coarse::from_cells(self.bricks(), self.to_bricks(), cells)
     }
 
     /// Bricks of 8 x 8 x 8 cells along x, y and z.
@@ -204,7 +200,7 @@ impl Grid {
             let mapped = segment.mapped(&self.to_bricks());
             let cells = Cells::new(&mapped, first as f32, last as f32, self.bricks());
             let cost = |Crossing { cell, first, last }: Crossing| {
-                let brick = &lattice.bricks[lattice.index(cell.map(|i| i as usize))];
+                let brick = &lattice.bricks[cell as usize];
                 1.0 + if brick.values.is_some() { per_metre * f64::from(last - first) } else { 0.0 }
             };
             cells.map(cost).sum()

@@ -459,7 +459,10 @@ fn bricks_know_their_mean_and_bound() {
                 for x in 0..nx {
                     let index = x + nx * (y + ny * z);
                     let mean: f32 = grid.brick_mean([x, y, z]);
-                    assert_eq!((coarse.mean(index).x, coarse.most(index)), (mean, grid.brick_max([x, y, z])));
+                    assert_eq!(
+                        (coarse.cell(index).mean.x, coarse.cell(index).most),
+                        (mean, grid.brick_max([x, y, z]))
+                    );
                     let hits = f64::from(hits[index as usize]);
                     let found = sums[index as usize] / hits;
                     // The values spread by less than 0.3.

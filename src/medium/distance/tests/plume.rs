@@ -57,8 +57,7 @@ fn errors(tracker: &DistanceSampler, medium: &Extinction, sections: &[(RaySegmen
     for (index, (segment, truth)) in (0u64..).zip(sections) {
         let one = |round| {
             let mut stream = Stream::new(round, index, 1, Purpose::Study);
-            let depth = tracker.depth::<f32>(medium, segment);
-            f64::from(tracker.transmittance::<f32>(medium, segment, depth, &mut stream))
+            crossed(tracker, medium, segment, &mut stream)
         };
         let values: Vec<f64> = (0..ROUNDS).map(one).collect();
         let mean = values.iter().sum::<f64>() / ROUNDS as f64;
@@ -84,14 +83,7 @@ fn nanoseconds_per_query() {
     println!("plume {{\"sections\": {}, \"sought\": {}, \"truth\": {mean}}}", sections.len(), sought.len());
     println!("plume {{\"overhead\": {:?}}}", time(&sections, |_, stream| stream.uniform()));
     for tracker in trackers(&medium) {
-        let query = time(&sections, |segment, stream| {
-            let depth = tracker.depth::<f32>(&medium, segment);
-            tracker.transmittance(&medium, segment, depth, stream)
-        });
-        let alone = time(&sections, |segment, stream| match &tracker {
-            DistanceSampler::DeltaTracking(_) => tracker.transmittance(&medium, segment, 0.0, stream),
-            _ => tracker.depth::<f32>(&medium, segment),
-        });
+        let query = time(&sections, |segment, stream| crossed(&tracker, &medium, segment, stream) as f32);
         let flight = time(&sections, |segment, stream| {
             let remaining = stream.exponential();
             tracker.sample_distance::<f32>(&medium, segment, 0, remaining, stream).depth
@@ -102,7 +94,7 @@ fn nanoseconds_per_query() {
             _ => 0.0,
         };
         println!(
-            "plume {{\"tracker\": \"{}\", \"query\": {query:?}, \"alone\": {alone:?}, \"flight\": {flight:?}, \"bias\": {bias}, \
+            "plume {{\"tracker\": \"{}\", \"query\": {query:?}, \"flight\": {flight:?}, \"bias\": {bias}, \
              \"error\": {error}, \"off\": {off}, \"worst\": {worst}, \"step\": {step}}}",
             tracker.choice().name()
         );
