@@ -292,10 +292,19 @@ mod tests {
     #[test]
     fn a_reference_is_as_deep_as_all_contenders() {
         let depths = |options: &[&str]| words(referees(&contenders(options).unwrap()).unwrap().remove(0));
-        assert_eq!(depths(&[]), "--integrator bdpt --tracker auto");
-        assert_eq!(depths(&["--vary", "max-depth=2,3"]), "--integrator bdpt --tracker auto");
-        assert_eq!(depths(&["--vary", "max-depth=2"]), "--integrator bdpt --tracker auto --max-depth 2");
-        assert_eq!(depths(&["--vary", "max-depth=-1"]), "--integrator bdpt --tracker auto --max-depth -1");
+        assert_eq!(depths(&[]), "--integrator bdpt --strategies hit,next-event,join,lens --tracker auto");
+        assert_eq!(
+            depths(&["--vary", "max-depth=2,3"]),
+            "--integrator bdpt --strategies hit,next-event,join,lens --tracker auto"
+        );
+        assert_eq!(
+            depths(&["--vary", "max-depth=2"]),
+            "--integrator bdpt --strategies hit,next-event,join,lens --tracker auto --max-depth 2"
+        );
+        assert_eq!(
+            depths(&["--vary", "max-depth=-1"]),
+            "--integrator bdpt --strategies hit,next-event,join,lens --tracker auto --max-depth -1"
+        );
     }
 
     #[test]

@@ -23,12 +23,19 @@ use crate::{
     },
 };
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::{
+    collections::HashMap,
+    panic::{AssertUnwindSafe, catch_unwind},
+};
 
 /// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
 const SEED: u64 = 0x7079_6c6f_7473;
 /// Samples of each pixel that takes part: enough for a variance.
 const PASSES: usize = 8;
+/// Segments after which no further pass begins, but for the second one: where walks are long, few say enough.
+const SEGMENTS: f64 = 2e6;
+/// Longest path. Where walks hardly ever end, what comes later would be most of the time and little of the light.
+const DEEPEST: u32 = 256;
 /// Blocks of pixels that take part, at most.
 const BLOCKS: usize = 2;
 /// The image is divided into so many tiles across and down, at most, whose pixels count as one.
@@ -75,7 +82,9 @@ pub fn choose(
         return base;
     }
     let survivals = [Survival::Albedo, Survival::FourthRoot];
-    let pilots = survivals.map(|survival| pilot(scene, film, settings, survival));
+    let fly = || survivals.map(|survival| pilot(scene, film, settings, survival));
+    // Renders survive a panic and say where it was.
+    let Ok(pilots) = catch_unwind(AssertUnwindSafe(fly)) else { return base };
     let reference = pilots[0].error(&base) * pilots[0].time(&base);
     let choices = survivals.iter().zip(&pilots).flat_map(|(survival, pilot)| {
         let complete = candidates(all, *survival).filter(|choice| is_complete(choice.strategies));
@@ -90,7 +99,9 @@ pub fn choose(
 
 /// A few samples of all strategies of `settings` at equal effort.
 fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival) -> Pilot {
-    let options = Options { effort: Effort { survival, ..Effort::default() }, ..settings.options };
+    let effort = Effort { survival, ..Effort::default() };
+    let max_depth = Some(settings.options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST)));
+    let options = Options { effort, max_depth, ..settings.options };
     let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*settings };
     compiled::pilot(scene, film, &settings)
 }
@@ -209,6 +220,12 @@ pub(super) struct Part {
     sums: Vec<(u32, f64)>,
 }
 
+impl Part {
+    fn segments(&self) -> f64 {
+        self.camera.work.segments + self.light.work.segments
+    }
+}
+
 /// The samples of `block` in `pass`.
 pub(super) fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
     let Ready { estimator, blocks, scene, film, seed } = ready;
@@ -251,9 +268,14 @@ impl Pilot {
     /// Gathers the samples of `ready`.
     pub fn fly<P: Profile>(ready: &Ready<'_, P>) -> Self {
         let blocks = ready.blocks.count().min(BLOCKS);
-        let tasks: Vec<(usize, usize)> =
-            (0..PASSES).flat_map(|pass| (0..blocks).map(move |block| (pass, block))).collect();
-        let parts: Vec<Part> = tasks.par_iter().map(|(pass, block)| part(ready, *pass, *block)).collect();
+        let mut parts: Vec<Part> = Vec::new();
+        for pass in 0..PASSES {
+            let done: f64 = parts.iter().map(Part::segments).sum();
+            if pass >= 2 && done > SEGMENTS {
+                break;
+            }
+            parts.par_extend((0..blocks).into_par_iter().map(|block| part(ready, pass, block)));
+        }
         Self::of(parts, ready.film, &ready.blocks)
     }
 
