@@ -41,7 +41,7 @@ def change(count: float, known: float | None) -> str:
 
 
 def per_sample(scene: Path) -> float:
-    """Of a pixel sample by all strategies."""
+    """Of a pixel sample of `bdpt`, as a pilot chooses it."""
     few, many = (instructions(scene, spp) for spp in SAMPLES)
     return (many - few) / ((SAMPLES[1] - SAMPLES[0]) * WIDTH * HEIGHT)
 

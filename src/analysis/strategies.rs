@@ -224,15 +224,10 @@ fn both(a: Strategies, b: Strategies) -> Strategies {
     StrategyKind::ALL.into_iter().filter(|kind| !b.has(*kind)).fold(a, Strategies::without)
 }
 
-/// The kinds of a set, as for `--strategies`.
-fn names(set: Strategies) -> Vec<&'static str> {
-    StrategyKind::ALL.into_iter().filter(|kind| set.has(*kind)).map(StrategyKind::name).collect()
-}
-
 fn subset(full: Strategies, set: Strategies, gain: Option<Interval>) -> SubsetReport {
     let left_out = StrategyKind::ALL.into_iter().filter(|kind| full.has(*kind) && !set.has(*kind));
     let without = left_out.map(StrategyKind::name).collect::<Vec<_>>().join(",");
-    SubsetReport { strategies: names(set).join(","), without, lacks: None, gain }
+    SubsetReport { strategies: set.names().join(","), without, lacks: None, gain }
 }
 
 /// Renders with all strategies and with each of `sets`, in turns.
@@ -300,7 +295,7 @@ fn report(setup: &Setup, options: &Options, parts: &StrategyImages, times: &Time
     let own: Option<f64> = cells.iter().map(|cell| cell.variance).sum();
     Report {
         made_by: concat!("Tyndall ", env!("CARGO_PKG_VERSION")).to_owned(),
-        strategies: names(options.strategies),
+        strategies: options.strategies.names(),
         size: [setup.film.width, setup.film.height],
         passes: parts.whole.passes() as usize,
         luminance: whole.luminance,

@@ -7,7 +7,6 @@ use crate::{
     format,
     render::{Image, Settings, adaptive::Precision, pilot::Choice},
     scene::build::Setup,
-    transport::{Strategies, observer::StrategyKind},
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -44,7 +43,7 @@ pub fn settings(
             "window": { "size": film.window.size, "offset": film.window.offset, "border": film.border },
         },
         "layers": setup.integrator.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
-        "strategies": names_of(chosen.map_or(options.strategies, |choice| choice.among)),
+        "strategies": chosen.map_or(options.strategies, |choice| choice.among).names(),
         "heuristic": options.heuristic.to_string(),
         "max_depth": options.max_depth,
         "hide_emitters": options.hide_emitters,
@@ -54,7 +53,7 @@ pub fn settings(
         "seed": seed,
         "profile": profile.name(),
         "chosen_by_pilot": chosen.map(|Choice { strategies, effort, .. }| json!({
-            "strategies": names_of(strategies),
+            "strategies": strategies.names(),
             "survival": effort.survival.name(),
             "light_walks": effort.light_walks,
             "connections": effort.connections,
@@ -62,10 +61,6 @@ pub fn settings(
         "error": precision.map(|precision| precision.error),
         "confidence": precision.map(|precision| precision.confidence),
     }))
-}
-
-fn names_of(strategies: Strategies) -> Vec<&'static str> {
-    StrategyKind::ALL.into_iter().filter(|kind| strategies.has(*kind)).map(StrategyKind::name).collect()
 }
 
 /// This program and its version.

@@ -7,7 +7,7 @@ use crate::{
     medium::{DistanceMethod, Medium},
     render::{Settings, budget::Budget, pilot::Choice},
     scene::build::Setup,
-    transport::{Effort, Options, Strategies, Survival, observer::StrategyKind},
+    transport::{Effort, Options, Strategies, Survival},
 };
 use serde_json::{Value, json};
 
@@ -39,10 +39,9 @@ impl Plan {
         let wanted = estimator.integrator.unwrap_or(setup.integrator.options.strategies);
         let known = Strategies::INTEGRATORS.iter().find(|(_, strategies)| *strategies == wanted);
         let strategies = settings.options.strategies;
-        let in_use = StrategyKind::ALL.into_iter().filter(|kind| strategies.has(*kind));
         Self {
             integrator: known.map_or("bdpt", |(name, _)| *name),
-            strategies: in_use.map(StrategyKind::name).collect(),
+            strategies: strategies.names(),
             flights: if strategies == Strategies::NONE { Vec::new() } else { flights(&setup.scene.media) },
             size: [setup.film.width, setup.film.height],
             unreached: coverage::unreached(&setup.scene, &settings.options),
@@ -83,9 +82,8 @@ impl Plan {
             text += "; longer walks";
         }
         let Some(Choice { among, gain, .. }) = self.chosen else { return text };
-        let is_left_out = |kind: &StrategyKind| among.has(*kind) && !strategies.has(*kind);
-        let left_out: Vec<&str> =
-            StrategyKind::ALL.into_iter().filter(is_left_out).map(StrategyKind::name).collect();
+        let mut left_out = among.names();
+        left_out.retain(|name| !strategies.names().contains(name));
         if !left_out.is_empty() {
             text += &format!("; without {}", list(&left_out));
         }

@@ -108,7 +108,9 @@ fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival) ->
 
 /// Every choice among the strategies of `all` where walks end by `survival`.
 fn candidates(all: Strategies, survival: Survival) -> impl Iterator<Item = Choice> {
-    let sets = (0..8u32).map(move |bits| Strategies {
+    let optional = [all.next_event, all.connection, all.lens];
+    let has = move |bits: u32| (0..3).all(|bit| bits >> bit & 1 == 0 || optional[bit as usize]);
+    let sets = (0..8u32).filter(move |bits| has(*bits)).map(move |bits| Strategies {
         next_event: all.next_event && bits & 1 == 0,
         connection: all.connection && bits & 2 == 0,
         lens: all.lens && bits & 4 == 0,
@@ -248,7 +250,7 @@ pub(super) fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) 
 #[derive(Clone, Copy, Default)]
 struct Tile {
     pixels: f64,
-    /// Camera subpaths.
+    /// Camera subpaths; 0 where the tile is left out.
     samples: f64,
     mean: f64,
     /// The variance of a pixel sample by all strategies less its second moment as the sum of those of its contributions.
@@ -258,7 +260,7 @@ struct Tile {
 /// What the samples say.
 pub(super) struct Pilot {
     tiles: Vec<Tile>,
-    /// Tile of every pixel.
+    /// Contributions, each with its tile.
     found: Vec<(u32, Found)>,
     camera: Work,
     light: Work,
@@ -313,7 +315,9 @@ impl Pilot {
                 found.push((index as u32, Found { pixel, square: square * scale, shares }));
             }
         }
-        Self { tiles, found, camera, light }
+        let mut pilot = Self { tiles, found, camera, light };
+        pilot.leave_out_outliers();
+        pilot
     }
 
     /// Time of a pixel sample, in segments.
@@ -333,25 +337,45 @@ impl Pilot {
 
     /// The squared relative error of a pixel sample, on average over the image; infinite where something is left out.
     fn error(&self, choice: &Choice) -> f64 {
-        let counts = choice.counts();
+        let errors = self.errors(choice.counts());
+        let pixels: f64 = self.seen().map(|tile| tile.pixels).sum();
+        errors.iter().sum::<f64>() / pixels.max(1.0)
+    }
+
+    /// Those of the pixels of every tile, added up, by so many samples of each kind of strategies.
+    fn errors(&self, counts: [f64; StrategyKind::ALL.len()]) -> Vec<f64> {
         let mut moments = vec![0.0; self.tiles.len()];
         for (tile, Found { square, shares, .. }) in self.found.iter().filter(|(_, found)| found.square > 0.0)
         {
             let left: f64 = shares.iter().zip(counts).map(|(share, count)| f64::from(*share) * count).sum();
             moments[*tile as usize] += square / left;
         }
-        let seen = || self.tiles.iter().zip(&moments).filter(|(tile, _)| tile.samples > 0.0);
-        let pixels: f64 = seen().map(|(tile, _)| tile.pixels).sum();
-        let mean = seen().map(|(tile, _)| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
+        let pixels: f64 = self.seen().map(|tile| tile.pixels).sum();
+        let mean = self.seen().map(|tile| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
         let floor = 0.01 * mean * mean;
         let relative = |(tile, moment): (&Tile, &f64)| {
+            if tile.samples == 0.0 && moment.is_finite() {
+                return 0.0;
+            }
             let variance = (moment + tile.rest).max(LEAST_VARIANCE * moment);
             tile.pixels * variance / (tile.mean * tile.mean + floor)
         };
-        let mut errors: Vec<f64> = seen().map(relative).collect();
-        errors.sort_unstable_by(f64::total_cmp);
-        let kept = errors.len() - (OUTLIERS * errors.len() as f64) as usize;
-        errors[..kept].iter().sum::<f64>() / pixels.max(1.0)
+        self.tiles.iter().zip(&moments).map(relative).collect()
+    }
+
+    fn seen(&self) -> impl Iterator<Item = &Tile> {
+        self.tiles.iter().filter(|tile| tile.samples > 0.0)
+    }
+
+    /// The same tiles for every choice, the worst by all strategies alike: the worst by another choice may be those that it
+    /// is bad for.
+    fn leave_out_outliers(&mut self) {
+        let errors = self.errors([1.0; StrategyKind::ALL.len()]);
+        let mut order: Vec<usize> =
+            (0..errors.len()).filter(|tile| self.tiles[*tile].samples > 0.0).collect();
+        order.sort_by(|a, b| errors[*b].total_cmp(&errors[*a]));
+        order.truncate((OUTLIERS * order.len() as f64) as usize);
+        order.into_iter().for_each(|tile| self.tiles[tile].samples = 0.0);
     }
 }
 
@@ -411,6 +435,29 @@ mod tests {
         let mut all: Vec<f64> = sums.iter().map(relative).collect();
         all.sort_unstable_by(f64::total_cmp);
         all[..(0.98 * sums.len() as f64) as usize].iter().sum::<f64>() / sums.len() as f64
+    }
+
+    /// A corner of the image that other strategies hardly see, or do not, decides against them.
+    #[test]
+    fn what_a_choice_is_bad_for_is_no_outlier() {
+        let found = |shares| Found { pixel: 0, square: 1.0, shares };
+        let pilot = |corner| {
+            let tiles = vec![Tile { pixels: 1.0, samples: 1.0, mean: 0.7, rest: 0.0 }; 100];
+            let found =
+                (0..100).map(|tile| (tile, found(if tile == 7 { corner } else { [1.0, 0.0, 0.0, 0.0] })));
+            let work = Work { walks: 1.0, ..Work::default() };
+            let mut pilot = Pilot { tiles, found: found.collect(), camera: work, light: work };
+            pilot.leave_out_outliers();
+            pilot
+        };
+        let effort = Effort::default();
+        let all = Choice { among: Strategies::BDPT, strategies: Strategies::BDPT, effort, gain: 1.0 };
+        let without = Choice { strategies: Strategies::PT, ..all };
+        for (corner, most) in [([1e-6, 0.0, 0.0, 1.0], 1e7), ([0.0, 0.0, 0.0, 1.0], f64::INFINITY)] {
+            let pilot = pilot(corner);
+            assert!(pilot.error(&all) < 10.0);
+            assert!((1e3..=most).contains(&pilot.error(&without)), "{}", pilot.error(&without));
+        }
     }
 
     /// From the samples of all strategies, the noise of others is known before they run. What samples have in common is not.

@@ -67,6 +67,11 @@ impl Strategies {
         }
     }
 
+    /// Names of those that run, as in scene files and on the command line.
+    pub fn names(self) -> Vec<&'static str> {
+        StrategyKind::ALL.into_iter().filter(|kind| self.has(*kind)).map(StrategyKind::name).collect()
+    }
+
     /// True if the strategy of `s` light and `t` camera vertices runs. Emitters in view are left to camera subpaths that hit
     /// them, with far less noise than light subpaths' starts that are connected to the lens.
     pub fn runs(self, s: u32, t: u32) -> bool {
