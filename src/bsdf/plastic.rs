@@ -125,7 +125,7 @@ impl Plastic {
     /// The base between two directions on the upper side.
     #[inline]
     fn scatter(&self, shares: &Shares, wi: Vec3, wo: Vec3) -> BsdfValue {
-        let [into, out] = [wi, wo].map(|w| 1.0 - self.coat.reflectance(w.z));
+        let (into, out) = (1.0 - self.coat.reflectance(wi.z), 1.0 - self.coat.reflectance(wo.z));
         BsdfValue {
             value: shares.base * (into * out),
             pdf_fwd: into * shares.of_base * warp::cosine_hemisphere_pdf(wo.z),

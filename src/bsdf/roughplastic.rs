@@ -117,7 +117,7 @@ impl RoughPlastic {
         let facets = &self.microfacets;
         let masking = facets.masking_over_cosine(wi) * facets.masking_over_cosine(wo);
         let reflected = 0.25 * facets.distribution(m) * masking * self.coat.reflectance(wi.dot(m).min(1.0));
-        let [into, out] = [wi, wo].map(|w| self.transmittance(w.z));
+        let (into, out) = (self.transmittance(wi.z), self.transmittance(wo.z));
         let pdf = |from: Vec3, into: f32, to: Vec3| {
             let coat = 0.25 * facets.visible_pdf_over_cosine(from, m);
             let base = warp::cosine_hemisphere_pdf(to.z);

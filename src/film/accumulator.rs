@@ -5,7 +5,7 @@
 //! each other whatever the sampler, while passes of one half may be spread evenly together.
 
 use crate::math::{
-    Spectrum, SpectrumExt, Vec3,
+    Spectrum, SpectrumExt, Vec3, axes,
     exact_sum::{ExactSum, MOST_TERMS},
     relative::Relative,
     spectrum::LUMINANCE,
@@ -45,7 +45,7 @@ impl Pixel {
     }
 
     fn sums(&self) -> [f64; 3] {
-        self.sum.each_ref().map(ExactSum::value)
+        axes(|channel| self.sum[channel].value())
     }
 }
 
@@ -69,7 +69,7 @@ impl Accumulator {
             pixels.iter_mut().zip(values).for_each(|(pixel, value)| pixel.add(*value, sign));
         });
         for (products, value) in self.products.iter_mut().zip(pass) {
-            let [r, g, b] = value.to_array().map(f64::from);
+            let [r, g, b] = value.as_dvec3().to_array();
             let pass = [r * r, r * g, r * b, g * g, g * b, b * b];
             products.iter_mut().zip(pass).for_each(|(sum, product)| sum.add(product));
         }
@@ -96,9 +96,8 @@ impl Accumulator {
     /// The mean of all passes.
     pub fn mean(&self) -> Vec<Spectrum> {
         let scale = 1.0 / self.passes().max(1) as f64;
-        let of_pixel = |pixel: &Pixel| {
-            Spectrum::from_array(pixel.sum.each_ref().map(|sum| (sum.value() * scale) as f32))
-        };
+        let of_pixel =
+            |pixel: &Pixel| Spectrum::from_array(axes(|channel| (pixel.sum[channel].value() * scale) as f32));
         self.pixels.par_iter().map(of_pixel).collect()
     }
 
@@ -112,7 +111,7 @@ impl Accumulator {
     /// sampler spreads their random numbers evenly, the variance is less.
     pub fn variance(&self, row: Vec3) -> Option<Vec<f32>> {
         let n = self.passes() as f64;
-        let [r, g, b] = row.to_array().map(f64::from);
+        let [r, g, b] = row.as_dvec3().to_array();
         let of_pixel = |(pixel, products): (&Pixel, &[ExactSum; 6])| {
             let sum = pixel.sums();
             let mean = (r * sum[0] + g * sum[1] + b * sum[2]) / n;
@@ -160,7 +159,7 @@ impl Accumulator {
         if even == 0.0 || odd == 0.0 {
             return None;
         }
-        let [r, g, b] = LUMINANCE.to_array().map(f64::from);
+        let [r, g, b] = LUMINANCE.as_dvec3().to_array();
         let moments = |pixel: &Pixel| {
             let (sum, contrast) = (pixel.sums(), pixel.contrast.value());
             let sum = r * sum[0] + g * sum[1] + b * sum[2];
@@ -178,7 +177,7 @@ impl Accumulator {
 
 /// (`row` . rgb)^2 from the products of r, g and b.
 fn square_of(row: Vec3, products: &[ExactSum; 6]) -> f64 {
-    let [r, g, b] = row.to_array().map(f64::from);
+    let [r, g, b] = row.as_dvec3().to_array();
     let factors = [r * r, 2.0 * r * g, 2.0 * r * b, g * g, 2.0 * g * b, b * b];
     factors.iter().zip(products).map(|(factor, product)| factor * product.value()).sum()
 }

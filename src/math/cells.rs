@@ -1,6 +1,6 @@
 //! The cells of a lattice that a straight line crosses, in order (Amanatides & Woo 1987).
 
-use super::RaySegment;
+use super::{RaySegment, axes};
 use glam::{Vec3A, Vec3Swizzles};
 
 /// A cell that is crossed.
@@ -44,7 +44,7 @@ impl Cells {
     #[inline]
     pub fn new(segment: &RaySegment, first: f32, last: f32, size: [u32; 3]) -> Self {
         let (origin, direction) = (Vec3A::from(segment.origin), Vec3A::from(segment.direction));
-        let end = Vec3A::from_array(size.map(|n| n as f32));
+        let end = Vec3A::from_array(axes(|i| size[i] as f32));
         let cell = (origin + direction * first).floor().clamp(Vec3A::ZERO, end - 1.0);
         let is_down = direction.cmplt(Vec3A::ZERO);
         let step = Vec3A::select(is_down, Vec3A::NEG_ONE, Vec3A::ONE);
@@ -54,7 +54,7 @@ impl Cells {
         // A line that never meets a boundary has none but the border's.
         let plane = Vec3A::select(inverse.abs().cmpeq(Vec3A::INFINITY), border, plane);
         let widths = [1, size[0] as i32, (size[0] * size[1]) as i32];
-        let [x, y, z] = std::array::from_fn(|i| if direction[i] < 0.0 { -widths[i] } else { widths[i] });
+        let [x, y, z] = axes(|i| if direction[i] < 0.0 { -widths[i] } else { widths[i] });
         let mut cells = Self {
             cell: (0..3).map(|i| cell[i] as i32 * widths[i]).sum(),
             next: Vec3A::INFINITY,

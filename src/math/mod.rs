@@ -1,5 +1,6 @@
 //! Vectors, frames, colours, warps and measures: what every other module builds on.
 
+pub mod axes;
 pub mod black_body;
 pub mod boxes;
 pub mod cells;
@@ -19,6 +20,7 @@ pub mod srgb;
 pub mod warp;
 pub mod wrap;
 
+pub use axes::axes;
 pub use channels::Channels;
 pub use frame::Frame;
 pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3, Vec2, Vec3, vec2, vec3};

@@ -347,7 +347,7 @@ impl Pilot {
         let mut moments = vec![0.0; self.tiles.len()];
         for (tile, Found { square, shares, .. }) in self.found.iter().filter(|(_, found)| found.square > 0.0)
         {
-            let left: f64 = shares.iter().zip(counts).map(|(share, count)| f64::from(*share) * count).sum();
+            let left: f64 = (0..counts.len()).map(|kind| f64::from(shares[kind]) * counts[kind]).sum();
             moments[*tile as usize] += square / left;
         }
         let pixels: f64 = self.seen().map(|tile| tile.pixels).sum();

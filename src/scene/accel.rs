@@ -101,6 +101,7 @@ impl Geometry {
     }
 
     /// A point on `shape`, uniform by area: density 1 / `area` [1/m^2].
+    #[inline]
     pub fn sample_area(&self, shape: u32, stream: &mut Stream) -> SurfacePoint {
         let point = self.shapes[shape as usize].sample_area(stream);
         SurfacePoint { shape, ..point }

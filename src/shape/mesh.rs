@@ -10,7 +10,7 @@ use super::{
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::{DVec3, Frame, Vec2, Vec3, offset::LARGEST_COORDINATE, warp},
+    math::{DVec3, Frame, Vec2, Vec3, axes, offset::LARGEST_COORDINATE, warp},
     memory,
     sampling::Stream,
 };
@@ -100,7 +100,7 @@ impl Mesh {
     /// Triangle `index` as the ray tracer needs it.
     #[inline]
     pub fn flat(&self, index: usize) -> Flat {
-        let [a, b, c] = self.triangles[index].map(|i| self.positions[i as usize]);
+        let [a, b, c] = axes(|i| self.positions[self.triangles[index][i] as usize]);
         let (edge_u, edge_v) = (b - a, c - a);
         let normal = edge_u.as_dvec3().cross(edge_v.as_dvec3()).normalize().as_vec3();
         Flat { corner: a, edge_u, edge_v, normal, triangle: true }
@@ -128,7 +128,7 @@ impl Mesh {
         if self.normals.is_empty() {
             return geometric;
         }
-        let [a, b, c] = self.triangles[index].map(|i| self.normals[i as usize]);
+        let [a, b, c] = axes(|i| self.normals[self.triangles[index][i] as usize]);
         (a * (1.0 - u - v) + b * u + c * v).normalize_or(geometric)
     }
 
@@ -138,7 +138,7 @@ impl Mesh {
         if self.uvs.is_empty() {
             return (Vec2::new(u, v), edge_u);
         }
-        let [a, b, c] = self.triangles[index].map(|i| self.uvs[i as usize]);
+        let [a, b, c] = axes(|i| self.uvs[self.triangles[index][i] as usize]);
         let (along_u, along_v) = (b - a, c - a);
         let tangent = (edge_u * along_v.y - edge_v * along_u.y) * along_u.perp_dot(along_v).signum();
         (a + along_u * u + along_v * v, tangent)

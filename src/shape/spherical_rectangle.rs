@@ -77,7 +77,7 @@ impl Seen {
         // z components of the four edge planes' unit normals.
         let component = |e: f64| e / (z0 * z0 + e * e).sqrt();
         let (n0, n1, n2, n3) = (-component(y0), component(x1), component(y1), -component(x0));
-        let g = [-n0 * n1, -n1 * n2, -n2 * n3, -n3 * n0].map(from_cosine);
+        let g = [from_cosine(-n0 * n1), from_cosine(-n1 * n2), from_cosine(-n2 * n3), from_cosine(-n3 * n0)];
         let g23 = multiply(g[2], g[3]);
         let sum = multiply(multiply(g[0], g[1]), g23);
         // The four angles sum to S + 2 pi.

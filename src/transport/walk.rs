@@ -100,7 +100,7 @@ pub struct Kind {
 /// Walks from `departure` until absorption, escape or the depth limit, showing every vertex to `visitor`.
 ///
 /// LW96 eq. 4: the recursion by which L is estimated.
-#[inline]
+#[inline(always)]
 pub fn walk<P: Profile>(
     scene: &Scene,
     kind: Kind,
@@ -180,7 +180,7 @@ impl<L: Channels> Arrival<L> {
 }
 
 /// The vertex at the end of a flight; none if its density is not finite and positive.
-#[inline]
+#[inline(always)]
 pub fn land<P: Profile, V: Visitor<P>>(
     scene: &Scene,
     kind: Kind,

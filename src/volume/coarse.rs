@@ -1,7 +1,7 @@
 //! What a volume is like from afar: its range and its mean in every cell of a coarse lattice.
 
 use super::{Volume, VolumeModel};
-use crate::math::{Affine3A, RaySegment, Spectrum, Vec3, cells::Cells, vec3};
+use crate::math::{Affine3A, RaySegment, Spectrum, Vec3, axes, cells::Cells, vec3};
 
 pub use crate::math::cells::Crossing as Piece;
 
@@ -111,7 +111,7 @@ impl<T> Coarse<T> {
     #[inline]
     pub fn cell_at(&self, position: Vec3) -> Option<u32> {
         let cell = self.to_cells.transform_point3(position).floor();
-        let size = self.size.map(|n| n as f32);
+        let size = axes(|i| self.size[i] as f32);
         let inside = (0..3).all(|axis| cell[axis] >= 0.0 && cell[axis] < size[axis]);
         inside.then(|| index_of([cell.x as u32, cell.y as u32, cell.z as u32], self.size))
     }
@@ -131,13 +131,13 @@ impl<T> Coarse<T> {
     /// From where to where `segment` is in the lattice.
     #[inline]
     pub fn clip(&self, segment: &RaySegment) -> [f32; 2] {
-        let [x, y, z] = self.size.map(|n| n as f32);
+        let [x, y, z] = axes(|i| self.size[i] as f32);
         segment.mapped(&self.to_cells).within(Vec3::ZERO, vec3(x, y, z)).unwrap_or([0.0, 0.0])
     }
 
     /// True if the box from `low` to `high` lies within the lattice up to rounding.
     pub fn covers(&self, low: Vec3, high: Vec3) -> bool {
-        let end = Vec3::from_array(self.size.map(|n| n as f32));
+        let end = Vec3::from_array(axes(|i| self.size[i] as f32));
         (0..8).all(|corner| {
             let high_at = |axis: usize| corner >> axis & 1 == 1;
             let corner = Vec3::from_array(std::array::from_fn(|i| if high_at(i) { high[i] } else { low[i] }));

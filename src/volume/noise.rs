@@ -9,7 +9,11 @@
 //! is no closed form along a line.
 
 use super::placed::{Function, Line, Placed, positive};
-use crate::{description::Params, error::Result, math::DVec3};
+use crate::{
+    description::Params,
+    error::Result,
+    math::{DVec3, axes},
+};
 use noise::{NoiseFn, Perlin};
 use std::{fmt, sync::Arc};
 
@@ -55,7 +59,7 @@ const SLOPE: f64 = 1.154_700_538_379_252 * (std::f64::consts::SQRT_2 + 3.78 * 1.
 impl Octave {
     fn at(&self, position: DVec3) -> f64 {
         let cells = position * self.frequency + self.shift;
-        self.noise.get(cells.to_array().map(|x| x.rem_euclid(PERIOD)))
+        self.noise.get(axes(|i| cells[i].rem_euclid(PERIOD)))
     }
 }
 

@@ -20,7 +20,7 @@ use super::{
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::DVec3,
+    math::{DVec3, axes},
 };
 use std::sync::Arc;
 
@@ -187,8 +187,8 @@ impl Tile {
     /// The same, box by box.
     fn walk(&self, line: &Line, first: f64, last: f64) -> f64 {
         let start = line.at(first);
-        let mut cell = [0, 1, 2].map(|axis| self.cell(start[axis]));
-        let step = [0, 1, 2].map(|axis| line.direction[axis].signum());
+        let mut cell = axes(|axis| self.cell(start[axis]));
+        let step = axes(|axis| line.direction[axis].signum());
         let border = |cell: &[f64; 3], axis: usize| match self.0.repeats && self.mixes(axis) {
             true if line.direction[axis] != 0.0 => {
                 let plane = 2.0 * self.0.half * (cell[axis] + 0.5 * step[axis]);
@@ -196,7 +196,7 @@ impl Tile {
             }
             _ => f64::INFINITY,
         };
-        let mut next = [0, 1, 2].map(|axis| border(&cell, axis));
+        let mut next = axes(|axis| border(&cell, axis));
         let (mut at, mut sum) = (first, 0.0);
         // Far out, where f64 cannot distinguish boxes, borders may stop moving.
         for _ in 0..2 * CROSSED as usize {
@@ -218,7 +218,7 @@ impl Tile {
         let (middle, half) = (0.5 * (first + last), 0.5 * (last - first));
         let value = |x: f64| {
             let at = line.at(middle + half * x);
-            self.mixed_value(DVec3::from_array([0, 1, 2].map(|axis| self.local(at[axis], cell[axis]))))
+            self.mixed_value(DVec3::from_array(axes(|axis| self.local(at[axis], cell[axis]))))
         };
         let mean: f64 = self.0.rules[3].iter().map(|[x, weight]| weight * value(*x)).sum();
         mean * (last - first)
@@ -312,14 +312,13 @@ impl Function for Tile {
 
     #[inline]
     fn eval(&self, position: DVec3) -> f64 {
-        let at =
-            DVec3::from_array([0, 1, 2].map(|axis| self.local(position[axis], self.cell(position[axis]))));
+        let at = DVec3::from_array(axes(|axis| self.local(position[axis], self.cell(position[axis]))));
         let axes: f64 = (0..3).map(|axis| horner(&self.0.axes[axis], at[axis])).sum();
         if self.0.mixed.is_empty() { axes } else { axes + self.mixed_value(at) }
     }
 
     fn range(&self, low: DVec3, high: DVec3) -> [f64; 2] {
-        let folded = [0, 1, 2].map(|axis| self.folded(low[axis], high[axis]));
+        let folded = axes(|axis| self.folded(low[axis], high[axis]));
         let mut sum = [0.0; 2];
         let mut add = |[least, most]: [f64; 2]| sum = [sum[0] + least, sum[1] + most];
         for (list, [a, b]) in self.0.axes.iter().zip(folded).filter(|(list, _)| !list.is_empty()) {
@@ -328,7 +327,7 @@ impl Function for Tile {
         }
         let hull = folded.map(|[a, b]| [a[0].min(b[0]), a[1].max(b[1])]);
         for Term { coefficient, powers } in &self.0.mixed {
-            let [x, y, z] = [0, 1, 2].map(|axis| power(hull[axis], powers[axis]));
+            let [x, y, z] = axes(|axis| power(hull[axis], powers[axis]));
             let [a, b] = product(product(x, y), z).map(|bound| bound * coefficient);
             let slack = 1e-13 * a.abs().max(b.abs());
             add([a.min(b) - slack, a.max(b) + slack]);

@@ -36,7 +36,7 @@ struct Cell {
 impl Cell {
     /// Of a cell like `summary`, times `scale`, where the control may exceed the least extinction by `reach`.
     fn new(summary: &Summary, scale: f32, reach: Option<f32>) -> Self {
-        let [least, majorant] = [summary.least, summary.most].map(|bound| bound * scale);
+        let (least, majorant) = (summary.least * scale, summary.most * scale);
         let mean = summary.mean * scale;
         let control = reach.map_or(Spectrum::ZERO, |reach| mean.min(Spectrum::splat(least + reach)));
         let rate = (majorant - control.min_element()).max(control.max_element() - least);

@@ -1,7 +1,7 @@
 //! The innermost loop: a ray against four flat primitives at once, or against one sphere.
 
 use crate::{
-    math::{Vec3, offset::SEAM},
+    math::{Vec3, axes, offset::SEAM},
     shape::{Flat, Hit, Ray},
 };
 use glam::{BVec4A, Vec4};
@@ -35,8 +35,8 @@ impl WideRay {
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Self {
         Self {
-            origin: ray.origin.to_array().map(Vec4::splat),
-            direction: ray.direction.to_array().map(Vec4::splat),
+            origin: axes(|i| Vec4::splat(ray.origin[i])),
+            direction: axes(|i| Vec4::splat(ray.direction[i])),
         }
     }
 }
@@ -91,9 +91,9 @@ impl FlatPack {
     /// nothing cancels near the primitive however far it is from the origin of space.
     #[inline(always)]
     fn test(&self, ray: &WideRay, t_max: f32) -> Found {
-        let from: [Vec4; 3] = std::array::from_fn(|i| ray.origin[i] - self.corner.0[i]);
+        let from = axes(|i| ray.origin[i] - self.corner.0[i]);
         let t = -self.normal.dot(&from) / self.normal.dot(&ray.direction);
-        let at: [Vec4; 3] = std::array::from_fn(|i| from[i] + t * ray.direction[i]);
+        let at = axes(|i| from[i] + t * ray.direction[i]);
         let (u, v) = (self.axis_u.dot(&at), self.axis_v.dot(&at));
         let slack = Vec4::splat(SEAM) + Vec4::splat(SEAM) * self.reach * t;
         let (low, high) = (u.min(v), u.max(v));

@@ -5,7 +5,10 @@ use super::{
     tree::{BEYOND, FLATS, INNER, KIND, Node, RARE, ROUND, Tree},
 };
 use crate::{
-    math::offset::{BOX_WIDENING, LEAST_COMPONENT},
+    math::{
+        axes,
+        offset::{BOX_WIDENING, LEAST_COMPONENT},
+    },
     shape::{CurvedModel, Hit, Ray},
 };
 use glam::Vec4;
@@ -22,11 +25,11 @@ impl Slabs {
     #[inline(always)]
     fn new(ray: &Ray, wide: &WideRay) -> Self {
         let least = |d: f32| if d.abs() < LEAST_COMPONENT { LEAST_COMPONENT.copysign(d) } else { d };
-        let direction = ray.direction.to_array().map(least);
+        let direction = axes(|i| least(ray.direction[i]));
         Self {
             origin: wide.origin,
-            inverse: direction.map(|d| Vec4::splat(1.0 / d)),
-            first: direction.map(|d| usize::from(d < 0.0)),
+            inverse: axes(|i| Vec4::splat(1.0 / direction[i])),
+            first: axes(|i| usize::from(direction[i] < 0.0)),
         }
     }
 

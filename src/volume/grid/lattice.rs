@@ -3,7 +3,7 @@
 
 use super::super::{Samples, Summary};
 use super::voxel::{SIDE, VALUES, Voxel, corners, weights};
-use crate::math::Wrap;
+use crate::math::{Wrap, axes};
 
 /// Cells along a side of a brick.
 pub const BRICK: usize = 8;
@@ -144,15 +144,15 @@ impl<V: Voxel> Lattice<V> {
     /// The value at a point, in cells.
     #[inline]
     pub fn eval(&self, at: [f64; 3]) -> V {
-        let cell: [usize; 3] = std::array::from_fn(|i| (at[i] as usize).min(self.cells[i] - 1));
-        let brick = &self.bricks[self.index(cell.map(|i| i / BRICK))];
+        let cell = axes(|i| (at[i] as usize).min(self.cells[i] - 1));
+        let brick = &self.bricks[self.index(axes(|i| cell[i] / BRICK))];
         let Some(values) = &brick.values else { return brick.mean };
-        let [x, y, z] = cell.map(|i| i % BRICK);
+        let [x, y, z] = axes(|i| cell[i] % BRICK);
         let index = x + SIDE * (y + SIDE * z);
         if self.filter == Filter::Nearest {
             return values[index];
         }
-        let [low, high] = weights(std::array::from_fn(|i| at[i] - cell[i] as f64));
+        let [low, high] = weights(axes(|i| at[i] - cell[i] as f64));
         corners(values, index).map_or(brick.mean, |corners| V::weighted(corners, low, high))
     }
 
@@ -161,8 +161,8 @@ impl<V: Voxel> Lattice<V> {
     pub fn range(&self, low: [f64; 3], high: [f64; 3]) -> [V; 2] {
         let brick = |x: f64, i: usize| (x.max(0.0) as usize / BRICK).min(self.size[i] - 1);
         // A little wider than requested, as `eval` rounds its positions in its own way.
-        let first: [usize; 3] = std::array::from_fn(|i| brick(low[i] - 1e-3, i));
-        let last: [usize; 3] = std::array::from_fn(|i| brick(high[i] + 1e-3, i));
+        let first = axes(|i| brick(low[i] - 1e-3, i));
+        let last = axes(|i| brick(high[i] + 1e-3, i));
         let start = &self.bricks[self.index(first)];
         let mut range = [start.least, start.most];
         for z in first[2]..=last[2] {

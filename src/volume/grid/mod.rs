@@ -19,7 +19,7 @@ use crate::{
     description::Params,
     error::{Error, Result},
     math::{
-        Affine3A, Channels, DAffine3, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3,
+        Affine3A, Channels, DAffine3, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3, axes,
         boxes::{image, narrowed},
         cells::{Cells, Crossing},
     },
@@ -232,7 +232,7 @@ impl Grid {
         let range = narrowed(origin, direction, self.frame.domain, [0.0, f64::from(segment.length)]);
         let map = &self.frame.to_lattice;
         let (origin, direction) = (map.transform_point3(origin), map.transform_vector3(direction));
-        let range = narrowed(origin, direction, [DVec3::ZERO, DVec3::from(cells.map(|n| n as f64))], range);
+        let range = narrowed(origin, direction, [DVec3::ZERO, DVec3::from(axes(|i| cells[i] as f64))], range);
         let line = Line { origin: origin.to_array(), direction: direction.to_array() };
         (range[0] < range[1]).then_some((line, range))
     }
@@ -257,20 +257,20 @@ impl VolumeModel for Grid {
     #[inline]
     fn eval<L: Channels>(&self, position: Vec3) -> L {
         let local = self.frame.to_local.transform_point3(position.as_dvec3());
-        let at = DVec3::from(local.to_array().map(|x| self.frame.wrap.coordinate(x))) * self.frame.scale
-            + self.frame.shift;
+        let at =
+            DVec3::from(axes(|i| self.frame.wrap.coordinate(local[i]))) * self.frame.scale + self.frame.shift;
         each!(self, lattice => channels(lattice.eval(at.to_array())))
     }
 
     fn range(&self, low: Vec3, high: Vec3) -> [Spectrum; 2] {
         let [low, high] = image(&self.frame.to_local, [low.as_dvec3(), high.as_dvec3()]);
-        let ends: [[f64; 2]; 3] = std::array::from_fn(|axis| {
+        let ends = axes(|axis| {
             self.frame
                 .wrap
                 .interval(low[axis], high[axis])
                 .map(|x| x * self.frame.scale[axis] + self.frame.shift[axis])
         });
-        let (low, high) = (ends.map(|[low, _]| low), ends.map(|[_, high]| high));
+        let (low, high) = (axes(|i| ends[i][0]), axes(|i| ends[i][1]));
         each!(self, lattice => lattice.range(low, high).map(Channels::to_spectrum))
     }
 

@@ -1,7 +1,7 @@
 //! The kinds of values that grids hold, and the arithmetic that their interpolation needs.
 
 use super::super::Channels;
-use crate::math::{DVec3, Spectrum};
+use crate::math::{DVec3, Spectrum, axes};
 use glam::Vec4;
 
 /// Values along x, y and z of a brick: 8 cells have 9 corners.
@@ -127,7 +127,7 @@ impl Voxel for Spectrum {
 #[inline]
 pub fn weights(at: [f64; 3]) -> [Vec4; 2] {
     let positive = |x: f64| (if x > 0.0 { x } else { 0.0 }) as f32;
-    let [[x0, x1], [y0, y1], [z0, z1]] = at.map(|x| [positive(1.0 - x), positive(x)]);
+    let [[x0, x1], [y0, y1], [z0, z1]] = axes(|i| [positive(1.0 - at[i]), positive(at[i])]);
     let plane = Vec4::new(x0, x1, x0, x1) * Vec4::new(y0, y0, y1, y1);
     [plane * z0, plane * z1]
 }

@@ -6,6 +6,7 @@
 
 use super::lattice::{BRICK, Brick, Filter, Lattice};
 use super::voxel::{SIDE, VALUES, Voxel, corners, weights};
+use crate::math::axes;
 
 /// A line in the coordinates of a lattice, in cells.
 #[derive(Clone, Copy, Debug)]
@@ -64,7 +65,7 @@ impl<V: Voxel> Lattice<V> {
         last: f64,
         target: Target,
     ) -> Walk<V> {
-        let top = self.size.map(|size| size as i64 - 1);
+        let top = axes(|i| self.size[i] as i64 - 1);
         let mut at = Stepper::new(line, first, BRICK as f64, [0; 3], top);
         let mut walk = Walk { sum: V::ZERO, stop: None };
         let mut start = first;
@@ -86,7 +87,7 @@ impl<V: Voxel> Lattice<V> {
     #[inline]
     fn brick(&self, at: [i64; 3]) -> Option<&Brick<V>> {
         let is_inside = (0..3).all(|axis| (at[axis] as usize) < self.size[axis]);
-        if is_inside { self.bricks.get(self.index(at.map(|i| i as usize))) } else { None }
+        if is_inside { self.bricks.get(self.index(axes(|i| at[i] as usize))) } else { None }
     }
 }
 
@@ -141,12 +142,12 @@ impl Stepper {
         let [x, y, z] = self.next;
         let is_x = (x < y) & (x < z);
         let is_y = !is_x & (y < z);
-        let axes = [is_x, is_y, !(is_x | is_y)];
-        for (axis, is_next) in axes.into_iter().enumerate() {
+        let next = [is_x, is_y, !(is_x | is_y)];
+        for (axis, is_next) in next.into_iter().enumerate() {
             self.next[axis] += if is_next { self.delta[axis] } else { 0.0 };
             self.cell[axis] += if is_next { self.step[axis] } else { 0 };
         }
-        axes
+        next
     }
 }
 
@@ -175,14 +176,13 @@ impl<V: Voxel> Walk<V> {
         [first, last]: [f64; 2],
         target: Target,
     ) {
-        let corner = brick.map(|i| i * BRICK as i64);
-        let mut at = Stepper::new(line, first, 1.0, corner, corner.map(|i| i + BRICK as i64 - 1));
-        let local: [i64; 3] = std::array::from_fn(|i| at.cell[i] - corner[i]);
+        let corner = axes(|i| brick[i] * BRICK as i64);
+        let mut at = Stepper::new(line, first, 1.0, corner, axes(|i| corner[i] + BRICK as i64 - 1));
+        let local: [i64; 3] = axes(|i| at.cell[i] - corner[i]);
         let mut index = local[0] + SIDE as i64 * (local[1] + SIDE as i64 * local[2]);
-        let strides: [i64; 3] =
-            std::array::from_fn(|i| at.step[i] * [1, SIDE as i64, (SIDE * SIDE) as i64][i]);
-        let mut base: [f64; 3] = std::array::from_fn(|i| line.origin[i] - at.cell[i] as f64);
-        let backs = at.step.map(|step| step as f64);
+        let strides: [i64; 3] = axes(|i| at.step[i] * [1, SIDE as i64, (SIDE * SIDE) as i64][i]);
+        let mut base: [f64; 3] = axes(|i| line.origin[i] - at.cell[i] as f64);
+        let backs = axes(|i| at.step[i] as f64);
         let mut start = first;
         loop {
             let end = at.end(start, last);
@@ -196,8 +196,7 @@ impl<V: Voxel> Walk<V> {
                 return;
             }
             start = end;
-            let axes = at.advance();
-            for (axis, is_next) in axes.into_iter().enumerate() {
+            for (axis, is_next) in at.advance().into_iter().enumerate() {
                 index += if is_next { strides[axis] } else { 0 };
                 base[axis] -= if is_next { backs[axis] } else { 0.0 };
             }
@@ -223,7 +222,7 @@ struct Cell {
 impl Cell {
     #[inline]
     fn at(&self, t: f64) -> [f64; 3] {
-        std::array::from_fn(|i| self.line.origin[i] + self.line.direction[i] * t)
+        axes(|i| self.line.origin[i] + self.line.direction[i] * t)
     }
 }
 
@@ -275,7 +274,8 @@ impl<V: Voxel> Kernel<V> for Smooth {
 
     fn reach(values: &[V; VALUES], cell: &Cell, [start, end]: [f64; 2], missing: f64, hero: usize) -> f64 {
         let Some(corners) = corners(values, cell.index) else { return start };
-        let corners = [0, 1, 9, 10, 81, 82, 90, 91].map(|i| V::channel(corners[i].wide(), hero));
+        let of = |i: usize| V::channel(corners[i].wide(), hero);
+        let corners = [of(0), of(1), of(9), of(10), of(81), of(82), of(90), of(91)];
         let value = |t: f64| interpolate(&corners, cell.at(t));
         let integral = |t: f64| {
             let (half, middle) = (0.5 * (t - start), 0.5 * (t + start));
@@ -303,7 +303,7 @@ impl<V: Voxel> Kernel<V> for Smooth {
 
 /// The trilinear interpolant between the corners of a cell, x fastest.
 fn interpolate(corners: &[f64; 8], at: [f64; 3]) -> f64 {
-    let [x, y, z] = at.map(|x| x.clamp(0.0, 1.0));
+    let [x, y, z] = axes(|i| at[i].clamp(0.0, 1.0));
     let along = |i: usize| corners[i] * (1.0 - x) + corners[i + 1] * x;
     let plane = |i: usize| along(i) * (1.0 - y) + along(i + 2) * y;
     plane(0) * (1.0 - z) + plane(4) * z
