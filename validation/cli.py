@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from validation import assets, cells, compare, comparison_page, coverage, efficiency, full, instructions, matrix, package_tests, page, plume, references, selftest
+from validation import assets, cells, compare, comparison_page, coverage, efficiency, full, growth, instructions, matrix, package_tests, page, plume, references, selftest
 from validation import studies, truths, tyndall
 from validation.cluster import cli as cluster
 from validation.compare import Effort
@@ -32,6 +32,7 @@ def parser() -> argparse.ArgumentParser:
     add_studies(commands)
     add_efficiency(commands)
     add_instructions(commands)
+    add_growth(commands)
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
@@ -175,6 +176,11 @@ def add_efficiency(commands: Commands) -> None:
 def add_instructions(commands: Commands) -> None:
     command = add(commands, "instructions", lambda options: instructions.run(options.record), "Instructions per sample of three scenes, by valgrind, against those recorded.")
     command.add_argument("--record", action="store_true", help="record them anew")
+
+
+def add_growth(commands: Commands) -> None:
+    command = add(commands, "growth", lambda options: growth.run(options.output), "How the cost of a sample grows with depth, triangles, voxels, lights, pixels and threads.")
+    command.add_argument("--output", type=Path, help="folder for growth.md and .json (default: validation/reports)")
 
 
 def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:

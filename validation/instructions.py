@@ -12,7 +12,7 @@ from validation.places import CROSSCHECK, REPORTS, ROOT, SCENES
 
 GUARDED = (SCENES / "lampbox_up.xml", efficiency.FOLDER / "glass_fog_sky.xml", CROSSCHECK / "grid_sparse.json")
 RECORD = REPORTS / "instructions.json"
-WIDTH, HEIGHT = 32, 32
+SIDE = 32
 SAMPLES = (2, 6)
 """Per pixel, of two renders: their difference leaves out starting and loading."""
 KEPT = 0.02
@@ -40,18 +40,19 @@ def change(count: float, known: float | None) -> str:
     return "" if known is None else f"{100 * (count / known - 1):+.2f} % of the recorded {known}"
 
 
-def per_sample(scene: Path) -> float:
-    """Of a pixel sample of `bdpt`, as a pilot chooses it."""
-    few, many = (instructions(scene, spp) for spp in SAMPLES)
-    return (many - few) / ((SAMPLES[1] - SAMPLES[0]) * WIDTH * HEIGHT)
+def per_sample(scene: tyndall.AnyScene, samples: tuple[int, int] = SAMPLES, side: int = SIDE, **options: tyndall.Option) -> float:
+    """Of a pixel sample of `bdpt`, as a pilot chooses it or by other `options`, in an image of `side` x `side` pixels."""
+    few, many = (instructions(scene, {"spp": spp, "size": f"{side}x{side}", **options}) for spp in samples)
+    return (many - few) / ((samples[1] - samples[0]) * side * side)
 
 
-def instructions(scene: Path, spp: int) -> int:
+def instructions(scene: tyndall.AnyScene, options: dict[str, tyndall.Option]) -> int:
     """Of a whole render on one thread."""
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
-        options = tyndall.flags({"integrator": "bdpt", "sampler": "independent", "spp": spp, "size": f"{WIDTH}x{HEIGHT}", "threads": 1, "output": Path(folder, "image.exr")})
-        count = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", str(tyndall.binary()), "render", str(scene)]
-        return collected(tyndall.call([*count, *options]).stderr)
+        usual: dict[str, tyndall.Option] = {"integrator": "bdpt", "sampler": "independent", "threads": 1, "output": Path(folder, "image.exr")}
+        count = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", str(tyndall.binary()), "render"]
+        path = tyndall.scene_file(tyndall.as_scene(scene), Path(folder))
+        return collected(tyndall.call([*count, str(path), *tyndall.flags({**usual, **options})]).stderr)
 
 
 def collected(text: str) -> int:

@@ -1,0 +1,265 @@
+"""How the cost of a sample grows with the scene and with what is asked for: depth, triangles, voxels, lights, pixels, samples,
+threads; and how long the program takes to start. Instructions, counted by valgrind, where that says enough; seconds else."""
+
+import json
+import math
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from validation import instructions, tyndall
+from validation.failure import Failure
+from validation.made_by import made_by_command
+from validation.places import REPORTS, SCENES
+from validation.volume_file import vol
+
+SAMPLES = (1, 3)
+"""Per pixel, of two renders whose difference is counted."""
+MANY_SAMPLES = (1, 41)
+"""Where loading is most of the time: hashing makes its instructions vary a little."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """What a cost depends on, and the cost."""
+
+    over: str
+    of: str
+    points: list[tuple[float, float]]
+    remark: str = ""
+    most: float = math.inf
+    """How many times the first point the last may be, at most."""
+
+    @property
+    def growth(self) -> float:
+        return self.points[-1][1] / self.points[0][1]
+
+    @property
+    def holds(self) -> bool:
+        return self.growth <= self.most
+
+
+def run(output: Path | None) -> bool:
+    """Measures, writes growth.md and .json, and judges."""
+    if shutil.which("valgrind") is None:
+        raise Failure("valgrind was not found", "apt install valgrind")
+    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
+        curves = [curve(Path(folder)) for curve in CURVES]
+    start = starting()
+    output = output or REPORTS
+    output.mkdir(parents=True, exist_ok=True)
+    found = {"curves": [asdict(curve) for curve in curves], "start_seconds": start}
+    (output / "growth.json").write_text(json.dumps(found, indent=1) + "\n")
+    text = page(curves, start)
+    (output / "growth.md").write_text(text)
+    print(text)
+    return all(curve.holds for curve in curves) and start < LONGEST_START
+
+
+def depth(_: Path) -> Curve:
+    """A closed room of fog that absorbs nothing: every walk is as long as it may be."""
+
+    def cost(most: int) -> float:
+        return instructions.per_sample(white_room(), SAMPLES, side=6, max_depth=most, strategies=tyndall.ALL_STRATEGIES) / most
+
+    return curve("greatest depth", "instructions per sample over the depth", (8, 32, 128, 512, 2000), cost, "white fog in a white room", 1.1)
+
+
+def triangles(folder: Path) -> Curve:
+    """A rough ball in fog."""
+
+    def cost(count: int) -> float:
+        side = max(2, round(math.sqrt(count / 2)))
+        path = folder / f"ball_{count}.ply"
+        path.write_bytes(ball(side))
+        scene = box_of_fog({"ball": {"type": "ply", "filename": str(path), "bsdf": grey(0.6)}})
+        return instructions.per_sample(scene, SAMPLES, strategies=tyndall.ALL_STRATEGIES)
+
+    return curve("triangles", "instructions per sample", (200, 2_000, 20_000, 200_000, 2_000_000), cost, "a rough ball in fog")
+
+
+def voxels(folder: Path) -> Curve:
+    """The same smoke in ever finer voxels."""
+
+    def cost(side: int) -> float:
+        path = folder / f"smoke_{side}.vol"
+        path.write_bytes(vol(smoke(side)))
+        return instructions.per_sample(box_of_smoke(path), SAMPLES, strategies=tyndall.ALL_STRATEGIES)
+
+    return curve("voxels along a side", "instructions per sample", (16, 32, 64, 128, 256), cost, "the same smoke under a sky and a sun")
+
+
+def lights(_: Path) -> Curve:
+    """Small lamps all over a box of fog."""
+
+    def cost(count: int) -> float:
+        at = np.random.default_rng(1).uniform(-1, 1, (count, 3))
+        lamps = {f"lamp{i}": {"type": "point", "position": [float(x) for x in place], "intensity": colour(1 / count)} for i, place in enumerate(at)}
+        return instructions.per_sample(box_of_fog(lamps), MANY_SAMPLES, strategies=tyndall.ALL_STRATEGIES)
+
+    return curve("lights", "instructions per sample", (1, 10, 100, 1_000, 10_000, 100_000), cost, "point lights all over a box of fog")
+
+
+def pixels(_: Path) -> Curve:
+    """One scene in ever larger images."""
+
+    def cost(side: int) -> float:
+        return instructions.per_sample(SCENES / "lampbox_up.xml", SAMPLES, side, strategies=tyndall.ALL_STRATEGIES)
+
+    return curve("pixels along a side", "instructions per sample", (8, 16, 32, 64, 128, 256), cost, "lampbox_up", 1.1)
+
+
+def memory(folder: Path) -> Curve:
+    """Of ever more samples."""
+
+    def cost(spp: int) -> float:
+        command = [str(tyndall.binary()), "--quiet", "render", str(SCENES / "lampbox_up.xml"), "-o", str(folder / "image.exr")]
+        return most_memory([*command, "--spp", str(spp), "--size", "256x256", "--threads", "1", "--strategies", tyndall.ALL_STRATEGIES])
+
+    return curve("samples per pixel", "greatest memory in MB", (1, 4, 16, 64), cost, "lampbox_up, 256 x 256", 1.05)
+
+
+def threads(_: Path) -> Curve:
+    """Samples per second of two threads over those of one: the median of turns."""
+    ratios = sorted(seconds(1) / seconds(2) for _ in range(TURNS))
+    return Curve("threads", "times the speed of one", [(1, 1.0), (2, ratios[TURNS // 2])], "lampbox_up, 256 x 256; the median of seven turns, seconds by a clock")
+
+
+TURNS = 7
+CURVES: Sequence[Callable[[Path], Curve]] = (depth, triangles, voxels, lights, pixels, memory, threads)
+LONGEST_START = 0.01
+"""Seconds from the command to its end, where there is nothing to do."""
+
+
+def curve(over: str, of: str, at: Sequence[int], cost: Callable[[int], float], remark: str, most: float = math.inf) -> Curve:
+    """The cost at each point."""
+    found = Curve(over, of, [(x, cost(x)) for x in at], remark, most)
+    print(line(found), flush=True)
+    return found
+
+
+def seconds(count: int) -> float:
+    """Of a render on so many threads."""
+    options: dict[str, Any] = {"spp": 24, "size": (256, 256), "strategies": tyndall.ALL_STRATEGIES}
+    return tyndall.run(SCENES / "lampbox_up.xml", threads=count, **options).render_seconds
+
+
+def most_memory(command: list[str]) -> float:
+    """Of a command, in MB."""
+    with subprocess.Popen(command) as process:
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = status
+    if status:
+        raise Failure(f"{' '.join(command)}: failed", "run the command by hand")
+    return usage.ru_maxrss / 1024
+
+
+def starting() -> float:
+    """The least seconds of many starts."""
+    found = []
+    for _ in range(50):
+        start = time.perf_counter()
+        tyndall.call([str(tyndall.binary()), "--version"])
+        found.append(time.perf_counter() - start)
+    return min(found)
+
+
+def colour(value: float) -> dict[str, Any]:
+    return {"type": "rgb", "value": [value, value, value]}
+
+
+def grey(value: float) -> dict[str, Any]:
+    return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": colour(value)}}
+
+
+def view(medium: str | None = None) -> dict[str, Any]:
+    """From outside, or in a medium."""
+    inside = {"medium": {"type": "ref", "id": medium}} if medium else {}
+    origin = [0.2, 0.1, 0.9] if medium else [0.3, 0.4, 4]
+    looking = [{"type": "lookat", "origin": origin, "target": [0, 0, 0], "up": [0, 1, 0]}]
+    film = {"type": "hdrfilm", "width": instructions.SIDE, "height": instructions.SIDE, "rfilter": {"type": "box"}}
+    return {"type": "perspective", "fov": 40, "to_world": looking, "film": film, "sampler": {"type": "independent"}, **inside}
+
+
+def white_room() -> dict[str, Any]:
+    """Nothing absorbs, and nothing gets out; the lamp reflects what it does not emit."""
+    lamp = {"type": "rectangle", "to_world": [{"type": "scale", "value": 0.3}, {"type": "translate", "value": [0, 0, -0.5]}]}
+    return {
+        "type": "scene",
+        "integrator": {"type": "volpath", "max_depth": 8},
+        "fog": {"type": "homogeneous", "id": "fog", "sigma_t": 1.0, "albedo": 1.0},
+        "sensor": view("fog"),
+        "room": {"type": "cube", "bsdf": grey(1.0), "interior": {"type": "ref", "id": "fog"}},
+        "lamp": {**lamp, "bsdf": grey(1.0), "emitter": {"type": "area", "radiance": colour(1.0)}},
+    }
+
+
+def box_of_fog(more: dict[str, Any]) -> dict[str, Any]:
+    """A box of thin fog around what there is more, under a sky."""
+    fog = {"type": "homogeneous", "id": "fog", "sigma_t": 0.5, "albedo": 0.9}
+    box = {"type": "cube", "to_world": [{"type": "scale", "value": 1.2}], "bsdf": {"type": "null"}, "interior": fog}
+    sky = {"sky": {"type": "constant", "radiance": colour(0.2)}} if not any(o["type"] == "point" for o in more.values()) else {}
+    return {"type": "scene", "integrator": {"type": "volpath", "max_depth": 8}, "sensor": view(), "box": box, **sky, **more}
+
+
+def box_of_smoke(path: Path) -> dict[str, Any]:
+    """A box of voxels under a sky and a sun."""
+    to_world = [{"type": "translate", "value": [-0.5, -0.5, -0.5]}, {"type": "scale", "value": 2}]
+    grid = {"type": "gridvolume", "filename": str(path), "to_world": to_world}
+    smoke = {"type": "heterogeneous", "sigma_t": grid, "albedo": 0.9, "scale": 4.0}
+    box = {"type": "cube", "bsdf": {"type": "null"}, "interior": smoke}
+    sun = {"type": "directional", "direction": [-1, -1, -0.5], "irradiance": colour(1.0)}
+    sky = {"type": "constant", "radiance": colour(0.2)}
+    return {"type": "scene", "integrator": {"type": "volpath", "max_depth": 8}, "sensor": view(), "box": box, "sun": sun, "sky": sky}
+
+
+def smoke(side: int) -> np.ndarray:
+    """A ball with billows, sampled at the voxels' centres."""
+    at = (np.arange(side, dtype=np.float32) + 0.5) / side - 0.5
+    z, y, x = np.meshgrid(at, at, at, indexing="ij", sparse=True)
+    radius = np.sqrt(x * x + y * y + z * z)
+    waves = np.sin(19 * x) * np.sin(23 * y + 1) * np.sin(17 * z + 2)
+    return np.clip(8 * (0.36 - radius) + 1.2 * waves, 0, 1).astype(np.float32)
+
+
+def ball(side: int) -> bytes:
+    """A PLY file of 2 side^2 triangles."""
+    u, v = np.meshgrid(np.linspace(0, 2 * np.pi, side + 1), np.linspace(0, np.pi, side + 1))
+    radius = 0.8 + 0.05 * np.sin(7 * u) * np.sin(9 * v)
+    places = np.stack([radius * np.sin(v) * np.cos(u), radius * np.cos(v), radius * np.sin(v) * np.sin(u)], axis=-1).astype("<f4")
+    first = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
+    corners = np.stack([first, first + 1, first + side + 1, first + 1, first + side + 2, first + side + 1], axis=-1).reshape(-1, 3)
+    faces = np.empty(len(corners), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, corners
+    vertices = places.reshape(-1, 3)
+    names = "".join(f"property float {name}\n" for name in "xyz")
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\n{names}element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+    return header.encode() + vertices.tobytes() + faces.tobytes()
+
+
+def page(curves: list[Curve], start: float) -> str:
+    """All curves in Markdown."""
+    wanted = "at most" if start < LONGEST_START else "MORE than"
+    return "\n".join([
+        "# How cost grows", "",
+        f"    {made_by_command()}", "",
+        *(line(curve) + "\n" for curve in curves),
+        f"Start of the program: {1000 * start:.1f} ms ({wanted} {1000 * LONGEST_START:g} ms).", "",
+    ])  # fmt: skip
+
+
+def line(curve: Curve) -> str:
+    """A curve in Markdown, with how much it grows."""
+    x = " | ".join(f"{at:,.0f}" for at, _ in curve.points)
+    y = " | ".join(f"{value:,.4g}" if value < 1000 else f"{value:,.0f}" for _, value in curve.points)
+    bound = "" if math.isinf(curve.most) else f"; at most {curve.most:g}: {'holds' if curve.holds else 'FAILS'}"
+    rule = "|---" * (len(curve.points) + 1) + "|"
+    return f"{curve.remark}: x {curve.growth:.3g} from first to last{bound}\n\n| {curve.over} | {x} |\n{rule}\n| {curve.of} | {y} |\n"
