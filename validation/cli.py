@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from validation import assets, cells, compare, comparison_page, coverage, efficiency, full, growth, instructions, matrix, package_tests, page, plume, references, selftest
+from validation import assets, cells, compare, comparison_page, coverage, efficiency, full, growth, instructions, matrix, package_tests, page, plume, rays, references, selftest
 from validation import studies, truths, tyndall
 from validation.cluster import cli as cluster
 from validation.compare import Effort
@@ -39,6 +39,7 @@ def parser() -> argparse.ArgumentParser:
     add_cluster(commands)
     add_selftest(commands)
     add_record(commands)
+    add(commands, "rays", lambda _: rays.run(), "Nanoseconds per ray against Embree, on two meshes.")
     add(commands, "full", lambda _: full.run(), full.TEXT)
     add(commands, "test", lambda _: package_tests.run(), "The tests of this package itself.")
     return top

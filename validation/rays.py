@@ -1,0 +1,96 @@
+"""Nanoseconds per ray, against Embree's queries of single rays, on one core: two meshes, rays that have nothing in common."""
+
+import os
+import re
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from validation import environment, growth
+from validation.failure import Failure
+from validation.places import ROOT
+
+REQUIREMENTS = ROOT / "validation" / "requirements-rays.txt"
+SIDES = (250, 700)
+"""Of balls of 125,000 and 980,000 triangles."""
+COUNT, CHUNK, ROUNDS = 1 << 16, 1 << 10, 20
+"""Rays, and how they are timed: all in every round, but of each chunk its best round, as other programs come and go."""
+WANTED = 0.8
+"""At least so many times as fast as Embree."""
+
+
+def run() -> bool:
+    """Prints a line a mesh; true if both are fast enough."""
+    environment.extra(REQUIREMENTS)
+    print("| triangles | query | Tyndall, ns | Embree 4, ns | times as fast |\n|---|---|---|---|---|")
+    return all([measured(side) for side in SIDES])
+
+
+def measured(side: int) -> bool:
+    """Both queries of one mesh."""
+    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
+        mesh, rays = growth.ball(side), across(np.random.default_rng(side))
+        Path(folder, "mesh.ply").write_bytes(mesh)
+        Path(folder, "rays.f32").write_bytes(rays.tobytes())
+        ours, hits = tyndall(folder)
+        theirs, found = embree(mesh, rays)
+    if abs(hits - found) > 2:
+        raise Failure(f"{hits} of {COUNT} rays hit the ball in Tyndall, {found} in Embree", "find out which is wrong")
+    for query, own, other in zip(("closest", "occluded"), ours, theirs):
+        print(f"| {2 * side * side} | {query} | {own:.0f} | {other:.0f} | {other / own:.2f} |")
+    return all(other / own >= WANTED for own, other in zip(ours, theirs))
+
+
+def across(random: np.random.Generator) -> np.ndarray:
+    """From anywhere around the ball in any direction."""
+    rays = np.empty((COUNT, 6), dtype="<f4")
+    rays[:, :3] = random.uniform(-1, 1, (COUNT, 3))
+    direction = random.normal(size=(COUNT, 3))
+    rays[:, 3:] = direction / np.linalg.norm(direction, axis=1, keepdims=True)
+    return rays
+
+
+def tyndall(folder: str) -> tuple[tuple[float, float], int]:
+    """Nanoseconds of both queries, and how many rays hit."""
+    command = ["cargo", "test", "--release", "--lib", "nanoseconds_per_ray_of_files", "--", "--ignored", "--nocapture"]
+    done = subprocess.run(command, cwd=ROOT, env={**os.environ, "TYNDALL_RAYS": folder}, capture_output=True, text=True)
+    found = re.search(r"nanoseconds (\S+) (\S+) hits (\d+)", done.stdout)
+    if found is None:
+        raise Failure(f"{' '.join(command)}: {done.stderr[-2000:]}", "run the command by hand")
+    return (float(found[1]), float(found[2])), int(found[3])
+
+
+def embree(mesh: bytes, rays: np.ndarray) -> tuple[tuple[float, float], int]:
+    """The same; the loop over rays is compiled, and its own time counts."""
+    from embreex.mesh_construction import TriangleMesh
+    from embreex.rtcore_scene import EmbreeScene
+
+    scene = EmbreeScene()
+    TriangleMesh(scene, corners(mesh))
+    origins, directions = (np.ascontiguousarray(rays[:, half]) for half in (slice(0, 3), slice(3, 6)))
+    hits = int((scene.run(origins, directions, query="DISTANCE") < 1e30).sum())
+    return (timed(scene, origins, directions, "DISTANCE"), timed(scene, origins, directions, "OCCLUDED")), hits
+
+
+def corners(mesh: bytes) -> np.ndarray:
+    """Of every triangle of `growth.ball`, (triangle, corner, axis)."""
+    header, body = mesh.split(b"end_header\n", 1)
+    [count] = re.findall(rb"element vertex (\d+)", header)
+    places = np.frombuffer(body[: 12 * int(count)], "<f4").reshape(-1, 3)
+    faces = np.frombuffer(body[12 * int(count) :], dtype=[("count", "u1"), ("corners", "<i4", 3)])["corners"]
+    return places[faces].astype(np.float32)
+
+
+def timed(scene: object, origins: np.ndarray, directions: np.ndarray, query: str) -> float:
+    """Nanoseconds per ray."""
+    best = np.full(COUNT // CHUNK, np.inf)
+    for _ in range(ROUNDS):
+        for chunk in range(len(best)):
+            part = slice(chunk * CHUNK, (chunk + 1) * CHUNK)
+            start = time.perf_counter()
+            scene.run(origins[part], directions[part], query=query)  # type: ignore[attr-defined]
+            best[chunk] = min(best[chunk], time.perf_counter() - start)
+    return float(best.sum() / COUNT * 1e9)
