@@ -57,7 +57,7 @@ def tyndall(folder: str) -> tuple[tuple[float, float], int]:
     """Nanoseconds of both queries, and how many rays hit."""
     command = ["cargo", "test", "--release", "--lib", "nanoseconds_per_ray_of_files", "--", "--ignored", "--nocapture"]
     done = subprocess.run(command, cwd=ROOT, env={**os.environ, "TYNDALL_RAYS": folder}, capture_output=True, text=True)
-    found = re.search(r"nanoseconds (\S+) (\S+) hits (\d+)", done.stdout)
+    found = re.search(r"nanoseconds (\S+) (\S+) hits (\d+)", done.stderr)
     if found is None:
         raise Failure(f"{' '.join(command)}: {done.stderr[-2000:]}", "run the command by hand")
     return (float(found[1]), float(found[2])), int(found[3])

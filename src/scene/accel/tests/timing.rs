@@ -210,9 +210,8 @@ fn primitives(geometry: &Geometry) -> Vec<Primitive> {
 fn nanoseconds_per_ray_of_files() {
     let Some(folder) = std::env::var_os("TYNDALL_RAYS").map(std::path::PathBuf::from) else { return };
     let mesh = folder.join("mesh.ply").display().to_string();
-    let geometry = Geometry::build(vec![
-        shape_of("ply", &[("filename", Value::String(mesh.into()))], DVec3::ZERO).unwrap(),
-    ]);
+    let geometry =
+        Geometry::build(vec![shape_of("ply", &[("filename", Value::String(mesh))], DVec3::ZERO).unwrap()]);
     let bytes = std::fs::read(folder.join("rays.f32")).unwrap();
     let numbers: Vec<f32> =
         bytes.chunks_exact(4).map(|four| f32::from_le_bytes(four.try_into().unwrap())).collect();
@@ -220,5 +219,5 @@ fn nanoseconds_per_ray_of_files() {
     let rays: Vec<Ray> = numbers.chunks_exact(6).map(of).collect();
     let (closest, hits) = time(&rays, |ray| geometry.closest(ray).is_some());
     let (occluded, _) = time(&rays, |ray| geometry.occluded(ray));
-    println!("\nnanoseconds {closest:.2} {occluded:.2} hits {hits}");
+    eprintln!("\nnanoseconds {closest:.2} {occluded:.2} hits {hits}");
 }
