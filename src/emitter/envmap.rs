@@ -73,9 +73,7 @@ impl EnvMap {
 impl InfiniteModel for EnvMap {
     #[inline]
     fn radiance(&self, towards: Vec3) -> Spectrum {
-        let Spot { column, row, x, y } = self.map.spot(self.to_local * towards);
-        let mix = |row| self.map.pixel(column, row).lerp(self.map.pixel(column + 1, row), x);
-        mix(row).lerp(mix(row + 1), y) * self.scale
+        self.map.radiance(&self.map.spot(self.to_local * towards)) * self.scale
     }
 
     #[inline]
@@ -92,8 +90,13 @@ impl InfiniteModel for EnvMap {
 
     #[inline]
     fn pdf_sr(&self, towards: Vec3) -> f32 {
-        let Spot { column, row, .. } = self.map.spot(self.to_local * towards);
-        self.map.cells.probability(column, row) / self.map.solid_angle(row) as f32
+        self.map.pdf_sr(&self.map.spot(self.to_local * towards))
+    }
+
+    #[inline]
+    fn radiance_and_pdf(&self, towards: Vec3) -> (Spectrum, f32) {
+        let spot = self.map.spot(self.to_local * towards);
+        (self.map.radiance(&spot) * self.scale, self.map.pdf_sr(&spot))
     }
 
     fn fluence(&self) -> DVec3 {
@@ -120,6 +123,17 @@ impl Map {
         }
         map.cells = Grid::new(width, &weights);
         (map, fluence)
+    }
+
+    #[inline]
+    fn radiance(&self, &Spot { column, row, x, y }: &Spot) -> Spectrum {
+        let mix = |row| self.pixel(column, row).lerp(self.pixel(column + 1, row), x);
+        mix(row).lerp(mix(row + 1), y)
+    }
+
+    #[inline]
+    fn pdf_sr(&self, &Spot { column, row, .. }: &Spot) -> f32 {
+        self.cells.probability(column, row) / self.solid_angle(row) as f32
     }
 
     #[inline]

@@ -123,6 +123,11 @@ pub trait InfiniteModel {
     /// Density of [`Self::sample`] [1/sr]; 1 of the only direction there is.
     fn pdf_sr(&self, towards: Vec3) -> f32;
 
+    /// [`Self::radiance`] and [`Self::pdf_sr`] together, for the cost of one where that is most of both.
+    fn radiance_and_pdf(&self, towards: Vec3) -> (Spectrum, f32) {
+        (self.radiance(towards), self.pdf_sr(towards))
+    }
+
     /// The integral of radiance over all directions [W/m^2].
     fn fluence(&self) -> DVec3;
 
@@ -187,6 +192,7 @@ emitters! {
         #[inline] fn radiance(towards: Vec3) -> Spectrum;
         #[inline] fn sample(stream: &mut Stream) -> Vec3;
         #[inline] fn pdf_sr(towards: Vec3) -> f32;
+        #[inline] fn radiance_and_pdf(towards: Vec3) -> (Spectrum, f32);
         fn fluence() -> DVec3;
         #[inline] fn direction() -> Option<Vec3>;
         fn even_radiance() -> Option<Spectrum>;
