@@ -158,7 +158,7 @@ impl Lights {
     #[inline]
     pub fn connect_over_start(&self, geometry: &Geometry, start: &EmissionSample, reference: Vec3) -> f32 {
         let index = start.light as usize;
-        let chosen = self.connections.probability(index);
+        let chosen = self.connections.probability(index, reference);
         match &start.point {
             EmitterPoint::Surface(point) => {
                 chosen * geometry.pdf_area_toward(point.shape, reference, point) / start.pdf

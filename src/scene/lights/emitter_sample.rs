@@ -40,8 +40,8 @@ impl Lights {
         if self.connections.is_empty() {
             return None;
         }
-        let (index, chosen) = self.connections.sample_precisely(stream.uniform_precisely());
-        self.sample_point_of(geometry, index, chosen as f32, reference, stream)
+        let (index, chosen) = self.connections.sample(reference, stream.uniform_precisely());
+        self.sample_point_of(geometry, index, chosen, reference, stream)
     }
 
     /// Samples a point of the emitter `index`, which is chosen with probability `chosen`.
@@ -61,11 +61,7 @@ impl Lights {
             }
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
             Kind::Infinite(sky) => self.infinite_sample(index, sky, sky.sample(stream), chosen),
-            Kind::Medium(volume) => {
-                let sample = self.volume_sample(index as u32, volume.emission.sample(stream))?;
-                let by_chance = self.connections.probability(index);
-                Some(EmitterSample { pdf: sample.pdf * (chosen / by_chance), ..sample })
-            }
+            Kind::Medium(volume) => self.volume_point(index, volume, volume.emission.sample(stream), chosen),
         }
     }
 
@@ -120,29 +116,40 @@ impl Lights {
         towards: Vec3,
         chosen: f32,
     ) -> Option<EmitterSample> {
-        let pdf = chosen * sky.pdf_sr(towards);
-        (pdf > 0.0).then(|| EmitterSample {
+        let by_sky = sky.pdf_sr(towards);
+        (by_sky > 0.0).then(|| EmitterSample {
             light: index as u32,
             point: EmitterPoint::Direction(towards),
             value: sky.radiance(towards),
             cosine: 1.0,
-            pdf,
-            pdf_start: pdf * self.starts.probability(index) / self.connections.probability(index),
+            pdf: chosen * by_sky,
+            pdf_start: self.starts.probability(index) * by_sky,
             pdf_direction: self.disk_pdf_area(),
         })
     }
 
-    /// A point of an emissive medium, however it was found; none where nothing is emitted there.
-    pub fn volume_sample(&self, light: u32, position: Vec3) -> Option<EmitterSample> {
+    /// A point of an emissive medium that a camera subpath from `reference` has found; none where nothing is emitted
+    /// there.
+    pub fn volume_hit(&self, light: u32, position: Vec3, reference: Vec3) -> Option<EmitterSample> {
         let index = light as usize;
-        let Kind::Medium(VolumeEmitter { emission, .. }) = &self.all[index].emitter.kind else { return None };
+        let Kind::Medium(volume) = &self.all[index].emitter.kind else { return None };
+        self.volume_point(index, volume, position, self.connections.probability(index, reference))
+    }
+
+    fn volume_point(
+        &self,
+        index: usize,
+        VolumeEmitter { emission, .. }: &VolumeEmitter,
+        position: Vec3,
+        chosen: f32,
+    ) -> Option<EmitterSample> {
         let (value, pdf) = (emission.at(position), emission.pdf_vol(position));
         (value.max_element() > 0.0 && pdf > 0.0).then(|| EmitterSample {
-            light,
+            light: index as u32,
             point: EmitterPoint::Volume { position, rate: emission.rate(position) },
             value,
             cosine: 1.0,
-            pdf: self.connections.probability(index) * pdf,
+            pdf: chosen * pdf,
             pdf_start: self.starts.probability(index) * pdf,
             pdf_direction: VolumeEmitter::PDF_SR,
         })
@@ -158,8 +165,8 @@ impl Lights {
         reference: Vec3,
     ) -> Option<EmitterSample> {
         let index = light as usize;
-        let pdf =
-            self.connections.probability(index) * geometry.pdf_area_toward(point.shape, reference, point);
+        let chosen = self.connections.probability(index, reference);
+        let pdf = chosen * geometry.pdf_area_toward(point.shape, reference, point);
         // Next-event estimation may be unable to find this point from there (a density of 0): the walk can.
         let mut sample =
             self.surface_sample(geometry, index, *point, pdf.max(f32::MIN_POSITIVE), reference)?;
@@ -167,10 +174,11 @@ impl Lights {
         Some(sample)
     }
 
-    /// What a camera subpath found by leaving the scene in unit `direction`; none where nothing is there.
-    pub fn infinity_hit(&self, direction: Vec3) -> Option<EmitterSample> {
+    /// What a camera subpath from `reference` found by leaving the scene in unit `direction`; none where nothing is
+    /// there.
+    pub fn infinity_hit(&self, direction: Vec3, reference: Vec3) -> Option<EmitterSample> {
         let index = self.environment? as usize;
         let sky = self.all[index].emitter.environment()?;
-        self.infinite_sample(index, sky, direction, self.connections.probability(index))
+        self.infinite_sample(index, sky, direction, self.connections.probability(index, reference))
     }
 }
