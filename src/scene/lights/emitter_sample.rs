@@ -1,6 +1,6 @@
 //! Emitter points as seen from a reference: sampled by next-event estimation or hit by a camera subpath.
 
-use super::{EmitterPoint, Geometry, Lights};
+use super::{EmitterPoint, Geometry, Lights, light_sampler::Taken};
 use crate::{
     emitter::{InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceModel, VolumeEmitter},
     math::{Spectrum, Vec3, measure},
@@ -40,8 +40,20 @@ impl Lights {
         if self.connections.is_empty() {
             return None;
         }
-        let (index, chosen) = self.connections.sample(reference, stream.uniform_precisely());
-        self.sample_point_of(geometry, index, chosen, reference, stream)
+        let (index, cell) = match self.connections.sample(reference, stream.uniform_precisely()) {
+            Taken::Emitter(index, chosen) => {
+                return self.sample_point_of(geometry, index, chosen, reference, stream);
+            }
+            Taken::Medium(index, cell) => (index, cell),
+        };
+        let Kind::Medium(volume) = &self.all[index].emitter.kind else { return None };
+        let emission = &volume.emission;
+        let position = match cell {
+            Some(cell) => emission.sample_in(cell, stream),
+            None => emission.sample(stream),
+        };
+        let pdf = self.connections.pdf_vol(index, emission, position, reference);
+        self.volume_point(index, volume, position, pdf)
     }
 
     /// Samples a point of the emitter `index`, which is chosen with probability `chosen`.
@@ -61,7 +73,10 @@ impl Lights {
             }
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
             Kind::Infinite(sky) => self.infinite_sample(index, sky, sky.sample(stream), chosen),
-            Kind::Medium(volume) => self.volume_point(index, volume, volume.emission.sample(stream), chosen),
+            Kind::Medium(volume) => {
+                let position = volume.emission.sample(stream);
+                self.volume_point(index, volume, position, chosen * volume.emission.pdf_vol(position))
+            }
         }
     }
 
@@ -133,7 +148,8 @@ impl Lights {
     pub fn volume_hit(&self, light: u32, position: Vec3, reference: Vec3) -> Option<EmitterSample> {
         let index = light as usize;
         let Kind::Medium(volume) = &self.all[index].emitter.kind else { return None };
-        self.volume_point(index, volume, position, self.connections.probability(index, reference))
+        let pdf = self.connections.pdf_vol(index, &volume.emission, position, reference);
+        self.volume_point(index, volume, position, pdf)
     }
 
     fn volume_point(
@@ -141,16 +157,16 @@ impl Lights {
         index: usize,
         VolumeEmitter { emission, .. }: &VolumeEmitter,
         position: Vec3,
-        chosen: f32,
+        pdf: f32,
     ) -> Option<EmitterSample> {
-        let (value, pdf) = (emission.at(position), emission.pdf_vol(position));
-        (value.max_element() > 0.0 && pdf > 0.0).then(|| EmitterSample {
+        let (value, by_power) = (emission.at(position), emission.pdf_vol(position));
+        (value.max_element() > 0.0 && by_power > 0.0).then(|| EmitterSample {
             light: index as u32,
             point: EmitterPoint::Volume { position, rate: emission.rate(position) },
             value,
             cosine: 1.0,
-            pdf: chosen * pdf,
-            pdf_start: self.starts.probability(index) * pdf,
+            pdf,
+            pdf_start: self.starts.probability(index) * by_power,
             pdf_direction: VolumeEmitter::PDF_SR,
         })
     }

@@ -1,19 +1,13 @@
-//! Which emitter next-event estimation takes from a reference point.
+//! Which emitter next-event estimation takes from a reference point, and of an emissive medium which cell.
 
-use super::{
-    Light,
-    light_tree::{LightTree, Moments},
-};
-use crate::{
-    emitter::{Kind, PointModel, SurfaceModel},
-    math::{Spectrum, SpectrumExt, Vec3, warp},
-    sampling::{Discrete, Stream, stream::Purpose},
-    scene::accel::Geometry,
-};
-use std::f64::consts::PI;
+mod leaves;
 
-/// How often an emitter is taken whatever the reference: the tree knows nothing of what stands in the way, and may think far
-/// too little of an emitter.
+use super::{Light, light_tree::LightTree};
+use crate::{math::Vec3, medium::Emission, sampling::Discrete};
+pub use leaves::Extent;
+
+/// How often an emitter is taken whatever the reference: the tree knows nothing of what stands in the way, and may think
+/// far too little of an emitter.
 const REGARDLESS: f64 = 0.2;
 
 /// The distribution.
@@ -21,17 +15,28 @@ const REGARDLESS: f64 = 0.2;
 pub struct LightSampler {
     /// Half by power, half uniform, whatever the reference.
     regardless: Discrete,
-    /// By what each is estimated to give the reference; none where there is nothing to choose.
+    /// By what each is estimated to give the reference; none where there is nothing to choose. The first leaves are the
+    /// emitters.
     tree: Option<LightTree>,
+    /// The emissive media whose cells are leaves.
+    media: Vec<Cells>,
 }
 
-/// What a sampler needs to know of a scene.
-pub struct Extent<'a> {
-    pub geometry: &'a Geometry,
-    /// Of a sphere around it.
-    pub centre: Vec3,
-    /// [m]
-    pub radius: f32,
+/// The leaves that are cells of an emissive medium.
+#[derive(Clone, Copy, Debug)]
+struct Cells {
+    emitter: u32,
+    /// The first of them.
+    first: u32,
+}
+
+/// What was taken.
+#[derive(Clone, Copy, Debug)]
+pub enum Taken {
+    /// An emitter, with this probability.
+    Emitter(usize, f32),
+    /// An emissive medium; of it a cell, or any part of it.
+    Medium(usize, Option<u32>),
 }
 
 impl LightSampler {
@@ -44,8 +49,8 @@ impl LightSampler {
         let count = powers.iter().filter(|p| **p > 0.0).count();
         let mixed = |p: &f64| if *p > 0.0 { p / total + 1.0 / count as f64 } else { 0.0 };
         let regardless = Discrete::new(powers.iter().map(mixed));
-        let tree = if count > 1 { extent.tree(all, &powers, count) } else { None };
-        Self { regardless, tree }
+        let (tree, media) = extent.tree(all, &powers, count);
+        Self { regardless, tree, media }
     }
 
     /// True where nothing can be connected to.
@@ -53,23 +58,29 @@ impl LightSampler {
         self.regardless.is_empty()
     }
 
-    /// The emitter that `u` in [0, 1) falls on for `reference`, and its probability.
+    /// The emitter that `u` in [0, 1) falls on for `reference`.
     #[inline]
-    pub fn sample(&self, reference: Vec3, u: f64) -> (usize, f32) {
+    pub fn sample(&self, reference: Vec3, u: f64) -> Taken {
         let Some(tree) = &self.tree else {
             let (index, probability) = self.regardless.sample_precisely(u);
-            return (index, probability as f32);
+            return Taken::Emitter(index, probability as f32);
         };
         if u < REGARDLESS {
             let (index, probability) = self.regardless.sample_precisely(u / REGARDLESS);
-            return (index, mixed(probability, tree.probability(index as u32, reference)));
+            if self.cells_of(index).is_some() {
+                return Taken::Medium(index, None);
+            }
+            return Taken::Emitter(index, mixed(probability, tree.probability(index as u32, reference)));
         }
-        let (index, by_tree) = tree.sample(reference, (u - REGARDLESS) / (1.0 - REGARDLESS));
-        let index = index as usize;
-        (index, mixed(self.regardless.probability_precisely(index), by_tree))
+        let (leaf, by_tree) = tree.sample(reference, (u - REGARDLESS) / (1.0 - REGARDLESS));
+        if let Some(cells) = self.media.iter().rev().find(|cells| cells.first <= leaf) {
+            return Taken::Medium(cells.emitter as usize, Some(leaf - cells.first));
+        }
+        let index = leaf as usize;
+        Taken::Emitter(index, mixed(self.regardless.probability_precisely(index), by_tree))
     }
 
-    /// Probability of the emitter `index` for `reference`.
+    /// Probability of the emitter `index`, which is no medium of several leaves, for `reference`.
     #[inline]
     pub fn probability(&self, index: usize, reference: Vec3) -> f32 {
         let regardless = self.regardless.probability_precisely(index);
@@ -78,76 +89,26 @@ impl LightSampler {
             _ => regardless as f32,
         }
     }
+
+    /// Density of `position` in the emissive medium `index` for `reference`, the choice of the medium included [1/m^3].
+    #[inline]
+    pub fn pdf_vol(&self, index: usize, emission: &Emission, position: Vec3, reference: Vec3) -> f32 {
+        let by_power = emission.pdf_vol(position);
+        let (Some(tree), Some(cells)) = (&self.tree, self.cells_of(index)) else {
+            return self.probability(index, reference) * by_power;
+        };
+        let Some(cell) = emission.cell_at(position).filter(|_| by_power > 0.0) else { return 0.0 };
+        let regardless = self.regardless.probability_precisely(index) * f64::from(by_power);
+        mixed(regardless, tree.probability(cells.first + cell, reference) * emission.pdf_vol_in_cell())
+    }
+
+    #[inline]
+    fn cells_of(&self, emitter: usize) -> Option<Cells> {
+        self.media.iter().copied().find(|cells| cells.emitter as usize == emitter)
+    }
 }
 
 #[inline]
 fn mixed(regardless: f64, by_tree: f32) -> f32 {
     (REGARDLESS * regardless) as f32 + (1.0 - REGARDLESS) as f32 * by_tree
-}
-
-/// Rays that are looked at for what an emitter is like: the most and the fewest of one, and of all together.
-const RAYS: [usize; 3] = [256, 16, 1 << 20];
-
-/// What is nearer than this part of the scene's radius is no nearer.
-const NEAREST: f64 = 1e-6;
-
-/// The least light of a ray, in any unit.
-const DARK: f64 = 1e-37;
-
-/// Infinity, in radii of the scene: as far around it, light from there is the same everywhere.
-const REACH: f64 = 1e4;
-
-impl Extent<'_> {
-    fn tree(&self, all: &[Light], powers: &[f64], count: usize) -> Option<LightTree> {
-        let rays = (RAYS[2] / count).clamp(RAYS[1], RAYS[0]);
-        let (mut far, mut near) = (Vec::new(), Vec::new());
-        for (index, light) in all.iter().enumerate().filter(|(index, _)| powers[*index] > 0.0) {
-            let number = index as u32;
-            if light.emitter.is_infinite() {
-                far.push((number, self.moments_of_infinite(powers[index])));
-            } else {
-                near.push((number, self.moments(light, number, rays).of_power(powers[index])));
-            }
-        }
-        LightTree::new(far, near, all.len(), NEAREST * f64::from(self.radius))
-    }
-
-    /// Of an emitter at infinity that sends `power` through the sphere around the scene.
-    fn moments_of_infinite(&self, power: f64) -> Moments {
-        let radius = f64::from(self.radius);
-        Moments::everywhere(power / (PI * radius.powi(2)), self.centre.as_dvec3(), REACH * radius)
-    }
-
-    /// What `light` sends where, up to a factor: from as many `rays`.
-    fn moments(&self, light: &Light, number: u32, rays: usize) -> Moments {
-        let ray = |sample: usize| {
-            let mut stream = Stream::sobol(3, u64::from(number), sample as u64, Purpose::Pilot);
-            let (value, position, direction) = self.ray(light, &mut stream);
-            // What is dark wherever one looks is somewhere all the same.
-            let power = f64::from(value.luminance()).clamp(DARK, f64::from(f32::MAX));
-            Moments::ray(power, position.as_dvec3(), direction.as_dvec3())
-        };
-        (0..rays).map(ray).fold(Moments::default(), |sum, ray| sum + ray)
-    }
-
-    /// Light that leaves `light`, up to a factor: value over density, position, direction.
-    fn ray(&self, light: &Light, stream: &mut Stream) -> (Spectrum, Vec3, Vec3) {
-        match (&light.emitter.kind, light.shape) {
-            (Kind::Surface(surface), Some(shape)) => {
-                let point = self.geometry.sample_area(shape, stream);
-                let emission = surface.sample(&point, 1.0, stream);
-                (emission.throughput, point.position, emission.direction)
-            }
-            (Kind::Point(point), _) => {
-                let direction = point.sample(stream);
-                (point.intensity(direction) / point.pdf_sr(direction), light.position, direction)
-            }
-            (Kind::Medium(volume), _) => {
-                let position = volume.emission.sample(stream);
-                let value = volume.emission.at(position) / volume.emission.pdf_vol(position);
-                (value, position, warp::to_sphere(stream.square()))
-            }
-            (Kind::Surface(_) | Kind::Infinite(_), _) => (Spectrum::ONE, self.centre, Vec3::ZERO),
-        }
-    }
 }

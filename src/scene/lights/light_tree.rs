@@ -76,8 +76,9 @@ impl LightTree {
         loop {
             let here = &self.nodes[node as usize];
             let (estimate, sum) = here.estimate(reference);
-            let (lane, rest) = section(estimate.to_array(), u * f64::from(sum));
-            (u, probability) = (rest, probability * (estimate[lane] / sum));
+            let (lane, before) = section(estimate, u * f64::from(sum));
+            u = ((u * f64::from(sum) - f64::from(before)) / f64::from(estimate[lane])).clamp(0.0, BELOW_ONE);
+            probability *= estimate[lane] / sum;
             node = here.children[lane];
             if node & LEAF != 0 {
                 return (node & !LEAF, probability);
@@ -102,18 +103,15 @@ impl LightTree {
     }
 }
 
-/// Which of the `parts` of a line holds `at`, and how far into it that is, in [0, 1). Parts of length 0 hold nothing.
+/// Which of the `parts` of a line holds `at`, and where that begins. Parts of length 0 hold nothing.
 #[inline]
-fn section(parts: [f32; WIDTH], at: f64) -> (usize, f64) {
-    let (mut found, mut before, mut start) = (0, 0.0, 0.0);
-    for (lane, part) in parts.into_iter().enumerate() {
-        if part > 0.0 && at >= start {
-            (found, before) = (lane, start);
-        }
-        start += f64::from(part);
-    }
-    let within = (at - before) / f64::from(parts[found]);
-    (found, within.clamp(0.0, BELOW_ONE))
+fn section(parts: Vec4, at: f64) -> (usize, f32) {
+    let [a, b, c, d] = parts.to_array();
+    let ends = Vec4::new(a, a + b, a + b + c, a + b + c + d);
+    // Rounding may have put it at the end, where there may be nothing.
+    let at = (at as f32).min(ends.w.next_down());
+    let lane = Vec4::splat(at).cmpge(ends).bitmask().trailing_ones() as usize;
+    (lane, if lane == 0 { 0.0 } else { ends[lane - 1] })
 }
 
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON;

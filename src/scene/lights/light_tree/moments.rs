@@ -49,6 +49,11 @@ impl Moments {
         }
     }
 
+    /// The same with light from around as well: mean squared distances are more by `variance` [m^2].
+    pub fn spread_by(self, variance: f64) -> Self {
+        Self { second: self.second + self.power * variance, ..self }
+    }
+
     /// Where its light comes from, on average.
     pub fn centre(&self) -> DVec3 {
         self.first / self.power

@@ -108,19 +108,24 @@ fn leaves_come_as_often_as_they_should() {
     }
 }
 
-/// A lamp at 1 m among 10 000 equal ones is found about as often as its part of all light says.
+/// The second moment of the light of one lamp over its probability, with 10 000 equal lamps around: at least 1, and
+/// far less than by equal probabilities.
 #[test]
-fn what_is_near_is_likely() {
+fn choices_follow_what_lamps_give() {
     let lamps = leaves(10_000, LAYOUTS[0].1, false);
     let tree = LightTree::new(Vec::new(), lamps.clone(), lamps.len(), 1e-5).unwrap();
-    for lamp in [3, 500, 9_999] {
-        let reference = lamps[lamp].1.centre().as_vec3() + vec3(0.02, 0.0, 0.0);
-        let gives =
-            |(_, moments): &(u32, Moments)| 1.0 / (moments.centre() - reference.as_dvec3()).length_squared();
-        let fair = gives(&lamps[lamp]) / lamps.iter().map(gives).sum::<f64>();
-        let probability = f64::from(tree.probability(lamp as u32, reference));
-        assert!((0.5..2.0).contains(&(probability / fair)), "{lamp}: {probability}, fair is {fair}");
+    let (mut stream, mut moments) = (stream(1), [0.0, 0.0]);
+    for _ in 0..50 {
+        let reference = within(&mut stream);
+        let gives = |(_, lamp): &(u32, Moments)| 1.0 / (lamp.centre() - reference).length_squared();
+        let all: f64 = lamps.iter().map(gives).sum();
+        for lamp in &lamps {
+            let share = gives(lamp) / all;
+            moments[0] += share * share / f64::from(tree.probability(lamp.0, reference.as_vec3()));
+            moments[1] += share * share * lamps.len() as f64;
+        }
     }
+    assert!(moments[0] < 0.25 * moments[1], "{moments:?} over 50 references");
 }
 
 #[test]
