@@ -2,8 +2,9 @@
 //!
 //! The same emitter point has two densities: that by which light subpaths begin there, and that by
 //! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
-//! emitter, of starts by its power, of next-event estimation by what it is estimated to give the reference. They are
-//! per area [1/m^2] for shapes, discrete for points and single directions, per solid angle [1/sr] for emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for emissive media.
+//! emitter: of starts by its power, of next-event estimation by what it is estimated to give the reference. They
+//! are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle [1/sr] for
+//! emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for emissive media.
 //! For how camera subpaths sample a point of those, and so the density of s = 0, see [`Emission::rate`].
 
 mod emission_sample;
