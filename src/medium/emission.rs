@@ -287,8 +287,45 @@ impl Emission {
     #[inline]
     pub fn sample(&self, stream: &mut Stream) -> Vec3 {
         let (cell, _) = self.cells.sample_precisely(stream.uniform_precisely());
-        let u = vec3(stream.uniform(), stream.uniform(), stream.uniform());
-        self.coarse.position(cell as u32, u)
+        self.sample_in(cell as u32, stream)
+    }
+
+    /// A point of `cell`, uniform.
+    #[inline]
+    pub fn sample_in(&self, cell: u32, stream: &mut Stream) -> Vec3 {
+        self.position_in(cell, vec3(stream.uniform(), stream.uniform(), stream.uniform()))
+    }
+
+    /// The world position of `u` in [0, 1)^3 of `cell`.
+    pub fn position_in(&self, cell: u32, u: Vec3) -> Vec3 {
+        self.coarse.position(cell, u)
+    }
+
+    /// How many cells there are, dark ones among them.
+    pub fn cell_count(&self) -> usize {
+        self.coarse.cells().len()
+    }
+
+    /// The cell around a position; none outside of all.
+    #[inline]
+    pub fn cell_at(&self, position: Vec3) -> Option<u32> {
+        self.coarse.cell_at(position)
+    }
+
+    /// The part of all power that `cell` is taken to have.
+    pub fn cell_probability(&self, cell: u32) -> f64 {
+        self.cells.probability_precisely(cell as usize)
+    }
+
+    /// Mean squared distance of a cell's points from its centre [m^2].
+    pub fn cell_variance(&self) -> f64 {
+        self.coarse.cell_variance()
+    }
+
+    /// Density of `sample_in` [1/m^3].
+    #[inline]
+    pub fn pdf_vol_in_cell(&self) -> f32 {
+        (1.0 / self.coarse.cell_volume()) as f32
     }
 
     /// Density of `sample` [1/m^3].

@@ -124,7 +124,11 @@ impl<'a> Preview<'a> {
         sight.veiled += sight.through * (Spectrum::ONE - remains);
         sight.through *= remains;
         let Some(hit) = hit else {
-            let sky = self.scene.lights.infinity_hit(direction).filter(|_| !segment.is_hidden());
+            let sky = self
+                .scene
+                .lights
+                .infinity_hit(direction, segment.ray().origin)
+                .filter(|_| !segment.is_hidden());
             return Some(End::Radiance(sky.map_or(Spectrum::ZERO, |sample| sample.value)));
         };
         *left -= interval.segment.length;

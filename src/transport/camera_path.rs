@@ -127,8 +127,8 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
 
     fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
         self.observer.escape(subpath);
-        let lights = &self.estimator.scene.lights;
-        self.emission(subpath, || lights.infinity_hit(-subpath.incoming));
+        let (lights, previous) = (&self.estimator.scene.lights, self.previous);
+        self.emission(subpath, || lights.infinity_hit(-subpath.incoming, previous));
     }
 }
 
@@ -218,7 +218,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         stream: &mut Stream,
     ) -> Option<(Subpath<P::MisSums>, EmitterSample)> {
         let (scene, position) = (self.estimator.scene, part.interval.segment.at(t));
-        let sample = scene.lights.volume_sample(light, position)?;
+        let sample = scene.lights.volume_hit(light, position, departure.position)?;
         let state = part.until::<P>(scene, t, self.hero, stream);
         let sigma_t = connect::rate_at::<P>(&sample.point);
         let at = Arrival { position: Some(position), cosine: 1.0, sigma_t };

@@ -101,6 +101,13 @@ impl<T> Coarse<T> {
         f64::from(self.to_world.matrix3.determinant().abs())
     }
 
+    /// Mean squared distance of a cell's points from its centre [m^2].
+    pub fn cell_variance(&self) -> f64 {
+        let edges = self.to_world.matrix3;
+        let squares = [edges.x_axis, edges.y_axis, edges.z_axis].map(|edge| edge.as_dvec3().length_squared());
+        squares.iter().sum::<f64>() / 12.0
+    }
+
     /// The world position of `u` in [0, 1)^3 of `cell`.
     pub fn position(&self, cell: u32, u: Vec3) -> Vec3 {
         let [x, y, z] = cell_of(cell, self.size);
@@ -189,6 +196,7 @@ mod tests {
         assert!((most - (1.125 + 0.25 - 3.5)).abs() < 1e-5);
         assert!((least - (1.0 - 4.0)).abs() < 1e-5);
         assert!((coarse.cell_volume() - 0.125f64.powi(3)).abs() < 1e-9);
+        assert!((coarse.cell_variance() - 0.125f64.powi(2) / 4.0).abs() < 1e-9);
         assert_eq!(coarse.cell_at(vec3(0.99, 0.5, 0.0)), None);
         let middle = coarse.position(cell, Vec3::splat(0.5));
         assert!((middle - vec3(1.0625, 0.0625, -0.9375)).abs().max_element() < 1e-5);

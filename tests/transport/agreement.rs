@@ -297,6 +297,23 @@ fn with_points_alone_in_fog() {
     all_agree("points in fog", &scene(&parts), Kind { points: true, ..Kind::default() }, 128);
 }
 
+/// Each lights its surroundings most.
+#[test]
+fn under_a_hundred_lamps() {
+    let names: Vec<String> = (0..100).map(|i| format!("lamp{i}")).collect();
+    let lamp = |i: usize| {
+        let [x, z] = [i % 10, i / 10].map(|n| 0.2 * n as f64 - 0.9);
+        lamp_ball([x, 0.8, z], 0.02, rgb(30.0, 20.0, 10.0 * (i % 3) as f64))
+    };
+    let mut parts = vec![
+        ("sensor", camera([0.0, -0.2, 0.9], [0.0, -0.3, -1.0], 8)),
+        ("room", room(0.6, Some(medium(0.8, 0.9, 0.3)))),
+        ("point", point([0.4, 0.5, -0.2], 0.5)),
+    ];
+    parts.extend(names.iter().enumerate().map(|(i, name)| (name.as_str(), lamp(i))));
+    all_agree("a hundred lamps", &scene(&parts), Kind { points: true, ..Kind::default() }, 96);
+}
+
 /// The same view by another sensor.
 fn through(sensor: &str, more: &[(&str, Value)], view: Value) -> Value {
     with(with(view, &[("type", json!(sensor))]), more)

@@ -158,12 +158,15 @@ impl Lights {
     #[inline]
     pub fn connect_over_start(&self, geometry: &Geometry, start: &EmissionSample, reference: Vec3) -> f32 {
         let index = start.light as usize;
-        let chosen = self.connections.probability(index);
-        match &start.point {
-            EmitterPoint::Surface(point) => {
-                chosen * geometry.pdf_area_toward(point.shape, reference, point) / start.pdf
+        let chosen = || self.connections.probability(index, reference);
+        match (&start.point, &self.all[index].emitter.kind) {
+            (EmitterPoint::Surface(point), _) => {
+                chosen() * geometry.pdf_area_toward(point.shape, reference, point) / start.pdf
             }
-            _ => chosen / self.starts.probability(index),
+            (EmitterPoint::Volume { position, .. }, Kind::Medium(volume)) => {
+                self.connections.pdf_vol(index, &volume.emission, *position, reference) / start.pdf
+            }
+            _ => chosen() / self.starts.probability(index),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Emitter points as seen from a reference: sampled by next-event estimation or hit by a camera subpath.
 
-use super::{EmitterPoint, Geometry, Lights};
+use super::{EmitterPoint, Geometry, Lights, light_sampler::Taken};
 use crate::{
     emitter::{InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceModel, VolumeEmitter},
     math::{Spectrum, Vec3, measure},
@@ -40,8 +40,20 @@ impl Lights {
         if self.connections.is_empty() {
             return None;
         }
-        let (index, chosen) = self.connections.sample_precisely(stream.uniform_precisely());
-        self.sample_point_of(geometry, index, chosen as f32, reference, stream)
+        let (index, cell) = match self.connections.sample(reference, stream.uniform_precisely()) {
+            Taken::Emitter(index, chosen) => {
+                return self.sample_point_of(geometry, index, chosen, reference, stream);
+            }
+            Taken::Medium(index, cell) => (index, cell),
+        };
+        let Kind::Medium(volume) = &self.all[index].emitter.kind else { return None };
+        let emission = &volume.emission;
+        let position = match cell {
+            Some(cell) => emission.sample_in(cell, stream),
+            None => emission.sample(stream),
+        };
+        let pdf = self.connections.pdf_vol(index, emission, position, reference);
+        self.volume_point(index, volume, position, pdf)
     }
 
     /// Samples a point of the emitter `index`, which is chosen with probability `chosen`.
@@ -62,9 +74,8 @@ impl Lights {
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
             Kind::Infinite(sky) => self.infinite_sample(index, sky, sky.sample(stream), chosen),
             Kind::Medium(volume) => {
-                let sample = self.volume_sample(index as u32, volume.emission.sample(stream))?;
-                let by_chance = self.connections.probability(index);
-                Some(EmitterSample { pdf: sample.pdf * (chosen / by_chance), ..sample })
+                let position = volume.emission.sample(stream);
+                self.volume_point(index, volume, position, chosen * volume.emission.pdf_vol(position))
             }
         }
     }
@@ -120,30 +131,42 @@ impl Lights {
         towards: Vec3,
         chosen: f32,
     ) -> Option<EmitterSample> {
-        let pdf = chosen * sky.pdf_sr(towards);
-        (pdf > 0.0).then(|| EmitterSample {
+        let (value, by_sky) = sky.radiance_and_pdf(towards);
+        (by_sky > 0.0).then(|| EmitterSample {
             light: index as u32,
             point: EmitterPoint::Direction(towards),
-            value: sky.radiance(towards),
+            value,
             cosine: 1.0,
-            pdf,
-            pdf_start: pdf * self.starts.probability(index) / self.connections.probability(index),
+            pdf: chosen * by_sky,
+            pdf_start: self.starts.probability(index) * by_sky,
             pdf_direction: self.disk_pdf_area(),
         })
     }
 
-    /// A point of an emissive medium, however it was found; none where nothing is emitted there.
-    pub fn volume_sample(&self, light: u32, position: Vec3) -> Option<EmitterSample> {
+    /// A point of an emissive medium that a camera subpath from `reference` has found; none where nothing is emitted
+    /// there.
+    pub fn volume_hit(&self, light: u32, position: Vec3, reference: Vec3) -> Option<EmitterSample> {
         let index = light as usize;
-        let Kind::Medium(VolumeEmitter { emission, .. }) = &self.all[index].emitter.kind else { return None };
-        let (value, pdf) = (emission.at(position), emission.pdf_vol(position));
-        (value.max_element() > 0.0 && pdf > 0.0).then(|| EmitterSample {
-            light,
+        let Kind::Medium(volume) = &self.all[index].emitter.kind else { return None };
+        let pdf = self.connections.pdf_vol(index, &volume.emission, position, reference);
+        self.volume_point(index, volume, position, pdf)
+    }
+
+    fn volume_point(
+        &self,
+        index: usize,
+        VolumeEmitter { emission, .. }: &VolumeEmitter,
+        position: Vec3,
+        pdf: f32,
+    ) -> Option<EmitterSample> {
+        let (value, by_power) = (emission.at(position), emission.pdf_vol(position));
+        (value.max_element() > 0.0 && by_power > 0.0).then(|| EmitterSample {
+            light: index as u32,
             point: EmitterPoint::Volume { position, rate: emission.rate(position) },
             value,
             cosine: 1.0,
-            pdf: self.connections.probability(index) * pdf,
-            pdf_start: self.starts.probability(index) * pdf,
+            pdf,
+            pdf_start: self.starts.probability(index) * by_power,
             pdf_direction: VolumeEmitter::PDF_SR,
         })
     }
@@ -158,8 +181,8 @@ impl Lights {
         reference: Vec3,
     ) -> Option<EmitterSample> {
         let index = light as usize;
-        let pdf =
-            self.connections.probability(index) * geometry.pdf_area_toward(point.shape, reference, point);
+        let chosen = self.connections.probability(index, reference);
+        let pdf = chosen * geometry.pdf_area_toward(point.shape, reference, point);
         // Next-event estimation may be unable to find this point from there (a density of 0): the walk can.
         let mut sample =
             self.surface_sample(geometry, index, *point, pdf.max(f32::MIN_POSITIVE), reference)?;
@@ -167,10 +190,11 @@ impl Lights {
         Some(sample)
     }
 
-    /// What a camera subpath found by leaving the scene in unit `direction`; none where nothing is there.
-    pub fn infinity_hit(&self, direction: Vec3) -> Option<EmitterSample> {
+    /// What a camera subpath from `reference` found by leaving the scene in unit `direction`; none where nothing is
+    /// there.
+    pub fn infinity_hit(&self, direction: Vec3, reference: Vec3) -> Option<EmitterSample> {
         let index = self.environment? as usize;
         let sky = self.all[index].emitter.environment()?;
-        self.infinite_sample(index, sky, direction, self.connections.probability(index))
+        self.infinite_sample(index, sky, direction, self.connections.probability(index, reference))
     }
 }

@@ -2,12 +2,15 @@
 //!
 //! The same emitter point has two densities: that by which light subpaths begin there, and that by
 //! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
-//! emitter and are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle
-//! [1/sr] for emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for emissive media.
+//! emitter: of starts by its power, of next-event estimation by what it is estimated to give the reference. They
+//! are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle [1/sr] for
+//! emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for emissive media.
 //! For how camera subpaths sample a point of those, and so the density of s = 0, see [`Emission::rate`].
 
 mod emission_sample;
 mod emitter_sample;
+mod light_sampler;
+mod light_tree;
 mod point;
 mod volume;
 
@@ -23,6 +26,7 @@ use crate::{
     medium::{Emission, Medium, MediumIndex},
     sampling::Discrete,
 };
+use light_sampler::{Extent, LightSampler};
 use std::f32::consts::PI;
 
 /// An emitter placed in its scene.
@@ -47,9 +51,8 @@ pub struct Lights {
     pub all: Vec<Light>,
     /// By power: where light subpaths start.
     starts: Discrete,
-    /// Half by power, half uniform: which emitter a point is connected to. A distant strong emitter cannot
-    /// keep a near weak one from being found.
-    connections: Discrete,
+    /// Which emitter a reference point is connected to.
+    connections: LightSampler,
     /// The emitter that each medium is.
     of_media: Vec<Option<u32>>,
     /// Index of what surrounds the scene.
@@ -74,16 +77,10 @@ impl Lights {
             power * f64::from(light.emitter.sampling_weight * arriving)
         };
         let powers: Vec<f64> = all.iter().map(weight).collect();
-        let joinable =
-            |(light, power): (&Light, &f64)| if light.emitter.is_connectible() { *power } else { 0.0 };
-        let connectible: Vec<f64> = all.iter().zip(&powers).map(joinable).collect();
-        let total: f64 = connectible.iter().sum();
-        let count = connectible.iter().filter(|p| **p > 0.0).count() as f64;
-        let mixed = |p: &f64| if *p > 0.0 { p / total + 1.0 / count } else { 0.0 };
         let environment = all.iter().position(|light| light.emitter.environment().is_some());
         Self {
             starts: Discrete::new(powers.iter().copied()),
-            connections: Discrete::new(connectible.iter().map(mixed)),
+            connections: LightSampler::new(&all, &powers, &Extent { geometry, centre, radius }),
             of_media: of_media(&all),
             environment: environment.map(|index| index as u32),
             all,

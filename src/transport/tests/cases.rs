@@ -246,7 +246,7 @@ fn of_eye<P: Profile>(
     }
     of_flights(estimator, camera, cases, stream);
     if let Some(subpath) = &camera.escaped
-        && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming)
+        && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming, previous)
     {
         let before = chain(&camera.vertices, subpath.after_dirac);
         cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(subpath, &sample));

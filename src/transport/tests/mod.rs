@@ -7,6 +7,7 @@
 
 mod cases;
 mod heuristics;
+mod next_event;
 mod path;
 mod reference;
 mod replay;
@@ -141,6 +142,25 @@ fn lights_of_all_kinds() {
     let setup = build(&[OUTSIDE, SMOKE, GROUND, SKY, SUN, POINT, SPOT, LAMP, BULB]);
     examine_all::<Bounded>("in the open", &setup, 1000);
     examine_all::<Fog>("in a room", &build(&[FOG, INSIDE, ROOM, BALL, POINT, SPOT, LAMP, BULB]), 400);
+}
+
+/// Which of them next-event estimation takes depends on where it is.
+#[test]
+fn many_lamps() {
+    let lamp = |i: u32| {
+        let (x, z) = (f64::from(i % 5) * 0.4 - 0.8, f64::from(i / 5) * 0.4 - 0.8);
+        format!(
+            r#""lamp{i}": {{"type": "sphere", "center": [{x}, 0.7, {z}], "radius": 0.05,
+                "emitter": {{"type": "area", "radiance": {}}}}}"#,
+            1 + i
+        )
+    };
+    let lamps: Vec<String> = (0..25).map(lamp).collect();
+    let lamps = || lamps.iter().map(String::as_str);
+    let room: Vec<&str> = [FOG, INSIDE, ROOM, BALL, LAMP].into_iter().chain(lamps()).collect();
+    examine_all::<Fog>("in a room", &build(&room), 400);
+    let open: Vec<&str> = [OUTSIDE, SMOKE, GROUND, SKY, SUN, POINT].into_iter().chain(lamps()).collect();
+    examine_all::<Bounded>("in the open", &build(&open), 1000);
 }
 
 #[test]

@@ -116,18 +116,19 @@ impl<'a> Reference<'a> {
 
     /// Density of the emitter's vertex as the start of a light subpath.
     pub fn start(&self, path: &Path) -> f64 {
+        let reference = path.nodes[1].position();
         if let (Some(_), Place::Sky(direction)) = (self.emitter(path).environment(), path.nodes[0].place) {
             return self
                 .scene
                 .lights
-                .infinity_hit(direction)
+                .infinity_hit(direction, reference)
                 .map_or(0.0, |sample| f64::from(sample.pdf_start));
         }
         if let Place::VolumeEmitter(position, light) = path.nodes[0].place {
             return self
                 .scene
                 .lights
-                .volume_sample(light, position)
+                .volume_hit(light, position, reference)
                 .map_or(0.0, |sample| f64::from(sample.pdf_start));
         }
         self.starts[path.light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf))
@@ -213,9 +214,11 @@ impl<'a> Reference<'a> {
                 lights.surface_hit(geometry, path.light, &point, reference)
             }
             (Kind::Infinite(_), Place::Sky(direction)) if self.emitter(path).environment().is_some() => {
-                lights.infinity_hit(direction)
+                lights.infinity_hit(direction, reference)
             }
-            (Kind::Medium(_), Place::VolumeEmitter(position, light)) => lights.volume_sample(light, position),
+            (Kind::Medium(_), Place::VolumeEmitter(position, light)) => {
+                lights.volume_hit(light, position, reference)
+            }
             (_, place) => {
                 // Single points and directions come up as often as their emitter is chosen.
                 let mut stream = Stream::new(11, 0, 0, Purpose::Study);
