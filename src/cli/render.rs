@@ -38,11 +38,12 @@ use std::{
 pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
     let mut setup = load(&arguments.scene, arguments.overrides())?;
-    let (settings, chosen) = settings(arguments, &setup)?;
-    let precision = precision(arguments, &setup, &settings)?;
     let goal = Goal::new(arguments, &setup)?;
-    let made = made::made(made::settings(&arguments.scene, &setup, &settings, chosen, precision)?);
     super::outputs::check_render(arguments, &setup, &goal)?;
+    let pool = threads(arguments.threads)?;
+    let (settings, chosen) = pool.install(|| settings(arguments, &setup))?;
+    let precision = precision(arguments, &setup, &settings)?;
+    let made = made::made(made::settings(&arguments.scene, &setup, &settings, chosen, precision)?);
     check_kept(arguments, &settings, &goal)?;
     let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
     let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, arguments.error);
@@ -52,7 +53,6 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     interrupt::listen();
     plan.announce();
     let load_time = started.elapsed().as_secs_f64();
-    let pool = threads(arguments.threads)?;
     let figures = match arguments.frames {
         None => vec![pool.install(|| shoot(&setup, &task, &goal, None))?],
         Some(frames) => pool.install(|| animate(arguments, &mut setup, &task, &goal, frames))?,

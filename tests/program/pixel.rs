@@ -243,7 +243,7 @@ fn densities_are_those_of_the_walk() {
 #[test]
 fn contributions_are_told_with_their_strategies() {
     let sandbox = Sandbox::with_scene(&foggy_room(Some(medium(0.3, 0.8, 0.3)), "box"));
-    let reported = sandbox.pixel("20 20 --samples 30 --strategies hit,next-event,join");
+    let reported = sandbox.pixel("20 20 --samples 100 --strategies hit,next-event,join");
     let samples = reported["samples"].as_array().unwrap();
     let all: Vec<&Value> = samples.iter().flat_map(|s| s["contributions"].as_array().unwrap()).collect();
     for one in &all {
