@@ -8,11 +8,13 @@
 
 mod emission_sample;
 mod emitter_sample;
+mod pivot;
 mod point;
 mod volume;
 
 pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
+pub use pivot::Pivot;
 pub use point::EmitterPoint;
 pub(super) use volume::emissive;
 
@@ -50,6 +52,10 @@ pub struct Lights {
     /// Half by power, half uniform: which emitter a point is connected to. A distant strong emitter cannot
     /// keep a near weak one from being found.
     connections: Discrete,
+    /// The same among those that equiangular sampling applies to.
+    pivoting: Discrete,
+    /// Of every emitter that it applies to.
+    pivots: Vec<Option<Pivot>>,
     /// The emitter that each medium is.
     of_media: Vec<Option<u32>>,
     /// Index of what surrounds the scene.
@@ -80,12 +86,17 @@ impl Lights {
         let total: f64 = connectible.iter().sum();
         let count = connectible.iter().filter(|p| **p > 0.0).count() as f64;
         let mixed = |p: &f64| if *p > 0.0 { p / total + 1.0 / count } else { 0.0 };
+        let pivots: Vec<Option<Pivot>> = all.iter().map(|light| Pivot::of(light, geometry)).collect();
+        let pivoting = connectible.iter().zip(&pivots);
+        let pivoting = pivoting.map(|(power, pivot)| pivot.map_or(0.0, |_| mixed(power)));
         let environment = all.iter().position(|light| light.emitter.environment().is_some());
         Self {
             starts: Discrete::new(powers.iter().copied()),
             connections: Discrete::new(connectible.iter().map(mixed)),
+            pivoting: Discrete::new(pivoting),
             of_media: of_media(&all),
             environment: environment.map(|index| index as u32),
+            pivots,
             all,
             centre,
             radius,
