@@ -98,8 +98,8 @@ pub fn choose(
             ..choice
         })
     });
-    let best = choices.max_by(|a, b| a.gain.total_cmp(&b.gain));
-    best.filter(|best| best.gain > WORTHWHILE && best.gain.is_finite()).unwrap_or(base)
+    let best = choices.max_by(|a, b| a.worth().total_cmp(&b.worth()));
+    best.filter(|best| best.worth() > WORTHWHILE && best.gain.is_finite()).unwrap_or(base)
 }
 
 /// A few samples of all strategies of `settings` at equal effort.
@@ -386,6 +386,11 @@ impl Pilot {
 }
 
 impl Choice {
+    /// Its gain, or what is left of that where it has to make up for what no integrator has of itself.
+    fn worth(&self) -> f64 {
+        if self.strategies.equiangular { self.gain / WORTHWHILE } else { self.gain }
+    }
+
     /// Samples of every kind of strategies, over those of all at equal effort.
     fn counts(&self) -> [f64; StrategyKind::ALL.len()] {
         StrategyKind::ALL.map(|kind| match kind {
