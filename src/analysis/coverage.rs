@@ -140,6 +140,8 @@ fn makers(emitter: EmitterTraits, dirac: &[bool]) -> Vec<StrategyKind> {
         StrategyKind::Connection => dirac.windows(2).any(|pair| pair == [false, false]),
         StrategyKind::Lens if dirac.is_empty() => emitter.seen && emitter.to_lens,
         StrategyKind::Lens => rough(dirac.last()),
+        // Never for more than single scattering.
+        StrategyKind::Equiangular => false,
     };
     StrategyKind::ALL.into_iter().filter(can).collect()
 }
@@ -283,7 +285,8 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
 pub fn is_trustworthy(scene: &Scene, options: &Options) -> bool {
     let missing = unreached(scene, options).len();
     let other_notes = notes(scene, options).len() - missing;
-    other_notes == 0 && (missing == 0 || options.strategies == Strategies::BDPT)
+    other_notes == 0
+        && (missing == 0 || options.strategies.without(StrategyKind::Equiangular) == Strategies::BDPT)
 }
 
 #[cfg(test)]

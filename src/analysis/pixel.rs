@@ -15,7 +15,7 @@ use crate::{
         lights::{EmitterPoint, EmitterSample},
     },
     shape::SurfacePoint,
-    transport::{Interaction, Strategies, observer::StrategyKind},
+    transport::{Interaction, Strategies},
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -462,7 +462,7 @@ impl Text<'_> {
         Contribution {
             s: one.s,
             t: one.t,
-            strategy: StrategyKind::of(one.s, one.t).name(),
+            strategy: one.kind.name(),
             eye_walk: one.walk,
             eye_vertex: one.t - 1,
             met,

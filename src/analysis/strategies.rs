@@ -333,6 +333,7 @@ impl Whole {
         let relative = |image: &Moments| share(image.luminance_variance()?, self.variance?);
         let (s, t) = match cell {
             StrategyCell::Strategy { s, t } => (Some(s), Some(t)),
+            StrategyCell::Longer(StrategyKind::Equiangular) => (Some(1), Some(2)),
             StrategyCell::Longer(_) => (None, None),
         };
         CellReport {
@@ -362,10 +363,11 @@ fn mean_luminance(image: &Moments) -> f64 {
 }
 
 impl StrategyImages {
-    /// The cells of paths of `length` segments, or of longer ones, with their images.
+    /// The cells of paths of `length` segments, or of longer ones, with their images; equiangular sampling only where it runs.
     fn of(&self, length: Option<u32>) -> impl Iterator<Item = (StrategyCell, Option<&CellImages>)> {
         let all = self.table.all().zip(self.images.iter().map(Option::as_ref));
-        all.filter(move |(cell, _)| cell.length() == length)
+        let optional = |cell: StrategyCell| cell.kind() == StrategyKind::Equiangular;
+        all.filter(move |(cell, images)| cell.length() == length && (images.is_some() || !optional(*cell)))
     }
 
     /// Mean luminance of what all strategies contribute on paths of `length` segments, or on longer ones.

@@ -15,7 +15,7 @@ use crate::{
     scene::build::Setup,
     settings::{Overrides, integrator::Restriction},
     transport::{
-        Heuristic, Options, Strategies,
+        Heuristic, Options, Strategies, equiangular_applies,
         observer::StrategyKind,
         profile::{Needs, ProfileName},
     },
@@ -46,10 +46,12 @@ pub struct Estimator {
     /// Sampling strategies to use, separated by commas [default: those of the integrator that are worth their time]
     ///
     /// Without this option, a short pilot finds out which strategies of bdpt lower the error most for their time in this
-    /// scene, and how many samples each should have; strategies that are named all have as many.
+    /// scene, and how many samples each should have; strategies that are named all have as many. Equiangular sampling runs
+    /// only if the pilot of bdpt finds it worth its time, or if it is named.
     ///
     /// hit: the camera subpath hits an emitter; next-event: it connects to a point sampled on an emitter; join: one of its
-    /// vertices connects to one of a light subpath; lens: a light subpath connects to the lens.
+    /// vertices connects to one of a light subpath; lens: a light subpath connects to the lens; equiangular: in media, a
+    /// point of the primary ray that is likely to be near an emitter connects to it.
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1, value_parser = one_of(&StrategyKind::NAMES))]
     pub strategies: Vec<StrategyKind>,
 
@@ -166,6 +168,11 @@ impl Estimator {
         } else {
             self.check_depth(heuristic, max_depth)?;
         }
+        if strategies.equiangular && !equiangular_applies(&setup.scene) {
+            let needs =
+                "a medium, an emitter that is neither at infinity nor a medium, and a sensor with a lens";
+            super::complain(&format!("warning: the strategy equiangular has no effect: it needs {needs}"));
+        }
         let forced_interaction = self.forced_interaction(setup, strategies);
         Ok(Options { strategies, heuristic, max_depth, forced_interaction, ..scene })
     }
@@ -237,12 +244,13 @@ impl Estimator {
         if self.strategies.is_empty() {
             return Ok(all);
         }
+        let all = Strategies { equiangular: all.next_event, ..all };
         if !self.strategies.iter().all(|kind| all.has(*kind)) {
             return Err(Error::new(
                 "--strategies",
                 "strategies that the integrator has",
                 "one that it leaves out",
-                "use strategies of --integrator bdpt: hit, next-event, join, lens",
+                "use strategies of --integrator bdpt: hit, next-event, join, lens, equiangular",
             ));
         }
         let unnamed = StrategyKind::ALL.into_iter().filter(|kind| !self.strategies.contains(kind));

@@ -20,6 +20,11 @@ pub const LARGEST_COORDINATE: f32 = 1e15;
 /// space of albedo 0.9 is too dark by 0.4 % at this, by 6.5 % at a tenth of it.
 pub const RESOLVED_STEPS: f32 = 100.0;
 
+/// The angle [rad] at which a ray passes an emitter, as seen from its start, that positions tell from none: distances are
+/// sampled as if no ray passed at less. At this, densities are off by the rounding of positions by a ten-thousandth, and it
+/// is no more than a pixel is wide.
+pub const RESOLVED_ANGLE: f32 = 1e-3;
+
 /// Least mean free path [m] that densities hold: those of vertices in a medium are up to its inverse cubed [1/m^3], and
 /// their products with others must stay below the largest number of f32.
 pub const LEAST_MEAN_FREE_PATH: f32 = 5e-11;

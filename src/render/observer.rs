@@ -5,7 +5,7 @@ use crate::{
     scene::lights::EmissionSample,
     transport::{
         Contribution, Departure, MisSums, Subpath, Vertex,
-        observer::{Meeting, Observer},
+        observer::{Meeting, Observer, StrategyKind},
     },
 };
 
@@ -19,8 +19,8 @@ impl<S: MisSums> Observer<S> for &mut (dyn Observer<S> + '_) {
     fn start(&mut self) {
         (**self).start();
     }
-    fn stop(&mut self, s: u32, t: u32) {
-        (**self).stop(s, t);
+    fn stop(&mut self, kind: StrategyKind, s: u32, t: u32) {
+        (**self).stop(kind, s, t);
     }
     fn emit(&mut self, start: &EmissionSample) {
         (**self).emit(start);

@@ -17,7 +17,7 @@ use crate::{
     scene::Scene,
     settings::options::{Effort, Survival},
     transport::{
-        Contribution, Departure, MisSums, Options, Strategies,
+        Contribution, Departure, MisSums, Options, Strategies, equiangular_applies,
         observer::{Meeting, Observer, StrategyKind},
         profile::Profile,
     },
@@ -52,13 +52,13 @@ mod time {
     /// Setting out from the sensor or an emitter.
     pub const START: f64 = 0.5;
     /// A connection tried, by kind of strategy.
-    pub const TRY: [f64; 4] = [0.1, 1.3, 0.7, 0.4];
+    pub const TRY: [f64; 5] = [0.1, 1.3, 0.7, 0.4, 2.0];
 }
 
 /// What was chosen, and how much it is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// Strategies that it could choose among.
+    /// Strategies that it could choose among, and equiangular sampling, which all of them do without.
     pub among: Strategies,
     /// Strategies that run.
     pub strategies: Strategies,
@@ -82,19 +82,24 @@ pub fn choose(
         return base;
     }
     let survivals = [Survival::Albedo, Survival::FourthRoot];
-    let fly = || survivals.map(|survival| pilot(scene, film, settings, survival));
+    let equiangular = all == Strategies::BDPT && equiangular_applies(scene);
+    let options = Options { strategies: Strategies { equiangular, ..all }, ..settings.options };
+    let with_all = Settings { options, ..*settings };
+    let fly = || survivals.map(|survival| pilot(scene, film, &with_all, survival));
     // Renders survive a panic and say where it was.
     let Ok(pilots) = catch_unwind(AssertUnwindSafe(fly)) else { return base };
     let reference = pilots[0].error(&base) * pilots[0].time(&base);
     let choices = survivals.iter().zip(&pilots).flat_map(|(survival, pilot)| {
-        let complete = candidates(all, *survival).filter(|choice| is_complete(choice.strategies));
+        let complete = candidates(options.strategies, *survival);
+        let complete = complete.filter(|choice| is_complete(choice.strategies));
         complete.map(move |choice| Choice {
+            among: all,
             gain: reference / (pilot.error(&choice) * pilot.time(&choice)),
             ..choice
         })
     });
-    let best = choices.max_by(|a, b| a.gain.total_cmp(&b.gain));
-    best.filter(|best| best.gain > WORTHWHILE && best.gain.is_finite()).unwrap_or(base)
+    let best = choices.max_by(|a, b| a.worth().total_cmp(&b.worth()));
+    best.filter(|best| best.worth() > WORTHWHILE && best.gain.is_finite()).unwrap_or(base)
 }
 
 /// A few samples of all strategies of `settings` at equal effort.
@@ -108,12 +113,13 @@ fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival) ->
 
 /// Every choice among the strategies of `all` where walks end by `survival`.
 fn candidates(all: Strategies, survival: Survival) -> impl Iterator<Item = Choice> {
-    let optional = [all.next_event, all.connection, all.lens];
-    let has = move |bits: u32| (0..3).all(|bit| bits >> bit & 1 == 0 || optional[bit as usize]);
-    let sets = (0..8u32).filter(move |bits| has(*bits)).map(move |bits| Strategies {
+    let optional = [all.next_event, all.connection, all.lens, all.equiangular];
+    let has = move |bits: u32| (0..4).all(|bit| bits >> bit & 1 == 0 || optional[bit as usize]);
+    let sets = (0..16u32).filter(move |bits| has(*bits)).map(move |bits| Strategies {
         next_event: all.next_event && bits & 1 == 0,
         connection: all.connection && bits & 2 == 0,
         lens: all.lens && bits & 4 == 0,
+        equiangular: all.equiangular && bits & 8 == 0,
         ..all
     });
     sets.flat_map(move |strategies| {
@@ -192,8 +198,8 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
         self.gathered.work.segments += 1.0;
     }
 
-    fn stop(&mut self, s: u32, t: u32) {
-        self.gathered.work.tries[StrategyKind::of(s, t) as usize] += 1.0;
+    fn stop(&mut self, kind: StrategyKind, _: u32, _: u32) {
+        self.gathered.work.tries[kind as usize] += 1.0;
     }
 
     fn contribute(&mut self, _: u32, _: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
@@ -370,7 +376,7 @@ impl Pilot {
     /// The same tiles for every choice, the worst by all strategies alike: the worst by another choice may be those that it
     /// is bad for.
     fn leave_out_outliers(&mut self) {
-        let errors = self.errors([1.0; StrategyKind::ALL.len()]);
+        let errors = self.errors([1.0, 1.0, 1.0, 1.0, 0.0]);
         let mut order: Vec<usize> =
             (0..errors.len()).filter(|tile| self.tiles[*tile].samples > 0.0).collect();
         order.sort_by(|a, b| errors[*b].total_cmp(&errors[*a]));
@@ -380,6 +386,11 @@ impl Pilot {
 }
 
 impl Choice {
+    /// Its gain, or what is left of that where it has to make up for what no integrator has of itself.
+    fn worth(&self) -> f64 {
+        if self.strategies.equiangular { self.gain / WORTHWHILE } else { self.gain }
+    }
+
     /// Samples of every kind of strategies, over those of all at equal effort.
     fn counts(&self) -> [f64; StrategyKind::ALL.len()] {
         StrategyKind::ALL.map(|kind| match kind {
@@ -443,8 +454,8 @@ mod tests {
         let found = |shares| Found { pixel: 0, square: 1.0, shares };
         let pilot = |corner| {
             let tiles = vec![Tile { pixels: 1.0, samples: 1.0, mean: 0.7, rest: 0.0 }; 100];
-            let found =
-                (0..100).map(|tile| (tile, found(if tile == 7 { corner } else { [1.0, 0.0, 0.0, 0.0] })));
+            let found = (0..100)
+                .map(|tile| (tile, found(if tile == 7 { corner } else { [1.0, 0.0, 0.0, 0.0, 0.0] })));
             let work = Work { walks: 1.0, ..Work::default() };
             let mut pilot = Pilot { tiles, found: found.collect(), camera: work, light: work };
             pilot.leave_out_outliers();
@@ -453,7 +464,8 @@ mod tests {
         let effort = Effort::default();
         let all = Choice { among: Strategies::BDPT, strategies: Strategies::BDPT, effort, gain: 1.0 };
         let without = Choice { strategies: Strategies::PT, ..all };
-        for (corner, most) in [([1e-6, 0.0, 0.0, 1.0], 1e7), ([0.0, 0.0, 0.0, 1.0], f64::INFINITY)] {
+        for (corner, most) in [([1e-6, 0.0, 0.0, 1.0, 0.0], 1e7), ([0.0, 0.0, 0.0, 1.0, 0.0], f64::INFINITY)]
+        {
             let pilot = pilot(corner);
             assert!(pilot.error(&all) < 10.0);
             assert!((1e3..=most).contains(&pilot.error(&without)), "{}", pilot.error(&without));

@@ -8,7 +8,7 @@ use crate::{
     scene::lights::{EmissionSample, EmitterSample},
     transport::{
         Contribution, Departure, Interaction, LightCache, MisSums, Subpath, Vertex,
-        observer::{Meeting, Observer},
+        observer::{Meeting, Observer, StrategyKind},
         profile::Profile,
     },
 };
@@ -98,6 +98,8 @@ pub struct Stop {
 pub struct Try {
     /// Which of the camera subpaths.
     pub walk: usize,
+    /// Of which kind the strategy is.
+    pub kind: StrategyKind,
     /// Light vertices.
     pub s: u32,
     /// Camera vertices, the lens among them.
@@ -328,6 +330,7 @@ struct CameraPathObserver<'a> {
 
 impl<S: MisSums> Observer<S> for CameraPathObserver<'_> {
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
+        let kind = meeting.kind(s, t);
         let partner = match meeting {
             Meeting::Met(subpath, sample) => Partner::Met(arrival(subpath), *sample),
             Meeting::Emitter(sample) => Partner::Emitter(*sample),
@@ -335,10 +338,15 @@ impl<S: MisSums> Observer<S> for CameraPathObserver<'_> {
                 let (walk, edges) = self.kept[index];
                 Partner::Light { walk, edges, position: vertex.position() }
             }
+            Meeting::Pivot(departure, vertex, sample) => {
+                self.depart(departure);
+                self.arrive(vertex);
+                Partner::Emitter(*sample)
+            }
             Meeting::Lens(_) => return,
         };
         let walk = self.done.len();
-        self.tries.push(Try { walk, s, t, partner, contribution: contribution.copied() });
+        self.tries.push(Try { walk, kind, s, t, partner, contribution: contribution.copied() });
     }
     fn depart(&mut self, departure: &Departure<S>) {
         if departure.edges == 0 && self.trail.walk.start.is_some() {

@@ -29,7 +29,7 @@ pub enum StrategyCell {
         /// Camera vertices, from 1.
         t: u32,
     },
-    /// All strategies of a kind on all longer paths.
+    /// All strategies of a kind on all longer paths; all of equiangular sampling, which has but one.
     Longer(StrategyKind),
 }
 
@@ -54,6 +54,7 @@ impl StrategyCell {
     pub fn length(self) -> Option<u32> {
         match self {
             Self::Strategy { s, t } => Some(s + t - 1),
+            Self::Longer(StrategyKind::Equiangular) => Some(2),
             Self::Longer(_) => None,
         }
     }
@@ -62,6 +63,7 @@ impl StrategyCell {
     pub fn name(self) -> String {
         match self {
             Self::Strategy { s, t } => format!("s{s}t{t}"),
+            Self::Longer(kind @ StrategyKind::Equiangular) => kind.name().to_owned(),
             Self::Longer(kind) => format!("longer_{}", kind.name().replace('-', "_")),
         }
     }
@@ -78,14 +80,14 @@ impl StrategyTable {
         Self::before(self.depth + 1) + StrategyKind::ALL.len()
     }
 
-    /// Where the strategy of `s` light and `t` camera vertices counts; their sum is at least 2.
+    /// Where the strategy of `s` light and `t` camera vertices counts, which is of `kind`; their sum is at least 2.
     #[inline]
-    pub fn index(self, s: u32, t: u32) -> usize {
+    pub fn index(self, kind: StrategyKind, s: u32, t: u32) -> usize {
         let length = s + t - 1;
-        if length <= self.depth {
+        if length <= self.depth && kind != StrategyKind::Equiangular {
             return Self::before(length) + s as usize;
         }
-        Self::before(self.depth + 1) + StrategyKind::of(s, t) as usize
+        Self::before(self.depth + 1) + kind as usize
     }
 
     /// All cells, in the order of their indices.
@@ -145,7 +147,7 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
 
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
         let (Meeting::Lens(film), Some(contribution)) = (meeting, contribution) else { return };
-        let (cell, parts) = (self.table.index(s, t) as u32, &mut self.parts);
+        let (cell, parts) = (self.table.index(StrategyKind::Lens, s, t) as u32, &mut self.parts);
         // A share of the film applies to both values equally.
         self.film.spread(film, Spectrum::ONE, |pixel, share| {
             let (weighted, alone) = (contribution.value * share, contribution.alone * share);
@@ -173,9 +175,9 @@ impl CameraPathObserver {
 }
 
 impl<S: MisSums> Observer<S> for CameraPathObserver {
-    fn contribute(&mut self, s: u32, t: u32, _: Meeting<'_, S>, contribution: Option<&Contribution>) {
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
         if let Some(contribution) = contribution {
-            let sum = &mut self.sums[self.table.index(s, t)];
+            let sum = &mut self.sums[self.table.index(meeting.kind(s, t), s, t)];
             sum.0 += contribution.value;
             sum.1 += contribution.alone;
         }
@@ -275,7 +277,7 @@ mod tests {
             for (index, cell) in all.iter().enumerate() {
                 match *cell {
                     StrategyCell::Strategy { s, t } => {
-                        assert_eq!(table.index(s, t), index);
+                        assert_eq!(table.index(StrategyKind::of(s, t), s, t), index);
                         assert!(t >= 1 && s + t >= 2 && s + t - 1 <= depth);
                     }
                     StrategyCell::Longer(kind) => {
@@ -284,8 +286,9 @@ mod tests {
                             StrategyKind::NextEvent => (1, depth + 1),
                             StrategyKind::Connection => (2, depth + 7),
                             StrategyKind::Lens => (depth + 1, 1),
+                            StrategyKind::Equiangular => (1, 2),
                         };
-                        assert_eq!(table.index(s, t), index, "{kind:?}");
+                        assert_eq!(table.index(kind, s, t), index, "{kind:?}");
                     }
                 }
             }

@@ -6,7 +6,7 @@ use crate::{
     math::Vec2,
     transport::{
         Contribution, MisSums, Vertex,
-        observer::{Meeting, Observer},
+        observer::{Meeting, Observer, StrategyKind},
         profile::Profile,
     },
 };
@@ -162,9 +162,9 @@ impl<S: MisSums> Observer<S> for TimingObserver<'_> {
         self.between.push(span);
     }
 
-    fn stop(&mut self, s: u32, t: u32) {
+    fn stop(&mut self, kind: StrategyKind, s: u32, t: u32) {
         let span = self.span();
-        self.connections[self.table.index(s, t)].push(span);
+        self.connections[self.table.index(kind, s, t)].push(span);
     }
 }
 

@@ -14,17 +14,20 @@ pub struct Strategies {
     pub connection: bool,
     /// t = 1: light subpaths connect to the lens.
     pub lens: bool,
+    /// s = 1, t = 2 in media: next-event estimation where the primary ray is near an emitter.
+    pub equiangular: bool,
 }
 
 impl Strategies {
     /// None at all: the preview `fog`, which makes no paths.
-    pub const NONE: Self = Self { emitter_hit: false, next_event: false, connection: false, lens: false };
+    pub const NONE: Self =
+        Self { emitter_hit: false, next_event: false, connection: false, lens: false, equiangular: false };
     /// Bidirectional path tracing.
-    pub const BDPT: Self = Self { emitter_hit: true, next_event: true, connection: true, lens: true };
+    pub const BDPT: Self = Self { connection: true, lens: true, ..Self::PT };
     /// Path tracing with next-event estimation.
-    pub const PT: Self = Self { emitter_hit: true, next_event: true, connection: false, lens: false };
+    pub const PT: Self = Self { emitter_hit: true, next_event: true, ..Self::NONE };
     /// Light tracing.
-    pub const LT: Self = Self { emitter_hit: false, next_event: false, connection: false, lens: true };
+    pub const LT: Self = Self { lens: true, ..Self::NONE };
 
     /// The integrators, as printed and as typed.
     pub const INTEGRATORS: [(&'static str, Self); 4] =

@@ -5,6 +5,7 @@ use super::{
     Estimator,
     cache::LightCache,
     connect::{self, Contribution, Span},
+    equiangular::FirstCollision,
     mis::{self, MisSums, Weight},
     observer::{Meeting, Observer, StrategyKind},
     profile::Profile,
@@ -23,12 +24,16 @@ use crate::{
 
 /// Gathers the radiance of one pixel sample.
 pub struct CameraPath<'a, P: Profile, R> {
-    estimator: &'a Estimator<'a, P>,
+    pub(super) estimator: &'a Estimator<'a, P>,
     cache: &'a LightCache<P::MisSums>,
     hero: usize,
     /// The last vertex that the walk left, from which next-event estimation would have been done.
     previous: Vec3,
-    observer: R,
+    /// Density of the direction that it left in.
+    pdf_fwd: f32,
+    /// Where it collided first, if equiangular sampling may have.
+    pub(super) first: Option<FirstCollision>,
+    pub(super) observer: R,
 }
 
 /// One camera subpath through `film` [pixels] and a point of the aperture, connected to the light subpaths of
@@ -51,6 +56,7 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     let departure = depart(estimator, film, aperture);
     let mut camera = CameraPath::new(estimator, cache, hero, observer);
     walk(estimator.scene, kind, departure, &mut camera, stream);
+    camera.beside_walk(&departure, stream);
     camera.observer
 }
 
@@ -89,6 +95,9 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
     #[inline]
     fn depart(&mut self, departure: &Departure<P::MisSums>) {
         self.previous = departure.position;
+        if P::MEDIA && departure.edges == 0 {
+            (self.pdf_fwd, self.first) = (departure.pdf_fwd, None);
+        }
         self.observer.depart(departure);
     }
 
@@ -101,6 +110,9 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
             && let Some(light) = self.estimator.scene.surface(point.shape).emitter
         {
             self.surface_emission(&vertex.subpath, light, point, self.previous);
+        }
+        if P::MEDIA && self.estimator.counts.equiangular > 0.0 && vertex.subpath.edges == 1 {
+            self.first = FirstCollision::of(vertex, self.previous, self.pdf_fwd);
         }
         if vertex.subpath.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
             if self.estimator.counts.next_event > 0.0 {
@@ -140,7 +152,15 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         hero: usize,
         observer: R,
     ) -> Self {
-        Self { estimator, cache, hero, previous: Vec3::ZERO, observer }
+        Self { estimator, cache, hero, previous: Vec3::ZERO, pdf_fwd: 0.0, first: None, observer }
+    }
+
+    /// What else there is along the primary ray, once the walk is done: it comes to the evenly spread numbers first.
+    #[inline]
+    pub fn beside_walk(&mut self, departure: &Departure<P::MisSums>, stream: &mut Stream) {
+        if P::MEDIA && self.estimator.counts.equiangular > 0.0 && self.estimator.max_edges >= 2 {
+            self.sample_equiangular(departure, stream);
+        }
     }
 
     /// What was gathered.
@@ -164,7 +184,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
                 contribution.as_ref(),
             );
         }
-        self.observer.stop(0, subpath.edges + 1);
+        self.observer.stop(StrategyKind::EmitterHit, 0, subpath.edges + 1);
     }
 
     /// s = 0 on a shape. Whether the walk goes on beyond it makes no difference: what the shape emits is added to what
@@ -205,7 +225,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
                 contribution.as_ref(),
             );
         }
-        self.observer.stop(0, departure.edges + 2);
+        self.observer.stop(StrategyKind::EmitterHit, 0, departure.edges + 2);
     }
 
     /// The end of a walk at a point of an emissive medium, as the emitter `light`; none where it is dark there.
@@ -243,7 +263,14 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         let unit = subpath.inv_pdf / counts.emitter_hit;
         let by_light = subpath.others_over_pdf_rev.scaled(sample.pdf_direction * sample.pdf_start * unit);
         let next_event = subpath.pdf_over_hero_before.scaled(connections * unit);
-        let others = P::MisSums::of(StrategyKind::NextEvent, next_event).and(by_light);
+        let mut others = P::MisSums::of(StrategyKind::NextEvent, next_event).and(by_light);
+        if P::MEDIA
+            && subpath.edges == 2
+            && let Some(first) = &self.first
+        {
+            let along = self.estimator.equiangular(first, sample.light).scaled(sample.pdf * unit);
+            others = others.and(P::MisSums::of(StrategyKind::Equiangular, along));
+        }
         // `value` is radiance x cosine on shapes: the walk's density already contains that cosine. The rate
         // of media is used only in weights.
         let radiance = sample.value / sample.cosine;
@@ -270,7 +297,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
             let contribution = self.join_emitter(vertex, &sample, stream);
             self.observer.contribute(1, t, Meeting::Emitter(&sample), contribution.as_ref());
         }
-        self.observer.stop(1, t);
+        self.observer.stop(StrategyKind::NextEvent, 1, t);
     }
 
     /// The connection with an emitter point picked by next-event estimation.
@@ -283,7 +310,14 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
     ) -> Option<Contribution> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let (direction, distance_squared) = sample.point.seen_from(vertex.position())?;
-        let camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
+        let mut camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
+        if P::MEDIA
+            && vertex.subpath.edges == 1
+            && let Some(first) = &self.first
+        {
+            let along = self.estimator.equiangular(first, sample.light);
+            camera.beside = Some(P::MisSums::of(StrategyKind::Equiangular, along));
+        }
         let light = connect::emitter_end::<P>(scene, sample, camera.medium, -direction, counts.emitter_hit);
         let strategy = self.estimator.strategy(StrategyKind::NextEvent);
         if P::INFINITE && sample.point.is_infinite() {
@@ -311,7 +345,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
                 let contribution =
                     self.connect_with(vertex, other, stream).map(|contribution| contribution * scale);
                 self.observer.contribute(s, t, Meeting::Light(index, other), contribution.as_ref());
-                self.observer.stop(s, t);
+                self.observer.stop(StrategyKind::Connection, s, t);
             }
         }
     }

@@ -47,6 +47,7 @@ pub fn vertex_end<S: MisSums>(
         sigma_t: vertex.sigma_t(),
         pdf_over_hero: vertex.subpath.pdf_over_hero,
         others_before: vertex.others_before(scattering.pdf_rev),
+        beside: None,
     })
 }
 
@@ -76,6 +77,7 @@ pub fn emitter_end<P: Profile>(
         sigma_t: rate_at::<P>(&sample.point),
         pdf_over_hero: P::Channels::splat(1.0),
         others_before: P::MisSums::of(StrategyKind::EmitterHit, P::Channels::splat(emitter_hits)),
+        beside: None,
     }
 }
 
@@ -197,7 +199,7 @@ pub fn connect_along<P: Profile>(
     let geometry = 1.0 / distance_squared;
     let Weight { value: weight, shares } = mis::connection_weight(a, b, between.pdf, geometry, strategy);
     let value = a.value * b.value * between.transmittance * (geometry * weight);
-    let weight_alone = mis::weight_alone(a.pdf_over_hero * b.pdf_over_hero);
+    let weight_alone = mis::weight_alone(strategy.own(a.pdf_over_hero * b.pdf_over_hero));
     let alone = a.value * b.value * between.transmittance * (geometry * weight_alone);
     Some(Contribution { value, weight, alone, weight_alone, transmittance: between.transmittance, shares })
 }

@@ -58,6 +58,7 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
             walk(scene, kind, next, &mut camera, stream);
         }
     }
+    camera.beside_walk(&departure, stream);
     camera.into_observer()
 }
 

@@ -163,7 +163,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
             let contribution = contribution / self.estimator.counts.lens;
             self.observer.contribute(s, 1, Meeting::Lens(film), Some(&contribution));
         }
-        self.observer.stop(s, 1);
+        self.observer.stop(StrategyKind::Lens, s, 1);
     }
 
     /// t = 1: a vertex as the sensor sees it through a point of its aperture, and where on the film [pixels].
@@ -186,6 +186,12 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
             && matches!(vertex.interaction, Interaction::Medium(..))
         {
             end.others_before = end.others_before.times(forced::gain(self.estimator, seen.ray));
+        }
+        if P::MEDIA
+            && self.estimator.counts.equiangular > 0.0
+            && let (1, Interaction::Medium(position, _)) = (vertex.subpath.edges, vertex.interaction)
+        {
+            end.beside = Some(self.estimator.equiangular_seen(&self.start, &end, position, &seen));
         }
         let contribution = self.connect_end(&end, &seen, false, stream)?;
         Some((seen.film, contribution))
@@ -234,6 +240,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
             sigma_t: P::Channels::splat(1.0),
             pdf_over_hero: P::Channels::splat(1.0),
             others_before: P::MisSums::none(),
+            beside: None,
         };
         let strategy = self.estimator.strategy(StrategyKind::Lens);
         if P::INFINITE && infinite {
@@ -268,5 +275,6 @@ fn start_end<P: Profile>(
         sigma_t: connect::rate_at::<P>(&start.point),
         pdf_over_hero: P::Channels::splat(1.0),
         others_before: P::MisSums::none(),
+        beside: None,
     })
 }

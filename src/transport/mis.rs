@@ -53,6 +53,9 @@ pub struct End<S: MisSums> {
     pub pdf_over_hero: S::Channels,
     /// See [`super::vertex::Vertex::others_before`].
     pub others_before: S,
+    /// A strategy that makes the same path without either walk as it is, in units of the one at hand. Only of the first end
+    /// of a connection, and only where there are media.
+    pub beside: Option<S>,
 }
 
 impl<S: MisSums> End<S> {
@@ -86,6 +89,12 @@ pub struct Weight {
 }
 
 impl Strategy {
+    /// n p^c of its own over n p^h, where the walks have `pdf_over_hero` at both ends. Equiangular sampling has no flight.
+    #[inline]
+    pub fn own<L: Channels>(&self, pdf_over_hero: L) -> L {
+        if self.kind == StrategyKind::Equiangular { L::splat(1.0) } else { pdf_over_hero }
+    }
+
     /// The weight of this strategy where `others` are all other strategies in units of its own n p^h, and `own` its n p^c.
     ///
     /// LW96 eq. 14.
@@ -109,7 +118,8 @@ pub fn connection_weight<S: MisSums>(
     let before_a = a.before(b.pdf_fwd, pdf, inverse_distance_squared);
     let before_b = b.before(a.pdf_fwd, pdf, inverse_distance_squared);
     let others = before_a.times(b.pdf_over_hero).and(before_b.times(a.pdf_over_hero));
-    strategy.weight(others.scaled(1.0 / strategy.count), a.pdf_over_hero * b.pdf_over_hero)
+    let others = if let Some(beside) = a.beside { others.and(beside) } else { others };
+    strategy.weight(others.scaled(1.0 / strategy.count), strategy.own(a.pdf_over_hero * b.pdf_over_hero))
 }
 
 /// The weight of a strategy that runs alone, times the number of channels: only the channels share the path.

@@ -35,6 +35,7 @@
 //! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`camera_path::Eye::join_emitter`] |
 //! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache | [`camera_path::Eye::connect_with`] |
 //! | s >= 1, t = 1 | the light subpath is seen by the lens, through any pixel | [`light_path::Light::connect_to_lens`] |
+//! | s = 1, t = 2 in media | a distance along the primary ray, likely near an emitter, then as s = 1 | [`equiangular`] |
 //!
 //! A pixel sample is one camera subpath; the light subpaths of a block of pixels fill the cache. `pt` and
 //! `lt` are the same with strategies left out ([`Strategies`]), other heuristics than eq. 14 sum n p
@@ -63,6 +64,7 @@
 mod cache;
 mod camera_path;
 mod connect;
+mod equiangular;
 mod forced;
 mod light_path;
 mod mis;
@@ -76,6 +78,7 @@ mod walk;
 
 pub use cache::LightCache;
 pub use connect::Contribution;
+pub use equiangular::applies as equiangular_applies;
 pub use mis::MisSums;
 pub use segment::{Interaction, NullCrossing, Segment};
 pub use vertex::{Subpath, Vertex};
@@ -103,6 +106,7 @@ pub struct Counts {
     next_event: f32,
     connection: f32,
     lens: f32,
+    equiangular: f32,
 }
 
 /// Vertices that the cache of a block should hold at most, on average: it has to fit the processor's caches.
@@ -145,6 +149,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
                 next_event: count(strategies.next_event, 1.0),
                 connection: 0.0,
                 lens: count(strategies.lens, walks_per_pass as f32),
+                equiangular: count(P::MEDIA && strategies.equiangular && equiangular_applies(scene), 1.0),
             },
             heuristic,
             survival: effort.survival,
@@ -191,6 +196,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             StrategyKind::NextEvent => self.counts.next_event,
             StrategyKind::Connection => self.counts.connection,
             StrategyKind::Lens => self.counts.lens,
+            StrategyKind::Equiangular => self.counts.equiangular,
         };
         Strategy { kind, count, heuristic: self.heuristic }
     }

@@ -25,13 +25,16 @@ pub enum StrategyKind {
     Connection,
     /// t = 1: light subpaths connect to the lens.
     Lens,
+    /// s = 1, t = 2 in media: a distance along the primary ray by equiangular sampling, then next-event estimation.
+    Equiangular,
 }
 
 impl StrategyKind {
     /// Every kind.
-    pub const ALL: [Self; 4] = [Self::EmitterHit, Self::NextEvent, Self::Connection, Self::Lens];
+    pub const ALL: [Self; 5] =
+        [Self::EmitterHit, Self::NextEvent, Self::Connection, Self::Lens, Self::Equiangular];
 
-    /// The kind of the strategy of `s` light and `t` camera vertices, the lens among these.
+    /// The kind of the strategy of `s` light and `t` camera vertices, the lens among these, that connects the walks.
     #[inline]
     pub fn of(s: u32, t: u32) -> Self {
         match (s, t) {
@@ -43,11 +46,12 @@ impl StrategyKind {
     }
 
     /// Name in scene files and on the command line.
-    pub const NAMES: [(&'static str, Self); 4] = [
+    pub const NAMES: [(&'static str, Self); 5] = [
         ("hit", Self::EmitterHit),
         ("next-event", Self::NextEvent),
         ("join", Self::Connection),
         ("lens", Self::Lens),
+        ("equiangular", Self::Equiangular),
     ];
 
     /// Name in scene files and on the command line.
@@ -64,6 +68,7 @@ impl Strategies {
             StrategyKind::NextEvent => self.next_event,
             StrategyKind::Connection => self.connection,
             StrategyKind::Lens => self.lens,
+            StrategyKind::Equiangular => self.equiangular,
         }
     }
 
@@ -85,6 +90,7 @@ impl Strategies {
             StrategyKind::NextEvent => self.next_event = false,
             StrategyKind::Connection => self.connection = false,
             StrategyKind::Lens => self.lens = false,
+            StrategyKind::Equiangular => self.equiangular = false,
         }
         self
     }
@@ -101,6 +107,19 @@ pub enum Meeting<'a, S: MisSums> {
     Light(usize, &'a Vertex<S>),
     /// t = 1: the lens, through this film position [pixels].
     Lens(Vec2),
+    /// Equiangular sampling: a vertex on the primary ray, which is none of the walk, and a point of an emitter.
+    Pivot(&'a Departure<S>, &'a Vertex<S>, &'a EmitterSample),
+}
+
+impl<S: MisSums> Meeting<'_, S> {
+    /// The kind of the strategy of `s` light and `t` camera vertices that met so.
+    #[inline]
+    pub fn kind(&self, s: u32, t: u32) -> StrategyKind {
+        match self {
+            Self::Pivot(..) => StrategyKind::Equiangular,
+            _ => StrategyKind::of(s, t),
+        }
+    }
 }
 
 /// Sees the walks of one pixel sample, or those of light, and all that they contribute.
@@ -119,9 +138,9 @@ pub trait Observer<S: MisSums> {
     #[inline]
     fn start(&mut self) {}
 
-    /// ... to here, whatever it contributed: the strategy of `s` light and `t` camera vertices.
+    /// ... to here, whatever it contributed: the strategy of `s` light and `t` camera vertices, of this kind.
     #[inline]
-    fn stop(&mut self, _s: u32, _t: u32) {}
+    fn stop(&mut self, _kind: StrategyKind, _s: u32, _t: u32) {}
 
     /// A light subpath begins at an emitter.
     #[inline]

@@ -10,7 +10,7 @@ pub use forced::{ForcedEnd, force, sure_depth};
 pub use free_flight::{
     EmitterCrossing, FlightPart, FlightState, FreeFlight, Interaction, Passed, sample_free_flight,
 };
-pub use transmittance::transmittance;
+pub use transmittance::{SegmentTransmittance, transmittance};
 
 use crate::{
     math::{RaySegment, Spectrum, Vec3, measure, offset},

@@ -106,6 +106,7 @@ pub fn strategies(names: &str) -> Strategies {
         next_event: has("next-event"),
         connection: has("join"),
         lens: has("lens"),
+        equiangular: has("equiangular"),
     };
     assert_eq!(name_of(chosen).split('+').count(), names.split('+').count(), "misspelt: {names}");
     chosen
@@ -113,8 +114,14 @@ pub fn strategies(names: &str) -> Strategies {
 
 /// The reverse of [`strategies`].
 pub fn name_of(strategies: Strategies) -> String {
-    let Strategies { emitter_hit, next_event, connection, lens } = strategies;
-    let all = [(emitter_hit, "hit"), (next_event, "next-event"), (connection, "join"), (lens, "lens")];
+    let Strategies { emitter_hit, next_event, connection, lens, equiangular } = strategies;
+    let all = [
+        (emitter_hit, "hit"),
+        (next_event, "next-event"),
+        (connection, "join"),
+        (lens, "lens"),
+        (equiangular, "equiangular"),
+    ];
     let names: Vec<&str> = all.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
     names.join("+")
 }

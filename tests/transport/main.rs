@@ -7,6 +7,7 @@ mod adaptive;
 mod agreement;
 mod determinism;
 mod efforts;
+mod equiangular;
 mod extremes;
 mod faults;
 mod forced;

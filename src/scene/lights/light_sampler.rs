@@ -45,12 +45,8 @@ impl LightSampler {
         let joinable =
             |(light, power): (&Light, &f64)| if light.emitter.is_connectible() { *power } else { 0.0 };
         let powers: Vec<f64> = all.iter().zip(powers).map(joinable).collect();
-        let total: f64 = powers.iter().sum();
-        let count = powers.iter().filter(|p| **p > 0.0).count();
-        let mixed = |p: &f64| if *p > 0.0 { p / total + 1.0 / count as f64 } else { 0.0 };
-        let regardless = Discrete::new(powers.iter().map(mixed));
-        let (tree, media) = extent.tree(all, &powers, count);
-        Self { regardless, tree, media }
+        let (tree, media) = extent.tree(all, &powers);
+        Self { regardless: regardless(powers.into_iter()), tree, media }
     }
 
     /// True where nothing can be connected to.
@@ -106,6 +102,14 @@ impl LightSampler {
     fn cells_of(&self, emitter: usize) -> Option<Cells> {
         self.media.iter().copied().find(|cells| cells.emitter as usize == emitter)
     }
+}
+
+/// Half by power, half uniform among those that have any: a distant strong emitter cannot keep a near weak one from being
+/// found.
+pub fn regardless(powers: impl Iterator<Item = f64> + Clone) -> Discrete {
+    let total: f64 = powers.clone().sum();
+    let count = powers.clone().filter(|power| *power > 0.0).count() as f64;
+    Discrete::new(powers.map(|power| if power > 0.0 { power / total + 1.0 / count } else { 0.0 }))
 }
 
 #[inline]

@@ -11,11 +11,13 @@ mod emission_sample;
 mod emitter_sample;
 mod light_sampler;
 mod light_tree;
+mod pivot;
 mod point;
 mod volume;
 
 pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
+pub use pivot::Pivot;
 pub use point::EmitterPoint;
 pub(super) use volume::emissive;
 
@@ -53,6 +55,10 @@ pub struct Lights {
     starts: Discrete,
     /// Which emitter a reference point is connected to.
     connections: LightSampler,
+    /// Which of those that equiangular sampling applies to it takes.
+    pivoting: Discrete,
+    /// Of every emitter that it applies to.
+    pivots: Vec<Option<Pivot>>,
     /// The emitter that each medium is.
     of_media: Vec<Option<u32>>,
     /// Index of what surrounds the scene.
@@ -77,12 +83,16 @@ impl Lights {
             power * f64::from(light.emitter.sampling_weight * arriving)
         };
         let powers: Vec<f64> = all.iter().map(weight).collect();
+        let pivots: Vec<Option<Pivot>> = all.iter().map(|light| Pivot::of(light, geometry)).collect();
+        let placed = powers.iter().zip(&pivots).map(|(power, pivot)| pivot.map_or(0.0, |_| *power));
         let environment = all.iter().position(|light| light.emitter.environment().is_some());
         Self {
             starts: Discrete::new(powers.iter().copied()),
             connections: LightSampler::new(&all, &powers, &Extent { geometry, centre, radius }),
+            pivoting: light_sampler::regardless(placed),
             of_media: of_media(&all),
             environment: environment.map(|index| index as u32),
+            pivots,
             all,
             centre,
             radius,

@@ -13,6 +13,7 @@ use crate::{
         Estimator, LightCache,
         camera_path::{self, CameraPath},
         connect::Contribution,
+        equiangular::FirstCollision,
         light_path::{self, LightPath},
         mis::MisSums,
         observer::{Meeting, Observer, StrategyKind, Sum},
@@ -92,6 +93,9 @@ pub fn camera_walk<'a, P: Profile>(
     let departure = camera_path::depart(estimator, film, APERTURE);
     let mut trail = Trail::new(CameraPath::new(estimator, cache, hero, Sum::default()));
     walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
+    let first = trail.vertices.first();
+    trail.visitor.first =
+        first.and_then(|vertex| FirstCollision::of(vertex, departure.position, departure.pdf_fwd));
     trail
 }
 
@@ -121,6 +125,7 @@ pub fn cases<P: Profile>(
     let camera = camera_walk(estimator, &cache, film, hero, stream);
     let mut cases = Cases { scene: estimator.scene, hidden: estimator.hide_emitters, hero, all: Vec::new() };
     of_eye(estimator, &camera, &mut cases, stream);
+    of_pivots(estimator, film, &camera.visitor, &mut cases, stream);
     let Some(start) = light_path::begin::<P>(estimator.scene, stream) else { return cases.all };
     let (mut kept, mut film) = (LightCache::new(P::Channels::COUNT), WideFilm);
     let visitor = LightPath::new(estimator, &mut kept, &mut film, start, hero);
@@ -190,9 +195,20 @@ impl Cases<'_> {
 
     /// The same where the camera subpath made all of it.
     fn add_hit(&mut self, emitter: (u32, Place), camera: Vec<Node>, contribution: Option<Contribution>) {
+        self.add_by(0, emitter, camera, contribution);
+    }
+
+    /// The same by the strategy of this number.
+    fn add_by(
+        &mut self,
+        strategy: usize,
+        emitter: (u32, Place),
+        camera: Vec<Node>,
+        contribution: Option<Contribution>,
+    ) {
         let before = self.all.len();
         self.add(emitter, Vec::new(), camera, contribution);
-        self.all[before..].iter_mut().for_each(|case| case.strategy = 0);
+        self.all[before..].iter_mut().for_each(|case| case.strategy = strategy);
     }
 }
 
@@ -277,6 +293,23 @@ fn of_flights<P: Profile>(
             let before = chain(&camera.vertices[..*count], departure.dirac);
             cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(&subpath, &sample));
         }
+    }
+}
+
+/// Equiangular sampling, along the same ray.
+fn of_pivots<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    film: Vec2,
+    camera: &CameraPath<'_, P, Sum>,
+    cases: &mut Cases<'_>,
+    stream: &mut Stream,
+) {
+    let departure = camera_path::depart(estimator, film, APERTURE);
+    if estimator.counts.equiangular > 0.0
+        && let Some((vertex, sample)) = camera.pick_equiangular(&departure, stream)
+    {
+        let contribution = camera.join_equiangular(&vertex, &sample, stream);
+        cases.add_by(3, emitter_of(&sample), chain(&[vertex], false), contribution);
     }
 }
 

@@ -73,6 +73,33 @@ fn fog_in_a_closed_box() {
     examine_all::<Vacuum>("vacuum", &build(&[CLEAR, INSIDE, ROOM, LAMP, BALL]), 400);
 }
 
+/// Equiangular sampling: every kind of emitter, homogeneous, chromatic and varying media, with boundaries before and behind
+/// the point.
+#[test]
+fn equiangular_sampling() {
+    fn take<P: Profile>(name: &'static str, parts: &[&str], strategies: Strategies) {
+        let options = Options { strategies: Strategies { equiangular: true, ..strategies }, ..ALL };
+        let report = examine::<P>(name, &build(parts), options, 400);
+        assert!(report.equiangular >= 30, "{name}: {} of {}", report.equiangular, report.paths);
+    }
+    for strategies in [Strategies::BDPT, Strategies::PT, Strategies::LT, Strategies::NONE] {
+        take::<Fog>("fog, along", &[FOG, INSIDE, ROOM, LAMP, BULB, POINT, SPOT, GLASS_BALL], strategies);
+        take::<Fog>("lens, along", &[FOG, LENS, ROOM, LAMP, BALL, POINT], strategies);
+        take::<Bounded>("pane, along", &[FOG, INSIDE, ROOM, LAMP, BALL, PANE], strategies);
+        take::<Bounded>("kernel, along", &[OUTSIDE, SMOKE, KERNEL, GROUND, SKY, BULB, POINT], strategies);
+        take::<Bounded>("null lamp, along", &[FOG, INSIDE, ROOM, BALL, NULL_LAMP], strategies);
+        take::<ChromaticFog>("colours, along", &[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL], strategies);
+        take::<ChromaticFog>("1e-3, 1, 1e3, along", &[EXTREME_FOG, INSIDE, ROOM, LAMP, BALL], strategies);
+        take::<Smoke>("waves, along", &[OUTSIDE, WAVES, GROUND, LAMP, BULB], strategies);
+        let parts = [OUTSIDE, CHROMATIC_WAVES, GROUND, LAMP, POINT];
+        take::<Everything>("coloured waves, along", &parts, strategies);
+        take::<ByKind>("fire, along", &[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP, POINT], strategies);
+    }
+    let strategies = Strategies { equiangular: true, ..Strategies::BDPT };
+    let setup = build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, POINT, BALL]);
+    examine_heuristics("heuristics, along", &setup, Options { strategies, ..ALL }, 60);
+}
+
 #[test]
 fn other_efforts() {
     let effort = Effort { survival: Survival::FourthRoot, light_walks: 1.0, connections: 4 };
@@ -219,7 +246,13 @@ fn media_that_shine_by_any_subset_of_strategies() {
     let setup = build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, GLASS_BALL]);
     for bits in 1..16 {
         let on = |bit: u32| bits >> bit & 1 == 1;
-        let strategies = Strategies { emitter_hit: on(0), next_event: on(1), connection: on(2), lens: on(3) };
+        let strategies = Strategies {
+            emitter_hit: on(0),
+            next_event: on(1),
+            connection: on(2),
+            lens: on(3),
+            ..Strategies::NONE
+        };
         let report = examine::<Fire>("shining subset", &setup, Options { strategies, ..ALL }, 60);
         for (bit, count) in report.strategies.iter().enumerate() {
             assert_eq!(*count > 0, on(bit as u32), "{strategies:?}");
@@ -321,7 +354,13 @@ fn any_subset_of_strategies() {
     let setup = build(&[FOG, INSIDE, ROOM, LAMP, BULB, GLASS_BALL]);
     for bits in 1..16 {
         let on = |bit: u32| bits >> bit & 1 == 1;
-        let strategies = Strategies { emitter_hit: on(0), next_event: on(1), connection: on(2), lens: on(3) };
+        let strategies = Strategies {
+            emitter_hit: on(0),
+            next_event: on(1),
+            connection: on(2),
+            lens: on(3),
+            ..Strategies::NONE
+        };
         let report = examine::<Fog>("subset", &setup, Options { strategies, ..ALL }, 100);
         for (bit, count) in report.strategies.iter().enumerate() {
             assert_eq!(*count > 0, on(bit as u32), "{strategies:?}");

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{Emitter, Kind, PointModel, SurfaceModel},
-    math::{Channels, DVec3},
+    math::{Channels, DVec3, offset},
     phase::{Deflection, PhaseModel},
     sampling::{Stream, stream::Purpose},
     scene::{
@@ -72,15 +72,37 @@ impl<'a> Reference<'a> {
         heuristics::is_close(self.heuristic, &self.counted(path), slack)
     }
 
-    /// ln(n_s p_s^c) by strategy and channel.
+    /// ln(n_s p_s^c) by strategy and channel; equiangular sampling comes last, where it can make the path.
     fn counted(&self, path: &Path) -> Vec<Vec<f64>> {
         let written = self.write(path);
+        let along = self.equiangular(path).map(|pdf| vec![pdf.ln(); self.channels]);
         let strategy = |s: usize| {
             let count = self.count(path, s).ln();
             let pdf = |c| count + self.first(path, s) + rest(&written, s, c);
             (0..self.channels).map(pdf).collect()
         };
-        (0..path.nodes.len()).map(strategy).collect()
+        (0..path.nodes.len()).map(strategy).chain(along).collect()
+    }
+
+    /// n p of equiangular sampling; none where it cannot make the path.
+    pub fn equiangular(&self, path: &Path) -> Option<f64> {
+        let [y, x, o] = path.nodes.as_slice() else { return None };
+        let Place::Volume(position) = x.place else { return None };
+        let (pivot, over_connect) = self.scene.lights.pivot(path.light, position)?;
+        let (position, lens) = (position.as_dvec3(), o.position().as_dvec3());
+        let (to_x, to_pivot) = (position - lens, pivot.position.as_dvec3() - lens);
+        let closest = to_pivot.dot(to_x.normalize());
+        let resolved = f64::from(offset::RESOLVED_ANGLE) * to_pivot.length();
+        let away = to_pivot.cross(to_x.normalize()).length();
+        let apart = (away * away + f64::from(pivot.radius).powi(2) + resolved * resolved).sqrt();
+        // The ray as seen from the emitter: from its start to where it is parallel to it.
+        let angle = |t: f64| ((t - closest) / apart).atan();
+        let whole = std::f64::consts::FRAC_PI_2 - angle(0.0);
+        let t = to_x.length();
+        let along = apart / (whole * (apart * apart + (t - closest).powi(2)));
+        let emitter = if y.dirac { 0.0 } else { f64::from(self.emitter_sample(path)?.pdf) };
+        let count = f64::from(self.counts.equiangular * over_connect);
+        Some(count * self.lens(x) * along / (t * t) * emitter).filter(|pdf| *pdf > 0.0)
     }
 
     /// Expected samples of strategy `s`; 0 where it cannot make this path, as it would have to connect to a
@@ -168,7 +190,7 @@ impl<'a> Reference<'a> {
     }
 
     /// Density of directions that leave the lens, per film area of a pixel.
-    fn lens(&self, seen: &Node) -> f64 {
+    pub fn lens(&self, seen: &Node) -> f64 {
         let sensor = &self.scene.sensor;
         let seen = match seen.place {
             Place::Sky(direction) => sensor.project_direction(direction, APERTURE),

@@ -15,11 +15,12 @@ use crate::{
     transport::{
         Estimator, LightCache,
         camera_path::{self, CameraPath},
+        equiangular::FirstCollision,
         light_path::{self, LightPath},
         mis::MisSums,
         observer::Sum,
         profile::Profile,
-        segment::{FlightState, FreeFlight, Interaction},
+        segment::{FlightState, FreeFlight, Interaction, SegmentTransmittance},
         vertex::{Subpath, Vertex},
         walk::{Arrival, Departure, Kind, ScatterSample, Visitor, arrive, land, set_out},
     },
@@ -54,9 +55,10 @@ pub fn weights<P: Profile>(
     let (mut kept, mut film) = (LightCache::new(P::Channels::COUNT), WideFilm);
     let start = start(reference, path);
     let light = LightPath::new(estimator, &mut kept, &mut film, start, hero);
-    let camera = CameraPath::new(estimator, &cache, hero, Sum::default());
+    let mut camera = CameraPath::new(estimator, &cache, hero, Sum::default());
     let by_light = by_light(estimator, reference, path, &start, hero, &light);
     let by_eye = by_eye(estimator, reference, path, hero, &camera);
+    camera.first = by_eye.vertices.first().and_then(|vertex| first(path, vertex, reference));
     let last = path.nodes.len() - 1;
     let lens_side = |i: usize| by_eye.vertices.get(last - 1 - i);
     let emitter_side = |i: usize| by_light.vertices.get(i - 1);
@@ -85,7 +87,35 @@ pub fn weights<P: Profile>(
         let Some(contribution) = contribution else { return Some(0.0) };
         contribution.map(|contribution| f64::from(contribution.weight) / P::Channels::COUNT as f64)
     };
-    (0..=last).map(one).collect()
+    let along = reference.equiangular(path).map(|_| along(reference, path, &camera));
+    (0..=last).map(one).chain(along).collect()
+}
+
+/// The first vertex of the camera subpath, as that remembers it.
+fn first<S: MisSums>(path: &Path, vertex: &Vertex<S>, reference: &Reference<'_>) -> Option<FirstCollision> {
+    let [.., seen, lens] = path.nodes.as_slice() else { return None };
+    FirstCollision::of(vertex, lens.position(), reference.lens(seen) as f32)
+}
+
+/// The fast weight of equiangular sampling.
+fn along<P: Profile>(reference: &Reference<'_>, path: &Path, camera: &CameraPath<'_, P, Sum>) -> Option<f64> {
+    let [_, seen, lens] = path.nodes.as_slice() else { return None };
+    let (pivot, over_connect) = reference.scene.lights.pivot(path.light, seen.position())?;
+    let (position, direction) = (seen.position(), lens.towards(seen).as_vec3());
+    let film = reference.scene.sensor.project(position, APERTURE)?.film;
+    let mut departure = camera_path::depart(camera.estimator, film, APERTURE);
+    departure.ray.direction = direction;
+    let depth = path.depths[1].map(|depth| depth as f32);
+    let pdf = P::Channels::from_spectrum(vec3(depth[0], depth[1], depth[2])).exp_neg();
+    let between = SegmentTransmittance { pdf, transmittance: pdf.to_spectrum(), medium: seen.medium };
+    let distance = lens.position().distance(position);
+    let density = pivot.pdf(position, direction, distance);
+    let vertex = camera.along(&departure, &between, position, distance, density)?;
+    let mut sample = reference.emitter_sample(path)?;
+    sample.pdf *= over_connect;
+    let stream = &mut Stream::new(17, 0, 0, Purpose::Study);
+    let contribution = camera.join_equiangular(&vertex, &sample, stream)?;
+    Some(f64::from(contribution.weight) / P::Channels::COUNT as f64)
 }
 
 fn by_light<P: Profile>(

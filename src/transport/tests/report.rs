@@ -69,6 +69,8 @@ pub struct Report {
     pub paths: usize,
     /// By strategy: emitter hit, next-event estimation, connection, lens.
     pub strategies: [usize; 4],
+    /// By equiangular sampling.
+    pub equiangular: usize,
     vertices: usize,
     /// The longest path, in segments.
     pub longest: usize,
@@ -120,6 +122,11 @@ impl Report {
 
     fn count(&mut self, path: &Path, strategy: usize, hero: usize) {
         let segments = path.nodes.len() - 1;
+        self.longest = self.longest.max(segments);
+        if strategy > segments {
+            self.equiangular += 1;
+            return;
+        }
         let kind = match strategy {
             0 => 0,
             s if s == segments => 3,
@@ -127,7 +134,6 @@ impl Report {
             _ => 2,
         };
         self.strategies[kind] += 1;
-        self.longest = self.longest.max(segments);
         if strategy > 0 {
             self.deepest = self.deepest.max(path.depths[strategy - 1][hero]);
         }
@@ -161,6 +167,10 @@ impl Report {
                 let slow = slow[s][hero];
                 if never[s][hero] && slow > SMALL * TOLERANCE {
                     whole = false;
+                    continue;
+                }
+                // Where no walk comes, ratios of densities may overflow, which no sum of real walks contains.
+                if never[s][hero] && fast.is_some_and(f64::is_nan) {
                     continue;
                 }
                 blocked |= fast.is_none() && slow > SMALL * TOLERANCE;

@@ -59,14 +59,10 @@ struct Leaves {
 }
 
 impl Extent<'_> {
-    /// Over the `count` emitters of `all` that have any of the `powers`; and the media whose cells are leaves.
-    pub(super) fn tree(
-        &self,
-        all: &[Light],
-        powers: &[f64],
-        count: usize,
-    ) -> (Option<LightTree>, Vec<Cells>) {
+    /// Over the emitters of `all` that have any of the `powers`; and the media whose cells are leaves.
+    pub(super) fn tree(&self, all: &[Light], powers: &[f64]) -> (Option<LightTree>, Vec<Cells>) {
         let [fewest, most] = RAYS_OF_ONE;
+        let count = powers.iter().filter(|power| **power > 0.0).count();
         let rays = (RAYS / count.max(1)).clamp(fewest, most);
         let mut leaves = Leaves { count: all.len(), ..Leaves::default() };
         for (number, (light, power)) in (0..).zip(all.iter().zip(powers)) {

@@ -1,0 +1,164 @@
+//! Distances along a ray that are denser the nearer to an emitter (Kulla and Fajardo 2012, Importance Sampling Techniques
+//! for Path Tracing in Participating Media, sec. 4).
+
+use super::{Geometry, Light, Lights};
+use crate::{
+    emitter::Kind,
+    math::{Vec3, offset},
+    sampling::{Stream, stream::Purpose},
+};
+use std::f32::consts::FRAC_PI_2;
+
+/// Points that tell where a shape lies.
+const POINTS: u16 = 64;
+
+/// Where an emitter is, as far as distances to it matter.
+#[derive(Clone, Copy, Debug)]
+pub struct Pivot {
+    /// The point, or the centre of the shape.
+    pub position: Vec3,
+    /// How far from it light comes from, root mean square [m].
+    pub radius: f32,
+}
+
+/// Distances along a ray, from its start to infinity.
+struct Distances {
+    /// That of the point closest to the emitter [m].
+    closest: f32,
+    /// How far the emitter is from there, at least [m].
+    apart: f32,
+    /// The angle at which it sees the ray.
+    angle: f32,
+}
+
+impl Pivot {
+    /// That of `light`; none where it is at infinity, in a medium, or cannot be connected to.
+    pub(super) fn of(light: &Light, geometry: &Geometry) -> Option<Self> {
+        let around = |shape| {
+            let mut stream = Stream::new(0, u64::from(shape), 0, Purpose::Pilot);
+            let points: Vec<Vec3> =
+                (0..POINTS).map(|_| geometry.sample_area(shape, &mut stream).position).collect();
+            let mean = |sum: f32| sum / f32::from(POINTS);
+            let position = points.iter().map(|point| *point / f32::from(POINTS)).sum();
+            let square = points.iter().map(|point| point.distance_squared(position)).sum();
+            Self { position, radius: mean(square).sqrt() }
+        };
+        match light.emitter.kind {
+            _ if !light.emitter.is_connectible() => None,
+            Kind::Surface(_) => light.shape.map(around),
+            Kind::Point(_) => Some(Self { position: light.position, radius: 0.0 }),
+            Kind::Infinite(_) | Kind::Medium(_) => None,
+        }
+    }
+
+    /// Those of the ray in unit `direction` that is `distance` metres behind its start at `position`; none where it starts
+    /// at the emitter.
+    fn distances(&self, position: Vec3, direction: Vec3, distance: f32) -> Option<Distances> {
+        let towards = self.position - position;
+        let closest = distance + towards.dot(direction);
+        let away = towards.cross(direction).length_squared();
+        let resolved = offset::RESOLVED_ANGLE * offset::RESOLVED_ANGLE * (closest * closest + away);
+        let apart = (away + self.radius * self.radius + resolved).sqrt();
+        (apart > 0.0).then(|| Distances { closest, apart, angle: apart.atan2(-closest) })
+    }
+
+    /// A distance along the ray from `origin` in unit `direction`, and its density [1/m]; none where there is none.
+    pub fn sample(&self, origin: Vec3, direction: Vec3, u: f32) -> Option<(f32, f32)> {
+        let all = self.distances(origin, direction, 0.0)?;
+        let distance = all.closest + all.apart * (FRAC_PI_2 - all.angle * (1.0 - u)).tan();
+        let pdf = self.pdf(origin + direction * distance, direction, distance);
+        (distance > 0.0 && distance < f32::INFINITY && pdf > 0.0).then_some((distance, pdf))
+    }
+
+    /// Density of `position` [1/m], `distance` metres from the start of a ray in unit `direction`.
+    #[inline]
+    pub fn pdf(&self, position: Vec3, direction: Vec3, distance: f32) -> f32 {
+        let Some(Distances { closest, apart, angle }) = self.distances(position, direction, distance) else {
+            return 0.0;
+        };
+        let beyond = distance - closest;
+        apart / (angle * (apart * apart + beyond * beyond))
+    }
+}
+
+impl Lights {
+    /// True if there are emitters for equiangular sampling.
+    pub fn has_pivots(&self) -> bool {
+        !self.pivoting.is_empty()
+    }
+
+    /// The emitter that `u` in [0, 1) chooses for equiangular sampling, and its probability.
+    pub fn sample_pivot(&self, u: f64) -> Option<(usize, &Pivot, f32)> {
+        if self.pivoting.is_empty() {
+            return None;
+        }
+        let (index, chosen) = self.pivoting.sample_precisely(u);
+        Some((index, self.pivots[index].as_ref()?, chosen as f32))
+    }
+
+    /// What equiangular sampling needs to know of emitter `index`: where it is, and how often it is chosen over how
+    /// often next-event estimation from `reference` chooses it; none where it does not apply.
+    #[inline]
+    pub fn pivot(&self, index: u32, reference: Vec3) -> Option<(&Pivot, f32)> {
+        let pivot = self.pivots[index as usize].as_ref()?;
+        let index = index as usize;
+        Some((pivot, self.pivoting.probability(index) / self.connections.probability(index, reference)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing;
+
+    const RAYS: [(Vec3, Pivot); 5] = [
+        (Vec3::ZERO, Pivot { position: Vec3::new(1.0, 0.5, 2.0), radius: 0.0 }),
+        (Vec3::ZERO, Pivot { position: Vec3::new(0.3, 0.0, -2.0), radius: 0.1 }),
+        (Vec3::new(5.0, 5.0, 5.0), Pivot { position: Vec3::new(5.0, 5.0, 8.0), radius: 0.0 }),
+        (Vec3::ZERO, Pivot { position: Vec3::new(1e-3, 0.0, 1e3), radius: 0.0 }),
+        (Vec3::ZERO, Pivot { position: Vec3::new(0.0, 0.0, 1e-3), radius: 0.5 }),
+    ];
+
+    /// Before and behind an emitter, beside one and straight through one.
+    #[test]
+    fn distances_come_as_often_as_their_density_says() {
+        const CELLS: usize = 20;
+        for (origin, pivot) in RAYS {
+            let mut counts = vec![0; CELLS];
+            let mut stream = Stream::new(4, 0, 0, Purpose::Study);
+            let edge = |cell: usize| {
+                pivot.sample(origin, Vec3::Z, (cell as f32 + 0.5) / CELLS as f32).map_or(0.0, |(t, _)| t)
+            };
+            let edges: Vec<f32> = (0..CELLS - 1).map(edge).collect();
+            const N: usize = 100_000;
+            for _ in 0..N {
+                let t = pivot.sample(origin, Vec3::Z, stream.uniform()).map_or(f32::INFINITY, |(t, _)| t);
+                counts[edges.partition_point(|edge| *edge < t)] += 1;
+            }
+            let inner = |pair: &[f32]| integral(&pivot, origin, pair[0], pair[1]) * N as f64;
+            let first = integral(&pivot, origin, 0.0, edges[0]) * N as f64;
+            let mut expected = vec![first];
+            expected.extend(edges.windows(2).map(inner));
+            expected.push(N as f64 - expected.iter().sum::<f64>());
+            let p = testing::chi_square(&counts, &expected);
+            assert!(p > testing::significance(RAYS.len()), "{pivot:?}: {p}, {counts:?} {expected:?}");
+        }
+    }
+
+    fn integral(pivot: &Pivot, origin: Vec3, from: f32, to: f32) -> f64 {
+        const STEPS: u32 = 20_000;
+        let step = (f64::from(to) - f64::from(from)) / f64::from(STEPS);
+        let at = |i: u32| {
+            let t = (f64::from(from) + (f64::from(i) + 0.5) * step) as f32;
+            f64::from(pivot.pdf(origin + Vec3::Z * t, Vec3::Z, t))
+        };
+        (0..STEPS).map(at).sum::<f64>() * step
+    }
+
+    #[test]
+    fn rays_from_a_point_light_itself_have_no_distances() {
+        let pivot = Pivot { position: Vec3::ONE, radius: 0.0 };
+        assert!(pivot.sample(Vec3::ONE, Vec3::X, 0.5).is_none());
+        assert_eq!(pivot.pdf(Vec3::ONE + Vec3::X, Vec3::X, 1.0), 0.0);
+    }
+}
