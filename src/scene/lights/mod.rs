@@ -9,11 +9,13 @@
 mod emission_sample;
 mod emitter_sample;
 mod point;
+mod starts;
 mod volume;
 
 pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
 pub use point::EmitterPoint;
+pub use starts::{Densities, Memo, Start, Starts};
 pub(super) use volume::emissive;
 
 use super::accel::Geometry;
@@ -60,6 +62,8 @@ pub struct Lights {
     radius: f32,
     /// What remains of light from infinity where it enters the scene: 1, or 0 in fog without end.
     from_infinity: Spectrum,
+    /// Which starts of light subpaths reach an image.
+    pub learnt: Memo,
 }
 
 impl Lights {
@@ -90,6 +94,7 @@ impl Lights {
             centre,
             radius,
             from_infinity,
+            learnt: Memo::default(),
         }
     }
 
