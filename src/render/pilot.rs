@@ -44,8 +44,10 @@ const BLOCKS: usize = 2;
 const TILES: u32 = 16;
 /// Tiles with the greatest errors that are left out, as few samples decide there.
 const OUTLIERS: f64 = 0.02;
-/// Time of a sample with learnt starts, over that of the same without: tables are looked up.
-const LOOKUPS: f64 = 1.05;
+/// By how much more than others learnt starts must be better. Light subpaths that reach the image, and connections to them,
+/// take up to twice the time of those that do not, which counts do not say; and pilots find the noise of learnt starts up to
+/// half of what it turns out to be (four times too good behind a frosted pane, three times where the sun shines into a chapel).
+const LEARNT: f64 = 4.0;
 /// Of a tile's second moment: variances below are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-3;
 /// Other counts than all strategies' must be so much better: pilots are noisy.
@@ -55,6 +57,8 @@ const WORTHWHILE: f64 = 1.1;
 mod time {
     /// Setting out from the sensor or an emitter.
     pub const START: f64 = 0.5;
+    /// The part of it that is spent on light subpaths which do not set out.
+    pub const DROPPED: f64 = 0.1;
     /// A connection tried, by kind of strategy.
     pub const TRY: [f64; 4] = [0.1, 1.3, 0.7, 0.4];
 }
@@ -124,18 +128,20 @@ fn candidates(all: Strategies, survival: Survival, learnt: bool) -> impl Iterato
     });
     sets.flat_map(move |strategies| {
         let connections: &[u32] = if strategies.connection { &[1, 2, 4] } else { &[1] };
-        let light_walks: &[f32] =
-            if strategies.connection || strategies.lens { &[0.5, 1.0, 2.0] } else { &[1.0] };
-        let starts: &[bool] =
-            if learnt && (strategies.connection || strategies.lens) { &[false, true] } else { &[false] };
-        let pairs = connections.iter().flat_map(|count| light_walks.iter().map(|walks| (*count, *walks)));
-        let efforts = pairs.flat_map(move |(connections, light_walks)| {
-            starts.iter().map(move |learnt| Effort {
+        let has_light_walks = strategies.connection || strategies.lens;
+        let usual: &[f32] = if has_light_walks { &[0.5, 1.0, 2.0] } else { &[1.0] };
+        // Some of these are dropped as they begin.
+        let more: &[f32] = if learnt && has_light_walks { &[0.5, 1.0, 2.0, 4.0] } else { &[] };
+        let light_walks =
+            usual.iter().map(|walks| (*walks, false)).chain(more.iter().map(|walks| (*walks, true)));
+        let efforts = light_walks.flat_map(move |(light_walks, learnt_starts)| {
+            let effort = move |connections: &u32| Effort {
                 survival,
                 light_walks,
-                connections,
-                learnt_starts: *learnt,
-            })
+                connections: *connections,
+                learnt_starts,
+            };
+            connections.iter().map(effort)
         });
         efforts.map(move |effort| Choice { among: all, strategies, effort, gain: 1.0 })
     })
@@ -155,6 +161,8 @@ struct Found {
 #[derive(Clone, Copy, Default)]
 struct Work {
     walks: f64,
+    /// Those that set out.
+    begun: f64,
     segments: f64,
     tries: [f64; StrategyKind::ALL.len()],
     /// Vertices of light subpaths that are kept for connections.
@@ -164,6 +172,7 @@ struct Work {
 impl Work {
     fn and(mut self, other: &Self) -> Self {
         self.walks += other.walks;
+        self.begun += other.begun;
         self.segments += other.segments;
         self.kept += other.kept;
         self.tries.iter_mut().zip(other.tries).for_each(|(tries, other)| *tries += other);
@@ -221,6 +230,9 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
     fn depart(&mut self, departure: &Departure<S>) {
         self.follower.depart(departure);
         self.count(|work| &mut work.segments);
+        if departure.edges == 0 {
+            self.count(|work| &mut work.begun);
+        }
     }
 
     fn arrive(&mut self, vertex: &Vertex<S>) {
@@ -375,9 +387,10 @@ impl Pilot {
     fn time(&self, Choice { strategies, effort, .. }: &Choice) -> f64 {
         let Self { camera, .. } = self;
         let light = if effort.learnt_starts { &self.light } else { &self.light_unlearnt };
-        let lookups = if effort.learnt_starts { LOOKUPS } else { 1.0 };
+        let longer = if effort.learnt_starts { LEARNT } else { 1.0 };
         let mut camera_time = time::START * camera.walks + camera.segments;
-        let mut light_time = time::START * light.walks + light.segments;
+        let dropped = (light.walks - light.begun).max(0.0);
+        let mut light_time = time::START * light.begun + time::DROPPED * dropped + light.segments;
         for kind in StrategyKind::ALL.into_iter().filter(|kind| strategies.has(*kind)) {
             let factor = if kind == StrategyKind::Connection { f64::from(effort.connections) } else { 1.0 };
             camera_time += factor * time::TRY[kind as usize] * camera.tries[kind as usize];
@@ -385,7 +398,7 @@ impl Pilot {
         }
         let light_walks =
             if strategies.connection || strategies.lens { f64::from(effort.light_walks) } else { 0.0 };
-        lookups * (camera_time / camera.walks.max(1.0) + light_walks * light_time / light.walks.max(1.0))
+        longer * (camera_time / camera.walks.max(1.0) + light_walks * light_time / light.walks.max(1.0))
     }
 
     /// The squared relative error of a pixel sample, on average over the image; infinite where something is left out.

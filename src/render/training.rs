@@ -27,7 +27,7 @@ use crate::{
     },
 };
 use rayon::prelude::*;
-use std::{ops::Range, sync::Arc};
+use std::{collections::HashMap, ops::Range, sync::Arc};
 
 /// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
 const SEED: u64 = 0x7374_6172_7473;
@@ -90,6 +90,7 @@ pub(super) struct Follower<'a> {
     /// The last vertex of the walk at hand, or where it set out from.
     last: Vec3,
     hero: usize,
+    walks: u32,
     /// That of the light subpath at hand.
     current: Option<Followed>,
     /// Those of the vertices in the cache, per hero channel in the cache's order.
@@ -102,11 +103,21 @@ pub(super) struct Followed {
     pub start: Start,
     /// How often light subpaths start there without what was learnt, over how often they do.
     pub unlearnt: f32,
+    /// The number of the light subpath that did.
+    walk: Option<u32>,
 }
 
 impl<'a> Follower<'a> {
     pub fn new(lights: &'a Lights, starts: Option<&'a Starts>, heroes: usize) -> Self {
-        Self { lights, starts, last: Vec3::ZERO, hero: 0, current: None, kept: vec![Vec::new(); heroes] }
+        Self {
+            lights,
+            starts,
+            last: Vec3::ZERO,
+            hero: 0,
+            walks: 0,
+            current: None,
+            kept: vec![Vec::new(); heroes],
+        }
     }
 
     /// To follow camera subpaths that are connected to the vertices kept here.
@@ -121,10 +132,11 @@ impl<'a> Follower<'a> {
 
     pub fn emit(&mut self, sample: &EmissionSample, hero: usize) {
         self.hero = hero;
-        let (origin, direction) = (sample.ray.origin, sample.ray.direction);
-        let start = Start::towards(sample.light, &sample.point, origin, direction);
+        let start = sample.start();
         let learnt = Densities { point: sample.pdf, direction: sample.pdf_direction };
-        self.current = Some(Followed { start, unlearnt: ratio(sample.unlearnt, learnt) });
+        let walk = Some(self.walks);
+        self.walks += 1;
+        self.current = Some(Followed { start, unlearnt: ratio(sample.unlearnt, learnt), walk });
     }
 
     pub fn depart<S: MisSums>(&mut self, departure: &Departure<S>) {
@@ -162,7 +174,7 @@ impl<'a> Follower<'a> {
         let start = Start::towards(sample.light, &sample.point, self.last, direction);
         let unlearnt = Densities { point: sample.pdf_start, direction: sample.pdf_direction };
         let learnt = self.starts.map(|starts| starts.densities(self.lights, &start, unlearnt));
-        Followed { start, unlearnt: learnt.map_or(1.0, |learnt| ratio(unlearnt, learnt)) }
+        Followed { start, unlearnt: learnt.map_or(1.0, |learnt| ratio(unlearnt, learnt)), walk: None }
     }
 }
 
@@ -172,9 +184,12 @@ fn ratio(unlearnt: Densities, learnt: Densities) -> f32 {
 }
 
 /// A contribution to a tile.
+#[derive(Clone, Copy)]
 struct Found {
     tile: usize,
-    start: Option<Start>,
+    start: Option<Followed>,
+    /// The number of the block that it was found in.
+    part: usize,
     /// Luminance; first of a sample, then as part of the mean over the tile.
     value: f64,
     /// Of strategies that begin at an emitter, in the weights.
@@ -204,9 +219,10 @@ impl Trial {
         let mut trial = Self { pixels, ..Self::default() };
         // Light subpaths traced stand for those of a pass.
         let per_pass = blocks as f64 / count;
-        for part in parts {
+        for (index, part) in parts.into_iter().enumerate() {
             trial.segments += part.segments;
-            let of_tile = |(pixel, found): (u32, Found)| Found { tile: tiles.at(pixel), ..found };
+            let of_tile =
+                |(pixel, found): (u32, Found)| Found { tile: tiles.at(pixel), part: index, ..found };
             let camera = part.camera.into_iter().map(of_tile);
             let camera = camera.map(|found| Found { value: found.value / samples[found.tile], ..found });
             let light = part.light.into_iter().map(of_tile);
@@ -229,8 +245,19 @@ impl Trial {
             let whole = means[found.tile] + FLOOR * mean;
             (found.value * share * self.pixels[found.tile] / whole) as f32
         };
-        let weights = self.found.iter().filter_map(|found| Some((found.start?, weight(found))));
-        weights.filter(|(_, weight)| weight.is_finite() && *weight > 0.0).collect()
+        let mut all: Vec<(Start, f32)> = Vec::new();
+        // What one light subpath contributed tells of one start.
+        let mut of_walks = HashMap::new();
+        for found in &self.found {
+            let (Some(followed), weight) = (found.start, weight(found)) else { continue };
+            let known = followed.walk.map(|walk| *of_walks.entry((found.part, walk)).or_insert(all.len()));
+            match known.and_then(|index| all.get_mut(index)) {
+                Some((_, sum)) => *sum += weight,
+                None => all.push((followed.start, weight)),
+            }
+        }
+        all.retain(|(_, weight)| weight.is_finite() && *weight > 0.0);
+        all
     }
 }
 
@@ -303,9 +330,9 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
         let Some(Contribution { value, shares, .. }) = contribution.filter(|c| c.value.is_finite()) else {
             return;
         };
-        let start = self.follower.start(s, t, &meeting).map(|followed| followed.start);
+        let start = self.follower.start(s, t, &meeting);
         let share = shares[StrategyKind::Connection as usize] + shares[StrategyKind::Lens as usize];
-        let found = |value: f32| Found { tile: 0, start, value: f64::from(value.max(0.0)), share };
+        let found = |value: f32| Found { tile: 0, part: 0, start, value: f64::from(value.max(0.0)), share };
         if let Meeting::Lens(film) = meeting {
             let all = &mut self.found;
             return self

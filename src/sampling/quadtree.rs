@@ -5,7 +5,7 @@
 use crate::math::{Vec2, vec2};
 
 /// Points, as [`effective`] counts them, that divide a node.
-const TO_DIVIDE: f64 = 24.0;
+const TO_DIVIDE: f64 = 48.0;
 /// Levels below the root: the smallest nodes are 1e-6 of the square.
 const LEVELS: u32 = 10;
 /// Points that every node is taken to have had besides its own, evenly spread: where few fell, none is no proof.

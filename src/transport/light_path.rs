@@ -57,6 +57,9 @@ pub fn trace<P: Profile>(
         let contribution = light.connect_start_to_lens(aperture, stream);
         light.splat(1, contribution);
     }
+    if departure.throughput.max_element() <= 0.0 {
+        return;
+    }
     walk(scene, kind, departure, &mut light, stream);
 }
 

@@ -15,7 +15,7 @@ fn panel(emitter: Value) -> Value {
 /// In a closed room: shapes, some of them dark towards most of it, a beam, points.
 fn lamps() -> Value {
     let projector = json!({"type": "projector", "fov": 40, "irradiance": 2.0,
-        "to_world": {"type": "lookat", "origin": [-0.6, 0.6, 0.5], "target": [0.4, -0.9, -0.3], "up": [0, 1, 0]}});
+        "to_world": [{"type": "lookat", "origin": [-0.6, 0.6, 0.5], "target": [0.4, -0.9, -0.3], "up": [0, 1, 0]}]});
     scene(&[
         ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
         ("room", room(0.6, Some(medium(0.7, 0.8, 0.3)))),

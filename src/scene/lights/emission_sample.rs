@@ -55,19 +55,24 @@ impl EmissionSample {
 }
 
 impl EmissionSample {
+    /// Where and which way light leaves.
+    pub fn start(&self) -> Start {
+        Start::towards(self.light, &self.point, self.ray.origin, self.ray.direction)
+    }
+
     /// The same by the mixture of the emitters' own distributions, whose densities it has, and what was `learnt`.
     fn mixed(self, lights: &Lights, learnt: &Starts) -> Self {
-        let Ray { origin, direction, .. } = self.ray;
-        let start = Start::towards(self.light, &self.point, origin, direction);
-        let densities = learnt.densities(lights, &start, self.unlearnt);
-        let throughput = self.throughput * (self.unlearnt.both() / densities.both());
+        let densities = learnt.densities(lights, &self.start(), self.unlearnt);
+        let ratio = self.unlearnt.both() / densities.both();
+        let throughput = if ratio.is_finite() { self.throughput * ratio } else { Spectrum::ZERO };
         Self { pdf: densities.point, pdf_direction: densities.direction, throughput, ..self }
     }
 }
 
 impl Lights {
     /// Samples an emitter by power, a point on it and a direction, mixed with those that were `learnt`; none where nothing
-    /// leaves.
+    /// leaves. A learnt direction in which nothing leaves the point has a throughput of 0: the point was sampled all
+    /// the same.
     pub fn sample_emission(
         &self,
         geometry: &Geometry,
@@ -103,7 +108,12 @@ impl Lights {
             Kind::Infinite(sky) => self.start_at_infinity(index, sky, chosen, learnt, stream),
             Kind::Medium(volume) => self.start_within(index, volume, chosen, learnt, stream),
         };
-        (start.throughput.is_finite() && start.throughput.max_element() > 0.0).then_some(start)
+        let leaves = start.throughput.is_finite() && start.throughput.max_element() > 0.0;
+        match learnt {
+            None => leaves.then_some(start),
+            Some(_) if leaves => Some(start),
+            Some(_) => Some(EmissionSample { throughput: Spectrum::ZERO, ..start }),
+        }
     }
 
     fn start_on_shape(

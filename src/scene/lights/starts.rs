@@ -24,7 +24,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// The starts learnt last, and for what: a render begins with those that its pilot chose.
 #[derive(Debug, Default)]
-pub struct Memo(Mutex<Option<(String, Option<Arc<Starts>>)>>);
+pub struct Memo(Mutex<Option<Lesson>>);
+
+#[derive(Debug)]
+struct Lesson {
+    key: String,
+    starts: Option<Arc<Starts>>,
+}
 
 impl Clone for Memo {
     /// Forgets: the lights may be changed.
@@ -37,14 +43,14 @@ impl Memo {
     /// What `learn` says, once for each `key`.
     pub fn recall(&self, key: String, learn: impl FnOnce() -> Option<Arc<Starts>>) -> Option<Arc<Starts>> {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((known, starts)) = &*lock()
-            && *known == key
+        if let Some(lesson) = &*lock()
+            && lesson.key == key
         {
-            return starts.clone();
+            return lesson.starts.clone();
         }
         // Not while locked: threads that learn may take up other work, which asks for the same.
         let starts = learn();
-        *lock() = Some((key, starts.clone()));
+        *lock() = Some(Lesson { key, starts: starts.clone() });
         starts
     }
 }
@@ -52,7 +58,7 @@ impl Memo {
 /// a: the part of the starts that are not learnt.
 const UNLEARNT: f32 = 0.25;
 /// Starts, as [`effective`] counts them, that a cell of positions has at least.
-const PER_CELL: f64 = 128.0;
+const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root.
 const LEVELS: u32 = 7;
 /// Starts that tell nothing if there are fewer.
@@ -117,7 +123,7 @@ impl Starts {
     pub fn learn(lights: &Lights, mut starts: Vec<(Start, f32)>) -> Option<Self> {
         // Emitters without power are never chosen: they have no density that could be mixed with another.
         starts.retain(|(start, _)| lights.starts.probability(start.light as usize) > 0.0);
-        if !(limit(&mut starts) >= ENOUGH) {
+        if limit(&mut starts) < ENOUGH {
             return None;
         }
         let mut of_emitters = vec![Vec::new(); lights.all.len()];

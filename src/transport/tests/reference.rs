@@ -123,7 +123,8 @@ impl<'a> Reference<'a> {
         let Some(learnt) = &self.learnt else { return unlearnt };
         let position = if let Place::Sky(_) = node.place { &path.nodes[1] } else { node }.position();
         let direction = node.towards(&path.nodes[1]).as_vec3();
-        learnt.densities(&self.scene.lights, &Start { light: path.light, position, direction }, unlearnt)
+        let start = Start { light: path.light, position, direction };
+        learnt.densities(&self.scene.lights, &start, unlearnt)
     }
 
     /// The same if nothing was learnt.

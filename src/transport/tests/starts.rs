@@ -18,15 +18,11 @@ pub fn lessons(setup: &Setup) -> Arc<Starts> {
     let mut stream = Stream::new(9, 0, 0, Purpose::Study);
     let starts = (0..20_000).filter_map(|_| {
         let sample = lights.sample_emission(&setup.scene.geometry, None, &mut stream)?;
-        let start = start_of(&sample);
+        let start = sample.start();
         let above = start.direction.x + 0.3 * start.position.y + 0.1 * start.position.z > 0.2;
         Some((start, if above { 1.0 } else { 0.01 }))
     });
     Arc::new(Starts::learn(lights, starts.collect()).unwrap())
-}
-
-fn start_of(sample: &EmissionSample) -> Start {
-    Start::towards(sample.light, &sample.point, sample.ray.origin, sample.ray.direction)
 }
 
 /// A number below [`CELLS`] for the emitter and the octants that position and direction lie in.
@@ -73,19 +69,20 @@ fn starts_come_as_often_as_their_densities_say() {
         let learnt = lessons(&setup);
         let sample = |starts: Option<&Starts>, seed: u64| -> Vec<EmissionSample> {
             let mut stream = Stream::new(seed, 0, 0, Purpose::Study);
-            (0..400_000).filter_map(|_| lights.sample_emission(geometry, starts, &mut stream)).collect()
+            let samples = (0..400_000).filter_map(|_| lights.sample_emission(geometry, starts, &mut stream));
+            samples.filter(|sample| sample.throughput.max_element() > 0.0).collect()
         };
         let (by_learnt, by_emitters) = (sample(Some(&learnt), 1), sample(None, 2));
         let ratio = |sample: &EmissionSample| {
-            let densities = learnt.densities(lights, &start_of(sample), sample.unlearnt);
+            let densities = learnt.densities(lights, &sample.start(), sample.unlearnt);
             f64::from(densities.both()) / f64::from(sample.unlearnt.both())
         };
-        let came = tally(by_learnt.iter().map(|sample| (start_of(sample), 1.0)));
-        let due = tally(by_emitters.iter().map(|sample| (start_of(sample), ratio(sample))));
+        let came = tally(by_learnt.iter().map(|sample| (sample.start(), 1.0)));
+        let due = tally(by_emitters.iter().map(|sample| (sample.start(), ratio(sample))));
         let z = worst(&came, &due);
         assert!(z < most, "{name}: {z}");
         let emitted = |samples: &[EmissionSample]| {
-            tally(samples.iter().map(|one| (start_of(one), f64::from(one.throughput.luminance()))))
+            tally(samples.iter().map(|one| (one.start(), f64::from(one.throughput.luminance()))))
         };
         let z = worst(&emitted(&by_learnt), &emitted(&by_emitters));
         assert!(z < most, "{name}, emitted: {z}");
@@ -93,7 +90,7 @@ fn starts_come_as_often_as_their_densities_say() {
         assert!(by_learnt.iter().all(|sample| bound(sample) > 0.2499), "{name}");
         assert!(by_learnt.iter().any(|sample| bound(sample) > 1.5), "{name}: nothing was learnt");
         let sample = by_learnt[0];
-        let densities = learnt.densities(lights, &start_of(&sample), sample.unlearnt);
+        let densities = learnt.densities(lights, &sample.start(), sample.unlearnt);
         assert_eq!(densities, Densities { point: sample.pdf, direction: sample.pdf_direction });
     }
 }
