@@ -46,8 +46,9 @@ pub struct Estimator {
     /// Sampling strategies to use, separated by commas [default: those of the integrator that are worth their time]
     ///
     /// Without this option, a short pilot finds out which strategies of bdpt lower the error most for their time in this
-    /// scene, and how many samples each should have; strategies that are named all have as many. Equiangular sampling runs
-    /// only if the pilot of bdpt finds it worth its time, or if it is named.
+    /// scene, how many samples each should have, and whether light subpaths should start where it saw that light reaches the
+    /// image; strategies that are named all have as many, and learn nothing. Equiangular sampling runs only if the pilot of
+    /// bdpt finds it worth its time, or if it is named.
     ///
     /// hit: the camera subpath hits an emitter; next-event: it connects to a point sampled on an emitter; join: one of its
     /// vertices connects to one of a light subpath; lens: a light subpath connects to the lens; equiangular: in media, a

@@ -52,15 +52,24 @@ pub fn settings(
         "sampler": sampler.name(),
         "seed": seed,
         "profile": profile.name(),
-        "chosen_by_pilot": chosen.map(|Choice { strategies, effort, .. }| json!({
-            "strategies": strategies.names(),
-            "survival": effort.survival.name(),
-            "light_walks": effort.light_walks,
-            "connections": effort.connections,
-        })),
+        "chosen_by_pilot": chosen.map(by_pilot),
         "error": precision.map(|precision| precision.error),
         "confidence": precision.map(|precision| precision.confidence),
     }))
+}
+
+/// What a pilot chose; learnt starts are named where there are any, so that earlier sums without them can go on.
+fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
+    let mut chosen = json!({
+        "strategies": strategies.names(),
+        "survival": effort.survival.name(),
+        "light_walks": effort.light_walks,
+        "connections": effort.connections,
+    });
+    if effort.learnt_starts {
+        chosen["learnt_starts"] = true.into();
+    }
+    chosen
 }
 
 /// This program and its version.

@@ -70,13 +70,16 @@ impl Plan {
     /// How often strategies run that do not all run equally often.
     fn effort(&self) -> String {
         let Options { strategies, effort, .. } = self.settings.options;
-        let Effort { survival, light_walks, connections } = effort;
+        let Effort { survival, light_walks, connections, learnt_starts } = effort;
         let mut text = String::new();
         if connections != 1 {
             text += &format!("; {connections} joins a vertex");
         }
         if light_walks != 1.0 {
             text += &format!("; {light_walks} light subpaths a sample");
+        }
+        if learnt_starts {
+            text += "; learnt starts";
         }
         if survival == Survival::FourthRoot {
             text += "; longer walks";
@@ -131,6 +134,7 @@ impl Plan {
             "survival": effort.survival.name(),
             "light_walks": effort.light_walks,
             "connections": effort.connections,
+            "learnt_starts": effort.learnt_starts,
             "time_of_all_strategies": self.chosen.map(|choice| choice.gain),
             "sampler": points.name(),
             "free_flights": self.flights.iter().map(|method| method.name()).collect::<Vec<_>>(),

@@ -21,6 +21,23 @@ pub fn to_disk(u: Vec2) -> Vec2 {
     r * vec2(phi.cos(), phi.sin())
 }
 
+/// The inverse of [`to_disk`]; points beyond the disc are taken to its border.
+#[inline]
+pub fn from_disk(p: Vec2) -> Vec2 {
+    let r = p.length().min(1.0);
+    // Angle from the x axis in [-pi/4, 7 pi/4), in quarter turns: which side of the square.
+    let turn = p.y.atan2(p.x) / FRAC_PI_2;
+    let side = (turn + 0.5).floor();
+    let across = 2.0 * (turn - side) * r;
+    let p = match side as i32 {
+        0 => vec2(r, across),
+        1 => vec2(-across, r),
+        -1 => vec2(across, -r),
+        _ => vec2(-r, -across),
+    };
+    (0.5 * (p + Vec2::ONE)).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON))
+}
+
 /// Cosine-weighted on the upper hemisphere; density cos/pi [1/sr].
 #[inline]
 pub fn to_cosine_hemisphere(u: Vec2) -> Vec3 {
@@ -56,6 +73,14 @@ pub fn to_sphere(u: Vec2) -> Vec3 {
     spherical(1.0 - 2.0 * u.x, TAU * u.y)
 }
 
+/// The inverse of [`to_sphere`].
+#[inline]
+pub fn from_sphere(direction: Vec3) -> Vec2 {
+    let turn = direction.y.atan2(direction.x) / TAU;
+    let turn = if turn < 0.0 { turn + 1.0 } else { turn };
+    vec2(0.5 - 0.5 * direction.z, turn).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON))
+}
+
 /// Uniform in the cone of half angle acos(1 - `one_minus_cos`) around z; density 1/(2 pi `one_minus_cos`).
 /// The cone is given by 1 - cos so that narrow ones keep their precision.
 #[inline]
@@ -74,4 +99,27 @@ pub fn cone_pdf(one_minus_cos: f32) -> f32 {
 pub fn to_triangle(u: Vec2) -> Vec2 {
     let r = u.x.sqrt();
     vec2(1.0 - r, u.y * r)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_back_from_disc_and_sphere() {
+        for index in 0..10_000 {
+            let u = (vec2((index % 100) as f32, (index / 100) as f32) + 0.5) / 100.0;
+            assert!(from_disk(to_disk(u)).distance(u) < 1e-5, "{u}");
+            let error = (from_sphere(to_sphere(u)) - u).abs();
+            assert!(error.max_element() < 1e-5, "{u}");
+        }
+        for p in [Vec2::X, -Vec2::X, Vec2::Y, -Vec2::Y, Vec2::ONE, Vec2::ZERO, 5.0 * Vec2::NEG_ONE] {
+            let u = from_disk(p);
+            assert!(u.min_element() >= 0.0 && u.max_element() < 1.0, "{p} {u}");
+        }
+        for w in [Vec3::Z, -Vec3::Z, Vec3::X, -Vec3::X, vec3(-1.0, -0.0, 0.0), vec3(1.0, -1e-30, 0.0)] {
+            let u = from_sphere(w);
+            assert!(u.min_element() >= 0.0 && u.max_element() < 1.0, "{w} {u}");
+        }
+    }
 }

@@ -9,12 +9,13 @@ use super::{
     pixel_sample::{self, EyeSample, Splat, Walk},
     strategy_images::{self, CellContribution, StrategyTable},
     timing::{self, Times},
+    training::{self, Trial},
 };
 use crate::{
     film::Film,
     math::{Channels, Spectrum},
     sampling::Stream,
-    scene::Scene,
+    scene::{Scene, lights::Starts},
     shape::Ray,
     transport::{
         Estimator, Heuristic,
@@ -24,6 +25,7 @@ use crate::{
         },
     },
 };
+use std::{ops::Range, sync::Arc};
 
 /// What every estimator can do, whatever its profile: whole blocks and walks, so that the call costs nothing.
 pub(super) trait Compiled: Sync {
@@ -56,10 +58,23 @@ pub(super) struct Ready<'a, P: Profile> {
 
 impl<'a, P: Profile> Ready<'a, P> {
     fn new(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
+        let learnt = settings.options.effort.learnt_starts;
+        let starts = if learnt { training::starts(scene, film, &settings.options) } else { None };
+        Self::starting(scene, film, settings, starts)
+    }
+
+    /// The same with light subpaths that begin at learnt `starts`, if there are any.
+    pub fn starting(
+        scene: &'a Scene,
+        film: &'a Film,
+        settings: &Settings,
+        starts: Option<Arc<Starts>>,
+    ) -> Self {
         let light_walks = settings.options.effort.light_walks;
         let blocks = Blocks::new(film.len(), P::Channels::COUNT, settings.sampler, light_walks);
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
-        let estimator = Estimator::<P>::new(scene, settings.options, settings.seed, per_pass, per_block);
+        let Settings { options, seed, .. } = *settings;
+        let estimator = Estimator::<P>::new(scene, options, starts, seed, per_pass, per_block);
         Self { estimator, blocks, scene, film, seed: settings.seed }
     }
 
@@ -117,4 +132,15 @@ pub(super) fn choose<'a>(scene: &'a Scene, film: &'a Film, settings: &Settings) 
 /// What a pilot by `settings` says.
 pub(super) fn pilot(scene: &Scene, film: &Film, settings: &Settings) -> Pilot {
     Pilot::fly(&Ready::<ByKind>::new(scene, film, settings))
+}
+
+/// What `tasks` by `settings` say of light subpaths that begin at `starts`, if any were learnt before.
+pub(super) fn trial(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    starts: Option<Arc<Starts>>,
+    tasks: Range<usize>,
+) -> Trial {
+    Trial::run(&Ready::<ByKind>::starting(scene, film, settings, starts), tasks)
 }

@@ -25,6 +25,7 @@ pub mod sums;
 pub mod sums_file;
 pub mod tiles;
 pub mod timing;
+mod training;
 
 pub use monitor::Snapshot;
 

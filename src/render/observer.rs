@@ -22,8 +22,8 @@ impl<S: MisSums> Observer<S> for &mut (dyn Observer<S> + '_) {
     fn stop(&mut self, kind: StrategyKind, s: u32, t: u32) {
         (**self).stop(kind, s, t);
     }
-    fn emit(&mut self, start: &EmissionSample) {
-        (**self).emit(start);
+    fn emit(&mut self, start: &EmissionSample, hero: usize) {
+        (**self).emit(start, hero);
     }
     fn depart(&mut self, departure: &Departure<S>) {
         (**self).depart(departure);

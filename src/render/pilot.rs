@@ -3,21 +3,23 @@
 //! By the balance heuristic, a sample that brought y has the second moment y^2 (sum of n p) / (sum of n' p) under counts n'
 //! in place of n (after Grittmann et al. 2022, Efficiency-Aware Multiple Importance Sampling). So paths that strategies left
 //! out would have to make count in full, however rarely the others make them: the strategies that do run have seen them.
+//! Where light subpaths begin at learnt starts, each contribution also tells how often they would begin there otherwise.
 //! What samples of one pixel have in common is taken to stay as it is.
 
 use super::{
     Settings,
     block::Blocks,
     compiled::{self, Ready},
+    training::Follower,
 };
 use crate::{
     film::Film,
-    math::{Spectrum, SpectrumExt, Vec2},
+    math::{Channels, Spectrum, SpectrumExt, Vec2},
     sampling::Sampler,
-    scene::Scene,
+    scene::{Scene, lights::EmissionSample},
     settings::options::{Effort, Survival},
     transport::{
-        Contribution, Departure, MisSums, Options, Strategies, equiangular_applies,
+        Contribution, Departure, MisSums, Options, Strategies, Vertex, equiangular_applies,
         observer::{Meeting, Observer, StrategyKind},
         profile::Profile,
     },
@@ -42,6 +44,12 @@ const BLOCKS: usize = 2;
 const TILES: u32 = 16;
 /// Tiles with the greatest errors that are left out, as few samples decide there.
 const OUTLIERS: f64 = 0.02;
+/// By how much more than others learnt starts must be better. Light subpaths that reach the image, and connections to them,
+/// take up to twice the time of those that do not, which counts do not say; and pilots find the noise of learnt starts up to
+/// half of what it turns out to be (four times too good behind a frosted pane, three times where the sun shines into a chapel).
+const LEARNT: f64 = 4.0;
+/// Starts are learnt if fewer light subpaths than this part are seen: where more are, there is little to gain.
+const REMOTE: f64 = 0.1;
 /// Of a tile's second moment: variances below are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-3;
 /// Other counts than all strategies' must be so much better: pilots are noisy.
@@ -51,6 +59,8 @@ const WORTHWHILE: f64 = 1.1;
 mod time {
     /// Setting out from the sensor or an emitter.
     pub const START: f64 = 0.5;
+    /// The part of it that is spent on light subpaths which do not set out.
+    pub const DROPPED: f64 = 0.1;
     /// A connection tried, by kind of strategy.
     pub const TRY: [f64; 5] = [0.1, 1.3, 0.7, 0.4, 2.0];
 }
@@ -85,12 +95,13 @@ pub fn choose(
     let equiangular = all == Strategies::BDPT && equiangular_applies(scene);
     let options = Options { strategies: Strategies { equiangular, ..all }, ..settings.options };
     let with_all = Settings { options, ..*settings };
-    let fly = || survivals.map(|survival| pilot(scene, film, &with_all, survival));
+    let fly = |learnt: bool| survivals.map(|survival| pilot(scene, film, &with_all, survival, learnt));
+    let fly = || Some(fly(false)).filter(|pilots| !pilots[0].is_remote()).unwrap_or_else(|| fly(true));
     // Renders survive a panic and say where it was.
     let Ok(pilots) = catch_unwind(AssertUnwindSafe(fly)) else { return base };
     let reference = pilots[0].error(&base) * pilots[0].time(&base);
     let choices = survivals.iter().zip(&pilots).flat_map(|(survival, pilot)| {
-        let complete = candidates(options.strategies, *survival);
+        let complete = candidates(options.strategies, *survival, pilot.is_learnt);
         let complete = complete.filter(|choice| is_complete(choice.strategies));
         complete.map(move |choice| Choice {
             among: all,
@@ -102,17 +113,17 @@ pub fn choose(
     best.filter(|best| best.worth() > WORTHWHILE && best.gain.is_finite()).unwrap_or(base)
 }
 
-/// A few samples of all strategies of `settings` at equal effort.
-fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival) -> Pilot {
-    let effort = Effort { survival, ..Effort::default() };
+/// A few samples of all strategies of `settings` at equal effort, by learnt starts or not.
+fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival, learnt_starts: bool) -> Pilot {
+    let effort = Effort { survival, learnt_starts, ..Effort::default() };
     let max_depth = Some(settings.options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST)));
     let options = Options { effort, max_depth, ..settings.options };
     let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*settings };
     compiled::pilot(scene, film, &settings)
 }
 
-/// Every choice among the strategies of `all` where walks end by `survival`.
-fn candidates(all: Strategies, survival: Survival) -> impl Iterator<Item = Choice> {
+/// Every choice among the strategies of `all` where walks end by `survival`, with learnt starts too if there are any.
+fn candidates(all: Strategies, survival: Survival, learnt: bool) -> impl Iterator<Item = Choice> {
     let optional = [all.next_event, all.connection, all.lens, all.equiangular];
     let has = move |bits: u32| (0..4).all(|bit| bits >> bit & 1 == 0 || optional[bit as usize]);
     let sets = (0..16u32).filter(move |bits| has(*bits)).map(move |bits| Strategies {
@@ -124,15 +135,22 @@ fn candidates(all: Strategies, survival: Survival) -> impl Iterator<Item = Choic
     });
     sets.flat_map(move |strategies| {
         let connections: &[u32] = if strategies.connection { &[1, 2, 4] } else { &[1] };
-        let light_walks: &[f32] =
-            if strategies.connection || strategies.lens { &[0.5, 1.0, 2.0] } else { &[1.0] };
-        let pairs = connections.iter().flat_map(|count| light_walks.iter().map(|walks| (*count, *walks)));
-        pairs.map(move |(connections, light_walks)| Choice {
-            among: all,
-            strategies,
-            effort: Effort { survival, light_walks, connections },
-            gain: 1.0,
-        })
+        let has_light_walks = strategies.connection || strategies.lens;
+        let usual: &[f32] = if has_light_walks { &[0.5, 1.0, 2.0] } else { &[1.0] };
+        // Some of these are dropped as they begin.
+        let more: &[f32] = if learnt && has_light_walks { &[0.5, 1.0, 2.0, 4.0] } else { &[] };
+        let light_walks =
+            usual.iter().map(|walks| (*walks, false)).chain(more.iter().map(|walks| (*walks, true)));
+        let efforts = light_walks.flat_map(move |(light_walks, learnt_starts)| {
+            let effort = move |connections: &u32| Effort {
+                survival,
+                light_walks,
+                connections: *connections,
+                learnt_starts,
+            };
+            connections.iter().map(effort)
+        });
+        efforts.map(move |effort| Choice { among: all, strategies, effort, gain: 1.0 })
     })
 }
 
@@ -142,20 +160,31 @@ struct Found {
     /// Squared luminance; from [`Pilot`] on, its part in the second moment of a pixel sample in the tile.
     square: f64,
     shares: [f32; StrategyKind::ALL.len()],
+    /// How often light subpaths would start there without learnt starts, over how often they do.
+    unlearnt: f32,
 }
 
 /// How often something was done.
 #[derive(Clone, Copy, Default)]
 struct Work {
     walks: f64,
+    /// Those that set out.
+    begun: f64,
     segments: f64,
     tries: [f64; StrategyKind::ALL.len()],
+    /// Vertices of light subpaths that are kept for connections.
+    kept: f64,
+    /// Light subpaths that the lens sees anything of.
+    reaching: f64,
 }
 
 impl Work {
     fn and(mut self, other: &Self) -> Self {
         self.walks += other.walks;
+        self.begun += other.begun;
         self.segments += other.segments;
+        self.kept += other.kept;
+        self.reaching += other.reaching;
         self.tries.iter_mut().zip(other.tries).for_each(|(tries, other)| *tries += other);
         self
     }
@@ -166,26 +195,46 @@ impl Work {
 struct Gathered {
     found: Vec<Found>,
     work: Work,
+    /// The work of light subpaths without learnt starts.
+    unlearnt: Work,
 }
 
 /// Sees walks and what they contribute; those of the camera to one pixel.
 struct Gather<'a> {
     film: &'a Film,
+    follower: Follower<'a>,
     pixel: u32,
     weight: f32,
     sum: f64,
+    /// The light subpath at hand is seen.
+    is_seen: bool,
     gathered: Gathered,
 }
 
 impl<'a> Gather<'a> {
-    fn new(film: &'a Film) -> Self {
-        Self { film, pixel: 0, weight: 1.0, sum: 0.0, gathered: Gathered::default() }
+    fn new(film: &'a Film, follower: Follower<'a>) -> Self {
+        Self {
+            film,
+            follower,
+            pixel: 0,
+            weight: 1.0,
+            sum: 0.0,
+            is_seen: false,
+            gathered: Gathered::default(),
+        }
     }
 
-    /// The sum of what a camera subpath contributes to `pixel` follows, times `weight`.
-    fn begin(&mut self, pixel: usize, weight: f32) {
+    /// The sum of what a camera subpath of channel `hero` contributes to `pixel` follows, times `weight`.
+    fn begin(&mut self, pixel: usize, hero: usize, weight: f32) {
+        self.follower.begin(hero);
         (self.pixel, self.weight, self.sum) = (pixel as u32, weight, 0.0);
         self.gathered.work.walks += 1.0;
+    }
+
+    /// Counts some work.
+    fn count(&mut self, counter: impl Fn(&mut Work) -> &mut f64) {
+        *counter(&mut self.gathered.work) += 1.0;
+        *counter(&mut self.gathered.unlearnt) += f64::from(self.follower.unlearnt());
     }
 }
 
@@ -194,24 +243,47 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
         self.film.covers(film)
     }
 
-    fn depart(&mut self, _: &Departure<S>) {
-        self.gathered.work.segments += 1.0;
+    fn emit(&mut self, start: &EmissionSample, hero: usize) {
+        self.follower.emit(start, hero);
+        self.is_seen = false;
+    }
+
+    fn depart(&mut self, departure: &Departure<S>) {
+        self.follower.depart(departure);
+        self.count(|work| &mut work.segments);
+        if departure.edges == 0 {
+            self.count(|work| &mut work.begun);
+        }
+    }
+
+    fn arrive(&mut self, vertex: &Vertex<S>) {
+        self.follower.arrive(vertex);
+    }
+
+    fn keep(&mut self) {
+        self.follower.keep();
+        self.count(|work| &mut work.kept);
     }
 
     fn stop(&mut self, kind: StrategyKind, _: u32, _: u32) {
-        self.gathered.work.tries[kind as usize] += 1.0;
+        self.count(|work| &mut work.tries[kind as usize]);
     }
 
-    fn contribute(&mut self, _: u32, _: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
         let Some(Contribution { value, shares, .. }) = contribution.filter(|c| c.value.is_finite()) else {
             return;
         };
+        let unlearnt = self.follower.start(s, t, &meeting).map_or(1.0, |followed| followed.unlearnt);
         let found = &mut self.gathered.found;
         let mut add = |pixel: u32, value: Spectrum| {
             let luminance = f64::from(value.luminance());
-            found.push(Found { pixel, square: luminance * luminance, shares: *shares });
+            found.push(Found { pixel, square: luminance * luminance, shares: *shares, unlearnt });
         };
         if let Meeting::Lens(film) = meeting {
+            if !self.is_seen {
+                self.gathered.work.reaching += 1.0;
+                self.is_seen = true;
+            }
             return self.film.spread(film, *value, |pixel, value| add(pixel as u32, value));
         }
         let value = *value * self.weight;
@@ -237,13 +309,16 @@ impl Part {
 /// The samples of `block` in `pass`.
 pub(super) fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
     let Ready { estimator, blocks, scene, film, seed } = ready;
-    let (mut light, mut camera) = (Gather::new(film), Gather::new(film));
+    let follower = Follower::new(&scene.lights, estimator.starts(), P::Channels::COUNT);
+    let mut light = Gather::new(film, follower);
     let mut observer: &mut dyn Observer<P::MisSums> = &mut light;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
-    light.gathered.work.walks = blocks.walks_per_block() as f64;
+    let walks = blocks.walks_per_block() as f64;
+    (light.gathered.work.walks, light.gathered.unlearnt.walks) = (walks, walks);
+    let mut camera = Gather::new(film, light.follower.of_cache());
     let sums = blocks.pixels(block).map(|pixel| {
         let start = blocks.camera_start(scene, film, *seed, pass, pixel);
-        camera.begin(pixel, start.weight);
+        camera.begin(pixel, start.hero, start.weight);
         let observer: &mut dyn Observer<P::MisSums> = &mut camera;
         start.trace(estimator, &cache, observer);
         (pixel as u32, camera.sum)
@@ -270,6 +345,10 @@ pub(super) struct Pilot {
     found: Vec<(u32, Found)>,
     camera: Work,
     light: Work,
+    /// That of light subpaths without learnt starts.
+    light_unlearnt: Work,
+    /// Light subpaths began at learnt starts.
+    is_learnt: bool,
 }
 
 impl Pilot {
@@ -284,10 +363,10 @@ impl Pilot {
             }
             parts.par_extend((0..blocks).into_par_iter().map(|block| part(ready, pass, block)));
         }
-        Self::of(parts, ready.film, &ready.blocks)
+        Self::of(parts, ready.film, &ready.blocks, ready.estimator.starts().is_some())
     }
 
-    fn of(parts: Vec<Part>, film: &Film, blocks: &Blocks) -> Self {
+    fn of(parts: Vec<Part>, film: &Film, blocks: &Blocks, is_learnt: bool) -> Self {
         let (width, height) = (film.width, film.len() as u32 / film.width);
         let (across, down) = (width.min(TILES), height.min(TILES));
         let tile =
@@ -297,8 +376,10 @@ impl Pilot {
         for (pixel, _) in parts.iter().flat_map(|part| &part.sums) {
             tiles[tile(*pixel)].samples += 1.0;
         }
-        let [camera, light] = [|part: &Part| part.camera.work, |part: &Part| part.light.work]
-            .map(|work| parts.iter().fold(Work::default(), |sum, part| sum.and(&work(part))));
+        let works: [fn(&Part) -> Work; 3] =
+            [|part| part.camera.work, |part| part.light.work, |part| part.light.unlearnt];
+        let [camera, light, light_unlearnt] =
+            works.map(|work| parts.iter().fold(Work::default(), |sum, part| sum.and(&work(part))));
         // Light subpaths traced stand for those of a pass.
         let per_pass = blocks.walks_per_pass() as f64 / light.walks.max(1.0);
         let variances = variances(&parts);
@@ -309,28 +390,37 @@ impl Pilot {
                 tile.mean += sum / tile.samples;
                 tile.rest += variances[&pixel] / tile.samples;
             }
-            for Found { pixel, square, shares } in part.camera.found {
-                let (index, square) = (tile(pixel), square / tiles[tile(pixel)].samples);
+            for one in part.camera.found {
+                let index = tile(one.pixel);
+                let square = one.square / tiles[index].samples;
                 tiles[index].rest -= square;
-                found.push((index as u32, Found { pixel, square, shares }));
+                found.push((index as u32, Found { square, ..one }));
             }
-            for Found { pixel, square, shares } in part.light.found {
-                let index = tile(pixel);
+            for one in part.light.found {
+                let index = tile(one.pixel);
                 let scale = per_pass / tiles[index].pixels;
-                tiles[index].mean += square.sqrt() * scale;
-                found.push((index as u32, Found { pixel, square: square * scale, shares }));
+                tiles[index].mean += one.square.sqrt() * scale;
+                found.push((index as u32, Found { square: one.square * scale, ..one }));
             }
         }
-        let mut pilot = Self { tiles, found, camera, light };
+        let mut pilot = Self { tiles, found, camera, light, light_unlearnt, is_learnt };
         pilot.leave_out_outliers();
         pilot
     }
 
+    /// True if light starts where it seldom comes into view: then it is worth learning where it should.
+    fn is_remote(&self) -> bool {
+        self.light.reaching < REMOTE * self.light.walks
+    }
+
     /// Time of a pixel sample, in segments.
     fn time(&self, Choice { strategies, effort, .. }: &Choice) -> f64 {
-        let Self { camera, light, .. } = self;
+        let Self { camera, .. } = self;
+        let light = if effort.learnt_starts { &self.light } else { &self.light_unlearnt };
+        let longer = if effort.learnt_starts { LEARNT } else { 1.0 };
         let mut camera_time = time::START * camera.walks + camera.segments;
-        let mut light_time = time::START * light.walks + light.segments;
+        let dropped = (light.walks - light.begun).max(0.0);
+        let mut light_time = time::START * light.begun + time::DROPPED * dropped + light.segments;
         for kind in StrategyKind::ALL.into_iter().filter(|kind| strategies.has(*kind)) {
             let factor = if kind == StrategyKind::Connection { f64::from(effort.connections) } else { 1.0 };
             camera_time += factor * time::TRY[kind as usize] * camera.tries[kind as usize];
@@ -338,22 +428,29 @@ impl Pilot {
         }
         let light_walks =
             if strategies.connection || strategies.lens { f64::from(effort.light_walks) } else { 0.0 };
-        camera_time / camera.walks.max(1.0) + light_walks * light_time / light.walks.max(1.0)
+        longer * (camera_time / camera.walks.max(1.0) + light_walks * light_time / light.walks.max(1.0))
     }
 
     /// The squared relative error of a pixel sample, on average over the image; infinite where something is left out.
     fn error(&self, choice: &Choice) -> f64 {
-        let errors = self.errors(choice.counts());
+        let errors = self.errors(choice.counts(), choice.effort.learnt_starts);
         let pixels: f64 = self.seen().map(|tile| tile.pixels).sum();
         errors.iter().sum::<f64>() / pixels.max(1.0)
     }
 
-    /// Those of the pixels of every tile, added up, by so many samples of each kind of strategies.
-    fn errors(&self, counts: [f64; StrategyKind::ALL.len()]) -> Vec<f64> {
+    /// Those of the pixels of every tile, added up, by so many samples of each kind of strategies, where light subpaths begin
+    /// at `learnt` starts or not.
+    fn errors(&self, counts: [f64; StrategyKind::ALL.len()], learnt: bool) -> Vec<f64> {
         let mut moments = vec![0.0; self.tiles.len()];
-        for (tile, Found { square, shares, .. }) in self.found.iter().filter(|(_, found)| found.square > 0.0)
+        // Connections to each vertex are as many, however many vertices light subpaths leave.
+        let draws = if learnt { 1.0 } else { self.light.kept.max(1.0) / self.light_unlearnt.kept.max(1.0) };
+        for (tile, Found { square, shares, unlearnt, .. }) in
+            self.found.iter().filter(|(_, found)| found.square > 0.0)
         {
-            let left: f64 = (0..counts.len()).map(|kind| f64::from(shares[kind]) * counts[kind]).sum();
+            let begun = if learnt { 1.0 } else { f64::from(*unlearnt) };
+            let factors = [1.0, 1.0, begun * draws, begun, 1.0];
+            let left = |kind: usize| f64::from(shares[kind]) * counts[kind] * factors[kind];
+            let left: f64 = (0..counts.len()).map(left).sum();
             moments[*tile as usize] += square / left;
         }
         let pixels: f64 = self.seen().map(|tile| tile.pixels).sum();
@@ -376,7 +473,7 @@ impl Pilot {
     /// The same tiles for every choice, the worst by all strategies alike: the worst by another choice may be those that it
     /// is bad for.
     fn leave_out_outliers(&mut self) {
-        let errors = self.errors([1.0, 1.0, 1.0, 1.0, 0.0]);
+        let errors = self.errors([1.0, 1.0, 1.0, 1.0, 0.0], self.is_learnt);
         let mut order: Vec<usize> =
             (0..errors.len()).filter(|tile| self.tiles[*tile].samples > 0.0).collect();
         order.sort_by(|a, b| errors[*b].total_cmp(&errors[*a]));
@@ -451,13 +548,20 @@ mod tests {
     /// A corner of the image that other strategies hardly see, or do not, decides against them.
     #[test]
     fn what_a_choice_is_bad_for_is_no_outlier() {
-        let found = |shares| Found { pixel: 0, square: 1.0, shares };
+        let found = |shares| Found { pixel: 0, square: 1.0, shares, unlearnt: 1.0 };
         let pilot = |corner| {
             let tiles = vec![Tile { pixels: 1.0, samples: 1.0, mean: 0.7, rest: 0.0 }; 100];
             let found = (0..100)
                 .map(|tile| (tile, found(if tile == 7 { corner } else { [1.0, 0.0, 0.0, 0.0, 0.0] })));
             let work = Work { walks: 1.0, ..Work::default() };
-            let mut pilot = Pilot { tiles, found: found.collect(), camera: work, light: work };
+            let mut pilot = Pilot {
+                tiles,
+                found: found.collect(),
+                camera: work,
+                light: work,
+                light_unlearnt: work,
+                is_learnt: false,
+            };
             pilot.leave_out_outliers();
             pilot
         };
@@ -482,7 +586,7 @@ mod tests {
             let options = Options { strategies: Strategies::BDPT, ..setup.integrator.options };
             let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
             let settings = Settings { options, sampler, budget, seed: 0, profile: ProfileName::Everything };
-            let pilot = pilot(&setup.scene, &setup.film, &settings, Survival::Albedo);
+            let pilot = pilot(&setup.scene, &setup.film, &settings, Survival::Albedo, true);
             let relative = |choice: Choice| {
                 let Choice { strategies, effort, .. } = choice;
                 let settings = Settings { options: Options { strategies, effort, ..options }, ..settings };

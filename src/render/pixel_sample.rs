@@ -288,7 +288,7 @@ impl<S: MisSums> Observer<S> for Trail<'_> {
         self.film.is_none_or(|all| all.covers(film))
     }
     fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Contribution>) {}
-    fn emit(&mut self, start: &EmissionSample) {
+    fn emit(&mut self, start: &EmissionSample, _: usize) {
         self.walk.emitter = Some(*start);
     }
     fn depart(&mut self, departure: &Departure<S>) {

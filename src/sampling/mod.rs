@@ -4,10 +4,12 @@ pub mod discrete;
 pub mod grid;
 mod inverse;
 mod points;
+pub mod quadtree;
 pub mod sampler;
 pub mod stream;
 
 pub use discrete::Discrete;
 pub use grid::{Cell, Grid};
+pub use quadtree::Quadtree;
 pub use sampler::Sampler;
 pub use stream::Stream;

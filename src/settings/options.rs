@@ -74,11 +74,13 @@ pub struct Effort {
     pub light_walks: f32,
     /// Connections from each vertex of the camera subpath to vertices of light subpaths, above 0.
     pub connections: u32,
+    /// Light subpaths start where, as a pilot learns, light reaches the image.
+    pub learnt_starts: bool,
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { survival: Survival::Albedo, light_walks: 1.0, connections: 1 }
+        Self { survival: Survival::Albedo, light_walks: 1.0, connections: 1, learnt_starts: false }
     }
 }
 

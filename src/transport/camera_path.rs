@@ -176,7 +176,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         }
         self.observer.start();
         if let Some(sample) = found() {
-            let contribution = self.emitter_hit(subpath, &sample);
+            let contribution = self.emitter_hit(subpath, &sample, self.previous);
             self.observer.contribute(
                 0,
                 subpath.edges + 1,
@@ -217,7 +217,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         if let Some((t, pdf)) = emission.sample_along(&part.emitting(scene), stream)
             && let Some((subpath, sample)) = self.meet(departure, part, light, t, stream)
         {
-            let contribution = self.emitter_hit(&subpath, &sample).map(|contribution| contribution / pdf);
+            let contribution = self.emitter_hit(&subpath, &sample, self.previous).map(|c| c / pdf);
             self.observer.contribute(
                 0,
                 subpath.edges + 1,
@@ -245,11 +245,16 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         Some((arrive::<P>(departure, &state, part.medium, &at, self.hero)?, sample))
     }
 
-    /// s = 0: the walk has hit an emitter.
+    /// s = 0: the walk has hit an emitter, on a segment from `previous`.
     ///
     /// LW96 eq. 3: the term L_e, weighted by eq. 14.
     #[inline]
-    pub fn emitter_hit(&self, subpath: &Subpath<P::MisSums>, sample: &EmitterSample) -> Option<Contribution> {
+    pub fn emitter_hit(
+        &self,
+        subpath: &Subpath<P::MisSums>,
+        sample: &EmitterSample,
+        previous: Vec3,
+    ) -> Option<Contribution> {
         let counts = &self.estimator.counts;
         // Media cannot be hidden as emitters: what is behind them is seen through them.
         let hidden = self.estimator.hide_emitters && !(P::EMISSIVE && sample.point.is_volume());
@@ -261,7 +266,8 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         let has_other = !subpath.after_dirac && subpath.edges > 1;
         let connections = if has_other { counts.next_event * sample.pdf } else { 0.0 };
         let unit = subpath.inv_pdf / counts.emitter_hit;
-        let by_light = subpath.others_over_pdf_rev.scaled(sample.pdf_direction * sample.pdf_start * unit);
+        let pdf_start = self.estimator.pdf_start(sample, previous, subpath.incoming);
+        let by_light = subpath.others_over_pdf_rev.scaled(pdf_start * unit);
         let next_event = subpath.pdf_over_hero_before.scaled(connections * unit);
         let mut others = P::MisSums::of(StrategyKind::NextEvent, next_event).and(by_light);
         if P::MEDIA
@@ -318,7 +324,9 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
             let along = self.estimator.equiangular(first, sample.light);
             camera.beside = Some(P::MisSums::of(StrategyKind::Equiangular, along));
         }
-        let light = connect::emitter_end::<P>(scene, sample, camera.medium, -direction, counts.emitter_hit);
+        let pdf_start = self.estimator.pdf_start(sample, vertex.position(), -direction);
+        let (medium, hits) = (camera.medium, counts.emitter_hit);
+        let light = connect::emitter_end::<P>(scene, sample, medium, -direction, pdf_start, hits);
         let strategy = self.estimator.strategy(StrategyKind::NextEvent);
         if P::INFINITE && sample.point.is_infinite() {
             let ray = Ray { origin: camera.origin?, direction, t_max: f32::INFINITY };

@@ -52,14 +52,14 @@ pub fn vertex_end<S: MisSums>(
 }
 
 /// The end at an emitter point picked by next-event estimation, for a connection of strategy s = 1;
-/// `emitter_hits` is n of s = 0. In units of the density of s = 1, a light subpath starts here `pdf_start /
-/// pdf` times as densely.
+/// `emitter_hits` is n of s = 0, `pdf_start` the density of a light subpath's start in unit direction `towards`.
 #[inline]
 pub fn emitter_end<P: Profile>(
     scene: &Scene,
     sample: &EmitterSample,
     medium: MediumIndex,
     towards: Vec3,
+    pdf_start: f32,
     emitter_hits: f32,
 ) -> End<P::MisSums> {
     let light = &scene.lights.all[sample.light as usize];
@@ -71,7 +71,7 @@ pub fn emitter_end<P: Profile>(
         medium: if within { light.medium } else { medium },
         within,
         value: sample.value / sample.pdf,
-        pdf_fwd: sample.pdf_direction * sample.pdf_start / sample.pdf,
+        pdf_fwd: pdf_start / sample.pdf,
         cosine: sample.cosine,
         inv_pdf: 1.0 / sample.pdf,
         sigma_t: rate_at::<P>(&sample.point),

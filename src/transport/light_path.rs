@@ -17,10 +17,7 @@ use crate::{
     bsdf::Transport,
     math::{Channels, Spectrum, Vec2, Vec3},
     sampling::Stream,
-    scene::{
-        Scene,
-        lights::{EmissionSample, EmitterPoint},
-    },
+    scene::lights::{Densities, EmissionSample, EmitterPoint, Start},
     sensor::Projection,
     shape::Ray,
 };
@@ -44,8 +41,8 @@ pub fn trace<P: Profile>(
 ) {
     cache.add_walk(hero, estimator.keep);
     let scene = estimator.scene;
-    let Some(start) = begin::<P>(scene, stream) else { return };
-    observer.emit(&start);
+    let Some(start) = begin(estimator, stream) else { return };
+    observer.emit(&start, hero);
     let departure = depart(estimator, &start);
     let kind = Kind {
         transport: Transport::Importance,
@@ -60,12 +57,16 @@ pub fn trace<P: Profile>(
         let contribution = light.connect_start_to_lens(aperture, stream);
         light.splat(1, contribution);
     }
+    if departure.throughput.max_element() <= 0.0 {
+        return;
+    }
     walk(scene, kind, departure, &mut light, stream);
 }
 
 /// Where a light subpath starts; none where nothing leaves.
-pub fn begin<P: Profile>(scene: &Scene, stream: &mut Stream) -> Option<EmissionSample> {
-    let start = scene.lights.sample_emission(&scene.geometry, stream)?;
+pub fn begin<P: Profile>(estimator: &Estimator<'_, P>, stream: &mut Stream) -> Option<EmissionSample> {
+    let scene = estimator.scene;
+    let start = scene.lights.sample_emission(&scene.geometry, estimator.starts.as_deref(), stream)?;
     // Points are sampled in the box around an emissive medium: not all lie in it.
     let astray = P::EMISSIVE && start.point.is_volume() && {
         let medium = scene.lights.all[start.light as usize].medium;
@@ -212,7 +213,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
             _ => scene.sensor.project(start.position(), aperture),
         };
         let seen = seen.filter(|seen| self.observer.covers(seen.film))?;
-        let end = start_end::<P>(estimator, start, -seen.ray.direction)?;
+        let end = start_end::<P>(estimator, start, seen.ray.origin, -seen.ray.direction)?;
         let contribution = self.connect_end(&end, &seen, start.point.is_infinite(), stream)?;
         Some((seen.film, contribution))
     }
@@ -252,14 +253,17 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
     }
 }
 
-/// The emitter point of a light subpath as the end of a connection in unit direction `towards`; none where it
-/// does not emit that way.
+/// The emitter point of a light subpath as the end of a connection to `other` in unit direction `towards`; none where
+/// it does not emit that way.
 fn start_end<P: Profile>(
     estimator: &Estimator<'_, P>,
     start: &EmissionSample,
+    other: Vec3,
     towards: Vec3,
 ) -> Option<End<P::MisSums>> {
     let emission = estimator.scene.lights.emission(start, towards)?;
+    let unlearnt = Densities { point: start.unlearnt.point, direction: emission.pdf_direction };
+    let densities = estimator.learnt(|| Start::towards(start.light, &start.point, other, towards), unlearnt);
     let origin = start.point.ray_origin(towards);
     let leaving = origin.unwrap_or(start.ray.origin);
     Some(End {
@@ -269,7 +273,7 @@ fn start_end<P: Profile>(
         medium: estimator.scene.emission_medium(start.light, leaving, towards),
         within: false,
         value: emission.value / start.pdf,
-        pdf_fwd: emission.pdf_direction,
+        pdf_fwd: densities.direction,
         cosine: emission.cosine,
         inv_pdf: 1.0 / start.pdf,
         sigma_t: connect::rate_at::<P>(&start.point),

@@ -90,14 +90,18 @@ pub use crate::{
 };
 
 use crate::{
-    math::{Channels, Spectrum, Vec2},
+    math::{Channels, Spectrum, Vec2, Vec3},
     sampling::{Stream, stream::Purpose},
-    scene::Scene,
+    scene::{
+        Scene,
+        lights::{Densities, EmitterSample, Start, Starts},
+    },
     shape::Ray,
 };
 use mis::Strategy;
 use observer::{Meeting, Observer, StrategyKind};
 use profile::Profile;
+use std::sync::Arc;
 
 /// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
 #[derive(Clone, Copy, Debug)]
@@ -126,15 +130,19 @@ pub struct Estimator<'a, P: Profile> {
     max_edges: u32,
     hide_emitters: bool,
     forced_interaction: bool,
+    /// Which starts of light subpaths reach the image; none if they start as their emitters would have it.
+    starts: Option<Arc<Starts>>,
     profile: std::marker::PhantomData<P>,
 }
 
 impl<'a, P: Profile> Estimator<'a, P> {
     /// Prepares to render `scene` with `walks_per_pass` light subpaths for each sample of all pixels together and
-    /// `walks_per_block` of them behind one cache; `seed` is that of its pilot walks.
+    /// `walks_per_block` of them behind one cache, which begin at learnt `starts` if there are any; `seed` is that of its
+    /// pilot walks.
     pub fn new(
         scene: &'a Scene,
         options: Options,
+        starts: Option<Arc<Starts>>,
         seed: u64,
         walks_per_pass: u64,
         walks_per_block: u64,
@@ -158,6 +166,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             max_edges: max_depth.unwrap_or(u32::MAX).min(P::MisSums::MOST_EDGES),
             hide_emitters,
             forced_interaction: P::MEDIA && forced_interaction,
+            starts,
             profile: std::marker::PhantomData,
         };
         if strategies.connection && lit {
@@ -199,6 +208,27 @@ impl<'a, P: Profile> Estimator<'a, P> {
             StrategyKind::Equiangular => self.counts.equiangular,
         };
         Strategy { kind, count, heuristic: self.heuristic }
+    }
+
+    /// Density of a light subpath's start at `sample` along the segment from there to `other`, in unit `direction`.
+    #[inline]
+    fn pdf_start(&self, sample: &EmitterSample, other: Vec3, direction: Vec3) -> f32 {
+        let unlearnt = Densities { point: sample.pdf_start, direction: sample.pdf_direction };
+        self.learnt(|| Start::towards(sample.light, &sample.point, other, direction), unlearnt).both()
+    }
+
+    /// Densities of a start, which are `unlearnt` without what was learnt.
+    #[inline]
+    fn learnt(&self, start: impl FnOnce() -> Start, unlearnt: Densities) -> Densities {
+        match &self.starts {
+            None => unlearnt,
+            Some(starts) => starts.densities(&self.scene.lights, &start(), unlearnt),
+        }
+    }
+
+    /// The starts that light subpaths were given.
+    pub fn starts(&self) -> Option<&Starts> {
+        self.starts.as_deref()
     }
 
     /// True if light subpaths have something to do.

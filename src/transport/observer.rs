@@ -142,9 +142,9 @@ pub trait Observer<S: MisSums> {
     #[inline]
     fn stop(&mut self, _kind: StrategyKind, _s: u32, _t: u32) {}
 
-    /// A light subpath begins at an emitter.
+    /// A light subpath of channel `hero` begins at an emitter.
     #[inline]
-    fn emit(&mut self, _start: &EmissionSample) {}
+    fn emit(&mut self, _start: &EmissionSample, _hero: usize) {}
 
     /// A walk leaves its start or a vertex.
     #[inline]

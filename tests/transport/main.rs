@@ -17,4 +17,5 @@ mod layers;
 mod modes;
 mod openings;
 mod sobol;
+mod starts;
 mod traps;

@@ -1,6 +1,9 @@
 //! Where light subpaths start.
 
-use super::{EmitterPoint, Geometry, Lights};
+use super::{
+    EmitterPoint, Geometry, Lights, Start, Starts,
+    starts::{Densities, Learnt},
+};
 use crate::{
     emitter::{
         InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceEmission, SurfaceEmitter,
@@ -27,6 +30,8 @@ pub struct EmissionSample {
     pub pdf: f32,
     /// Density of the direction [1/sr], or of the origin on the disk [1/m^2]; 1 of the only direction there is.
     pub pdf_direction: f32,
+    /// Both densities without what was learnt.
+    pub unlearnt: Densities,
     /// Emitted radiance x cosine (or intensity) over both densities.
     pub throughput: Spectrum,
 }
@@ -49,21 +54,66 @@ impl EmissionSample {
     }
 }
 
+impl EmissionSample {
+    /// Where and which way light leaves.
+    pub fn start(&self) -> Start {
+        Start::towards(self.light, &self.point, self.ray.origin, self.ray.direction)
+    }
+
+    /// The same by the mixture of the emitters' own distributions, whose densities it has, and what was `learnt`.
+    fn mixed(self, lights: &Lights, learnt: &Starts) -> Self {
+        let densities = learnt.densities(lights, &self.start(), self.unlearnt);
+        let ratio = self.unlearnt.both() / densities.both();
+        let throughput = if ratio.is_finite() { self.throughput * ratio } else { Spectrum::ZERO };
+        Self { pdf: densities.point, pdf_direction: densities.direction, throughput, ..self }
+    }
+}
+
 impl Lights {
-    /// Samples an emitter by power, a point on it and a direction; none where nothing leaves.
-    pub fn sample_emission(&self, geometry: &Geometry, stream: &mut Stream) -> Option<EmissionSample> {
+    /// Samples an emitter by power, a point on it and a direction, mixed with those that were `learnt`; none where nothing
+    /// leaves. A learnt direction in which nothing leaves the point has a throughput of 0: the point was sampled all
+    /// the same.
+    pub fn sample_emission(
+        &self,
+        geometry: &Geometry,
+        learnt: Option<&Starts>,
+        stream: &mut Stream,
+    ) -> Option<EmissionSample> {
         if self.starts.is_empty() {
             return None;
         }
-        let (index, chosen) = self.starts.sample_precisely(stream.uniform_precisely());
-        let chosen = chosen as f32;
-        let start = match &self.all[index].emitter.kind {
-            Kind::Surface(surface) => self.start_on_shape(index, surface, chosen, geometry, stream)?,
-            Kind::Point(point) => self.start_at_point(index, point, chosen, stream),
-            Kind::Infinite(sky) => self.start_at_infinity(index, sky, chosen, stream),
-            Kind::Medium(volume) => self.start_within(index, volume, chosen, stream),
+        let Some(learnt) = learnt else {
+            let (index, chosen) = self.starts.sample_precisely(stream.uniform_precisely());
+            return self.start(geometry, index, chosen as f32, None, stream);
         };
-        (start.throughput.is_finite() && start.throughput.max_element() > 0.0).then_some(start)
+        let (index, chosen, by) = learnt.choose(self, stream);
+        Some(self.start(geometry, index, chosen as f32, by, stream)?.mixed(self, learnt))
+    }
+
+    /// Samples a start on the emitter `index`, which is chosen with probability `chosen`, by its own distributions or by those
+    /// that were `learnt`; its densities are those of the emitter's own.
+    fn start(
+        &self,
+        geometry: &Geometry,
+        index: usize,
+        chosen: f32,
+        learnt: Option<&Learnt>,
+        stream: &mut Stream,
+    ) -> Option<EmissionSample> {
+        let start = match &self.all[index].emitter.kind {
+            Kind::Surface(surface) => {
+                self.start_on_shape(index, surface, chosen, geometry, learnt, stream)?
+            }
+            Kind::Point(point) => self.start_at_point(index, point, chosen, learnt, stream),
+            Kind::Infinite(sky) => self.start_at_infinity(index, sky, chosen, learnt, stream),
+            Kind::Medium(volume) => self.start_within(index, volume, chosen, learnt, stream),
+        };
+        let leaves = start.throughput.is_finite() && start.throughput.max_element() > 0.0;
+        match learnt {
+            None => leaves.then_some(start),
+            Some(_) if leaves => Some(start),
+            Some(_) => Some(EmissionSample { throughput: Spectrum::ZERO, ..start }),
+        }
     }
 
     fn start_on_shape(
@@ -72,14 +122,21 @@ impl Lights {
         surface: &SurfaceEmitter,
         chosen: f32,
         geometry: &Geometry,
+        learnt: Option<&Learnt>,
         stream: &mut Stream,
     ) -> Option<EmissionSample> {
         let shape = self.all[index].shape?;
         let point = geometry.sample_area(shape, stream);
         let pdf = chosen / geometry.area(shape);
-        let SurfaceEmission { direction, cosine, pdf_sr, throughput } = surface.sample(&point, pdf, stream);
+        let direction = learnt.and_then(|learnt| learnt.sample_direction(point.position, stream));
+        let emission = match direction {
+            Some(direction) => emission_towards(surface, &point, pdf, direction),
+            None => surface.sample(&point, pdf, stream),
+        };
+        let SurfaceEmission { direction, cosine, pdf_sr, throughput } = emission;
         let (light, point, ray) = (index as u32, EmitterPoint::Surface(point), leaving(&point, direction));
-        Some(EmissionSample { light, point, ray, cosine, pdf, pdf_direction: pdf_sr, throughput })
+        let unlearnt = Densities { point: pdf, direction: pdf_sr };
+        Some(EmissionSample { light, point, ray, cosine, pdf, pdf_direction: pdf_sr, unlearnt, throughput })
     }
 
     fn start_at_point(
@@ -87,14 +144,16 @@ impl Lights {
         index: usize,
         point: &PointEmitter,
         pdf: f32,
+        learnt: Option<&Learnt>,
         stream: &mut Stream,
     ) -> EmissionSample {
-        let direction = point.sample(stream);
+        let position = self.all[index].position;
+        let direction = learnt.and_then(|learnt| learnt.sample_direction(position, stream));
+        let direction = direction.unwrap_or_else(|| point.sample(stream));
         let pdf_direction = point.pdf_sr(direction);
         let throughput = point.intensity(direction) / (pdf * pdf_direction);
-        let position = self.all[index].position;
         let (point, ray) = (EmitterPoint::Point(position), endless(position, direction));
-        EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
+        start_of(index, point, ray, [pdf, pdf_direction], throughput)
     }
 
     fn start_at_infinity(
@@ -102,16 +161,19 @@ impl Lights {
         index: usize,
         sky: &InfiniteEmitter,
         chosen: f32,
+        learnt: Option<&Learnt>,
         stream: &mut Stream,
     ) -> EmissionSample {
-        let towards = sky.sample(stream);
+        let towards = learnt.and_then(|learnt| learnt.sample_towards(stream));
+        let towards = towards.unwrap_or_else(|| sky.sample(stream));
         let (pdf, radiance) = (chosen * sky.pdf_sr(towards), sky.radiance(towards));
-        let disk = warp::to_disk(stream.square()) * self.radius;
+        let disk = learnt.and_then(|learnt| learnt.sample_disk(towards, stream));
+        let disk = disk.unwrap_or_else(|| warp::to_disk(stream.square())) * self.radius;
         let origin = self.centre + Frame::around(towards).to_world(disk.extend(self.radius));
         let pdf_direction = self.disk_pdf_area();
         let throughput = radiance * self.from_infinity / (pdf * pdf_direction);
         let (point, ray) = (EmitterPoint::Direction(towards), endless(origin, -towards));
-        EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
+        start_of(index, point, ray, [pdf, pdf_direction], throughput)
     }
 
     /// In the medium's box; the caller, who knows the boundaries, checks whether it is in the medium.
@@ -120,15 +182,17 @@ impl Lights {
         index: usize,
         volume: &VolumeEmitter,
         chosen: f32,
+        learnt: Option<&Learnt>,
         stream: &mut Stream,
     ) -> EmissionSample {
         let emission = &volume.emission;
         let position = emission.sample(stream);
-        let ray = endless(position, warp::to_sphere(stream.square()));
+        let direction = learnt.and_then(|learnt| learnt.sample_direction(position, stream));
+        let ray = endless(position, direction.unwrap_or_else(|| warp::to_sphere(stream.square())));
         let (pdf, pdf_direction) = (chosen * emission.pdf_vol(position), VolumeEmitter::PDF_SR);
         let throughput = emission.at(position) / (pdf * pdf_direction);
         let point = EmitterPoint::Volume { position, rate: emission.rate(position) };
-        EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, throughput }
+        start_of(index, point, ray, [pdf, pdf_direction], throughput)
     }
 
     /// What the emitter point of a light subpath sends towards unit `towards`, if camera subpaths can hit it; none where
@@ -166,9 +230,34 @@ impl Lights {
             (EmitterPoint::Volume { position, .. }, Kind::Medium(volume)) => {
                 self.connections.pdf_vol(index, &volume.emission, *position, reference) / start.pdf
             }
-            _ => chosen() / self.starts.probability(index),
+            _ => chosen() / self.starts.probability(index) * (start.unlearnt.point / start.pdf),
         }
     }
+}
+
+/// What leaves `point` of a shape, which has density `pdf_area`, in unit `direction`.
+fn emission_towards(
+    surface: &SurfaceEmitter,
+    point: &SurfacePoint,
+    pdf_area: f32,
+    direction: Vec3,
+) -> SurfaceEmission {
+    let cosine = point.front().dot(direction);
+    let pdf_sr = surface.pdf_sr(cosine);
+    let throughput = surface.radiance(point.uv, cosine) * (cosine / (pdf_area * pdf_sr));
+    SurfaceEmission { direction, cosine, pdf_sr, throughput }
+}
+
+/// A start that is not on a shape, with the densities of point and direction.
+fn start_of(
+    index: usize,
+    point: EmitterPoint,
+    ray: Ray,
+    [pdf, pdf_direction]: [f32; 2],
+    throughput: Spectrum,
+) -> EmissionSample {
+    let unlearnt = Densities { point: pdf, direction: pdf_direction };
+    EmissionSample { light: index as u32, point, ray, cosine: 1.0, pdf, pdf_direction, unlearnt, throughput }
 }
 
 /// The ray that leaves `point` in unit `direction`.

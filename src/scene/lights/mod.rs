@@ -13,12 +13,14 @@ mod light_sampler;
 mod light_tree;
 mod pivot;
 mod point;
+mod starts;
 mod volume;
 
 pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
 pub use pivot::Pivot;
 pub use point::EmitterPoint;
+pub use starts::{Densities, Memo, Start, Starts};
 pub(super) use volume::emissive;
 
 use super::accel::Geometry;
@@ -69,6 +71,8 @@ pub struct Lights {
     radius: f32,
     /// What remains of light from infinity where it enters the scene: 1, or 0 in fog without end.
     from_infinity: Spectrum,
+    /// Which starts of light subpaths reach an image.
+    pub learnt: Memo,
 }
 
 impl Lights {
@@ -97,6 +101,7 @@ impl Lights {
             centre,
             radius,
             from_infinity,
+            learnt: Memo::default(),
         }
     }
 

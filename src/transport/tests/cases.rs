@@ -126,7 +126,7 @@ pub fn cases<P: Profile>(
     let mut cases = Cases { scene: estimator.scene, hidden: estimator.hide_emitters, hero, all: Vec::new() };
     of_eye(estimator, &camera, &mut cases, stream);
     of_pivots(estimator, film, &camera.visitor, &mut cases, stream);
-    let Some(start) = light_path::begin::<P>(estimator.scene, stream) else { return cases.all };
+    let Some(start) = light_path::begin(estimator, stream) else { return cases.all };
     let (mut kept, mut film) = (LightCache::new(P::Channels::COUNT), WideFilm);
     let visitor = LightPath::new(estimator, &mut kept, &mut film, start, hero);
     let trail = light_walk(visitor, estimator, &start, hero, stream);
@@ -140,7 +140,7 @@ pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, strea
     let scene = estimator.scene;
     let (cache, mut kept) = (LightCache::new(P::Channels::COUNT), LightCache::new(P::Channels::COUNT));
     let camera = camera_walk(estimator, &cache, vec2(8.0, 6.0), 0, stream);
-    let start = scene.lights.sample_emission(&scene.geometry, stream).unwrap();
+    let start = scene.lights.sample_emission(&scene.geometry, None, stream).unwrap();
     let mut film = WideFilm;
     let light =
         light_walk(LightPath::new(estimator, &mut kept, &mut film, start, 0), estimator, &start, 0, stream);
@@ -243,7 +243,7 @@ fn of_eye<P: Profile>(
             cases.add_hit(
                 (light, Place::Surface(point)),
                 before,
-                camera.visitor.emitter_hit(&vertex.subpath, &sample),
+                camera.visitor.emitter_hit(&vertex.subpath, &sample, previous),
             );
         }
         if can_join(estimator, vertex)
@@ -265,7 +265,7 @@ fn of_eye<P: Profile>(
         && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming, previous)
     {
         let before = chain(&camera.vertices, subpath.after_dirac);
-        cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(subpath, &sample));
+        cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(subpath, &sample, previous));
     }
 }
 
@@ -291,7 +291,11 @@ fn of_flights<P: Profile>(
         };
         if let Some((subpath, sample)) = met {
             let before = chain(&camera.vertices[..*count], departure.dirac);
-            cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(&subpath, &sample));
+            cases.add_hit(
+                emitter_of(&sample),
+                before,
+                camera.visitor.emitter_hit(&subpath, &sample, departure.position),
+            );
         }
     }
 }

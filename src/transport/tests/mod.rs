@@ -13,6 +13,7 @@ mod reference;
 mod replay;
 mod report;
 pub mod scenes;
+mod starts;
 
 use super::{
     Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
@@ -32,7 +33,7 @@ use scenes::*;
 
 const ALL: Options = Options {
     strategies: Strategies::BDPT,
-    effort: Effort { survival: Survival::Albedo, light_walks: 1.0, connections: 1 },
+    effort: Effort { survival: Survival::Albedo, light_walks: 1.0, connections: 1, learnt_starts: false },
     heuristic: Heuristic::Balance,
     max_depth: None,
     hide_emitters: false,
@@ -43,7 +44,8 @@ const SEED: u64 = 1;
 
 /// Compares all paths that `pairs` camera and light subpaths make.
 fn examine<P: Profile>(name: &'static str, setup: &Setup, options: Options, pairs: u64) -> Report {
-    let estimator = Estimator::<P>::new(&setup.scene, options, SEED, PIXELS, PIXELS);
+    let starts = options.effort.learnt_starts.then(|| starts::lessons(setup));
+    let estimator = Estimator::<P>::new(&setup.scene, options, starts, SEED, PIXELS, PIXELS);
     let reference = Reference::new(&estimator);
     let mut report = Report::new(name);
     for pair in 0..pairs {
@@ -102,7 +104,8 @@ fn equiangular_sampling() {
 
 #[test]
 fn other_efforts() {
-    let effort = Effort { survival: Survival::FourthRoot, light_walks: 1.0, connections: 4 };
+    let effort =
+        Effort { survival: Survival::FourthRoot, light_walks: 1.0, connections: 4, learnt_starts: false };
     let options = Options { effort, ..ALL };
     for (name, parts) in [
         ("long walks", &[FOG, INSIDE, ROOM, LAMP, GLASS_BALL][..]),
@@ -112,6 +115,25 @@ fn other_efforts() {
         assert_eq!(report.paths, examine::<ByKind>(name, &build(parts), options, 500).paths);
         assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
     }
+}
+
+/// Emitters of all kinds with learnt starts.
+#[test]
+fn learnt_starts() {
+    let options = Options { effort: Effort { learnt_starts: true, ..ALL.effort }, ..ALL };
+    let all = |name: &'static str, report: Report| {
+        assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
+    };
+    let open = build(&[OUTSIDE, SMOKE, GROUND, SKY, SUN, POINT, SPOT, LAMP, BULB]);
+    all("open", examine::<Bounded>("learnt, in the open", &open, options, 1000));
+    let room = build(&[FOG, INSIDE, ROOM, BALL, LUMINAIRE, BEAM, PROFILED_POINT, SPOT, BULB]);
+    all("room", examine::<Fog>("learnt, in a room", &room, options, 600));
+    let image = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SKY_IMAGE, SUN]);
+    all("image", examine::<Everything>("learnt, sky image", &image, options, 1000));
+    let fire = build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]);
+    all("fire", examine::<ByKind>("learnt, fire", &fire, options, 600));
+    let light = Options { strategies: Strategies { emitter_hit: false, ..Strategies::BDPT }, ..options };
+    all("starts seen", examine::<Bounded>("learnt, starts seen", &open, light, 1000));
 }
 
 #[test]
@@ -386,11 +408,11 @@ fn joins_across_a_hundred_mean_free_paths() {
 #[test]
 fn paths_through_the_dark() {
     let setup = build(&[TUNNEL]);
-    let estimator = Estimator::<Fog>::new(&setup.scene, ALL, SEED, PIXELS, PIXELS);
+    let estimator = Estimator::<Fog>::new(&setup.scene, ALL, None, SEED, PIXELS, PIXELS);
     let (reference, mut report) = (Reference::new(&estimator), Report::new("dark"));
     for index in 0..300 {
         let mut stream = Stream::new(5, index, 0, Purpose::Study);
-        let start = setup.scene.lights.sample_emission(&setup.scene.geometry, &mut stream).unwrap();
+        let start = setup.scene.lights.sample_emission(&setup.scene.geometry, None, &mut stream).unwrap();
         let mut nodes = vec![Node::emitter(&setup.scene, 0, Place::of(0, &start.point))];
         let count = 1 + index % 3;
         for step in (1..=count).rev() {
@@ -411,7 +433,7 @@ fn paths_through_the_dark() {
 fn walks_of_ten_thousand_vertices() {
     let setup = build(&[FURNACE, INSIDE, POINT]);
     let options = Options { max_depth: Some(10_001), ..ALL };
-    let estimator = Estimator::<Fog>::new(&setup.scene, options, SEED, PIXELS, PIXELS);
+    let estimator = Estimator::<Fog>::new(&setup.scene, options, None, SEED, PIXELS, PIXELS);
     let reference = Reference::new(&estimator);
     let mut stream = Stream::new(5, 0, 0, Purpose::Study);
     let mut weighed = 0;
@@ -434,7 +456,7 @@ fn joins_are_counted_as_often_as_they_come() {
         [(build(&[FOG, INSIDE, ROOM, LAMP]), false), (build(&[FURNACE, INSIDE, LAMP]), true)]
     {
         let options = Options { max_depth: Some(200), ..ALL };
-        let estimator = Estimator::<Fog>::new(&setup.scene, options, SEED, 1024, 1024);
+        let estimator = Estimator::<Fog>::new(&setup.scene, options, None, SEED, 1024, 1024);
         assert_eq!(estimator.keep < 1.0, thinned);
         let mut cache = LightCache::new(1);
         for walk in 0..20_000 {

@@ -51,7 +51,7 @@ fn check(name: &str, parts: &[&str]) {
                 assert!(same, "{name} at {reference}: {sample:?} sampled, {hit:?} hit");
                 hits += 1;
             }
-            let Some(start) = lights.sample_emission(geometry, &mut stream) else { continue };
+            let Some(start) = lights.sample_emission(geometry, None, &mut stream) else { continue };
             let by_ratio = start.pdf * lights.connect_over_start(geometry, &start, reference);
             let seen = EmitterSample { light: start.light, point: start.point, ..DARK };
             if let Some(hit) = density_of_hit(&setup.scene, &seen, reference) {

@@ -13,11 +13,12 @@ use crate::{
     sampling::{Stream, stream::Purpose},
     scene::{
         Scene,
-        lights::{EmissionSample, EmitterPoint, EmitterSample},
+        lights::{Densities, EmissionSample, EmitterPoint, EmitterSample, Start, Starts},
     },
     shape::SurfacePoint,
     transport::{Counts, Estimator, Heuristic, Survival, profile::Profile},
 };
+use std::sync::Arc;
 
 /// Expected samples, over those of the likeliest strategy, that never come.
 const NEVER: f64 = 1e-30;
@@ -32,6 +33,7 @@ pub struct Reference<'a> {
     /// A sampled start on every emitter: those of one emitter have equal densities, but for environments
     /// and media.
     pub starts: Vec<Option<EmissionSample>>,
+    pub learnt: Option<Arc<Starts>>,
 }
 
 /// ln p>_i and ln p<_i of every vertex of a path, per channel.
@@ -47,11 +49,12 @@ impl<'a> Reference<'a> {
         let mut starts = vec![None; scene.lights.all.len()];
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
         for _ in 0..10_000 {
-            if let Some(start) = scene.lights.sample_emission(&scene.geometry, &mut stream) {
+            if let Some(start) = scene.lights.sample_emission(&scene.geometry, None, &mut stream) {
                 starts[start.light as usize].get_or_insert(start);
             }
         }
-        Self { scene, counts, heuristic, survival, channels: P::Channels::COUNT, starts }
+        let (channels, learnt) = (P::Channels::COUNT, estimator.starts.clone());
+        Self { scene, counts, heuristic, survival, channels, starts, learnt }
     }
 
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
@@ -132,12 +135,28 @@ impl<'a> Reference<'a> {
             1 if path.nodes.len() > 2 => {
                 self.emitter_sample(path).map_or(0.0, |sample| f64::from(sample.pdf)).ln()
             }
-            _ => self.start(path).ln(),
+            _ => f64::from(self.densities(path).point).ln(),
         }
     }
 
-    /// Density of the emitter's vertex as the start of a light subpath.
-    pub fn start(&self, path: &Path) -> f64 {
+    /// Densities of the emitter's vertex and of the direction as the start of a light subpath.
+    pub fn densities(&self, path: &Path) -> Densities {
+        let (node, unlearnt) = (&path.nodes[0], self.unlearnt(path));
+        let Some(learnt) = &self.learnt else { return unlearnt };
+        let position = if let Place::Sky(_) = node.place { &path.nodes[1] } else { node }.position();
+        let direction = node.towards(&path.nodes[1]).as_vec3();
+        let start = Start { light: path.light, position, direction };
+        learnt.densities(&self.scene.lights, &start, unlearnt)
+    }
+
+    /// The same if nothing was learnt.
+    pub fn unlearnt(&self, path: &Path) -> Densities {
+        let towards = path.nodes[0].towards(&path.nodes[1]);
+        let direction = self.emission(path.light, &path.nodes[0], towards) as f32;
+        Densities { point: self.start(path) as f32, direction }
+    }
+
+    fn start(&self, path: &Path) -> f64 {
         let reference = path.nodes[1].position();
         if let (Some(_), Place::Sky(direction)) = (self.emitter(path).environment(), path.nodes[0].place) {
             return self
@@ -166,7 +185,7 @@ impl<'a> Reference<'a> {
     fn by_light(&self, path: &Path, i: usize) -> [f64; 3] {
         let nodes = &path.nodes;
         let direction = match i {
-            1 => self.emission(path.light, &nodes[0], nodes[0].towards(&nodes[1])),
+            1 => f64::from(self.densities(path).direction),
             _ => self.scatter(&nodes[i - 2], &nodes[i - 1], &nodes[i], Transport::Importance),
         };
         self.made(&nodes[i - 1], &nodes[i], direction, &path.depths[i - 1])
@@ -200,7 +219,7 @@ impl<'a> Reference<'a> {
     }
 
     /// Density of directions that leave an emitter [1/sr]; for one at infinity, of starts on its disk [1/m^2].
-    pub fn emission(&self, light: u32, node: &Node, direction: DVec3) -> f64 {
+    fn emission(&self, light: u32, node: &Node, direction: DVec3) -> f64 {
         match &self.scene.lights.all[light as usize].emitter.kind {
             Kind::Surface(surface) if surface.is_dirac() => 1.0,
             Kind::Surface(surface) => f64::from(surface.pdf_sr(node.cosine(direction) as f32)),

@@ -10,7 +10,7 @@ use crate::{
     bsdf::Transport,
     math::{Channels, Spectrum, vec3},
     sampling::{Stream, stream::Purpose},
-    scene::lights::{EmissionSample, EmitterPoint},
+    scene::lights::{Densities, EmissionSample, EmitterPoint},
     shape::Ray,
     transport::{
         Estimator, LightCache,
@@ -69,7 +69,9 @@ pub fn weights<P: Profile>(
             return Some(0.0);
         }
         let contribution = match s {
-            0 => by_eye.end.as_ref().map(|end| camera.emitter_hit(end, &reference.emitter_sample(path)?)),
+            0 => by_eye.end.as_ref().map(|end| {
+                camera.emitter_hit(end, &reference.emitter_sample(path)?, path.nodes[1].position())
+            }),
             1 if last == 1 => {
                 Some(light.connect_start_to_lens(APERTURE, stream).map(|(_, contribution)| contribution))
             }
@@ -165,6 +167,7 @@ fn by_eye<P: Profile>(
 fn start(reference: &Reference<'_>, path: &Path) -> EmissionSample {
     let (node, towards) = (&path.nodes[0], path.nodes[0].towards(&path.nodes[1]));
     let (origin, direction) = (node.position(), towards.as_vec3());
+    let Densities { point: pdf, direction: pdf_direction } = reference.densities(path);
     EmissionSample {
         light: path.light,
         point: match node.place {
@@ -177,8 +180,9 @@ fn start(reference: &Reference<'_>, path: &Path) -> EmissionSample {
         },
         ray: Ray { origin, direction, t_max: f32::INFINITY },
         cosine: node.cosine(towards) as f32,
-        pdf: reference.start(path) as f32,
-        pdf_direction: reference.emission(path.light, node, towards) as f32,
+        pdf,
+        pdf_direction,
+        unlearnt: reference.unlearnt(path),
         throughput: Spectrum::ONE,
     }
 }

@@ -1,0 +1,374 @@
+//! Training of the starts of light subpaths: a few samples by all strategies, round after round, each of which begins its
+//! light subpaths where those before it found that light reaches the image.
+//!
+//! A path that any strategy found counts for as much of its pixel as strategies that begin at an emitter are to make of it:
+//! its contribution over the pixel's mean, times their share in the weights. In balance, starts are then as dense, together
+//! with all other strategies, as their light is in the image. Next-event estimation finds openings long before light subpaths
+//! do.
+
+use super::{
+    Settings,
+    budget::Budget,
+    compiled::{self, Ready},
+};
+use crate::{
+    film::Film,
+    math::{Channels, SpectrumExt, Vec2, Vec3},
+    sampling::Sampler,
+    scene::{
+        Scene,
+        lights::{Densities, EmissionSample, EmitterSample, Lights, Start, Starts},
+    },
+    settings::options::Effort,
+    transport::{
+        Contribution, Departure, Heuristic, MisSums, Options, Strategies, Vertex,
+        observer::{Meeting, Observer, StrategyKind},
+        profile::{Profile, ProfileName},
+    },
+};
+use rayon::prelude::*;
+use std::{collections::HashMap, ops::Range, sync::Arc};
+
+/// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
+const SEED: u64 = 0x7374_6172_7473;
+/// Camera subpaths of the first round; each of the others has twice as many as the one before.
+const FIRST: usize = 2048;
+/// Rounds.
+const ROUNDS: u32 = 4;
+/// Segments after which no further round begins.
+const SEGMENTS: f64 = 1e6;
+/// Longest path: later vertices tell little of where light starts.
+const DEEPEST: u32 = 32;
+/// The image is divided into so many tiles across and down, at most, whose pixels count as one.
+const TILES: u32 = 8;
+/// Of the image's mean, added to that of each tile.
+const FLOOR: f64 = 0.1;
+
+/// Where light subpaths by `options` start that reach the image; none where nothing was learnt of that.
+pub(super) fn starts(scene: &Scene, film: &Film, options: &Options) -> Option<Arc<Starts>> {
+    // Camera subpaths that never hit an emitter share nothing with light subpaths.
+    let compete = options.strategies.emitter_hit;
+    let options = Options {
+        strategies: Strategies::BDPT,
+        effort: Effort::default(),
+        heuristic: Heuristic::Balance,
+        max_depth: Some(options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST))),
+        ..*options
+    };
+    let key = format!("{:?} {compete} {options:?}", (film.window, film.border, film.filter));
+    scene.lights.learnt.recall(key, || learn(scene, film, options, compete))
+}
+
+/// By all strategies, with which light subpaths `compete` or not.
+fn learn(scene: &Scene, film: &Film, options: Options, compete: bool) -> Option<Arc<Starts>> {
+    let settings = Settings {
+        options,
+        seed: SEED,
+        sampler: Sampler::Independent,
+        budget: Budget::ENDLESS,
+        profile: ProfileName::Everything,
+    };
+    let per_block = film.len().min(FIRST / 2);
+    let (mut starts, mut done, mut segments) = (None, 0, 0.0);
+    for round in 0..ROUNDS {
+        let tasks = done..done + (FIRST << round).div_ceil(per_block);
+        done = tasks.end;
+        let trial = compiled::trial(scene, film, &settings, starts.clone(), tasks);
+        segments += trial.segments;
+        starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
+        if segments > SEGMENTS {
+            break;
+        }
+    }
+    starts
+}
+
+/// Follows walks, to tell where the light of each contribution starts.
+pub(super) struct Follower<'a> {
+    lights: &'a Lights,
+    starts: Option<&'a Starts>,
+    /// The last vertex of the walk at hand, or where it set out from.
+    last: Vec3,
+    hero: usize,
+    walks: u32,
+    /// That of the light subpath at hand.
+    current: Option<Followed>,
+    /// Those of the vertices in the cache, per hero channel in the cache's order.
+    kept: Vec<Vec<Followed>>,
+}
+
+/// Where light starts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Followed {
+    pub start: Start,
+    /// How often light subpaths start there without what was learnt, over how often they do.
+    pub unlearnt: f32,
+    /// The number of the light subpath that did.
+    walk: Option<u32>,
+}
+
+impl<'a> Follower<'a> {
+    pub fn new(lights: &'a Lights, starts: Option<&'a Starts>, heroes: usize) -> Self {
+        Self {
+            lights,
+            starts,
+            last: Vec3::ZERO,
+            hero: 0,
+            walks: 0,
+            current: None,
+            kept: vec![Vec::new(); heroes],
+        }
+    }
+
+    /// To follow camera subpaths that are connected to the vertices kept here.
+    pub fn of_cache(self) -> Self {
+        Self { current: None, ..self }
+    }
+
+    /// A camera subpath of channel `hero` follows.
+    pub fn begin(&mut self, hero: usize) {
+        self.hero = hero;
+    }
+
+    pub fn emit(&mut self, sample: &EmissionSample, hero: usize) {
+        self.hero = hero;
+        let start = sample.start();
+        let learnt = Densities { point: sample.pdf, direction: sample.pdf_direction };
+        let walk = Some(self.walks);
+        self.walks += 1;
+        self.current = Some(Followed { start, unlearnt: ratio(sample.unlearnt, learnt), walk });
+    }
+
+    pub fn depart<S: MisSums>(&mut self, departure: &Departure<S>) {
+        self.last = departure.position;
+    }
+
+    pub fn arrive<S: MisSums>(&mut self, vertex: &Vertex<S>) {
+        self.last = vertex.position();
+    }
+
+    pub fn keep(&mut self) {
+        self.kept[self.hero].extend(self.current);
+    }
+
+    /// How often light subpaths start like the one at hand without what was learnt, over how often they do.
+    pub fn unlearnt(&self) -> f32 {
+        self.current.map_or(1.0, |followed| followed.unlearnt)
+    }
+
+    /// Where the light of a contribution starts; none where it comes straight from the emitter to the lens.
+    pub fn start<S: MisSums>(&self, s: u32, t: u32, meeting: &Meeting<'_, S>) -> Option<Followed> {
+        match meeting {
+            _ if s + t < 3 => None,
+            Meeting::Light(index, _) => Some(self.kept[self.hero][*index]),
+            Meeting::Lens(_) => self.current,
+            Meeting::Met(subpath, sample) => Some(self.found(sample, self.last, subpath.incoming)),
+            Meeting::Emitter(sample) => self.joined(sample, self.last),
+            Meeting::Pivot(_, vertex, sample) => self.joined(sample, vertex.position()),
+        }
+    }
+
+    fn joined(&self, sample: &EmitterSample, reference: Vec3) -> Option<Followed> {
+        let (direction, _) = sample.point.seen_from(reference)?;
+        Some(self.found(sample, reference, -direction))
+    }
+
+    fn found(&self, sample: &EmitterSample, reference: Vec3, direction: Vec3) -> Followed {
+        let start = Start::towards(sample.light, &sample.point, reference, direction);
+        let unlearnt = Densities { point: sample.pdf_start, direction: sample.pdf_direction };
+        let learnt = self.starts.map(|starts| starts.densities(self.lights, &start, unlearnt));
+        Followed { start, unlearnt: learnt.map_or(1.0, |learnt| ratio(unlearnt, learnt)), walk: None }
+    }
+}
+
+fn ratio(unlearnt: Densities, learnt: Densities) -> f32 {
+    let ratio = unlearnt.both() / learnt.both();
+    if ratio.is_finite() { ratio } else { 1.0 }
+}
+
+/// A contribution to a tile.
+#[derive(Clone, Copy)]
+struct Found {
+    tile: usize,
+    start: Option<Followed>,
+    /// The number of the block that it was found in.
+    part: usize,
+    /// Luminance; first of a sample, then as part of the mean over the tile.
+    value: f64,
+    /// Of strategies that begin at an emitter, in the weights.
+    share: f32,
+}
+
+/// What a round of samples found.
+#[derive(Default)]
+pub(super) struct Trial {
+    found: Vec<Found>,
+    /// Of each tile.
+    pixels: Vec<f64>,
+    segments: f64,
+}
+
+impl Trial {
+    /// Some blocks of some passes, numbered over all of them.
+    pub fn run<P: Profile>(ready: &Ready<'_, P>, tasks: Range<usize>) -> Self {
+        let blocks = ready.blocks.count();
+        let tiles = Tiles::of(ready.film);
+        let count = tasks.len() as f64;
+        let parts: Vec<_> =
+            tasks.into_par_iter().map(|task| part(ready, task / blocks, task % blocks)).collect();
+        let pixels = tiles.pixels();
+        let mut samples = vec![0.0; pixels.len()];
+        parts.iter().flat_map(|part| &part.pixels).for_each(|pixel| samples[tiles.at(*pixel)] += 1.0);
+        let mut trial = Self { pixels, ..Self::default() };
+        // Light subpaths traced stand for those of a pass.
+        let per_pass = blocks as f64 / count;
+        for (index, part) in parts.into_iter().enumerate() {
+            trial.segments += part.segments;
+            let of_tile =
+                |(pixel, found): (u32, Found)| Found { tile: tiles.at(pixel), part: index, ..found };
+            let camera = part.camera.into_iter().map(of_tile);
+            let camera = camera.map(|found| Found { value: found.value / samples[found.tile], ..found });
+            let light = part.light.into_iter().map(of_tile);
+            let light = light
+                .map(|found| Found { value: found.value * per_pass / trial.pixels[found.tile], ..found });
+            trial.found.extend(camera);
+            trial.found.extend(light);
+        }
+        trial
+    }
+
+    /// What starts count for; shares in the weights do where they `compete` with other strategies.
+    fn weights(&self, compete: bool) -> Vec<(Start, f32)> {
+        let mut means = vec![0.0; self.pixels.len()];
+        self.found.iter().for_each(|found| means[found.tile] += found.value);
+        let pixels: f64 = self.pixels.iter().sum();
+        let mean = means.iter().zip(&self.pixels).map(|(mean, pixels)| mean * pixels).sum::<f64>() / pixels;
+        let weight = |found: &Found| {
+            let share = if compete { f64::from(found.share) } else { 1.0 };
+            let whole = means[found.tile] + FLOOR * mean;
+            (found.value * share * self.pixels[found.tile] / whole) as f32
+        };
+        let mut all: Vec<(Start, f32)> = Vec::new();
+        // What one light subpath contributed tells of one start.
+        let mut of_walks = HashMap::new();
+        for found in &self.found {
+            let (Some(followed), weight) = (found.start, weight(found)) else { continue };
+            let known = followed.walk.map(|walk| *of_walks.entry((found.part, walk)).or_insert(all.len()));
+            match known.and_then(|index| all.get_mut(index)) {
+                Some((_, sum)) => *sum += weight,
+                None => all.push((followed.start, weight)),
+            }
+        }
+        all.retain(|(_, weight)| weight.is_finite() && *weight > 0.0);
+        all
+    }
+}
+
+/// What one block of one pass finds.
+struct Part {
+    camera: Vec<(u32, Found)>,
+    light: Vec<(u32, Found)>,
+    /// Those that camera subpaths went through.
+    pixels: Vec<u32>,
+    segments: f64,
+}
+
+fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
+    let Ready { estimator, blocks, scene, film, seed } = ready;
+    let mut gather = Gather {
+        film,
+        follower: Follower::new(&scene.lights, estimator.starts(), P::Channels::COUNT),
+        pixel: 0,
+        weight: 1.0,
+        found: Vec::new(),
+        segments: 0.0,
+    };
+    let mut observer: &mut dyn Observer<P::MisSums> = &mut gather;
+    let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
+    let light = std::mem::take(&mut gather.found);
+    let pixels: Vec<u32> = blocks.pixels(block).map(|pixel| pixel as u32).collect();
+    for pixel in &pixels {
+        let start = blocks.camera_start(scene, film, *seed, pass, *pixel as usize);
+        gather.follower.begin(start.hero);
+        (gather.pixel, gather.weight) = (*pixel, start.weight);
+        let observer: &mut dyn Observer<P::MisSums> = &mut gather;
+        start.trace(estimator, &cache, observer);
+    }
+    Part { camera: gather.found, light, pixels, segments: gather.segments }
+}
+
+/// Sees walks and what they contribute; those of the camera to one pixel.
+struct Gather<'a> {
+    film: &'a Film,
+    follower: Follower<'a>,
+    pixel: u32,
+    weight: f32,
+    found: Vec<(u32, Found)>,
+    segments: f64,
+}
+
+impl<S: MisSums> Observer<S> for Gather<'_> {
+    fn covers(&self, film: Vec2) -> bool {
+        self.film.covers(film)
+    }
+
+    fn emit(&mut self, start: &EmissionSample, hero: usize) {
+        self.follower.emit(start, hero);
+    }
+
+    fn depart(&mut self, departure: &Departure<S>) {
+        self.follower.depart(departure);
+        self.segments += 1.0;
+    }
+
+    fn arrive(&mut self, vertex: &Vertex<S>) {
+        self.follower.arrive(vertex);
+    }
+
+    fn keep(&mut self) {
+        self.follower.keep();
+    }
+
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
+        let Some(Contribution { value, shares, .. }) = contribution.filter(|c| c.value.is_finite()) else {
+            return;
+        };
+        let start = self.follower.start(s, t, &meeting);
+        let share = shares[StrategyKind::Connection as usize] + shares[StrategyKind::Lens as usize];
+        let found = |value: f32| Found { tile: 0, part: 0, start, value: f64::from(value.max(0.0)), share };
+        if let Meeting::Lens(film) = meeting {
+            let all = &mut self.found;
+            return self
+                .film
+                .spread(film, *value, |pixel, value| all.push((pixel as u32, found(value.luminance()))));
+        }
+        self.found.push((self.pixel, found(value.luminance() * self.weight)));
+    }
+}
+
+/// The tiles of an image.
+pub(super) struct Tiles {
+    width: u32,
+    height: u32,
+    across: u32,
+    down: u32,
+}
+
+impl Tiles {
+    fn of(film: &Film) -> Self {
+        let (width, height) = (film.width, film.height);
+        Self { width, height, across: width.min(TILES), down: height.min(TILES) }
+    }
+
+    fn at(&self, pixel: u32) -> usize {
+        let Self { width, height, across, down } = *self;
+        (pixel / width * down / height * across + pixel % width * across / width) as usize
+    }
+
+    /// How many pixels each has.
+    fn pixels(&self) -> Vec<f64> {
+        let mut pixels = vec![0.0; (self.across * self.down) as usize];
+        (0..self.width * self.height).for_each(|pixel| pixels[self.at(pixel)] += 1.0);
+        pixels
+    }
+}

@@ -1,0 +1,243 @@
+//! Adaptive quadtrees: a density over the unit square, learnt from weighted points (after Mueller et al. 2017, Practical
+//! Path Guiding). Nodes of which many points tell are divided, however small they are: a few thousand points find an opening
+//! of a millionth of the square.
+
+use crate::math::{Vec2, vec2};
+
+/// Points, as [`effective`] counts them, that divide a node.
+const TO_DIVIDE: f64 = 48.0;
+/// Levels below the root: the smallest nodes are 1e-6 of the square.
+const LEVELS: u32 = 10;
+/// Points that every node is taken to have had besides its own, evenly spread: where few fell, none is no proof.
+const UNSEEN: f64 = 2.0;
+/// Nodes with less of all the weight are not divided.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// A point of the unit square, and how much it counts.
+#[derive(Clone, Copy, Debug)]
+pub struct Deposit {
+    /// In the unit square.
+    pub at: Vec2,
+    /// At least 0, finite.
+    pub weight: f32,
+}
+
+/// As many equal weights would say as much: (sum w)^2 / sum w^2.
+pub fn effective(weights: impl Iterator<Item = f32>) -> f64 {
+    let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), weight| {
+        let weight = f64::from(weight);
+        (sum + weight, squares + weight * weight)
+    });
+    if squares > 0.0 { sum * sum / squares } else { 0.0 }
+}
+
+/// A density that is constant on every leaf.
+#[derive(Clone, Debug)]
+pub struct Quadtree {
+    nodes: Vec<Node>,
+}
+
+/// Four quarters: those of less y first, of them that of less x.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    /// They sum to 1.
+    probabilities: [f32; 4],
+    /// Index of the quarter's own node; 0 where it is a leaf.
+    children: [u32; 4],
+}
+
+impl Quadtree {
+    /// The density of `deposits`.
+    pub fn learn(deposits: Vec<Deposit>) -> Self {
+        let mut tree = Self { nodes: Vec::new() };
+        let least = LEAST_SHARE * total(&deposits);
+        tree.grow(deposits, LEVELS, least);
+        tree
+    }
+
+    /// The node of `deposits`, whose coordinates are those within it; none where it remains a leaf.
+    fn grow(&mut self, deposits: Vec<Deposit>, levels: u32, least: f64) -> Option<u32> {
+        let count = effective(deposits.iter().map(|deposit| deposit.weight));
+        let is_leaf = !self.nodes.is_empty() && (count < TO_DIVIDE || total(&deposits) < least);
+        if levels == 0 || is_leaf {
+            return None;
+        }
+        let index = self.nodes.len();
+        self.nodes.push(Node { probabilities: [0.25; 4], children: [0; 4] });
+        let quarters = divide(deposits);
+        let totals = quarters.each_ref().map(|quarter| total(quarter));
+        let all: f64 = totals.iter().sum();
+        if all > 0.0 {
+            let even = UNSEEN / (count + UNSEEN);
+            self.nodes[index].probabilities =
+                totals.map(|sum| ((1.0 - even) * sum / all + 0.25 * even) as f32);
+        }
+        for (quarter, deposits) in quarters.into_iter().enumerate() {
+            self.nodes[index].children[quarter] = self.grow(deposits, levels - 1, least).unwrap_or(0);
+        }
+        Some(index as u32)
+    }
+
+    /// A point distributed by the density, from one of the unit square: near ones stay near.
+    #[inline]
+    pub fn sample(&self, mut u: Vec2) -> Vec2 {
+        let (mut corner, mut size, mut index) = (Vec2::ZERO, 1.0, 0);
+        loop {
+            let Node { probabilities: [a, b, c, d], children } = self.nodes[index];
+            size *= 0.5;
+            let upper = choose(&mut u.y, a + b, c + d);
+            let right = if upper { choose(&mut u.x, c, d) } else { choose(&mut u.x, a, b) };
+            corner += size * vec2(f32::from(right), f32::from(upper));
+            index = children[2 * usize::from(upper) + usize::from(right)] as usize;
+            if index == 0 {
+                return corner + size * u;
+            }
+        }
+    }
+
+    /// Density at a point of the unit square, relative to an even one; never 0.
+    #[inline]
+    pub fn density(&self, mut at: Vec2) -> f32 {
+        let (mut density, mut index) = (1.0, 0);
+        loop {
+            let node = &self.nodes[index];
+            let quarter = quarter_of(&mut at);
+            density *= 4.0 * node.probabilities[quarter];
+            index = node.children[quarter] as usize;
+            if index == 0 {
+                return density;
+            }
+        }
+    }
+}
+
+fn total(deposits: &[Deposit]) -> f64 {
+    deposits.iter().map(|deposit| f64::from(deposit.weight)).sum()
+}
+
+/// Those of the four quarters, with the coordinates that they have there.
+fn divide(deposits: Vec<Deposit>) -> [Vec<Deposit>; 4] {
+    let mut quarters: [Vec<Deposit>; 4] = Default::default();
+    for Deposit { mut at, weight } in deposits {
+        let quarter = quarter_of(&mut at);
+        quarters[quarter].push(Deposit { at, weight });
+    }
+    quarters
+}
+
+/// The quarter that `at` lies in; from then on its coordinates are those within the quarter.
+#[inline]
+fn quarter_of(at: &mut Vec2) -> usize {
+    let (right, upper) = (at.x >= 0.5, at.y >= 0.5);
+    *at = 2.0 * *at - vec2(f32::from(right), f32::from(upper));
+    2 * usize::from(upper) + usize::from(right)
+}
+
+/// True if `u`, in [0, 1), falls into the second of two parts; it is then where in its part it fell.
+#[inline]
+fn choose(u: &mut f32, first: f32, second: f32) -> bool {
+    let share = first / (first + second);
+    let is_second = *u >= share;
+    let within = if is_second { (*u - share) / (1.0 - share) } else { *u / share };
+    *u = within.min(1.0 - f32::EPSILON);
+    is_second
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        sampling::{Stream, stream::Purpose},
+        testing,
+    };
+
+    /// Most of the weight on a patch of 1e-4 of the square, some of it everywhere, some cells without any.
+    fn patch(stream: &mut Stream) -> Vec<Deposit> {
+        let one = |index: usize, at: Vec2| match index % 4 {
+            0 => Deposit { at: at * vec2(1.0, 0.5), weight: 0.1 },
+            _ => Deposit { at: vec2(0.37, 0.61) + 0.01 * at, weight: 1.0 + at.x },
+        };
+        (0..4000).map(|index| one(index, stream.square())).collect()
+    }
+
+    #[test]
+    fn samples_follow_the_density() {
+        let mut stream = Stream::new(3, 0, 0, Purpose::Study);
+        let trees = [Quadtree::learn(patch(&mut stream)), Quadtree::learn(Vec::new())];
+        for tree in trees {
+            let (side, n) = (20, 400_000);
+            let fine = 32;
+            let mut counts = vec![0; side * side];
+            let mut expected = vec![0.0; side * side];
+            let cell = |at: Vec2| {
+                let [x, y] = (at * side as f32).to_array().map(|x| (x as usize).min(side - 1));
+                y * side + x
+            };
+            (0..n).for_each(|_| counts[cell(tree.sample(stream.square()))] += 1);
+            let all = side * fine;
+            for index in 0..all * all {
+                let at = (vec2((index % all) as f32, (index / all) as f32) + 0.5) / all as f32;
+                expected[cell(at)] += f64::from(tree.density(at));
+            }
+            let sum: f64 = expected.iter().sum();
+            // The midpoints integrate the density over what is smaller than their distance only roughly.
+            assert!((sum / (all * all) as f64 - 1.0).abs() < 2e-2, "{sum}");
+            expected.iter_mut().for_each(|e| *e *= f64::from(n) / sum);
+            let close = counts.iter().zip(&expected).all(|(count, expected): (&u64, &f64)| {
+                (*count as f64 - expected).abs() < 5.0 * expected.sqrt() + 0.02 * expected
+            });
+            assert!(close);
+        }
+    }
+
+    /// Leaves of any size: how often samples fall where the density is about so great, against that density's share.
+    #[test]
+    fn samples_fall_on_small_leaves_as_often_as_on_large_ones() {
+        let mut stream = Stream::new(4, 0, 0, Purpose::Study);
+        let tree = Quadtree::learn(patch(&mut stream));
+        let n = 200_000;
+        let level = |density: f32| ((density.log2() + 8.0).clamp(0.0, 31.0)) as usize;
+        let (mut counts, mut expected) = ([0u64; 32], [0.0; 32]);
+        for _ in 0..n {
+            counts[level(tree.density(tree.sample(stream.square())))] += 1;
+        }
+        leaves(&tree, 0, 1.0, 1.0, &mut |density, probability| expected[level(density)] += probability);
+        let expected = expected.map(|share| share * f64::from(n));
+        assert!(testing::chi_square(&counts, &expected) > testing::significance(1));
+        // 3/4 of the points, at a weight of 1.5 and more, lie on 1e-4 of the square.
+        assert!(tree.density(vec2(0.375, 0.615)) > 3000.0);
+        assert!(tree.density(vec2(0.9, 0.9)) > 0.0 && tree.density(vec2(0.9, 0.9)) < 0.05);
+    }
+
+    fn leaves(tree: &Quadtree, index: usize, area: f64, share: f64, see: &mut impl FnMut(f32, f64)) {
+        let Node { probabilities, children } = tree.nodes[index];
+        for (probability, child) in probabilities.into_iter().zip(children) {
+            let (area, share) = (0.25 * area, share * f64::from(probability));
+            match child {
+                0 => see((share / area) as f32, share),
+                child => leaves(tree, child as usize, area, share, see),
+            }
+        }
+    }
+
+    #[test]
+    fn without_anything_to_learn_all_is_even() {
+        for tree in [
+            Quadtree::learn(Vec::new()),
+            Quadtree::learn(vec![Deposit { at: Vec2::ONE, weight: 0.0 }]),
+            Quadtree::learn(vec![Deposit { at: vec2(0.2, 0.9), weight: 0.0 }; 100]),
+        ] {
+            assert_eq!(tree.density(vec2(0.3, 0.8)), 1.0);
+            assert_eq!(tree.sample(vec2(0.3, 0.8)), vec2(0.3, 0.8));
+        }
+    }
+
+    #[test]
+    fn one_great_weight_divides_nothing() {
+        let mut deposits = vec![Deposit { at: vec2(0.2, 0.2), weight: 1e-3 }; 100];
+        deposits.push(Deposit { at: vec2(0.7, 0.7), weight: 1e30 });
+        let tree = Quadtree::learn(deposits);
+        assert_eq!(tree.nodes.len(), 1);
+        assert!(tree.density(vec2(0.2, 0.2)) > 0.3);
+    }
+}

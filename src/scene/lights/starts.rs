@@ -1,0 +1,330 @@
+//! Learnt starts of light subpaths: which emitter, from where at infinity, in which direction. What light subpaths reach the
+//! image is learnt from paths that any strategy found, and mixed with what the emitters themselves sample, so that no density
+//! is 0 that was not. (In the manner of Vorba et al. 2014, On-line Learning of Parametric Mixture Models for Light Transport
+//! Simulation, who guide emission too; the distributions are those of Mueller et al. 2017.)
+//!
+//! With P the probability of an emitter, p(x) the density of its point and p(w | x) that of the direction, the mixture is
+//! ```text
+//! a P p(x) p(w | x) + (1 - a) P' p'(x) p'(w | x)
+//! ```
+//! Points on shapes and in media stay as they are, p' = p, so that nothing has to be inverted; p'(w | x) is looked up by
+//! where the point is. From infinity x is a direction, learnt as one, and w becomes a point on the disk that faces it, looked
+//! up by direction.
+
+use super::{EmitterPoint, Lights};
+use crate::{
+    emitter::Kind,
+    math::{Frame, Vec2, Vec3, warp},
+    sampling::{
+        Discrete, Quadtree, Stream,
+        quadtree::{Deposit, effective},
+    },
+};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The starts learnt last, and for what: a render begins with those that its pilot chose.
+#[derive(Debug, Default)]
+pub struct Memo(Mutex<Option<Lesson>>);
+
+#[derive(Debug)]
+struct Lesson {
+    key: String,
+    starts: Option<Arc<Starts>>,
+}
+
+impl Clone for Memo {
+    /// Forgets: the lights may be changed.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Memo {
+    /// What `learn` says, once for each `key`.
+    pub fn recall(&self, key: String, learn: impl FnOnce() -> Option<Arc<Starts>>) -> Option<Arc<Starts>> {
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(lesson) = &*lock()
+            && lesson.key == key
+        {
+            return lesson.starts.clone();
+        }
+        // Not while locked: threads that learn may take up other work, which asks for the same.
+        let starts = learn();
+        *lock() = Some(Lesson { key, starts: starts.clone() });
+        starts
+    }
+}
+
+/// a: the part of the starts that are not learnt.
+const UNLEARNT: f32 = 0.25;
+/// Starts, as [`effective`] counts them, that a cell of positions has at least.
+const PER_CELL: f64 = 256.0;
+/// Levels of cells below the root.
+const LEVELS: u32 = 7;
+/// Starts that tell nothing if there are fewer.
+const ENOUGH: f64 = 16.0;
+/// Of the weight of all starts, the most that one may have: it may be an outlier.
+const MOST: f64 = 1.0 / 256.0;
+
+/// Where and which way light leaves.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// The emitter.
+    pub light: u32,
+    /// The point that emits; from infinity any point of the ray.
+    pub position: Vec3,
+    /// Unit direction of the light.
+    pub direction: Vec3,
+}
+
+impl Start {
+    /// From `point` of the emitter `light` along the segment from there to `other`, in unit `direction`.
+    pub fn towards(light: u32, point: &EmitterPoint, other: Vec3, direction: Vec3) -> Self {
+        Self { light, position: point.position().unwrap_or(other), direction }
+    }
+}
+
+/// Densities of a start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Densities {
+    /// Of the point, see [`super::EmissionSample::pdf`].
+    pub point: f32,
+    /// Of the direction, see [`super::EmissionSample::pdf_direction`].
+    pub direction: f32,
+}
+
+impl Densities {
+    /// Of point and direction.
+    #[inline]
+    pub fn both(&self) -> f32 {
+        self.point * self.direction
+    }
+}
+
+/// Which starts reach the image.
+#[derive(Clone, Debug)]
+pub struct Starts {
+    emitters: Discrete,
+    learnt: Vec<Option<Learnt>>,
+}
+
+/// Those of one emitter.
+#[derive(Clone, Debug)]
+pub(super) struct Learnt {
+    /// (1 - a) P'/P.
+    over_unlearnt: f32,
+    /// Of directions to where light comes from: emitters that surround the scene only.
+    towards: Option<Quadtree>,
+    cells: Cells,
+}
+
+impl Starts {
+    /// What `starts` tell, each with a weight, finite and at least 0; none where that is nothing.
+    pub fn learn(lights: &Lights, mut starts: Vec<(Start, f32)>) -> Option<Self> {
+        // Emitters without power are never chosen: they have no density that could be mixed with another.
+        starts.retain(|(start, _)| lights.starts.probability(start.light as usize) > 0.0);
+        if limit(&mut starts) < ENOUGH {
+            return None;
+        }
+        let mut of_emitters = vec![Vec::new(); lights.all.len()];
+        for (start, weight) in starts {
+            of_emitters[start.light as usize].push((start, weight));
+        }
+        let total = |starts: &Vec<(Start, f32)>| starts.iter().map(|(_, weight)| f64::from(*weight)).sum();
+        let emitters = Discrete::new(of_emitters.iter().map(total));
+        let learn = |(index, starts): (usize, Vec<(Start, f32)>)| {
+            (!starts.is_empty()).then(|| {
+                let ratio = emitters.probability(index) / lights.starts.probability(index);
+                Learnt::of(lights, index, (1.0 - UNLEARNT) * ratio, &starts)
+            })
+        };
+        let learnt = of_emitters.into_iter().enumerate().map(learn).collect();
+        Some(Self { emitters, learnt })
+    }
+
+    /// An emitter, its probability without what was learnt, and what was if the start is to be by that.
+    #[inline]
+    pub(super) fn choose(&self, lights: &Lights, stream: &mut Stream) -> (usize, f64, Option<&Learnt>) {
+        let (u, unlearnt) = (stream.uniform_precisely(), f64::from(UNLEARNT));
+        if u < unlearnt {
+            let (index, probability) = lights.starts.sample_precisely(u / unlearnt);
+            return (index, probability, None);
+        }
+        let (index, _) = self.emitters.sample_precisely((u - unlearnt) / (1.0 - unlearnt));
+        (index, lights.starts.probability_precisely(index), self.learnt[index].as_ref())
+    }
+
+    /// Densities of `start`, which are `unlearnt` without what was learnt.
+    #[inline]
+    pub fn densities(&self, lights: &Lights, start: &Start, unlearnt: Densities) -> Densities {
+        let Some(learnt) = &self.learnt[start.light as usize] else {
+            return Densities { point: UNLEARNT * unlearnt.point, ..unlearnt };
+        };
+        let (is_infinite, even) = lights.measure(start);
+        let ratio = learnt.over_unlearnt;
+        let key = if is_infinite { -start.direction } else { start.position };
+        let by_table = match learnt.cells.at(key) {
+            Some(table) => table.density(lights.to_square(start)) * even,
+            None => unlearnt.direction,
+        };
+        let by_learnt = match &learnt.towards {
+            // P' p'(x) over P.
+            Some(towards) => {
+                let density = towards.density(warp::from_sphere(key)) * warp::SPHERE_PDF;
+                ratio * lights.starts.probability(start.light as usize) * density
+            }
+            None => ratio * unlearnt.point,
+        };
+        let by_emitter = UNLEARNT * unlearnt.point;
+        let point = by_emitter + by_learnt;
+        let direction = (by_emitter * unlearnt.direction + by_learnt * by_table) / point;
+        Densities { point, direction }
+    }
+}
+
+impl Learnt {
+    fn of(lights: &Lights, index: usize, over_unlearnt: f32, starts: &[(Start, f32)]) -> Self {
+        let emitter = &lights.all[index].emitter;
+        let is_infinite = emitter.is_infinite();
+        let of_sphere = |(start, weight): &(Start, f32)| Deposit {
+            at: warp::from_sphere(-start.direction),
+            weight: *weight,
+        };
+        let towards = emitter.environment().map(|_| Quadtree::learn(starts.iter().map(of_sphere).collect()));
+        let keyed = |(start, weight): &(Start, f32)| Keyed {
+            key: if is_infinite { -start.direction } else { start.position },
+            deposit: Deposit { at: lights.to_square(start), weight: *weight },
+        };
+        let mut cells = Cells { all: Vec::new() };
+        // The one direction of a Dirac emitter is no density.
+        if emitter.is_connectible() {
+            cells.grow(starts.iter().map(keyed).collect(), LEVELS);
+        }
+        Self { over_unlearnt, towards, cells }
+    }
+
+    /// A direction to where light comes from; none where there is only one.
+    #[inline]
+    pub(super) fn sample_towards(&self, stream: &mut Stream) -> Option<Vec3> {
+        self.towards.as_ref().map(|towards| warp::to_sphere(towards.sample(stream.square())))
+    }
+
+    /// For a start that is not at infinity, at `position`; none where nothing is known of such.
+    #[inline]
+    pub(super) fn sample_direction(&self, position: Vec3, stream: &mut Stream) -> Option<Vec3> {
+        Some(warp::to_sphere(self.cells.at(position)?.sample(stream.square())))
+    }
+
+    /// A point on the unit disk that faces `towards`; none where nothing is known of that direction.
+    #[inline]
+    pub(super) fn sample_disk(&self, towards: Vec3, stream: &mut Stream) -> Option<Vec2> {
+        Some(warp::to_disk(self.cells.at(towards)?.sample(stream.square())))
+    }
+}
+
+impl Lights {
+    /// True at infinity, and the density of a direction, or of a point of the disk, if all are as likely.
+    #[inline]
+    fn measure(&self, start: &Start) -> (bool, f32) {
+        match self.all[start.light as usize].emitter.kind {
+            Kind::Infinite(_) => (true, self.disk_pdf_area()),
+            _ => (false, warp::SPHERE_PDF),
+        }
+    }
+
+    /// Where on the unit square `start` has its direction, or its point of the disk.
+    #[inline]
+    fn to_square(&self, start: &Start) -> Vec2 {
+        if !self.all[start.light as usize].emitter.is_infinite() {
+            return warp::from_sphere(start.direction);
+        }
+        let local = Frame::around(-start.direction).to_local(start.position - self.centre);
+        warp::from_disk(local.truncate() / self.radius)
+    }
+}
+
+/// Limits weights to a part of all; how many equal ones would say as much as those that remain.
+fn limit(starts: &mut [(Start, f32)]) -> f64 {
+    for _ in 0..4 {
+        let total: f64 = starts.iter().map(|(_, weight)| f64::from(*weight)).sum();
+        let most = (MOST * total) as f32;
+        starts.iter_mut().for_each(|(_, weight)| *weight = weight.min(most));
+    }
+    effective(starts.iter().map(|(_, weight)| *weight))
+}
+
+/// A deposit and what its cell is looked up by.
+struct Keyed {
+    key: Vec3,
+    deposit: Deposit,
+}
+
+/// Cells of space, or of directions, each with a density of its own: a kd-tree.
+#[derive(Clone, Debug)]
+struct Cells {
+    all: Vec<Cell>,
+}
+
+#[derive(Clone, Debug)]
+enum Cell {
+    /// Keys of less than `at` along `axis` are found in the next cell, others in the cell of this index.
+    Split { axis: usize, at: f32, beyond: u32 },
+    /// Too little is known where there is none.
+    Leaf(Option<Quadtree>),
+}
+
+impl Cells {
+    fn grow(&mut self, mut keyed: Vec<Keyed>, levels: u32) {
+        let count = effective(keyed.iter().map(|one| one.deposit.weight));
+        let index = self.all.len();
+        match split(&mut keyed) {
+            Some((axis, middle)) if levels > 0 && count >= 2.0 * PER_CELL => {
+                let far = keyed.split_off(middle);
+                let at = far[0].key[axis];
+                self.all.push(Cell::Leaf(None));
+                self.grow(keyed, levels - 1);
+                let beyond = self.all.len() as u32;
+                self.all[index] = Cell::Split { axis, at, beyond };
+                self.grow(far, levels - 1);
+            }
+            _ => {
+                let deposits = keyed.into_iter().map(|one| one.deposit).collect();
+                self.all.push(Cell::Leaf((count >= ENOUGH).then(|| Quadtree::learn(deposits))));
+            }
+        }
+    }
+
+    #[inline]
+    fn at(&self, key: Vec3) -> Option<&Quadtree> {
+        let mut index = 0;
+        loop {
+            match self.all.get(index)? {
+                Cell::Split { axis, at, beyond } => {
+                    index = if key[*axis] < *at { index + 1 } else { *beyond as usize };
+                }
+                Cell::Leaf(table) => return table.as_ref(),
+            }
+        }
+    }
+}
+
+/// Sorts `keyed` along the axis on which the keys lie furthest apart. The axis and where the upper half of the weight begins;
+/// none where both halves would not have something.
+fn split(keyed: &mut [Keyed]) -> Option<(usize, usize)> {
+    let bounds = keyed
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), one| (low.min(one.key), high.max(one.key)));
+    let extent = (bounds.1 - bounds.0).to_array();
+    let axis = (0..3).max_by(|a, b| extent[*a].total_cmp(&extent[*b]))?;
+    keyed.sort_by(|a, b| a.key[axis].total_cmp(&b.key[axis]));
+    let half = 0.5 * keyed.iter().map(|one| f64::from(one.deposit.weight)).sum::<f64>();
+    let mut sum = 0.0;
+    let middle = keyed.iter().position(|one| {
+        sum += f64::from(one.deposit.weight);
+        sum >= half
+    })?;
+    // The first of equal keys, so that all of them lie on one side.
+    let at = keyed[middle].key[axis];
+    let first = keyed.partition_point(|one| one.key[axis] < at);
+    (first > 0).then_some((axis, first))
+}
