@@ -10,7 +10,7 @@ use super::{
     Settings,
     block::Blocks,
     compiled::{self, Ready},
-    training::Follower,
+    training::{Follower, Tiles},
 };
 use crate::{
     film::Film,
@@ -96,8 +96,11 @@ pub fn choose(
     let equiangular = all == Strategies::BDPT && equiangular_applies(scene);
     let options = Options { strategies: Strategies { equiangular, ..all }, ..settings.options };
     let with_all = Settings { options, ..*settings };
-    let fly = |learnt: bool| survivals.map(|survival| pilot(scene, film, &with_all, survival, learnt));
-    let fly = || Some(fly(false)).filter(|pilots| !pilots[0].is_remote()).unwrap_or_else(|| fly(true));
+    let by = |learnt: bool| survivals.map(|survival| pilot(scene, film, &with_all, survival, learnt));
+    let fly = || {
+        let pilots = by(false);
+        if pilots[0].is_remote() { by(true) } else { pilots }
+    };
     // Renders survive a panic and say where it was.
     let Ok(pilots) = catch_unwind(AssertUnwindSafe(fly)) else { return base };
     let reference = pilots[0].error(&base) * pilots[0].time(&base);
@@ -368,12 +371,10 @@ impl Pilot {
     }
 
     fn of(parts: Vec<Part>, film: &Film, blocks: &Blocks, is_learnt: bool) -> Self {
-        let (width, height) = (film.width, film.len() as u32 / film.width);
-        let (across, down) = (width.min(TILES), height.min(TILES));
-        let tile =
-            |pixel: u32| (pixel / width * down / height * across + pixel % width * across / width) as usize;
-        let mut tiles = vec![Tile::default(); (across * down) as usize];
-        (0..film.len() as u32).for_each(|pixel| tiles[tile(pixel)].pixels += 1.0);
+        let all = Tiles::of(film, TILES);
+        let tile = |pixel| all.at(pixel);
+        let mut tiles: Vec<Tile> =
+            all.pixels().into_iter().map(|pixels| Tile { pixels, ..Tile::default() }).collect();
         for (pixel, _) in parts.iter().flat_map(|part| &part.sums) {
             tiles[tile(*pixel)].samples += 1.0;
         }

@@ -212,7 +212,7 @@ impl Trial {
     /// Some blocks of some passes, numbered over all of them.
     pub fn run<P: Profile>(ready: &Ready<'_, P>, tasks: Range<usize>) -> Self {
         let blocks = ready.blocks.count();
-        let tiles = Tiles::of(ready.film);
+        let tiles = Tiles::of(ready.film, TILES);
         let count = tasks.len() as f64;
         let parts: Vec<_> =
             tasks.into_par_iter().map(|task| part(ready, task / blocks, task % blocks)).collect();
@@ -346,7 +346,7 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
     }
 }
 
-/// The tiles of an image.
+/// The tiles of an image, whose pixels count as one.
 pub(super) struct Tiles {
     width: u32,
     height: u32,
@@ -355,18 +355,20 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    fn of(film: &Film) -> Self {
+    /// At most so `many` across and down.
+    pub fn of(film: &Film, many: u32) -> Self {
         let (width, height) = (film.width, film.height);
-        Self { width, height, across: width.min(TILES), down: height.min(TILES) }
+        Self { width, height, across: width.min(many), down: height.min(many) }
     }
 
-    fn at(&self, pixel: u32) -> usize {
+    /// That of a pixel.
+    pub fn at(&self, pixel: u32) -> usize {
         let Self { width, height, across, down } = *self;
         (pixel / width * down / height * across + pixel % width * across / width) as usize
     }
 
     /// How many pixels each has.
-    fn pixels(&self) -> Vec<f64> {
+    pub fn pixels(&self) -> Vec<f64> {
         let mut pixels = vec![0.0; (self.across * self.down) as usize];
         (0..self.width * self.height).for_each(|pixel| pixels[self.at(pixel)] += 1.0);
         pixels

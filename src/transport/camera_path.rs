@@ -314,7 +314,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         sample: &EmitterSample,
         stream: &mut Stream,
     ) -> Option<Contribution> {
-        let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
+        let scene = self.estimator.scene;
         let (direction, distance_squared) = sample.point.seen_from(vertex.position())?;
         let mut camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
         if P::MEDIA
@@ -324,9 +324,8 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
             let along = self.estimator.equiangular(first, sample.light);
             camera.beside = Some(P::MisSums::of(StrategyKind::Equiangular, along));
         }
-        let pdf_start = self.estimator.pdf_start(sample, vertex.position(), -direction);
-        let (medium, hits) = (camera.medium, counts.emitter_hit);
-        let light = connect::emitter_end::<P>(scene, sample, medium, -direction, pdf_start, hits);
+        let light =
+            connect::emitter_end(self.estimator, sample, camera.medium, vertex.position(), -direction);
         let strategy = self.estimator.strategy(StrategyKind::NextEvent);
         if P::INFINITE && sample.point.is_infinite() {
             let ray = Ray { origin: camera.origin?, direction, t_max: f32::INFINITY };

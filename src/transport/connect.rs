@@ -2,6 +2,7 @@
 //! contribution (LW96 eq. 10) and weight (eq. 14).
 
 use super::{
+    Estimator,
     mis::{self, End, MisSums, Strategy, Weight},
     observer::StrategyKind,
     profile::Profile,
@@ -51,27 +52,26 @@ pub fn vertex_end<S: MisSums>(
     })
 }
 
-/// The end at an emitter point picked by next-event estimation, for a connection of strategy s = 1;
-/// `emitter_hits` is n of s = 0, `pdf_start` the density of a light subpath's start in unit direction `towards`.
+/// The end at an emitter point picked for a connection of one light vertex, s = 1, to `reference` in `medium`, in unit
+/// direction `towards`. In units of the density of s = 1, a light subpath starts so as densely as it does over `sample`'s.
 #[inline]
 pub fn emitter_end<P: Profile>(
-    scene: &Scene,
+    estimator: &Estimator<'_, P>,
     sample: &EmitterSample,
     medium: MediumIndex,
+    reference: Vec3,
     towards: Vec3,
-    pdf_start: f32,
-    emitter_hits: f32,
 ) -> End<P::MisSums> {
-    let light = &scene.lights.all[sample.light as usize];
+    let light = &estimator.scene.lights.all[sample.light as usize];
     let within = P::EMISSIVE && sample.point.is_volume();
-    let emitter_hits = if light.emitter.is_hittable() { emitter_hits } else { 0.0 };
+    let emitter_hits = if light.emitter.is_hittable() { estimator.counts.emitter_hit } else { 0.0 };
     End {
         origin: sample.point.ray_origin(towards),
         lift: lift(&sample.point, towards),
         medium: if within { light.medium } else { medium },
         within,
         value: sample.value / sample.pdf,
-        pdf_fwd: pdf_start / sample.pdf,
+        pdf_fwd: estimator.pdf_start(sample, reference, towards) / sample.pdf,
         cosine: sample.cosine,
         inv_pdf: 1.0 / sample.pdf,
         sigma_t: rate_at::<P>(&sample.point),
@@ -197,9 +197,9 @@ pub fn connect_along<P: Profile>(
         return None;
     }
     let geometry = 1.0 / distance_squared;
-    let Weight { value: weight, shares } = mis::connection_weight(a, b, between.pdf, geometry, strategy);
+    let Weight { value: weight, shares } = mis::connection_weight::<P>(a, b, between.pdf, geometry, strategy);
     let value = a.value * b.value * between.transmittance * (geometry * weight);
-    let weight_alone = mis::weight_alone(strategy.own(a.pdf_over_hero * b.pdf_over_hero));
+    let weight_alone = mis::weight_alone(strategy.own::<P>(a.pdf_over_hero * b.pdf_over_hero));
     let alone = a.value * b.value * between.transmittance * (geometry * weight_alone);
     Some(Contribution { value, weight, alone, weight_alone, transmittance: between.transmittance, shares })
 }

@@ -211,9 +211,8 @@ impl<P: Profile, R: Observer<P::MisSums>> CameraPath<'_, P, R> {
         let (_, over_connect) = scene.lights.pivot(sample.light, vertex.position())?;
         let next_event = camera.pdf_over_hero.scaled(counts.next_event / over_connect);
         camera.beside = Some(P::MisSums::of(StrategyKind::NextEvent, next_event));
-        let pdf_start = self.estimator.pdf_start(sample, vertex.position(), -direction);
-        let (medium, hits) = (camera.medium, counts.emitter_hit);
-        let light = connect::emitter_end::<P>(scene, sample, medium, -direction, pdf_start, hits);
+        let light =
+            connect::emitter_end(self.estimator, sample, camera.medium, vertex.position(), -direction);
         let strategy = self.estimator.strategy(StrategyKind::Equiangular);
         connect::connect::<P>(scene, &camera, &light, distance_squared, strategy, false, stream)
     }

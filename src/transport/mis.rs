@@ -21,7 +21,7 @@ use power::Power;
 pub use sums::MisSums;
 use uniform::Uniform;
 
-use super::observer::StrategyKind;
+use super::{observer::StrategyKind, profile::Profile};
 use crate::{
     math::{Channels, Spectrum, Vec3},
     medium::MediumIndex,
@@ -91,8 +91,12 @@ pub struct Weight {
 impl Strategy {
     /// n p^c of its own over n p^h, where the walks have `pdf_over_hero` at both ends. Equiangular sampling has no flight.
     #[inline]
-    pub fn own<L: Channels>(&self, pdf_over_hero: L) -> L {
-        if self.kind == StrategyKind::Equiangular { L::splat(1.0) } else { pdf_over_hero }
+    pub fn own<P: Profile>(&self, pdf_over_hero: P::Channels) -> P::Channels {
+        if P::MEDIA && self.kind == StrategyKind::Equiangular {
+            P::Channels::splat(1.0)
+        } else {
+            pdf_over_hero
+        }
     }
 
     /// The weight of this strategy where `others` are all other strategies in units of its own n p^h, and `own` its n p^c.
@@ -108,18 +112,22 @@ impl Strategy {
 ///
 /// LW96 eq. 14, all densities in units of the strategy's own.
 #[inline]
-pub fn connection_weight<S: MisSums>(
-    a: &End<S>,
-    b: &End<S>,
-    pdf: S::Channels,
+pub fn connection_weight<P: Profile>(
+    a: &End<P::MisSums>,
+    b: &End<P::MisSums>,
+    pdf: P::Channels,
     inverse_distance_squared: f32,
     strategy: Strategy,
 ) -> Weight {
     let before_a = a.before(b.pdf_fwd, pdf, inverse_distance_squared);
     let before_b = b.before(a.pdf_fwd, pdf, inverse_distance_squared);
     let others = before_a.times(b.pdf_over_hero).and(before_b.times(a.pdf_over_hero));
-    let others = if let Some(beside) = a.beside { others.and(beside) } else { others };
-    strategy.weight(others.scaled(1.0 / strategy.count), strategy.own(a.pdf_over_hero * b.pdf_over_hero))
+    let others = match a.beside {
+        Some(beside) if P::MEDIA => others.and(beside),
+        _ => others,
+    };
+    let own = strategy.own::<P>(a.pdf_over_hero * b.pdf_over_hero);
+    strategy.weight(others.scaled(1.0 / strategy.count), own)
 }
 
 /// The weight of a strategy that runs alone, times the number of channels: only the channels share the path.

@@ -263,9 +263,8 @@ fn media_that_shine() {
     );
 }
 
-#[test]
-fn media_that_shine_by_any_subset_of_strategies() {
-    let setup = build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, GLASS_BALL]);
+/// By every set of strategies that connect the walks.
+fn every_subset<P: Profile>(name: &'static str, setup: &Setup, pairs: u64) {
     for bits in 1..16 {
         let on = |bit: u32| bits >> bit & 1 == 1;
         let strategies = Strategies {
@@ -275,11 +274,17 @@ fn media_that_shine_by_any_subset_of_strategies() {
             lens: on(3),
             ..Strategies::NONE
         };
-        let report = examine::<Fire>("shining subset", &setup, Options { strategies, ..ALL }, 60);
+        let report = examine::<P>(name, setup, Options { strategies, ..ALL }, pairs);
         for (bit, count) in report.strategies.iter().enumerate() {
             assert_eq!(*count > 0, on(bit as u32), "{strategies:?}");
         }
     }
+}
+
+#[test]
+fn media_that_shine_by_any_subset_of_strategies() {
+    let setup = build(&[GLOWING_FOG, INSIDE, SHELL, LAMP, GLASS_BALL]);
+    every_subset::<Fire>("shining subset", &setup, 60);
 }
 
 #[test]
@@ -374,20 +379,7 @@ fn limited_depth() {
 #[test]
 fn any_subset_of_strategies() {
     let setup = build(&[FOG, INSIDE, ROOM, LAMP, BULB, GLASS_BALL]);
-    for bits in 1..16 {
-        let on = |bit: u32| bits >> bit & 1 == 1;
-        let strategies = Strategies {
-            emitter_hit: on(0),
-            next_event: on(1),
-            connection: on(2),
-            lens: on(3),
-            ..Strategies::NONE
-        };
-        let report = examine::<Fog>("subset", &setup, Options { strategies, ..ALL }, 100);
-        for (bit, count) in report.strategies.iter().enumerate() {
-            assert_eq!(*count > 0, on(bit as u32), "{strategies:?}");
-        }
-    }
+    every_subset::<Fog>("subset", &setup, 100);
 }
 
 #[test]
