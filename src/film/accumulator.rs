@@ -6,7 +6,7 @@
 
 use crate::math::{
     Spectrum, SpectrumExt, Vec3, axes,
-    exact_sum::{ExactSum, MOST_TERMS},
+    exact_sums::{ExactSums, MOST_TERMS, Parts},
     relative::Relative,
     spectrum::LUMINANCE,
 };
@@ -21,43 +21,23 @@ const CHUNK: usize = 4096;
 /// Adds up passes; each pass is one estimate of the whole image.
 #[derive(Clone, Debug)]
 pub struct Accumulator {
-    pixels: Vec<Pixel>,
+    /// Sums of R, G, B, and of luminance: of the passes of even number less those of the others.
+    pixels: Vec<ExactSums<4>>,
     /// Sums of products of two channels, R R, R G, R B, G G, G B, B B; empty where not needed.
-    products: Vec<[ExactSum; 6]>,
+    products: Vec<ExactSums<6>>,
     /// Of even and of odd number.
     passes: [u64; 2],
-}
-
-/// The sums of a pixel.
-#[derive(Clone, Copy, Debug, Default)]
-struct Pixel {
-    sum: [ExactSum; 3],
-    /// Luminance of the passes of even number less that of the others.
-    contrast: ExactSum,
-}
-
-impl Pixel {
-    fn add(&mut self, value: Spectrum, sign: f64) {
-        for (channel, v) in self.sum.iter_mut().zip(value.to_array()) {
-            channel.add(v.into());
-        }
-        self.contrast.add(sign * f64::from(value.luminance()));
-    }
-
-    fn sums(&self) -> [f64; 3] {
-        axes(|channel| self.sum[channel].value())
-    }
 }
 
 impl Accumulator {
     /// Nothing seen yet, for an image of `pixels`.
     pub fn new(pixels: usize) -> Self {
-        Self { pixels: vec![Pixel::default(); pixels], products: Vec::new(), passes: [0; 2] }
+        Self { pixels: vec![ExactSums::default(); pixels], products: Vec::new(), passes: [0; 2] }
     }
 
     /// The same, with second moments and variances.
     pub fn with_products(pixels: usize) -> Self {
-        Self { products: vec![[ExactSum::default(); 6]; pixels], ..Self::new(pixels) }
+        Self { products: vec![ExactSums::default(); pixels], ..Self::new(pixels) }
     }
 
     /// Adds the pass `number`.
@@ -66,25 +46,22 @@ impl Accumulator {
         let sign = [1.0, -1.0][half];
         let pixels = self.pixels.par_chunks_mut(CHUNK).zip(pass.par_chunks(CHUNK));
         pixels.for_each(|(pixels, values)| {
-            pixels.iter_mut().zip(values).for_each(|(pixel, value)| pixel.add(*value, sign));
+            for (pixel, value) in pixels.iter_mut().zip(values) {
+                let [r, g, b] = value.to_array().map(f64::from);
+                pixel.add([r, g, b, sign * f64::from(value.luminance())]);
+            }
         });
         for (products, value) in self.products.iter_mut().zip(pass) {
             let [r, g, b] = value.as_dvec3().to_array();
-            let pass = [r * r, r * g, r * b, g * g, g * b, b * b];
-            products.iter_mut().zip(pass).for_each(|(sum, product)| sum.add(product));
+            products.add([r * r, r * g, r * b, g * g, g * b, b * b]);
         }
         self.passes[half] += 1;
     }
 
     /// Adds all passes of `other`, of an image of as many pixels with sums of the same products.
     pub fn merge(&mut self, other: &Self) {
-        for (pixel, other) in self.pixels.iter_mut().zip(&other.pixels) {
-            pixel.sum.iter_mut().zip(&other.sum).for_each(|(sum, other)| sum.merge(other));
-            pixel.contrast.merge(&other.contrast);
-        }
-        for (products, other) in self.products.iter_mut().zip(&other.products) {
-            products.iter_mut().zip(other).for_each(|(sum, other)| sum.merge(other));
-        }
+        self.pixels.iter_mut().zip(&other.pixels).for_each(|(sums, other)| sums.merge(other));
+        self.products.iter_mut().zip(&other.products).for_each(|(sums, other)| sums.merge(other));
         self.passes.iter_mut().zip(other.passes).for_each(|(passes, other)| *passes += other);
     }
 
@@ -96,8 +73,10 @@ impl Accumulator {
     /// The mean of all passes.
     pub fn mean(&self) -> Vec<Spectrum> {
         let scale = 1.0 / self.passes().max(1) as f64;
-        let of_pixel =
-            |pixel: &Pixel| Spectrum::from_array(axes(|channel| (pixel.sum[channel].value() * scale) as f32));
+        let of_pixel = |sums: &ExactSums<4>| {
+            let sums = sums.values();
+            Spectrum::from_array(axes(|channel| (sums[channel] * scale) as f32))
+        };
         self.pixels.par_iter().map(of_pixel).collect()
     }
 
@@ -112,29 +91,27 @@ impl Accumulator {
     pub fn variance(&self, row: Vec3) -> Option<Vec<f32>> {
         let n = self.passes() as f64;
         let [r, g, b] = row.as_dvec3().to_array();
-        let of_pixel = |(pixel, products): (&Pixel, &[ExactSum; 6])| {
-            let sum = pixel.sums();
-            let mean = (r * sum[0] + g * sum[1] + b * sum[2]) / n;
+        let of_pixel = |(sums, products): (&ExactSums<4>, &ExactSums<6>)| {
+            let sums = sums.values();
+            let mean = (r * sums[0] + g * sums[1] + b * sums[2]) / n;
             ((square_of(row, products) / n - mean * mean) / (n - 1.0)).max(0.0) as f32
         };
         (n > 1.0).then(|| self.pixels.iter().zip(&self.products).map(of_pixel).collect())
     }
 
     /// All sums, pixel by pixel: those of R, G, B and the difference of the halves; then the products, if there are any.
-    pub fn sums(&self) -> impl Iterator<Item = ExactSum> + '_ {
-        let pixels = self.pixels.iter().flat_map(|pixel| pixel.sum.into_iter().chain([pixel.contrast]));
-        pixels.chain(self.products.iter().flatten().copied())
+    pub fn sums(&self) -> impl Iterator<Item = Parts> + '_ {
+        self.pixels.iter().flat_map(ExactSums::parts).chain(self.products.iter().flat_map(ExactSums::parts))
     }
 
     /// `passes` of even and of odd number over an image of `pixels`, from what [`Accumulator::sums`] gave; none if that is
     /// not as many.
-    pub fn from_sums(pixels: usize, passes: [u64; 2], sums: &[ExactSum]) -> Option<Self> {
+    pub fn from_sums(pixels: usize, passes: [u64; 2], sums: &[Parts]) -> Option<Self> {
         let (own, products) = sums.split_at_checked(4 * pixels)?;
-        let pixel = |sums: &[ExactSum; 4]| Pixel { sum: [sums[0], sums[1], sums[2]], contrast: sums[3] };
         let (products, rest) = products.as_chunks();
         let fits = rest.is_empty() && (products.is_empty() || products.len() == pixels);
-        let pixels = own.as_chunks().0.iter().map(pixel).collect();
-        fits.then(|| Self { pixels, products: products.to_vec(), passes })
+        let pixels = own.as_chunks().0.iter().map(ExactSums::from_parts).collect();
+        fits.then(|| Self { pixels, products: products.iter().map(ExactSums::from_parts).collect(), passes })
     }
 
     /// True if it has sums of products.
@@ -160,9 +137,9 @@ impl Accumulator {
             return None;
         }
         let [r, g, b] = LUMINANCE.as_dvec3().to_array();
-        let moments = |pixel: &Pixel| {
-            let (sum, contrast) = (pixel.sums(), pixel.contrast.value());
-            let sum = r * sum[0] + g * sum[1] + b * sum[2];
+        let moments = |sums: &ExactSums<4>| {
+            let [sum_r, sum_g, sum_b, contrast] = sums.values();
+            let sum = r * sum_r + g * sum_g + b * sum_b;
             let halves = [(sum + contrast) / (2.0 * even), (sum - contrast) / (2.0 * odd)];
             // The halves differ by the root of twice the variance of either, their mean varies by half of it.
             (sum / (even + odd), (0.5 * (halves[0] - halves[1])).powi(2))
@@ -176,10 +153,10 @@ impl Accumulator {
 }
 
 /// (`row` . rgb)^2 from the products of r, g and b.
-fn square_of(row: Vec3, products: &[ExactSum; 6]) -> f64 {
+fn square_of(row: Vec3, products: &ExactSums<6>) -> f64 {
     let [r, g, b] = row.as_dvec3().to_array();
     let factors = [r * r, 2.0 * r * g, 2.0 * r * b, g * g, 2.0 * g * b, b * b];
-    factors.iter().zip(products).map(|(factor, product)| factor * product.value()).sum()
+    factors.iter().zip(products.values()).map(|(factor, product)| factor * product).sum()
 }
 
 #[cfg(test)]

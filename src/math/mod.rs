@@ -7,7 +7,7 @@ pub mod cells;
 pub mod channels;
 pub mod cie;
 pub mod colour;
-pub mod exact_sum;
+pub mod exact_sums;
 pub mod frame;
 pub mod fresnel;
 pub mod measure;

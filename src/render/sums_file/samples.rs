@@ -2,7 +2,7 @@
 //!
 //! | array | type, shape | is |
 //! |---|---|---|
-//! | `windows`, `parts` | i16 \[n\], i64 \[n, 2\] | exact sums over samples, see [`ExactSum::to_parts`]: of R, G, B and the difference of the halves of each pixel, row by row; then, where layers need them, of R R, R G, R B, G G, G B, B B |
+//! | `windows`, `parts` | i16 \[n\], i64 \[n, 2\] | exact sums over samples, see [`Parts`](crate::math::exact_sums::Parts): of R, G, B and the difference of the halves of each pixel, row by row; then, where layers need them, of R R, R G, R B, G G, G B, B B |
 //! | `camera`, `light` | f32 \[pixels, 3\] | what camera and light subpaths of the unfinished sample contributed so far, if there is one |
 
 use super::{
@@ -11,7 +11,6 @@ use super::{
 };
 use crate::{
     film::accumulator::Accumulator,
-    math::exact_sum::ExactSum,
     render::{Image, any_sums::Kept, faults::Faults, samples::Samples, sums::Sums},
 };
 use serde::{Deserialize, Serialize};
@@ -60,9 +59,8 @@ impl Kept for Sums {
             seconds: self.elapsed.as_secs_f64(),
             faults: self.faults.clone(),
         });
-        let all = || self.accumulator.sums().map(ExactSum::to_parts);
-        let parts = all().flat_map(|(_, parts)| parts).map(i64::to_le_bytes);
-        let windows = all().map(|(window, _)| window.to_le_bytes());
+        let parts = self.accumulator.sums().flat_map(|(_, parts)| parts).map(i64::to_le_bytes);
+        let windows = self.accumulator.sums().map(|(window, _)| window.to_le_bytes());
         let mut arrays =
             vec![Array::row("parts", "I64", parts).in_columns(2), Array::row("windows", "I16", windows)];
         arrays.extend(Array::of_pass(&self.pass, self.blocks > 0));
@@ -76,7 +74,7 @@ pub(super) fn sums(state: Value, arrays: &Arrays<'_>) -> Option<Sums> {
     let parts = arrays.row("parts", i64::from_le_bytes)?;
     let windows = arrays.row("windows", i16::from_le_bytes)?;
     let sums = windows.into_iter().zip(parts.as_chunks().0);
-    let sums: Vec<ExactSum> = sums.map(|(window, parts)| ExactSum::from_parts(window, *parts)).collect();
+    let sums: Vec<_> = sums.map(|(window, parts)| (window, *parts)).collect();
     let pixels = state.width.checked_mul(state.height).filter(|pixels| *pixels > 0)?;
     let samples = if state.samples.is_empty() { Samples::default() } else { Samples::of(state.samples)? };
     let accumulator = Accumulator::from_sums(pixels, samples.halves(), &sums)?;
