@@ -78,7 +78,7 @@ impl Traits {
         Self {
             emitters,
             smooth: in_words_smooth(
-                bsdfs().filter(|bsdf| bsdf.has_dirac() && bsdf.survival(Vec2::ZERO, Vec3::Z) > 0.0),
+                bsdfs().filter(|bsdf| bsdf.has_dirac() && bsdf.survival(Vec2::ZERO.into(), Vec3::Z) > 0.0),
             ),
             rough: scatters || bsdfs().any(BsdfModel::is_connectible),
             max_depth: options.max_depth.unwrap_or(u32::MAX),

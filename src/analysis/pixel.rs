@@ -356,7 +356,7 @@ impl Text<'_> {
             bsdf: self.setup.bsdf_names[surface.bsdf as usize].clone(),
             normal: point.normal.to_array(),
             shading_normal: point.shading.normal.to_array(),
-            uv: point.uv.to_array(),
+            uv: point.uv.get().to_array(),
             emitter: surface.emitter.map(|light| scene.lights.all[light as usize].emitter.name),
         }
     }

@@ -3,7 +3,7 @@
 use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, number, only_nested, share};
 use crate::description::Params;
 use crate::error::Result;
-use crate::math::{Spectrum, Vec2, Vec3};
+use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
 use crate::texture::Texture;
 use std::sync::Arc;
@@ -34,7 +34,7 @@ impl Blend {
     }
 
     #[inline]
-    fn weights(&self, uv: Vec2) -> [f32; 2] {
+    fn weights(&self, uv: Uv) -> [f32; 2] {
         let second = number(&self.weight, uv).clamp(0.0, 1.0);
         [1.0 - second, second]
     }
@@ -43,7 +43,7 @@ impl Blend {
     /// lets light across survives alike on both: evaluating it twice would double the cost at every depth of
     /// blends.
     #[inline]
-    fn survivals(&self, uv: Vec2, wi: Vec3) -> ([f32; 2], [f32; 2]) {
+    fn survivals(&self, uv: Uv, wi: Vec3) -> ([f32; 2], [f32; 2]) {
         let here = [self.parts[0].survival(uv, wi), self.parts[1].survival(uv, wi)];
         let most = |i: usize| match self.across {
             [false, false] => here[i],
@@ -63,7 +63,7 @@ impl Blend {
     /// Probabilities of going on by either part, given `survival`: those with which light does. The part that
     /// passes straight through each of them has been taken away before.
     #[inline]
-    fn choices(&self, uv: Vec2, wi: Vec3) -> [f32; 2] {
+    fn choices(&self, uv: Uv, wi: Vec3) -> [f32; 2] {
         let (weights, (here, most)) = (self.weights(uv), self.survivals(uv, wi));
         let total = Self::total(weights, most);
         let kept = |i: usize| {
@@ -107,7 +107,7 @@ impl Blend {
 
 impl BsdfModel for Blend {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
         let weights = self.weights(uv);
         let (there, back) = (self.choices(uv, wi), self.choices(uv, wo));
         let part = |i: usize| {
@@ -120,7 +120,7 @@ impl BsdfModel for Blend {
 
     /// A Dirac lobe belongs to its part alone; of the rest either part could have made the sample.
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let choices = self.choices(uv, wi);
         let u = stream.uniform();
         let chosen = usize::from(u >= choices[0]);
@@ -141,12 +141,12 @@ impl BsdfModel for Blend {
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         Self::total(self.weights(uv), self.survivals(uv, wi).1)
     }
 
     #[inline]
-    fn null_transmission(&self, uv: Vec2, cosine: f32) -> Spectrum {
+    fn null_transmission(&self, uv: Uv, cosine: f32) -> Spectrum {
         let weights = self.weights(uv);
         let part = |i: usize| self.parts[i].null_transmission(uv, cosine) * weights[i];
         part(0) + part(1)
@@ -165,7 +165,7 @@ impl BsdfModel for Blend {
     }
 
     #[inline]
-    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+    fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {
         let [first, second] = self.weights(uv);
         self.parts[0].albedo(uv, wi) * first + self.parts[1].albedo(uv, wi) * second
     }

@@ -4,7 +4,7 @@ use super::{BsdfModel, BsdfSample, BsdfValue, Transport, metals, mirror, reflect
 use crate::description::Params;
 use crate::error::{Error, Result};
 use crate::math::fresnel;
-use crate::math::{Spectrum, Vec2, Vec3};
+use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
 use crate::texture::{self, Texture};
 
@@ -77,12 +77,12 @@ impl Metal {
 
     /// Tinted reflectance at `cosine` in [0, 1].
     #[inline]
-    pub(super) fn reflectance(&self, uv: Vec2, cosine: f32) -> Spectrum {
+    pub(super) fn reflectance(&self, uv: Uv, cosine: f32) -> Spectrum {
         self.tint.eval(uv) * fresnel::conductor(cosine.min(1.0), self.eta.eval(uv), self.k.eval(uv))
     }
 
     #[inline]
-    pub(super) fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    pub(super) fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         if wi.z > 0.0 { (self.average * self.tint.eval(uv)).max_element().min(1.0) } else { 0.0 }
     }
 
@@ -113,12 +113,12 @@ impl Conductor {
 
 impl BsdfModel for Conductor {
     #[inline]
-    fn evaluate(&self, _: Vec2, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, _: Uv, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
         BsdfValue::ZERO
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, _: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, _: Transport, _: &mut Stream) -> Option<BsdfSample> {
         (wi.z > 0.0).then(|| BsdfSample {
             wo: mirror(wi),
             weight: self.metal.reflectance(uv, wi.z),
@@ -129,7 +129,7 @@ impl BsdfModel for Conductor {
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         self.metal.survival(uv, wi)
     }
 

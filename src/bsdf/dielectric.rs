@@ -4,7 +4,7 @@ use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror, reflecta
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::fresnel::Interfaces;
-use crate::math::{Spectrum, Vec2, Vec3};
+use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
 use crate::texture::Texture;
 
@@ -31,13 +31,13 @@ impl Tints {
     }
 
     #[inline]
-    pub(super) fn at(&self, uv: Vec2) -> (Spectrum, Spectrum) {
+    pub(super) fn at(&self, uv: Uv) -> (Spectrum, Spectrum) {
         (self.reflectance.eval(uv), self.transmittance.eval(uv))
     }
 
     /// The largest channel of either tint: no direction scatters more.
     #[inline]
-    pub(super) fn max(&self, uv: Vec2) -> f32 {
+    pub(super) fn max(&self, uv: Uv) -> f32 {
         let (reflectance, transmittance) = self.at(uv);
         reflectance.max(transmittance).max_element()
     }
@@ -80,12 +80,12 @@ impl Dielectric {
 
 impl BsdfModel for Dielectric {
     #[inline]
-    fn evaluate(&self, _: Vec2, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, _: Uv, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
         BsdfValue::ZERO
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         if wi.z == 0.0 {
             return None;
         }
@@ -108,7 +108,7 @@ impl BsdfModel for Dielectric {
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, _: Vec3) -> f32 {
         self.tints.max(uv)
     }
 

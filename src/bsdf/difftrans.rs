@@ -3,7 +3,7 @@
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, reflectance};
 use crate::description::Params;
 use crate::error::Result;
-use crate::math::{Vec2, Vec3, vec3, warp};
+use crate::math::{Uv, Vec3, vec3, warp};
 use crate::sampling::Stream;
 use crate::texture::Texture;
 use std::f32::consts::FRAC_1_PI;
@@ -30,7 +30,7 @@ impl DiffuseTransmitter {
 
 impl BsdfModel for DiffuseTransmitter {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
         if wi.z * wo.z.signum() >= 0.0 || wo.z == 0.0 {
             return BsdfValue::ZERO;
         }
@@ -42,14 +42,14 @@ impl BsdfModel for DiffuseTransmitter {
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let w = warp::to_cosine_hemisphere(stream.square());
         let wo = vec3(w.x, w.y, -w.z.copysign(wi.z));
         self.evaluate(uv, wi, wo, transport).sampled(wo)
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, _: Vec3) -> f32 {
         self.transmittance.eval(uv).max_element()
     }
 

@@ -3,7 +3,7 @@
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, reflectance};
 use crate::description::Params;
 use crate::error::Result;
-use crate::math::{Spectrum, Vec2, Vec3, warp};
+use crate::math::{Spectrum, Uv, Vec3, warp};
 use crate::sampling::Stream;
 use crate::texture::Texture;
 use std::f32::consts::FRAC_1_PI;
@@ -34,7 +34,7 @@ impl Diffuse {
 impl BsdfModel for Diffuse {
     // The model that most surfaces have: worth its room in every dispatch.
     #[inline(always)]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return BsdfValue::ZERO;
         }
@@ -46,7 +46,7 @@ impl BsdfModel for Diffuse {
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let wo = warp::to_cosine_hemisphere(stream.square());
         (wi.z > 0.0 && wo.z > 0.0).then(|| BsdfSample {
             wo,
@@ -58,7 +58,7 @@ impl BsdfModel for Diffuse {
     }
 
     #[inline(always)]
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         if wi.z > 0.0 { self.reflectance.eval(uv).max_element() } else { 0.0 }
     }
 

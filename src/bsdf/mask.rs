@@ -3,7 +3,7 @@
 use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, number, only_nested, share};
 use crate::description::Params;
 use crate::error::Result;
-use crate::math::{Spectrum, Vec2, Vec3};
+use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
 use crate::texture::Texture;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ impl Mask {
     }
 
     #[inline]
-    fn opacity(&self, uv: Vec2) -> f32 {
+    fn opacity(&self, uv: Uv) -> f32 {
         number(&self.opacity, uv).clamp(0.0, 1.0)
     }
 
@@ -50,24 +50,24 @@ impl Mask {
 
 impl BsdfModel for Mask {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
         let nested = self.nested.evaluate(uv, wi, wo, transport);
         BsdfValue { value: nested.value * self.opacity(uv), ..nested }
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let nested = self.nested.sample(uv, wi, transport, stream)?;
         Some(BsdfSample { weight: nested.weight * self.opacity(uv), ..nested })
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         self.nested.survival(uv, wi)
     }
 
     #[inline]
-    fn null_transmission(&self, uv: Vec2, cosine: f32) -> Spectrum {
+    fn null_transmission(&self, uv: Uv, cosine: f32) -> Spectrum {
         let opacity = self.opacity(uv);
         self.nested.null_transmission(uv, cosine) * opacity + Spectrum::splat(1.0 - opacity)
     }
@@ -85,7 +85,7 @@ impl BsdfModel for Mask {
     }
 
     /// As in Mitsuba, holes do not count.
-    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+    fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {
         self.nested.albedo(uv, wi)
     }
 

@@ -4,7 +4,7 @@
 use super::number;
 use crate::description::Params;
 use crate::error::{Error, Result};
-use crate::math::{Vec2, Vec3, vec3};
+use crate::math::{Uv, Vec2, Vec3, vec3};
 use crate::texture::{self, Texture};
 use std::f32::consts::{PI, TAU};
 
@@ -68,7 +68,7 @@ impl Roughness {
         let Self { kind, alpha: [u, v] } = Self::build(params)?;
         match (&u, &v) {
             (Texture::Uniform(along), Texture::Uniform(across)) if along.0 == across.0 => {
-                let alpha = number(&u, Vec2::ZERO);
+                let alpha = number(&u, Vec2::ZERO.into());
                 Ok(Microfacets::new(kind, alpha, alpha))
             }
             _ => Err(Error::new(
@@ -87,7 +87,7 @@ impl Roughness {
 
     /// The distribution at texture position `uv`.
     #[inline]
-    pub fn at(&self, uv: Vec2) -> Microfacets {
+    pub fn at(&self, uv: Uv) -> Microfacets {
         let alpha = |i: usize| number(&self.alpha[i], uv);
         Microfacets::new(self.kind, alpha(0), alpha(1))
     }

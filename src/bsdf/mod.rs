@@ -42,7 +42,7 @@ pub use twosided::TwoSided;
 
 use crate::description::{Build, Library, Object, Params, Registry, models};
 use crate::error::{Error, Result};
-use crate::math::{Spectrum, SpectrumExt, Vec2, Vec3, vec3};
+use crate::math::{Spectrum, SpectrumExt, Uv, Vec3, vec3};
 use crate::sampling::Stream;
 use crate::texture::{self, Texture};
 use std::f32::consts::PI;
@@ -98,22 +98,22 @@ pub struct BsdfSample {
 /// What every surface model can do. `uv` is the texture position.
 pub trait BsdfModel {
     /// Value and both densities of the non-Dirac part.
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue;
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue;
 
     /// Samples `wo`; none where nothing scatters (`wi` on a dark side, grazing, total loss).
-    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample>;
+    fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample>;
 
     /// Probability in [0, 1] with which a walk goes on from here (LW96 eq. 9: a walk ends by absorption):
     /// the largest channel of the albedo. It must be the same for both directions of any scattering pair, as
     /// it enters forward and backward densities alike, so it may depend on `uv` and, for models that do not
     /// scatter across, on the side of `wi`, on nothing else. Where the albedo varies more with the direction,
     /// the survival bounds it and `sample` gives none as often as the rest is absorbed; densities say so.
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32;
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32;
 
     /// The part of light that passes straight through as if nothing were there (`null`: 1; `thindielectric`:
     /// its transmittance at this |cos|; opaque surfaces: 0). Equal from both sides. It is no scattering:
     /// `sample` and `evaluate` leave it out, the ray goes on and no path vertex arises.
-    fn null_transmission(&self, _uv: Vec2, _cosine: f32) -> Spectrum {
+    fn null_transmission(&self, _uv: Uv, _cosine: f32) -> Spectrum {
         Spectrum::ZERO
     }
 
@@ -137,7 +137,7 @@ pub trait BsdfModel {
 
     /// What an `albedo` layer shows, seen from `wi`: as in Mitsuba the diffuse reflectance of models that have
     /// one, pi f towards the normal of others.
-    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+    fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {
         let up = vec3(0.0, 0.0, 1f32.copysign(wi.z));
         self.evaluate(uv, wi, up, Transport::Radiance).value * PI
     }
@@ -155,14 +155,14 @@ macro_rules! bsdfs {
         models! {
             /// Any surface model.
             Bsdf: BsdfModel [$($model)*]
-            #[inline] fn evaluate(uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue;
-            #[inline] fn sample(uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample>;
-            #[inline] fn survival(uv: Vec2, wi: Vec3) -> f32;
-            #[inline] fn null_transmission(uv: Vec2, cosine: f32) -> Spectrum;
+            #[inline] fn evaluate(uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue;
+            #[inline] fn sample(uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample>;
+            #[inline] fn survival(uv: Uv, wi: Vec3) -> f32;
+            #[inline] fn null_transmission(uv: Uv, cosine: f32) -> Spectrum;
             #[inline] fn is_connectible() -> bool;
             #[inline] fn has_dirac() -> bool;
             #[inline] fn has_null() -> bool;
-            #[inline] fn albedo(uv: Vec2, wi: Vec3) -> Spectrum;
+            #[inline] fn albedo(uv: Uv, wi: Vec3) -> Spectrum;
             fn scatters_across() -> bool;
         }
 
@@ -231,7 +231,7 @@ fn share(params: &Params<'_>, name: &'static str, default: Option<f32>) -> Resul
 
 /// A texture as a number, as Mitsuba takes it: an image's luminance, the mean of the channels of all others.
 #[inline]
-fn number(texture: &Texture, uv: Vec2) -> f32 {
+fn number(texture: &Texture, uv: Uv) -> f32 {
     let color = texture.eval(uv);
     if let Texture::Bitmap(_) = texture { color.luminance() } else { color.element_sum() / 3.0 }
 }

@@ -3,7 +3,7 @@
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport};
 use crate::description::Params;
 use crate::error::Result;
-use crate::math::{Spectrum, Vec2, Vec3};
+use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
 
 /// All light passes straight through; nothing is scattered.
@@ -23,22 +23,22 @@ impl Null {
 
 impl BsdfModel for Null {
     #[inline]
-    fn evaluate(&self, _: Vec2, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, _: Uv, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
         BsdfValue::ZERO
     }
 
     #[inline]
-    fn sample(&self, _: Vec2, _: Vec3, _: Transport, _: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, _: Uv, _: Vec3, _: Transport, _: &mut Stream) -> Option<BsdfSample> {
         None
     }
 
     #[inline]
-    fn survival(&self, _: Vec2, _: Vec3) -> f32 {
+    fn survival(&self, _: Uv, _: Vec3) -> f32 {
         0.0
     }
 
     #[inline]
-    fn null_transmission(&self, _: Vec2, _: f32) -> Spectrum {
+    fn null_transmission(&self, _: Uv, _: f32) -> Spectrum {
         Spectrum::ONE
     }
 

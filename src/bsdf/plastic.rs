@@ -4,7 +4,7 @@ use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror, reflecta
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::fresnel::Interface;
-use crate::math::{Spectrum, Vec2, Vec3, warp};
+use crate::math::{Spectrum, Uv, Vec3, warp};
 use crate::sampling::Stream;
 use crate::texture::Texture;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -69,7 +69,7 @@ impl Base {
 
     /// `entering` is the part of even light from outside that gets in.
     #[inline]
-    pub(super) fn at(&self, uv: Vec2, entering: f32) -> Shares {
+    pub(super) fn at(&self, uv: Uv, entering: f32) -> Shares {
         let (specular, diffuse) = (self.specular.eval(uv), self.diffuse.eval(uv));
         let kept = if self.nonlinear { diffuse * self.returned } else { Spectrum::splat(self.returned) };
         let base = diffuse * (self.compression * FRAC_1_PI) / (Spectrum::ONE - kept);
@@ -148,7 +148,7 @@ impl Plastic {
 
 impl BsdfModel for Plastic {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return BsdfValue::ZERO;
         }
@@ -157,7 +157,7 @@ impl BsdfModel for Plastic {
 
     /// The coat's reflection is as likely on the way back: Fresnel's reflectance is the same there.
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         if wi.z <= 0.0 {
             return None;
         }
@@ -183,11 +183,11 @@ impl BsdfModel for Plastic {
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         if wi.z > 0.0 { self.base.at(uv, self.entering).survival } else { 0.0 }
     }
 
-    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+    fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {
         if wi.z > 0.0 { self.base.diffuse.eval(uv) } else { Spectrum::ZERO }
     }
 

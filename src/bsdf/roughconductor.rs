@@ -5,7 +5,7 @@ use super::microfacet::{Microfacets, Roughness};
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport};
 use crate::description::Params;
 use crate::error::Result;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Uv, Vec3};
 use crate::sampling::Stream;
 
 /// Microfacets that each reflect as a smooth metal does (Walter et al. 2007, eq. 20); the lower side is black.
@@ -21,7 +21,7 @@ impl RoughConductor {
     }
 
     #[inline]
-    fn evaluate_with(&self, microfacets: &Microfacets, uv: Vec2, wi: Vec3, wo: Vec3) -> BsdfValue {
+    fn evaluate_with(&self, microfacets: &Microfacets, uv: Uv, wi: Vec3, wo: Vec3) -> BsdfValue {
         let Some(m) = (wi + wo).try_normalize() else { return BsdfValue::ZERO };
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return BsdfValue::ZERO;
@@ -45,12 +45,12 @@ impl RoughConductor {
 
 impl BsdfModel for RoughConductor {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
         self.evaluate_with(&self.roughness.at(uv), uv, wi, wo)
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         if wi.z <= 0.0 {
             return None;
         }
@@ -62,7 +62,7 @@ impl BsdfModel for RoughConductor {
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         self.metal.survival(uv, wi)
     }
 

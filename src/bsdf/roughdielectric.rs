@@ -6,7 +6,7 @@ use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, index};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::fresnel::{Interface, Interfaces};
-use crate::math::{Vec2, Vec3, vec3};
+use crate::math::{Uv, Vec3, vec3};
 use crate::sampling::Stream;
 
 /// Microfacets that each reflect and refract as a smooth interface does (Walter et al. 2007, eq. 20-21).
@@ -50,7 +50,7 @@ impl RoughDielectric {
     fn evaluate_with(
         &self,
         microfacets: &Microfacets,
-        uv: Vec2,
+        uv: Uv,
         facet: &Facet,
         transport: Transport,
     ) -> Option<BsdfValue> {
@@ -118,14 +118,14 @@ impl Facet {
 
 impl BsdfModel for RoughDielectric {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
         Facet::joining(&self.smooth.interfaces, wi, wo)
             .and_then(|facet| self.evaluate_with(&self.roughness.at(uv), uv, &facet, transport))
             .unwrap_or(BsdfValue::ZERO)
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         if wi.z == 0.0 {
             return None;
         }
@@ -152,7 +152,7 @@ impl BsdfModel for RoughDielectric {
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, _: Vec3) -> f32 {
         self.smooth.tints.max(uv)
     }
 

@@ -6,7 +6,7 @@ use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::fresnel::{Interface, Interfaces};
-use crate::math::{Spectrum, Vec2, Vec3, vec2, vec3, warp};
+use crate::math::{Spectrum, Uv, Vec3, vec2, vec3, warp};
 use crate::sampling::Stream;
 use std::sync::Arc;
 
@@ -151,12 +151,12 @@ impl RoughPlastic {
 
 impl BsdfModel for RoughPlastic {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
         self.evaluate_with(&self.base.at(uv, self.entering), wi, wo)
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, _: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         if wi.z <= 0.0 {
             return None;
         }
@@ -176,11 +176,11 @@ impl BsdfModel for RoughPlastic {
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         if wi.z > 0.0 { self.base.at(uv, self.entering).survival } else { 0.0 }
     }
 
-    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+    fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {
         if wi.z > 0.0 { self.base.diffuse.eval(uv) } else { Spectrum::ZERO }
     }
 

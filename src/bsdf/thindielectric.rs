@@ -5,7 +5,7 @@ use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror};
 use crate::description::Params;
 use crate::error::Result;
 use crate::math::fresnel::Interfaces;
-use crate::math::{Spectrum, Vec2, Vec3};
+use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
 
 /// Reflects as a Dirac lobe, inter-reflections between its two faces included; the rest passes straight
@@ -41,24 +41,24 @@ impl ThinDielectric {
 
 impl BsdfModel for ThinDielectric {
     #[inline]
-    fn evaluate(&self, _: Vec2, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, _: Uv, _: Vec3, _: Vec3, _: Transport) -> BsdfValue {
         BsdfValue::ZERO
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, _: Transport, _: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, _: Transport, _: &mut Stream) -> Option<BsdfSample> {
         let weight = self.tints.reflectance.eval(uv) * self.reflected(wi.z);
         (wi.z != 0.0).then(|| BsdfSample { wo: mirror(wi), weight, pdf_fwd: 1.0, pdf_rev: 1.0, dirac: true })
     }
 
     /// Of what does not pass straight through, the tint of the reflection is what is not absorbed.
     #[inline]
-    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, _: Vec3) -> f32 {
         self.tints.reflectance.eval(uv).max_element()
     }
 
     #[inline]
-    fn null_transmission(&self, uv: Vec2, cosine: f32) -> Spectrum {
+    fn null_transmission(&self, uv: Uv, cosine: f32) -> Spectrum {
         self.tints.transmittance.eval(uv) * (1.0 - self.reflected(cosine))
     }
 

@@ -4,7 +4,7 @@
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, reflectance};
 use crate::description::Params;
 use crate::error::Result;
-use crate::math::{Frame, Spectrum, Vec2, Vec3, vec3, warp};
+use crate::math::{Frame, Spectrum, Uv, Vec3, vec3, warp};
 use crate::sampling::Stream;
 use crate::texture::Texture;
 use std::f32::consts::{FRAC_1_PI, TAU};
@@ -94,7 +94,7 @@ impl Translucent {
 
 impl BsdfModel for Translucent {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, _: Transport) -> BsdfValue {
         let [_, diffuse, directional] = self.shares();
         if wi.z * wo.z.signum() >= 0.0 || wo.z == 0.0 || diffuse + directional <= 0.0 {
             return BsdfValue::ZERO;
@@ -111,7 +111,7 @@ impl BsdfModel for Translucent {
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let [_, diffuse, directional] = self.shares();
         let w = match self.exponent {
             Some(n) if stream.uniform() * (diffuse + directional) < directional => {
@@ -126,13 +126,13 @@ impl BsdfModel for Translucent {
 
     /// Of what does not pass straight through, the part that is not absorbed.
     #[inline]
-    fn survival(&self, uv: Vec2, _: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, _: Vec3) -> f32 {
         let ([straight, diffuse, lobe], most) = (self.shares(), self.transmittance.eval(uv).max_element());
         if diffuse + lobe > 0.0 { (diffuse + lobe) * most / (1.0 - straight * most) } else { 0.0 }
     }
 
     #[inline]
-    fn null_transmission(&self, uv: Vec2, _: f32) -> Spectrum {
+    fn null_transmission(&self, uv: Uv, _: f32) -> Spectrum {
         self.transmittance.eval(uv) * self.shares()[0]
     }
 

@@ -3,7 +3,7 @@
 use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, build};
 use crate::description::{Location, Object, Params};
 use crate::error::{Error, Result};
-use crate::math::{Spectrum, Vec2, Vec3, vec3};
+use crate::math::{Spectrum, Uv, Vec3, vec3};
 use crate::sampling::Stream;
 use std::sync::Arc;
 
@@ -74,25 +74,25 @@ fn opaque(params: &Params<'_>, object: &Object, location: &Location) -> Result<B
 
 impl BsdfModel for TwoSided {
     #[inline]
-    fn evaluate(&self, uv: Vec2, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
+    fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
         let (bsdf, turn) = self.side(wi);
         bsdf.evaluate(uv, wi * turn, wo * turn, transport)
     }
 
     #[inline]
-    fn sample(&self, uv: Vec2, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
+    fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let (bsdf, turn) = self.side(wi);
         bsdf.sample(uv, wi * turn, transport, stream)
             .map(|sample| BsdfSample { wo: sample.wo * turn, ..sample })
     }
 
     #[inline]
-    fn survival(&self, uv: Vec2, wi: Vec3) -> f32 {
+    fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         let (bsdf, turn) = self.side(wi);
         bsdf.survival(uv, wi * turn)
     }
 
-    fn albedo(&self, uv: Vec2, wi: Vec3) -> Spectrum {
+    fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {
         let (bsdf, turn) = self.side(wi);
         bsdf.albedo(uv, wi * turn)
     }

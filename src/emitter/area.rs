@@ -4,7 +4,7 @@ use super::{Profile, SurfaceEmission, SurfaceModel};
 use crate::{
     description::Params,
     error::Result,
-    math::{DVec3, Frame, Spectrum, Vec2, Vec3, warp},
+    math::{DVec3, Frame, Spectrum, Uv, Vec3, warp},
     sampling::Stream,
     shape::SurfacePoint,
     texture::{self, Texture},
@@ -39,7 +39,7 @@ impl Area {
 
 impl SurfaceModel for Area {
     #[inline]
-    fn radiance(&self, uv: Vec2, cosine: f32) -> Spectrum {
+    fn radiance(&self, uv: Uv, cosine: f32) -> Spectrum {
         match &self.profile {
             _ if cosine <= 0.0 => Spectrum::ZERO,
             None => self.radiance.eval(uv),

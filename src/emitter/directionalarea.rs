@@ -4,7 +4,7 @@ use super::{SurfaceEmission, SurfaceModel};
 use crate::{
     description::Params,
     error::Result,
-    math::{DVec3, Spectrum, Vec2},
+    math::{DVec3, Spectrum, Uv},
     sampling::Stream,
     shape::SurfacePoint,
     texture::{self, Texture},
@@ -26,7 +26,7 @@ impl DirectionalArea {
 
 impl SurfaceModel for DirectionalArea {
     #[inline]
-    fn radiance(&self, _: Vec2, _: f32) -> Spectrum {
+    fn radiance(&self, _: Uv, _: f32) -> Spectrum {
         Spectrum::ZERO
     }
 

@@ -28,7 +28,7 @@ pub use volume::VolumeEmitter;
 use crate::{
     description::{Build, Library, Object, Params, Registry, models},
     error::Result,
-    math::{DVec3, Spectrum, Vec2, Vec3, spectrum::LUMINANCE},
+    math::{DVec3, Spectrum, Uv, Vec3, spectrum::LUMINANCE},
     medium,
     sampling::Stream,
     shape::SurfacePoint,
@@ -63,7 +63,7 @@ pub enum Kind {
 pub trait SurfaceModel {
     /// Radiance that leaves texture position `uv` at `cosine` to the normal of the side that emits [W/(m^2 sr)]: none
     /// behind. Of a Dirac emitter 0.
-    fn radiance(&self, uv: Vec2, cosine: f32) -> Spectrum;
+    fn radiance(&self, uv: Uv, cosine: f32) -> Spectrum;
 
     /// Density of [`Self::sample`] [1/sr]. Of a Dirac emitter 0.
     fn pdf_sr(&self, cosine: f32) -> f32;
@@ -163,7 +163,7 @@ emitters! {
         "area" => Area,
         "directionalarea" => DirectionalArea,
     } [
-        #[inline] fn radiance(uv: Vec2, cosine: f32) -> Spectrum;
+        #[inline] fn radiance(uv: Uv, cosine: f32) -> Spectrum;
         #[inline] fn pdf_sr(cosine: f32) -> f32;
         #[inline] fn sample(point: &SurfacePoint, pdf_area: f32, stream: &mut Stream) -> SurfaceEmission;
         fn exitance() -> DVec3;

@@ -156,7 +156,7 @@ fn a_profile_leaves_surfaces_as_it_says() {
     for text in ["0:1", "0:1 30:0.8 90:0", "10:0 20:5 21:5 80:0", "0:0 89:1e-3 90:1"] {
         let area = built("area", &[("profile", Value::String(text.into()))]).unwrap();
         let Kind::Surface(SurfaceEmitter::Area(area)) = area.kind else { panic!() };
-        let radiance = |d: Vec3| area.radiance(vec2(0.5, 0.5), d.z);
+        let radiance = |d: Vec3| area.radiance(vec2(0.5, 0.5).into(), d.z);
         check(text, |s| area.sample_local(s), |d| area.pdf_sr(d.z), radiance);
         let leaving: f64 = integrals(|d| radiance(d).x * d.z.max(0.0)).iter().sum();
         assert!((leaving / area.exitance().x - 1.0).abs() < 1e-2, "{text}: {leaving}");

@@ -17,6 +17,7 @@ pub mod relative;
 pub mod similarity;
 pub mod spectrum;
 pub mod srgb;
+pub mod uv;
 pub mod warp;
 pub mod wrap;
 
@@ -26,4 +27,5 @@ pub use frame::Frame;
 pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3, Vec2, Vec3, vec2, vec3};
 pub use ray_segment::RaySegment;
 pub use spectrum::{Spectrum, SpectrumExt};
+pub use uv::Uv;
 pub use wrap::Wrap;

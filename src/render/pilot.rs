@@ -139,10 +139,9 @@ fn candidates(all: Strategies, survival: Survival, learnt: bool) -> impl Iterato
     });
     sets.flat_map(move |strategies| {
         let connections: &[u32] = if strategies.connection { &[1, 2, 4] } else { &[1] };
-        let has_light_walks = strategies.connection || strategies.lens;
-        let usual: &[f32] = if has_light_walks { &[0.5, 1.0, 2.0] } else { &[1.0] };
+        let usual: &[f32] = if strategies.need_light_walks() { &[0.5, 1.0, 2.0] } else { &[1.0] };
         // Some of these are dropped as they begin.
-        let more: &[f32] = if learnt && has_light_walks { &[0.5, 1.0, 2.0, 4.0] } else { &[] };
+        let more: &[f32] = if learnt && strategies.need_light_walks() { &[0.5, 1.0, 2.0, 4.0] } else { &[] };
         let light_walks =
             usual.iter().map(|walks| (*walks, false)).chain(more.iter().map(|walks| (*walks, true)));
         let efforts = light_walks.flat_map(move |(light_walks, learnt_starts)| {
@@ -317,7 +316,7 @@ pub(super) fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) 
     let mut light = Gather::new(film, follower);
     let mut observer: &mut dyn Observer<P::MisSums> = &mut light;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
-    let walks = blocks.walks_per_block() as f64;
+    let walks = if estimator.needs_light_walks() { blocks.walks_per_block() as f64 } else { 0.0 };
     (light.gathered.work.walks, light.gathered.unlearnt.walks) = (walks, walks);
     let mut camera = Gather::new(film, light.follower.of_cache());
     let sums = blocks.pixels(block).map(|pixel| {
@@ -426,8 +425,7 @@ impl Pilot {
             camera_time += factor * time::TRY[kind as usize] * camera.tries[kind as usize];
             light_time += time::TRY[kind as usize] * light.tries[kind as usize];
         }
-        let light_walks =
-            if strategies.connection || strategies.lens { f64::from(effort.light_walks) } else { 0.0 };
+        let light_walks = if strategies.need_light_walks() { f64::from(effort.light_walks) } else { 0.0 };
         longer * (camera_time / camera.walks.max(1.0) + light_walks * light_time / light.walks.max(1.0))
     }
 
@@ -511,11 +509,28 @@ mod tests {
     use crate::{
         format,
         render::{budget::Budget, instrument::Instrument},
-        scene::build,
+        scene::build::{self, Setup},
         settings::Overrides,
         transport::profile::ProfileName,
     };
     use std::path::Path;
+
+    /// A small image of a scene, by `strategies`.
+    fn small(scene: &str, strategies: Strategies) -> (Setup, Settings) {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
+        let overrides = Overrides { size: Some((24, 24)), ..Overrides::default() };
+        let setup = build::build(&format::read(&path, &[]).unwrap(), overrides).unwrap();
+        let options = Options { strategies, ..setup.integrator.options };
+        let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
+        (setup, Settings { options, sampler, budget, seed: 0, profile: ProfileName::Everything })
+    }
+
+    #[test]
+    fn path_tracing_has_no_light_starts_to_learn() {
+        let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::PT);
+        let pilot = pilot(&setup.scene, &setup.film, &settings, Survival::Albedo, false);
+        assert!(!pilot.is_remote());
+    }
 
     /// Relative variance of pixel samples, as their images show it.
     fn measured(instrument: &Instrument<'_>) -> f64 {
@@ -557,16 +572,12 @@ mod tests {
     #[test]
     fn pilots_foresee_the_noise_of_other_counts() {
         for scene in ["lampbox_down.xml", "efficiency/glass_fog_sky.xml"] {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
-            let overrides = Overrides { size: Some((24, 24)), ..Overrides::default() };
-            let setup = build::build(&format::read(&path, &[]).unwrap(), overrides).unwrap();
-            let options = Options { strategies: Strategies::BDPT, ..setup.integrator.options };
-            let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
-            let settings = Settings { options, sampler, budget, seed: 0, profile: ProfileName::Everything };
+            let (setup, settings) = small(scene, Strategies::BDPT);
             let pilot = pilot(&setup.scene, &setup.film, &settings, Survival::Albedo, true);
             let relative = |choice: Choice| {
                 let Choice { strategies, effort, .. } = choice;
-                let settings = Settings { options: Options { strategies, effort, ..options }, ..settings };
+                let options = Options { strategies, effort, ..settings.options };
+                let settings = Settings { options, ..settings };
                 pilot.error(&choice) / measured(&Instrument::new(&setup.scene, &setup.film, &settings))
             };
             let (among, effort) = (Strategies::BDPT, Effort::default());

@@ -128,7 +128,7 @@ impl<'a> View<'a> {
             Quantity::Albedo => self.albedo(point),
             Quantity::Depth => vec3(hit.t, 0.0, 0.0),
             Quantity::Position => (point.position.as_dvec3() + self.scene.recentre).as_vec3(),
-            Quantity::Uv => point.uv.extend(0.0),
+            Quantity::Uv => point.uv.get().extend(0.0),
             Quantity::GeometricNormal => point.normal,
             Quantity::ShadingNormal => point.shading.normal,
             Quantity::DpDu => geometry.partials(&self.ray, hit, point).0,

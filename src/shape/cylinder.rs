@@ -119,7 +119,7 @@ impl Cylinder {
             error: self.error(position, normal),
             normal,
             shading: Frame::along(normal, along_u.as_vec3()),
-            uv: vec2(if turn < 0.0 { turn + 1.0 } else { turn } as f32, (z / length) as f32),
+            uv: vec2(if turn < 0.0 { turn + 1.0 } else { turn } as f32, (z / length) as f32).into(),
             shape: 0,
         }
     }

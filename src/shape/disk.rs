@@ -83,7 +83,7 @@ impl Disk {
             error: flat_error(self.center, along_u, along_v),
             normal: self.normal,
             shading: Frame::along(self.normal, along_u + along_v),
-            uv: vec2(x.hypot(y), if turn < 0.0 { turn + 1.0 } else { turn }),
+            uv: vec2(x.hypot(y), if turn < 0.0 { turn + 1.0 } else { turn }).into(),
             shape: 0,
         }
     }

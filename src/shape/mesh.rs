@@ -117,7 +117,7 @@ impl Mesh {
             error: flat_error(corner, along_u, along_v),
             normal: normal * self.facing,
             shading: Frame::along(self.shading_normal(index, u, v, normal) * self.facing, tangent),
-            uv,
+            uv: uv.into(),
             shape: 0,
         }
     }

@@ -23,7 +23,7 @@ mod spherical_rectangle;
 use crate::{
     description::{Params, Registry, models},
     error::Result,
-    math::{DVec3, Frame, Vec2, Vec3, offset::gamma},
+    math::{DVec3, Frame, Uv, Vec3, offset::gamma},
     sampling::Stream,
 };
 
@@ -73,7 +73,7 @@ pub struct SurfacePoint {
     /// Around the interpolated shading normal; the tangent points along growing u.
     pub shading: Frame,
     /// Texture coordinates.
-    pub uv: Vec2,
+    pub uv: Uv,
     /// Which shape of the geometry, in order of addition.
     pub shape: u32,
 }
@@ -194,7 +194,7 @@ pub trait ShapeModel {
         let Frame { tangent, bitangent, .. } = point.shading;
         let Primitive::Flat(flat) = self.primitive(index) else { return (tangent, bitangent) };
         // Positions and texture coordinates both are linear in those of the primitive.
-        let uv = |u: f32, v: f32| self.surface(index, ray, &Hit { u, v, ..*hit }).uv;
+        let uv = |u: f32, v: f32| self.surface(index, ray, &Hit { u, v, ..*hit }).uv.get();
         let (along_u, along_v) = (uv(1.0, 0.0) - uv(0.0, 0.0), uv(0.0, 1.0) - uv(0.0, 0.0));
         let area = along_u.perp_dot(along_v);
         if area == 0.0 {

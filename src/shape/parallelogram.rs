@@ -56,7 +56,7 @@ impl Parallelogram {
             error: flat_error(self.corner, along_u, along_v),
             normal: self.normal,
             shading: self.shading,
-            uv: vec2(u, v),
+            uv: vec2(u, v).into(),
             shape: 0,
         }
     }

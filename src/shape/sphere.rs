@@ -8,13 +8,13 @@ use crate::{
     description::Params,
     error::{Error, Result},
     math::{
-        DMat4, DVec3, Frame, Vec3, measure,
+        DMat4, DVec3, Frame, Uv, Vec3, measure,
         offset::{ON_SPHERE, gamma},
-        vec2, vec3, warp,
+        vec3, warp,
     },
     sampling::Stream,
 };
-use std::f32::consts::{FRAC_1_PI, PI, TAU};
+use std::f32::consts::{PI, TAU};
 
 /// A sphere, and how it is turned (for its texture coordinates).
 #[derive(Clone, Copy, Debug)]
@@ -84,14 +84,13 @@ impl Sphere {
     fn point(&self, out: Vec3) -> SurfacePoint {
         let normal = out * self.facing;
         let local = vec3(out.dot(self.axes[0]), out.dot(self.axes[1]), out.dot(self.axes[2]));
-        let turn = local.y.atan2(local.x) * (0.5 * FRAC_1_PI);
         let along = self.axes[1] * local.x - self.axes[0] * local.y;
         SurfacePoint {
             position: self.center + out * self.radius,
             error: self.error(out),
             normal,
             shading: Frame::along(normal, along),
-            uv: vec2(if turn < 0.0 { turn + 1.0 } else { turn }, local.z.clamp(-1.0, 1.0).acos() * FRAC_1_PI),
+            uv: Uv::OnSphere(local),
             shape: 0,
         }
     }
@@ -134,9 +133,9 @@ impl ShapeModel for Sphere {
     /// u runs along the parallels, v from pole to pole.
     fn partials(&self, _: usize, _: &Ray, _: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
         let out = (point.position - self.center) / self.radius;
-        let du = point.shading.tangent * (2.0 * PI * self.radius * (PI * point.uv.y).sin());
+        let du = point.shading.tangent * (2.0 * PI * self.radius * (PI * point.uv.get().y).sin());
         let along = out.cross(point.shading.tangent) * (PI * self.radius);
-        let further = self.point_near(point.position + along * 1e-3).uv.y > point.uv.y;
+        let further = self.point_near(point.position + along * 1e-3).uv.get().y > point.uv.get().y;
         (du, if further { along } else { -along })
     }
 

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::description::Params;
 use crate::error::{Error, Result};
-use crate::math::{DVec3, Spectrum, Vec2, Wrap, vec2};
+use crate::math::{DVec3, Spectrum, Uv, Vec2, Wrap, vec2};
 use std::sync::Arc;
 
 /// How colours between pixel centres come about.
@@ -71,7 +71,7 @@ impl Bitmap {
 }
 
 impl TextureModel for Bitmap {
-    fn eval(&self, uv: Vec2) -> Spectrum {
+    fn eval(&self, uv: Uv) -> Spectrum {
         let size = vec2(self.image.width as f32, self.image.height as f32);
         // From 2^24 on an f32 knows no fractions: the limit only keeps absurd positions inside i64.
         let limit = Vec2::splat(1e9);

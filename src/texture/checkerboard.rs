@@ -3,7 +3,7 @@
 use super::{Texture, TextureModel, ToUv, fraction, parameter};
 use crate::description::Params;
 use crate::error::Result;
-use crate::math::{Spectrum, Vec2};
+use crate::math::{Spectrum, Uv};
 use std::sync::Arc;
 
 /// Squares of half a unit: the first colour where both halves of u and v agree, else the second.
@@ -31,8 +31,7 @@ impl Checkerboard {
 }
 
 impl TextureModel for Checkerboard {
-    #[inline]
-    fn eval(&self, uv: Vec2) -> Spectrum {
+    fn eval(&self, uv: Uv) -> Spectrum {
         let cell = fraction(self.to_uv.apply(uv));
         let differ = (cell.x > 0.5) != (cell.y > 0.5);
         self.colors[usize::from(differ)].eval(uv)

@@ -17,12 +17,12 @@ use crate::description::{
     colour::{self, Role},
 };
 use crate::error::Result;
-use crate::math::{DMat4, Spectrum, Vec2, vec2};
+use crate::math::{DMat4, Spectrum, Uv, Vec2, vec2};
 
 /// What every texture can do.
 pub trait TextureModel {
     /// The colour at texture position `uv`.
-    fn eval(&self, uv: Vec2) -> Spectrum;
+    fn eval(&self, uv: Uv) -> Spectrum;
     /// A bound that no channel of `eval` exceeds.
     fn max(&self) -> Spectrum;
     /// The average over the unit square.
@@ -46,8 +46,9 @@ macro_rules! textures {
 
         impl Texture {
             /// The colour at texture position `uv`.
-            #[inline]
-            pub fn eval(&self, uv: Vec2) -> Spectrum {
+            #[inline(always)]
+            pub fn eval(&self, uv: impl Into<Uv>) -> Spectrum {
+                let uv = uv.into();
                 match self { $(Self::$model(model) => model.eval(uv),)* }
             }
             /// A bound that no channel of `eval` exceeds.
@@ -161,8 +162,8 @@ impl ToUv {
     }
 
     #[inline]
-    fn apply(&self, uv: Vec2) -> Vec2 {
-        let [u, v, origin] = self.columns;
+    fn apply(&self, uv: Uv) -> Vec2 {
+        let ([u, v, origin], uv) = (self.columns, uv.get());
         u * uv.x + v * uv.y + origin
     }
 }

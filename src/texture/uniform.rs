@@ -6,7 +6,7 @@ use crate::description::{
     colour::{self, Role},
 };
 use crate::error::Result;
-use crate::math::{Spectrum, Vec2};
+use crate::math::{Spectrum, Uv};
 
 /// A constant colour, linear sRGB.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +27,7 @@ impl Uniform {
 
 impl TextureModel for Uniform {
     #[inline]
-    fn eval(&self, _: Vec2) -> Spectrum {
+    fn eval(&self, _: Uv) -> Spectrum {
         self.0
     }
 

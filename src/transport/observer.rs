@@ -83,6 +83,11 @@ impl Strategies {
         self.has(StrategyKind::of(s, t)) && !((s, t) == (1, 1) && self.emitter_hit)
     }
 
+    /// True if any of those that run needs light subpaths.
+    pub fn need_light_walks(self) -> bool {
+        self.connection || self.lens
+    }
+
     /// The same without those of `kind`.
     pub fn without(mut self, kind: StrategyKind) -> Self {
         match kind {

@@ -7,11 +7,11 @@ mod sampling;
 
 use super::*;
 use crate::description::Value;
-use crate::math::{DVec3, warp};
+use crate::math::{DVec3, Vec2, warp};
 use crate::sampling::stream::Purpose;
 use crate::testing::object;
 
-const UV: Vec2 = Vec2::new(0.3, 0.6);
+const UV: Uv = Uv::At(Vec2::new(0.3, 0.6));
 const BOTH: [Transport; 2] = [Transport::Radiance, Transport::Importance];
 
 /// Directions from straight above to near-grazing, on both sides.

@@ -62,7 +62,7 @@ fn a_rough_interface_of_equal_indices_is_a_smooth_one() {
 fn parameters_may_be_textures() {
     let rough =
         built("roughconductor", &[("alpha", squares()), ("specular_reflectance", squares())]).unwrap();
-    let at = |uv| rough.evaluate(uv, Vec3::Z, Vec3::Z, Transport::Radiance);
+    let at = |uv: Vec2| rough.evaluate(uv.into(), Vec3::Z, Vec3::Z, Transport::Radiance);
     // The checkerboard's 0.4 and 0.2, for Beckmann and a perfect mirror: reflectance / (4 pi alpha^2).
     let expected = |x: f32| x / (4.0 * PI * x * x);
     assert!(close(at(vec2(0.2, 0.2)).value.x, expected(0.4), 1e-4));
