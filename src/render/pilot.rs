@@ -344,7 +344,7 @@ struct Tile {
 /// What the samples say.
 pub(super) struct Pilot {
     tiles: Vec<Tile>,
-    /// Contributions, each with its tile.
+    /// Contributions other than zero, each with its tile.
     found: Vec<(u32, Found)>,
     camera: Work,
     light: Work,
@@ -404,6 +404,7 @@ impl Pilot {
                 found.push((index as u32, Found { square: one.square * scale, ..one }));
             }
         }
+        found.retain(|(_, found)| found.square > 0.0);
         Self { tiles, found, camera, light, light_unlearnt, is_learnt }
     }
 
@@ -448,14 +449,15 @@ impl Pilot {
         let mut moments = vec![0.0; self.tiles.len()];
         // Connections to each vertex are as many, however many vertices light subpaths leave.
         let draws = if learnt { 1.0 } else { self.light.kept.max(1.0) / self.light_unlearnt.kept.max(1.0) };
-        for (tile, Found { square, shares, unlearnt, .. }) in
-            self.found.iter().filter(|(_, found)| found.square > 0.0)
-        {
-            let begun = if learnt { 1.0 } else { f64::from(*unlearnt) };
-            let factors = [1.0, 1.0, begun * draws, begun, 1.0];
-            let left = |kind: usize| f64::from(shares[kind]) * counts[kind] * factors[kind];
-            let left: f64 = (0..counts.len()).map(left).sum();
-            moments[*tile as usize] += square / left;
+        let [hits, next_event, connections, lens, equiangular] =
+            StrategyKind::each(|kind| counts[kind as usize] as f32);
+        let connections = connections * draws as f32;
+        for (tile, Found { square, shares, unlearnt, .. }) in &self.found {
+            let begun = if learnt { 1.0 } else { *unlearnt };
+            // Written out: all choices go through all contributions.
+            let camera = shares[0] * hits + shares[1] * next_event + shares[4] * equiangular;
+            let light = shares[2] * connections + shares[3] * lens;
+            moments[*tile as usize] += square / f64::from(camera + begun * light);
         }
         let pixels: f64 = self.seen().map(|(_, tile)| tile.pixels).sum();
         let mean = self.seen().map(|(_, tile)| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
@@ -484,7 +486,7 @@ impl Choice {
 
     /// Samples of every kind of strategies, over those of all at equal effort.
     fn counts(&self) -> [f64; StrategyKind::ALL.len()] {
-        StrategyKind::ALL.map(|kind| match kind {
+        StrategyKind::each(|kind| match kind {
             _ if !self.strategies.has(kind) => 0.0,
             StrategyKind::Connection => f64::from(self.effort.connections),
             StrategyKind::Lens => f64::from(self.effort.light_walks),

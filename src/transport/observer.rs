@@ -34,6 +34,13 @@ impl StrategyKind {
     pub const ALL: [Self; 5] =
         [Self::EmitterHit, Self::NextEvent, Self::Connection, Self::Lens, Self::Equiangular];
 
+    /// `f` of each. [`array::map`](array::map) is not compiled into what calls it.
+    #[inline(always)]
+    pub fn each<T>(mut f: impl FnMut(Self) -> T) -> [T; Self::ALL.len()] {
+        let [hit, next_event, connection, lens, equiangular] = Self::ALL;
+        [f(hit), f(next_event), f(connection), f(lens), f(equiangular)]
+    }
+
     /// The kind of the strategy of `s` light and `t` camera vertices, the lens among these, that connects the walks.
     #[inline]
     pub fn of(s: u32, t: u32) -> Self {

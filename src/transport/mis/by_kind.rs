@@ -23,24 +23,37 @@ impl<L: Channels> MisSums for ByKind<L> {
     }
     #[inline]
     fn and(self, other: Self) -> Self {
-        Self(std::array::from_fn(|kind| self.0[kind] + other.0[kind]))
+        Self(StrategyKind::each(|kind| self.0[kind as usize] + other.0[kind as usize]))
     }
     #[inline]
     fn times(self, channels: L) -> Self {
-        Self(self.0.map(|sum| sum * channels))
+        Self(StrategyKind::each(|kind| self.0[kind as usize] * channels))
     }
     #[inline]
     fn scaled(self, factor: f32) -> Self {
-        Self(self.0.map(|sum| sum.scaled(factor)))
+        Self(StrategyKind::each(|kind| self.0[kind as usize].scaled(factor)))
     }
     #[inline]
     fn weight(self, _: Heuristic, own: L) -> f32 {
-        L::COUNT as f32 / (own.sum() + self.0.iter().map(|sum| sum.sum()).sum::<f32>())
+        L::COUNT as f32 / (own.sum() + total(self.sums()))
     }
     #[inline]
     fn shares(self, kind: StrategyKind, own: L) -> [f32; StrategyKind::ALL.len()] {
-        let Self(sums) = self.and(Self::of(kind, own));
-        let all: f32 = sums.iter().map(|sum| sum.sum()).sum();
-        sums.map(|sum| sum.sum() / all)
+        let sums = self.and(Self::of(kind, own)).sums();
+        let all = total(sums);
+        StrategyKind::each(|kind| sums[kind as usize] / all)
     }
+}
+
+impl<L: Channels> ByKind<L> {
+    /// Over all channels.
+    #[inline]
+    fn sums(self) -> [f32; StrategyKind::ALL.len()] {
+        StrategyKind::each(|kind| self.0[kind as usize].sum())
+    }
+}
+
+#[inline]
+fn total([hit, next_event, connection, lens, equiangular]: [f32; StrategyKind::ALL.len()]) -> f32 {
+    hit + next_event + connection + lens + equiangular
 }
