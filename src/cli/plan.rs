@@ -81,9 +81,11 @@ impl Plan {
         if learnt_starts {
             text += "; learnt starts";
         }
-        if survival == Survival::FourthRoot {
-            text += "; longer walks";
-        }
+        text += match survival {
+            Survival::Albedo => "",
+            Survival::FourthRoot => "; longer walks",
+            Survival::Shorter | Survival::Shortest => "; shorter walks",
+        };
         let Some(Choice { among, gain, .. }) = self.chosen else { return text };
         let mut left_out = among.names();
         left_out.retain(|name| !strategies.names().contains(name));

@@ -3,8 +3,9 @@
 //! By the balance heuristic, a sample that brought y has the second moment y^2 (sum of n p) / (sum of n' p) under counts n'
 //! in place of n (after Grittmann et al. 2022, Efficiency-Aware Multiple Importance Sampling). So paths that strategies left
 //! out would have to make count in full, however rarely the others make them: the strategies that do run have seen them.
-//! Where light subpaths begin at learnt starts, each contribution also tells how often they would begin there otherwise.
-//! What samples of one pixel have in common is taken to stay as it is.
+//! Where light subpaths begin at learnt starts, each contribution also tells how often they would begin there otherwise; and
+//! if walks went on with a constant part of today's probability, its number of vertices tells how often they would get there.
+//! What samples of one pixel have in common is taken to stay as it is, or to weigh more by as much as they do.
 
 use super::{
     Settings,
@@ -66,6 +67,9 @@ mod time {
     pub const TRY: [f64; 5] = [0.1, 1.3, 0.7, 0.4, 2.0];
 }
 
+/// Survivals that are a constant part of the albedo: one pilot tells of all of them.
+const OF_ALBEDO: [Survival; 3] = [Survival::Albedo, Survival::Shorter, Survival::Shortest];
+
 /// What was chosen, and how much it is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
@@ -92,11 +96,11 @@ pub fn choose(
     if scene.lights.is_empty() {
         return base;
     }
-    let survivals = [Survival::Albedo, Survival::FourthRoot];
+    let survivals = [(Survival::Albedo, &OF_ALBEDO[..]), (Survival::FourthRoot, &[Survival::FourthRoot])];
     let equiangular = all == Strategies::BDPT && equiangular_applies(scene);
     let options = Options { strategies: Strategies { equiangular, ..all }, ..settings.options };
     let with_all = Settings { options, ..*settings };
-    let by = |learnt: bool| survivals.map(|survival| pilot(scene, film, &with_all, survival, learnt));
+    let by = |learnt: bool| survivals.map(|(survival, _)| pilot(scene, film, &with_all, survival, learnt));
     let fly = || {
         let pilots = by(false);
         if pilots[0].is_remote() { by(true) } else { pilots }
@@ -104,8 +108,10 @@ pub fn choose(
     // Renders survive a panic and say where it was.
     let Ok(pilots) = catch_unwind(AssertUnwindSafe(fly)) else { return base };
     let reference = pilots[0].error(&base) * pilots[0].time(&base);
-    let choices = survivals.iter().zip(&pilots).flat_map(|(survival, pilot)| {
-        let complete = candidates(options.strategies, *survival, pilot.is_learnt);
+    let of_pilots = survivals.iter().zip(&pilots);
+    let known = of_pilots.flat_map(|((_, by), pilot)| by.iter().map(move |survival| (*survival, pilot)));
+    let choices = known.flat_map(|(survival, pilot)| {
+        let complete = candidates(options.strategies, survival, pilot.is_learnt);
         let complete = complete.filter(|choice| is_complete(choice.strategies));
         complete.map(move |choice| Choice {
             among: all,
@@ -163,6 +169,8 @@ struct Found {
     /// Squared luminance; from [`Pilot`] on, its part in the second moment of a pixel sample in the tile.
     square: f64,
     shares: [f32; StrategyKind::ALL.len()],
+    /// Vertices between the sensor and the emitter.
+    vertices: u32,
     /// How often light subpaths would start there without learnt starts, over how often they do.
     unlearnt: f32,
 }
@@ -197,10 +205,13 @@ impl Work {
 #[derive(Default)]
 struct Gathered {
     found: Vec<Found>,
-    work: Work,
+    /// By each of [`OF_ALBEDO`], in place of the survival that there was as the albedo's.
+    work: Works,
     /// The work of light subpaths without learnt starts.
-    unlearnt: Work,
+    unlearnt: Works,
 }
+
+type Works = [Work; OF_ALBEDO.len()];
 
 /// Sees walks and what they contribute; those of the camera to one pixel.
 struct Gather<'a> {
@@ -211,6 +222,8 @@ struct Gather<'a> {
     sum: f64,
     /// The light subpath at hand is seen.
     is_seen: bool,
+    /// How often the walk at hand would have gone on so far, by each of [`OF_ALBEDO`].
+    reached: [f64; OF_ALBEDO.len()],
     gathered: Gathered,
 }
 
@@ -223,6 +236,7 @@ impl<'a> Gather<'a> {
             weight: 1.0,
             sum: 0.0,
             is_seen: false,
+            reached: [1.0; OF_ALBEDO.len()],
             gathered: Gathered::default(),
         }
     }
@@ -231,13 +245,17 @@ impl<'a> Gather<'a> {
     fn begin(&mut self, pixel: usize, hero: usize, weight: f32) {
         self.follower.begin(hero);
         (self.pixel, self.weight, self.sum) = (pixel as u32, weight, 0.0);
-        self.gathered.work.walks += 1.0;
+        self.gathered.work.iter_mut().for_each(|work| work.walks += 1.0);
     }
 
-    /// Counts some work.
+    /// Counts some work of the walk at hand.
     fn count(&mut self, counter: impl Fn(&mut Work) -> &mut f64) {
-        *counter(&mut self.gathered.work) += 1.0;
-        *counter(&mut self.gathered.unlearnt) += f64::from(self.follower.unlearnt());
+        let unlearnt = f64::from(self.follower.unlearnt());
+        let Gathered { work, unlearnt: works, .. } = &mut self.gathered;
+        for ((reached, work), works) in self.reached.iter().zip(work).zip(works) {
+            *counter(work) += reached;
+            *counter(works) += reached * unlearnt;
+        }
     }
 }
 
@@ -253,6 +271,7 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
 
     fn depart(&mut self, departure: &Departure<S>) {
         self.follower.depart(departure);
+        self.reached = OF_ALBEDO.map(|survival| f64::from(survival.factor()).powi(departure.edges as i32));
         self.count(|work| &mut work.segments);
         if departure.edges == 0 {
             self.count(|work| &mut work.begun);
@@ -280,11 +299,12 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
         let found = &mut self.gathered.found;
         let mut add = |pixel: u32, value: Spectrum| {
             let luminance = f64::from(value.luminance());
-            found.push(Found { pixel, square: luminance * luminance, shares: *shares, unlearnt });
+            let square = luminance * luminance;
+            found.push(Found { pixel, square, shares: *shares, vertices: s + t - 2, unlearnt });
         };
         if let Meeting::Lens(film) = meeting {
             if !self.is_seen {
-                self.gathered.work.reaching += 1.0;
+                self.gathered.work.iter_mut().for_each(|work| work.reaching += 1.0);
                 self.is_seen = true;
             }
             return self.film.spread(film, *value, |pixel, value| add(pixel as u32, value));
@@ -305,7 +325,7 @@ pub(super) struct Part {
 
 impl Part {
     fn segments(&self) -> f64 {
-        self.camera.work.segments + self.light.work.segments
+        self.camera.work[0].segments + self.light.work[0].segments
     }
 }
 
@@ -317,7 +337,8 @@ pub(super) fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) 
     let mut observer: &mut dyn Observer<P::MisSums> = &mut light;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
     let walks = if estimator.needs_light_walks() { blocks.walks_per_block() as f64 } else { 0.0 };
-    (light.gathered.work.walks, light.gathered.unlearnt.walks) = (walks, walks);
+    let Gathered { work, unlearnt, .. } = &mut light.gathered;
+    work.iter_mut().chain(unlearnt).for_each(|work| work.walks = walks);
     let mut camera = Gather::new(film, light.follower.of_cache());
     let sums = blocks.pixels(block).map(|pixel| {
         let start = blocks.camera_start(scene, film, *seed, pass, pixel);
@@ -346,10 +367,10 @@ pub(super) struct Pilot {
     tiles: Vec<Tile>,
     /// Contributions other than zero, each with its tile.
     found: Vec<(u32, Found)>,
-    camera: Work,
-    light: Work,
+    camera: Works,
+    light: Works,
     /// That of light subpaths without learnt starts.
-    light_unlearnt: Work,
+    light_unlearnt: Works,
     /// Light subpaths began at learnt starts.
     is_learnt: bool,
 }
@@ -377,12 +398,13 @@ impl Pilot {
         for (pixel, _) in parts.iter().flat_map(|part| &part.sums) {
             tiles[tile(*pixel)].samples += 1.0;
         }
-        let works: [fn(&Part) -> Work; 3] =
-            [|part| part.camera.work, |part| part.light.work, |part| part.light.unlearnt];
-        let [camera, light, light_unlearnt] =
-            works.map(|work| parts.iter().fold(Work::default(), |sum, part| sum.and(&work(part))));
+        let works: [fn(&Part) -> &Works; 3] =
+            [|part| &part.camera.work, |part| &part.light.work, |part| &part.light.unlearnt];
+        let [camera, light, light_unlearnt] = works.map(|works| {
+            std::array::from_fn(|i| parts.iter().fold(Work::default(), |sum, part| sum.and(&works(part)[i])))
+        });
         // Light subpaths traced stand for those of a pass.
-        let per_pass = blocks.walks_per_pass() as f64 / light.walks.max(1.0);
+        let per_pass = blocks.walks_per_pass() as f64 / light[0].walks.max(1.0);
         let variances = variances(&parts);
         let mut found = Vec::new();
         for part in parts {
@@ -410,13 +432,14 @@ impl Pilot {
 
     /// True if light starts where it seldom comes into view: then it is worth learning where it should.
     fn is_remote(&self) -> bool {
-        self.light.reaching <= REMOTE * self.light.walks && self.light.walks > 0.0
+        let [Work { reaching, walks, .. }, ..] = self.light;
+        reaching <= REMOTE * walks && walks > 0.0
     }
 
     /// Time of a pixel sample, in segments.
     fn time(&self, Choice { strategies, effort, .. }: &Choice) -> f64 {
-        let Self { camera, .. } = self;
-        let light = if effort.learnt_starts { &self.light } else { &self.light_unlearnt };
+        let camera = &self.camera[index(effort.survival)];
+        let light = self.light_work(effort);
         let longer = if effort.learnt_starts { LEARNT } else { 1.0 };
         let mut camera_time = time::START * camera.walks + camera.segments;
         let dropped = (light.walks - light.begun).max(0.0);
@@ -433,7 +456,7 @@ impl Pilot {
     /// The squared relative error of a pixel sample, on average over the image, the worst tiles left out; infinite where light is
     /// left out in any of them.
     fn error(&self, choice: &Choice) -> f64 {
-        let mut errors = self.errors(choice.counts(), choice.effort.learnt_starts);
+        let mut errors = self.errors(choice);
         errors.sort_unstable_by(f64::total_cmp);
         if errors.last().is_some_and(|worst| worst.is_infinite()) {
             return f64::INFINITY;
@@ -443,36 +466,56 @@ impl Pilot {
         errors[..kept].iter().sum::<f64>() / pixels.max(1.0)
     }
 
-    /// Those of the pixels of every tile, added up, by so many samples of each kind of strategies, where light subpaths begin
-    /// at `learnt` starts or not.
-    fn errors(&self, counts: [f64; StrategyKind::ALL.len()], learnt: bool) -> Vec<f64> {
-        let mut moments = vec![0.0; self.tiles.len()];
+    /// Those of the pixels of every tile, added up.
+    fn errors(&self, choice: &Choice) -> Vec<f64> {
+        let mut moments = vec![(0.0, 0.0); self.tiles.len()];
+        let learnt = choice.effort.learnt_starts;
         // Connections to each vertex are as many, however many vertices light subpaths leave.
-        let draws = if learnt { 1.0 } else { self.light.kept.max(1.0) / self.light_unlearnt.kept.max(1.0) };
+        let draws = self.light[0].kept.max(1.0) / self.light_work(&choice.effort).kept.max(1.0);
+        let factor = choice.effort.survival.factor();
+        let survived: Vec<f32> = (0..=DEEPEST).map(|vertices| factor.powi(vertices as i32)).collect();
+        // Of all vertices between, both walks together went on from one less where they were connected to an emitter or the
+        // lens, and from two less where they were connected to each other.
         let [hits, next_event, connections, lens, equiangular] =
-            StrategyKind::each(|kind| counts[kind as usize] as f32);
-        let connections = connections * draws as f32;
-        for (tile, Found { square, shares, unlearnt, .. }) in &self.found {
+            StrategyKind::each(|kind| choice.counts()[kind as usize] as f32 / factor);
+        let (hits, connections) = (hits * factor, connections * draws as f32 / factor);
+        for (tile, Found { square, shares, vertices, unlearnt, .. }) in &self.found {
             let begun = if learnt { 1.0 } else { *unlearnt };
             // Written out: all choices go through all contributions.
             let camera = shares[0] * hits + shares[1] * next_event + shares[4] * equiangular;
             let light = shares[2] * connections + shares[3] * lens;
-            moments[*tile as usize] += square / f64::from(camera + begun * light);
+            let moment = square / f64::from(camera + begun * light);
+            let (moments, usual) = &mut moments[*tile as usize];
+            *moments += moment / f64::from(survived[*vertices as usize]);
+            *usual += moment;
         }
         let pixels: f64 = self.seen().map(|(_, tile)| tile.pixels).sum();
         let mean = self.seen().map(|(_, tile)| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
         let floor = 0.01 * mean * mean;
         let relative = |(index, tile): (usize, &Tile)| {
-            let moment = moments[index];
-            let variance = (moment + tile.rest).max(LEAST_VARIANCE * moment);
+            // What a walk contributes at several vertices weighs more by the same factor, where it goes on less often.
+            let (moment, usual) = moments[index];
+            let rest = if usual > 0.0 { tile.rest * moment / usual } else { tile.rest };
+            let variance = (moment + rest).max(LEAST_VARIANCE * moment);
             tile.pixels * variance / (tile.mean * tile.mean + floor)
         };
         self.seen().map(relative).collect()
     }
 
+    /// The work of light subpaths by `effort`.
+    fn light_work(&self, effort: &Effort) -> &Work {
+        let works = if effort.learnt_starts { &self.light } else { &self.light_unlearnt };
+        &works[index(effort.survival)]
+    }
+
     fn seen(&self) -> impl Iterator<Item = (usize, &Tile)> {
         self.tiles.iter().enumerate().filter(|(_, tile)| tile.samples > 0.0)
     }
+}
+
+/// Of the work by `survival` among that of a pilot.
+fn index(survival: Survival) -> usize {
+    OF_ALBEDO.iter().position(|of_albedo| *of_albedo == survival).unwrap_or(0)
 }
 
 impl Choice {
@@ -561,11 +604,11 @@ mod tests {
     /// A corner of the image that other strategies do not see decides against them, however small.
     #[test]
     fn what_a_choice_leaves_out_is_no_outlier() {
-        let found = |shares| Found { pixel: 0, square: 1.0, shares, unlearnt: 1.0 };
+        let found = |shares| Found { pixel: 0, square: 1.0, shares, vertices: 1, unlearnt: 1.0 };
         let tiles = vec![Tile { pixels: 1.0, samples: 1.0, mean: 0.7, rest: 0.0 }; 100];
         let corner = |tile| if tile == 7 { [0.0, 0.0, 0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0, 0.0, 0.0] };
         let found = (0..100).map(|tile| (tile, found(corner(tile)))).collect();
-        let work = Work { walks: 1.0, ..Work::default() };
+        let work = [Work { walks: 1.0, ..Work::default() }; 3];
         let pilot = Pilot { tiles, found, camera: work, light: work, light_unlearnt: work, is_learnt: false };
         let effort = Effort::default();
         let all = Choice { among: Strategies::BDPT, strategies: Strategies::BDPT, effort, gain: 1.0 };
@@ -588,7 +631,9 @@ mod tests {
             let (among, effort) = (Strategies::BDPT, Effort::default());
             let all = Choice { among, strategies: among, effort, gain: 1.0 };
             let four = Effort { connections: 4, ..all.effort };
-            for other in [Choice { strategies: Strategies::PT, ..all }, Choice { effort: four, ..all }] {
+            let shorter = Effort { survival: Survival::Shorter, ..all.effort };
+            let others = [Choice { strategies: Strategies::PT, ..all }, Choice { effort: four, ..all }];
+            for other in others.into_iter().chain([Choice { effort: shorter, ..all }]) {
                 let (found, usual) = (relative(other), relative(all));
                 assert!((0.6..1.7).contains(&(found / usual)), "{scene}, {other:?}: {found} {usual}");
             }
