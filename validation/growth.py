@@ -81,7 +81,7 @@ def triangles(folder: Path) -> Curve:
         path = folder / f"ball_{count}.ply"
         path.write_bytes(ball(side))
         scene = box_of_fog({"ball": {"type": "ply", "filename": str(path), "bsdf": grey(0.6)}})
-        return instructions.per_sample(scene, SAMPLES, strategies=tyndall.ALL_STRATEGIES)
+        return instructions.per_sample(scene, MANY_SAMPLES, strategies=tyndall.ALL_STRATEGIES)
 
     return curve("triangles", "instructions per sample", (200, 2_000, 20_000, 200_000, 2_000_000), cost, "a rough ball in fog")
 

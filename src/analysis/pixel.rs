@@ -216,7 +216,7 @@ pub struct PointText {
     pub direction: Option<[f32; 3]>,
     /// Density by which next-event estimation picks it from here.
     pub connect_density: f32,
-    /// Density by which light subpaths start there.
+    /// Density by which light subpaths start there, learnt starts included.
     pub start_density: f32,
 }
 

@@ -169,7 +169,7 @@ fn product(axes: &[Axis]) -> Vec<Contender> {
     all.into_iter().map(|(name, words)| Contender { name, how: How::Options(words) }).collect()
 }
 
-/// Who may make a reference, best first; where all `contenders` bound the depth of paths alike, with that bound, and with
+/// Who may make a reference, best first, each with every bound on the depth of paths that one of `contenders` has, and with
 /// flights that are sampled without bias. Light tracing is not among them: what it rarely finds makes a bad truth.
 pub fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
     let mut depths = Vec::new();
@@ -178,16 +178,25 @@ pub fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
             depths.push(parse(name, words)?.max_depth);
         }
     }
-    let same =
-        depths.first().copied().flatten().filter(|depth| depths.iter().all(|other| *other == Some(*depth)));
-    let depth = match same {
-        None => String::new(),
-        Some(MaxDepth::Unbounded) => " --max-depth -1".to_owned(),
-        Some(MaxDepth::Edges(edges)) => format!(" --max-depth {edges}"),
-    };
-    let options = |name| How::Options(format!("--integrator {name} --tracker auto{depth}"));
-    // All of them, whatever a pilot finds worth its time: light that contenders miss is not to be missed here.
-    Ok(["bdpt --strategies hit,next-event,join,lens", "pt"].map(options).into())
+    if depths.is_empty() {
+        depths.push(None);
+    }
+    let mut referees = Vec::new();
+    // All strategies, whatever a pilot finds worth its time: light that contenders miss is not to be missed here.
+    for name in ["bdpt --strategies hit,next-event,join,lens", "pt"] {
+        for depth in &depths {
+            let depth = match depth {
+                None => String::new(),
+                Some(MaxDepth::Unbounded) => " --max-depth -1".to_owned(),
+                Some(MaxDepth::Edges(edges)) => format!(" --max-depth {edges}"),
+            };
+            let how = How::Options(format!("--integrator {name} --tracker auto{depth}"));
+            if !referees.contains(&how) {
+                referees.push(how);
+            }
+        }
+    }
+    Ok(referees)
 }
 
 /// Names for scenes out of their files' names, each its own.
@@ -290,21 +299,22 @@ mod tests {
     }
 
     #[test]
-    fn a_reference_is_as_deep_as_all_contenders() {
-        let depths = |options: &[&str]| words(referees(&contenders(options).unwrap()).unwrap().remove(0));
-        assert_eq!(depths(&[]), "--integrator bdpt --strategies hit,next-event,join,lens --tracker auto");
-        assert_eq!(
-            depths(&["--vary", "max-depth=2,3"]),
-            "--integrator bdpt --strategies hit,next-event,join,lens --tracker auto"
-        );
-        assert_eq!(
-            depths(&["--vary", "max-depth=2"]),
-            "--integrator bdpt --strategies hit,next-event,join,lens --tracker auto --max-depth 2"
-        );
-        assert_eq!(
-            depths(&["--vary", "max-depth=-1"]),
-            "--integrator bdpt --strategies hit,next-event,join,lens --tracker auto --max-depth -1"
-        );
+    fn references_may_be_as_deep_as_any_contender() {
+        let depths = |options: &[&str]| {
+            let all: Vec<String> =
+                referees(&contenders(options).unwrap()).unwrap().into_iter().map(words).collect();
+            let [bdpt, pt] = ["bdpt --strategies hit,next-event,join,lens", "pt"]
+                .map(|name| format!("--integrator {name} --tracker auto"));
+            let of =
+                |start: &str| all.iter().filter_map(|words| words.strip_prefix(start)).collect::<Vec<_>>();
+            assert_eq!(of(&bdpt), of(&pt));
+            of(&bdpt).join(",")
+        };
+        assert_eq!(depths(&[]), "");
+        assert_eq!(depths(&["--vary", "max-depth=2"]), " --max-depth 2");
+        assert_eq!(depths(&["--vary", "max-depth=2,3,-1"]), " --max-depth 2, --max-depth 3, --max-depth -1");
+        let unequal = ["--contender", "a: --max-depth 4", "--contender", "b: --integrator pt"];
+        assert_eq!(depths(&unequal), " --max-depth 4,");
     }
 
     #[test]

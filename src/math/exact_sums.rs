@@ -222,6 +222,9 @@ mod tests {
             assert_eq!(value(&[x, -x]), 0.0, "{x:e}");
         }
         assert!((value(&[8e304]) / 8e304 - 1.0).abs() < 1e-11);
+        // 2^-1039, the least that a sum holds.
+        let least = f64::from_bits(1 << 35);
+        assert_eq!(value(&[least; 3]), 3.0 * least);
     }
 
     #[test]

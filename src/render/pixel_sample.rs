@@ -5,7 +5,7 @@ use crate::{
     film::Film,
     math::{Channels, Spectrum, Vec2, Vec3},
     medium::MediumIndex,
-    scene::lights::{EmissionSample, EmitterSample},
+    scene::lights::{EmissionSample, EmitterSample, Lights, Starts},
     transport::{
         Contribution, Departure, Interaction, LightCache, MisSums, Subpath, Vertex,
         observer::{Meeting, Observer, StrategyKind},
@@ -128,6 +128,15 @@ pub enum Partner {
     },
 }
 
+impl Partner {
+    /// Gives an emitter's point its density as the start of light subpaths that begin at learnt `starts`.
+    fn start_at(&mut self, starts: &Starts, lights: &Lights) {
+        if let Self::Met(_, sample) | Self::Emitter(sample) = self {
+            sample.pdf_start = starts.pdf_point(lights, sample.light, &sample.point, sample.pdf_start);
+        }
+    }
+}
+
 /// A contribution of a light subpath to the pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Splat {
@@ -204,8 +213,11 @@ pub(super) fn camera<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize
     };
     let observer: &mut dyn Observer<P::MisSums> = &mut camera;
     start.trace(&ready.estimator, &lit.cache, observer);
-    let CameraPathObserver { trail: Trail { walk: last, .. }, done: mut camera, tries, .. } = camera;
+    let CameraPathObserver { trail: Trail { walk: last, .. }, done: mut camera, mut tries, .. } = camera;
     camera.push(last);
+    if let Some(starts) = ready.estimator.starts() {
+        tries.iter_mut().for_each(|one| one.partner.start_at(starts, &ready.scene.lights));
+    }
     EyeSample { film, aperture, factor, hero: (P::Channels::COUNT > 1).then_some(hero), camera, tries }
 }
 

@@ -75,6 +75,28 @@ fn any_partition_of_the_samples_makes_the_same_image() {
     }
 }
 
+/// Of samples and of pixels, where light subpaths begin at learnt starts; each window of pixels learns its own.
+#[test]
+fn parts_with_learnt_starts_make_the_same_image() {
+    let scene = include_str!("../../scenes/efficiency/small_opening.xml");
+    let sandbox = Sandbox::with_files(&[("opening.xml", scene)]);
+    let render = |words: &str| good(sandbox.run(&format!("render opening.xml -D res=16 {words}")));
+    for (name, crop) in [("all", ""), ("top", "--crop 16x7+0+0"), ("bottom", "--crop 16x9+0+7")] {
+        let render = |words: &str| render(&format!("{crop} {words}"));
+        let said = render(&format!("--spp 7 --sums {name}.sums -o {name}.exr --threads 2")).err();
+        assert!(said.contains("learnt starts"), "{said}");
+        render("--samples 0..3 --sums a.sums --threads 2");
+        render("--samples 3..7 --sums b.sums --threads 1");
+        good(sandbox.run("merge b.sums a.sums -o merged.exr"));
+        assert_same(&sandbox, &format!("{name}.exr"), "merged.exr");
+        render("--spp 7 --resume --sums a.sums -o gone_on.exr --threads 1");
+        assert_same(&sandbox, &format!("{name}.exr"), "gone_on.exr");
+    }
+    good(sandbox.run("merge bottom.sums top.sums -o both.exr"));
+    let [top, bottom, both] = ["top", "bottom", "both"].map(|name| sandbox.channels(&format!("{name}.exr")));
+    both.iter().for_each(|(name, values)| assert!([&top[name][..], &bottom[name]].concat() == *values));
+}
+
 #[test]
 fn sums_of_parts_go_on() {
     let sandbox = foggy();

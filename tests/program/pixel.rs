@@ -5,12 +5,14 @@ use crate::{
     sandbox::Sandbox,
 };
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use tyndall::{
     math::Spectrum,
     render::{
         instrument::Instrument,
         pixel_sample::{Partner, PixelSample},
     },
+    scene::lights::EmissionSample,
     transport::Strategies,
 };
 
@@ -125,6 +127,26 @@ fn a_sample_made_again_is_what_its_pass_adds() {
         }
         assert!(lit > 20 && joined > 5 && splats > 5, "{name}: {lit} {joined} {splats}");
     }
+}
+
+/// Points of lamps are told to be as dense as starts of light subpaths as they are.
+#[test]
+fn densities_of_starts_are_those_of_learnt_starts() {
+    let mut stage = Stage::new(&foggy_room(Some(medium(1.0, 0.8, 0.3)), "box"));
+    stage.setup.integrator.options.effort.learnt_starts = true;
+    let settings = stage.settings(Strategies::BDPT, 1, 3);
+    let bench = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
+    let samples: Vec<PixelSample> = (0..40).map(|pixel| bench.sample(0, 41 * pixel)).collect();
+    let starts = samples.iter().flat_map(|sample| sample.light.values()).filter_map(|walk| walk.emitter);
+    // All points of a lamp are as dense.
+    let starts: BTreeMap<u32, EmissionSample> = starts.map(|start| (start.light, start)).collect();
+    assert!(starts.values().any(|start| (start.pdf / start.unlearnt.point - 1.0).abs() > 0.02), "{starts:?}");
+    let points = samples.iter().flat_map(|sample| &sample.tries).filter_map(|one| match &one.partner {
+        Partner::Met(_, point) | Partner::Emitter(point) => Some((point, starts.get(&point.light)?)),
+        Partner::Light { .. } => None,
+    });
+    let ratios: Vec<f32> = points.map(|(point, start)| point.pdf_start / start.pdf).collect();
+    assert!(starts.len() == 2 && ratios.len() > 50 && ratios.iter().all(|ratio| (ratio - 1.0).abs() < 1e-4));
 }
 
 impl Sandbox {

@@ -377,10 +377,12 @@ fn several_scenes_and_what_a_contender_cannot_show() {
     for hint in [
         "lt: its variance is infinite",
         "lt: does not sample light of area emitters seen by way of smooth",
-        "bdpt: its mean",
+        "narrow, \"joined\": its mean",
     ] {
         assert!(reported.contains(hint), "{hint}: {reported}");
     }
+    // The narrow one makes no reference, though it covers all that the mirror shows.
+    assert!(!reported.contains("bdpt: its mean"), "{reported}");
     let outcome = desk.json("out/study.json");
     let scenes = outcome["scenes"].as_array().unwrap();
     assert_eq!(scenes.iter().map(|s| s["name"].as_str().unwrap()).collect::<Vec<_>>(), ["room", "mirror"]);
@@ -400,6 +402,38 @@ fn several_scenes_and_what_a_contender_cannot_show() {
     }
     let csv = fs::read_to_string(desk.path("out/study.csv")).unwrap();
     assert!(csv.contains("\nroom,\"narrow, \"\"joined\"\"\",1,0,"), "{csv}");
+}
+
+/// Whoever makes the reference: contenders of shorter paths miss light that it must have.
+#[test]
+fn the_reference_is_as_deep_as_the_deepest_contender() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let quick = ["--spp", "2", "--doublings", "1", "--seeds", "2", "--reference-spp", "16"];
+    let shallow = "shallow: --integrator pt --max-depth 2";
+    let rows: [(&[&str], &str); 4] = [
+        (&["--integrators", "pt", "--vary", "max-depth=2,7,3"], "--max-depth 7"),
+        // Nobody is left but a contender.
+        (&["--integrators", "bdpt,pt", "--samplers", "sobol", "--vary", "max-depth=2,7"], "--max-depth 7"),
+        (&["--contender", shallow, "--contender", "all: --integrator lt --max-depth -1"], "--max-depth -1"),
+        (&["--contender", shallow, "--contender", "as the scene: --integrator pt"], "--tracker auto:"),
+    ];
+    for (index, (words, depth)) in rows.into_iter().enumerate() {
+        let folder = format!("out{index}");
+        desk.study(&[&["room.json", "-o", &folder], &quick[..], words].concat());
+        let study = desk.json(&format!("{folder}/study.json"));
+        let how = study["scenes"][0]["reference"]["how"].as_str().unwrap();
+        assert!(how.contains(depth), "{words:?}: {how}");
+    }
+    let by = ["--vary", "max-depth=2,7", "--reference-by", "--integrator pt --max-depth 3"];
+    desk.refuses(
+        &[&["room.json", "-o", "by"], &quick[..], &by].concat(),
+        &[
+            "--reference-by",
+            "the deepest contender, --max-depth 7",
+            "found --max-depth 3",
+            "add --max-depth 7",
+        ],
+    );
 }
 
 /// A renderer of which only a command line is known: this program, seen from outside.

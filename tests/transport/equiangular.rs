@@ -116,6 +116,27 @@ fn with_forced_interaction_and_through_a_lens() {
     agrees("thin lens", &Stage::new(&scene(&parts)), &SHAPES[..5], 64);
 }
 
+/// With black walls: all that is seen is light that scattered.
+fn dark(parts: Vec<(&'static str, Value)>) -> Vec<(&'static str, Value)> {
+    let paint = |(name, part)| (name, if name == "room" { room(0.0, Some(named("fog"))) } else { part });
+    parts.into_iter().map(paint).collect()
+}
+
+/// Light that scatters once and nothing else, where every weight and contribution shows.
+#[test]
+fn of_light_that_scatters_once() {
+    let lamp = [("point", point([0.4, 0.5, -0.2], 1.0)), ("integrator", depth(2))];
+    let mut parts = dark(in_room(medium(rgb(0.1, 0.5, 2.0), 0.8, 0.3), &lamp));
+    let sets = ["next-event", "next-event+lens"];
+    let mut stage = Stage::new(&scene(&parts));
+    agrees("once", &stage, &sets, 400);
+    stage.setup.integrator.options.forced_interaction = true;
+    agrees("once, forced", &stage, &sets, 400);
+    let clips = [("near_clip", json!(0.3)), ("far_clip", json!(1.2))];
+    parts[0].1 = with(parts[0].1.clone(), &clips);
+    agrees("once, between planes", &Stage::new(&scene(&parts)), &sets, 400);
+}
+
 /// Where it does not apply it changes nothing, not a bit.
 #[test]
 fn it_is_left_out_where_it_cannot_help() {
@@ -149,11 +170,7 @@ fn noise(stage: &Stage, set: Strategies) -> f64 {
 #[test]
 fn glows_in_thin_media_are_less_noisy() {
     let parts = in_room(medium(0.01, 0.9, 0.3), &[("point", point([0.1, 0.1, -0.3], 1.0))]);
-    let dark: Vec<(&str, Value)> = parts
-        .into_iter()
-        .map(|(name, part)| (name, if name == "room" { room(0.0, Some(named("fog"))) } else { part }))
-        .collect();
-    let stage = Stage::new(&scene(&[&dark[..], &[("integrator", depth(2))]].concat()));
+    let stage = Stage::new(&scene(&[&dark(parts)[..], &[("integrator", depth(2))]].concat()));
     for (set, factor) in [(Strategies::PT, 30.0), (Strategies::BDPT, 10.0)] {
         let (without, along) = (noise(&stage, set), noise(&stage, and_along(set)));
         assert!(factor * along < without, "{}: {without} {along}", name_of(set));

@@ -50,9 +50,10 @@ fn file(scene: &str, batch: u64) -> PathBuf {
     PathBuf::from(format!("runs/{scene}/reference/{batch}.exr"))
 }
 
-/// How the reference of `scene` is made: by the first of `others` that the contenders are not and that covers the scene;
-/// where there is none, or it is hopelessly noisy, by a contender with other seeds; and by the first other renderer that
-/// takes part, with the same effort. Where `others` are given, by all of them.
+/// How the reference of `scene` is made: by the first of `others` that the contenders are not, whose paths are as long as
+/// those of the deepest contender, and that covers the scene; where there is none, or it is hopelessly noisy, by a contender
+/// as deep with other seeds; and by the first other renderer that takes part, with the same effort. Where `others` are given,
+/// by all of them.
 pub fn plan(
     question: &Question,
     scene: usize,
@@ -63,7 +64,9 @@ pub fn plan(
     let mut makers = Vec::new();
     if is_given {
         for how in others {
-            makers.push((how.clone(), enter(scene, how)?));
+            let entry = enter(scene, how)?;
+            check_depth(&entry, contenders)?;
+            makers.push((how.clone(), entry));
         }
     } else {
         let is_external = |entry: &Entry| matches!(entry.renderer, Renderer::External(_));
@@ -98,6 +101,25 @@ fn each(effort: Effort) -> Effort {
     }
 }
 
+/// Edges of the longest paths of `entry`; none of other renderers, of which that is not known.
+fn depth(entry: &Entry) -> Option<u32> {
+    entry.estimator().map(|(_, options)| options.max_depth.unwrap_or(u32::MAX))
+}
+
+/// Refuses a reference without the light of longer paths that a contender has.
+fn check_depth(entry: &Entry, contenders: &[Option<&Entry>]) -> Result<()> {
+    let deepest = contenders.iter().flatten().filter_map(|entry| depth(entry)).max();
+    match (depth(entry), deepest) {
+        (Some(found), Some(deepest)) if found < deepest => {
+            let shown = if deepest == u32::MAX { "-1".to_owned() } else { deepest.to_string() };
+            let expected = format!("paths as long as those of the deepest contender, --max-depth {shown}");
+            let remedy = format!("add --max-depth {shown} to the options of the reference");
+            Err(Error::new("--reference-by", expected, format!("--max-depth {found}"), remedy))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn choose(
     question: &Question,
     scene: usize,
@@ -111,18 +133,21 @@ fn choose(
     let able = question.contenders.iter().zip(contenders);
     let own: Vec<(&How, &Entry)> =
         able.filter_map(|(contender, entry)| Some((&contender.how, (*entry)?))).collect();
-    let good: Vec<_> = own.iter().filter(|(_, entry)| is_good(entry)).collect();
+    let deepest = own.iter().filter_map(|(_, entry)| depth(entry)).max();
+    let is_deep = |entry: &Entry| depth(entry).is_none() || depth(entry) == deepest;
+    let deep: Vec<_> = own.iter().filter(|(_, entry)| is_deep(entry)).collect();
+    let good: Vec<_> = deep.iter().filter(|(_, entry)| is_good(entry)).collect();
     let variance = |entry: &Entry| plan::variance(entry, question.first_seed);
     let best = good.iter().map(|(_, entry)| variance(entry)).fold(f64::INFINITY, f64::min);
     for how in others {
         let Ok(entry) = enter(scene, how) else { continue };
         let is_other = own.iter().all(|(_, other)| other.strategies() != entry.strategies());
         let is_covering = is_good(&entry) || good.is_empty();
-        if is_other && is_covering && variance(&entry) <= MOST_VARIANCE * best {
+        if is_other && is_deep(&entry) && is_covering && variance(&entry) <= MOST_VARIANCE * best {
             return Ok((how.clone(), entry));
         }
     }
-    match good.first().copied().or(own.first()) {
+    match good.first().copied().or(deep.first()) {
         Some((how, entry)) => Ok(((*how).clone(), (*entry).clone())),
         None => {
             let how = others.first().cloned().unwrap_or(How::Options(String::new()));

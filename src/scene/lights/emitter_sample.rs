@@ -23,7 +23,7 @@ pub struct EmitterSample {
     /// Density of this point by next-event estimation from the reference: per area of a shape [1/m^2], per volume of a
     /// medium [1/m^3], per solid angle at infinity [1/sr]; a probability where the emitter is a point or a direction.
     pub pdf: f32,
-    /// Density of this point as the start of a light subpath, in the same measure.
+    /// Density of this point as the start of a light subpath without learnt starts, in the same measure.
     pub pdf_start: f32,
     /// Density of the direction to the reference by a light subpath [1/sr] ([1/m^2] at infinity).
     pub pdf_direction: f32,

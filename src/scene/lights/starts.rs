@@ -180,6 +180,14 @@ impl Starts {
         let direction = (by_emitter * unlearnt.direction + by_learnt * by_table) / point;
         Densities { point, direction }
     }
+
+    /// Density of `point` of the emitter `light`, which is `unlearnt` without what was learnt.
+    pub fn pdf_point(&self, lights: &Lights, light: u32, point: &EmitterPoint, unlearnt: f32) -> f32 {
+        // At infinity the point is a direction; elsewhere it is as dense whichever way light leaves it.
+        let direction = if let EmitterPoint::Direction(towards) = point { -*towards } else { Vec3::Z };
+        let start = Start::towards(light, point, lights.centre, direction);
+        self.densities(lights, &start, Densities { point: unlearnt, direction: 1.0 }).point
+    }
 }
 
 impl Learnt {

@@ -12,7 +12,8 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// Learnt starts that have little to do with what reaches the image: those above a plane count for a hundred times as much.
+/// Learnt starts that have little to do with what reaches the image: those above a plane count for a hundred times as much,
+/// and of the second emitter nothing is known.
 pub fn lessons(setup: &Setup) -> Arc<Starts> {
     let lights = &setup.scene.lights;
     let mut stream = Stream::new(9, 0, 0, Purpose::Study);
@@ -20,7 +21,7 @@ pub fn lessons(setup: &Setup) -> Arc<Starts> {
         let sample = lights.sample_emission(&setup.scene.geometry, None, &mut stream)?;
         let start = sample.start();
         let above = start.direction.x + 0.3 * start.position.y + 0.1 * start.position.z > 0.2;
-        Some((start, if above { 1.0 } else { 0.01 }))
+        (start.light != 1).then_some((start, if above { 1.0 } else { 0.01 }))
     });
     Arc::new(Starts::learn(lights, starts.collect()).unwrap())
 }
@@ -89,6 +90,8 @@ fn starts_come_as_often_as_their_densities_say() {
         let bound = |sample: &EmissionSample| sample.pdf * sample.pdf_direction / sample.unlearnt.both();
         assert!(by_learnt.iter().all(|sample| bound(sample) > 0.2499), "{name}");
         assert!(by_learnt.iter().any(|sample| bound(sample) > 1.5), "{name}: nothing was learnt");
+        let denser = |sample: &EmissionSample| sample.pdf > 1.2 * sample.unlearnt.point;
+        assert!(by_learnt.iter().any(denser), "{name}: no point, nor direction to infinity, was learnt");
         let sample = by_learnt[0];
         let densities = learnt.densities(lights, &sample.start(), sample.unlearnt);
         assert_eq!(densities, Densities { point: sample.pdf, direction: sample.pdf_direction });
@@ -109,6 +112,15 @@ fn nothing_is_learnt_from_too_little() {
     for (count, weight) in [(0, 1.0), (3, 1.0), (100, 0.0)] {
         assert!(Starts::learn(lights, vec![(start, weight); count]).is_none());
     }
+    // An outlier does not hide the others.
+    let outlier = Start { direction: Vec3::X, ..start };
+    assert!(Starts::learn(lights, [vec![(start, 1.0); 1000], vec![(outlier, 1e6)]].concat()).is_some());
     // Equal positions cannot be told apart, and need not be.
     assert!(Starts::learn(lights, vec![(start, 1.0); 10_000]).is_some());
+    // Of an emitter without power.
+    let setup = build(&[FOG, INSIDE, ROOM, BULB, r#""dark": {"type": "point", "intensity": 0}"#]);
+    let lights = &setup.scene.lights;
+    let dark = lights.all.iter().position(|light| light.emitter.name == "point").unwrap();
+    let start = Start { light: dark as u32, ..start };
+    assert!(Starts::learn(lights, vec![(start, 1.0); 1000]).is_none());
 }
