@@ -8,7 +8,7 @@ import math
 import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -161,6 +161,8 @@ class Row:
     ours: float
     theirs: float
     mitsuba: Ratio
+    of_sample: tuple[float, float]
+    """relMSE and seconds of a sample, Mitsuba's over ours."""
     own: dict[str, Ratio]
     reference: float
     """The reference's relMSE over that of our renders."""
@@ -195,7 +197,15 @@ def row_of(scene: dict[str, Any]) -> Row:
     notes = [f"{one['name']}: {note}" for one in scene["contenders"] for note in one.get("notes", []) if "mean differs" in note]
     own = {name: ratio for name, ratio in ratios.items() if name in OWN}
     cost = 1 / ours["efficiency"]["mean"]
-    return Row(scene["name"], wanted, cost, cost * mitsuba.mean, mitsuba, own, share, [*scene.get("notes", []), *notes])
+    [best] = [other for other in others if other["name"] == mitsuba.other]
+    of_sample = cast(tuple[float, float], tuple(np.divide(per_sample(best), per_sample(ours)).tolist()))
+    return Row(scene["name"], wanted, cost, cost * mitsuba.mean, mitsuba, of_sample, own, share, [*scene.get("notes", []), *notes])
+
+
+def per_sample(contender: dict[str, Any]) -> tuple[float, float]:
+    """relMSE and seconds of a sample of each pixel."""
+    last = contender["points"][-1]
+    return last["relmse"]["mean"] * last["samples"], last["seconds"]["mean"] / last["samples"]
 
 
 def mean(ratios: list[Ratio]) -> Ratio:
@@ -215,12 +225,13 @@ def page(rows: list[Row], study: dict[str, Any], command: str) -> str:
         "# Time to equal error", "",
         f"relMSE x seconds, {size['width']} x {size['height']}; {study['made_by']}, Mitsuba 3.9.1 llvm_ad_rgb; {study['machine']}",
         f"for each contender, which took turns; intervals hold {100 * study['confidence']:g} %.", "", f"    {command}", "",
-        "| scene | Tyndall | Mitsuba, the better | ratio | wanted | over pt | over the best of our others | reference |",
-        "|---|---|---|---|---|---|---|---|",
+        "| scene | Tyndall | Mitsuba, the better | ratio | of a sample: error, time | wanted | over pt | over the best of our others | reference |",
+        "|---|---|---|---|---|---|---|---|---|",
         *map(table_line, rows), "",
         f"- Geometric mean of {len(rows)} ratios: {whole}; wanted: {WANTED_MEAN}.",
         f"- Scenes below 1: {below}.",
         f"- Scenes where another choice of strategies is more than {100 * WORSE:g} % more efficient: {outdone}.",
+        "- of a sample: the relMSE and the seconds of a sample of each pixel, Mitsuba's over ours; their product is about the ratio.",
         "- reference: its own relMSE over that of Tyndall's renders, of which it is a part: the ratio is too small by about so much.",
         *(f"- {row.scene}: {note}" for row in rows for note in row.notes), "",
     ])  # fmt: skip
@@ -229,9 +240,10 @@ def page(rows: list[Row], study: dict[str, Any], command: str) -> str:
 def table_line(row: Row) -> str:
     """A row in Markdown."""
     kind = row.mitsuba.other.split()[1]
+    error, seconds = row.of_sample
     wanted = "" if row.wanted is None else f"{row.wanted:g}"
     over = f"; wanted: {WANTED_OVER_PT[row.scene]}" if row.scene in WANTED_OVER_PT else ""
-    return (f"| {row.scene} | {row.ours:.3g} | {row.theirs:.3g} ({kind}) | {row.mitsuba} | {wanted} | {row.own.get('pt', '')}{over} |"
+    return (f"| {row.scene} | {row.ours:.3g} | {row.theirs:.3g} ({kind}) | {row.mitsuba} | {error:.3g}, {seconds:.2g} | {wanted} | {row.own.get('pt', '')}{over} |"
             f" {row.best.other} {row.best} | {100 * row.reference:.2g} % |")  # fmt: skip
 
 

@@ -20,8 +20,9 @@ def interval(middle: float, off: float = 1.1) -> dict[str, float]:
 
 def scene(**ratios: float) -> dict[str, Any]:
     """A scene of study.json: Tyndall's product of relMSE and seconds is 0.02; the others' efficiency relative to it."""
-    ours = {"name": "tyndall", "efficiency": interval(50), "points": [{"relmse": interval(0.04)}]}
-    others = [{"name": other.replace("_", " "), "ratio": interval(ratio)} for other, ratio in ratios.items()]
+    ours = {"name": "tyndall", "efficiency": interval(50), "points": [{"relmse": interval(0.04), "seconds": interval(0.5), "samples": 8}]}
+    point = {"relmse": interval(0.06), "seconds": interval(0.4), "samples": 16}
+    others = [{"name": other.replace("_", " "), "ratio": interval(ratio), "points": [point]} for other, ratio in ratios.items()]
     return {"name": "pool", "width": 9, "height": 8, "reference": {"own_relmse": 0.002}, "contenders": [ours, *others]}
 
 
@@ -34,6 +35,7 @@ def test_the_better_of_mitsubas_counts() -> None:
     assert row.mitsuba.other == "mitsuba volpath llvm"
     assert (row.mitsuba.low, row.mitsuba.mean, row.mitsuba.high) == pytest.approx((2 / 1.1, 2, 2 * 1.1))
     assert (row.best.other, row.best.mean, row.reference) == ("pt", pytest.approx(1.25), pytest.approx(0.05))
+    assert row.of_sample == pytest.approx((0.06 * 16 / (0.04 * 8), (0.4 / 16) / (0.5 / 8)))
     assert not row.is_beaten and not row.is_outdone
 
 
