@@ -57,8 +57,8 @@ impl Unseen<'_> {
     fn shuts_in_camera(&self, shape: u32) -> bool {
         let (low, high) = self.bounds(shape);
         let is_around = self.viewpoint.cmpge(low).all() && self.viewpoint.cmple(high).all();
-        let is_lit = self.lights.is_empty() || self.may_hold_light(shape);
-        is_around && !is_lit && self.is_inside(shape, self.viewpoint) && self.is_closed(shape)
+        let is_lit = || self.lights.is_empty() || self.may_hold_light(shape);
+        is_around && !is_lit() && self.is_inside(shape, self.viewpoint) && self.is_closed(shape)
     }
 
     /// The medium inside an opaque `shape` that the camera is outside of. Lamps may say of what they are.
