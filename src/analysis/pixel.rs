@@ -328,8 +328,7 @@ impl Text<'_> {
     }
 
     fn medium(&self, medium: MediumIndex) -> String {
-        let name = (medium.0 as usize).checked_sub(1).and_then(|index| self.setup.medium_names.get(index));
-        name.map_or("vacuum".to_owned(), String::clone)
+        self.setup.medium_name(medium)
     }
 
     fn shape(&self, shape: u32) -> ShapeText {

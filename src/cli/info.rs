@@ -13,7 +13,7 @@ use crate::{
         format::{Component, FileKind},
         layer::Layer,
     },
-    medium::{DistanceMethod, Heterogeneous, distance::DistanceSampler},
+    medium::{DistanceMethod, Heterogeneous, MediumIndex, distance::DistanceSampler},
     phase::PhaseModel,
     render::{Settings, budget::Budget},
     scene::{Infinity, Scene, build::Setup, lights::Light},
@@ -22,6 +22,7 @@ use crate::{
     transport::{Options, Strategies},
 };
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Info) -> Result<()> {
@@ -52,12 +53,13 @@ fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
     lines.extend(
         scene.lights.all.iter().map(|light| format!("emitter     {}", describe_emitter(setup, light))),
     );
-    lines.push(format!("camera      in {}", medium_name(setup, scene.sensor_medium.0)));
+    lines.push(format!("camera      in {}", setup.medium_name(scene.sensor_medium)));
     if scene.lights.has_infinite() {
         lines.push(format!("infinity    {}", describe_infinity(setup)));
     }
     lines
-        .extend((1..scene.media.len()).map(|index| format!("medium      {}", describe_medium(setup, index))));
+        .extend((1..=setup.medium_names.len()).map(|i| format!("medium      {}", describe_medium(setup, i))));
+    lines.extend(overlapping(setup).map(|names| format!("overlap     {names}: coefficients add")));
     let left_out = settings.profile.left_out();
     let without = if left_out.is_empty() { "nothing".to_owned() } else { left_out.join(", ") };
     lines.push(format!("profile     {}, leaving out: {without}", settings.profile.name()));
@@ -70,7 +72,6 @@ fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
 fn figures(setup: &Setup, plan: &Plan) -> Value {
     let Setup { scene, film, .. } = setup;
     let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
-    let medium = |index: u32| medium_name(setup, index);
     let emitters = scene.lights.all.iter();
     json!({
         "width": film.width,
@@ -81,19 +82,28 @@ fn figures(setup: &Setup, plan: &Plan) -> Value {
         "shapes": scene.surfaces.len(),
         "primitives": primitives,
         "emitters": emitters
-            .map(|light| json!({ "type": light.emitter.name, "medium": medium(light.medium.0) }))
+            .map(|light| json!({ "type": light.emitter.name, "medium": setup.medium_name(light.medium) }))
             .collect::<Vec<_>>(),
-        "camera": { "medium": medium(scene.sensor_medium.0) },
-        "media": (1..scene.media.len()).map(|index| medium_figures(setup, index)).collect::<Vec<_>>(),
+        "camera": { "medium": setup.medium_name(scene.sensor_medium) },
+        "media": (1..=setup.medium_names.len()).map(|index| medium_figures(setup, index)).collect::<Vec<_>>(),
+        "overlaps": overlapping(setup).collect::<Vec<_>>(),
         "plan": plan.json(),
         "warnings": setup.warnings,
     })
 }
 
+/// The names of media that may lie in one place.
+fn overlapping(setup: &Setup) -> impl Iterator<Item = String> {
+    let regions = setup.scene.overlaps.iter().flat_map(|overlaps| overlaps.regions());
+    let several: BTreeSet<_> =
+        regions.filter(|members| members.len() > 1).map(|members| setup.names(members)).collect();
+    several.into_iter()
+}
+
 fn medium_figures(setup: &Setup, index: usize) -> Value {
     let medium = &setup.scene.media[index];
     json!({
-        "name": medium_name(setup, index as u32),
+        "name": setup.medium_name(MediumIndex(index as u32)),
         "heterogeneous": medium.heterogeneous().is_some(),
         "largest_sigma_t": medium.bound().sigma_t.to_array(),
         "largest_albedo": medium.bound().albedo.to_array(),
@@ -152,23 +162,17 @@ fn describe_integrator(name: &str, options: &Options, restriction: Restriction) 
 
 fn describe_shapes(scene: &Scene) -> String {
     let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
-    let boundaries = scene.surfaces.iter().filter(|surface| surface.boundary.is_known()).count();
+    let others = scene.surfaces.iter().filter(|surface| surface.boundary.is_known()).count();
+    let boundaries = others + scene.overlaps.as_ref().map_or(0, |overlaps| overlaps.len());
     format!(
         "{} ({primitives} primitives), {boundaries} of them are boundaries of media",
         scene.surfaces.len()
     )
 }
 
-fn medium_name(setup: &Setup, index: u32) -> &str {
-    match index.checked_sub(1) {
-        Some(index) => &setup.medium_names[index as usize],
-        None => "vacuum",
-    }
-}
-
 fn describe_infinity(setup: &Setup) -> String {
     let Scene { known, outside, .. } = &setup.scene;
-    let name = medium_name(setup, outside.0);
+    let name = setup.medium_name(*outside);
     match known.infinity {
         Infinity::Uniform(_) | Infinity::Unseen(_) => format!("in {name}"),
         Infinity::Directional(_) => format!("in {name} and, in other directions, in other media"),
@@ -176,7 +180,7 @@ fn describe_infinity(setup: &Setup) -> String {
 }
 
 fn describe_emitter(setup: &Setup, light: &Light) -> String {
-    let (name, medium) = (light.emitter.name, medium_name(setup, light.medium.0));
+    let (name, medium) = (light.emitter.name, setup.medium_name(light.medium));
     let Kind::Medium(glow) = &light.emitter.kind else { return format!("{name} in {medium}") };
     let [low, high] = glow.emission.bounds().map(|corner| corner.as_dvec3() + setup.scene.recentre);
     let [r, g, b] = glow.power().to_array();
@@ -191,7 +195,7 @@ fn describe_medium(setup: &Setup, index: usize) -> String {
         if medium.heterogeneous().is_some() { ("heterogeneous", "at most ") } else { ("homogeneous", "") };
     format!(
         "{}: {kind}, sigma_t {most}{r} {g} {b} /m, albedo {most}{ar} {ag} {ab}, mean cosine {:.3}; {}",
-        medium_name(setup, index as u32),
+        setup.medium_name(MediumIndex(index as u32)),
         medium.phase.mean_cosine(),
         medium
             .heterogeneous()

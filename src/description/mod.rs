@@ -60,6 +60,20 @@ pub struct Object {
     pub location: Location,
 }
 
+impl Object {
+    /// True if both say the same, under whatever names and wherever they stand in one file.
+    pub fn says_what(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Property, &Property)| match (&a.value, &b.value) {
+            (Value::Object(x), Value::Object(y)) => a.name == b.name && x.says_what(y),
+            (x, y) => a.name == b.name && x == y,
+        };
+        self.plugin == other.plugin
+            && self.location.file == other.location.file
+            && self.properties.len() == other.properties.len()
+            && self.properties.iter().zip(&other.properties).all(same)
+    }
+}
+
 /// One parameter or child of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Property {

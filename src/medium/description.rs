@@ -87,8 +87,8 @@ impl MediumDescription {
 
 /// A homogeneous medium with `overrides` applied.
 fn overridden(medium: Medium, overrides: &MediumOverrides) -> Medium {
-    let MediumProperties { sigma_t, albedo } = medium.bound();
-    let absorbing = MediumProperties { sigma_t: sigma_t * (Spectrum::ONE - albedo), albedo: Spectrum::ZERO };
+    let MediumProperties { sigma_t, albedo, .. } = medium.bound();
+    let absorbing = MediumProperties::of(sigma_t * (Spectrum::ONE - albedo), Spectrum::ZERO);
     if overrides.absorbing { Medium::homogeneous(absorbing, medium.phase) } else { medium }
 }
 
@@ -103,7 +103,7 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> 
     if albedo.max_element() > 1.0 {
         return Err(params.complain("albedo", "values from 0 to 1", format!("{albedo}")));
     }
-    let medium = Medium::homogeneous(MediumProperties { sigma_t, albedo }, common(params)?);
+    let medium = Medium::homogeneous(MediumProperties::of(sigma_t, albedo), common(params)?);
     Ok(MediumDescription { medium, fields: None, emission: EmissionDescription::read(params, place)? })
 }
 

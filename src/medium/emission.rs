@@ -110,7 +110,7 @@ impl Within {
             Self::Uniform(properties) => *properties,
             Self::Varying(varying) => {
                 let (extinction, albedo) = &**varying;
-                MediumProperties { sigma_t: extinction.at(position), albedo: albedo.eval(position) }
+                MediumProperties::of(extinction.at(position), albedo.eval(position))
             }
         }
     }
@@ -122,7 +122,7 @@ impl Within {
             Self::Varying(varying) => {
                 let (extinction, albedo) = &**varying;
                 let sigma_t = extinction.volume.range(low, high)[1] * extinction.scale;
-                MediumProperties { sigma_t, albedo: albedo.range(low, high)[0] }
+                MediumProperties::of(sigma_t, albedo.range(low, high)[0])
             }
         }
     }

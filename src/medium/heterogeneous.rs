@@ -148,7 +148,7 @@ impl Heterogeneous {
     #[inline]
     pub fn at<L: Channels>(&self, position: Vec3) -> MediumProperties {
         let sigma_t = self.extinction.at::<L>(position).to_spectrum();
-        MediumProperties { sigma_t, albedo: self.albedo.eval::<Spectrum>(position) }
+        MediumProperties::of(sigma_t, self.albedo.eval::<Spectrum>(position))
     }
 
     /// Absorption, for the emission there.
@@ -200,8 +200,13 @@ impl Heterogeneous {
     ) -> Unforced<L> {
         let found = self.attenuation(segment, stream);
         let transmittance = found.map_or(L::splat(0.0), |found| found.transmittance);
-        let depth = self.tracker.forced_depth(&self.extinction, segment, depth, hero);
+        let depth = self.forced_depth(segment, depth, hero);
         Unforced { transmittance, depth, ratio: transmittance.scaled(depth.min(DEEPEST).exp()) }
+    }
+
+    /// See [`DistanceSampler::forced_depth`].
+    pub fn forced_depth<L: Channels>(&self, segment: &RaySegment, depth: L, hero: usize) -> f32 {
+        self.tracker.forced_depth(&self.extinction, segment, depth, hero)
     }
 
     /// See [`DistanceSampler::force`].

@@ -6,6 +6,7 @@ mod emission;
 mod extinction;
 mod heterogeneous;
 mod homogeneous;
+mod mixture;
 mod overrides;
 
 use crate::{
@@ -21,6 +22,7 @@ use emission::{EmissionDescription, Within};
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;
 use homogeneous::Homogeneous;
+use mixture::Mixture;
 pub use overrides::MediumOverrides;
 use std::sync::Arc;
 
@@ -55,7 +57,16 @@ enum Coefficients {
     /// The same everywhere: the medium's bound.
     Homogeneous,
     /// Varying, below the medium's bound.
-    Heterogeneous(Box<Heterogeneous>),
+    Heterogeneous(Arc<Heterogeneous>),
+    /// Those of several media in one place.
+    Mixture(Mixture),
+}
+
+/// How a medium is asked by what was compiled for a profile.
+enum Model<'a> {
+    Homogeneous(&'a Homogeneous),
+    Heterogeneous(&'a Heterogeneous),
+    Mixture(&'a Mixture),
 }
 
 /// Which media an estimator is compiled for. What it does not support is not tested for.
@@ -73,11 +84,19 @@ pub struct MediumProperties {
     pub sigma_t: Spectrum,
     /// sigma_s / sigma_t, in [0, 1].
     pub albedo: Spectrum,
+    /// The medium, whose phase function it scatters by: one of those that overlap, where several do.
+    pub medium: MediumIndex,
 }
 
 impl MediumProperties {
     /// None.
-    pub const NOTHING: Self = Self { sigma_t: Spectrum::ZERO, albedo: Spectrum::ZERO };
+    pub const NOTHING: Self = Self::of(Spectrum::ZERO, Spectrum::ZERO);
+
+    /// Of a medium that has no place among others yet.
+    #[inline]
+    pub const fn of(sigma_t: Spectrum, albedo: Spectrum) -> Self {
+        Self { sigma_t, albedo, medium: MediumIndex::VACUUM }
+    }
 
     /// Probability that a walk goes on after a collision (LW96 eq. 8): the largest channel of the albedo.
     #[inline]
@@ -134,8 +153,22 @@ impl Medium {
     /// The medium with coefficients that vary.
     fn with(self, varying: Heterogeneous) -> Self {
         let (sigma_t, albedo) = varying.bounds();
-        let bound = Homogeneous(MediumProperties { sigma_t, albedo });
-        Self { bound, coefficients: Coefficients::Heterogeneous(Box::new(varying)), ..self }
+        let bound = Homogeneous(MediumProperties { sigma_t, albedo, ..self.bound() });
+        Self { bound, coefficients: Coefficients::Heterogeneous(Arc::new(varying)), ..self }
+    }
+
+    /// Several media in one place: their coefficients add. What they emit, each emits for itself.
+    pub fn mixture(media: Vec<Self>) -> Self {
+        let mixture = Mixture(media.into());
+        let (sigma_t, albedo) = mixture.bound();
+        let bound = Homogeneous(MediumProperties { sigma_t, albedo, ..MediumProperties::NOTHING });
+        Self { bound, coefficients: Coefficients::Mixture(mixture), ..Self::vacuum() }
+    }
+
+    /// The medium as number `index` of its scene.
+    pub fn numbered(self, index: MediumIndex) -> Self {
+        let bound = Homogeneous(MediumProperties { medium: index, ..self.bound() });
+        Self { bound, ..self }
     }
 
     /// The medium as it is at `time` [s]; none where it is the same at all times.
@@ -160,18 +193,27 @@ impl Medium {
         Ok(Self { emission, given: Some(Box::new((given, around))), ..self })
     }
 
-    /// What describes a medium that varies; none of a homogeneous one. For reports.
+    /// What describes a medium that varies; none of others. For reports.
     pub fn heterogeneous(&self) -> Option<&Heterogeneous> {
         match &self.coefficients {
-            Coefficients::Homogeneous => None,
             Coefficients::Heterogeneous(varying) => Some(varying),
+            Coefficients::Homogeneous | Coefficients::Mixture(_) => None,
         }
     }
 
-    /// The same for what was compiled for `M`.
+    /// Only what was compiled for media that vary asks whether this one does.
     #[inline(always)]
-    fn varying<M: MediaProfile>(&self) -> Option<&Heterogeneous> {
-        if M::HETEROGENEOUS { self.heterogeneous() } else { None }
+    fn model<M: MediaProfile>(&self) -> Model<'_> {
+        if M::HETEROGENEOUS { self.any_model() } else { Model::Homogeneous(&self.bound) }
+    }
+
+    #[inline(always)]
+    fn any_model(&self) -> Model<'_> {
+        match &self.coefficients {
+            Coefficients::Homogeneous => Model::Homogeneous(&self.bound),
+            Coefficients::Heterogeneous(varying) => Model::Heterogeneous(varying),
+            Coefficients::Mixture(mixture) => Model::Mixture(mixture),
+        }
     }
 
     /// The properties of a homogeneous medium; of a heterogeneous one, a bound on them anywhere.
@@ -182,7 +224,11 @@ impl Medium {
 
     /// True if extinction differs between channels, so that flights need a hero channel.
     pub fn is_chromatic(&self) -> bool {
-        self.heterogeneous().map_or(!self.bound.0.sigma_t.is_grey(), Heterogeneous::is_chromatic)
+        match self.any_model() {
+            Model::Homogeneous(bound) => !bound.0.sigma_t.is_grey(),
+            Model::Heterogeneous(varying) => varying.is_chromatic(),
+            Model::Mixture(mixture) => mixture.0.iter().any(Self::is_chromatic),
+        }
     }
 
     /// The box outside of which there is nothing of it; none where it has no end of its own.
@@ -197,10 +243,16 @@ impl Medium {
         if self.extent().is_some() { Spectrum::ONE } else { self.bound.transmittance_from_infinity() }
     }
 
-    /// Its properties at a world position.
+    /// Its properties at a world position, where `component` of several media that overlap has collided.
     #[inline]
-    pub fn properties_at<M: MediaProfile>(&self, position: Vec3) -> MediumProperties {
-        self.varying::<M>().map_or(self.bound.0, |varying| varying.at::<M::Channels>(position))
+    pub fn properties_at<M: MediaProfile>(&self, component: usize, position: Vec3) -> MediumProperties {
+        match self.model::<M>() {
+            Model::Homogeneous(bound) => bound.0,
+            Model::Heterogeneous(varying) => {
+                MediumProperties { medium: self.bound.0.medium, ..varying.at::<M::Channels>(position) }
+            }
+            Model::Mixture(mixture) => mixture.properties_at::<M>(component, position),
+        }
     }
 
     /// Deterministic optical depth per channel, the same from either end: as the weights use it.
@@ -208,9 +260,10 @@ impl Medium {
     /// LW96 eq. 7: P_surface = e^-depth.
     #[inline(always)]
     pub fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Channels {
-        match self.varying::<M>() {
-            Some(varying) => varying.depth(&interval.segment),
-            None => self.bound.optical_depth(interval.length()),
+        match self.model::<M>() {
+            Model::Homogeneous(bound) => bound.optical_depth(interval.length()),
+            Model::Heterogeneous(varying) => varying.depth(&interval.segment),
+            Model::Mixture(mixture) => mixture.optical_depth::<M>(interval),
         }
     }
 
@@ -221,11 +274,14 @@ impl Medium {
         interval: &MediumInterval,
         stream: &mut Stream,
     ) -> Option<Attenuation<M::Channels>> {
-        if let Some(varying) = self.varying::<M>() {
-            return varying.attenuation(&interval.segment, stream);
+        match self.model::<M>() {
+            Model::Homogeneous(bound) => {
+                let depth: M::Channels = bound.optical_depth(interval.length());
+                Some(Attenuation { depth, transmittance: depth.exp_neg() })
+            }
+            Model::Heterogeneous(varying) => varying.attenuation(&interval.segment, stream),
+            Model::Mixture(mixture) => mixture.attenuation::<M>(interval, stream),
         }
-        let depth: M::Channels = self.bound.optical_depth(interval.length());
-        Some(Attenuation { depth, transmittance: depth.exp_neg() })
     }
 
     /// The transmittance of every channel over the hero's, or an unbiased random estimate of that.
@@ -237,9 +293,10 @@ impl Medium {
         hero: usize,
         stream: &mut Stream,
     ) -> M::Channels {
-        match self.varying::<M>() {
-            Some(varying) => varying.ratio(&interval.segment, depth, hero, stream),
-            None => depth.flight_ratio(M::Channels::splat(1.0), hero),
+        match self.model::<M>() {
+            Model::Homogeneous(_) => depth.flight_ratio(M::Channels::splat(1.0), hero),
+            Model::Heterogeneous(varying) => varying.ratio(&interval.segment, depth, hero, stream),
+            Model::Mixture(mixture) => mixture.transmittance_ratio::<M>(interval, hero, stream),
         }
     }
 
@@ -247,9 +304,9 @@ impl Medium {
     /// may lie: no need to look for surfaces beyond. Infinite where that has to be searched for.
     #[inline(always)]
     pub fn reach<M: MediaProfile>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
-        match self.varying::<M>() {
-            Some(_) => f32::INFINITY,
-            None => self.bound.collision::<M::Channels>(skipped, hero, remaining),
+        match self.model::<M>() {
+            Model::Homogeneous(bound) => bound.collision::<M::Channels>(skipped, hero, remaining),
+            Model::Heterogeneous(_) | Model::Mixture(_) => f32::INFINITY,
         }
     }
 
@@ -272,9 +329,12 @@ impl Medium {
         remaining: f32,
         stream: &mut Stream,
     ) -> DistanceSample<M::Channels> {
-        match self.varying::<M>() {
-            Some(varying) => varying.sample_distance(&interval.segment, hero, remaining, stream),
-            None => self.bound.sample_distance(interval, hero, remaining),
+        match self.model::<M>() {
+            Model::Homogeneous(bound) => bound.sample_distance(interval, hero, remaining),
+            Model::Heterogeneous(varying) => {
+                varying.sample_distance(&interval.segment, hero, remaining, stream)
+            }
+            Model::Mixture(mixture) => mixture.sample_distance::<M>(interval, hero, stream),
         }
     }
 
@@ -286,13 +346,24 @@ impl Medium {
         hero: usize,
         stream: &mut Stream,
     ) -> Unforced<M::Channels> {
-        match self.varying::<M>() {
-            Some(varying) => varying.unforced(&interval.segment, depth, hero, stream),
-            None => Unforced {
+        match self.model::<M>() {
+            Model::Homogeneous(_) => Unforced {
                 transmittance: depth.exp_neg(),
                 depth: depth.hero(hero),
                 ratio: depth.flight_ratio(M::Channels::splat(1.0), hero),
             },
+            Model::Heterogeneous(varying) => varying.unforced(&interval.segment, depth, hero, stream),
+            Model::Mixture(mixture) => mixture.unforced::<M>(interval, hero, stream),
+        }
+    }
+
+    /// The depth of [`Self::unforced`].
+    fn forced_depth<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
+        let depth = self.optical_depth::<M>(interval);
+        match self.model::<M>() {
+            Model::Homogeneous(_) => depth.hero(hero),
+            Model::Heterogeneous(varying) => varying.forced_depth(&interval.segment, depth, hero),
+            Model::Mixture(mixture) => mixture.forced_depth::<M>(interval, hero),
         }
     }
 
@@ -305,15 +376,21 @@ impl Medium {
         remaining: f32,
         stream: &mut Stream,
     ) -> Option<DistanceSample<M::Channels>> {
-        match self.varying::<M>() {
-            Some(varying) => varying.force_collision(&interval.segment, hero, remaining, stream),
-            None => Some(self.bound.force_collision(interval, hero, remaining)),
+        match self.model::<M>() {
+            Model::Homogeneous(bound) => Some(bound.force_collision(interval, hero, remaining)),
+            Model::Heterogeneous(varying) => {
+                varying.force_collision(&interval.segment, hero, remaining, stream)
+            }
+            Model::Mixture(mixture) => mixture.force_collision::<M>(interval, hero, remaining, stream),
         }
     }
 
     /// Optical depth for a picture that need not be exact but must not be noisy.
     pub fn quick_depth(&self, segment: &RaySegment) -> Spectrum {
-        self.heterogeneous()
-            .map_or_else(|| self.bound.optical_depth(segment.length), |varying| varying.quick_depth(segment))
+        match self.any_model() {
+            Model::Homogeneous(bound) => bound.optical_depth(segment.length),
+            Model::Heterogeneous(varying) => varying.quick_depth(segment),
+            Model::Mixture(mixture) => mixture.quick_depth(segment),
+        }
     }
 }

@@ -9,7 +9,7 @@ use crate::{
     scene::{Scene, lights::EmitterSample},
     settings::integrator::FogSettings,
     shape::{Ray, SurfacePoint},
-    transport::{NullCrossing, Segment},
+    transport::{NullCrossing, Segment, profile::Everything},
 };
 use std::f32::consts::PI;
 
@@ -113,7 +113,7 @@ impl<'a> Preview<'a> {
         stream: &mut Stream,
     ) -> Option<End> {
         let Ray { direction, t_max, .. } = *segment.ray();
-        let (interval, hit) = segment.next(*left);
+        let (interval, hit) = segment.next::<Everything>(*left);
         if hit.is_none() && *left < t_max {
             // Beyond the threshold there is fog alone.
             sight.veiled += std::mem::replace(&mut sight.through, Spectrum::ZERO);

@@ -43,6 +43,11 @@ impl Geometry {
         Self { shapes, first, owner, tree }
     }
 
+    /// The shapes that it was built of.
+    pub fn into_shapes(self) -> Vec<Shape> {
+        self.shapes
+    }
+
     /// All shapes, in order of addition.
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes

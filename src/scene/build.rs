@@ -8,6 +8,7 @@ use super::{
     extents::Extents,
     lights::{Light, Lights, emissive},
     locate::{Known, Locator, Survey},
+    overlap::{self, Overlaps},
     placement::{Names, Placement, place_camera},
     range,
     sections::Sections,
@@ -34,7 +35,7 @@ use crate::{
     shape::{self, Shape, ShapeModel as _},
     volume::Place,
 };
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// A scene with what its file says about rendering it.
 pub struct Setup {
@@ -60,6 +61,20 @@ pub struct Setup {
     pub time: f64,
 }
 
+impl Setup {
+    /// What a medium is called; where several overlap, all of them.
+    pub fn medium_name(&self, medium: MediumIndex) -> String {
+        self.names(self.scene.components(&medium))
+    }
+
+    /// The same of several.
+    pub fn names(&self, media: &[MediumIndex]) -> String {
+        let name = |medium: &MediumIndex| Some(self.medium_names[medium.0.checked_sub(1)? as usize].as_str());
+        let names: Vec<&str> = media.iter().filter_map(name).collect();
+        if names.is_empty() { "vacuum".to_owned() } else { names.join(" + ") }
+    }
+}
+
 /// Builds the scene that `root` describes.
 pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     plugins::check(root)?;
@@ -79,12 +94,11 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         None => Integrator::default(),
     };
     let medium_names = builder.medium_names.clone();
-    let (shape_names, bsdf_names) = (builder.shape_names.clone(), builder.bsdf_names.clone());
     let medium_overrides = integrator.restriction.medium_overrides();
     let medium_overrides =
         MediumOverrides { tracker: overrides.tracker.or(medium_overrides.tracker), ..medium_overrides };
     let time = builder.place.time;
-    let scene = builder.finish(view.camera, &medium_overrides)?;
+    let (scene, shape_names, bsdf_names) = builder.finish(view.camera, &medium_overrides)?;
     unseen::warn_of_darkness(&scene.lights, &integrator, &root.location, &library);
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
@@ -131,6 +145,17 @@ struct Camera<'a> {
     location: &'a Location,
 }
 
+/// A scene, and the names of its shapes and BSDFs.
+type Finished = (Scene, Vec<String>, Vec<String>);
+
+/// What is known about where media lie.
+struct Surveyed {
+    known: Known,
+    survey: Survey,
+    sensor_medium: MediumIndex,
+    overlaps: Option<Box<Overlaps>>,
+}
+
 /// Its id, or the name of its plugin.
 fn name_of(object: &Object) -> String {
     object.id.clone().unwrap_or_else(|| object.plugin.clone())
@@ -163,7 +188,7 @@ struct Builder<'a> {
     medium_locations: Vec<Location>,
     medium_names: Vec<String>,
     medium_ids: Vec<Option<String>>,
-    medium_index: HashMap<*const Object, MediumIndex>,
+    medium_objects: Vec<&'a Object>,
     emitters: Vec<Placed<'a>>,
     /// BSDF of shapes that name none: diffuse 0.5, and black on emitters.
     default_bsdf: [Option<u32>; 2],
@@ -186,7 +211,7 @@ impl<'a> Builder<'a> {
             medium_locations: Vec::new(),
             medium_names: Vec::new(),
             medium_ids: Vec::new(),
-            medium_index: HashMap::new(),
+            medium_objects: Vec::new(),
             emitters: Vec::new(),
             default_bsdf: [None; 2],
         }
@@ -255,7 +280,13 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    /// The one object behind all references to it, the place among them where it is written.
+    fn original(&self, object: &'a Object) -> Result<&'a Object> {
+        object.id.as_ref().map_or(Ok(object), |id| self.library.resolve(id, &object.location))
+    }
+
     fn bsdf(&mut self, object: &'a Object) -> Result<u32> {
+        let object = self.original(object)?;
         if let Some(index) = self.bsdf_index.get(&std::ptr::from_ref(object)) {
             return Ok(*index);
         }
@@ -285,15 +316,20 @@ impl<'a> Builder<'a> {
     }
 
     fn medium(&mut self, object: &'a Object) -> Result<MediumIndex> {
-        if let Some(index) = self.medium_index.get(&std::ptr::from_ref(object)) {
-            return Ok(*index);
+        let object = self.original(object)?;
+        // One that is written twice is one, too: boundaries on both sides of which it lies do not contradict each other.
+        if let Some(index) = self.medium_objects.iter().position(|known| known.says_what(object)) {
+            if let (None, Some(id)) = (&self.medium_ids[index], &object.id) {
+                (self.medium_ids[index], self.medium_names[index]) = (Some(id.clone()), id.clone());
+            }
+            return Ok(MediumIndex(index as u32 + 1));
         }
         let index = MediumIndex(self.media.len() as u32);
         self.media.push(medium::build(object, self.library, &self.place)?);
         self.medium_names.push(name_of(object));
         self.medium_locations.push(object.location.clone());
         self.medium_ids.push(object.id.clone());
-        self.medium_index.insert(std::ptr::from_ref(object), index);
+        self.medium_objects.push(object);
         Ok(index)
     }
 
@@ -329,27 +365,30 @@ impl<'a> Builder<'a> {
     }
 
     /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
-    fn finish(mut self, camera: Camera<'_>, medium_overrides: &MediumOverrides) -> Result<Scene> {
+    fn finish(mut self, mut camera: Camera<'_>, medium_overrides: &MediumOverrides) -> Result<Finished> {
         self.check_memory()?;
         let geometry = self.geometry();
-        let (known, survey, sensor_medium) = self.survey(&geometry, &camera);
+        let stated = self.surfaces.clone();
+        let (geometry, surveyed) = self.survey(geometry, &mut camera)?;
+        let Surveyed { known, survey, sensor_medium, overlaps } = surveyed;
         let outside = known.infinity.most();
         let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
         self.names().warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
-        let (surfaces, viewpoint) = (&self.surfaces, camera.sensor.position());
+        let (surfaces, viewpoint) = (&stated, camera.sensor.position());
         let extents = Extents { geometry: &geometry, surfaces, viewpoint, outside, survey: &survey };
-        let media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
+        let mut media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
         range::check(&media[1..], &self.medium_locations, &extents, self.library)?;
-        let lights = self.lights(&geometry, &known, &media, sensor_medium);
+        let lights = self.lights(&geometry, &known, &media, overlaps.as_deref(), sensor_medium);
+        media.extend(overlaps.as_ref().map(|overlaps| overlaps.build(&media)).into_iter().flatten());
         // Parallel rays start all over a plane: in a shape here, out of it there.
         if !camera.sensor.is_parallel() {
             let (surfaces, viewpoint) = (&self.surfaces, camera.start);
             let unseen = Unseen { geometry: &geometry, surfaces, lights: &lights, viewpoint };
             unseen.warn(&self.names(), camera.location);
         }
-        let Self { surfaces, bsdfs, recentre, .. } = self;
+        let Self { surfaces, bsdfs, recentre, shape_names, bsdf_names, .. } = self;
         let sensor = camera.sensor;
-        Ok(Scene {
+        let scene = Scene {
             geometry,
             surfaces,
             bsdfs,
@@ -359,31 +398,131 @@ impl<'a> Builder<'a> {
             outside,
             known,
             sensor_medium,
+            overlaps,
             recentre,
-        })
+        };
+        Ok((scene, shape_names, bsdf_names))
     }
 
-    /// What is known about where media lie, how far, and the medium of the camera.
-    fn survey(&self, geometry: &Geometry, camera: &Camera<'_>) -> (Known, Survey, MediumIndex) {
+    /// What is known about where media lie, how far, and the medium of the camera. Boundaries that overlap are put in
+    /// order, open ones closed.
+    fn survey(&mut self, geometry: Geometry, camera: &mut Camera<'_>) -> Result<(Geometry, Surveyed)> {
+        let mut geometry = geometry;
+        let (mut known, survey) = self.look_around(&geometry, camera);
+        let found = Overlaps::find(&geometry, &self.surfaces, &survey);
+        let mut overlaps = found.map_err(|found| self.too_many_overlap(&found))?;
+        let mut left = None;
+        if !overlaps.is_empty() {
+            (known, left) = self.without(&overlaps, &geometry, camera);
+        }
+        let contradictions = left.as_ref().unwrap_or(&survey);
+        self.names().warn_of_contradictions(contradictions);
+        let open = overlap::open(&geometry, &self.surfaces, contradictions);
+        if !open.is_empty() {
+            geometry = self.close(geometry, &open, &mut overlaps)?;
+            (known, _) = self.without(&overlaps, &geometry, camera);
+        }
+        let found = overlaps.find_regions(self.media.len(), &self.bases(camera));
+        found.map_err(|found| self.too_many_overlap(&found))?;
+        // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
         let Camera { start, stated, location, .. } = *camera;
         let names = self.names();
-        let ambient = stated.unwrap_or(MediumIndex::VACUUM);
-        let points = self.stated_points(start, stated);
-        let (mut known, survey) = Known::survey(geometry, &self.surfaces, points, ambient);
-        names.warn_of_contradictions(&survey);
-        // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
-        let place = || place_camera(geometry, &self.surfaces, &mut known, start, &names, location);
-        let medium = stated.unwrap_or_else(place);
-        (known, survey, medium)
+        let place = || place_camera(&geometry, &self.surfaces, &mut known, start, &names, location);
+        let sensor_medium = overlaps.at(stated.unwrap_or_else(place), start, Vec3::X);
+        let overlaps = (!overlaps.is_empty()).then(|| Box::new(overlaps));
+        Ok((geometry, Surveyed { known, survey, sensor_medium, overlaps }))
+    }
+
+    /// What is known without the boundaries that overlap, and what contradicts itself even so.
+    fn without(
+        &mut self,
+        overlaps: &Overlaps,
+        geometry: &Geometry,
+        camera: &mut Camera<'_>,
+    ) -> (Known, Option<Survey>) {
+        overlaps.take_from(&mut self.surfaces);
+        self.forget_what_overlaps(overlaps, camera);
+        let (known, left) = self.look_around(geometry, camera);
+        (known, Some(left))
+    }
+
+    /// Closes `open` shapes by lids that light passes, and counts them among the boundaries that overlap.
+    fn close(&mut self, geometry: Geometry, open: &[u32], overlaps: &mut Overlaps) -> Result<Geometry> {
+        self.shapes = geometry.into_shapes();
+        let null = self.add_bsdf(Bsdf::Null(bsdf::Null), "null".to_owned());
+        for &shape in open {
+            let lids = self.shapes[shape as usize].lids();
+            overlaps.add(&self.shapes[shape as usize], &lids, &self.surfaces, shape);
+            for lid in lids {
+                self.shapes.push(lid);
+                self.shape_names.push(format!("lid of {}", self.shape_names[shape as usize]));
+                self.shape_locations.push(self.shape_locations[shape as usize].clone());
+                self.surfaces.push(Surface {
+                    bsdf: null,
+                    emitter: None,
+                    boundary: Boundary::default(),
+                    transmits: true,
+                    touching: false,
+                    connectible: false,
+                });
+            }
+        }
+        self.check_memory()?;
+        Ok(self.geometry())
+    }
+
+    fn look_around(&self, geometry: &Geometry, camera: &Camera<'_>) -> (Known, Survey) {
+        let points = self.stated_points(camera.start, camera.stated);
+        Known::survey(geometry, &self.surfaces, points, camera.stated.unwrap_or(MediumIndex::VACUUM))
+    }
+
+    /// A camera or emitter that states a medium which boundaries that overlap put there says no more than these.
+    fn forget_what_overlaps(&mut self, overlaps: &Overlaps, camera: &mut Camera<'_>) {
+        let recentre = self.recentre;
+        let forget = |stated: &mut Option<MediumIndex>, position: Option<Vec3>| {
+            let added = overlaps.added(position);
+            *stated = stated.filter(|medium| !added.contains(medium));
+        };
+        forget(&mut camera.stated, Some(camera.start));
+        for placed in &mut self.emitters {
+            let position = placed.emitter.position().map(|position| (position - recentre).as_vec3());
+            forget(&mut placed.stated, position);
+        }
+    }
+
+    /// The media that lie where no boundary that overlaps another does.
+    fn bases(&self, camera: &Camera<'_>) -> BTreeSet<u32> {
+        let sides =
+            self.surfaces.iter().flat_map(|surface| [surface.boundary.interior, surface.boundary.exterior]);
+        let stated = self.emitters.iter().map(|placed| placed.stated);
+        let named = sides.chain(stated).chain([camera.stated, Some(MediumIndex::VACUUM)]);
+        named.flatten().map(|medium| medium.0).collect()
+    }
+
+    fn too_many_overlap(&self, found: &str) -> Error {
+        let remedy = "let fewer shapes that bound media overlap, or put one shape around several volumes";
+        Error::new(&self.shape_locations[0], "few boundaries of media that overlap", found.to_owned(), remedy)
     }
 
     /// All emitters, emissive media among them, with the medium that each lies in.
-    fn lights(&self, geometry: &Geometry, known: &Known, media: &[Medium], ambient: MediumIndex) -> Lights {
+    fn lights(
+        &self,
+        geometry: &Geometry,
+        known: &Known,
+        media: &[Medium],
+        overlaps: Option<&Overlaps>,
+        ambient: MediumIndex,
+    ) -> Lights {
         let outside = known.infinity.most();
         let locator = Locator { geometry, surfaces: &self.surfaces, known };
         let placement = Placement { locator, names: &self.names(), ambient };
-        let emitters = self.emitters.iter().map(|placed| light(placed, self.recentre, &placement));
-        let all = emitters.chain(emissive(media, locator, outside)).collect();
+        let emitters = self.emitters.iter().map(|placed| {
+            let light = light(placed, self.recentre, &placement);
+            let overlaps = overlaps.filter(|_| placed.emitter.position().is_some());
+            let medium = overlaps.map(|overlaps| overlaps.at(light.medium, light.position, Vec3::X));
+            Light { medium: medium.unwrap_or(light.medium), ..light }
+        });
+        let all = emitters.chain(emissive(media, locator, overlaps, outside)).collect();
         let around = if known.infinity.is_uniform() { outside } else { MediumIndex::VACUUM };
         Lights::new(all, geometry, &media[around.0 as usize])
     }

@@ -34,7 +34,8 @@ impl Extents<'_> {
     ) -> Result<Vec<Medium>> {
         let finish = |(index, description): (usize, MediumDescription)| {
             let (is_bound, [low, high]) = self.of(MediumIndex(index as u32));
-            description.finish(MediumBounds { low, high, is_bound }, medium_overrides)
+            let medium = description.finish(MediumBounds { low, high, is_bound }, medium_overrides)?;
+            Ok(medium.numbered(MediumIndex(index as u32)))
         };
         media.into_iter().enumerate().map(finish).collect()
     }

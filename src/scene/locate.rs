@@ -16,6 +16,7 @@ use crate::{
     sampling::{Stream, stream::Purpose},
     shape::{Ray, SurfacePoint},
 };
+use std::collections::BTreeSet;
 
 /// Rays of a survey from the boundaries of a scene, all together.
 const SURVEY_RAYS: usize = 32_768;
@@ -153,6 +154,28 @@ pub struct Survey {
 }
 
 impl Survey {
+    /// Every pair that contradicts each other once, with how many rays prove it: most first. A single ray may have slipped
+    /// through an edge.
+    pub fn proven(&self) -> Vec<(&Contradiction, usize)> {
+        let key = |c: &Contradiction| (c.from, c.medium, c.at.shape, c.at.medium);
+        let mut found: Vec<(&Contradiction, usize)> = Vec::new();
+        for contradiction in &self.contradictions {
+            match found.iter_mut().find(|(first, _)| key(first) == key(contradiction)) {
+                Some((_, count)) => *count += 1,
+                None => found.push((contradiction, 1)),
+            }
+        }
+        found.retain(|(_, count)| *count > 1);
+        found.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        found
+    }
+
+    /// The shapes that contradict each other. What a camera or emitter states wrongly says nothing of shapes.
+    pub fn shapes(&self) -> BTreeSet<u32> {
+        let proven = self.proven().into_iter();
+        proven.filter_map(|(found, _)| Some([found.from?, found.at.shape])).flatten().collect()
+    }
+
     fn extend(&mut self, medium: MediumIndex, low: Vec3, high: Vec3) {
         let index = medium.0 as usize;
         self.extents.resize(self.extents.len().max(index + 1), None);

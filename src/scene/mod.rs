@@ -6,6 +6,7 @@ pub mod build;
 mod extents;
 pub mod lights;
 mod locate;
+mod overlap;
 mod placement;
 mod range;
 mod sections;
@@ -24,6 +25,7 @@ use boundary::Boundary;
 use lights::Lights;
 pub use locate::Infinity;
 use locate::{Known, Locator};
+pub use overlap::Overlaps;
 
 /// The properties of a shape: its BSDF, emitter and media.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +52,7 @@ pub struct Scene {
     pub surfaces: Vec<Surface>,
     /// All BSDFs.
     pub bsdfs: Vec<Bsdf>,
-    /// All media; the first is vacuum.
+    /// All media; the first is vacuum. Behind them, the regions of [`Self::overlaps`].
     pub media: Vec<Medium>,
     /// All emitters.
     pub lights: Lights,
@@ -62,6 +64,8 @@ pub struct Scene {
     pub known: Known,
     /// The medium around the camera.
     pub sensor_medium: MediumIndex,
+    /// What lies where boundaries of media overlap; none where none do.
+    pub overlaps: Option<Box<Overlaps>>,
     /// Where the origin of all positions lies in the file's coordinates [m].
     pub recentre: DVec3,
 }
@@ -119,7 +123,15 @@ impl Scene {
 
     /// True if `position` lies in `medium`, as far as a ray from there towards `direction` can show.
     pub fn is_within(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> bool {
-        self.locator().along(position, direction).unwrap_or(self.outside) == medium
+        let base = self.locator().along(position, direction).unwrap_or(self.outside);
+        overlap::lies_in(self.overlaps.as_deref(), base, medium, position, direction)
+    }
+
+    /// The media that `medium` is: those of a region where several may overlap, else itself.
+    #[inline]
+    pub fn components<'a>(&'a self, medium: &'a MediumIndex) -> &'a [MediumIndex] {
+        let region = self.overlaps.as_ref().and_then(|overlaps| overlaps.members_of(*medium));
+        region.unwrap_or(std::slice::from_ref(medium))
     }
 
     /// The part of light that passes `point` undeflected along `direction`.

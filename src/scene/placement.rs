@@ -83,19 +83,9 @@ impl Names<'_> {
         self.library.warn(location, &text);
     }
 
-    /// Shapes that are open or overlap; every pair once, in order of the number of rays that prove it.
+    /// Shapes that are open.
     pub fn warn_of_contradictions(&self, survey: &Survey) {
-        let key = |c: &Contradiction| (c.from, c.medium, c.at.shape, c.at.medium);
-        let mut found: Vec<(&Contradiction, usize)> = Vec::new();
-        for contradiction in &survey.contradictions {
-            match found.iter_mut().find(|(first, _)| key(first) == key(contradiction)) {
-                Some((_, count)) => *count += 1,
-                None => found.push((contradiction, 1)),
-            }
-        }
-        // A single ray may have slipped through an edge.
-        found.retain(|(_, count)| *count > 1);
-        found.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let found = survey.proven();
         let Some((Contradiction { from, medium, at }, _)) = found.first() else { return };
         let place = at.position.as_dvec3() + self.recentre;
         let others = match found.len() {
@@ -104,9 +94,9 @@ impl Names<'_> {
         };
         let text = format!(
             "the boundaries of media contradict each other: an unblocked way from {} in {} ends on the side of \
-             \"{}\" in {}, near {place:.3}{others}. No image is right then, and camera and light subpaths may \
-             differ. Close shapes that bound media, let none of them overlap, and state the exterior of those \
-             that lie within a medium",
+             \"{}\" in {}, near {place:.3}{others}. No image is right then. Openings of cylinders and meshes are \
+             taken to be closed by flat lids; around other open shapes, camera and light subpaths may differ. Close \
+             shapes that bound media, and state the exterior of those that lie within a medium",
             self.shape(*from),
             self.medium(*medium),
             self.shapes[at.shape as usize],

@@ -11,7 +11,8 @@ impl Scene {
     /// examined again, and so are the emitters, as the extent and the emission of media may have changed.
     pub fn set_time(&mut self, time: f64) -> Result<bool> {
         let mut changed = false;
-        for medium in &mut self.media {
+        let given = self.overlaps.as_ref().map_or(self.media.len(), |overlaps| overlaps.media());
+        for medium in &mut self.media[..given] {
             if let Some(moved) = medium.at_time(time)? {
                 *medium = moved;
                 changed = true;
@@ -19,11 +20,15 @@ impl Scene {
         }
         if changed {
             let steady = std::mem::take(&mut self.lights).all.into_iter();
-            let emissive = emissive(&self.media, self.locator(), self.outside);
+            self.media.truncate(given);
+            let overlaps = self.overlaps.as_deref();
+            let emissive = emissive(&self.media, self.locator(), overlaps, self.outside);
             let lights =
                 steady.filter(|light| !matches!(light.emitter.kind, Kind::Medium(_))).chain(emissive);
             let outside = &self.media[self.outside.0 as usize];
             self.lights = Lights::new(lights.collect(), &self.geometry, outside);
+            let regions = self.overlaps.as_ref().map(|overlaps| overlaps.build(&self.media));
+            self.media.extend(regions.into_iter().flatten());
         }
         Ok(changed)
     }

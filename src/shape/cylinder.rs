@@ -2,7 +2,7 @@
 //! from its axis' base whose f32 roundings would be seen on the small scale of its radius.
 
 use super::{
-    Curved, CurvedModel, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    Curved, CurvedModel, Disk, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     placement::{Placement, is_in_range},
 };
 use crate::{
@@ -93,6 +93,15 @@ impl Cylinder {
     fn fits(&self) -> bool {
         let (low, high) = self.bounds();
         is_in_range(low) && is_in_range(high) && (self.radius as f32).is_normal() && self.area().is_normal()
+    }
+
+    /// Disks across it just before its ends: it may stand on a floor.
+    pub fn lids(&self) -> [Disk; 2] {
+        const BEFORE: f64 = 1e-4;
+        let Self { base, axis, length, radius, across: [x, y], .. } = *self;
+        [(BEFORE, -self.facing), (1.0 - BEFORE, self.facing)].map(|(z, facing)| {
+            Disk::spanned(base + axis * (length * z), x * radius, y * radius, axis * facing)
+        })
     }
 
     /// The surface point nearest to `p`.

@@ -53,12 +53,17 @@ pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Disk> {
 impl Disk {
     /// As in Mitsuba, a mirrored disk keeps facing where its transformed normal points.
     fn place(placement: &Placement) -> Self {
-        let center = placement.point(DVec3::ZERO).as_vec3();
-        let (edge_u, edge_v) = (placement.vector(DVec3::X).as_vec3(), placement.vector(DVec3::Y).as_vec3());
+        let (edge_u, edge_v) = (placement.vector(DVec3::X), placement.vector(DVec3::Y));
+        let turn = if placement.is_mirrored() != placement.flip_normals { -1.0 } else { 1.0 };
+        Self::spanned(placement.point(DVec3::ZERO), edge_u, edge_v, edge_u.cross(edge_v) * turn)
+    }
+
+    /// The disk about `center` with these edges, on the side of `facing`.
+    pub fn spanned(center: DVec3, edge_u: DVec3, edge_v: DVec3, facing: DVec3) -> Self {
+        let (center, edge_u, edge_v) = (center.as_vec3(), edge_u.as_vec3(), edge_v.as_vec3());
         // From the rounded edges, so that the plane is that of the points.
         let cross = edge_u.as_dvec3().cross(edge_v.as_dvec3());
-        let turn = if placement.is_mirrored() != placement.flip_normals { -1.0 } else { 1.0 };
-        let normal = (cross.normalize() * turn).as_vec3();
+        let normal = (cross.normalize() * cross.dot(facing).signum()).as_vec3();
         let axes = [edge_v.as_dvec3().cross(cross), cross.cross(edge_u.as_dvec3())]
             .map(|axis| axis / cross.length_squared());
         let reach = axes[0].length().max(axes[1].length()) as f32;

@@ -14,7 +14,7 @@ use crate::{
     memory,
     sampling::Stream,
 };
-use std::{collections::HashSet, path::Path};
+use std::{collections::BTreeMap, path::Path};
 
 /// What a mesh file says, in object space.
 #[derive(Clone, Debug, Default)]
@@ -80,16 +80,54 @@ impl Mesh {
 
     /// True if every edge is shared: an even number of triangles has it. Vertices at one position are one.
     pub fn is_closed(&self) -> bool {
-        let mut odd = HashSet::new();
-        for [a, b, c] in self.triangles.iter().map(|corners| corners.map(|i| self.place(i))) {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                let edge = (from.min(to), from.max(to));
-                if !odd.remove(&edge) {
-                    odd.insert(edge);
+        self.open_edges().is_empty()
+    }
+
+    /// Every edge that an odd number of triangles has, from vertex to vertex as the last of these has it.
+    fn open_edges(&self) -> BTreeMap<[[u32; 3]; 2], [u32; 2]> {
+        let mut odd = BTreeMap::new();
+        for [a, b, c] in &self.triangles {
+            for edge in [[*a, *b], [*b, *c], [*c, *a]] {
+                let [from, to] = edge.map(|vertex| self.place(vertex));
+                let place = [from.min(to), from.max(to)];
+                if odd.remove(&place).is_none() {
+                    odd.insert(place, edge);
                 }
             }
         }
-        odd.is_empty()
+        odd
+    }
+
+    /// Triangles from the edges of every opening to its middle; none where there is no opening, or nothing to close.
+    pub fn lid(&self) -> Option<Self> {
+        let mut open: Vec<[u32; 2]> = self.open_edges().into_values().collect();
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        while let Some([start, mut end]) = open.pop() {
+            let mut rim = vec![start];
+            while self.place(end) != self.place(start)
+                && let Some(next) = open.iter().position(|[from, _]| self.place(*from) == self.place(end))
+            {
+                rim.push(end);
+                end = open.swap_remove(next)[1];
+            }
+            let (first, count) = (positions.len() as u32, rim.len() as u32);
+            positions.extend(rim.iter().map(|vertex| self.positions[*vertex as usize]));
+            positions.push(positions[first as usize..].iter().sum::<Vec3>() / count as f32);
+            // The other way round than the triangles beyond the edges.
+            triangles.extend((0..count).map(|i| [first + (i + 1) % count, first + i, first + count]));
+        }
+        triangles.retain(|t| (double_area(&positions, t) as f32).is_normal());
+        let areas = AreaTable::new(triangles.iter().map(|t| double_area(&positions, t) * 0.5));
+        let lid = Self { positions, normals: vec![], uvs: vec![], triangles, areas, facing: self.facing };
+        let size = self.areas.total() + lid.areas.total();
+        let holds_space = (self.volume() + lid.volume()).abs() > 1e-6 * size.powf(1.5);
+        (!lid.triangles.is_empty() && holds_space).then_some(lid)
+    }
+
+    /// What it adds to the volume that a closed mesh holds, of which it is a part [m^3].
+    fn volume(&self) -> f64 {
+        let corners = |t: &[u32; 3]| t.map(|vertex| self.positions[vertex as usize].as_dvec3());
+        self.triangles.iter().map(corners).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
     }
 
     /// The position of vertex `index`, for comparison; 0 and -0 are one.

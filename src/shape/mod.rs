@@ -277,6 +277,15 @@ impl Shape {
         }
     }
 
+    /// What closes it, flat and facing as it does; nothing where that holds no space.
+    pub fn lids(&self) -> Vec<Self> {
+        match self {
+            Self::Cylinder(cylinder) => cylinder.lids().map(Self::Disk).into(),
+            Self::Mesh(mesh) => mesh.lid().map(Self::Mesh).into_iter().collect(),
+            Self::Parallelograms(_) | Self::Disk(_) | Self::Sphere(_) => Vec::new(),
+        }
+    }
+
     /// Least and greatest corner of the box around it.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let boxes = (0..self.primitive_count()).map(|index| self.primitive(index).bounds());

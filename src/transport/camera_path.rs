@@ -212,9 +212,25 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         stream: &mut Stream,
     ) {
         let scene = self.estimator.scene;
-        let Some((light, emission)) = scene.lights.of_medium(part.medium) else { return };
+        for medium in scene.components(&part.medium) {
+            if let Some((light, emission)) = scene.lights.of_medium(*medium) {
+                let emitting = part.emitting(&scene.media[medium.0 as usize]);
+                self.emission_along(departure, part, light, emission.sample_along(&emitting, stream), stream);
+            }
+        }
+    }
+
+    /// s = 0 in a medium that is the emitter `light`, at the distance that was `sampled`, and its density [1/m].
+    fn emission_along(
+        &mut self,
+        departure: &Departure<P::MisSums>,
+        part: &FlightPart<P::Channels>,
+        light: u32,
+        sampled: Option<(f32, f32)>,
+        stream: &mut Stream,
+    ) {
         self.observer.start();
-        if let Some((t, pdf)) = emission.sample_along(&part.emitting(scene), stream)
+        if let Some((t, pdf)) = sampled
             && let Some((subpath, sample)) = self.meet(departure, part, light, t, stream)
         {
             let contribution = self.emitter_hit(&subpath, &sample, self.previous).map(|c| c / pdf);

@@ -189,7 +189,7 @@ pub fn connect_along<P: Profile>(
 ) -> Option<Contribution> {
     let Span { ray, cut, distance_squared, hidden } = *span;
     let between = segment::transmittance::<P>(scene, ray, cut, a.medium, hidden, stream)?;
-    if P::EMISSIVE && b.within && between.medium != b.medium {
+    if P::EMISSIVE && b.within && !scene.components(&between.medium).contains(&b.medium) {
         return None;
     }
     // Where nothing comes through, weights may be 0 times an overflowed ratio of densities: no numbers.

@@ -59,10 +59,10 @@ use crate::{
 };
 
 /// True if some path of `scene` can be made so: there are media, emitters at some place, and a lens, as parallel rays are
-/// left out.
+/// left out. A point of a ray has no one medium where several overlap.
 pub fn applies(scene: &Scene) -> bool {
     let media = scene.media.iter().any(|medium| medium.bound().sigma_t != Spectrum::ZERO);
-    media && scene.lights.has_pivots() && !scene.sensor.is_parallel()
+    media && scene.overlaps.is_none() && scene.lights.has_pivots() && !scene.sensor.is_parallel()
 }
 
 /// The first collision of a camera subpath.
@@ -173,7 +173,7 @@ impl<P: Profile, R: Observer<P::MisSums>> CameraPath<'_, P, R> {
         pdf: f32,
     ) -> Option<Vertex<P::MisSums>> {
         let (estimator, direction) = (self.estimator, departure.ray.direction);
-        let properties = estimator.scene.media[between.medium.0 as usize].properties_at::<P>(position);
+        let properties = estimator.scene.media[between.medium.0 as usize].properties_at::<P>(0, position);
         let inv_pdf = distance * distance / (departure.pdf_fwd * pdf);
         if properties.sigma_t.max_element() <= 0.0 || !(inv_pdf > 0.0 && inv_pdf < f32::INFINITY) {
             return None;

@@ -128,12 +128,13 @@ impl Needs {
     /// What `scene` needs; `hide_emitters` as in [`super::Options`].
     pub fn of(scene: &Scene, hide_emitters: bool) -> Self {
         let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
+        let overlap = scene.overlaps.is_some();
         let passed = hide_emitters && scene.surfaces.iter().any(|surface| surface.emitter.is_some());
         Self {
             media: scene.media.iter().any(|medium| medium.bound().sigma_t != Spectrum::ZERO),
             chromatic: scene.media.iter().any(Medium::is_chromatic),
-            heterogeneous: scene.media.iter().any(|medium| medium.heterogeneous().is_some()),
-            nulls: nulls || passed,
+            heterogeneous: overlap || scene.media.iter().any(|medium| medium.heterogeneous().is_some()),
+            nulls: nulls || passed || overlap,
             infinite: scene.lights.has_infinite() || scene.sensor.is_parallel(),
             emissive: scene.lights.has_media(),
         }

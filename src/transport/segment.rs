@@ -14,7 +14,7 @@ pub use transmittance::{SegmentTransmittance, transmittance};
 
 use crate::{
     math::{RaySegment, Spectrum, Vec3, measure, offset},
-    medium::{Medium, MediumIndex, MediumInterval},
+    medium::{MediaProfile, Medium, MediumIndex, MediumInterval},
     sampling::Stream,
     scene::Scene,
     shape::{Hit, Ray, SurfacePoint},
@@ -60,12 +60,17 @@ impl<'a> Segment<'a> {
     }
 
     /// The next surface within `pdf_over_hero` metres, and what lies before it in the medium; all that is left of
-    /// the segment where there is none.
+    /// the segment where there is none. Where media overlap, it finds out which of them that is.
     #[inline(always)]
-    pub fn next(&self, pdf_over_hero: f32) -> (MediumInterval, Option<Hit>) {
+    pub fn next<P: MediaProfile>(&mut self, pdf_over_hero: f32) -> (MediumInterval, Option<Hit>) {
         let Ray { origin, direction, t_max } = self.ray;
-        let hit = self.scene.geometry.closest(&Ray { t_max: pdf_over_hero.min(t_max), ..self.ray });
+        let overlaps = if P::HETEROGENEOUS { self.scene.overlaps.as_deref() } else { None };
+        let reach = if overlaps.is_some() { t_max } else { pdf_over_hero.min(t_max) };
+        let hit = self.scene.geometry.closest(&Ray { t_max: reach, ..self.ray });
         let segment = RaySegment { origin, direction, length: hit.map_or(t_max, |hit| hit.t) };
+        if let Some(overlaps) = overlaps {
+            self.medium = overlaps.along(self.medium, &segment);
+        }
         (MediumInterval { segment, skipped: self.skipped }, hit)
     }
 

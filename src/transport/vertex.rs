@@ -141,7 +141,7 @@ impl<S: MisSums> Vertex<S> {
     pub fn scatter_towards(&self, scene: &Scene, outgoing: Vec3, transport: Transport) -> Scattering {
         match &self.interaction {
             Interaction::Medium(_, properties) => {
-                let medium = &scene.media[self.subpath.medium.0 as usize];
+                let medium = &scene.media[properties.medium.0 as usize];
                 let phase = medium.phase.pdf_sr(Deflection::between(-self.subpath.incoming, outgoing));
                 let pdf = phase * self.survival;
                 Scattering { value: properties.albedo * phase, pdf_fwd: pdf, pdf_rev: pdf }

@@ -352,7 +352,7 @@ fn collide<S: MisSums>(
     properties: &MediumProperties,
     stream: &mut Stream,
 ) -> Option<ScatterSample> {
-    let medium = &scene.media[vertex.subpath.medium.0 as usize];
+    let medium = &scene.media[properties.medium.0 as usize];
     let survival = vertex.survival;
     if stream.uniform() >= survival {
         return None;

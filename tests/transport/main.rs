@@ -16,6 +16,7 @@ mod heuristics;
 mod layers;
 mod modes;
 mod openings;
+mod overlaps;
 mod sobol;
 mod starts;
 mod traps;

@@ -24,6 +24,8 @@ use crate::{
 pub struct DistanceSample<L> {
     /// Where it collided [m]; none where it passed the segment.
     pub collision: Option<f32>,
+    /// Which of several media that overlap has collided; 0 where there is one.
+    pub component: usize,
     /// Deterministic optical depth up to there: what the weights use (the stand-in where transmittance is random).
     pub depth: L,
     /// Transmittance of every channel over the hero's, and the hero's sigma_t over that by which the collision was
@@ -209,13 +211,14 @@ impl<L: Channels> DistanceSample<L> {
     /// A sample of a method that computes depths exactly.
     #[inline]
     pub(super) fn exact(collision: Option<f32>, depth: L, hero: usize) -> Self {
-        Self { collision, depth, ratio: depth.flight_ratio(L::splat(1.0), hero), spent: depth.hero(hero) }
+        let ratio = depth.flight_ratio(L::splat(1.0), hero);
+        Self { collision, component: 0, depth, ratio, spent: depth.hero(hero) }
     }
 
     /// A segment in which there is nothing.
     #[inline]
     fn empty() -> Self {
-        Self { collision: None, depth: L::splat(0.0), ratio: L::splat(1.0), spent: 0.0 }
+        Self { collision: None, component: 0, depth: L::splat(0.0), ratio: L::splat(1.0), spent: 0.0 }
     }
 }
 

@@ -181,7 +181,7 @@ impl NullCollision {
         let (collision, depth) = self.collision(medium, segment, hero, stream);
         let flown = RaySegment { length: collision.unwrap_or(segment.length), ..*segment };
         let ratio = self.transmittance_ratio(medium, &flown, hero, stream);
-        DistanceSample { collision, depth, ratio, spent: 0.0 }
+        DistanceSample { collision, component: 0, depth, ratio, spent: 0.0 }
     }
 
     /// The first real collision, and the stand-in for the depth up to there.
@@ -268,6 +268,6 @@ impl NullCollision {
         let flown = RaySegment { length: t, ..*segment };
         let Attenuation { depth, transmittance } = self.attenuation::<L>(medium, &flown, stream)?;
         let ratio = transmittance.scaled(remaining.exp() * own / rate);
-        Some(DistanceSample { collision: Some(t), depth, ratio, spent: remaining })
+        Some(DistanceSample { collision: Some(t), component: 0, depth, ratio, spent: remaining })
     }
 }

@@ -12,7 +12,7 @@ const AROUND: MediumBounds =
     MediumBounds { low: vec3(-1.0, 0.0, 0.0), high: vec3(1.0, 1.0, 3.0), is_bound: true };
 
 fn properties(sigma_t: f32, albedo: f32) -> Within {
-    Within::Uniform(MediumProperties { sigma_t: Spectrum::splat(sigma_t), albedo: Spectrum::splat(albedo) })
+    Within::Uniform(MediumProperties::of(Spectrum::splat(sigma_t), Spectrum::splat(albedo)))
 }
 
 /// What the medium with these parameters emits.

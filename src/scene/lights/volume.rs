@@ -6,28 +6,36 @@ use crate::{
     math::{SpectrumExt, Vec3, warp},
     medium::{Emission, Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
-    scene::locate::Locator,
+    scene::{
+        locate::Locator,
+        overlap::{self, Overlaps},
+    },
 };
 
 /// Points of an emissive medium's box that are located.
 const POINTS: u32 = 4096;
 
-/// The emissive ones among `media`; `outside` is the medium of points about which nothing is known.
+/// The emissive ones among `media`, which may overlap; `outside` is the medium of points about which nothing is known.
 pub fn emissive<'a>(
     media: &'a [Medium],
     locator: Locator<'a>,
+    overlaps: Option<&'a Overlaps>,
     outside: MediumIndex,
 ) -> impl Iterator<Item = Light> + use<'a> {
     (0..).zip(media).filter_map(move |(index, medium)| {
         let (emission, medium) = (medium.emission.clone()?, MediumIndex(index));
-        let filled = filled(&emission, medium, locator, outside);
+        let mut lit = |point: Vec3, direction: Vec3| {
+            let base = locator.along(point, direction).unwrap_or(outside);
+            overlap::lies_in(overlaps, base, medium, point, direction)
+        };
+        let filled = filled(&emission, medium, &mut lit);
         let emitter = Emitter::of_medium(VolumeEmitter { emission, filled });
         Some(Light { emitter, position: Vec3::ZERO, shape: None, medium, straddles: false })
     })
 }
 
-/// The part of the power of `emission` that is emitted in `medium`, above 0.
-fn filled(emission: &Emission, medium: MediumIndex, locator: Locator<'_>, outside: MediumIndex) -> f64 {
+/// The part of the power of `emission` that is emitted where `lit` finds `medium`, above 0.
+fn filled(emission: &Emission, medium: MediumIndex, lit: &mut impl FnMut(Vec3, Vec3) -> bool) -> f64 {
     let mut stream = Stream::new(2, u64::from(medium.0), 0, Purpose::Pilot);
     let mut sum = [0.0, 0.0];
     for _ in 0..POINTS {
@@ -36,9 +44,8 @@ fn filled(emission: &Emission, medium: MediumIndex, locator: Locator<'_>, outsid
         let pdf = emission.pdf_vol(point);
         // Rounding may have put it just outside.
         let share = if pdf > 0.0 { f64::from(emission.at(point).luminance() / pdf) } else { 0.0 };
-        let found = locator.along(point, direction).unwrap_or(outside);
         sum[0] += share;
-        sum[1] += if found == medium { share } else { 0.0 };
+        sum[1] += if lit(point, direction) { share } else { 0.0 };
     }
     (sum[1] / sum[0]).max(1.0 / f64::from(POINTS))
 }

@@ -86,7 +86,7 @@ pub fn force<P: Profile>(
 pub fn sure_depth<P: Profile>(mut segment: Segment<'_>) -> P::Channels {
     let mut depth = P::Channels::splat(0.0);
     loop {
-        let (interval, hit) = segment.next(f32::INFINITY);
+        let (interval, hit) = segment.next::<P>(f32::INFINITY);
         depth = depth + segment.medium().optical_depth::<P>(&interval);
         let Some(hit) = hit.filter(|_| P::NULLS) else { return depth };
         let point = segment.surface(&hit);
@@ -117,7 +117,7 @@ fn follow<'a, P: Profile>(
     let (mut parts, mut sure) = (Vec::new(), None);
     let mut unforced = Unforced::none();
     loop {
-        let (interval, hit) = segment.next(f32::INFINITY);
+        let (interval, hit) = segment.next::<P>(f32::INFINITY);
         let (before, medium) = (unforced, segment.medium);
         if P::EMISSIVE {
             let before = FlightState { ratio: before.through, ..before.state };
@@ -163,7 +163,7 @@ fn collide<P: Profile>(
     let remaining = (spent - before.spent).clamp(0.0, part.depth);
     let sample = segment.medium().force_collision::<P>(interval, hero, remaining, stream)?;
     let position = interval.segment.at(sample.collision?);
-    let properties = segment.medium().properties_at::<P>(position);
+    let properties = segment.medium().properties_at::<P>(sample.component, position);
     // Positions are rounded: a collision at the very edge may lie outside.
     if P::Channels::from_spectrum(properties.sigma_t).hero(hero) <= 0.0 {
         return None;

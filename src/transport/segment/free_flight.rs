@@ -144,11 +144,11 @@ pub struct FlightPart<L> {
 }
 
 impl<L: Channels> FlightPart<L> {
-    /// The part as far as it can emit. In a homogeneous medium the distance skipped behind a boundary counts: where mean
+    /// The part as far as `medium` can emit there. In a homogeneous medium the distance skipped behind a boundary counts: where mean
     /// free paths are as short, the light of that distance would be lost.
-    pub fn emitting(&self, scene: &Scene) -> RaySegment {
+    pub fn emitting(&self, medium: &Medium) -> RaySegment {
         let MediumInterval { segment, skipped } = self.interval;
-        match scene.media[self.medium.0 as usize].heterogeneous() {
+        match medium.heterogeneous() {
             Some(_) => segment,
             None => RaySegment { length: segment.length + skipped, ..segment },
         }
@@ -184,7 +184,7 @@ impl<L: Channels> FlightPart<L> {
 /// has the probability of eq. 7.
 #[inline(always)]
 pub fn sample_free_flight<P: Profile>(
-    segment: Segment<'_>,
+    mut segment: Segment<'_>,
     hero: usize,
     stream: &mut Stream,
     along: &mut impl FnMut(&Passed<P::Channels>, &mut Stream),
@@ -193,7 +193,7 @@ pub fn sample_free_flight<P: Profile>(
     if P::NULLS {
         return fly_across_boundaries::<P>(segment, hero, remaining, stream, along);
     }
-    let Leg { interaction, state, .. } = fly_to_surface::<P>(&segment, hero, remaining, stream);
+    let Leg { interaction, state, .. } = fly_to_surface::<P>(&mut segment, hero, remaining, stream);
     FreeFlight { interaction, medium: segment.medium, state }
 }
 
@@ -210,19 +210,19 @@ struct Leg<L> {
 /// A flight to the next surface, in one medium.
 #[inline(always)]
 fn fly_to_surface<P: Profile>(
-    segment: &Segment<'_>,
+    segment: &mut Segment<'_>,
     hero: usize,
     remaining: f32,
     stream: &mut Stream,
 ) -> Leg<P::Channels> {
     if !P::MEDIA {
-        let (interval, hit) = segment.next(f32::INFINITY);
+        let (interval, hit) = segment.next::<P>(f32::INFINITY);
         let interaction = hit.map(|hit| Interaction::Surface(segment.surface(&hit)));
         return Leg { interaction, state: FlightState::none(), spent: 0.0, interval };
     }
+    let reach = segment.medium().reach::<P>(segment.skipped, hero, remaining);
+    let (mut interval, hit) = segment.next::<P>(reach);
     let medium = segment.medium();
-    let reach = medium.reach::<P>(segment.skipped, hero, remaining);
-    let (mut interval, hit) = segment.next(reach);
     let sample = medium.sample_distance::<P>(&interval, hero, remaining, stream);
     let mut state = FlightState { depth: sample.depth, ratio: sample.ratio, tint: Spectrum::ONE };
     let interaction = match (sample.collision, hit) {
@@ -231,7 +231,7 @@ fn fly_to_surface<P: Profile>(
             if P::EMISSIVE {
                 interval.skipped = medium.skipped_before::<P>(interval.skipped, hero, sample.spent);
             }
-            Some(collide::<P>(medium, &interval, hero, &mut state))
+            Some(collide::<P>(medium, sample.component, &interval, hero, &mut state))
         }
         (None, Some(hit)) => Some(Interaction::Surface(segment.surface(&hit))),
         (None, None) => None,
@@ -243,12 +243,13 @@ fn fly_to_surface<P: Profile>(
 #[inline(always)]
 fn collide<P: Profile>(
     medium: &Medium,
+    component: usize,
     interval: &MediumInterval,
     hero: usize,
     state: &mut FlightState<P::Channels>,
 ) -> Interaction {
     let position = interval.segment.at(interval.segment.length);
-    let properties = medium.properties_at::<P>(position);
+    let properties = medium.properties_at::<P>(component, position);
     if P::HETEROGENEOUS {
         state.ratio = state.ratio * collision_ratio(properties.sigma_t, hero);
     }
@@ -267,7 +268,7 @@ fn fly_across_boundaries<P: Profile>(
     let mut state = FlightState::none();
     loop {
         let Leg { interaction, state: leg, spent, interval } =
-            fly_to_surface::<P>(&segment, hero, remaining, stream);
+            fly_to_surface::<P>(&mut segment, hero, remaining, stream);
         let medium = segment.medium;
         if P::EMISSIVE {
             along(&Passed::Medium(FlightPart { medium, interval, before: state, certain: false }), stream);

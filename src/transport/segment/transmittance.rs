@@ -58,7 +58,7 @@ fn across_boundaries<P: Profile>(
     let end = (t_max < f32::INFINITY).then(|| origin + direction * t_max);
     let mut product = Product::<P>::new();
     loop {
-        let (mut interval, hit) = segment.next(f32::INFINITY);
+        let (mut interval, hit) = segment.next::<P>(f32::INFINITY);
         let Some(hit) = hit else {
             interval.segment.length += cut;
             product.add(segment.medium(), &interval, stream)?;

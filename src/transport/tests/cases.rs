@@ -280,7 +280,8 @@ fn of_flights<P: Profile>(
     for (count, departure, passed) in &camera.passed {
         let met = match passed {
             Passed::Medium(part) => lights.of_medium(part.medium).and_then(|(light, emission)| {
-                let (t, _) = emission.sample_along(&part.emitting(estimator.scene), stream)?;
+                let (t, _) = emission
+                    .sample_along(&part.emitting(&estimator.scene.media[part.medium.0 as usize]), stream)?;
                 camera.visitor.meet(departure, part, light, t, stream)
             }),
             Passed::Emitter(crossing) => {

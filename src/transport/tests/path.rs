@@ -272,7 +272,7 @@ const POINTS: u32 = 4_000;
 
 /// The properties of a medium at `position`.
 pub fn properties(scene: &Scene, medium: MediumIndex, position: Vec3) -> MediumProperties {
-    scene.media[medium.0 as usize].properties_at::<Everything>(position)
+    scene.media[medium.0 as usize].properties_at::<Everything>(0, position)
 }
 
 /// How often a camera subpath that passes `position` samples what the emitter `light` emits there [1/m].

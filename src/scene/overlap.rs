@@ -1,0 +1,377 @@
+//! Media whose boundaries overlap: which of them lie at a point.
+//!
+//! A closed boundary puts its interior in the place of its exterior. Where several hold a point, each does so, in any
+//! order: media that overlap are all there, and their coefficients add; one that is there by two boundaries is there
+//! once; a bubble takes away what it states as its exterior. That depends on the point alone, so camera and light
+//! subpaths cannot differ, which they would if each crossing switched from one medium to another.
+//!
+//! Only scenes whose boundaries overlap have this. Walks then carry the index of a region, which stands behind the
+//! indices of media: what would be there without these boundaries (their base, which walks find as in other scenes),
+//! and the boundaries that hold the part of the ray at hand.
+
+use super::{Surface, accel::Geometry, locate::Survey};
+use crate::{
+    math::{RaySegment, Vec3, offset, vec3, warp},
+    medium::{Medium, MediumIndex},
+    sampling::{Stream, stream::Purpose},
+    shape::{Ray, Shape},
+};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Boundaries that hold a point, one bit each.
+type Holders = u128;
+
+/// Points at which each pair of boundaries is examined.
+const POINTS: u32 = 64;
+
+/// Most regions.
+const MOST_REGIONS: usize = 4096;
+
+/// The boundaries of a scene that overlap, and what lies where.
+#[derive(Clone, Debug, Default)]
+pub struct Overlaps {
+    boundaries: Vec<ClosedBoundary>,
+    /// How many media there are besides.
+    media: usize,
+    regions: Vec<Region>,
+    index: HashMap<(MediumIndex, Holders), MediumIndex>,
+}
+
+/// A closed shape that bounds a medium.
+#[derive(Clone, Debug)]
+struct ClosedBoundary {
+    shape: u32,
+    /// The shape alone.
+    geometry: Geometry,
+    /// Its normals point away from what it holds.
+    outward: bool,
+    /// What it adds.
+    inside: MediumIndex,
+    /// What it takes away.
+    outside: MediumIndex,
+}
+
+/// What lies where some of the boundaries are.
+#[derive(Clone, Debug)]
+struct Region {
+    base: MediumIndex,
+    /// What is there, vacuum left out.
+    members: Vec<MediumIndex>,
+}
+
+impl Overlaps {
+    /// The closed boundaries that overlap, by points that they hold or by what rays of a `survey` met, and all that lie in
+    /// or across these. An error says how many are too many.
+    pub fn find(geometry: &Geometry, surfaces: &[Surface], survey: &Survey) -> Result<Self, String> {
+        let closed = |shape: u32| {
+            let Surface { boundary, transmits, .. } = surfaces[shape as usize];
+            transmits && boundary.is_known() && geometry.shapes()[shape as usize].is_closed()
+        };
+        let bounding = |shape: &u32| closed(*shape);
+        let mut chosen: BTreeSet<u32> = survey.shapes().into_iter().filter(bounding).collect();
+        let near = Near::of(geometry, (0..surfaces.len() as u32).filter(bounding).collect());
+        let mut boundaries = near.boundaries(geometry, surfaces);
+        chosen.extend(near.contradictory(&boundaries));
+        near.spread(&mut chosen);
+        if chosen.len() > Holders::BITS as usize {
+            return Err(format!("{} shapes", chosen.len()));
+        }
+        boundaries.retain(|boundary| chosen.contains(&boundary.shape));
+        Ok(Self { boundaries, ..Self::default() })
+    }
+
+    /// Another boundary: `shape`, which is number `index` and closed by `lids`.
+    pub fn add(&mut self, shape: &Shape, lids: &[Shape], surfaces: &[Surface], index: u32) {
+        self.boundaries.push(ClosedBoundary::new(shape, lids, surfaces, index));
+    }
+
+    /// True where nothing overlaps.
+    pub fn is_empty(&self) -> bool {
+        self.boundaries.is_empty()
+    }
+
+    /// Takes these boundaries from `surfaces`: what is left is what lies there without them. Walls do not say what they
+    /// stand in where it is only a part of that.
+    pub fn take_from(&self, surfaces: &mut [Surface]) {
+        for boundary in &self.boundaries {
+            surfaces[boundary.shape as usize].boundary = super::Boundary::default();
+        }
+        let added = self.added(None);
+        let unless_added = |side: Option<MediumIndex>| side.filter(|medium| !added.contains(medium));
+        for surface in surfaces.iter_mut().filter(|surface| !surface.transmits) {
+            surface.boundary.interior = unless_added(surface.boundary.interior);
+            surface.boundary.exterior = unless_added(surface.boundary.exterior);
+        }
+    }
+
+    /// Finds all regions, of as many `media`, on top of each of `bases`. An error says how many are too many.
+    pub fn find_regions(&mut self, media: usize, bases: &BTreeSet<u32>) -> Result<(), String> {
+        if self.boundaries.len() > Holders::BITS as usize {
+            return Err(format!("{} shapes", self.boundaries.len()));
+        }
+        self.media = media;
+        let mut found = Vec::new();
+        self.extend(0, 0, (Vec3::NEG_INFINITY, Vec3::INFINITY), &mut found);
+        for holders in found {
+            for base in bases.iter().map(|base| MediumIndex(*base)) {
+                let index = MediumIndex((media + self.regions.len()) as u32);
+                self.regions.push(Region { base, members: self.members(base, holders) });
+                self.index.insert((base, holders), index);
+            }
+            if self.regions.len() > MOST_REGIONS {
+                return Err(format!("more than {MOST_REGIONS} combinations"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds to `found` all sets of boundaries that are `holders` and some from `next` on, and whose boxes have points in
+    /// common, those of `within` among them.
+    fn extend(&self, holders: Holders, next: usize, within: (Vec3, Vec3), found: &mut Vec<Holders>) {
+        for index in next..self.boundaries.len() {
+            if found.len() > MOST_REGIONS {
+                return;
+            }
+            if let Some(within) = common(within, self.boundaries[index].geometry.bounds()) {
+                found.push(holders | 1 << index);
+                self.extend(holders | 1 << index, index + 1, within, found);
+            }
+        }
+    }
+
+    /// The media that lie within `holders`, where `base` would lie without them.
+    fn members(&self, base: MediumIndex, holders: Holders) -> Vec<MediumIndex> {
+        let mut counts = BTreeMap::from([(base.0, 1)]);
+        for boundary in self.held_by(holders) {
+            *counts.entry(boundary.inside.0).or_insert(0) += 1;
+            *counts.entry(boundary.outside.0).or_insert(0) -= 1;
+        }
+        let there = counts.into_iter().filter(|(medium, count)| *medium != 0 && *count > 0);
+        there.map(|(medium, _)| MediumIndex(medium)).collect()
+    }
+
+    fn held_by(&self, holders: Holders) -> impl Iterator<Item = &ClosedBoundary> {
+        self.boundaries.iter().enumerate().filter(move |(index, _)| holders >> index & 1 == 1).map(|(_, b)| b)
+    }
+
+    /// What the regions are made of, in the order of their indices, which follow those of `media`.
+    pub fn build(&self, media: &[Medium]) -> Vec<Medium> {
+        let medium = |region: &Region| match region.members.as_slice() {
+            [] => Medium::vacuum(),
+            [one] => media[one.0 as usize].clone(),
+            several => Medium::mixture(several.iter().map(|one| media[one.0 as usize].clone()).collect()),
+        };
+        self.regions.iter().map(medium).collect()
+    }
+
+    /// How many boundaries they are.
+    pub fn len(&self) -> usize {
+        self.boundaries.len()
+    }
+
+    /// How many media there are that are no regions.
+    pub fn media(&self) -> usize {
+        self.media
+    }
+
+    /// The media of each region.
+    pub fn regions(&self) -> impl Iterator<Item = &[MediumIndex]> {
+        self.regions.iter().map(|region| region.members.as_slice())
+    }
+
+    /// The media of a region; none of what is itself a medium.
+    pub fn members_of(&self, index: MediumIndex) -> Option<&[MediumIndex]> {
+        self.region(index).map(|region| region.members.as_slice())
+    }
+
+    fn region(&self, index: MediumIndex) -> Option<&Region> {
+        (index.0 as usize).checked_sub(self.media).map(|index| &self.regions[index])
+    }
+
+    /// The region of `part` of a ray, between two surfaces, of a walk that carries `medium`.
+    pub fn along(&self, medium: MediumIndex, part: &RaySegment) -> MediumIndex {
+        // Nothing closed lies around what has no end.
+        if part.length == f32::INFINITY {
+            return self.region(medium).map_or(medium, |region| region.base);
+        }
+        self.at(medium, part.at(0.5 * part.length), part.direction)
+    }
+
+    /// The region at `position`; rays in any direction find the same.
+    pub fn at(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> MediumIndex {
+        let base = self.region(medium).map_or(medium, |region| region.base);
+        let holding = self.boundaries.iter().enumerate().filter(|(_, b)| b.holds(position, direction));
+        let holders = holding.fold(0, |holders, (index, _)| holders | 1 << index);
+        self.index.get(&(base, holders)).copied().unwrap_or(base)
+    }
+
+    /// The media that boundaries put at `position`, or anywhere.
+    pub fn added(&self, position: Option<Vec3>) -> Vec<MediumIndex> {
+        let there = |boundary: &&ClosedBoundary| position.is_none_or(|p| boundary.holds(p, Vec3::X));
+        self.boundaries.iter().filter(there).map(|boundary| boundary.inside).collect()
+    }
+}
+
+/// The open boundaries that contradict others by a `survey`, and that lids can close.
+pub fn open(geometry: &Geometry, surfaces: &[Surface], survey: &Survey) -> Vec<u32> {
+    let closable = |shape: &u32| {
+        let (Surface { transmits, .. }, model) =
+            (&surfaces[*shape as usize], &geometry.shapes()[*shape as usize]);
+        *transmits && !model.is_closed() && !model.lids().is_empty()
+    };
+    survey.shapes().into_iter().filter(closable).collect()
+}
+
+/// Closed boundaries, and which of them have points of their boxes in common.
+struct Near {
+    shapes: Vec<u32>,
+    pairs: Vec<Pair>,
+}
+
+/// Two closed boundaries whose boxes have points in common.
+struct Pair {
+    shapes: [u32; 2],
+    /// The boxes of both, and what these have in common.
+    boxes: [(Vec3, Vec3); 3],
+}
+
+impl Near {
+    fn of(geometry: &Geometry, shapes: Vec<u32>) -> Self {
+        let bounds: Vec<_> = shapes.iter().map(|s| geometry.shapes()[*s as usize].bounds()).collect();
+        let mut pairs = Vec::new();
+        for (i, a) in bounds.iter().enumerate() {
+            for (j, b) in bounds.iter().enumerate().skip(i + 1) {
+                if let Some(both) = common(*a, *b).filter(|both| is_thick(*both, *a, *b)) {
+                    pairs.push(Pair { shapes: [shapes[i], shapes[j]], boxes: [*a, *b, both] });
+                }
+            }
+        }
+        Self { shapes, pairs }
+    }
+
+    /// Those that are near others.
+    fn boundaries(&self, geometry: &Geometry, surfaces: &[Surface]) -> Vec<ClosedBoundary> {
+        let paired: BTreeSet<u32> = self.pairs.iter().flat_map(|pair| pair.shapes).collect();
+        let near = self.shapes.iter().filter(|shape| paired.contains(*shape));
+        let shape = |index: &u32| &geometry.shapes()[*index as usize];
+        near.map(|index| ClosedBoundary::new(shape(index), &[], surfaces, *index)).collect()
+    }
+
+    /// Those that overlap: at some point no order of crossing all that hold it makes the medium before one what it states
+    /// as its exterior, or the medium before all is another than elsewhere.
+    fn contradictory(&self, boundaries: &[ClosedBoundary]) -> BTreeSet<u32> {
+        let mut found = BTreeSet::new();
+        for (index, pair) in self.pairs.iter().enumerate() {
+            let mut stream = Stream::new(7, index as u64, 0, Purpose::Pilot);
+            let points = (0..POINTS).flat_map(|_| pair.boxes).map(|(low, high)| {
+                let place = vec3(stream.uniform(), stream.uniform(), stream.uniform());
+                (low + (high - low) * place, warp::to_sphere(stream.square()))
+            });
+            let mut around = None;
+            if !points.into_iter().all(|(position, direction)| {
+                let held = boundaries.iter().filter(|boundary| boundary.holds(position, direction));
+                let mut steps: Vec<_> = held.map(|boundary| (boundary.outside, boundary.inside)).collect();
+                let first = (0..steps.len()).find(|first| follow_on(&mut steps, *first));
+                let start = first.map(|first| steps[first].0);
+                steps.is_empty() || (start.is_some() && *around.get_or_insert(start) == start)
+            }) {
+                found.extend(pair.shapes);
+            }
+        }
+        found
+    }
+
+    /// Adds to `chosen` whatever is near it.
+    fn spread(&self, chosen: &mut BTreeSet<u32>) {
+        loop {
+            let before = chosen.len();
+            for pair in &self.pairs {
+                if pair.shapes.iter().any(|shape| chosen.contains(shape)) {
+                    chosen.extend(pair.shapes);
+                }
+            }
+            if chosen.len() == before {
+                return;
+            }
+        }
+    }
+}
+
+/// True if all `steps` from one medium to another can be taken in a row, beginning with number `first`.
+fn follow_on(steps: &mut Vec<(MediumIndex, MediumIndex)>, first: usize) -> bool {
+    let step = steps.swap_remove(first);
+    let next: Vec<usize> = (0..steps.len()).filter(|next| steps[*next].0 == step.1).collect();
+    let done = steps.is_empty() || next.into_iter().any(|next| follow_on(steps, next));
+    steps.push(step);
+    let last = steps.len() - 1;
+    steps.swap(first, last);
+    done
+}
+
+/// Boxes that touch have no more than a film in common.
+fn is_thick((low, high): (Vec3, Vec3), a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
+    const FILM: f32 = 1e-4;
+    let size = (a.1 - a.0).min(b.1 - b.0);
+    (high - low).cmpgt(size * FILM).all()
+}
+
+/// True if `medium` is at `position`, where `base` lies without the boundaries that overlap.
+pub fn lies_in(
+    overlaps: Option<&Overlaps>,
+    base: MediumIndex,
+    medium: MediumIndex,
+    position: Vec3,
+    direction: Vec3,
+) -> bool {
+    let region = overlaps.map_or(base, |overlaps| overlaps.at(base, position, direction));
+    let members = overlaps.and_then(|overlaps| overlaps.members_of(region));
+    members.map_or(region == medium, |members| members.contains(&medium))
+}
+
+impl ClosedBoundary {
+    /// Number `index` of a scene, closed by `lids` if it is open.
+    fn new(shape: &Shape, lids: &[Shape], surfaces: &[Surface], index: u32) -> Self {
+        let geometry = Geometry::build(std::iter::once(shape).chain(lids).cloned().collect());
+        let boundary = surfaces[index as usize].boundary;
+        let [interior, exterior] =
+            [boundary.interior, boundary.exterior].map(|side| side.unwrap_or(MediumIndex::VACUUM));
+        let outward = is_outward(&geometry);
+        let (inside, outside) = if outward { (interior, exterior) } else { (exterior, interior) };
+        Self { shape: index, geometry, outward, inside, outside }
+    }
+
+    /// True if `position`, which is not on it, lies within.
+    fn holds(&self, position: Vec3, direction: Vec3) -> bool {
+        let (low, high) = self.geometry.bounds();
+        if position.cmplt(low).any() || position.cmpgt(high).any() {
+            return false;
+        }
+        let ray = Ray { origin: position, direction, t_max: f32::INFINITY };
+        self.geometry.closest(&ray).is_some_and(|hit| {
+            let normal = self.geometry.surface(&ray, &hit).normal;
+            (normal.dot(direction) > 0.0) == self.outward
+        })
+    }
+}
+
+/// True if the normals of a closed shape point away from what it holds: a ray along one meets as many surfaces on its way
+/// out as back in.
+fn is_outward(shape: &Geometry) -> bool {
+    let mut stream = Stream::new(6, 0, 0, Purpose::Pilot);
+    let start = shape.sample_area(0, &mut stream);
+    let origin = offset::leave_surface(start.position, start.error, start.normal, start.normal);
+    let mut ray = Ray { origin, direction: start.normal, t_max: f32::INFINITY };
+    let mut crossings = 0;
+    while let Some(hit) = shape.closest(&ray) {
+        let point = shape.surface(&ray, &hit);
+        ray.origin = offset::leave_surface(point.position, point.error, point.normal, ray.direction);
+        crossings += 1;
+    }
+    crossings % 2 == 0
+}
+
+/// The points that two boxes, by least and greatest corner, have in common.
+fn common(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> Option<(Vec3, Vec3)> {
+    let (low, high) = (a.0.max(b.0), a.1.min(b.1));
+    low.cmple(high).all().then_some((low, high))
+}

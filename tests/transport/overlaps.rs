@@ -1,0 +1,204 @@
+//! Media whose boundaries overlap: their coefficients add, whichever boundary a ray crosses first.
+
+use crate::common::{
+    Stage,
+    claims::{Claims, Sample},
+    pieces::*,
+};
+use serde_json::{Value, json};
+use tyndall::transport::Strategies;
+
+const METHODS: [(&str, Strategies); 3] =
+    [("pt", Strategies::PT), ("lt", Strategies::LT), ("bdpt", Strategies::BDPT)];
+
+/// Lamps of two kinds, one of them among the media, and a floor; seen from outside of the media.
+fn around(media: &[(&str, Value)]) -> Value {
+    let mut parts = vec![
+        ("sensor", camera([0.3, 0.5, 5.0], [0.0, 0.0, 0.0], 8)),
+        ("floor", floor(-1.5, 4.0, 0.5)),
+        ("lamp", lamp_ball([0.5, 2.5, 1.0], 0.5, 20.0)),
+        ("ember", lamp_ball([0.0, 0.2, 0.1], 0.2, 6.0)),
+        ("depth", depth(5)),
+    ];
+    parts.extend_from_slice(media);
+    scene(&parts)
+}
+
+/// Every method shows of one scene what `bdpt` shows of another, which says the same without boundaries that overlap.
+fn same(claims: &mut Claims, what: &str, overlapping: &Value, apart: &Value) {
+    let (overlapping, apart) = (Stage::new(overlapping), Stage::new(apart));
+    assert!(overlapping.setup.scene.overlaps.is_some(), "{what}: nothing overlaps");
+    assert!(apart.setup.scene.overlaps.is_none(), "{what}: the other overlaps too");
+    assert!(apart.setup.warnings.is_empty(), "{what}: {:?}", apart.setup.warnings);
+    let sample =
+        |stage: &Stage, set, first| Sample::of(&stage.renders(set, 64, first..first + 8), stage.width());
+    let expected = sample(&apart, Strategies::BDPT, 0);
+    for (first, (name, set)) in (1..).zip(METHODS) {
+        claims.equal(&format!("{what}: {name}"), &sample(&overlapping, set, 100 * first), &expected);
+    }
+}
+
+fn red(id: &str) -> Value {
+    json!({"type": "homogeneous", "id": id, "sigma_t": 0.8, "albedo": rgb(0.9, 0.4, 0.2),
+        "phase": {"type": "hg", "g": 0.6}})
+}
+
+/// Of half the albedo in every channel: a phase function that is the same in all of them says what both do together.
+fn pale(id: &str) -> Value {
+    json!({"type": "homogeneous", "id": id, "sigma_t": 0.5, "albedo": rgb(0.45, 0.2, 0.1)})
+}
+
+const LEFT: [[f64; 3]; 2] = [[-1.6, -1.0, -1.0], [0.4, 1.0, 1.0]];
+const RIGHT: [[f64; 3]; 2] = [[-0.4, -1.0, -1.0], [1.6, 1.0, 1.0]];
+
+fn in_box([low, high]: [[f64; 3]; 2], interior: Value) -> Value {
+    null_box(low, high, Some(interior))
+}
+
+#[test]
+fn media_that_overlap_add_up() {
+    let phases = json!({"type": "blendphase", "weight": 0.25 / 1.05, "a": {"type": "hg", "g": 0.6},
+        "b": {"type": "isotropic"}});
+    let [r, g, b] = [0.9, 0.4, 0.2].map(|albedo: f64| (0.8 * albedo + 0.25 * albedo) / 1.3);
+    let both = json!({"type": "homogeneous", "sigma_t": 1.3, "albedo": rgb(r, g, b), "phase": phases});
+    let overlapping = around(&[("first", in_box(LEFT, red("a"))), ("second", in_box(RIGHT, pale("b")))]);
+    let apart = around(&[
+        ("first", in_box([LEFT[0], [RIGHT[0][0], 1.0, 1.0]], red("a"))),
+        ("middle", in_box([RIGHT[0], LEFT[1]], both)),
+        ("second", in_box([[LEFT[1][0], -1.0, -1.0], RIGHT[1]], pale("b"))),
+    ]);
+    let mut claims = Claims::new();
+    same(&mut claims, "red and pale", &overlapping, &apart);
+    claims.settle();
+}
+
+/// Where fog holds smoke that does not state it as its exterior, both are there: chromatic ones by every tracker.
+#[test]
+fn smoke_in_fog_adds_to_it() {
+    let wave = json!({"type": "cosine", "constant": 0.6, "w": {"type": "wave", "vector": [1.0, 2.0, 0.5], "amplitude": 0.5}});
+    let even = |value: f64| json!({"type": "constvolume", "value": value});
+    let smoke = |sigma_t: Value, tracker: &str| json!({"type": "heterogeneous", "sigma_t": sigma_t, "albedo": even(0.7), "tracker": tracker});
+    let fog = || json!({"type": "homogeneous", "id": "fog", "sigma_t": 0.4, "albedo": 0.7});
+    let inner = [[-1.3, -0.7, -0.6], [0.2, 0.8, 0.9]];
+    let apart = around(&[
+        ("outer", in_box(LEFT, fog())),
+        (
+            "inner",
+            with(
+                in_box(inner, smoke(json!({"type": "sum", "a": wave, "b": even(0.4)}), "closed_form")),
+                &[("exterior", named("fog"))],
+            ),
+        ),
+    ]);
+    let mut claims = Claims::new();
+    for tracker in ["closed_form", "residual_ratio"] {
+        let inner = in_box(inner, smoke(wave.clone(), tracker));
+        same(&mut claims, tracker, &around(&[("outer", in_box(LEFT, fog())), ("inner", inner)]), &apart);
+    }
+    claims.settle();
+}
+
+/// Each medium glows for itself.
+#[test]
+fn media_that_overlap_both_glow() {
+    let glow = |id: &str, sigma_t: f64, emission: Value| json!({"type": "homogeneous", "id": id, "sigma_t": sigma_t, "albedo": 0.5, "emission": emission});
+    let a = || glow("a", 0.4, rgb(0.4, 0.1, 0.0));
+    let b = || glow("b", 0.6, rgb(0.0, 0.2, 0.3));
+    let overlapping = around(&[("first", in_box(LEFT, a())), ("second", in_box(RIGHT, b()))]);
+    let apart = around(&[
+        ("first", in_box([LEFT[0], [RIGHT[0][0], 1.0, 1.0]], a())),
+        ("middle", in_box([RIGHT[0], LEFT[1]], glow("both", 1.0, rgb(0.4, 0.3, 0.3)))),
+        ("second", in_box([[LEFT[1][0], -1.0, -1.0], RIGHT[1]], b())),
+    ]);
+    let mut claims = Claims::new();
+    same(&mut claims, "glowing", &overlapping, &apart);
+    claims.settle();
+}
+
+/// One medium in several shapes is there once; a bubble takes it away, and nothing where it sticks out.
+#[test]
+fn shapes_of_one_medium_join_and_bubbles_are_cut_out() {
+    let mut claims = Claims::new();
+    let second = json!({"type": "cube", "to_world": place([1.0, 1.0, 1.0], [0.6, 0.0, 0.0]),
+        "bsdf": {"type": "null"}, "interior": named("fog")});
+    let joined = around(&[("first", in_box(LEFT, red("fog"))), ("second", second)]);
+    let one = around(&[("first", in_box([LEFT[0], RIGHT[1]], red("fog")))]);
+    same(&mut claims, "one medium", &joined, &one);
+    let bubble = with(null_box(RIGHT[0], RIGHT[1], None), &[("exterior", named("fog"))]);
+    let cut = around(&[("first", in_box(LEFT, red("fog"))), ("second", bubble)]);
+    let left = around(&[("first", in_box([LEFT[0], [RIGHT[0][0], 1.0, 1.0]], red("fog")))]);
+    same(&mut claims, "a bubble", &cut, &left);
+    claims.settle();
+}
+
+/// A camera and a lamp that lie where media overlap are found there, whether they state one of them or none.
+#[test]
+fn cameras_and_lamps_may_lie_where_media_overlap() {
+    let inside = |medium: &[(&str, Value)]| {
+        let eye = with(camera([0.0, 0.1, 0.5], [0.3, -0.2, -4.0], 8), medium);
+        scene(&[
+            ("sensor", eye),
+            ("floor", floor(-1.5, 4.0, 0.5)),
+            ("lamp", point([0.2, 0.6, -0.5], 4.0)),
+            ("depth", depth(4)),
+            ("first", in_box(LEFT, red("a"))),
+            ("second", in_box(RIGHT, pale("b"))),
+        ])
+    };
+    let [unstated, stated] = [Stage::new(&inside(&[])), Stage::new(&inside(&[("medium", named("a"))]))];
+    for stage in [&unstated, &stated] {
+        let setup = &stage.setup;
+        assert_eq!(setup.medium_name(setup.scene.sensor_medium), "a + b");
+        assert_eq!(setup.medium_name(setup.scene.lights.all[0].medium), "a + b");
+    }
+    let mut claims = Claims::new();
+    let sample =
+        |stage: &Stage, set, first| Sample::of(&stage.renders(set, 64, first..first + 8), stage.width());
+    let expected = sample(&unstated, Strategies::PT, 0);
+    claims.equal("bdpt", &sample(&unstated, Strategies::BDPT, 100), &expected);
+    claims.equal("stated", &sample(&stated, Strategies::BDPT, 200), &expected);
+    claims.settle();
+}
+
+/// An open cylinder and a box without a lid hold what they hold where they are closed, and a warning names them.
+#[test]
+fn openings_are_closed_by_flat_lids() {
+    let tube = || {
+        let open = json!({"type": "cylinder", "p0": [0.0, -1.2, 0.0], "p1": [0.0, 1.0, 0.0], "radius": 0.9,
+            "bsdf": {"type": "null"}});
+        with(open, &[("interior", named("fog"))])
+    };
+    let end = |y: f64, degrees: f64| {
+        json!({"type": "disk", "bsdf": {"type": "null"}, "interior": named("fog"), "to_world": [
+            {"type": "scale", "value": 0.9}, {"type": "rotate", "axis": [1, 0, 0], "angle": degrees},
+            {"type": "translate", "value": [0.0, y, 0.0]},
+        ]})
+    };
+    let fog = ("fog", red("fog"));
+    let open = around(&[fog.clone(), ("tube", tube())]);
+    let closed = around(&[fog, ("tube", tube()), ("top", end(1.0, -90.0)), ("bottom", end(-1.2, 90.0))]);
+    let mut claims = Claims::new();
+    same(&mut claims, "a cylinder", &open, &closed);
+    claims.settle();
+    let warnings = Stage::new(&open).setup.warnings;
+    assert!(warnings.iter().any(|w| w.contains("\"tube\"") && w.contains("flat lids")), "{warnings:?}");
+}
+
+#[test]
+fn an_open_mesh_is_closed() {
+    let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
+    // All faces but the upper one.
+    let faces = "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 1 5 8 4\nf 2 3 7 6\n";
+    let mesh =
+        json!({"type": "obj", "filename": "box.obj", "bsdf": {"type": "null"}, "interior": red("fog")});
+    let open = Stage::with_files(&around(&[("box", mesh)]), &[("box.obj", &format!("{corners}{faces}"))]);
+    let closed = Stage::new(&around(&[("box", in_box([[-1.0; 3], [1.0; 3]], red("fog")))]));
+    let mut claims = Claims::new();
+    let sample =
+        |stage: &Stage, set, first| Sample::of(&stage.renders(set, 64, first..first + 8), stage.width());
+    let expected = sample(&closed, Strategies::BDPT, 0);
+    for (first, (name, set)) in (1..).zip(METHODS) {
+        claims.equal(name, &sample(&open, set, 100 * first), &expected);
+    }
+    claims.settle();
+}
