@@ -5,6 +5,7 @@ mod common;
 
 mod adaptive;
 mod agreement;
+mod beams;
 mod determinism;
 mod efforts;
 mod equiangular;

@@ -47,7 +47,7 @@ impl Pivot {
             _ if !light.emitter.is_connectible() => None,
             Kind::Surface(_) => light.shape.map(around),
             Kind::Point(_) => Some(Self { position: light.position, radius: 0.0 }),
-            Kind::Infinite(_) | Kind::Medium(_) => None,
+            Kind::Infinite(_) | Kind::Beam(_) | Kind::Medium(_) => None,
         }
     }
 

@@ -130,6 +130,8 @@ fn learnt_starts() {
     all("room", examine::<Fog>("learnt, in a room", &room, options, 600));
     let image = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SKY_IMAGE, SUN]);
     all("image", examine::<Everything>("learnt, sky image", &image, options, 1000));
+    let beam = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SEARCHLIGHT, SKY]);
+    all("beam", examine::<Everything>("learnt, beam", &beam, options, 1000));
     let fire = build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]);
     all("fire", examine::<ByKind>("learnt, fire", &fire, options, 600));
     let light = Options { strategies: Strategies { emitter_hit: false, ..Strategies::BDPT }, ..options };
@@ -157,6 +159,17 @@ fn emitters_at_infinity() {
     let report = examine::<Bounded>("sun", &setup, ALL, 1000);
     assert_eq!(report.strategies[0], 0, "a single direction cannot be met");
     examine_all::<Everything>("sun, sky", &build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]), 1000);
+}
+
+/// They cross boundaries, fill a part of what is seen, and come through glass.
+#[test]
+fn beams() {
+    let alone = examine::<Bounded>("beam", &build(&[FOG, INSIDE, ROOM, SEARCHLIGHT]), ALL, 400);
+    assert_eq!(alone.strategies[0], 0, "a beam cannot be hit");
+    examine_all::<Bounded>("in a room", &build(&[FOG, INSIDE, ROOM, SEARCHLIGHT, BULB, GLASS_BALL]), 400);
+    examine_all::<Bounded>("in the open", &build(&[OUTSIDE, SMOKE, GROUND, SEARCHLIGHT, SKY]), 1000);
+    let colours = build(&[OUTSIDE, CHROMATIC_WAVES, GROUND, SEARCHLIGHT]);
+    assert!(examine::<Everything>("coloured", &colours, ALL, 600).paths >= 1000);
 }
 
 #[test]

@@ -218,14 +218,14 @@ impl<'a> Reference<'a> {
         seen.map_or(0.0, |seen| f64::from(seen.pdf))
     }
 
-    /// Density of directions that leave an emitter [1/sr]; for one at infinity, of starts on its disk [1/m^2].
+    /// Density of directions that leave an emitter [1/sr]; of parallel light, of starts on its disk [1/m^2].
     fn emission(&self, light: u32, node: &Node, direction: DVec3) -> f64 {
         match &self.scene.lights.all[light as usize].emitter.kind {
             Kind::Surface(surface) if surface.is_dirac() => 1.0,
             Kind::Surface(surface) => f64::from(surface.pdf_sr(node.cosine(direction) as f32)),
             Kind::Point(point) => f64::from(point.pdf_sr(direction.as_vec3())),
             Kind::Medium(_) => 0.25 / std::f64::consts::PI,
-            Kind::Infinite(_) => {
+            Kind::Infinite(_) | Kind::Beam(_) => {
                 self.starts[light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf_direction))
             }
         }
@@ -266,6 +266,7 @@ impl<'a> Reference<'a> {
                 let found = |sample: &EmitterSample| match (sample.point, place) {
                     (EmitterPoint::Point(found), Place::Point(wanted)) => found == wanted,
                     (EmitterPoint::Direction(found), Place::Sky(wanted)) => found == wanted,
+                    (EmitterPoint::Beam { .. }, Place::Disk(..)) => sample.light == path.light,
                     _ => false,
                 };
                 (0..4_096).filter_map(|_| lights.sample_emitter(geometry, reference, &mut stream)).find(found)
