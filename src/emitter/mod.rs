@@ -46,6 +46,8 @@ pub struct Emitter {
     pub kind: Kind,
     /// The factor from the user on the probability of choosing this emitter.
     pub sampling_weight: f32,
+    /// What images of groups show it in; none for the group of the rest.
+    pub group: Option<String>,
 }
 
 /// The ways to emit, by where light starts: each has a measure of its own for the density of that.
@@ -238,16 +240,17 @@ pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
     let params = Params::new(object, library);
     let (name, build) = ROWS.row(object)?;
     let kind = build(&params)?;
-    let sampling_weight = sampling_weight(&params)?;
+    let (sampling_weight, group) = (sampling_weight(&params)?, medium::group(&params)?);
     params.children(|child| medium::ROWS.has(child.object))?;
     params.finish()?;
-    Ok(Emitter { name, kind, sampling_weight })
+    Ok(Emitter { name, kind, sampling_weight, group })
 }
 
 impl Emitter {
     /// An emissive medium.
     pub fn of_medium(volume: VolumeEmitter) -> Self {
-        Self { name: "medium", kind: Kind::Medium(volume), sampling_weight: 1.0 }
+        let group = volume.emission.group().map(str::to_owned);
+        Self { name: "medium", kind: Kind::Medium(volume), sampling_weight: 1.0, group }
     }
 
     /// True for emitters that lie on a shape.

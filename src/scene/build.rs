@@ -86,6 +86,10 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     let time = builder.place.time;
     let scene = builder.finish(view.camera, &medium_overrides)?;
     unseen::warn_of_darkness(&scene.lights, &integrator, &root.location, &library);
+    let integrator = match overrides.groups {
+        true => integrator.with_groups(&scene.lights.groups(), &root.location)?,
+        false => integrator,
+    };
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }

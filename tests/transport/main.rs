@@ -13,6 +13,7 @@ mod extremes;
 mod faults;
 mod forced;
 mod glowing;
+mod groups;
 mod heuristics;
 mod layers;
 mod modes;

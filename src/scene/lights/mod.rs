@@ -10,6 +10,7 @@
 mod disk;
 mod emission_sample;
 mod emitter_sample;
+mod groups;
 mod light_sampler;
 mod light_tree;
 mod pivot;
