@@ -20,9 +20,14 @@ pub struct Disk {
 }
 
 impl Disk {
+    /// Around `centre`, of light that travels in unit `direction`, with a radius in metres.
+    pub fn new(centre: Vec3, direction: Vec3, radius: f32) -> Self {
+        Self { centre, frame: Frame::around(-direction), radius, lift: 0.0 }
+    }
+
     /// That of the beam `emitter`, whose centre lies at `centre`.
     pub fn of_beam(emitter: &BeamEmitter, centre: Vec3) -> Self {
-        Self { centre, frame: Frame::around(-emitter.direction()), radius: emitter.radius(), lift: 0.0 }
+        Self::new(centre, emitter.direction(), emitter.radius())
     }
 
     /// That of `light`, if it is a beam.
@@ -77,6 +82,27 @@ impl Disk {
         let across = local.truncate() / self.radius;
         let lit = local.z < self.lift && across.length_squared() <= 1.0;
         lit.then(|| self.centre + self.frame.to_world(vec3(local.x, local.y, self.lift)))
+    }
+}
+
+impl Disk {
+    /// The first and last distance [m] at which the ray in unit `direction` is in the beam from this disk; at `position`
+    /// it is `distance` from its start. None where it is not in the beam, or for ever.
+    #[inline]
+    pub fn lit_part(&self, position: Vec3, direction: Vec3, distance: f32) -> Option<[f32; 2]> {
+        let local = self.frame.to_local(position - self.centre);
+        let ray = self.frame.to_local(direction);
+        let (here, across) = (local.truncate(), ray.truncate());
+        let squared = across.length_squared();
+        let chord = self.radius * self.radius * squared - here.perp_dot(across).powi(2);
+        let (middle, half) = (-here.dot(across) / squared, chord.max(0.0).sqrt() / squared);
+        // Light is below the disk, where local z is negative.
+        let crossing = -local.z / ray.z;
+        let from = (middle - half).max(if ray.z < 0.0 { crossing } else { f32::NEG_INFINITY });
+        let to = (middle + half).min(if ray.z > 0.0 { crossing } else { f32::INFINITY });
+        let (from, to) = ((distance + from).max(0.0), distance + to);
+        let lit = ray.z != 0.0 || local.z < 0.0;
+        (chord > 0.0 && lit && from < to && to < f32::INFINITY).then_some([from, to])
     }
 }
 

@@ -21,7 +21,7 @@ mod volume;
 pub use disk::Disk;
 pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
-pub use pivot::Pivot;
+pub use pivot::{Pivot, Place};
 pub use point::EmitterPoint;
 pub use starts::{Densities, Memo, Start, Starts};
 pub(super) use volume::emissive;

@@ -92,6 +92,7 @@ fn equiangular_sampling() {
         take::<Bounded>("null lamp, along", &[FOG, INSIDE, ROOM, BALL, NULL_LAMP], strategies);
         take::<ChromaticFog>("colours, along", &[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL], strategies);
         take::<ChromaticFog>("1e-3, 1, 1e3, along", &[EXTREME_FOG, INSIDE, ROOM, LAMP, BALL], strategies);
+        take::<Bounded>("beam, along", &[FOG, INSIDE, ROOM, SEARCHLIGHT, BULB, BALL], strategies);
         take::<Smoke>("waves, along", &[OUTSIDE, WAVES, GROUND, LAMP, BULB], strategies);
         let parts = [OUTSIDE, CHROMATIC_WAVES, GROUND, LAMP, POINT];
         take::<Everything>("coloured waves, along", &parts, strategies);
