@@ -391,7 +391,7 @@ impl Text<'_> {
     /// Where a walk met an emitter.
     fn met(&self, arrival: &Arrival, point: &EmitterPoint) -> VertexText {
         let kind = match point {
-            EmitterPoint::Surface(_) | EmitterPoint::Point(_) => "surface",
+            EmitterPoint::Surface(_) | EmitterPoint::Point(_) | EmitterPoint::Beam { .. } => "surface",
             EmitterPoint::Volume { .. } => "medium",
             EmitterPoint::Direction(_) => "escape",
         };

@@ -179,6 +179,14 @@ pub struct Render {
     #[arg(long, value_name = "N", value_parser = batches, conflicts_with = "error", allow_negative_numbers = true)]
     pub batches: Option<u32>,
 
+    /// Also write what each group of emitters contributes, as layers of the EXR (group.NAME.R, ...)
+    ///
+    /// The parameter "group" of emitters and emissive media names their group; those that name none are the group rest. The
+    /// layers add up to the image, and an image of lights that are weaker, stronger or of another colour is a sum of layers
+    /// times factors.
+    #[arg(long)]
+    pub groups: bool,
+
     /// Continue from the sums of an earlier render: the rest of an interrupted one, or more samples for a finished one
     ///
     /// The image is the same, bit for bit, as if the render had never stopped; --spp is the total. Scene, files and
@@ -257,7 +265,7 @@ pub struct Render {
 impl Render {
     /// What the options override in the scene.
     pub fn overrides(&self) -> Overrides {
-        Overrides { crop: self.crop, ..self.estimator.overrides(self.size) }
+        Overrides { crop: self.crop, groups: self.groups, ..self.estimator.overrides(self.size) }
     }
 
     /// Seed of the random numbers: of parts of an image, no two share one, or the noise of one would be repeated in others.

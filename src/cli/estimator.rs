@@ -127,7 +127,7 @@ fn heuristic(text: &str) -> std::result::Result<Heuristic, String> {
 impl Estimator {
     /// What these options and a `size` override in a scene.
     pub fn overrides(&self, size: Option<Size>) -> Overrides {
-        Overrides { size: size.map(Into::into), crop: None, tracker: self.tracker }
+        Overrides { size: size.map(Into::into), tracker: self.tracker, ..Overrides::default() }
     }
 
     /// A render of `setup`, its paths made as these options say, or else as the scene says, or else as a pilot chooses.

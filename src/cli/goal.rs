@@ -34,7 +34,11 @@ impl Goal {
         };
         let has_layers = !setup.integrator.layers.is_empty();
         if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {
-            let layers = if has_layers { "of the scene's aov or moment integrator" } else { "of --batches" };
+            let layers = match (arguments.groups, has_layers) {
+                (true, _) => "of --groups",
+                (_, true) => "of the scene's aov or moment integrator",
+                _ => "of --batches",
+            };
             let expected = format!("an OpenEXR file, to hold the layers {layers}");
             let found = format!("a file that contains {}", file.holds());
             let remedy = "use a name that ends in .exr, or set the film's file_format to openexr";

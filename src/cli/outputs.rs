@@ -23,6 +23,8 @@ const NUMBERS_OF_SUMS: usize = 24;
 const NUMBERS_OF_HALVES: usize = 72;
 const NUMBERS_OF_PRECISION: usize = 100;
 const NUMBERS_OF_LAYER: usize = 4;
+/// Of a layer that contributions are sorted into: its own sums, once more while they are written, and the pass at hand.
+const NUMBERS_OF_SORTED: usize = 60;
 const NUMBERS_OF_BATCH: usize = 7;
 
 /// An error unless `outputs` can be written, as [`output::check`] says. Where one of them is standard output, reports go
@@ -49,10 +51,15 @@ pub fn check_render(arguments: &Render, setup: &Setup, goal: &Goal) -> Result<()
     let each = NUMBERS_OF_BATCH + 2 * layers;
     let products = integrator.layers.iter().any(Layer::needs_squares);
     let products = if products { NUMBERS_OF_PRODUCTS } else { 0 };
-    film.check_memory(NUMBERS + products + precision + NUMBERS_OF_LAYER * layers + batches * each)?;
+    let sorted = integrator.layers.iter().filter(|layer| layer.is_sorted()).count();
+    let layered = NUMBERS_OF_LAYER * layers + NUMBERS_OF_SORTED * sorted;
+    film.check_memory(NUMBERS + products + precision + layered + batches * each)?;
     let bytes = film.bytes(goal.format.names().len() + layers + batches * (3 + layers));
     let images = if arguments.is_part() { Vec::new() } else { images(arguments, goal) };
-    let kept = if arguments.error.is_some() { NUMBERS_OF_HALVES } else { NUMBERS_OF_SUMS + products / 2 };
+    let kept = match arguments.error {
+        Some(_) => NUMBERS_OF_HALVES * (1 + sorted),
+        None => NUMBERS_OF_SUMS * (1 + sorted) + products / 2,
+    };
     // Two of them, while one replaces the other.
     let sums = arguments.sums.as_deref().map(|sums| (sums, 2 * film.bytes(kept)));
     let mut outputs: Vec<(&Path, u64)> = sums.into_iter().collect();

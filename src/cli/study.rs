@@ -339,7 +339,7 @@ impl<'a> Stage<'a> {
         }
         let started = Instant::now();
         let size = self.arguments.size.map(Into::into);
-        let overrides = Overrides { size, crop: None, tracker };
+        let overrides = Overrides { size, tracker, ..Overrides::default() };
         let setup = Arc::new(build::build(root, overrides)?);
         let seconds = reading + started.elapsed().as_secs_f64();
         self.setups.push((tracker, setup.clone(), seconds));

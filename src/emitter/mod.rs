@@ -2,6 +2,7 @@
 //! direction, and sample directions. The scene decides where emission starts on a shape, and which emitter is chosen.
 
 mod area;
+mod collimated;
 mod constant;
 mod directional;
 mod directionalarea;
@@ -15,6 +16,7 @@ mod tests;
 mod volume;
 
 use area::Area;
+use collimated::Collimated;
 use constant::Constant;
 use directional::Directional;
 use directionalarea::DirectionalArea;
@@ -44,6 +46,8 @@ pub struct Emitter {
     pub kind: Kind,
     /// The factor from the user on the probability of choosing this emitter.
     pub sampling_weight: f32,
+    /// What images of groups show it in; none for the group of the rest.
+    pub group: Option<String>,
 }
 
 /// The ways to emit, by where light starts: each has a measure of its own for the density of that.
@@ -55,6 +59,8 @@ pub enum Kind {
     Point(PointEmitter),
     /// Infinity [1/sr].
     Infinite(InfiniteEmitter),
+    /// A disk that parallel rays leave: a point of it is as the single direction of an emitter at infinity.
+    Beam(BeamEmitter),
     /// An emissive medium [1/m^3]. Its description is the medium's own.
     Medium(VolumeEmitter),
 }
@@ -142,6 +148,24 @@ pub trait InfiniteModel {
     }
 }
 
+/// What every emitter of parallel rays from a disk can do.
+pub trait BeamModel {
+    /// Centre of the disk in the file's coordinates.
+    fn centre(&self) -> DVec3;
+
+    /// The unit direction in which the light travels, a normal of the disk.
+    fn direction(&self) -> Vec3;
+
+    /// Radius of the disk [m].
+    fn radius(&self) -> f32;
+
+    /// Irradiance on a surface that faces the light [W/m^2].
+    fn irradiance(&self) -> Spectrum;
+
+    /// Emitted power [W].
+    fn power(&self) -> DVec3;
+}
+
 /// Makes an enum with its dispatch for each kind, and the registry, from one row an emitter. An emitter has
 /// `fn build(&Params) -> Result<Self>`.
 macro_rules! emitters {
@@ -197,6 +221,17 @@ emitters! {
         #[inline] fn direction() -> Option<Vec3>;
         fn even_radiance() -> Option<Spectrum>;
     ]
+
+    /// Any emitter of parallel rays from a disk.
+    Beam(BeamEmitter: BeamModel) {
+        "collimated" => Collimated,
+    } [
+        fn centre() -> DVec3;
+        #[inline] fn direction() -> Vec3;
+        #[inline] fn radius() -> f32;
+        #[inline] fn irradiance() -> Spectrum;
+        fn power() -> DVec3;
+    ]
 }
 
 /// Builds the emitter that `object` describes; positions are still in the file's coordinates. A medium among
@@ -205,16 +240,17 @@ pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
     let params = Params::new(object, library);
     let (name, build) = ROWS.row(object)?;
     let kind = build(&params)?;
-    let sampling_weight = sampling_weight(&params)?;
+    let (sampling_weight, group) = (sampling_weight(&params)?, medium::group(&params)?);
     params.children(|child| medium::ROWS.has(child.object))?;
     params.finish()?;
-    Ok(Emitter { name, kind, sampling_weight })
+    Ok(Emitter { name, kind, sampling_weight, group })
 }
 
 impl Emitter {
     /// An emissive medium.
     pub fn of_medium(volume: VolumeEmitter) -> Self {
-        Self { name: "medium", kind: Kind::Medium(volume), sampling_weight: 1.0 }
+        let group = volume.emission.group().map(str::to_owned);
+        Self { name: "medium", kind: Kind::Medium(volume), sampling_weight: 1.0, group }
     }
 
     /// True for emitters that lie on a shape.
@@ -227,18 +263,25 @@ impl Emitter {
         matches!(self.kind, Kind::Infinite(_))
     }
 
+    /// True if its light leaves a disk in parallel, that around the scene if it is at infinity: where on the disk is
+    /// measured per area, and there is no 1/d^2.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self.kind, Kind::Infinite(_) | Kind::Beam(_))
+    }
+
     /// True if a walk can hit it by chance: it is neither a point nor a single direction.
     #[inline]
     pub fn is_hittable(&self) -> bool {
         match &self.kind {
             Kind::Surface(e) => !e.is_dirac(),
-            Kind::Point(_) => false,
+            Kind::Point(_) | Kind::Beam(_) => false,
             Kind::Infinite(e) => e.direction().is_none(),
             Kind::Medium(_) => true,
         }
     }
 
-    /// True if next-event estimation can find it: it emits towards more than a single direction at each point.
+    /// True if next-event estimation can find it: it is not of points that emit in a single direction each, unless it
+    /// knows which of them sends light where.
     #[inline]
     pub fn is_connectible(&self) -> bool {
         !matches!(&self.kind, Kind::Surface(e) if e.is_dirac())
@@ -259,14 +302,19 @@ impl Emitter {
             Kind::Surface(e) => e.exitance() * f64::from(area),
             Kind::Point(e) => e.power(),
             Kind::Infinite(e) => e.fluence() * (f64::from(PI) * f64::from(radius).powi(2)),
+            Kind::Beam(e) => e.power(),
             Kind::Medium(e) => e.power(),
         };
         power.dot(LUMINANCE.as_dvec3())
     }
 
-    /// Its position in the file's coordinates: emitters at a point only.
+    /// Its position in the file's coordinates: a point, or the centre of a disk.
     pub fn position(&self) -> Option<DVec3> {
-        if let Kind::Point(e) = &self.kind { Some(e.position()) } else { None }
+        match &self.kind {
+            Kind::Point(e) => Some(e.position()),
+            Kind::Beam(e) => Some(e.centre()),
+            _ => None,
+        }
     }
 }
 

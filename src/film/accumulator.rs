@@ -25,6 +25,8 @@ pub struct Accumulator {
     pixels: Vec<ExactSums<4>>,
     /// Sums of products of two channels, R R, R G, R B, G G, G B, B B; empty where not needed.
     products: Vec<ExactSums<6>>,
+    /// Pixels of the image: the first ones. Those of layers of it follow.
+    image: usize,
     /// Of even and of odd number.
     passes: [u64; 2],
 }
@@ -32,7 +34,14 @@ pub struct Accumulator {
 impl Accumulator {
     /// Nothing seen yet, for an image of `pixels`.
     pub fn new(pixels: usize) -> Self {
-        Self { pixels: vec![ExactSums::default(); pixels], products: Vec::new(), passes: [0; 2] }
+        let sums = vec![ExactSums::default(); pixels];
+        Self { pixels: sums, products: Vec::new(), image: pixels, passes: [0; 2] }
+    }
+
+    /// The same for passes that are of so many `planes`, one behind the other: the image and layers of it.
+    pub fn with_planes(mut self, planes: usize) -> Self {
+        self.pixels.resize(self.image * planes, ExactSums::default());
+        self
     }
 
     /// The same, with second moments and variances.
@@ -72,12 +81,17 @@ impl Accumulator {
 
     /// The mean of all passes.
     pub fn mean(&self) -> Vec<Spectrum> {
+        self.mean_of(0)
+    }
+
+    /// That of a plane.
+    pub fn mean_of(&self, plane: usize) -> Vec<Spectrum> {
         let scale = 1.0 / self.passes().max(1) as f64;
         let of_pixel = |sums: &ExactSums<4>| {
             let sums = sums.values();
             Spectrum::from_array(axes(|channel| (sums[channel] * scale) as f32))
         };
-        self.pixels.par_iter().map(of_pixel).collect()
+        self.pixels[plane * self.image..][..self.image].par_iter().map(of_pixel).collect()
     }
 
     /// Mean over the passes of (`row` . rgb)^2: the second moment of a channel that combines R, G and B.
@@ -99,19 +113,25 @@ impl Accumulator {
         (n > 1.0).then(|| self.pixels.iter().zip(&self.products).map(of_pixel).collect())
     }
 
-    /// All sums, pixel by pixel: those of R, G, B and the difference of the halves; then the products, if there are any.
+    /// All sums, plane by plane and pixel by pixel: those of R, G, B and the difference of the halves; then the products, if there are any.
     pub fn sums(&self) -> impl Iterator<Item = Parts> + '_ {
         self.pixels.iter().flat_map(ExactSums::parts).chain(self.products.iter().flat_map(ExactSums::parts))
     }
 
-    /// `passes` of even and of odd number over an image of `pixels`, from what [`Accumulator::sums`] gave; none if that is
-    /// not as many.
-    pub fn from_sums(pixels: usize, passes: [u64; 2], sums: &[Parts]) -> Option<Self> {
-        let (own, products) = sums.split_at_checked(4 * pixels)?;
+    /// `passes` of even and of odd number over `planes` of so many `pixels`, from what [`Accumulator::sums`] gave; none if
+    /// that is not as many.
+    pub fn from_sums(pixels: usize, planes: usize, passes: [u64; 2], sums: &[Parts]) -> Option<Self> {
+        let image = pixels;
+        let (own, products) = sums.split_at_checked(pixels.checked_mul(planes)?.checked_mul(4)?)?;
         let (products, rest) = products.as_chunks();
         let fits = rest.is_empty() && (products.is_empty() || products.len() == pixels);
         let pixels = own.as_chunks().0.iter().map(ExactSums::from_parts).collect();
-        fits.then(|| Self { pixels, products: products.iter().map(ExactSums::from_parts).collect(), passes })
+        fits.then(|| Self {
+            pixels,
+            products: products.iter().map(ExactSums::from_parts).collect(),
+            image,
+            passes,
+        })
     }
 
     /// True if it has sums of products.
@@ -121,12 +141,17 @@ impl Accumulator {
 
     /// Number of pixels.
     pub fn len(&self) -> usize {
+        self.image
+    }
+
+    /// The same of all planes together.
+    pub fn len_of_planes(&self) -> usize {
         self.pixels.len()
     }
 
     /// True for an image without pixels.
     pub fn is_empty(&self) -> bool {
-        self.pixels.is_empty()
+        self.image == 0
     }
 
     /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01 m^2), by
@@ -144,7 +169,7 @@ impl Accumulator {
             // The halves differ by the root of twice the variance of either, their mean varies by half of it.
             (sum / (even + odd), (0.5 * (halves[0] - halves[1])).powi(2))
         };
-        let moments: Vec<(f64, f64)> = self.pixels.par_iter().map(moments).collect();
+        let moments: Vec<(f64, f64)> = self.pixels[..self.image].par_iter().map(moments).collect();
         let total: f64 = moments.iter().map(|(mean, _)| mean).filter(|mean| mean.is_finite()).sum();
         let to = Relative::to_mean(total / moments.len() as f64);
         let sum: f64 = moments.iter().map(|(mean, variance)| to.square(*variance, *mean)).sum();

@@ -85,6 +85,9 @@ pub enum Content {
     Mean,
     /// Mean squares of X, Y, Z over the passes.
     SecondMoment,
+    /// What a group of emitters contributes to the image's R, G, B: the number of the group, in the order of
+    /// [`Lights::groups`](crate::scene::lights::Lights::groups).
+    Group(u32),
     /// Variances of the image's R, G, B: how far its mean over all passes may be off, squared.
     Variance,
 }
@@ -105,13 +108,18 @@ impl Layer {
             Content::Surface(quantity) => quantity.channels(),
             Content::Image => &["R", "G", "B", "A"],
             Content::Mean | Content::SecondMoment => &["X", "Y", "Z"],
-            Content::Variance => &["R", "G", "B"],
+            Content::Group(_) | Content::Variance => &["R", "G", "B"],
         }
     }
 
     /// Its channels' names.
     pub fn channel_names(&self) -> impl Iterator<Item = String> + '_ {
         self.suffixes().iter().map(|suffix| format!("{}.{suffix}", self.name))
+    }
+
+    /// True if it holds a part of the image's contributions, which are sorted as they are made.
+    pub fn is_sorted(&self) -> bool {
+        matches!(self.content, Content::Group(_))
     }
 
     /// True if it needs the squares of passes.

@@ -28,6 +28,21 @@ enum Quantity {
 const QUANTITIES: [(&str, Quantity); 3] =
     [("emission", Quantity::Gain), ("radiance", Quantity::Radiance), ("temperature", Quantity::Temperature)];
 
+/// Of the name of a group, so that names of channels have room for it.
+const LONGEST_NAME: usize = 200;
+
+/// Beyond Mitsuba: the `group` of emitters that `params` belong to, for images of what each group contributes; any signs
+/// that OpenEXR allows in the name of a layer.
+pub fn group(params: &Params<'_>) -> Result<Option<String>> {
+    let Some(name) = params.optional_string("group")? else { return Ok(None) };
+    let fits = name.len() <= LONGEST_NAME && name.chars().all(|sign| sign.is_ascii_graphic());
+    if name.is_empty() || !fits {
+        let expected = "a name of 1 to 200 ASCII letters, digits and signs";
+        return Err(params.complain("group", expected, format!("{name:?}")));
+    }
+    Ok(Some(name.to_owned()))
+}
+
 /// Emission as the description gives it.
 #[derive(Clone, Debug)]
 pub struct EmissionDescription {
@@ -36,30 +51,33 @@ pub struct EmissionDescription {
     volume: Volume,
     scale: f32,
     place: Place,
+    /// See [`Emission::group`].
+    group: Option<String>,
     /// Where it is in the file.
     pub(super) location: Location,
 }
 
 impl EmissionDescription {
-    /// Reads `emission`, `radiance` or `temperature`, one of them at most, and `emission_scale`.
+    /// Reads `emission`, `radiance` or `temperature`, one of them at most, `emission_scale` and `group`.
     pub fn read(params: &Params<'_>, place: &Place) -> Result<Option<Self>> {
         let scale = params.float_within("emission_scale", 1.0, 0.0, f64::from(f32::MAX))? as f32;
-        let mut given = None;
+        let (group, mut given) = (group(params)?, None);
         for (name, quantity) in QUANTITIES {
             let Some(volume) = volume(params, name, place)? else { continue };
             let location = params.property(name).map_or(params.location(), |p| &p.location).clone();
-            let this = Self { name, quantity, volume, scale, place: *place, location };
+            let this = Self { name, quantity, volume, scale, place: *place, group: group.clone(), location };
             if let Some(Self { name: other, .. }) = given.replace(this) {
                 let expected = "one of emission, radiance and temperature";
                 let found = format!("\"{other}\" and \"{name}\"");
                 return Err(Error::new(params.location(), expected, found, "remove one of them"));
             }
         }
-        if given.is_none() && params.has("emission_scale") {
-            let found = "none";
+        let alone = [("emission_scale", "an emission to scale"), ("group", "an emission to show in a group")];
+        let alone = alone.into_iter().find(|(name, _)| given.is_none() && params.has(name));
+        if let Some((name, expected)) = alone {
             let remedy =
-                "give \"emission\", \"radiance\" or \"temperature\" too, or remove \"emission_scale\"";
-            return Err(Error::new(params.location(), "an emission to scale", found, remedy));
+                format!("give \"emission\", \"radiance\" or \"temperature\" too, or remove \"{name}\"");
+            return Err(Error::new(params.location(), expected, "none", remedy));
         }
         Ok(given.filter(|given| given.scale > 0.0))
     }
@@ -220,9 +238,15 @@ pub struct Emission {
     /// 1 over the integral of the cells' maxima along a line, in the mean over lines through the box.
     per_line: f32,
     power: DVec3,
+    group: Option<String>,
 }
 
 impl Emission {
+    /// What images of groups of emitters show it in; none for the group of the rest.
+    pub fn group(&self) -> Option<&str> {
+        self.group.as_deref()
+    }
+
     /// Examines what is `given` where it is and matter is as `within`, `around` where neither says where that
     /// is; none where nothing emits.
     pub fn new(given: EmissionDescription, within: Within, around: &MediumBounds) -> Result<Option<Self>> {
@@ -244,7 +268,7 @@ impl Emission {
             return Err(given.complain(expected, &found, "reduce it, or reduce emission_scale"));
         }
         let coarse = field.coarse();
-        Ok(Self::of(field, coarse))
+        Ok(Self::of(field, coarse).map(|emission| Self { group: given.group, ..emission }))
     }
 
     fn of(field: Field, coarse: Coarse) -> Option<Self> {
@@ -264,6 +288,7 @@ impl Emission {
             cells: chosen,
             per_line: per_line as f32,
             power,
+            group: None,
         })
     }
 

@@ -17,7 +17,7 @@ use crate::{
 };
 pub use description::{MediumBounds, MediumDescription, ROWS, build};
 pub use distance::{Attenuation, DistanceMethod, DistanceSample};
-pub use emission::Emission;
+pub use emission::{Emission, group};
 use emission::{EmissionDescription, Within};
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;

@@ -75,21 +75,27 @@ pub struct Halves {
 }
 
 impl Halves {
-    /// Nothing done yet, for an image of `film` that is to have this precision.
-    pub fn new(film: &Film, precision: Precision) -> Self {
-        Self::of([0; 2].map(|_| Half::new(film.len())), precision, FIRST_LOOK, film.width as usize)
+    /// Nothing done yet, for an image of `film` that is to have this precision, and the `layers` of it that contributions
+    /// are sorted into.
+    pub fn new(film: &Film, precision: Precision, layers: usize) -> Self {
+        Self::of(
+            [0; 2].map(|_| Half::new(film.len(), 1 + layers)),
+            precision,
+            FIRST_LOOK,
+            film.width as usize,
+        )
     }
 
     /// Whole passes, of an image of `width` pixels across.
     pub(super) fn of(halves: [Half; 2], precision: Precision, goal: u64, width: usize) -> Self {
         let active = active(&halves);
-        let pixels = active.len();
+        let (pixels, pass) = (active.len(), Pass::new(halves[0].camera.len()));
         Self {
             precision,
             halves,
             goal,
             samples: vec![0; pixels],
-            pass: Pass::new(pixels),
+            pass,
             blocks: 0,
             elapsed: Duration::ZERO,
             faults: Faults::default(),
@@ -161,14 +167,16 @@ impl Halves {
         Progress { samples, passes, elapsed, noise: None, within: Some(self.share()), is_last }
     }
 
-    /// The mean of the halves; what there is of the first pass where there is no more.
-    fn pixels(&self) -> Vec<Spectrum> {
+    /// The mean of the halves; what there is of the first pass where there is no more. Of a plane: 0 is the image, those of
+    /// layers follow.
+    pub(super) fn plane(&self, plane: usize) -> Vec<Spectrum> {
         if self.passes() == 0 {
-            return self.pass.pixels(&self.division(), self.blocks, self.width);
+            return self.pass.pixels(&self.division(), self.blocks, self.width, plane);
         }
         let halves: Vec<&Half> = self.halves.iter().filter(|half| half.passes > 0).collect();
         let value = |pixel| halves.iter().map(|half| half.value(pixel)).sum::<DVec3>() / halves.len() as f64;
-        (0..self.active.len()).map(|pixel| value(pixel).as_vec3()).collect()
+        let first = plane * self.active.len();
+        (0..self.active.len()).map(|pixel| value(first + pixel).as_vec3()).collect()
     }
 
     /// Root of the mean squared relative error, as the halves estimated it last, if they did.
@@ -185,7 +193,7 @@ impl Halves {
             _ => self.samples.iter().map(|n| f64::from(*n)).sum::<f64>() / self.samples.len() as f64,
         };
         Image {
-            pixels: self.pixels(),
+            pixels: self.plane(0),
             samples_per_pixel: samples as u64,
             unfinished: samples.fract(),
             elapsed: self.elapsed,
@@ -200,7 +208,8 @@ impl Halves {
 
 /// A pixel is active until both of its means have ended.
 fn active([first, second]: &[Half; 2]) -> Vec<bool> {
-    first.ended.iter().zip(&second.ended).map(|(first, second)| first.is_none() || second.is_none()).collect()
+    let ended = first.ended.iter().zip(&second.ended).take(first.content.len());
+    ended.map(|(first, second)| first.is_none() || second.is_none()).collect()
 }
 
 /// A render to a precision at work.
@@ -251,7 +260,7 @@ impl Adaptive<'_> {
     fn work(&self, tasks: Range<usize>, active: &[bool]) -> Vec<Outcome> {
         let wants = |pixel: usize| active[pixel];
         let is_over = || self.bench.settings.budget.is_over(self.stopwatch.elapsed());
-        self.bench.work_until(tasks, is_over, |pass, block| self.bench.compiled.render(pass, block, &wants))
+        self.bench.work_until(tasks, is_over, |pass, block| self.bench.render(pass, block, &wants))
     }
 
     fn tell(&mut self, halves: &Halves, is_last: bool) {
@@ -270,7 +279,7 @@ mod tests {
     /// A film of four blocks, after some of them and a check after 32 passes; the lower half of it is `noisy`.
     fn halves(blocks: usize, noisy: bool) -> Halves {
         let film = Film::new(Window::whole(64, 64), Filter::Box, false, Format::default());
-        let mut halves = Halves::new(&film, Precision { error: 0.5, confidence: 0.9 });
+        let mut halves = Halves::new(&film, Precision { error: 0.5, confidence: 0.9 }, 1);
         for block in 0..blocks {
             let pass = block / 4;
             let rare = if pass % 16 == 0 { 50.0 } else { 0.0 };

@@ -4,6 +4,7 @@ use super::{
     Image,
     adaptive::{Halves, Precision},
     samples::Samples,
+    sorted,
     sums::Sums,
     sums_file::Stored,
 };
@@ -35,8 +36,11 @@ impl AnySums {
     /// Nothing yet of `film` and `layers`.
     pub fn new(film: &Film, layers: &[Layer], precision: Option<Precision>) -> Self {
         match precision {
-            Some(precision) => Self::Adaptive(Halves::new(film, precision)),
-            None => Self::Samples(Sums::new(film, layers.iter().any(Layer::needs_squares))),
+            Some(precision) => Self::Adaptive(Halves::new(film, precision, sorted::count(layers))),
+            None => {
+                let with_products = layers.iter().any(Layer::needs_squares);
+                Self::Samples(Sums::new(film, with_products, sorted::count(layers)))
+            }
         }
     }
 

@@ -61,13 +61,18 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// What camera and light subpaths contributed to pixels of any plane, and what went wrong.
+    pub fn of_parts(camera: Vec<(u32, Spectrum)>, light: Vec<(u32, Spectrum)>, faults: Vec<Fault>) -> Self {
+        Self { camera, light, faults }
+    }
+
     /// Nothing but what went wrong.
     pub fn of_faults(faults: Vec<Fault>) -> Self {
         Self { faults, ..Self::default() }
     }
 }
 
-/// A pass over the image, block by block.
+/// A pass over the image, and layers of it, block by block.
 #[derive(Clone, Debug)]
 pub struct Pass {
     camera: Vec<Spectrum>,
@@ -115,12 +120,14 @@ impl Pass {
         self.camera[pixel] + self.light[pixel] / done
     }
 
-    /// The image as the first `done` of `blocks` show it; pixels of the others take the mean of those around them.
-    pub fn pixels(&self, blocks: &Blocks, done: usize, width: usize) -> Vec<Spectrum> {
-        let mut known = vec![false; self.camera.len()];
+    /// A plane, the image or a layer, as the first `done` of `blocks` show it; pixels of the others take the mean of those
+    /// around them.
+    pub fn pixels(&self, blocks: &Blocks, done: usize, width: usize, plane: usize) -> Vec<Spectrum> {
+        let first = plane * blocks.pixels;
+        let mut known = vec![false; blocks.pixels];
         let mut pixels = vec![Spectrum::ZERO; known.len()];
         for pixel in (0..done).flat_map(|block| blocks.pixels(block)) {
-            pixels[pixel] = self.estimate(pixel, done as f32 / blocks.count() as f32);
+            pixels[pixel] = self.estimate(first + pixel, done as f32 / blocks.count() as f32);
             known[pixel] = true;
         }
         fill::fill(&mut pixels, &known, width);

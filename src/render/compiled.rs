@@ -7,6 +7,7 @@ use super::{
     faults::guarded,
     pilot::Pilot,
     pixel_sample::{self, EyeSample, Splat, Walk},
+    sorted::{self, Sorter},
     strategy_images::{self, CellContribution, StrategyTable},
     timing::{self, Times},
     training::{self, Trial},
@@ -31,8 +32,14 @@ use std::{ops::Range, sync::Arc};
 pub(super) trait Compiled: Sync {
     /// How pixels are divided.
     fn blocks(&self) -> &Blocks;
-    /// See [`Blocks::render`].
-    fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome;
+    /// See [`Blocks::render`]; with a `sorter`, [`sorted::block`].
+    fn render(
+        &self,
+        sorter: Option<&Sorter>,
+        pass: usize,
+        block: usize,
+        wants: &dyn Fn(usize) -> bool,
+    ) -> Outcome;
     /// See [`Estimator::transmittance`].
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum;
     /// See [`strategy_images::block`].
@@ -87,10 +94,19 @@ impl<P: Profile> Compiled for Ready<'_, P> {
     fn blocks(&self) -> &Blocks {
         &self.blocks
     }
-    fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
+    fn render(
+        &self,
+        sorter: Option<&Sorter>,
+        pass: usize,
+        block: usize,
+        wants: &dyn Fn(usize) -> bool,
+    ) -> Outcome {
         guarded(pass, |failed, at| {
             let wants = |pixel: usize| wants(pixel) && !failed.contains(&(pixel as u32));
-            self.blocks.render(self, pass, block, &wants, at)
+            match sorter {
+                None => self.blocks.render(self, pass, block, &wants, at),
+                Some(sorter) => sorted::block(self, sorter, [pass, block], &wants, at),
+            }
         })
     }
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {

@@ -8,7 +8,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// An image is black if light does not come in more than this part of the samples.
 const RAREST: f64 = 1e-3;
 
-/// The passes of one half.
+/// The passes of one half, over the image and layers of it: sums and means of these follow those of the image. They end
+/// with its pixels.
 #[derive(Clone, Debug)]
 pub(super) struct Half {
     pub passes: u64,
@@ -31,18 +32,18 @@ pub(super) struct Half {
 }
 
 impl Half {
-    /// No pass yet.
-    pub fn new(pixels: usize) -> Self {
-        let zeros = || vec![DVec3::ZERO; pixels];
+    /// No pass yet over so many `planes`.
+    pub fn new(pixels: usize, planes: usize) -> Self {
+        let zeros = || vec![DVec3::ZERO; pixels * planes];
         Self {
             passes: 0,
             camera: zeros(),
-            squares: zeros(),
+            squares: vec![DVec3::ZERO; pixels],
             light: zeros(),
             errors: vec![f64::INFINITY; pixels],
             content: vec![false; pixels],
             mean: 0.0,
-            ended: vec![None; pixels],
+            ended: vec![None; pixels * planes],
             ended_light: None,
         }
     }
@@ -50,13 +51,13 @@ impl Half {
     /// Adds what a pass contributed.
     pub fn add(&mut self, camera: &[Spectrum], light: &[Spectrum], active: &[bool]) {
         self.passes += 1;
-        for (pixel, (camera, light)) in camera.iter().zip(light).enumerate() {
+        for (index, (camera, light)) in camera.iter().zip(light).enumerate() {
             let (camera, light) = (camera.as_dvec3(), light.as_dvec3());
-            self.light[pixel] += light;
-            if active[pixel] {
+            self.light[index] += light;
+            if active[index % active.len()] {
                 let both = camera + light;
-                self.camera[pixel] += camera;
-                self.squares[pixel] += both * both;
+                self.camera[index] += camera;
+                self.squares.get_mut(index).into_iter().for_each(|sum| *sum += both * both);
             }
         }
     }
@@ -72,10 +73,10 @@ impl Half {
     /// Examines the samples of the active pixels.
     pub fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
         if self.mean == 0.0 {
-            let luminances = (0..self.camera.len()).map(|pixel| luminance(self.moments(pixel).0));
+            let luminances = (0..active.len()).map(|pixel| luminance(self.moments(pixel).0));
             // One broken sample must not decide for all pixels.
             let sum: f64 = luminances.filter(|luminance| luminance.is_finite()).sum();
-            self.mean = sum / self.camera.len() as f64;
+            self.mean = sum / active.len() as f64;
         }
         for pixel in (0..active.len()).filter(|pixel| active[*pixel]) {
             if !self.content[pixel] {
@@ -139,9 +140,9 @@ impl Half {
     /// Ends the means of this half where `other` has converged.
     pub fn end(&mut self, other: &Self) {
         let n = self.passes as f64;
-        for (pixel, ended) in self.ended.iter_mut().enumerate() {
-            if ended.is_none() && other.content[pixel] {
-                *ended = Some(self.camera[pixel] / n);
+        for (index, ended) in self.ended.iter_mut().enumerate() {
+            if ended.is_none() && other.content[index % other.content.len()] {
+                *ended = Some(self.camera[index] / n);
             }
         }
         if self.ended_light.is_none() && other.content.iter().all(|content| *content) {
@@ -149,7 +150,7 @@ impl Half {
         }
     }
 
-    /// The half's estimate of a pixel.
+    /// The half's estimate of a pixel, of the image or of a layer.
     pub fn value(&self, pixel: usize) -> DVec3 {
         let n = self.passes as f64;
         let light = self.ended_light.as_ref().map_or(self.light[pixel] / n, |light| light[pixel]);

@@ -3,10 +3,15 @@
 
 use super::{
     Settings,
-    block::Pass,
+    block::{Outcome, Pass},
     compiled::{self, Compiled},
+    sorted::Sorter,
 };
-use crate::{film::Film, math::Spectrum, scene::Scene};
+use crate::{
+    film::{Film, layer::Layer},
+    math::Spectrum,
+    scene::Scene,
+};
 use std::{
     ops::Range,
     sync::atomic::{AtomicUsize, Ordering},
@@ -23,12 +28,30 @@ pub struct Instrument<'a> {
     pub(super) film: &'a Film,
     pub(super) settings: Settings,
     pub(super) compiled: Box<dyn Compiled + 'a>,
+    /// What the image is sorted into besides.
+    sorter: Option<Sorter>,
 }
 
 impl<'a> Instrument<'a> {
     /// Prepares to render `scene` onto `film`. The budget of `settings` does not count.
     pub fn new(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
-        Self { scene, film, settings: *settings, compiled: compiled::choose(scene, film, settings) }
+        Self {
+            scene,
+            film,
+            settings: *settings,
+            compiled: compiled::choose(scene, film, settings),
+            sorter: None,
+        }
+    }
+
+    /// The same whose blocks have the layers among `layers` that contributions are sorted into.
+    pub(super) fn sorting(self, layers: &[Layer]) -> Self {
+        Self { sorter: Sorter::new(self.scene, layers), ..self }
+    }
+
+    /// One sample of every pixel of `block` that `wants` one.
+    pub(super) fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
+        self.compiled.render(self.sorter.as_ref(), pass, block, wants)
     }
 
     /// `work` on tasks, each a block of a pass, on all threads, until there are none left or `is_over`; the results in
@@ -70,7 +93,7 @@ impl<'a> Instrument<'a> {
     /// Shows `see` the image of every one of `passes`, in order; the time that making them took.
     pub fn passes(&self, passes: Range<usize>, see: &mut dyn FnMut(&[Spectrum])) -> Duration {
         let mut image = Pass::new(self.film.len());
-        let work = |pass, block| self.compiled.render(pass, block, &|_| true);
+        let work = |pass, block| self.compiled.render(None, pass, block, &|_| true);
         self.in_order(passes, work, |outcome, ends_pass| {
             image.add(&outcome);
             if ends_pass {

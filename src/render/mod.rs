@@ -20,6 +20,7 @@ pub mod pilot;
 pub mod pixel_sample;
 mod primary;
 pub mod samples;
+mod sorted;
 pub mod strategy_images;
 pub mod sums;
 pub mod sums_file;
@@ -145,7 +146,7 @@ pub fn render_in_steps(
     show: &mut dyn FnMut(Snapshot),
 ) -> Image {
     let mut monitor = Monitor { watch: &mut |reached, _| progress(reached), marks, show };
-    dispatch(scene, film, settings, Mode::Budget(&mut Sums::new(film, false)), &[], &mut monitor)
+    dispatch(scene, film, settings, Mode::Budget(&mut Sums::new(film, false, 0)), &[], &mut monitor)
 }
 
 /// Renders `scene` onto `film`, and `layers` with it, until every pixel is known with `precision` or the budget of
@@ -180,10 +181,10 @@ pub fn go_on(
         }
         AnySums::Adaptive(halves) => {
             let (stopwatch, started) = (Stopwatch::start(), Instant::now());
-            let bench = &Instrument::new(scene, film, settings);
+            let bench = &Instrument::new(scene, film, settings).sorting(layers);
             let watch = &mut |progress, halves: &Halves| watch(progress, halves);
             Adaptive { bench, stopwatch: &stopwatch, watch }.run(halves);
-            finish(bench, started, halves.image(), layers)
+            finish(bench, started, halves, layers)
         }
     }
 }
@@ -201,7 +202,7 @@ pub fn preview(
     let options = Options { strategies: Strategies::NONE, heuristic: Heuristic::Balance, ..settings.options };
     let watch = &mut |reached, _: &Sums| progress(reached);
     let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
-    let mode = Mode::Preview(fog, &mut Sums::new(film, layers.iter().any(Layer::needs_squares)));
+    let mode = Mode::Preview(fog, &mut Sums::new(film, layers.iter().any(Layer::needs_squares), 0));
     dispatch(scene, film, &Settings { options, ..*settings }, mode, layers, &mut monitor)
 }
 
@@ -222,7 +223,7 @@ fn dispatch(
     monitor: &mut Monitor<'_>,
 ) -> Image {
     let (stopwatch, started) = (Stopwatch::start(), Instant::now());
-    let bench = Instrument::new(scene, film, settings);
+    let bench = Instrument::new(scene, film, settings).sorting(layers);
     let (preview, sums) = match mode {
         Mode::Preview(fog, sums) => {
             let rays = bench.compiled.blocks().pilot_rays(scene, film, settings.seed);
@@ -234,8 +235,8 @@ fn dispatch(
     let image = sums.image();
     let seen =
         primary::Pass::new(film, layers).run(&bench, image.samples_per_pixel.max(1), late(settings, started));
-    let develop = |layer| develop(layer, &image.pixels, &sums.accumulator, &seen);
-    let layers = layers.iter().flat_map(develop).collect();
+    let known = Known { pixels: &image.pixels, passes: &sums.accumulator, seen: &seen };
+    let layers = known.channels(layers, |plane| sums.plane(plane));
     Image { alpha: seen.alpha, layers, ..image }
 }
 
@@ -249,12 +250,12 @@ fn late(settings: &Settings, started: Instant) -> impl Fn() -> bool {
 
 /// The image of an adaptive render that began at `started`, with alpha, `layers`, and one more that shows how many samples
 /// its pixels took.
-fn finish(bench: &Instrument<'_>, started: Instant, image: Image, layers: &[Layer]) -> Image {
+fn finish(bench: &Instrument<'_>, started: Instant, halves: &Halves, layers: &[Layer]) -> Image {
+    let image = halves.image();
     let (passes, is_over) = (image.samples_per_pixel.max(1), late(&bench.settings, started));
     let seen = primary::Pass::new(bench.film, layers).run(bench, passes, is_over);
-    let none = Accumulator::new(0);
-    let mut layers: Vec<_> =
-        layers.iter().flat_map(|layer| develop(layer, &image.pixels, &none, &seen)).collect();
+    let known = Known { pixels: &image.pixels, passes: &Accumulator::new(0), seen: &seen };
+    let mut layers = known.channels(layers, |plane| halves.plane(plane));
     let samples = image.reached.iter().flat_map(|reached| &reached.samples);
     layers.push(Channel { name: "samples.N".to_owned(), values: samples.map(|n| *n as f32).collect() });
     Image { alpha: seen.alpha, layers, ..image }
@@ -282,7 +283,7 @@ fn accumulate(
         let outcomes = bench.work_until(tasks.clone(), is_over, |pass, block| {
             let sample = queue.sample(pass * queue.per_pass) as usize;
             match preview {
-                None => compiled.render(sample, block, &|_| true),
+                None => bench.render(sample, block, &|_| true),
                 Some(preview) => blocks.show(preview, film, *seed, sample, block),
             }
         });
@@ -337,18 +338,46 @@ impl Queue {
     }
 }
 
-/// The channels of a layer. Variances are left out where a single pass cannot estimate them.
-fn develop(layer: &Layer, pixels: &[Spectrum], passes: &Accumulator, seen: &primary::Seen) -> Vec<Channel> {
-    let values = match layer.content {
-        Content::Surface(quantity) => seen.of(quantity),
-        Content::Image => {
-            let mut values = planes(pixels.iter().copied());
-            values.push(seen.alpha.clone());
-            values
+/// What is known of an image, for its layers.
+struct Known<'a> {
+    pixels: &'a [Spectrum],
+    passes: &'a Accumulator,
+    seen: &'a primary::Seen,
+}
+
+impl Known<'_> {
+    /// The channels of all `layers`; those that contributions are sorted into are planes in their order, from 1 on.
+    fn channels(&self, layers: &[Layer], plane: impl Fn(usize) -> Vec<Spectrum>) -> Vec<Channel> {
+        let mut sorted = 0;
+        let mut channels = Vec::new();
+        for layer in layers {
+            let values = if layer.is_sorted() {
+                sorted += 1;
+                planes(plane(sorted).iter().copied())
+            } else {
+                self.develop(layer)
+            };
+            let named = layer.channel_names().zip(values);
+            channels.extend(named.map(|(name, values)| Channel { name, values }));
         }
-        Content::Mean => planes(pixels.iter().map(|pixel| to_xyz(*pixel))),
-        Content::SecondMoment => XYZ_ROWS.iter().map(|row| passes.second_moment(*row)).collect(),
-        Content::Variance => Vec3::AXES.iter().filter_map(|row| passes.variance(*row)).collect(),
-    };
-    layer.channel_names().zip(values).map(|(name, values)| Channel { name, values }).collect()
+        channels
+    }
+
+    /// The values of a layer, channel by channel. Variances are left out where a single pass cannot estimate them.
+    fn develop(&self, layer: &Layer) -> Vec<Vec<f32>> {
+        let Self { pixels, passes, seen } = self;
+        match layer.content {
+            Content::Surface(quantity) => seen.of(quantity),
+            Content::Image => {
+                let mut values = planes(pixels.iter().copied());
+                values.push(seen.alpha.clone());
+                values
+            }
+            Content::Mean => planes(pixels.iter().map(|pixel| to_xyz(*pixel))),
+            Content::SecondMoment => XYZ_ROWS.iter().map(|row| passes.second_moment(*row)).collect(),
+            Content::Variance => Vec3::AXES.iter().filter_map(|row| passes.variance(*row)).collect(),
+            // Sorted, not developed.
+            Content::Group(_) => Vec::new(),
+        }
+    }
 }

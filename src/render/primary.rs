@@ -53,7 +53,7 @@ impl Pass {
 
     /// Traces as many primary rays per pixel as there were `passes`, or fewer once `is_over`, but one at least.
     pub fn run(&self, bench: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
-        let Instrument { scene, film, settings, compiled } = bench;
+        let Instrument { scene, film, settings, compiled, .. } = bench;
         let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
             return Seen { alpha: Vec::new(), planes: Vec::new() };

@@ -38,16 +38,18 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Nothing yet, for an image of `film`; with sums of products where layers of moments or variances need them.
-    pub fn new(film: &Film, with_products: bool) -> Self {
+    /// Nothing yet, for an image of `film`, and the `layers` of it that contributions are sorted into; with sums of products
+    /// where layers of moments or variances need them.
+    pub fn new(film: &Film, with_products: bool, layers: usize) -> Self {
         let accumulator =
             if with_products { Accumulator::with_products } else { Accumulator::new }(film.len());
-        Self::of(accumulator, Samples::default(), film.width as usize)
+        Self::of(accumulator.with_planes(1 + layers), Samples::default(), film.width as usize)
     }
 
     /// Whole passes of `samples`, of an image of `width` pixels across.
     pub(super) fn of(accumulator: Accumulator, samples: Samples, width: usize) -> Self {
-        let (pass, noise, noted) = (Pass::new(accumulator.len()), accumulator.noise(), accumulator.passes());
+        let (pass, noise, noted) =
+            (Pass::new(accumulator.len_of_planes()), accumulator.noise(), accumulator.passes());
         Self {
             accumulator,
             samples,
@@ -100,7 +102,7 @@ impl Sums {
     /// Goes on with the sample `sample`: what was done of another one is dropped.
     pub(super) fn start(&mut self, sample: u64) {
         if self.sample != sample {
-            self.pass = Pass::new(self.accumulator.len());
+            self.pass = Pass::new(self.accumulator.len_of_planes());
             (self.sample, self.blocks) = (sample, 0);
         }
     }
@@ -141,14 +143,20 @@ impl Sums {
     /// it found is the less certain the fewer blocks there are: no pixel is biased. Pixels of no sample at all take the
     /// mean of those around them.
     pub fn pixels(&self) -> Vec<Spectrum> {
+        self.plane(0)
+    }
+
+    /// The same of a plane: 0 is the image, those of layers follow.
+    pub(super) fn plane(&self, plane: usize) -> Vec<Spectrum> {
+        let first = plane * self.accumulator.len();
         let blocks = self.division();
         if self.accumulator.passes() == 0 {
-            return self.pass.pixels(&blocks, self.blocks, self.width);
+            return self.pass.pixels(&blocks, self.blocks, self.width, plane);
         }
-        let (mut pixels, passes) = (self.accumulator.mean(), self.accumulator.passes() as f32);
+        let (mut pixels, passes) = (self.accumulator.mean_of(plane), self.accumulator.passes() as f32);
         let done = self.unfinished() as f32;
         for pixel in (0..self.blocks).flat_map(|block| blocks.pixels(block)) {
-            let both = pixels[pixel] * passes + self.pass.estimate(pixel, done) * done;
+            let both = pixels[pixel] * passes + self.pass.estimate(first + pixel, done) * done;
             pixels[pixel] = both / (passes + done);
         }
         pixels
@@ -187,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_pass_may_end_after_any_block() {
-        let (film, mut sums) = (film(), Sums::new(&film(), false));
+        let (film, mut sums) = (film(), Sums::new(&film(), false, 0));
         let blocks = sums.division();
         let count = blocks.count();
         for task in 0..3 * count {
@@ -210,8 +218,8 @@ mod tests {
     fn a_file_holds_all_of_it() {
         let (film, folder) = (film(), tempfile::tempdir().unwrap());
         let path = folder.path().join("a.sums");
-        for (products, tasks) in [(false, 1), (true, 4), (true, 7)] {
-            let mut sums = Sums::new(&film, products);
+        for (products, tasks, layers) in [(false, 1, 0), (true, 4, 2), (true, 7, 1)] {
+            let mut sums = Sums::new(&film, products, layers);
             let blocks = sums.division();
             for task in 0..tasks {
                 let sample = (task / 4) as u64;

@@ -6,7 +6,7 @@ use super::{
     accel::Geometry,
     boundary::{self, Boundary},
     extents::Extents,
-    lights::{Light, Lights, emissive},
+    lights::{Disk, Light, Lights, emissive},
     locate::{Known, Locator, Survey},
     overlap::{self, Overlaps},
     placement::{Names, Placement, place_camera},
@@ -17,7 +17,7 @@ use super::{
 use crate::{
     bsdf::{self, Bsdf, BsdfModel},
     description::{Library, Location, Object, Params, Position, Property, Value, params::Child},
-    emitter::{self, Emitter},
+    emitter::{self, Emitter, Kind},
     error::{Error, Result},
     film::Film,
     format::plugins,
@@ -100,6 +100,10 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     let time = builder.place.time;
     let (scene, shape_names, bsdf_names) = builder.finish(view.camera, &medium_overrides)?;
     unseen::warn_of_darkness(&scene.lights, &integrator, &root.location, &library);
+    let integrator = match overrides.groups {
+        true => integrator.with_groups(&scene.lights.groups(), &root.location)?,
+        false => integrator,
+    };
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }
@@ -572,7 +576,10 @@ fn light(placed: &Placed<'_>, recentre: DVec3, placement: &Placement<'_>) -> Lig
     let (medium, straddles) = match (*stated, shape, position) {
         (Some(medium), ..) => (medium, false),
         (None, Some(shape), _) => placement.of_shape(shape, location),
-        (None, None, Some(position)) => (placement.of_point(position, location), false),
+        (None, None, Some(position)) => match &emitter.kind {
+            Kind::Beam(beam) => placement.of_disk(&Disk::of_beam(beam, position), location),
+            _ => (placement.of_point(position, location), false),
+        },
         (None, None, None) => placement.of_infinite(&emitter),
     };
     Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles }

@@ -3,6 +3,7 @@
 use super::{
     accel::Geometry,
     boundary::Boundary,
+    lights::Disk,
     locate::{Certainty, Contradiction, Known, Located, Locator, Survey},
 };
 use crate::{
@@ -207,20 +208,42 @@ impl Placement<'_> {
     /// The medium on the emitting side of a shape, and whether light of different points starts in different ones.
     pub fn of_shape(&self, shape: u32, location: &Location) -> (MediumIndex, bool) {
         let mut stream = Stream::new(5, u64::from(shape), 0, Purpose::Pilot);
-        let mut located = (0..POINTS).map(|_| {
+        let located = (0..POINTS).map(|_| {
             let point = self.locator.geometry.sample_area(shape, &mut stream);
             self.in_front_of(&point, &mut stream)
         });
+        self.of_points(located, self.is_stated(shape), "an emitting shape", location)
+    }
+
+    /// The medium that a beam leaves `disk` in, and whether that of different points differs.
+    pub fn of_disk(&self, disk: &Disk, location: &Location) -> (MediumIndex, bool) {
+        let mut stream = Stream::new(7, 0, 0, Purpose::Pilot);
+        let located = (0..POINTS).map(|_| {
+            let point = disk.sample(&mut stream);
+            self.locator.locate(point, &mut stream).unwrap_or_else(|| self.assumed())
+        });
+        self.of_points(located, false, "an emitter", location)
+    }
+
+    /// The medium of the first of points that were `located`, and whether that of others differs; `what` they are of is
+    /// at `location`. Where it `is_stated`, the first is enough.
+    fn of_points(
+        &self,
+        mut located: impl Iterator<Item = Located>,
+        is_stated: bool,
+        what: &str,
+        location: &Location,
+    ) -> (MediumIndex, bool) {
         let first = located.next().unwrap_or_else(|| self.assumed());
         // Where only one medium is possible, no other points have to be located.
-        if self.locator.known.is_uniform() || self.is_stated(shape) {
+        if self.locator.known.is_uniform() || is_stated {
             return (first.medium, false);
         }
         let weakest = located.max_by_key(|found| (found.medium != first.medium, rank(found.certainty)));
         let differs = weakest.is_some_and(|other| other.medium != first.medium);
         if !differs {
             let weaker = weakest.filter(|other| rank(other.certainty) > rank(first.certainty));
-            self.names.warn(weaker.unwrap_or(first), "an emitting shape", location);
+            self.names.warn(weaker.unwrap_or(first), what, location);
         }
         (first.medium, differs)
     }

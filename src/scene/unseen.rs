@@ -3,7 +3,7 @@
 use super::{Surface, accel::Geometry, boundary, lights::Lights, placement::Names};
 use crate::{
     description::{Library, Location},
-    emitter::Kind,
+    emitter::{BeamModel, Kind},
     math::{Vec3, offset},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
@@ -116,6 +116,7 @@ impl Unseen<'_> {
             (Kind::Surface(_), Some(other)) => meets(self.bounds(other)),
             (Kind::Infinite(_), _) => false,
             (Kind::Point(_), _) => meets((light.position, light.position)),
+            (Kind::Beam(beam), _) => meets((light.position - beam.radius(), light.position + beam.radius())),
             (Kind::Surface(_) | Kind::Medium(_), _) => true,
         })
     }

@@ -3,7 +3,7 @@
 //! `non_scattering` restrict what media do.
 
 use crate::{
-    description::{Build, Library, Object, Params, Registry, params::Child, suggest},
+    description::{Build, Library, Location, Object, Params, Registry, params::Child, suggest},
     error::{Error, Result},
     film::layer::{Content, Layer, QUANTITIES},
     math::Spectrum,
@@ -90,27 +90,40 @@ pub const ROWS: Registry<Build<Integrator>> = Registry::new(
     ],
 );
 
+impl Integrator {
+    /// The same with a layer for each of the `groups` of emitters of a scene, which is at `location`.
+    pub fn with_groups(mut self, groups: &[&str], location: &Location) -> Result<Self> {
+        let layer = |(group, name): (u32, &&str)| Layer {
+            name: format!("group.{name}"),
+            content: Content::Group(group),
+        };
+        self.layers.extend((0..).zip(groups).map(layer));
+        check_names(location, &self.layers)?;
+        Ok(self)
+    }
+}
+
 /// Builds the integrator that `object` describes.
 pub fn build(object: &Object, library: &Library) -> Result<Integrator> {
     let integrator = ROWS.build(object, library)?;
-    check_names(object, &integrator.layers)?;
+    check_names(&object.location, &integrator.layers)?;
     Ok(integrator)
 }
 
 /// Every channel of a file has a name of its own, which OpenEXR can hold.
-fn check_names(object: &Object, layers: &[Layer]) -> Result<()> {
+fn check_names(location: &Location, layers: &[Layer]) -> Result<()> {
     let names: Vec<String> = layers.iter().flat_map(Layer::channel_names).collect();
     let remedy = "rename one of the layers";
     if let Some((_, name)) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
         let found = format!("\"{name}\" twice");
-        return Err(Error::new(&object.location, "channels with distinct names", found, remedy));
+        return Err(Error::new(location, "channels with distinct names", found, remedy));
     }
     let fits = |name: &&String| name.len() < 256 && name.chars().all(|c| c.is_ascii_graphic());
     match names.iter().find(|name| !fits(name)) {
         None => Ok(()),
         Some(name) => {
             let expected = "channel names of ASCII letters, digits and signs, at most 255 of them";
-            Err(Error::new(&object.location, expected, format!("\"{name}\""), remedy))
+            Err(Error::new(location, expected, format!("\"{name}\""), remedy))
         }
     }
 }

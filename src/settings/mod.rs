@@ -17,6 +17,8 @@ pub struct Overrides {
     pub crop: Option<Crop>,
     /// Free-flight sampling methods in heterogeneous media.
     pub tracker: Option<DistanceMethod>,
+    /// Also an image of what each group of emitters contributes.
+    pub groups: bool,
 }
 
 /// A part of an image [pixels].

@@ -91,7 +91,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) 
         position: start.position(),
         ray: start.ray,
         medium,
-        from_infinity: start.point.is_infinite(),
+        from_infinity: start.point.is_parallel(),
         edges: 0,
         hidden: false,
         dirac: !emitter.is_connectible(),

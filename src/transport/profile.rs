@@ -21,7 +21,7 @@ pub trait Profile: MediaProfile {
     const MEDIA: bool;
     /// Rays can pass surfaces undeflected, so segments cross boundaries.
     const NULLS: bool;
-    /// Some emitter is at infinity, or the sensor is: its rays are parallel.
+    /// The rays of some emitter, at infinity or not, or those of the sensor are parallel.
     const INFINITE: bool;
     /// Some medium emits light.
     const EMISSIVE: bool;
@@ -118,7 +118,7 @@ pub struct Needs {
     pub heterogeneous: bool,
     /// Some surface lets rays pass undeflected, even if only those from the camera.
     pub nulls: bool,
-    /// Some emitter is at infinity, or the sensor is.
+    /// The rays of some emitter, at infinity or not, or those of the sensor are parallel.
     pub infinite: bool,
     /// Some medium emits light.
     pub emissive: bool,
@@ -135,7 +135,7 @@ impl Needs {
             chromatic: scene.media.iter().any(Medium::is_chromatic),
             heterogeneous: overlap || scene.media.iter().any(|medium| medium.heterogeneous().is_some()),
             nulls: nulls || passed || overlap,
-            infinite: scene.lights.has_infinite() || scene.sensor.is_parallel(),
+            infinite: scene.lights.has_parallel() || scene.sensor.is_parallel(),
             emissive: scene.lights.has_media(),
         }
     }

@@ -28,7 +28,7 @@ pub struct Departure<S: MisSums> {
     pub ray: Ray,
     /// The medium it starts in.
     pub medium: MediumIndex,
-    /// True where the vertex is a direction of an emitter at infinity: the next vertex's density has no 1/d^2.
+    /// True where parallel light leaves an emitter, as from infinity: the next vertex's density has no 1/d^2.
     pub from_infinity: bool,
     /// Segments so far.
     pub edges: u32,

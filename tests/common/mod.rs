@@ -35,8 +35,17 @@ impl Stage {
         Self::with_files(scene, &[])
     }
 
+    /// The same, with layers of its groups of emitters.
+    pub fn with_groups(scene: &Value) -> Self {
+        Self::overridden(scene, &[], Overrides { groups: true, ..Overrides::default() })
+    }
+
     /// Loads a scene given as JSON, with the files it names beside it.
     pub fn with_files(scene: &Value, files: &[(&str, &str)]) -> Self {
+        Self::overridden(scene, files, Overrides::default())
+    }
+
+    fn overridden(scene: &Value, files: &[(&str, &str)], overrides: Overrides) -> Self {
         let folder = TempDir::new().unwrap();
         for (name, text) in files {
             std::fs::write(folder.path().join(name), text).unwrap();
@@ -44,7 +53,7 @@ impl Stage {
         let path = folder.path().join("scene.json");
         std::fs::write(&path, scene.to_string()).unwrap();
         let root = format::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
-        let setup = build::build(&root, Overrides::default()).unwrap_or_else(|error| panic!("{error}"));
+        let setup = build::build(&root, overrides).unwrap_or_else(|error| panic!("{error}"));
         let profile = ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.options.hide_emitters));
         Self { setup, profile }
     }

@@ -133,6 +133,13 @@ pub fn sun(direction: [f64; 3], irradiance: impl Into<Value>) -> Value {
     json!({"type": "directional", "direction": direction, "irradiance": irradiance.into()})
 }
 
+/// A beam of parallel light from a disk around `at` along `direction`.
+pub fn beam(at: [f64; 3], direction: [f64; 3], radius: f64, irradiance: impl Into<Value>) -> Value {
+    let target: [f64; 3] = std::array::from_fn(|i| at[i] + direction[i]);
+    let aim = json!([{"type": "lookat", "origin": at, "target": target, "up": [0.1, 1, 0.2]}]);
+    json!({"type": "collimated", "to_world": aim, "radius": radius, "irradiance": irradiance.into()})
+}
+
 /// The same radiance from everywhere.
 pub fn sky(radiance: impl Into<Value>) -> Value {
     json!({"type": "constant", "radiance": radiance.into()})

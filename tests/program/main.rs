@@ -11,6 +11,7 @@ mod cropping;
 mod diff;
 mod errors;
 mod flights;
+mod grouping;
 mod html;
 mod keeping;
 mod layering;

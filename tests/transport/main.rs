@@ -5,6 +5,7 @@ mod common;
 
 mod adaptive;
 mod agreement;
+mod beams;
 mod determinism;
 mod efforts;
 mod equiangular;
@@ -12,6 +13,7 @@ mod extremes;
 mod faults;
 mod forced;
 mod glowing;
+mod groups;
 mod heuristics;
 mod layers;
 mod modes;

@@ -1,4 +1,5 @@
-//! The arrays of a render to a precision, of which `.0` and `.1` are those of its two halves:
+//! The arrays of a render to a precision, of which `.0` and `.1` are those of its two halves. Camera and light of `layers`
+//! that contributions are sorted into follow those of the image:
 //!
 //! | array | type, shape | is |
 //! |---|---|---|
@@ -44,6 +45,9 @@ struct State {
     goal: u64,
     /// Mean luminances of each half's image; 0 before they are known.
     means: [f64; 2],
+    /// Layers that contributions are sorted into.
+    #[serde(default)]
+    layers: usize,
     /// Blocks done of the unfinished pass.
     blocks: usize,
     /// Time spent [s].
@@ -75,6 +79,7 @@ impl Kept for Halves {
             passes: self.halves.each_ref().map(|half| half.passes),
             goal: self.goal,
             means: self.halves.each_ref().map(|half| half.mean),
+            layers: self.halves[0].camera.len() / (width * height) - 1,
             blocks: self.blocks,
             seconds: self.elapsed.as_secs_f64(),
             faults: self.faults.clone(),
@@ -116,20 +121,25 @@ pub(super) fn halves(state: Value, arrays: &Arrays<'_>) -> Option<Halves> {
     let contents = halves.each_ref().map(|half| half.content.clone());
     for (half, other) in halves.iter_mut().zip(contents.iter().rev()) {
         // The other half ended them.
-        half.ended.iter_mut().zip(other).filter(|(_, content)| !**content).for_each(|(mean, _)| *mean = None);
+        half.ended
+            .iter_mut()
+            .zip(other.iter().cycle())
+            .filter(|(_, content)| !**content)
+            .for_each(|(mean, _)| *mean = None);
     }
     let mut found = Halves::of(halves, state.precision, state.goal, state.width);
     found.samples = arrays.row("samples", u32::from_le_bytes).filter(|samples| samples.len() == pixels)?;
     found.faults = state.faults;
     found.elapsed = Duration::try_from_secs_f64(state.seconds).ok()?;
     found.blocks = state.blocks;
-    found.pass = arrays.pass(pixels, found.blocks > 0)?;
+    found.pass = arrays.pass(found.halves[0].camera.len(), found.blocks > 0)?;
     (found.blocks < found.division().count()).then_some(found)
 }
 
 fn half(index: usize, state: &State, pixels: usize, arrays: &Arrays<'_>) -> Option<Half> {
     let name = |name: &str| format!("{name}.{index}");
-    let vectors = |array: &str| arrays.vectors(&name(array), pixels);
+    let planes = pixels.checked_mul(state.layers.checked_add(1)?)?;
+    let vectors = |array: &str| arrays.vectors(&name(array), planes);
     let errors = arrays.row(&name("errors"), f64::from_le_bytes)?;
     let content = arrays.row(&name("content"), |byte: [u8; 1]| byte[0] == 1)?;
     let fits = errors.len() == pixels && content.len() == pixels;
@@ -138,7 +148,7 @@ fn half(index: usize, state: &State, pixels: usize, arrays: &Arrays<'_>) -> Opti
         mean: state.means[index],
         camera: vectors("camera_sums")?,
         light: vectors("light_sums")?,
-        squares: vectors("squares")?,
+        squares: arrays.vectors(&name("squares"), pixels)?,
         ended: vectors("camera_means")?.into_iter().map(Some).collect(),
         ended_light: vectors("light_means"),
         errors,

@@ -2,7 +2,7 @@
 //!
 //! | array | type, shape | is |
 //! |---|---|---|
-//! | `windows`, `parts` | i16 \[n\], i64 \[n, 2\] | exact sums over samples, see [`Parts`](crate::math::exact_sums::Parts): of R, G, B and the difference of the halves of each pixel, row by row; then, where layers need them, of R R, R G, R B, G G, G B, B B |
+//! | `windows`, `parts` | i16 \[n\], i64 \[n, 2\] | exact sums over samples, see [`Parts`](crate::math::exact_sums::Parts): of R, G, B and the difference of the halves of each pixel, row by row, of the image and of `layers` that contributions are sorted into; then, where layers need them, of R R, R G, R B, G G, G B, B B |
 //! | `camera`, `light` | f32 \[pixels, 3\] | what camera and light subpaths of the unfinished sample contributed so far, if there is one |
 
 use super::{
@@ -27,6 +27,9 @@ struct State {
     height: usize,
     /// Ranges of the samples that every pixel has.
     samples: Vec<Range<u64>>,
+    /// Layers that contributions are sorted into.
+    #[serde(default)]
+    layers: usize,
     /// Number of the unfinished sample, and how many of its blocks are done.
     unfinished: (u64, usize),
     /// Time spent [s].
@@ -55,6 +58,7 @@ impl Kept for Sums {
             width,
             height,
             samples: self.samples.ranges().to_vec(),
+            layers: self.accumulator.len_of_planes() / self.accumulator.len() - 1,
             unfinished: (self.sample, self.blocks),
             seconds: self.elapsed.as_secs_f64(),
             faults: self.faults.clone(),
@@ -77,11 +81,12 @@ pub(super) fn sums(state: Value, arrays: &Arrays<'_>) -> Option<Sums> {
     let sums: Vec<_> = sums.map(|(window, parts)| (window, *parts)).collect();
     let pixels = state.width.checked_mul(state.height).filter(|pixels| *pixels > 0)?;
     let samples = if state.samples.is_empty() { Samples::default() } else { Samples::of(state.samples)? };
-    let accumulator = Accumulator::from_sums(pixels, samples.halves(), &sums)?;
+    let planes = state.layers.checked_add(1)?;
+    let accumulator = Accumulator::from_sums(pixels, planes, samples.halves(), &sums)?;
     let mut sums = Sums::of(accumulator, samples, state.width);
     sums.faults = state.faults;
     sums.elapsed = Duration::try_from_secs_f64(state.seconds).ok()?;
     (sums.sample, sums.blocks) = state.unfinished;
-    sums.pass = arrays.pass(pixels, sums.blocks > 0)?;
+    sums.pass = arrays.pass(sums.accumulator.len_of_planes(), sums.blocks > 0)?;
     (sums.blocks < sums.division().count()).then_some(sums)
 }

@@ -1,15 +1,15 @@
 //! Where light subpaths start.
 
 use super::{
-    EmitterPoint, Geometry, Lights, Start, Starts,
+    Disk, EmitterPoint, Geometry, Lights, Start, Starts,
     starts::{Densities, Learnt},
 };
 use crate::{
     emitter::{
-        InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceEmission, SurfaceEmitter,
-        SurfaceModel, VolumeEmitter,
+        BeamEmitter, BeamModel, InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel,
+        SurfaceEmission, SurfaceEmitter, SurfaceModel, VolumeEmitter,
     },
-    math::{Frame, Spectrum, Vec3, offset, warp},
+    math::{Spectrum, Vec3, offset, warp},
     sampling::Stream,
     shape::{Ray, SurfacePoint},
 };
@@ -28,7 +28,7 @@ pub struct EmissionSample {
     /// Density of the point: per area of a shape [1/m^2], per volume of a medium [1/m^3], per solid angle at infinity
     /// [1/sr]; a probability where the emitter is a point or a direction.
     pub pdf: f32,
-    /// Density of the direction [1/sr], or of the origin on the disk [1/m^2]; 1 of the only direction there is.
+    /// Density of the direction [1/sr], or, of parallel light, that of the origin on the disk [1/m^2]; 1 of the only direction there is.
     pub pdf_direction: f32,
     /// Both densities without what was learnt.
     pub unlearnt: Densities,
@@ -106,6 +106,7 @@ impl Lights {
             }
             Kind::Point(point) => self.start_at_point(index, point, chosen, learnt, stream),
             Kind::Infinite(sky) => self.start_at_infinity(index, sky, chosen, learnt, stream),
+            Kind::Beam(beam) => self.start_of_beam(index, beam, chosen, learnt, stream),
             Kind::Medium(volume) => self.start_within(index, volume, chosen, learnt, stream),
         };
         let leaves = start.throughput.is_finite() && start.throughput.max_element() > 0.0;
@@ -167,13 +168,28 @@ impl Lights {
         let towards = learnt.and_then(|learnt| learnt.sample_towards(stream));
         let towards = towards.unwrap_or_else(|| sky.sample(stream));
         let (pdf, radiance) = (chosen * sky.pdf_sr(towards), sky.radiance(towards));
-        let disk = learnt.and_then(|learnt| learnt.sample_disk(towards, stream));
-        let disk = disk.unwrap_or_else(|| warp::to_disk(stream.square())) * self.radius;
-        let origin = self.centre + Frame::around(towards).to_world(disk.extend(self.radius));
-        let pdf_direction = self.disk_pdf_area();
+        let disk = self.disk_towards(towards);
+        let origin = start_on(&disk, learnt, stream);
+        let pdf_direction = disk.pdf_area();
         let throughput = radiance * self.from_infinity / (pdf * pdf_direction);
         let (point, ray) = (EmitterPoint::Direction(towards), endless(origin, -towards));
         start_of(index, point, ray, [pdf, pdf_direction], throughput)
+    }
+
+    fn start_of_beam(
+        &self,
+        index: usize,
+        beam: &BeamEmitter,
+        pdf: f32,
+        learnt: Option<&Learnt>,
+        stream: &mut Stream,
+    ) -> EmissionSample {
+        let disk = Disk::of_beam(beam, self.all[index].position);
+        let (position, direction) = (start_on(&disk, learnt, stream), beam.direction());
+        let pdf_direction = disk.pdf_area();
+        let throughput = beam.irradiance() / (pdf * pdf_direction);
+        let point = EmitterPoint::Beam { position, direction };
+        start_of(index, point, endless(position, direction), [pdf, pdf_direction], throughput)
     }
 
     /// In the medium's box; the caller, who knows the boundaries, checks whether it is in the medium.
@@ -207,7 +223,7 @@ impl Lights {
             }
             (Kind::Infinite(sky), EmitterPoint::Direction(direction)) => {
                 let value = sky.radiance(*direction) * self.from_infinity;
-                Some(Emitted { value, pdf_direction: self.disk_pdf_area(), cosine: 1.0 })
+                Some(Emitted { value, pdf_direction: self.disk_towards(*direction).pdf_area(), cosine: 1.0 })
             }
             (Kind::Medium(volume), EmitterPoint::Volume { position, .. }) => {
                 let value = volume.emission.at(*position);
@@ -233,6 +249,12 @@ impl Lights {
             _ => chosen() / self.starts.probability(index) * (start.unlearnt.point / start.pdf),
         }
     }
+}
+
+/// A point of `disk`, whose light travels one way only.
+fn start_on(disk: &Disk, learnt: Option<&Learnt>, stream: &mut Stream) -> Vec3 {
+    let point = learnt.and_then(|learnt| learnt.sample_disk(-disk.direction(), stream));
+    disk.at(point.unwrap_or_else(|| warp::to_disk(stream.square())))
 }
 
 /// What leaves `point` of a shape, which has density `pdf_area`, in unit `direction`.

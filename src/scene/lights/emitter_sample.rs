@@ -1,8 +1,11 @@
 //! Emitter points as seen from a reference: sampled by next-event estimation or hit by a camera subpath.
 
-use super::{EmitterPoint, Geometry, Lights, light_sampler::Taken};
+use super::{Disk, EmitterPoint, Geometry, Lights, light_sampler::Taken};
 use crate::{
-    emitter::{InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceModel, VolumeEmitter},
+    emitter::{
+        BeamEmitter, BeamModel, InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceModel,
+        VolumeEmitter,
+    },
     math::{Spectrum, Vec3, measure},
     sampling::Stream,
     shape::SurfacePoint,
@@ -16,7 +19,7 @@ pub struct EmitterSample {
     /// Its point.
     pub point: EmitterPoint,
     /// Radiance x cosine, intensity, irradiance x (delta), or radiance gained per metre: what arrives per 1/d^2 [d = 1
-    /// at infinity].
+    /// of parallel light].
     pub value: Spectrum,
     /// |cos| at the emitter; 1 where it is not a shape.
     pub cosine: f32,
@@ -25,7 +28,7 @@ pub struct EmitterSample {
     pub pdf: f32,
     /// Density of this point as the start of a light subpath without learnt starts, in the same measure.
     pub pdf_start: f32,
-    /// Density of the direction to the reference by a light subpath [1/sr] ([1/m^2] at infinity).
+    /// Density of the direction to the reference by a light subpath [1/sr] ([1/m^2] of parallel light).
     pub pdf_direction: f32,
 }
 
@@ -73,6 +76,7 @@ impl Lights {
             }
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
             Kind::Infinite(sky) => self.infinite_sample(index, sky, sky.sample(stream), chosen),
+            Kind::Beam(beam) => self.beam_sample(index, beam, chosen, reference),
             Kind::Medium(volume) => {
                 let position = volume.emission.sample(stream);
                 self.volume_point(index, volume, position, chosen * volume.emission.pdf_vol(position))
@@ -139,7 +143,28 @@ impl Lights {
             cosine: 1.0,
             pdf: chosen * by_sky,
             pdf_start: self.starts.probability(index) * by_sky,
-            pdf_direction: self.disk_pdf_area(),
+            pdf_direction: self.disk_towards(towards).pdf_area(),
+        })
+    }
+
+    /// The one point of a beam whose light comes to `reference`.
+    fn beam_sample(
+        &self,
+        index: usize,
+        beam: &BeamEmitter,
+        chosen: f32,
+        reference: Vec3,
+    ) -> Option<EmitterSample> {
+        let disk = Disk::of_beam(beam, self.all[index].position);
+        let (position, value) = (disk.onto(reference)?, beam.irradiance());
+        (value.max_element() > 0.0).then(|| EmitterSample {
+            light: index as u32,
+            point: EmitterPoint::Beam { position, direction: beam.direction() },
+            value,
+            cosine: 1.0,
+            pdf: chosen,
+            pdf_start: self.starts.probability(index),
+            pdf_direction: disk.pdf_area(),
         })
     }
 

@@ -4,11 +4,13 @@
 //! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
 //! emitter: of starts by its power, of next-event estimation by what it is estimated to give the reference. They
 //! are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle [1/sr] for
-//! emitters at infinity, whose "point" is a direction, and per volume [1/m^3] for emissive media.
+//! emitters at infinity, whose "point" is a direction (discrete for a beam, which has one), and per volume [1/m^3] for emissive media.
 //! For how camera subpaths sample a point of those, and so the density of s = 0, see [`Emission::rate`].
 
+mod disk;
 mod emission_sample;
 mod emitter_sample;
+mod groups;
 mod light_sampler;
 mod light_tree;
 mod pivot;
@@ -16,9 +18,10 @@ mod point;
 mod starts;
 mod volume;
 
+pub use disk::Disk;
 pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
-pub use pivot::Pivot;
+pub use pivot::{Pivot, Place};
 pub use point::EmitterPoint;
 pub use starts::{Densities, Memo, Start, Starts};
 pub(super) use volume::emissive;
@@ -31,14 +34,13 @@ use crate::{
     sampling::Discrete,
 };
 use light_sampler::{Extent, LightSampler};
-use std::f32::consts::PI;
 
 /// An emitter placed in its scene.
 #[derive(Clone, Debug)]
 pub struct Light {
     /// How it emits.
     pub emitter: Emitter,
-    /// Its position: a point, or nothing for shapes and emitters at infinity.
+    /// Its position: a point, the centre of a disk, or nothing for shapes and emitters at infinity.
     pub position: Vec3,
     /// The shape that emits.
     pub shape: Option<u32>,
@@ -115,6 +117,11 @@ impl Lights {
         self.all.iter().any(|light| light.emitter.is_infinite())
     }
 
+    /// True if some emitter's rays are parallel, at infinity or not.
+    pub fn has_parallel(&self) -> bool {
+        self.all.iter().any(|light| light.emitter.is_parallel())
+    }
+
     /// True if some medium emits light.
     pub fn has_media(&self) -> bool {
         !self.of_media.is_empty()
@@ -126,12 +133,6 @@ impl Lights {
         let index = self.of_media.get(medium.0 as usize).copied().flatten()?;
         let Kind::Medium(volume) = &self.all[index as usize].emitter.kind else { return None };
         Some((index, &volume.emission))
-    }
-
-    /// Density of starts on the disk that faces an emitter at infinity [1/m^2].
-    #[inline]
-    fn disk_pdf_area(&self) -> f32 {
-        1.0 / (PI * self.radius * self.radius)
     }
 }
 

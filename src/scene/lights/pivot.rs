@@ -1,7 +1,7 @@
 //! Distances along a ray that are denser the nearer to an emitter (Kulla and Fajardo 2012, Importance Sampling Techniques
-//! for Path Tracing in Participating Media, sec. 4).
+//! for Path Tracing in Participating Media, sec. 4); of a beam, those within it.
 
-use super::{Geometry, Light, Lights};
+use super::{Disk, Geometry, Light, Lights};
 use crate::{
     emitter::Kind,
     math::{Vec3, offset},
@@ -14,7 +14,16 @@ const POINTS: u16 = 64;
 
 /// Where an emitter is, as far as distances to it matter.
 #[derive(Clone, Copy, Debug)]
-pub struct Pivot {
+pub enum Pivot {
+    /// Around a place.
+    Around(Place),
+    /// Light is in the beam from this disk only: all distances in it are as likely.
+    Beam(Disk),
+}
+
+/// Where light comes from.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
     /// The point, or the centre of the shape.
     pub position: Vec3,
     /// How far from it light comes from, root mean square [m].
@@ -41,16 +50,43 @@ impl Pivot {
             let mean = |sum: f32| sum / f32::from(POINTS);
             let position = points.iter().map(|point| *point / f32::from(POINTS)).sum();
             let square = points.iter().map(|point| point.distance_squared(position)).sum();
-            Self { position, radius: mean(square).sqrt() }
+            Self::Around(Place { position, radius: mean(square).sqrt() })
         };
         match light.emitter.kind {
             _ if !light.emitter.is_connectible() => None,
             Kind::Surface(_) => light.shape.map(around),
-            Kind::Point(_) => Some(Self { position: light.position, radius: 0.0 }),
+            Kind::Point(_) => Some(Self::Around(Place { position: light.position, radius: 0.0 })),
+            Kind::Beam(_) => Disk::of(light).map(Self::Beam),
             Kind::Infinite(_) | Kind::Medium(_) => None,
         }
     }
 
+    /// A distance along the ray from `origin` in unit `direction`, and its density [1/m]; none where there is none.
+    pub fn sample(&self, origin: Vec3, direction: Vec3, u: f32) -> Option<(f32, f32)> {
+        let (distance, pdf) = match self {
+            Self::Around(place) => place.sample(origin, direction, u)?,
+            Self::Beam(disk) => {
+                let [from, to] = disk.lit_part(origin, direction, 0.0)?;
+                (from + (to - from) * u, 1.0 / (to - from))
+            }
+        };
+        (distance > 0.0 && distance < f32::INFINITY && pdf > 0.0).then_some((distance, pdf))
+    }
+
+    /// Density of `position` [1/m], `distance` metres from the start of a ray in unit `direction`.
+    #[inline]
+    pub fn pdf(&self, position: Vec3, direction: Vec3, distance: f32) -> f32 {
+        match self {
+            Self::Around(place) => place.pdf(position, direction, distance),
+            Self::Beam(disk) => match disk.lit_part(position, direction, distance) {
+                Some([from, to]) if from <= distance && distance <= to => 1.0 / (to - from),
+                _ => 0.0,
+            },
+        }
+    }
+}
+
+impl Place {
     /// Those of the ray in unit `direction` that is `distance` metres behind its start at `position`; none where it starts
     /// at the emitter.
     fn distances(&self, position: Vec3, direction: Vec3, distance: f32) -> Option<Distances> {
@@ -62,17 +98,16 @@ impl Pivot {
         (apart > 0.0).then(|| Distances { closest, apart, angle: apart.atan2(-closest) })
     }
 
-    /// A distance along the ray from `origin` in unit `direction`, and its density [1/m]; none where there is none.
-    pub fn sample(&self, origin: Vec3, direction: Vec3, u: f32) -> Option<(f32, f32)> {
+    /// See [`Pivot::sample`].
+    fn sample(&self, origin: Vec3, direction: Vec3, u: f32) -> Option<(f32, f32)> {
         let all = self.distances(origin, direction, 0.0)?;
         let distance = all.closest + all.apart * (FRAC_PI_2 - all.angle * (1.0 - u)).tan();
-        let pdf = self.pdf(origin + direction * distance, direction, distance);
-        (distance > 0.0 && distance < f32::INFINITY && pdf > 0.0).then_some((distance, pdf))
+        Some((distance, self.pdf(origin + direction * distance, direction, distance)))
     }
 
-    /// Density of `position` [1/m], `distance` metres from the start of a ray in unit `direction`.
+    /// See [`Pivot::pdf`].
     #[inline]
-    pub fn pdf(&self, position: Vec3, direction: Vec3, distance: f32) -> f32 {
+    fn pdf(&self, position: Vec3, direction: Vec3, distance: f32) -> f32 {
         let Some(Distances { closest, apart, angle }) = self.distances(position, direction, distance) else {
             return 0.0;
         };
@@ -109,14 +144,18 @@ impl Lights {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing;
+    use crate::{math::Vec2, testing};
+
+    const fn place(position: Vec3, radius: f32) -> Pivot {
+        Pivot::Around(Place { position, radius })
+    }
 
     const RAYS: [(Vec3, Pivot); 5] = [
-        (Vec3::ZERO, Pivot { position: Vec3::new(1.0, 0.5, 2.0), radius: 0.0 }),
-        (Vec3::ZERO, Pivot { position: Vec3::new(0.3, 0.0, -2.0), radius: 0.1 }),
-        (Vec3::new(5.0, 5.0, 5.0), Pivot { position: Vec3::new(5.0, 5.0, 8.0), radius: 0.0 }),
-        (Vec3::ZERO, Pivot { position: Vec3::new(1e-3, 0.0, 1e3), radius: 0.0 }),
-        (Vec3::ZERO, Pivot { position: Vec3::new(0.0, 0.0, 1e-3), radius: 0.5 }),
+        (Vec3::ZERO, place(Vec3::new(1.0, 0.5, 2.0), 0.0)),
+        (Vec3::ZERO, place(Vec3::new(0.3, 0.0, -2.0), 0.1)),
+        (Vec3::new(5.0, 5.0, 5.0), place(Vec3::new(5.0, 5.0, 8.0), 0.0)),
+        (Vec3::ZERO, place(Vec3::new(1e-3, 0.0, 1e3), 0.0)),
+        (Vec3::ZERO, place(Vec3::new(0.0, 0.0, 1e-3), 0.5)),
     ];
 
     /// Before and behind an emitter, beside one and straight through one.
@@ -155,9 +194,45 @@ mod tests {
         (0..STEPS).map(at).sum::<f64>() * step
     }
 
+    /// Rays that cross it, begin in it, end at its disk, and leave that.
+    #[test]
+    fn distances_in_a_beam_are_those_that_it_lights() {
+        let disk = Disk::new(Vec3::new(0.2, 0.0, 5.0), -Vec3::Z, 0.5);
+        let beam = Pivot::Beam(disk);
+        let mut stream = Stream::new(5, 0, 0, Purpose::Study);
+        for (origin, towards) in [
+            (Vec3::new(-3.0, 0.1, 0.0), Vec3::new(1.0, 0.0, 0.3)),
+            (Vec3::new(0.3, 0.2, 0.0), Vec3::new(0.1, 0.2, -1.0)),
+            (Vec3::new(0.3, 0.2, 0.0), Vec3::new(0.0, 0.05, 1.0)),
+            (Vec3::new(0.2, 0.0, 9.0), Vec3::new(0.01, 0.0, -1.0)),
+        ] {
+            let direction = towards.normalize();
+            let (mut low, mut high, mut expected) = (f32::INFINITY, 0f32, 0.0);
+            for _ in 0..10_000 {
+                let (distance, pdf) = beam.sample(origin, direction, stream.uniform()).unwrap();
+                let position = origin + direction * distance;
+                // At its edge, rounding decides.
+                assert!(
+                    disk.onto(position + (disk.at(Vec2::ZERO) - position).reject_from(Vec3::Z) * 1e-4)
+                        .is_some()
+                );
+                assert!((beam.pdf(position, direction, distance) / pdf - 1.0).abs() < 1e-3);
+                (low, high, expected) = (low.min(distance), high.max(distance), 1.0 / pdf);
+            }
+            assert!(
+                ((high - low) / expected - 1.0).abs() < 0.01,
+                "{origin}: {low} to {high}, not {expected}"
+            );
+            let beside = origin + direction * (high + 0.1 * expected);
+            assert_eq!(beam.pdf(beside, direction, high + 0.1 * expected), 0.0);
+        }
+        assert!(beam.sample(Vec3::new(5.0, 0.0, 0.0), Vec3::Y, 0.5).is_none());
+        assert!(beam.sample(Vec3::new(0.2, 0.0, 0.0), -Vec3::Z, 0.5).is_none(), "for ever");
+    }
+
     #[test]
     fn rays_from_a_point_light_itself_have_no_distances() {
-        let pivot = Pivot { position: Vec3::ONE, radius: 0.0 };
+        let pivot = place(Vec3::ONE, 0.0);
         assert!(pivot.sample(Vec3::ONE, Vec3::X, 0.5).is_none());
         assert_eq!(pivot.pdf(Vec3::ONE + Vec3::X, Vec3::X, 1.0), 0.0);
     }

@@ -21,6 +21,14 @@ pub enum EmitterPoint {
     },
     /// The unit direction towards an emitter at infinity.
     Direction(Vec3),
+    /// A point of the disk that a beam leaves. Its light comes from a single direction, as from infinity: which point it
+    /// is follows from where that light goes.
+    Beam {
+        /// World position.
+        position: Vec3,
+        /// The unit direction in which the light travels.
+        direction: Vec3,
+    },
 }
 
 impl EmitterPoint {
@@ -28,18 +36,21 @@ impl EmitterPoint {
     #[inline]
     pub fn position(&self) -> Option<Vec3> {
         match self {
-            Self::Point(position) | Self::Volume { position, .. } => Some(*position),
+            Self::Point(position) | Self::Volume { position, .. } | Self::Beam { position, .. } => {
+                Some(*position)
+            }
             Self::Surface(point) => Some(point.position),
             Self::Direction(_) => None,
         }
     }
 
-    /// The unit direction to it from `reference`, and the squared distance, which is 1 at infinity; none where the two
-    /// are the same point.
+    /// The unit direction to it from `reference`, and the squared distance, which is 1 at infinity and of a beam; none where
+    /// the two are the same point.
     #[inline]
     pub fn seen_from(&self, reference: Vec3) -> Option<(Vec3, f32)> {
         let position = match self {
             Self::Direction(towards) => return Some((*towards, 1.0)),
+            Self::Beam { direction, .. } => return Some((-*direction, 1.0)),
             Self::Point(position) | Self::Volume { position, .. } => *position,
             Self::Surface(point) => point.position,
         };
@@ -62,6 +73,12 @@ impl EmitterPoint {
     #[inline]
     pub fn is_infinite(&self) -> bool {
         matches!(self, Self::Direction(_))
+    }
+
+    /// True where light leaves in parallel, at infinity or not: a density per area of a disk, and no 1/d^2.
+    #[inline]
+    pub fn is_parallel(&self) -> bool {
+        matches!(self, Self::Direction(_) | Self::Beam { .. })
     }
 
     /// True in an emissive medium.

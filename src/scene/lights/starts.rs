@@ -8,13 +8,12 @@
 //! a P p(x) p(w | x) + (1 - a) P' p'(x) p'(w | x)
 //! ```
 //! Points on shapes and in media stay as they are, p' = p, so that nothing has to be inverted; p'(w | x) is looked up by
-//! where the point is. From infinity x is a direction, learnt as one, and w becomes a point on the disk that faces it, looked
+//! where the point is. From infinity, and of a beam, x is a direction, learnt as one, and w becomes a point on the disk that faces it, looked
 //! up by direction.
 
 use super::{EmitterPoint, Lights};
 use crate::{
-    emitter::Kind,
-    math::{Frame, Vec2, Vec3, warp},
+    math::{Vec2, Vec3, warp},
     sampling::{
         Discrete, Quadtree, Stream,
         quadtree::{Deposit, effective},
@@ -160,9 +159,9 @@ impl Starts {
         let Some(learnt) = &self.learnt[start.light as usize] else {
             return Densities { point: UNLEARNT * unlearnt.point, ..unlearnt };
         };
-        let (is_infinite, even) = lights.measure(start);
+        let (is_parallel, even) = lights.measure(start);
         let ratio = learnt.over_unlearnt;
-        let key = if is_infinite { -start.direction } else { start.position };
+        let key = if is_parallel { -start.direction } else { start.position };
         let by_table = match learnt.cells.at(key) {
             Some(table) => table.density(lights.to_square(start)) * even,
             None => unlearnt.direction,
@@ -193,14 +192,14 @@ impl Starts {
 impl Learnt {
     fn of(lights: &Lights, index: usize, over_unlearnt: f32, starts: &[(Start, f32)]) -> Self {
         let emitter = &lights.all[index].emitter;
-        let is_infinite = emitter.is_infinite();
+        let is_parallel = emitter.is_parallel();
         let of_sphere = |(start, weight): &(Start, f32)| Deposit {
             at: warp::from_sphere(-start.direction),
             weight: *weight,
         };
         let towards = emitter.environment().map(|_| Quadtree::learn(starts.iter().map(of_sphere).collect()));
         let keyed = |(start, weight): &(Start, f32)| Keyed {
-            key: if is_infinite { -start.direction } else { start.position },
+            key: if is_parallel { -start.direction } else { start.position },
             deposit: Deposit { at: lights.to_square(start), weight: *weight },
         };
         let mut cells = Cells { all: Vec::new() };
@@ -231,23 +230,22 @@ impl Learnt {
 }
 
 impl Lights {
-    /// True at infinity, and the density of a direction, or of a point of the disk, if all are as likely.
+    /// True for parallel light, and the density of a direction, or of a point of the disk, if all are as likely.
     #[inline]
     fn measure(&self, start: &Start) -> (bool, f32) {
-        match self.all[start.light as usize].emitter.kind {
-            Kind::Infinite(_) => (true, self.disk_pdf_area()),
-            _ => (false, warp::SPHERE_PDF),
+        match self.disk(start.light as usize, start.direction) {
+            Some(disk) => (true, disk.pdf_area()),
+            None => (false, warp::SPHERE_PDF),
         }
     }
 
     /// Where on the unit square `start` has its direction, or its point of the disk.
     #[inline]
     fn to_square(&self, start: &Start) -> Vec2 {
-        if !self.all[start.light as usize].emitter.is_infinite() {
-            return warp::from_sphere(start.direction);
+        match self.disk(start.light as usize, start.direction) {
+            Some(disk) => warp::from_disk(disk.unit(start.position)),
+            None => warp::from_sphere(start.direction),
         }
-        let local = Frame::around(-start.direction).to_local(start.position - self.centre);
-        warp::from_disk(local.truncate() / self.radius)
     }
 }
 

@@ -92,6 +92,7 @@ fn equiangular_sampling() {
         take::<Bounded>("null lamp, along", &[FOG, INSIDE, ROOM, BALL, NULL_LAMP], strategies);
         take::<ChromaticFog>("colours, along", &[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL], strategies);
         take::<ChromaticFog>("1e-3, 1, 1e3, along", &[EXTREME_FOG, INSIDE, ROOM, LAMP, BALL], strategies);
+        take::<Bounded>("beam, along", &[FOG, INSIDE, ROOM, SEARCHLIGHT, BULB, BALL], strategies);
         take::<Smoke>("waves, along", &[OUTSIDE, WAVES, GROUND, LAMP, BULB], strategies);
         let parts = [OUTSIDE, CHROMATIC_WAVES, GROUND, LAMP, POINT];
         take::<Everything>("coloured waves, along", &parts, strategies);
@@ -130,6 +131,8 @@ fn learnt_starts() {
     all("room", examine::<Fog>("learnt, in a room", &room, options, 600));
     let image = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SKY_IMAGE, SUN]);
     all("image", examine::<Everything>("learnt, sky image", &image, options, 1000));
+    let beam = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SEARCHLIGHT, SKY]);
+    all("beam", examine::<Everything>("learnt, beam", &beam, options, 1000));
     let fire = build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]);
     all("fire", examine::<ByKind>("learnt, fire", &fire, options, 600));
     let light = Options { strategies: Strategies { emitter_hit: false, ..Strategies::BDPT }, ..options };
@@ -157,6 +160,17 @@ fn emitters_at_infinity() {
     let report = examine::<Bounded>("sun", &setup, ALL, 1000);
     assert_eq!(report.strategies[0], 0, "a single direction cannot be met");
     examine_all::<Everything>("sun, sky", &build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]), 1000);
+}
+
+/// They cross boundaries, fill a part of what is seen, and come through glass.
+#[test]
+fn beams() {
+    let alone = examine::<Bounded>("beam", &build(&[FOG, INSIDE, ROOM, SEARCHLIGHT]), ALL, 400);
+    assert_eq!(alone.strategies[0], 0, "a beam cannot be hit");
+    examine_all::<Bounded>("in a room", &build(&[FOG, INSIDE, ROOM, SEARCHLIGHT, BULB, GLASS_BALL]), 400);
+    examine_all::<Bounded>("in the open", &build(&[OUTSIDE, SMOKE, GROUND, SEARCHLIGHT, SKY]), 1000);
+    let colours = build(&[OUTSIDE, CHROMATIC_WAVES, GROUND, SEARCHLIGHT]);
+    assert!(examine::<Everything>("coloured", &colours, ALL, 600).paths >= 1000);
 }
 
 #[test]

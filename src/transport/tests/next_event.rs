@@ -29,7 +29,7 @@ fn density_of_hit(scene: &Scene, sample: &EmitterSample, reference: Vec3) -> Opt
             let hit = lights.infinity_hit(towards, reference);
             hit.filter(|hit| hit.light == sample.light)
         }
-        EmitterPoint::Point(_) => None,
+        EmitterPoint::Point(_) | EmitterPoint::Beam { .. } => None,
     }
 }
 
@@ -81,6 +81,7 @@ fn an_emitter_point_has_one_density() {
     check("one lamp", &[FOG, INSIDE, ROOM, LAMP]);
     check("a sky", &[OUTSIDE, GROUND, SKY_IMAGE]);
     check("lights of all kinds", &[OUTSIDE, SMOKE, GROUND, SKY, SUN, POINT, SPOT, LAMP, BULB]);
+    check("beams", &[OUTSIDE, SMOKE, GROUND, SEARCHLIGHT, SKY, LAMP, BULB]);
     check("in a room", &[FOG, INSIDE, ROOM, SPOT, BULB, PROFILED_POINT, LUMINAIRE]);
     check("fire and lamps", &[OUTSIDE, HAZE, FIRE_BALL, GROUND, LAMP, POINT]);
     check("fire under a sky", &[OUTSIDE, FIRE_BOX, GROUND, SKY]);

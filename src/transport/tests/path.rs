@@ -22,6 +22,8 @@ pub enum Place {
     VolumeEmitter(Vec3, u32),
     /// An emitter at infinity in this unit direction.
     Sky(Vec3),
+    /// The point of a disk that a beam leaves, and its unit direction.
+    Disk(Vec3, Vec3),
     /// The pinhole, or the point [`APERTURE`] of a lens.
     Lens(Vec3),
 }
@@ -34,6 +36,7 @@ impl Place {
             EmitterPoint::Surface(point) => Self::Surface(point),
             EmitterPoint::Volume { position, .. } => Self::VolumeEmitter(position, light),
             EmitterPoint::Direction(towards) => Self::Sky(towards),
+            EmitterPoint::Beam { position, direction } => Self::Disk(position, direction),
         }
     }
 }
@@ -71,7 +74,8 @@ impl Node {
             | Place::Volume(p)
             | Place::Sky(p)
             | Place::Lens(p)
-            | Place::VolumeEmitter(p, _) => p,
+            | Place::VolumeEmitter(p, _)
+            | Place::Disk(p, _) => p,
             Place::Surface(point) => point.position,
         }
     }
@@ -81,14 +85,16 @@ impl Node {
         match (self.place, other.place) {
             (_, Place::Sky(direction)) => direction.as_dvec3(),
             (Place::Sky(direction), _) => -direction.as_dvec3(),
+            (_, Place::Disk(_, direction)) => -direction.as_dvec3(),
+            (Place::Disk(_, direction), _) => direction.as_dvec3(),
             _ => (other.position().as_dvec3() - self.position().as_dvec3()).normalize(),
         }
     }
 
-    /// 1/d^2 to `other`, 1 where either is at infinity.
+    /// 1/d^2 to `other`, 1 for parallel light.
     pub fn inverse_distance_squared(&self, other: &Self) -> f64 {
         match (self.place, other.place) {
-            (_, Place::Sky(_)) | (Place::Sky(_), _) => 1.0,
+            (_, Place::Sky(_) | Place::Disk(..)) | (Place::Sky(_) | Place::Disk(..), _) => 1.0,
             _ => 1.0 / self.position().as_dvec3().distance_squared(other.position().as_dvec3()),
         }
     }

@@ -7,13 +7,13 @@ use super::{
 };
 use crate::{
     bsdf::{BsdfModel, Transport},
-    emitter::{Emitter, Kind, PointModel, SurfaceModel},
+    emitter::{BeamModel, Emitter, Kind, PointModel, SurfaceModel},
     math::{Channels, DVec3, offset},
     phase::{Deflection, PhaseModel},
     sampling::{Stream, stream::Purpose},
     scene::{
         Scene,
-        lights::{Densities, EmissionSample, EmitterPoint, EmitterSample, Start, Starts},
+        lights::{self, Densities, EmissionSample, EmitterPoint, EmitterSample, Light, Pivot, Start, Starts},
     },
     shape::SurfacePoint,
     transport::{Counts, Estimator, Heuristic, Survival, profile::Profile},
@@ -93,16 +93,11 @@ impl<'a> Reference<'a> {
         let Place::Volume(position) = x.place else { return None };
         let (pivot, over_connect) = self.scene.lights.pivot(path.light, position)?;
         let (position, lens) = (position.as_dvec3(), o.position().as_dvec3());
-        let (to_x, to_pivot) = (position - lens, pivot.position.as_dvec3() - lens);
-        let closest = to_pivot.dot(to_x.normalize());
-        let resolved = f64::from(offset::RESOLVED_ANGLE) * to_pivot.length();
-        let away = to_pivot.cross(to_x.normalize()).length();
-        let apart = (away * away + f64::from(pivot.radius).powi(2) + resolved * resolved).sqrt();
-        // The ray as seen from the emitter: from its start to where it is parallel to it.
-        let angle = |t: f64| ((t - closest) / apart).atan();
-        let whole = std::f64::consts::FRAC_PI_2 - angle(0.0);
-        let t = to_x.length();
-        let along = apart / (whole * (apart * apart + (t - closest).powi(2)));
+        let along = match pivot {
+            Pivot::Around(place) => along_place(place, lens, position),
+            Pivot::Beam(_) => along_beam(&self.scene.lights.all[path.light as usize], lens, position),
+        };
+        let t = position.distance(lens);
         let emitter = if y.dirac { 0.0 } else { f64::from(self.emitter_sample(path)?.pdf) };
         let count = f64::from(self.counts.equiangular * over_connect);
         Some(count * self.lens(x) * along / (t * t) * emitter).filter(|pdf| *pdf > 0.0)
@@ -218,14 +213,14 @@ impl<'a> Reference<'a> {
         seen.map_or(0.0, |seen| f64::from(seen.pdf))
     }
 
-    /// Density of directions that leave an emitter [1/sr]; for one at infinity, of starts on its disk [1/m^2].
+    /// Density of directions that leave an emitter [1/sr]; of parallel light, of starts on its disk [1/m^2].
     fn emission(&self, light: u32, node: &Node, direction: DVec3) -> f64 {
         match &self.scene.lights.all[light as usize].emitter.kind {
             Kind::Surface(surface) if surface.is_dirac() => 1.0,
             Kind::Surface(surface) => f64::from(surface.pdf_sr(node.cosine(direction) as f32)),
             Kind::Point(point) => f64::from(point.pdf_sr(direction.as_vec3())),
             Kind::Medium(_) => 0.25 / std::f64::consts::PI,
-            Kind::Infinite(_) => {
+            Kind::Infinite(_) | Kind::Beam(_) => {
                 self.starts[light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf_direction))
             }
         }
@@ -266,12 +261,44 @@ impl<'a> Reference<'a> {
                 let found = |sample: &EmitterSample| match (sample.point, place) {
                     (EmitterPoint::Point(found), Place::Point(wanted)) => found == wanted,
                     (EmitterPoint::Direction(found), Place::Sky(wanted)) => found == wanted,
+                    (EmitterPoint::Beam { .. }, Place::Disk(..)) => sample.light == path.light,
                     _ => false,
                 };
                 (0..4_096).filter_map(|_| lights.sample_emitter(geometry, reference, &mut stream)).find(found)
             }
         }
     }
+}
+
+/// Density of the distance to `x` from the `lens` by equiangular sampling of what lies around `place` [1/m].
+fn along_place(place: &lights::Place, lens: DVec3, x: DVec3) -> f64 {
+    let (to_x, to_place) = (x - lens, place.position.as_dvec3() - lens);
+    let closest = to_place.dot(to_x.normalize());
+    let resolved = f64::from(offset::RESOLVED_ANGLE) * to_place.length();
+    let away = to_place.cross(to_x.normalize()).length();
+    let apart = (away * away + f64::from(place.radius).powi(2) + resolved * resolved).sqrt();
+    // The ray as seen from the emitter: from its start to where it is parallel to it.
+    let angle = |t: f64| ((t - closest) / apart).atan();
+    let whole = std::f64::consts::FRAC_PI_2 - angle(0.0);
+    apart / (whole * (apart * apart + (to_x.length() - closest).powi(2)))
+}
+
+/// The same within the beam of `light`, all of whose distances are as likely: those at which the ray is in a cylinder, and
+/// before its disk.
+fn along_beam(light: &Light, lens: DVec3, x: DVec3) -> f64 {
+    let Kind::Beam(beam) = &light.emitter.kind else { return 0.0 };
+    let (axis, radius) = (beam.direction().as_dvec3().normalize(), f64::from(beam.radius()));
+    let (start, ray) = (lens - light.position.as_dvec3(), (x - lens).normalize());
+    let (o, d) = (start - axis * start.dot(axis), ray - axis * ray.dot(axis));
+    let root = (o.dot(d).powi(2) - d.dot(d) * (o.dot(o) - radius * radius)).sqrt();
+    let [mut from, mut to] = [-root, root].map(|root| (root - o.dot(d)) / d.dot(d));
+    let disk = -start.dot(axis) / ray.dot(axis);
+    if ray.dot(axis) > 0.0 {
+        from = from.max(disk);
+    } else {
+        to = to.min(disk);
+    }
+    1.0 / (to - from.max(0.0))
 }
 
 /// The product over all vertices but the emitter's own, if strategy `s` makes that by the light subpath.

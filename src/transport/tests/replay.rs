@@ -173,6 +173,7 @@ fn start(reference: &Reference<'_>, path: &Path) -> EmissionSample {
         point: match node.place {
             Place::Surface(point) => EmitterPoint::Surface(point),
             Place::Sky(towards) => EmitterPoint::Direction(towards),
+            Place::Disk(position, direction) => EmitterPoint::Beam { position, direction },
             Place::VolumeEmitter(position, light) => {
                 EmitterPoint::Volume { position, rate: rate(reference.scene, light, position) }
             }

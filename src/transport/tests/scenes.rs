@@ -240,6 +240,11 @@ pub const BEAM: &str = r#""beam": {"type": "rectangle",
                  {"type": "translate", "value": [-0.9, 0.1, 0]}],
     "emitter": {"type": "directionalarea", "radiance": 8}}"#;
 
+/// A beam across the room and the smoke.
+pub const SEARCHLIGHT: &str = r#""searchlight": {"type": "collimated", "radius": 0.3, "irradiance": 4,
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 70}, {"type": "rotate", "axis": [0, 0, 1], "angle": -25},
+                 {"type": "translate", "value": [-0.55, 0.4, 0]}]}"#;
+
 pub const PROFILED_POINT: &str = r#""point": {"type": "point", "intensity": 2, "profile": "0:1 90:0.1 120:0",
     "to_world": [{"type": "rotate", "axis": [1, 0, 0], "angle": 50}, {"type": "translate", "value": [-0.3, 0.8, 0]}]}"#;
 

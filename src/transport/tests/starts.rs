@@ -62,6 +62,7 @@ fn starts_come_as_often_as_their_densities_say() {
         ("room", build(&[FOG, INSIDE, ROOM, BALL, LUMINAIRE, BEAM, PROFILED_POINT, SPOT, BULB])),
         ("sky image", build(&[OUTSIDE, SMOKE, GROUND, SKY_IMAGE])),
         ("fire", build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB])),
+        ("beam", build(&[OUTSIDE, SMOKE, GROUND, BULB, POINT, SEARCHLIGHT])),
     ];
     // 400 cells each at most, twice.
     let most = -statrs_z(testing::significance(scenes.len() * 800) / 2.0);

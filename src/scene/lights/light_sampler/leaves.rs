@@ -2,14 +2,14 @@
 
 use super::Cells;
 use crate::{
-    emitter::{Kind, PointModel, SurfaceModel},
+    emitter::{BeamModel, Kind, PointModel, SurfaceModel},
     math::{DVec3, Spectrum, SpectrumExt, Vec3, warp},
     medium::Emission,
     sampling::{Stream, stream::Purpose},
     scene::{
         accel::Geometry,
         lights::{
-            Light,
+            Disk, Light,
             light_tree::{LightTree, Moments},
         },
     },
@@ -117,6 +117,10 @@ impl Extent<'_> {
             (Kind::Point(point), _) => {
                 let direction = point.sample(stream);
                 (point.intensity(direction) / point.pdf_sr(direction), light.position, direction)
+            }
+            (Kind::Beam(beam), _) => {
+                let disk = Disk::of_beam(beam, light.position);
+                (beam.irradiance(), disk.sample(stream), beam.direction())
             }
             (Kind::Medium(volume), _) => {
                 let position = volume.emission.sample(stream);
