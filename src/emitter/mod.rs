@@ -20,13 +20,13 @@ use directional::Directional;
 use directionalarea::DirectionalArea;
 use envmap::EnvMap;
 use point::Point;
-use profile::Profile;
+use profile::{PROFILE, Profile};
 use projector::Projector;
 use spot::Spot;
 pub use volume::VolumeEmitter;
 
 use crate::{
-    description::{Build, Library, Object, Params, Registry, models},
+    description::{Build, Library, Object, Params, Plugin, Registry, models, parameter::Parameter, rows},
     error::Result,
     math::{DVec3, Spectrum, Uv, Vec3, spectrum::LUMINANCE},
     medium,
@@ -142,8 +142,15 @@ pub trait InfiniteModel {
     }
 }
 
+/// What all emitters have.
+const COMMON: &[Parameter] = rows! {
+    // Within these bounds, f32 holds it and its products.
+    number("sampling_weight", "", within(1e-20, 1e20), Is(1.0), "A factor on the probability of choosing it."),
+    nested("medium", Optional, "The medium it is in; found where not given."),
+};
+
 /// Makes an enum with its dispatch for each kind, and the registry, from one row an emitter. An emitter has
-/// `fn build(&Params) -> Result<Self>`.
+/// `fn build(&Params) -> Result<Self>` and the table of its parameters, those in [`COMMON`] included.
 macro_rules! emitters {
     ($($(#[$doc:meta])* $kind:ident($any:ident: $contract:ident) {
         $($name:literal => $model:ident,)*
@@ -151,8 +158,11 @@ macro_rules! emitters {
         $(models! { $(#[$doc])* $any: $contract [$($model)*] $($methods)* })*
 
         /// Every emitter there is, by plugin name.
-        pub const ROWS: Registry<Build<Kind>> = Registry::new("an emitter", &[
-            $($(($name, |params: &Params<'_>| $model::build(params).map($any::from).map(Kind::$kind)),)*)*
+        pub const ROWS: Registry<Plugin<Build<Kind>>> = Registry::new("an emitter", &[
+            $($(($name, Plugin {
+                table: $model::TABLE,
+                build: |params: &Params<'_>| $model::build(params).map($any::from).map(Kind::$kind),
+            }),)*)*
         ]);
     };
 }
@@ -202,11 +212,11 @@ emitters! {
 /// Builds the emitter that `object` describes; positions are still in the file's coordinates. A medium among
 /// its children (the one it is in) is read by the scene.
 pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
-    let params = Params::new(object, library);
-    let (name, build) = ROWS.row(object)?;
+    let (name, _) = ROWS.row(object)?;
+    let (params, build) = ROWS.read(object, library)?;
     let kind = build(&params)?;
-    let sampling_weight = sampling_weight(&params)?;
-    params.children(|child| medium::ROWS.has(child.object))?;
+    let sampling_weight = params.float("sampling_weight")? as f32;
+    params.children("medium", |child| medium::ROWS.has(child.object))?;
     params.finish()?;
     Ok(Emitter { name, kind, sampling_weight })
 }
@@ -268,14 +278,4 @@ impl Emitter {
     pub fn position(&self) -> Option<DVec3> {
         if let Kind::Point(e) = &self.kind { Some(e.position()) } else { None }
     }
-}
-
-/// Mitsuba's `sampling_weight`: a factor > 0 on the probability of choosing an emitter.
-fn sampling_weight(params: &Params<'_>) -> Result<f32> {
-    let weight = params.float("sampling_weight", 1.0)?;
-    // Within these bounds, f32 holds it and its products.
-    if (1e-20..=1e20).contains(&weight) {
-        return Ok(weight as f32);
-    }
-    Err(params.complain("sampling_weight", "a number from 1e-20 to 1e20", weight.to_string()))
 }

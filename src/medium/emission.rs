@@ -6,7 +6,7 @@
 
 use super::{Extinction, MediumBounds, MediumProperties};
 use crate::{
-    description::{Location, Params, Value},
+    description::{Location, Params, Value, parameter::Parameter, rows},
     error::{Error, Result},
     math::{Affine3A, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3, black_body, vec3},
     sampling::{Discrete, Stream},
@@ -28,6 +28,14 @@ enum Quantity {
 const QUANTITIES: [(&str, Quantity); 3] =
     [("emission", Quantity::Gain), ("radiance", Quantity::Radiance), ("temperature", Quantity::Temperature)];
 
+/// What media have that emit.
+pub(super) const EMISSION: &[Parameter] = rows! {
+    light_volume("emission", "W/(m^3 sr)", "Radiance gained per metre, whatever absorbs.").ours(),
+    light_volume("radiance", "W/(m^2 sr)", "In place of `emission`: radiance of a thick layer, times absorption.").ours(),
+    light_volume("temperature", "K", "In place of `emission`: temperature of a black body, times absorption.").ours(),
+    factor("emission_scale", 1.0, "A factor on what is emitted.").ours(),
+};
+
 /// Emission as the description gives it.
 #[derive(Clone, Debug)]
 pub struct EmissionDescription {
@@ -43,11 +51,11 @@ pub struct EmissionDescription {
 impl EmissionDescription {
     /// Reads `emission`, `radiance` or `temperature`, one of them at most, and `emission_scale`.
     pub fn read(params: &Params<'_>, place: &Place) -> Result<Option<Self>> {
-        let scale = params.float_within("emission_scale", 1.0, 0.0, f64::from(f32::MAX))? as f32;
+        let scale = params.float("emission_scale")? as f32;
         let mut given = None;
         for (name, quantity) in QUANTITIES {
             let Some(volume) = volume(params, name, place)? else { continue };
-            let location = params.property(name).map_or(params.location(), |p| &p.location).clone();
+            let location = params.given(name).map_or(params.location(), |p| &p.location).clone();
             let this = Self { name, quantity, volume, scale, place: *place, location };
             if let Some(Self { name: other, .. }) = given.replace(this) {
                 let expected = "one of emission, radiance and temperature";
@@ -82,16 +90,16 @@ impl EmissionDescription {
 
 /// The parameter `name` as a volume of light: spectra are light's own.
 fn volume(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Option<Volume>> {
-    let Some(property) = params.property(name) else { return Ok(None) };
+    let Some(property) = params.given(name) else { return Ok(None) };
     if matches!(property.value, Value::Object(_) | Value::Reference(_))
         && let Some(child) = params.child(name)?
         && volume::ROWS.has(child.object)
     {
         return volume::build(child.object, params.library, place).map(Some);
     }
-    params.emission(name, 0.0).map(|colour| {
-        Some(Volume::Constant(volume::Constant::new(colour, [Vec3::NEG_INFINITY, Vec3::INFINITY])))
-    })
+    let everywhere = [Vec3::NEG_INFINITY, Vec3::INFINITY];
+    let constant = |colour| Volume::Constant(volume::Constant::new(colour, everywhere));
+    Ok(params.optional_color(name)?.map(constant))
 }
 
 /// What absorbs where the emission is.

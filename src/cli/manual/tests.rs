@@ -1,0 +1,188 @@
+//! Every plugin's table against what the reader reads: each row is asked for, and nothing is asked for without one.
+
+use super::*;
+use crate::{
+    description::{Params, parameter::Default, params::NOTES},
+    format, scene,
+    settings::Overrides,
+};
+use serde_json::{Map, json};
+use std::path::Path;
+
+/// What makes the reader ask for rows that it does not always ask for.
+fn beside(plugin: &str, name: &str) -> Value {
+    match (plugin, name) {
+        ("equipotential", "p0") => json!({"shape": "line", "p1": [1, 0, 0]}),
+        ("equipotential", "p1") => json!({"shape": "segment", "p0": [1, 0, 0]}),
+        ("equipotential", "radius") => json!({"shape": "sphere"}),
+        (_, "alpha_u") => json!({"alpha_v": 0.3}),
+        (_, "alpha_v") => json!({"alpha_u": 0.3}),
+        (_, "fov_axis") => json!({"fov": 30}),
+        (_, "emission_scale") => json!({"emission": 1}),
+        ("regular", "value") => json!({"values": null, "wavelength_min": null, "wavelength_max": null}),
+        ("irregular", "value") => json!({"values": null, "wavelengths": null}),
+        ("regular", "values") => json!({"wavelength_min": 400, "wavelength_max": 700}),
+        ("regular", _) => json!({"values": "0.1, 0.2", "wavelength_min": 400, "wavelength_max": 700}),
+        ("irregular", "values") => json!({"wavelengths": "400, 700"}),
+        ("irregular", "wavelengths") => json!({"values": "0.1, 0.2"}),
+        ("polynomial", _) => json!({"x": "0.5, 0.1"}),
+        ("equipotential" | "polynomial", "shape") => json!({}),
+        ("gridvolume", "grid") => json!({"filename": "smoke.vdb"}),
+        _ => json!({}),
+    }
+}
+
+fn sample_text(plugin: &str, name: &str) -> &'static str {
+    match (plugin, name) {
+        (_, "profile") => "0:1, 90:0",
+        (_, "focal_length") => "35mm",
+        (_, "aovs") => "dd:depth",
+        (_, "material") => "Au",
+        (_, "heuristic") => "power",
+        (_, "grid") => "density",
+        (_, "wavelengths") => "400, 700",
+        _ => "0.5, 0.1",
+    }
+}
+
+fn sample_file(plugin: &str) -> &'static str {
+    match plugin {
+        "obj" => "tent.obj",
+        "ply" => "ball.ply",
+        "serialized" => "solids.serialized",
+        "gridvolume" => "smoke.vol",
+        "envmap" => "dusk.exr",
+        _ => "tiles.png",
+    }
+}
+
+/// A plugin of the kind `tag`, complete; for the parts of `plugin` where it has such.
+fn sample_of(tag: &str, plugin: &str) -> Value {
+    match (tag, plugin) {
+        ("volume", "cosine") => json!({"type": "wave", "vector": [1, 0, 0]}),
+        ("volume", "polynomial") => json!({"type": "term", "powers": [1, 0, 0]}),
+        ("film", _) => json!({"type": "hdrfilm"}),
+        ("sampler", _) => json!({"type": "independent"}),
+        ("rfilter", _) => json!({"type": "box"}),
+        ("bsdf", _) => json!({"type": "diffuse"}),
+        ("emitter", _) => json!({"type": "area"}),
+        ("medium", _) => json!({"type": "homogeneous"}),
+        ("phase", _) => json!({"type": "hg"}),
+        ("texture", _) => json!({"type": "checkerboard"}),
+        ("volume", _) => json!({"type": "constvolume"}),
+        ("integrator", _) => json!({"type": "path"}),
+        _ => unreachable!("{tag}"),
+    }
+}
+
+/// Values that the row allows: every word, both truths, something inside of a range.
+fn samples(plugin: &str, row: &Parameter) -> Vec<Value> {
+    match row.kind {
+        Kind::Number(range) | Kind::NumberOrName(range) | Kind::Integer(range) => {
+            let middle = if range.contains(1.0) { 1.0 } else { 0.5 * (range.low + range.high) };
+            let number = if row.name == "eta" { 1.5 } else { middle };
+            let integer = matches!(row.kind, Kind::Integer(_));
+            vec![if integer { json!(number as i64) } else { json!(number) }]
+        }
+        Kind::Boolean => vec![json!(true), json!(false)],
+        Kind::Choice(words) => words.iter().map(|word| json!(word)).collect(),
+        Kind::Text(_) => vec![json!(sample_text(plugin, row.name))],
+        Kind::Vector => vec![json!([2, 3, 4])],
+        Kind::Transform => vec![json!([])],
+        Kind::Colour(..) | Kind::Texture(..) | Kind::Volume(_) => vec![json!(0.5)],
+        Kind::Spectrum => vec![json!({"type": "spectrum", "value": [[400, 0.1], [700, 0.5]]})],
+        Kind::File => vec![json!(sample_file(plugin))],
+        Kind::Object(tag) => vec![sample_of(tag, plugin)],
+        Kind::Nested => vec![sample_of(row.name, plugin)],
+        Kind::Ignored { .. } => vec![json!(0)],
+    }
+}
+
+/// The plugin with all that it needs and, if any, `given`.
+fn described(plugin: &str, table: &Table, given: Option<(&Parameter, &Value)>) -> Value {
+    let mut object = Map::from_iter([("type".to_owned(), json!(plugin))]);
+    let count = |tag: &str| if plugin.starts_with("blend") && tag != "texture" { 2 } else { 1 };
+    for row in table.rows().filter(|row| row.default == Default::Required) {
+        let value = samples(plugin, row).remove(0);
+        match row.kind {
+            Kind::Nested => (0..count(row.name)).for_each(|i| drop(object.insert(format!("n{i}"), value.clone()))),
+            _ => drop(object.insert(row.name.into(), value)),
+        }
+    }
+    let name = given.map_or("", |(row, _)| row.name);
+    let extras = beside(plugin, name);
+    object.extend(extras.as_object().unwrap().clone());
+    if let Some((row, value)) = given {
+        object.insert(if row.kind == Kind::Nested { "n0" } else { row.name }.into(), value.clone());
+    }
+    object.retain(|_, value| !value.is_null());
+    object.into()
+}
+
+/// A scene that builds `object`, a plugin of the kind `tag`.
+fn scene_of(tag: &str, object: Value) -> Value {
+    let plugin = object["type"].as_str().unwrap().to_owned();
+    let camera = json!({"type": "perspective"});
+    match (tag, plugin.as_str()) {
+        ("sensor", _) => json!({"type": "scene", "a": object}),
+        ("film" | "sampler", _) => json!({"type": "scene", "a": {"type": "perspective", tag: object}}),
+        ("rfilter", _) => {
+            json!({"type": "scene", "a": {"type": "perspective", "f": {"type": "hdrfilm", "rfilter": object}}})
+        }
+        ("emitter", "area" | "directionalarea") => {
+            json!({"type": "scene", "c": camera, "a": {"type": "rectangle", "e": object}})
+        }
+        ("volume", "wave") => json!({"type": "scene", "c": camera, "a": {"type": "cosine", "w": object}}),
+        ("volume", "term") => json!({"type": "scene", "c": camera, "a": {"type": "polynomial", "t": object}}),
+        ("texture", "blackbody") => {
+            json!({"type": "scene", "c": camera, "a": {"type": "point", "intensity": object}})
+        }
+        _ => json!({"type": "scene", "c": camera, "a": object}),
+    }
+}
+
+fn built(tag: &str, object: Value) -> Result<Vec<String>> {
+    let assets = Path::new("scenes/crosscheck/assets");
+    let file = tempfile::Builder::new().suffix(".json").tempfile_in(assets).unwrap();
+    std::fs::write(file.path(), scene_of(tag, object).to_string()).unwrap();
+    let root = format::read(file.path(), &[])?;
+    scene::build::build(&root, Overrides::default()).map(|setup| setup.warnings)
+}
+
+/// Every plugin with its kind and table.
+fn everything() -> impl Iterator<Item = (&'static str, &'static str, &'static Table)> {
+    KINDS.iter().flat_map(|(tag, _)| plugins(tag).into_iter().map(move |(name, table)| (*tag, name, table)))
+}
+
+#[test]
+fn every_row_is_read_and_nothing_is_read_without_a_row() {
+    for (tag, plugin, table) in everything().filter(|(tag, ..)| *tag != "scene") {
+        NOTES.take();
+        for row in table.rows().filter(|row| (row.name, plugin) != ("grid", "gridvolume")) {
+            for value in samples(plugin, row) {
+                let outcome = built(tag, described(plugin, table, Some((row, &value))));
+                let warnings = outcome.unwrap_or_else(|error| panic!("{tag} {plugin} {}: {error}", row.name));
+                let unused = warnings.iter().any(|warning| warning.contains("accepted but not used"));
+                assert_eq!(unused, row.kind == Kind::Ignored { silent: false }, "{plugin} {}: {warnings:?}", row.name);
+            }
+        }
+        let notes = NOTES.take();
+        let of_plugin = || notes.iter().filter(|(of, ..)| of == plugin);
+        assert_eq!(of_plugin().find(|(.., known)| !known), None, "{tag}: asked for without a row");
+        for row in table.rows().filter(|row| !matches!(row.kind, Kind::Ignored { .. })) {
+            assert!(of_plugin().any(|(_, name, _)| name == row.name), "{tag} {plugin}: nothing reads {}", row.name);
+        }
+    }
+}
+
+#[test]
+fn what_must_be_given_must_be_given() {
+    for (tag, plugin, table) in everything().filter(|(tag, ..)| *tag != "scene") {
+        for row in table.rows().filter(|row| row.default == Default::Required) {
+            let mut object = described(plugin, table, None);
+            let is_it = |key: &String| if row.kind == Kind::Nested { key.starts_with('n') } else { key == row.name };
+            object.as_object_mut().unwrap().retain(|key, _| !is_it(key));
+            assert!(built(tag, object).is_err() || plugin == "polynomial", "{tag} {plugin} without {}", row.name);
+        }
+    }
+}
