@@ -59,7 +59,7 @@ impl Roughness {
             let place = params.given("sample_visible").map_or(params.location(), |p| &p.location);
             params.library.warn(place, "visible normals are sampled all the same: it changes noise only");
         }
-        let anisotropic = [params.has("alpha_u"), params.has("alpha_v")];
+        let anisotropic = ["alpha_u", "alpha_v"].map(|name| params.allows(name) && params.has(name));
         let alpha = match (params.has("alpha"), anisotropic) {
             (_, [false, false]) => {
                 let alpha = bounded(params, "alpha", "")?;

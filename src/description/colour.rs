@@ -55,6 +55,11 @@ pub fn is_plugin(object: &Object) -> bool {
     ROWS.has(object) && !holds_texture
 }
 
+/// True if plugins called `name` represent one colour.
+pub fn is_name(name: &str) -> bool {
+    ROWS.get(name).is_some()
+}
+
 /// The colour that `property` gives, >= 0.
 pub fn read(property: &Property, library: &Library, role: Role) -> Result<Spectrum> {
     let place = Place { property, library };
@@ -154,11 +159,11 @@ fn uniform(params: &Params<'_>, _: Role) -> Result<DVec3> {
 /// Numbers for the channels.
 pub const RAW: Table = table! {
     "The channels as they are.";
-    colour("value", "", f64::INFINITY, Required, "One number, or three: linear sRGB."),
+    channels("value", "Linear sRGB."),
 };
 
 fn raw(params: &Params<'_>, _: Role) -> Result<DVec3> {
-    params.color("value").map(|color| color.as_dvec3())
+    params.channels("value")
 }
 
 /// A colour as three channels.

@@ -81,6 +81,8 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// Three numbers.
     Vector,
+    /// One number for all channels, or three.
+    Channels,
     /// A transform.
     Transform,
     /// A colour, with channels up to a number.
@@ -170,11 +172,11 @@ impl Range {
 
     /// What is allowed, after "a number"; to be told of `number`, which is not.
     fn told(&self, number: f64) -> String {
-        let (low, high) = (plain(self.low), plain(self.high));
+        let (low, high, is_above) = (plain(self.low), plain(self.high), number > self.high);
         match self.open {
             _ if *self == ANY => String::new(),
-            [false, _] if !self.is_bounded() && !(number > self.high) => format!(" >= {low}"),
-            [true, _] if !self.is_bounded() && !(number > self.high) => format!(" > {low}"),
+            [false, _] if !self.is_bounded() && !is_above => format!(" >= {low}"),
+            [true, _] if !self.is_bounded() && !is_above => format!(" > {low}"),
             [false, false] => format!(" from {low} to {high}"),
             [true, true] => format!(" between {low} and {high} (both excluded)"),
             _ => format!(" above {low}, up to {high}"),
@@ -209,6 +211,11 @@ impl Parameter {
         Self { ours: true, ..self }
     }
 
+    /// True if it is accepted without effect.
+    pub fn is_ignored(&self) -> bool {
+        matches!(self.kind, Kind::Ignored { .. })
+    }
+
     /// With a default that the builder makes of other parameters.
     pub const fn said(self, default: &'static str) -> Self {
         Self { default: Said(default), ..self }
@@ -235,6 +242,7 @@ impl Parameter {
             Kind::Text(what) => what.into(),
             Kind::Choice(words) => format!("one of {}", words.join(", ")),
             Kind::Vector => "three finite numbers".into(),
+            Kind::Channels => "a number or three".into(),
             Kind::Transform => "a transform".into(),
             Kind::Colour(_, most) if most < MAX => format!("a colour{range}"),
             Kind::Texture(_, most) if most < MAX => format!("a colour or texture{range}"),
@@ -315,6 +323,11 @@ pub const fn vector(
     about: &'static str,
 ) -> Parameter {
     Parameter::new(name, Kind::Vector, default, about).unit(unit)
+}
+
+/// One number for all channels or three, which must be given.
+pub const fn channels(name: &'static str, about: &'static str) -> Parameter {
+    Parameter::new(name, Kind::Channels, Required, about)
 }
 
 /// A transform, the identity where not given.

@@ -67,6 +67,11 @@ impl<'a> Params<'a> {
         self.given(name).is_some()
     }
 
+    /// True if `name` may be given.
+    pub fn allows(&self, name: &str) -> bool {
+        self.table.find(name).is_some()
+    }
+
     fn take(&self, name: &str) -> Option<&'a Property> {
         let index = self.object.properties.iter().position(|p| p.name == name)?;
         self.used.borrow_mut()[index] = true;
@@ -178,7 +183,7 @@ impl<'a> Params<'a> {
 
     /// A point or vector with finite entries, where given.
     pub fn optional_vector(&self, name: &'static str) -> Result<Option<DVec3>> {
-        self.row(name, |kind| matches!(kind, Kind::Vector | Kind::Colour(..)).then_some(()))?;
+        self.row(name, |kind| matches!(kind, Kind::Vector).then_some(()))?;
         self.optional(name, "three finite numbers", |v| match v {
             Value::Vector(v) | Value::Rgb(v) => Some(DVec3::from(*v)).filter(|v| v.is_finite()),
             _ => None,
@@ -192,6 +197,17 @@ impl<'a> Params<'a> {
             (None, Default::At(v)) => Ok(v.into()),
             _ => Err(self.missing(name)),
         }
+    }
+
+    /// One finite number for all channels or three, which must be given.
+    pub fn channels(&self, name: &'static str) -> Result<DVec3> {
+        self.row(name, |kind| matches!(kind, Kind::Channels).then_some(()))?;
+        let read = |v: &Value| match v {
+            Value::Vector(v) | Value::Rgb(v) => Some(DVec3::from(*v)),
+            other => number(other).map(DVec3::splat),
+        };
+        let given = self.optional(name, "three finite numbers", |v| read(v).filter(|v| v.is_finite()))?;
+        given.ok_or_else(|| self.missing(name))
     }
 
     /// A transform; the identity where not given. Must be finite and invertible.

@@ -130,7 +130,7 @@ const HETEROGENEOUS: Table = table! {
     "A medium that varies in space.";
     volume("sigma_t", "1/m", 1.0, "Extinction coefficient; one value fills the unit cube only, as in Mitsuba."),
     volume("albedo", "", 0.75, "Share of the extinction that is scattering, from 0 to 1."),
-    choice("tracker", &words::<6, _>(&DistanceMethod::NAMES), "auto", "How free flights are sampled: see Trackers below.").ours(),
+    choice("tracker", &words::<6, _>(&DistanceMethod::NAMES), "auto", "How free flights are sampled; `auto` takes the cheapest without error.").ours(),
     number("step", "m", above(0.0, f64::MAX), Said("by `march_error`"), "The interval of the tracker `march`.").ours(),
     number("march_error", "", within(1e-7, 1.0), Is(1e-3), "Greatest error of transmittance of `march`.").ours();
     COMMON, EMISSION

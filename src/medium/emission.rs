@@ -63,7 +63,7 @@ impl EmissionDescription {
                 return Err(Error::new(params.location(), expected, found, "remove one of them"));
             }
         }
-        if given.is_none() && params.has("emission_scale") {
+        if given.is_none() && scale != 1.0 {
             let found = "none";
             let remedy =
                 "give \"emission\", \"radiance\" or \"temperature\" too, or remove \"emission_scale\"";

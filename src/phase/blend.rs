@@ -36,11 +36,10 @@ impl Blend {
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let expected = "a number from 0 to 1 (a weight that varies in space is not supported)";
-        match params.given("weight").map(|weight| &weight.value) {
-            Some(volume @ (Value::Object(_) | Value::Reference(_))) => {
-                return Err(params.complain("weight", expected, volume.describe()));
-            }
-            _ => {}
+        if let Some(volume @ (Value::Object(_) | Value::Reference(_))) =
+            params.given("weight").map(|p| &p.value)
+        {
+            return Err(params.complain("weight", expected, volume.describe()));
         }
         let weight = params.float("weight")? as f32;
         match params.children("phase", |child| child.name != "weight")?.as_slice() {

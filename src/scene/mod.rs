@@ -24,6 +24,7 @@ use boundary::Boundary;
 use lights::Lights;
 pub use locate::Infinity;
 use locate::{Known, Locator};
+pub(crate) use sections::TABLE;
 
 /// The properties of a shape: its BSDF, emitter and media.
 #[derive(Clone, Copy, Debug)]

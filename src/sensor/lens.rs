@@ -30,7 +30,7 @@ pub(super) const LENS: &[Parameter] = rows! {
 /// Two ways to give a field of view.
 pub(crate) const FIELD_OF_VIEW: &[Parameter] = rows! {
     number("fov", "degrees", between(0.0, 180.0), Said("by `focal_length`"), "Field of view along `fov_axis`."),
-    choice("fov_axis", &["x", "y", "diagonal", "smaller", "larger"], "x", "Which extent of the film `fov` is across."),
+    choice("fov_axis", &["x", "y", "diagonal", "smaller", "larger"], "x", "Which extent of the film `fov` is across.").said("x"),
     text("focal_length", "a length such as \"50mm\"", Word("50mm"), "In place of `fov`: the lens of a 35 mm camera."),
 };
 
@@ -117,5 +117,6 @@ pub(crate) fn half_width(params: &Params<'_>, aspect: f64) -> Result<f64> {
     // The tangent along the given axis, times this, is the tangent along x.
     let axes =
         [("x", 1.0), ("y", aspect), ("diagonal", 1.0 / diagonal), ("smaller", smaller), ("larger", larger)];
-    Ok((0.5 * degrees.to_radians()).tan() * params.choice("fov_axis", &axes)?)
+    let axis = if params.has("fov_axis") { params.choice("fov_axis", &axes)? } else { 1.0 };
+    Ok((0.5 * degrees.to_radians()).tan() * axis)
 }

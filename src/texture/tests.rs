@@ -86,9 +86,7 @@ fn bitmaps_are_read_as_mitsuba_reads_them() {
         let object = object("bitmap", &[("filename", path.clone()), (name, value)]);
         check(&build(&object, &Library::default()).unwrap(), &values);
     }
-    for (name, value) in
-        [("format", text("fp8")), ("accel", text("no")), ("data", text("x")), ("foo", text("x"))]
-    {
+    for (name, value) in [("filter_type", text("cubic")), ("data", text("x")), ("foo", text("x"))] {
         let object = object("bitmap", &[("filename", path.clone()), (name, value)]);
         assert!(build(&object, &Library::default()).is_err(), "{name}");
     }

@@ -87,8 +87,11 @@ impl Thing {
     fn read(params: &Params<'_>) -> Result<Self> {
         let shapes = [("point", 0), ("line", 1), ("segment", 2), ("sphere", 3)];
         match params.choice("shape", &shapes)? {
-            0 => Ok(Self::Point(params.vector("center")?)),
-            3 => Ok(Self::Sphere(params.vector("center")?, params.float("radius")?)),
+            0 => Ok(Self::Point(params.optional_vector("center")?.unwrap_or_default())),
+            3 => Ok(Self::Sphere(
+                params.optional_vector("center")?.unwrap_or_default(),
+                params.optional_float("radius")?.unwrap_or(1.0),
+            )),
             shape => {
                 let (p0, p1) = (params.vector("p0")?, params.vector("p1")?);
                 let Some(axis) = (p1 - p0).try_normalize() else {
@@ -193,10 +196,10 @@ impl Function for Potential {
         "Fog that thickens around a thing: strength / (c + d r^2), r being the distance (BMA02 3.2.3).";
         choice("shape", &["point", "line", "segment", "sphere"], "point",
             "The thing; of a sphere, r is the length of the tangent, and 0 within."),
-        vector("center", "", At([0.0; 3]), "Where a point or sphere is."),
+        vector("center", "", Said("the origin"), "Where a point or sphere is."),
         vector("p0", "", Said("needed for line and segment"), "A point of the line, or where the segment begins."),
         vector("p1", "", Said("needed for line and segment"), "Another one, or where it ends."),
-        number("radius", "", above(0.0, f64::MAX), Is(1.0), "Radius of the sphere."),
+        number("radius", "", above(0.0, f64::MAX), Said("1"), "Radius of the sphere."),
         number("strength", "", ANY, Is(1.0), "The numerator; below 0 to take away in a sum."),
         number("c", "", above(0.0, f64::MAX), Is(1.0), "strength / c is the value at the thing."),
         number("d", "", within(0.0, f64::MAX), Is(1.0), "How fast it thins away from the thing.");

@@ -2,18 +2,21 @@
 
 use super::*;
 use crate::{
-    description::{Params, parameter::Default, params::NOTES},
-    format, scene,
+    description::{
+        parameter::{Default, Kind},
+        params::NOTES,
+    },
+    format,
     settings::Overrides,
 };
-use serde_json::{Map, json};
+use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// What makes the reader ask for rows that it does not always ask for.
 fn beside(plugin: &str, name: &str) -> Value {
     match (plugin, name) {
-        ("equipotential", "p0") => json!({"shape": "line", "p1": [1, 0, 0]}),
-        ("equipotential", "p1") => json!({"shape": "segment", "p0": [1, 0, 0]}),
+        ("equipotential", "p0") => json!({"shape": "line", "p1": [5, 0, 0]}),
+        ("equipotential", "p1") => json!({"shape": "segment", "p0": [5, 0, 0]}),
         ("equipotential", "radius") => json!({"shape": "sphere"}),
         (_, "alpha_u") => json!({"alpha_v": 0.3}),
         (_, "alpha_v") => json!({"alpha_u": 0.3}),
@@ -26,7 +29,6 @@ fn beside(plugin: &str, name: &str) -> Value {
         ("irregular", "values") => json!({"wavelengths": "400, 700"}),
         ("irregular", "wavelengths") => json!({"values": "0.1, 0.2"}),
         ("polynomial", _) => json!({"x": "0.5, 0.1"}),
-        ("equipotential" | "polynomial", "shape") => json!({}),
         ("gridvolume", "grid") => json!({"filename": "smoke.vdb"}),
         _ => json!({}),
     }
@@ -80,14 +82,19 @@ fn samples(plugin: &str, row: &Parameter) -> Vec<Value> {
     match row.kind {
         Kind::Number(range) | Kind::NumberOrName(range) | Kind::Integer(range) => {
             let middle = if range.contains(1.0) { 1.0 } else { 0.5 * (range.low + range.high) };
-            let number = if row.name == "eta" { 1.5 } else { middle };
+            let number = match row.name {
+                "eta" => 1.5,
+                "wavelength_max" => 900.0,
+                _ => middle,
+            };
             let integer = matches!(row.kind, Kind::Integer(_));
-            vec![if integer { json!(number as i64) } else { json!(number) }]
+            vec![if integer { json!(range.low as i64) } else { json!(number) }]
         }
         Kind::Boolean => vec![json!(true), json!(false)],
         Kind::Choice(words) => words.iter().map(|word| json!(word)).collect(),
         Kind::Text(_) => vec![json!(sample_text(plugin, row.name))],
-        Kind::Vector => vec![json!([2, 3, 4])],
+        Kind::Channels => vec![json!(0.5), json!([0.5, 0, 1])],
+        Kind::Vector => vec![json!([1, 0, 0])],
         Kind::Transform => vec![json!([])],
         Kind::Colour(..) | Kind::Texture(..) | Kind::Volume(_) => vec![json!(0.5)],
         Kind::Spectrum => vec![json!({"type": "spectrum", "value": [[400, 0.1], [700, 0.5]]})],
@@ -105,7 +112,9 @@ fn described(plugin: &str, table: &Table, given: Option<(&Parameter, &Value)>) -
     for row in table.rows().filter(|row| row.default == Default::Required) {
         let value = samples(plugin, row).remove(0);
         match row.kind {
-            Kind::Nested => (0..count(row.name)).for_each(|i| drop(object.insert(format!("n{i}"), value.clone()))),
+            Kind::Nested => {
+                (0..count(row.name)).for_each(|i| drop(object.insert(format!("n{i}"), value.clone())))
+            }
             _ => drop(object.insert(row.name.into(), value)),
         }
     }
@@ -149,30 +158,50 @@ fn built(tag: &str, object: Value) -> Result<Vec<String>> {
     scene::build::build(&root, Overrides::default()).map(|setup| setup.warnings)
 }
 
-/// Every plugin with its kind and table.
-fn everything() -> impl Iterator<Item = (&'static str, &'static str, &'static Table)> {
-    KINDS.iter().flat_map(|(tag, _)| plugins(tag).into_iter().map(move |(name, table)| (*tag, name, table)))
+/// What is wrong with a row: it must be accepted, and warned of only where it has no effect.
+fn faults(tag: &str, plugin: &str, table: &'static Table, row: &Parameter) -> Vec<String> {
+    let mut faults = Vec::new();
+    for value in samples(plugin, row) {
+        let place = format!("{tag} {plugin} {} = {value}", row.name);
+        match built(tag, described(plugin, table, Some((row, &value)))) {
+            Err(error) => faults.push(format!("{place}: {error}")),
+            Ok(warnings) => {
+                let unused = warnings.iter().any(|warning| warning.contains("accepted but not used"));
+                if unused != (row.kind == Kind::Ignored { silent: false })
+                    && (plugin, row.name) != ("d65", "scale")
+                {
+                    faults.push(format!("{place}: {warnings:?}"));
+                }
+            }
+        }
+    }
+    faults
+}
+
+/// What the reader asked for without a row, and rows that it did not ask for.
+fn unread(tag: &str, plugin: &str, table: &'static Table) -> Vec<String> {
+    let notes = NOTES.take();
+    let of_plugin = || notes.iter().filter(|(of, ..)| of == plugin);
+    let without = of_plugin().filter(|(.., known)| !known).map(|(_, name, _)| name.as_str());
+    let is_read = |row: &&Parameter| of_plugin().any(|(_, name, _)| name == row.name);
+    let unread = table.rows().filter(|row| !row.is_ignored() && !is_read(row)).map(|row| row.name);
+    let mut faults: Vec<_> = without.map(|name| format!("{tag} {plugin} has no row {name}")).collect();
+    faults.extend(unread.map(|name| format!("{tag} {plugin}: nothing reads {name}")));
+    faults
 }
 
 #[test]
 fn every_row_is_read_and_nothing_is_read_without_a_row() {
+    let mut all = Vec::new();
     for (tag, plugin, table) in everything().filter(|(tag, ..)| *tag != "scene") {
         NOTES.take();
-        for row in table.rows().filter(|row| (row.name, plugin) != ("grid", "gridvolume")) {
-            for value in samples(plugin, row) {
-                let outcome = built(tag, described(plugin, table, Some((row, &value))));
-                let warnings = outcome.unwrap_or_else(|error| panic!("{tag} {plugin} {}: {error}", row.name));
-                let unused = warnings.iter().any(|warning| warning.contains("accepted but not used"));
-                assert_eq!(unused, row.kind == Kind::Ignored { silent: false }, "{plugin} {}: {warnings:?}", row.name);
-            }
-        }
-        let notes = NOTES.take();
-        let of_plugin = || notes.iter().filter(|(of, ..)| of == plugin);
-        assert_eq!(of_plugin().find(|(.., known)| !known), None, "{tag}: asked for without a row");
-        for row in table.rows().filter(|row| !matches!(row.kind, Kind::Ignored { .. })) {
-            assert!(of_plugin().any(|(_, name, _)| name == row.name), "{tag} {plugin}: nothing reads {}", row.name);
-        }
+        // No grid with a name is kept with the scenes; each shape needs parameters of its own, which have rows too.
+        let apart = [("gridvolume", "grid"), ("equipotential", "shape")];
+        let rows = table.rows().filter(|row| !apart.contains(&(plugin, row.name)));
+        all.extend(rows.flat_map(|row| faults(tag, plugin, table, row)));
+        all.extend(unread(tag, plugin, table));
     }
+    assert!(all.is_empty(), "{}", all.join("\n"));
 }
 
 #[test]
@@ -180,9 +209,98 @@ fn what_must_be_given_must_be_given() {
     for (tag, plugin, table) in everything().filter(|(tag, ..)| *tag != "scene") {
         for row in table.rows().filter(|row| row.default == Default::Required) {
             let mut object = described(plugin, table, None);
-            let is_it = |key: &String| if row.kind == Kind::Nested { key.starts_with('n') } else { key == row.name };
+            let is_it =
+                |key: &String| if row.kind == Kind::Nested { key.starts_with('n') } else { key == row.name };
             object.as_object_mut().unwrap().retain(|key, _| !is_it(key));
-            assert!(built(tag, object).is_err() || plugin == "polynomial", "{tag} {plugin} without {}", row.name);
+            assert!(
+                built(tag, object).is_err() || plugin == "polynomial",
+                "{tag} {plugin} without {}",
+                row.name
+            );
         }
+    }
+}
+
+/// The files that are made of the tables are as the tables say; TYNDALL_BLESS=1 rewrites them.
+fn holds(path: &str, text: &str) {
+    let is = std::fs::read_to_string(path).unwrap_or_default();
+    if is != text && std::env::var_os("TYNDALL_BLESS").is_some() {
+        return std::fs::write(path, text).unwrap();
+    }
+    assert!(
+        is == text,
+        "{path} is out of date: TYNDALL_BLESS=1 cargo test --release cli::explain rewrites it"
+    );
+}
+
+/// A line of a table in Markdown, as often as the plugin has rows.
+fn markdown(tag: &str) -> String {
+    let tables = plugins(tag);
+    let shared =
+        |row: &Parameter| tables.len() > 1 && tables.iter().all(|(_, table)| table.rows().any(|r| r == row));
+    let line = |row: &Parameter| {
+        let name =
+            if row.kind == Kind::Nested { format!("({})", row.name) } else { format!("`{}`", row.name) };
+        let name = format!("{name}{}", star(row.ours).replace('*', "\\*"));
+        let default = text::default(row);
+        let default = default.trim_start_matches("default").trim_start_matches([':', ' ']);
+        format!("| {name} | {} | {default} | {} |\n", text::allowed(row), row.about)
+    };
+    let mut lines = "| | | default | |\n|---|---|---|---|\n".to_owned();
+    let common: String =
+        tables[0].1.rows().filter(|row| shared(row) && !row.is_ignored()).map(line).collect();
+    if !common.is_empty() {
+        lines += &format!("| **all** | | | |\n{common}");
+    }
+    for (name, table) in &tables {
+        let star = star(is_ours(tag, name)).replace('*', "\\*");
+        lines += &format!("| **`{name}`**{star} | | | {} |\n", table.about);
+        lines.extend(table.rows().filter(|row| !shared(row) && !row.is_ignored()).map(line));
+    }
+    lines
+}
+
+#[test]
+fn the_readme_has_every_table() {
+    let path = "scenes/README.md";
+    let mut text = std::fs::read_to_string(path).unwrap();
+    for (tag, _) in KINDS {
+        let (begin, end) = (format!("<!-- tyndall explain {tag} -->\n"), "<!-- end -->");
+        let from = text.find(&begin).unwrap_or_else(|| panic!("{path} has no {begin}")) + begin.len();
+        let to = from + text[from..].find(end).unwrap();
+        text.replace_range(from..to, &markdown(tag));
+    }
+    holds(path, &text);
+}
+
+/// Every name and word that a scene can hold, for libFuzzer.
+#[test]
+fn the_fuzzer_knows_every_name() {
+    let mut words = std::collections::BTreeSet::from(["ref", "id", "type", "value", "$defaults"]);
+    for (_, plugin, table) in everything() {
+        words.insert(plugin);
+        for row in table.rows() {
+            words.insert(row.name);
+            words.extend(if let Kind::Choice(choices) = row.kind { choices } else { &[] });
+        }
+    }
+    let lines: String = words.iter().map(|word| format!("\"{word}\"\n")).collect();
+    holds(
+        "tests/fuzz/scene.dict",
+        &format!("# Made from the tables of plugins by cli/explain/tests.rs.\n{lines}"),
+    );
+}
+
+#[test]
+fn examples_can_be_pasted() {
+    for (tag, plugin, table) in everything().filter(|(tag, ..)| *tag != "scene") {
+        let text = format!("{{{}}}", text::example(plugin, table));
+        // These need one of several parameters.
+        if text.contains("...") || ["polynomial", "regular", "irregular"].contains(&plugin) {
+            continue;
+        }
+        let example: Value = serde_json::from_str(&text).unwrap();
+        let object = example.as_object().unwrap().values().next().unwrap().clone();
+        built(tag, object).unwrap_or_else(|error| panic!("{tag} {text}: {error}"));
     }
 }
