@@ -11,6 +11,15 @@ use serde_json::{Map, Value, json};
 /// Colours that have a syntax of their own.
 const VALUES: [&str; 2] = ["rgb", "spectrum"];
 
+/// Steps of transforms with their keys.
+const STEPS: [(&str, &[&str]); 5] = [
+    ("translate", &["value", "x", "y", "z"]),
+    ("rotate", &["axis", "x", "y", "z", "angle"]),
+    ("scale", &["value", "x", "y", "z"]),
+    ("lookat", &["origin", "target", "up"]),
+    ("matrix", &["value"]),
+];
+
 /// The schema of a scene file.
 pub fn of_scenes() -> Value {
     let mut definitions = Map::new();
@@ -58,10 +67,16 @@ fn values() -> Map<String, Value> {
         "spectrum": {"type": "object", "additionalProperties": false,
             "properties": {"type": {}, "value": {"type": ["number", "array", "string"]}, "filename": {"type": "string"}}},
         "ref": object("id", json!({"type": {}, "id": {"type": "string"}})),
-        "transform": {"type": "array", "items": {"type": "object", "required": ["type"], "properties": {
-            "type": {"enum": ["translate", "rotate", "scale", "lookat", "matrix"]}}}},
+        "transform": {"type": "array", "items": of_types(STEPS.map(|(step, _)| (step, step.to_owned())).into())},
     });
-    values.as_object().cloned().unwrap_or_default()
+    let step = |(step, keys): (&str, &[&str])| {
+        let keys = keys.iter().chain(&["type"]).map(|key| ((*key).to_owned(), json!({})));
+        let properties = Value::Object(keys.collect());
+        (step.to_owned(), json!({"type": "object", "additionalProperties": false, "properties": properties}))
+    };
+    let mut all = values.as_object().cloned().unwrap_or_default();
+    all.extend(STEPS.map(step));
+    all
 }
 
 fn plugin_of(plugin: &str, table: &'static Table) -> Value {
@@ -105,9 +120,14 @@ fn any_of_kinds(tags: &[&str]) -> Value {
     any(tags.iter().flat_map(names).collect())
 }
 
-/// An object of one of these types: chosen by its type, so that what is wrong is told of that one.
+/// The same, or a reference.
 fn any(mut types: Vec<(&str, String)>) -> Value {
     types.push(("ref", "ref".into()));
+    of_types(types)
+}
+
+/// An object of one of these types: chosen by its type, so that what is wrong is told of that one.
+fn of_types(types: Vec<(&str, String)>) -> Value {
     let names: Vec<_> = types.iter().map(|(name, _)| name).collect();
     let rules = types.iter().map(|(name, key)| {
         json!({"if": {"required": ["type"], "properties": {"type": {"const": name}}}, "then": {"$ref": reference(key)}})

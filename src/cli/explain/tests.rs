@@ -304,3 +304,96 @@ fn examples_can_be_pasted() {
         built(tag, object).unwrap_or_else(|error| panic!("{tag} {text}: {error}"));
     }
 }
+
+/// True if `value` is as `schema` says, a part of `whole`. What the schema does not use is not known here.
+fn is_valid(whole: &Value, schema: &Value, value: &Value) -> bool {
+    let valid = |schema: &Value, value: &Value| is_valid(whole, schema, value);
+    let items = || value.as_array().map_or(&[][..], Vec::as_slice);
+    let object = || value.as_object().into_iter().flatten();
+    let number = |fits: fn(f64, f64) -> bool, limit: &Value| {
+        value.as_f64().is_none_or(|number| fits(number, limit.as_f64().unwrap()))
+    };
+    let Some(rules) = schema.as_object() else { return schema == &json!(true) };
+    rules.iter().all(|(key, rule)| match key.as_str() {
+        "$ref" => valid(whole.pointer(&rule.as_str().unwrap()[1..].replace("%20", " ")).unwrap(), value),
+        "const" => rule == value,
+        "enum" => rule.as_array().unwrap().contains(value),
+        "type" => rule
+            .as_array()
+            .map_or_else(|| has_type(rule, value), |all| all.iter().any(|one| has_type(one, value))),
+        "required" => {
+            !value.is_object()
+                || rule.as_array().unwrap().iter().all(|key| !value[key.as_str().unwrap()].is_null())
+        }
+        "properties" => object().all(|(key, value)| rule.get(key).is_none_or(|rule| valid(rule, value))),
+        "additionalProperties" => {
+            object().all(|(key, value)| schema["properties"].get(key).is_some() || valid(rule, value))
+        }
+        "allOf" => rule.as_array().unwrap().iter().all(|one| valid(one, value)),
+        "anyOf" => rule.as_array().unwrap().iter().any(|one| valid(one, value)),
+        "if" => {
+            schema.get(if valid(rule, value) { "then" } else { "else" }).is_none_or(|rule| valid(rule, value))
+        }
+        "items" => items().iter().all(|item| valid(rule, item)),
+        "minItems" => items().len() as u64 >= rule.as_u64().unwrap(),
+        "maxItems" => items().len() as u64 <= rule.as_u64().unwrap(),
+        "minimum" => number(|x, low| x >= low, rule),
+        "maximum" => number(|x, high| x <= high, rule),
+        "exclusiveMinimum" => number(|x, low| x > low, rule),
+        "exclusiveMaximum" => number(|x, high| x < high, rule),
+        "pattern" => value.as_str().is_none_or(|text| text.contains('$')),
+        "then" | "else" | "description" | "default" | "$schema" | "title" | "definitions" => true,
+        other => panic!("the schema uses {other}, which this test does not know"),
+    })
+}
+
+fn has_type(name: &Value, value: &Value) -> bool {
+    match name.as_str().unwrap() {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "boolean" => value.is_boolean(),
+        "integer" => value.as_f64().is_some_and(|number| number.fract() == 0.0),
+        "number" => value.is_number(),
+        other => panic!("the type {other}"),
+    }
+}
+
+/// The paths of all values that are not objects, by which scenes are misspelt.
+fn leaves(path: &str, value: &Value, found: &mut Vec<String>) {
+    for (key, value) in value.as_object().into_iter().flatten().filter(|(key, _)| *key != "$defaults") {
+        match value {
+            Value::Object(_) => leaves(&format!("{path}/{key}"), value, found),
+            _ => found.push(format!("{path}/{key}")),
+        }
+    }
+}
+
+#[test]
+fn the_schema_accepts_the_scenes_and_no_misspelt_parameter() {
+    let (schema, mut seen) = (schema::of_scenes(), std::collections::BTreeSet::new());
+    for folder in ["scenes", "scenes/crosscheck"] {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|ending| ending != "json") {
+                continue;
+            }
+            let scene: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+            assert!(is_valid(&schema, &schema, &scene), "{}", path.display());
+            let mut paths = Vec::new();
+            leaves("", &scene, &mut paths);
+            for place in paths {
+                let (holder, key) = place.rsplit_once('/').unwrap();
+                let mut misspelt = scene.clone();
+                let object = misspelt.pointer_mut(holder).unwrap().as_object_mut().unwrap();
+                let plugin = object["type"].to_string();
+                let value = object.remove(key).unwrap();
+                object.insert(format!("{key}x"), value);
+                if seen.insert((plugin, key.to_owned())) {
+                    assert!(!is_valid(&schema, &schema, &misspelt), "{} {place}", path.display());
+                }
+            }
+        }
+    }
+    assert!(seen.len() > 150, "{} names were misspelt", seen.len());
+}
