@@ -110,7 +110,7 @@ const COMMON: &[Parameter] = rows! {
 
 const HOMOGENEOUS: Table = table! {
     "A medium that is the same everywhere.";
-    colour("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient: absorption and scattering together."),
+    colour("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient: sigma_s + sigma_a."),
     colour("albedo", "", 1.0, Is(0.75), "Share of the extinction that is scattering: sigma_s / sigma_t.");
     COMMON, EMISSION
 };

@@ -31,7 +31,7 @@ impl Bitmap {
         file("filename", "The image: EXR, HDR, PNG, JPEG, BMP, TGA or PPM."),
         choice("filter_type", &["bilinear", "nearest"], "bilinear", "How colours between pixel centres come about."),
         choice("wrap_mode", &words::<3, _>(&Wrap::NAMES), "repeat", "What lies beyond the unit square."),
-        boolean("raw", false, "True takes the numbers as they are; else 8-bit images are sRGB."),
+        boolean("raw", false, "True takes the numbers as they are; else those of integer formats are sRGB."),
         TO_UV,
         ignored("format", "images are kept in single precision"),
         ignored("accel", "images are kept in single precision"),

@@ -238,13 +238,14 @@ fn markdown(tag: &str) -> String {
     let tables = plugins(tag);
     let shared =
         |row: &Parameter| tables.len() > 1 && tables.iter().all(|(_, table)| table.rows().any(|r| r == row));
+    let written = |row: &Parameter| match row.kind {
+        Kind::Nested => format!("({})", row.name),
+        _ => format!("`{}`{}", row.name, star(row.ours).replace('*', "\\*")),
+    };
     let line = |row: &Parameter| {
-        let name =
-            if row.kind == Kind::Nested { format!("({})", row.name) } else { format!("`{}`", row.name) };
-        let name = format!("{name}{}", star(row.ours).replace('*', "\\*"));
         let default = text::default(row);
         let default = default.trim_start_matches("default").trim_start_matches([':', ' ']);
-        format!("| {name} | {} | {default} | {} |\n", text::allowed(row), row.about)
+        format!("| {} | {} | {default} | {} |\n", written(row), text::allowed(row), row.about)
     };
     let mut lines = "| | | default | |\n|---|---|---|---|\n".to_owned();
     let common: String =
@@ -252,10 +253,21 @@ fn markdown(tag: &str) -> String {
     if !common.is_empty() {
         lines += &format!("| **all** | | | |\n{common}");
     }
-    for (name, table) in &tables {
+    for (index, (name, table)) in tables.iter().enumerate() {
         let star = star(is_ours(tag, name)).replace('*', "\\*");
         lines += &format!("| **`{name}`**{star} | | | {} |\n", table.about);
-        lines.extend(table.rows().filter(|row| !shared(row) && !row.is_ignored()).map(line));
+        let own = table.rows().filter(|row| !shared(row) && !row.is_ignored());
+        // What an earlier plugin has too is not said again.
+        let before =
+            |row: &Parameter| tables[..index].iter().find(|(_, table)| table.rows().any(|r| r == row));
+        let (again, first): (Vec<_>, Vec<_>) = own.partition(|row| before(row).is_some());
+        lines.extend(first.into_iter().map(line));
+        for chunk in again.chunk_by(|a, b| before(a).map(|(name, _)| name) == before(b).map(|(name, _)| name))
+        {
+            let names: Vec<_> = chunk.iter().map(|row| written(row)).collect();
+            let (other, _) = before(chunk[0]).unwrap();
+            lines += &format!("| {} | as of `{other}` | | |\n", names.join(", "));
+        }
     }
     lines
 }

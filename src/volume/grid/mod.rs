@@ -95,7 +95,7 @@ impl Grid {
     pub(super) const TABLE: Table = table! {
         "Voxels from a file; they fill the unit cube of `to_world`, or the file's own box.";
         file("filename", "The file: .vol, .vdb or .nvdb."),
-        text("grid", "the name of a grid", Said("the first"), "Which of several grids of a .vdb or .nvdb file.").ours(),
+        text("grid", "the name of a grid", Said("density, or the only one"), "Which of several grids of a .vdb or .nvdb file.").ours(),
         choice("filter_type", &["trilinear", "nearest"], "trilinear", "How values between voxel centres come about."),
         choice("wrap_mode", &words::<3, _>(&Wrap::NAMES), "clamp", "What lies beyond the voxels, within the world box around them."),
         boolean("raw", false, "Without effect: voxels are numbers."),
