@@ -1,7 +1,7 @@
 //! A mixture of two materials: Mitsuba's `blendbsdf`.
 
-use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, number, only_nested, share};
-use crate::description::Params;
+use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, bounded, number, only_nested};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
@@ -22,9 +22,14 @@ pub struct Blend {
 }
 
 impl Blend {
-    /// `weight` in [0, 1], which must be given, and two nested bsdfs.
+    pub(super) const TABLE: Table = table! {
+        "Two surfaces, mixed.";
+        texture("weight", 1.0, Required, "Share of the second."),
+        nested("bsdf", Required, "The two."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let weight = share(params, "weight", None)?;
+        let weight = bounded(params, "weight", "")?;
         Ok(Self::new(weight, only_nested(params)?))
     }
 

@@ -1,7 +1,7 @@
 //! A smooth metal: Mitsuba's `conductor`.
 
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, metals, mirror, reflectance};
-use crate::description::Params;
+use crate::description::{Params, Table, parameter::Parameter, rows, table};
 use crate::error::{Error, Result};
 use crate::math::fresnel;
 use crate::math::{Spectrum, Uv, Vec3};
@@ -30,7 +30,7 @@ pub(super) struct Metal {
 }
 
 /// No metal has more, and the square of its square is still an f32.
-const LARGEST_INDEX: f32 = 1e4;
+const LARGEST_INDEX: f64 = 1e4;
 
 impl Metal {
     /// `eta` and `k` are relative to the outside, >= 0.
@@ -46,10 +46,9 @@ impl Metal {
         Self { eta, k, tint, average: average.max(Spectrum::splat(least)) }
     }
 
-    /// `material` ("none", a perfect mirror, where not given) or `eta` (0) and `k` (1), and `specular_reflectance`.
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let own = params.has("eta") || params.has("k");
-        let material = params.optional_string("material")?.filter(|name| *name != "none");
+        let material = Some(params.string("material")?).filter(|name| *name != "none");
         if own && material.is_some() {
             return Err(Error::new(
                 params.location(),
@@ -63,16 +62,15 @@ impl Metal {
                 let (eta, k) = metals::named(params, name)?;
                 (Texture::constant(eta), Texture::constant(k))
             }
-            None => (texture::index(params, "eta", 0.0)?, texture::index(params, "k", 1.0)?),
+            None => (texture::parameter(params, "eta")?, texture::parameter(params, "k")?),
         };
         for (name, texture) in [("eta", &eta), ("k", &k)] {
             let most = texture.max().max_element();
-            if most > LARGEST_INDEX {
-                let expected = format!("an index from 0 to {LARGEST_INDEX}");
+            if let Some(expected) = params.expected(name, f64::from(most)) {
                 return Err(params.complain(name, expected, most.to_string()));
             }
         }
-        Ok(Self::new(eta, k, reflectance(params, "specular_reflectance", 1.0)?))
+        Ok(Self::new(eta, k, reflectance(params, "specular_reflectance")?))
     }
 
     /// Tinted reflectance at `cosine` in [0, 1].
@@ -100,7 +98,17 @@ impl Metal {
     }
 }
 
+/// What metals have.
+pub(super) const METAL: &[Parameter] = rows! {
+    text("material", "the name of a metal", Word("none"), "A metal by name, such as Au; none is a perfect mirror."),
+    index_texture("eta", LARGEST_INDEX, 0.0, "Real part of the index of refraction, in place of `material`."),
+    index_texture("k", LARGEST_INDEX, 1.0, "Imaginary part of the index of refraction."),
+    texture("specular_reflectance", 1.0, Is(1.0), "A factor on what is reflected; 1 in nature."),
+};
+
 impl Conductor {
+    pub(super) const TABLE: Table = table! { "A polished metal."; ; METAL };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         Metal::build(params).map(|metal| Self { metal })
     }

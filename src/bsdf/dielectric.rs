@@ -1,7 +1,7 @@
 //! A smooth interface between two dielectrics: Mitsuba's `dielectric`.
 
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror, reflectance};
-use crate::description::Params;
+use crate::description::{Params, Table, parameter::Parameter, rows, table};
 use crate::error::Result;
 use crate::math::fresnel::Interfaces;
 use crate::math::{Spectrum, Uv, Vec3};
@@ -22,11 +22,17 @@ pub(super) struct Tints {
     pub(super) transmittance: Texture,
 }
 
+/// The rows of [`Tints`].
+pub(super) const TINTS: &[Parameter] = rows! {
+    texture("specular_reflectance", 1.0, Is(1.0), "A factor on what is reflected; 1 in nature."),
+    texture("specular_transmittance", 1.0, Is(1.0), "A factor on what is transmitted; 1 in nature."),
+};
+
 impl Tints {
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         Ok(Self {
-            reflectance: reflectance(params, "specular_reflectance", 1.0)?,
-            transmittance: reflectance(params, "specular_transmittance", 1.0)?,
+            reflectance: reflectance(params, "specular_reflectance")?,
+            transmittance: reflectance(params, "specular_transmittance")?,
         })
     }
 
@@ -63,8 +69,14 @@ pub(super) fn choose(fresnel: f32, reflectance: Spectrum, transmittance: Spectru
 }
 
 impl Dielectric {
+    pub(super) const TABLE: Table = table! {
+        "Smooth glass, water: reflects and refracts.";
+        index::inside("bk7"), index::OUTSIDE;
+        TINTS
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { interfaces: index::interfaces(params, "bk7")?, tints: Tints::build(params)? })
+        Ok(Self { interfaces: index::interfaces(params)?, tints: Tints::build(params)? })
     }
 
     #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A sheet that light comes through as from a diffuse lamp: Mitsuba 0.6's `difftrans`.
 
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, reflectance};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Uv, Vec3, vec3, warp};
 use crate::sampling::Stream;
@@ -15,9 +15,13 @@ pub struct DiffuseTransmitter {
 }
 
 impl DiffuseTransmitter {
-    /// `transmittance` (0.5), a colour or a texture.
+    pub(super) const TABLE: Table = table! {
+        "A sheet that transmits diffusely.";
+        texture("transmittance", 1.0, Is(0.5), "Share of the light that it transmits."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { transmittance: reflectance(params, "transmittance", 0.5)? })
+        Ok(Self { transmittance: reflectance(params, "transmittance")? })
     }
 
     #[cfg(test)]

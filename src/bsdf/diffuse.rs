@@ -1,7 +1,7 @@
 //! Lambert's reflector: Mitsuba's `diffuse`.
 
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, reflectance};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Spectrum, Uv, Vec3, warp};
 use crate::sampling::Stream;
@@ -20,8 +20,13 @@ impl Diffuse {
         Self { reflectance: Texture::constant(Spectrum::splat(reflectance)) }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "A matt surface: Lambert's.";
+        texture("reflectance", 1.0, Is(0.5), "Share of the light that it reflects."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { reflectance: reflectance(params, "reflectance", 0.5)? })
+        Ok(Self { reflectance: reflectance(params, "reflectance")? })
     }
 
     #[cfg(test)]

@@ -1,6 +1,9 @@
 //! Indices of refraction by number or name, as Mitsuba knows them.
 
-use crate::description::{Params, Value, nearest};
+use crate::description::{
+    Params, Value, nearest,
+    parameter::{self, Parameter},
+};
 use crate::error::Result;
 use crate::math::fresnel::Interfaces;
 
@@ -31,24 +34,32 @@ const NAMED: &[(&str, f64)] = &[
     ("diamond", 2.419),
 ];
 
-/// `int_ior` (`inside` where not given) and `ext_ior` (air).
-pub fn interfaces(params: &Params<'_>, inside: &str) -> Result<Interfaces> {
-    Ok(Interfaces::new(index(params, "int_ior", inside)?, index(params, "ext_ior", "air")?))
+/// The row of the index within, `material` where not given.
+pub const fn inside(material: &'static str) -> Parameter {
+    parameter::number_or_name("int_ior", LIMITS, material, "Index of refraction within, or a material.")
+}
+
+/// The row of the index outside.
+pub const OUTSIDE: Parameter =
+    parameter::number_or_name("ext_ior", LIMITS, "air", "Index of refraction outside, or a material.");
+
+/// `int_ior` and `ext_ior`.
+pub fn interfaces(params: &Params<'_>) -> Result<Interfaces> {
+    Ok(Interfaces::new(index(params, "int_ior")?, index(params, "ext_ior")?))
 }
 
 /// Indices beyond these limits are no materials, and their squares would leave f32's range in time.
-const LIMITS: (f64, f64) = (1e-3, 1e3);
+const LIMITS: parameter::Range = parameter::within(1e-3, 1e3);
 
-fn index(params: &Params<'_>, name: &'static str, default: &str) -> Result<f64> {
-    let given = params.object.properties.iter().find(|property| property.name == name);
-    match given.map(|property| &property.value) {
-        Some(Value::String(_)) | None => named(params, name, default),
-        Some(_) => params.float_within(name, 1.0, LIMITS.0, LIMITS.1),
+fn index(params: &Params<'_>, name: &'static str) -> Result<f64> {
+    match params.given(name).map(|property| &property.value) {
+        Some(Value::String(_)) | None => named(params, name),
+        Some(_) => params.float(name),
     }
 }
 
-fn named(params: &Params<'_>, name: &'static str, default: &str) -> Result<f64> {
-    let word = params.optional_string(name)?.unwrap_or(default).to_lowercase();
+fn named(params: &Params<'_>, name: &'static str) -> Result<f64> {
+    let word = params.string(name)?.to_lowercase();
     NAMED.iter().find(|(material, _)| *material == word).map(|(_, index)| *index).ok_or_else(|| {
         let names: Vec<_> = NAMED.iter().map(|(material, _)| *material).collect();
         let mut error = params.complain(name, "an index of refraction or a material", format!("\"{word}\""));

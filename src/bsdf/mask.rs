@@ -1,7 +1,7 @@
 //! A surface with holes: Mitsuba's `mask`.
 
-use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, number, only_nested, share};
-use crate::description::Params;
+use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, bounded, number, only_nested};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
@@ -16,9 +16,14 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// `opacity` in [0, 1] (0.5), and one nested bsdf.
+    pub(super) const TABLE: Table = table! {
+        "A surface with holes.";
+        texture("opacity", 1.0, Is(0.5), "Share of the surface that is there."),
+        nested("bsdf", Required, "The surface."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let opacity = share(params, "opacity", Some(0.5))?;
+        let opacity = bounded(params, "opacity", "")?;
         let [nested] = only_nested(params)?;
         Ok(Self { opacity, nested: Arc::new(nested) })
     }

@@ -1,18 +1,18 @@
 //! Distributions of microfacet normals, their shadowing and the sampling of the visible ones (Walter et al.
 //! 2007; Heitz 2018). All in a shading frame turned so that the direction in question has z > 0.
 
-use super::number;
-use crate::description::Params;
+use super::{bounded, number};
+use crate::description::{Params, parameter::Parameter, rows};
 use crate::error::{Error, Result};
 use crate::math::{Uv, Vec2, Vec3, vec3};
-use crate::texture::{self, Texture};
+use crate::texture::Texture;
 use std::f32::consts::{PI, TAU};
 
 /// Mitsuba's least roughness: below it the peak leaves what an f32 direction can resolve.
 const LEAST_ALPHA: f32 = 1e-4;
 
 /// Greatest roughness taken: beyond it the surface is no surface any more.
-const GREATEST_ALPHA: f32 = 10.0;
+const GREATEST_ALPHA: f64 = 10.0;
 
 /// How the slopes of the facets are distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,22 +38,34 @@ pub struct Microfacets {
     alpha_v: f32,
 }
 
+/// What rough surfaces have.
+pub(super) const ROUGHNESS: &[Parameter] = rows! {
+    choice("distribution", &["beckmann", "ggx"], "beckmann", "How the slopes of the facets are distributed."),
+    texture("alpha", GREATEST_ALPHA, Is(0.1), "Roughness: about the mean slope of the facets."),
+    boolean("sample_visible", true, "Visible normals are sampled all the same: a warning if false."),
+};
+
+/// What those have besides whose roughness may differ by direction.
+pub(super) const ANISOTROPY: &[Parameter] = rows! {
+    texture("alpha_u", GREATEST_ALPHA, Optional, "Roughness along u, in place of `alpha`, with `alpha_v`."),
+    texture("alpha_v", GREATEST_ALPHA, Optional, "Roughness along v."),
+};
+
 impl Roughness {
-    /// `distribution`, and `alpha` (0.1 where not given) or both `alpha_u` and `alpha_v`.
     pub fn build(params: &Params<'_>) -> Result<Self> {
         let kinds = [("beckmann", Kind::Beckmann), ("ggx", Kind::Ggx)];
-        let kind = params.choice("distribution", Kind::Beckmann, &kinds)?;
-        if !params.boolean("sample_visible", true)? {
-            let place = params.property("sample_visible").map_or(params.location(), |p| &p.location);
+        let kind = params.choice("distribution", &kinds)?;
+        if !params.boolean("sample_visible")? {
+            let place = params.given("sample_visible").map_or(params.location(), |p| &p.location);
             params.library.warn(place, "visible normals are sampled all the same: it changes noise only");
         }
-        let anisotropic = [params.has("alpha_u"), params.has("alpha_v")];
+        let anisotropic = ["alpha_u", "alpha_v"].map(|name| params.allows(name) && params.has(name));
         let alpha = match (params.has("alpha"), anisotropic) {
             (_, [false, false]) => {
-                let alpha = alpha(params, "alpha")?;
+                let alpha = bounded(params, "alpha", "")?;
                 [alpha.clone(), alpha]
             }
-            (false, [true, true]) => [alpha(params, "alpha_u")?, alpha(params, "alpha_v")?],
+            (false, [true, true]) => [bounded(params, "alpha_u", "")?, bounded(params, "alpha_v", "")?],
             _ => {
                 let expected = "either \"alpha\" or both \"alpha_u\" and \"alpha_v\"";
                 let found = "another choice of them";
@@ -99,15 +111,6 @@ impl Roughness {
         let with = |kind| alphas.map(|(u, v)| Self { kind, alpha: [texture(u), texture(v)] });
         [Kind::Beckmann, Kind::Ggx].into_iter().flat_map(with).collect()
     }
-}
-
-fn alpha(params: &Params<'_>, name: &'static str) -> Result<Texture> {
-    let texture = texture::parameter(params, name, 0.1)?;
-    let max = texture.max().max_element();
-    if max <= GREATEST_ALPHA {
-        return Ok(texture);
-    }
-    Err(params.complain(name, format!("a roughness from 0 to {GREATEST_ALPHA}"), max.to_string()))
 }
 
 impl Microfacets {

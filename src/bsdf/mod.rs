@@ -40,7 +40,7 @@ pub use thindielectric::ThinDielectric;
 pub use translucent::Translucent;
 pub use twosided::TwoSided;
 
-use crate::description::{Build, Library, Object, Params, Registry, models};
+use crate::description::{Build, Library, Object, Params, Plugin, Registry, models};
 use crate::error::{Error, Result};
 use crate::math::{Spectrum, SpectrumExt, Uv, Vec3, vec3};
 use crate::sampling::Stream;
@@ -149,7 +149,7 @@ pub trait BsdfModel {
 }
 
 /// Makes the enum, its dispatch, the registry and the list of test examples from one row a model. A model
-/// has `fn build(&Params)`, giving itself or any other `Bsdf`, and, for the tests, `fn examples() -> Vec<_>`.
+/// has `fn build(&Params)`, giving itself or any other `Bsdf`, the table of its parameters, and, for the tests, `fn examples() -> Vec<_>`.
 macro_rules! bsdfs {
     ($($name:literal => $model:ident,)*) => {
         models! {
@@ -167,8 +167,11 @@ macro_rules! bsdfs {
         }
 
         /// Every surface model there is, by plugin name.
-        pub const ROWS: Registry<Build<Bsdf>> = Registry::new("a bsdf", &[
-            $(($name, |params: &Params<'_>| $model::build(params).map(Bsdf::from)),)*
+        pub const ROWS: Registry<Plugin<Build<Bsdf>>> = Registry::new("a bsdf", &[
+            $(($name, Plugin {
+                table: $model::TABLE,
+                build: |params: &Params<'_>| $model::build(params).map(Bsdf::from),
+            }),)*
         ]);
 
         /// Instances of every model, for the tests that hold for all.
@@ -203,29 +206,18 @@ pub fn build(object: &Object, library: &Library) -> Result<Bsdf> {
     ROWS.build(object, library)
 }
 
-/// The parameter `name` as a texture of reflectances or transmittances: no channel exceeds 1.
-fn reflectance(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
-    let texture = texture::parameter(params, name, default)?;
-    let max = texture.max().max_element();
-    if max <= 1.0 {
-        return Ok(texture);
-    }
-    let found = format!("one that reaches {max}: more light would leave than arrives");
-    Err(params.complain(name, "a colour from 0 to 1", found))
+/// The parameter `name` as a texture of reflectances or transmittances.
+fn reflectance(params: &Params<'_>, name: &'static str) -> Result<Texture> {
+    bounded(params, name, ": more light would leave than arrives")
 }
 
-/// The parameter `name` as a texture of numbers from 0 to 1; without a `default` it must be given.
-fn share(params: &Params<'_>, name: &'static str, default: Option<f32>) -> Result<Texture> {
-    let expected = "a number from 0 to 1 or a texture of such";
-    if default.is_none() && !params.has(name) {
-        return Err(params.missing(name, expected));
-    }
-    let texture = texture::parameter(params, name, default.unwrap_or(0.5))?;
+/// The parameter `name` as a texture whose channels are in the range of its row; `why` they must be.
+fn bounded(params: &Params<'_>, name: &'static str, why: &str) -> Result<Texture> {
+    let texture = texture::parameter(params, name)?;
     let max = texture.max().max_element();
-    if max <= 1.0 {
-        Ok(texture)
-    } else {
-        Err(params.complain(name, expected, format!("one that reaches {max}")))
+    match params.expected(name, f64::from(max)) {
+        None => Ok(texture),
+        Some(expected) => Err(params.complain(name, expected, format!("one that reaches {max}{why}"))),
     }
 }
 
@@ -238,7 +230,7 @@ fn number(texture: &Texture, uv: Uv) -> f32 {
 
 /// The `COUNT` nested bsdfs, in file order; textures and other children are not among them.
 fn only_nested<const COUNT: usize>(params: &Params<'_>) -> Result<[Bsdf; COUNT]> {
-    let children = params.children(|child| ROWS.has(child.object))?;
+    let children = params.children("bsdf", |child| ROWS.has(child.object))?;
     let nested =
         children.iter().map(|child| build(child.object, params.library)).collect::<Result<Vec<_>>>()?;
     nested.try_into().map_err(|found: Vec<Bsdf>| {

@@ -1,7 +1,7 @@
 //! No surface at all, only a boundary between media: Mitsuba's `null`.
 
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
@@ -11,6 +11,10 @@ use crate::sampling::Stream;
 pub struct Null;
 
 impl Null {
+    pub(super) const TABLE: Table = table! {
+        "No surface at all: only a boundary between media.";
+    };
+
     pub(super) fn build(_: &Params<'_>) -> Result<Self> {
         Ok(Self)
     }

@@ -1,7 +1,7 @@
 //! A diffuse base under a smooth coat of clear dielectric: Mitsuba's `plastic`.
 
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror, reflectance};
-use crate::description::Params;
+use crate::description::{Params, Table, parameter::Parameter, rows, table};
 use crate::error::Result;
 use crate::math::fresnel::Interface;
 use crate::math::{Spectrum, Uv, Vec3, warp};
@@ -50,18 +50,26 @@ pub(super) struct Shares {
     pub(super) of_base: f32,
 }
 
+/// What plastics have.
+pub(super) const BASE: &[Parameter] = rows! {
+    index::inside("polypropylene"),
+    index::OUTSIDE,
+    texture("diffuse_reflectance", 1.0, Is(0.5), "Share of the light that the base reflects."),
+    texture("specular_reflectance", 1.0, Is(1.0), "A factor on what the coat reflects; 1 in nature."),
+    boolean("nonlinear", false, "True lets colours shift by light that goes to and fro under the coat."),
+};
+
 impl Base {
-    /// `specular_reflectance` (1), `diffuse_reflectance` (0.5) and `nonlinear` (false). `ratio` is the index of
-    /// the coat over that outside; `returned` see the field.
+    /// `ratio` is the index of the coat over that outside; `returned` see the field.
     pub(super) fn build(params: &Params<'_>, ratio: f32, returned: f32) -> Result<Self> {
         if !(1.0 / HIGHEST_RATIO..=HIGHEST_RATIO).contains(&ratio) {
             let expected = format!("an index at most {HIGHEST_RATIO} times that of the other side");
             return Err(params.complain("int_ior", expected, format!("{ratio} times that")));
         }
         Ok(Self {
-            specular: reflectance(params, "specular_reflectance", 1.0)?,
-            diffuse: reflectance(params, "diffuse_reflectance", 0.5)?,
-            nonlinear: params.boolean("nonlinear", false)?,
+            specular: reflectance(params, "specular_reflectance")?,
+            diffuse: reflectance(params, "diffuse_reflectance")?,
+            nonlinear: params.boolean("nonlinear")?,
             returned,
             compression: 1.0 / (ratio * ratio),
         })
@@ -115,8 +123,10 @@ fn returned(inside: &Interface) -> f32 {
 }
 
 impl Plastic {
+    pub(super) const TABLE: Table = table! { "A diffuse base under a smooth clear coat."; ; BASE };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let interfaces = index::interfaces(params, "polypropylene")?;
+        let interfaces = index::interfaces(params)?;
         let coat = interfaces.outside;
         let entering = (1.0 - coat.diffuse_reflectance()) as f32;
         Ok(Self { coat, entering, base: Base::build(params, coat.ratio, returned(&interfaces.inside))? })

@@ -1,9 +1,9 @@
 //! A rough metal: Mitsuba's `roughconductor`.
 
-use super::conductor::Metal;
-use super::microfacet::{Microfacets, Roughness};
+use super::conductor::{METAL, Metal};
+use super::microfacet::{ANISOTROPY, Microfacets, ROUGHNESS, Roughness};
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Uv, Vec3};
 use crate::sampling::Stream;
@@ -16,6 +16,10 @@ pub struct RoughConductor {
 }
 
 impl RoughConductor {
+    pub(super) const TABLE: Table = table! {
+        "A rough metal."; ; METAL, ROUGHNESS, ANISOTROPY
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         Ok(Self { metal: Metal::build(params)?, roughness: Roughness::build(params)? })
     }

@@ -1,9 +1,9 @@
 //! A rough interface between two dielectrics: Mitsuba's `roughdielectric`.
 
-use super::dielectric::{Dielectric, Tints, choose};
-use super::microfacet::{Microfacets, Roughness};
+use super::dielectric::{Dielectric, TINTS, Tints, choose};
+use super::microfacet::{ANISOTROPY, Microfacets, ROUGHNESS, Roughness};
 use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, index};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::fresnel::{Interface, Interfaces};
 use crate::math::{Uv, Vec3, vec3};
@@ -31,11 +31,16 @@ struct Facet {
 }
 
 impl RoughDielectric {
+    pub(super) const TABLE: Table = table! {
+        "Frosted glass.";
+        index::inside("bk7"), index::OUTSIDE;
+        TINTS, ROUGHNESS, ANISOTROPY
+    };
+
     /// A rough interface, or the smooth one that it cannot be distinguished from: nearly equal indices bend
     /// light by less than directions resolve.
     pub(super) fn build(params: &Params<'_>) -> Result<Bsdf> {
-        let smooth =
-            Dielectric { interfaces: index::interfaces(params, "bk7")?, tints: Tints::build(params)? };
+        let smooth = Dielectric { interfaces: index::interfaces(params)?, tints: Tints::build(params)? };
         let roughness = Roughness::build(params)?;
         if (smooth.interfaces.outside.ratio - 1.0).abs() * roughness.max() < LEAST_SPREAD {
             let text = "the indices are so close that this is the smooth \"dielectric\"";

@@ -1,9 +1,9 @@
 //! A diffuse base under a rough coat of clear dielectric: Mitsuba's `roughplastic`.
 
-use super::microfacet::{Microfacets, Roughness};
-use super::plastic::{Base, Shares};
+use super::microfacet::{Microfacets, ROUGHNESS, Roughness};
+use super::plastic::{BASE, Base, Shares};
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::fresnel::{Interface, Interfaces};
 use crate::math::{Spectrum, Uv, Vec3, vec2, vec3, warp};
@@ -79,8 +79,10 @@ fn returned(microfacets: &Microfacets, inside: &Interface) -> f32 {
 }
 
 impl RoughPlastic {
+    pub(super) const TABLE: Table = table! { "A diffuse base under a rough clear coat."; ; BASE, ROUGHNESS };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let interfaces = index::interfaces(params, "polypropylene")?;
+        let interfaces = index::interfaces(params)?;
         let microfacets = Roughness::build_even(params)?;
         let returned = returned(&microfacets, &interfaces.inside);
         let base = Base::build(params, interfaces.outside.ratio, returned)?;

@@ -1,8 +1,8 @@
 //! A pane of glass too thin to bend light: Mitsuba's `thindielectric`.
 
-use super::dielectric::Tints;
+use super::dielectric::{TINTS, Tints};
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::fresnel::Interfaces;
 use crate::math::{Spectrum, Uv, Vec3};
@@ -17,8 +17,14 @@ pub struct ThinDielectric {
 }
 
 impl ThinDielectric {
+    pub(super) const TABLE: Table = table! {
+        "A pane of glass too thin to bend light.";
+        index::inside("bk7"), index::OUTSIDE;
+        TINTS
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { interfaces: index::interfaces(params, "bk7")?, tints: Tints::build(params)? })
+        Ok(Self { interfaces: index::interfaces(params)?, tints: Tints::build(params)? })
     }
 
     /// R + T R T + T R^3 T + ... = 2 R / (1 + R) for a face that reflects R. The same from both sides, as

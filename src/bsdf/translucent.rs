@@ -2,7 +2,7 @@
 //! directionally".
 
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, reflectance};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Frame, Spectrum, Uv, Vec3, vec3, warp};
 use crate::sampling::Stream;
@@ -37,12 +37,18 @@ const LARGEST_EXPONENT: f64 = 1e8;
 const LEAST_COSINE: f32 = 1e-6;
 
 impl Translucent {
-    /// `transmittance` (0.5; a colour or a texture), `directional` in [0, 1] (0.5), `exponent` >= 0 (none).
+    pub(super) const TABLE: Table = table! {
+        "A pane that transmits partly undeflected, partly diffusely: the stained glass of LW96 fig. 6.";
+        texture("transmittance", 1.0, Is(0.5), "Share of the light that it transmits."),
+        number("directional", "", within(0.0, 1.0), Is(0.5), "Share of that which is not deflected."),
+        number("exponent", "", within(0.0, LARGEST_EXPONENT), Optional, "Spreads that share into a lobe: greater is narrower."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let transmittance = reflectance(params, "transmittance", 0.5)?;
-        let directional = params.float_within("directional", 0.5, 0.0, 1.0)? as f32;
-        let lobe = params.float_within("exponent", 0.0, 0.0, LARGEST_EXPONENT)? as f32;
-        Ok(Self { transmittance, directional, exponent: params.has("exponent").then_some(lobe) })
+        let transmittance = reflectance(params, "transmittance")?;
+        let directional = params.float("directional")? as f32;
+        let exponent = params.optional_float("exponent")?.map(|exponent| exponent as f32);
+        Ok(Self { transmittance, directional, exponent })
     }
 
     /// The share that passes straight through, the share scattered diffusely, and that scattered in a lobe.

@@ -1,7 +1,7 @@
 //! An opaque surface seen from both sides: Mitsuba's `twosided`.
 
 use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, build};
-use crate::description::{Location, Object, Params};
+use crate::description::{Location, Object, Params, Table, table};
 use crate::error::{Error, Result};
 use crate::math::{Spectrum, Uv, Vec3, vec3};
 use crate::sampling::Stream;
@@ -20,8 +20,13 @@ impl TwoSided {
         Self { sides: Arc::new([front, back]) }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "An opaque surface that is the same from both sides, or differs.";
+        nested("bsdf", Required, "One for both sides, or two: front and back."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let children = params.children(|_| true)?;
+        let children = params.children("bsdf", |_| true)?;
         let sides = children
             .iter()
             .map(|child| opaque(params, child.object, child.location))

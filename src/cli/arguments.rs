@@ -94,6 +94,10 @@ pub enum Command {
     /// with sigma_t (RDS_t) or with sigma_s (RDS_s), or have their first collision forced. Exit code: 0, 1 if an
     /// unbiased method deviates from the expected values, 2 on an error.
     Flights(super::flights::Flights),
+    /// Explain plugins of scenes: their parameters, with ranges, units and defaults
+    ///
+    /// For example: tyndall explain, tyndall explain heterogeneous, tyndall explain sigma_t
+    Explain(Explain),
     /// Print a script that completes commands, options and names in a shell
     ///
     /// For example: tyndall completions bash > ~/.local/share/bash-completion/completions/tyndall
@@ -117,6 +121,7 @@ impl Command {
             | Self::Convert(_)
             | Self::Merge(_)
             | Self::Report(_)
+            | Self::Explain(_)
             | Self::Completions(_)
             | Self::Man(_) => None,
         }
@@ -304,6 +309,18 @@ pub struct Completions {
     /// The shell
     #[arg(value_enum, value_name = "SHELL")]
     pub shell: clap_complete::Shell,
+}
+
+/// Explain what scenes can hold.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Explain {
+    /// Plugin (spot), kind of plugins (emitter) or parameter (cutoff_angle) [default: list all plugins]
+    #[arg(value_name = "PLUGIN")]
+    pub topic: Option<String>,
+
+    /// Print a JSON Schema of scenes instead, by which editors complete and check them
+    #[arg(long, conflicts_with = "topic")]
+    pub schema: bool,
 }
 
 /// Print or write manual pages.

@@ -5,6 +5,7 @@ mod contenders;
 mod convert;
 pub mod diff;
 mod estimator;
+mod explain;
 pub mod flights;
 mod goal;
 mod info;
@@ -67,6 +68,7 @@ fn obey(command: &Command) -> Result<bool> {
         Command::Convert(convert) => convert::run(convert),
         Command::Report(report) => report::run(report),
         Command::Study(study) => study::run(study),
+        Command::Explain(explain) => explain::run(explain),
         Command::Completions(completions) => manual::complete(completions),
         Command::Man(man) => manual::run(man),
         Command::Diff(diff) => return diff::run(diff),

@@ -6,8 +6,10 @@
 //! spectra of the same values, which is also what the spectral variants show.
 
 use super::{
-    Library, Object, Params, Property, Value,
+    Library, Object, Params, Plugin, Property, Registry, Table, Value,
+    parameter::Default,
     params::{COLOR, spelling},
+    table,
 };
 use crate::{
     error::{Error, Result},
@@ -31,26 +33,31 @@ pub enum Role {
 }
 
 /// How a plugin that represents a colour is read.
-struct Plugin {
-    name: &'static str,
-    read: fn(&Params<'_>, Role) -> Result<DVec3>,
-}
+type ReadColour = fn(&Params<'_>, Role) -> Result<DVec3>;
 
-const PLUGINS: [Plugin; 7] = [
-    Plugin { name: "uniform", read: uniform },
-    Plugin { name: "rawconstant", read: raw },
-    Plugin { name: "srgb", read: srgb },
-    Plugin { name: "d65", read: d65 },
-    Plugin { name: "regular", read: regular },
-    Plugin { name: "irregular", read: irregular },
-    Plugin { name: "blackbody", read: blackbody },
-];
+const ROWS: Registry<Plugin<ReadColour>> = Registry::new(
+    "a colour",
+    &[
+        ("uniform", Plugin { table: UNIFORM, build: uniform }),
+        ("rawconstant", Plugin { table: RAW, build: raw }),
+        ("srgb", Plugin { table: SRGB, build: srgb }),
+        ("d65", Plugin { table: D65, build: d65 }),
+        ("regular", Plugin { table: REGULAR, build: regular }),
+        ("irregular", Plugin { table: IRREGULAR, build: irregular }),
+        ("blackbody", Plugin { table: BLACKBODY, build: blackbody }),
+    ],
+);
 
 /// True if `object` represents one colour. Of `d65` around a texture only the texture matters.
 pub fn is_plugin(object: &Object) -> bool {
     let is_child = |p: &Property| matches!(p.value, Value::Object(_) | Value::Reference(_));
     let holds_texture = object.plugin == "d65" && object.properties.iter().any(is_child);
-    PLUGINS.iter().any(|plugin| plugin.name == object.plugin) && !holds_texture
+    ROWS.has(object) && !holds_texture
+}
+
+/// True if plugins called `name` represent one colour.
+pub fn is_name(name: &str) -> bool {
+    ROWS.get(name).is_some()
 }
 
 /// The colour that `property` gives, >= 0.
@@ -72,26 +79,24 @@ pub fn read(property: &Property, library: &Library, role: Role) -> Result<Spectr
 
 /// The colour that the plugin `object` represents, >= 0.
 pub fn of_object(object: &Object, library: &Library, role: Role) -> Result<Spectrum> {
-    let params = Params::new(object, library);
+    let Some(plugin) = ROWS.get(&object.plugin).filter(|_| is_plugin(object)) else {
+        let remedy = format!("give a number, rgb, a spectrum or one of {}", ROWS.names().join(", "));
+        let found = format!("the plugin \"{}\"", object.plugin);
+        return Err(Error::new(&object.location, "one colour", found, remedy));
+    };
+    let params = Params::new(object, library, &plugin.table);
     let color = of_plugin(&params, role)?;
     params.finish()?;
     Ok(color)
 }
 
-/// The same, from its parameters.
+/// The same, from the parameters of such a plugin.
 pub fn of_plugin(params: &Params<'_>, role: Role) -> Result<Spectrum> {
-    let object = params.object;
-    let names: Vec<_> = PLUGINS.iter().map(|plugin| plugin.name).collect();
-    let Some(plugin) = PLUGINS.iter().find(|plugin| is_plugin(object) && plugin.name == object.plugin) else {
-        let remedy = format!("give a number, rgb, a spectrum or one of {}", names.join(", "));
-        let found = format!("the plugin \"{}\"", object.plugin);
-        return Err(Error::new(params.location(), "one colour", found, remedy));
-    };
-    let color = (plugin.read)(params, role)?.as_vec3();
+    let color = (ROWS.find(params.object)?.build)(params, role)?.as_vec3();
     if color.is_finite() && color.min_element() >= 0.0 {
         return Ok(color);
     }
-    let remedy = format!("correct the {}", object.plugin);
+    let remedy = format!("correct the {}", params.object.plugin);
     Err(Error::new(params.location(), "a colour with finite entries >= 0", format!("{color}"), remedy))
 }
 
@@ -139,23 +144,38 @@ fn sampled(pairs: &[(f64, f64)], role: Role, warn: impl Fn(&str)) -> DVec3 {
     clamped
 }
 
+/// One value at all wavelengths.
+pub const UNIFORM: Table = table! {
+    "The same at all wavelengths: grey.";
+    number("value", "", ANY, Required, "The value."),
+    ignored("wavelength_min", "only three colour channels are rendered"),
+    ignored("wavelength_max", "only three colour channels are rendered"),
+};
+
 fn uniform(params: &Params<'_>, _: Role) -> Result<DVec3> {
-    params.accept_unused(&["wavelength_min", "wavelength_max"], "only three colour channels are rendered");
-    required(params, "value").map(DVec3::splat)
+    params.float("value").map(DVec3::splat)
 }
 
-/// One number or three.
+/// Numbers for the channels.
+pub const RAW: Table = table! {
+    "The channels as they are.";
+    channels("value", "Linear sRGB."),
+};
+
 fn raw(params: &Params<'_>, _: Role) -> Result<DVec3> {
-    let vector = match params.object.properties.iter().find(|p| p.name == "value").map(|p| &p.value) {
-        Some(Value::Vector(_) | Value::Rgb(_)) => params.optional_vector("value")?,
-        _ => None,
-    };
-    vector.map_or_else(|| uniform(params, Role::Matter), Ok)
+    params.channels("value")
 }
+
+/// A colour as three channels.
+pub const SRGB: Table = table! {
+    "A colour by three channels of linear sRGB.";
+    vector("color", "", Required, "The channels."),
+    boolean("unbounded", false, "True allows channels above 1."),
+};
 
 fn srgb(params: &Params<'_>, _: Role) -> Result<DVec3> {
-    let unbounded = params.boolean("unbounded", false)?;
-    let color = params.optional_vector("color")?.ok_or_else(|| params.missing("color", "an rgb colour"))?;
+    let unbounded = params.boolean("unbounded")?;
+    let color = params.vector("color")?;
     if unbounded || color.max_element() <= 1.0 {
         return Ok(color);
     }
@@ -166,18 +186,36 @@ fn srgb(params: &Params<'_>, _: Role) -> Result<DVec3> {
     ))
 }
 
+/// Daylight.
+pub const D65: Table = table! {
+    "Daylight, which is white, as a light or around a texture of light.";
+    vector("color", "", At([1.0; 3]), "Its colour."),
+    number("scale", "", ANY, Is(1.0), "A factor on it; without effect on a texture, as in Mitsuba."),
+    nested("texture", Optional, "A texture, in place of `color`."),
+};
+
 /// Daylight is white.
 fn d65(params: &Params<'_>, _: Role) -> Result<DVec3> {
-    let color = params.optional_vector("color")?.unwrap_or(DVec3::ONE);
-    Ok(color * params.float("scale", 1.0)?)
+    Ok(params.vector("color")? * params.float("scale")?)
 }
+
+const NEEDED: Default = Default::Said("needed without `value`");
+
+/// Values at equal steps of the wavelength.
+pub const REGULAR: Table = table! {
+    "A spectrum by values at equal steps of the wavelength.";
+    spectrum("value", "The spectrum, in place of the other parameters."),
+    text("values", "numbers in a string", NEEDED, "Two or more, separated by commas or space."),
+    number("wavelength_min", "nm", ANY, NEEDED, "Wavelength of the first."),
+    number("wavelength_max", "nm", ANY, NEEDED, "Wavelength of the last."),
+};
 
 fn regular(params: &Params<'_>, role: Role) -> Result<DVec3> {
     if let Some(color) = inner_spectrum(params, role)? {
         return Ok(color);
     }
     let values = numbers(params, "values")?;
-    let (low, high) = (required(params, "wavelength_min")?, required(params, "wavelength_max")?);
+    let (low, high) = (params.float("wavelength_min")?, params.float("wavelength_max")?);
     if low >= high {
         return Err(params.complain("wavelength_max", "a wavelength above wavelength_min", high.to_string()));
     }
@@ -185,6 +223,14 @@ fn regular(params: &Params<'_>, role: Role) -> Result<DVec3> {
     let pairs = (0..).map(|i| low + step * f64::from(i)).zip(values).collect();
     Ok(pairs_of(params, role, pairs))
 }
+
+/// Values at any wavelengths.
+pub const IRREGULAR: Table = table! {
+    "A spectrum by values at wavelengths of any distance.";
+    spectrum("value", "The spectrum, in place of the other parameters."),
+    text("wavelengths", "numbers in a string", NEEDED, "Two or more [nm], increasing."),
+    text("values", "numbers in a string", NEEDED, "As many values."),
+};
 
 fn irregular(params: &Params<'_>, role: Role) -> Result<DVec3> {
     if let Some(color) = inner_spectrum(params, role)? {
@@ -208,19 +254,21 @@ fn pairs_of(params: &Params<'_>, role: Role, pairs: Vec<(f64, f64)>) -> DVec3 {
 
 /// The other way to give the values: as a spectrum of their own.
 fn inner_spectrum(params: &Params<'_>, role: Role) -> Result<Option<DVec3>> {
-    let Some(property) = params.property("value") else { return Ok(None) };
-    match &property.value {
-        Value::Spectrum(pairs) if pairs.len() > 1 => Ok(Some(pairs_of(params, role, pairs.clone()))),
-        other => Err(params.complain("value", "a spectrum of wavelength:value pairs", other.describe())),
-    }
+    let pairs = params.optional_spectrum("value")?;
+    Ok(pairs.map(|pairs| pairs_of(params, role, pairs.to_vec())))
 }
 
+/// Light of a black body.
+pub const BLACKBODY: Table = table! {
+    "The light of a black body, by Planck's law.";
+    number("temperature", "K", above(0.0, f64::MAX), Required, "Its temperature."),
+    number("wavelength_min", "nm", ANY, Is(FIRST), "It is dark below this wavelength."),
+    number("wavelength_max", "nm", ANY, Is(LAST), "It is dark above this wavelength."),
+};
+
 fn blackbody(params: &Params<'_>, role: Role) -> Result<DVec3> {
-    let temperature = required(params, "temperature")?;
-    let (low, high) = (params.float("wavelength_min", FIRST)?, params.float("wavelength_max", LAST)?);
-    if temperature <= 0.0 {
-        return Err(params.complain("temperature", "a temperature > 0 [K]", temperature.to_string()));
-    }
+    let temperature = params.float("temperature")?;
+    let (low, high) = (params.float("wavelength_min")?, params.float("wavelength_max")?);
     if low >= high {
         return Err(params.complain("wavelength_max", "a wavelength above wavelength_min", high.to_string()));
     }
@@ -238,13 +286,9 @@ fn blackbody(params: &Params<'_>, role: Role) -> Result<DVec3> {
     Ok(of_spectrum(Illuminant::Equal, value).max(DVec3::ZERO))
 }
 
-fn required(params: &Params<'_>, name: &'static str) -> Result<f64> {
-    params.optional_float(name)?.ok_or_else(|| params.missing(name, "a number"))
-}
-
 /// Two or more finite numbers in a text, with commas or space between them.
 fn numbers(params: &Params<'_>, name: &'static str) -> Result<Vec<f64>> {
-    let text = params.optional_string(name)?.ok_or_else(|| params.missing(name, "numbers in a string"))?;
+    let text = params.string(name)?;
     let words = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty());
     let numbers: Option<Vec<f64>> =
         words.map(|word| word.parse().ok().filter(|x: &f64| x.is_finite())).collect();

@@ -2,11 +2,14 @@
 
 pub mod colour;
 mod library;
+pub mod parameter;
 pub mod params;
 mod registry;
 pub mod transform;
 
 pub use library::Library;
+pub use parameter::{Plugin, Table};
+pub(crate) use parameter::{rows, table};
 pub use params::Params;
 pub(crate) use registry::models;
 pub use registry::{Build, Registry, nearest, suggest};

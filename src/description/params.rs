@@ -1,9 +1,9 @@
 //! Typed access to the parameters of an object. Unread parameters are errors: nothing is ignored silently.
 
 use super::{
-    Library, Location, Object, Position, Property, Value,
-    colour::{self, Role},
-    nearest, suggest, transform,
+    Library, Location, Object, Position, Property, Value, colour, nearest,
+    parameter::{Default, Is, Kind, Parameter, Table, Word},
+    suggest, transform,
 };
 use crate::{
     error::{Error, Result},
@@ -22,21 +22,22 @@ pub struct Child<'a> {
     pub location: &'a Location,
 }
 
-/// An object's parameters while a builder reads them.
+/// An object's parameters while a builder reads them: each is a row of the plugin's table, which says what may be
+/// given, and what counts where nothing is.
 pub struct Params<'a> {
     /// The object being built.
     pub object: &'a Object,
     /// References, files, warnings.
     pub library: &'a Library,
+    table: &'static Table,
     used: RefCell<Vec<bool>>,
-    requested: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Params<'a> {
     /// Nothing read yet.
-    pub fn new(object: &'a Object, library: &'a Library) -> Self {
+    pub fn new(object: &'a Object, library: &'a Library, table: &'static Table) -> Self {
         let used = RefCell::new(vec![false; object.properties.len()]);
-        Self { object, library, used, requested: RefCell::default() }
+        Self { object, library, table, used }
     }
 
     /// Where the object is.
@@ -44,10 +45,31 @@ impl<'a> Params<'a> {
         &self.object.location
     }
 
-    /// The property called `name`, marked as read.
-    pub fn property(&self, name: &'static str) -> Option<&'a Property> {
-        self.requested.borrow_mut().push(name);
-        self.take(name)
+    /// The row of `name`, and what `of` takes from its kind. Without such a row it is a bug, which the test of all
+    /// tables finds.
+    fn row<T>(&self, name: &'static str, of: impl Fn(&Kind) -> Option<T>) -> Result<(&'static Parameter, T)> {
+        let row = self.table.find(name).and_then(|row| Some((row, of(&row.kind)?)));
+        note(&self.object.plugin, name, row.is_some());
+        row.ok_or_else(|| {
+            let expected = format!("a row for \"{name}\" in the table of the {}", self.object.plugin);
+            Error::new(self.location(), expected, "none", "this is a bug: please report it with the scene")
+        })
+    }
+
+    /// What was given as `name`, not marked as read.
+    pub fn given(&self, name: &str) -> Option<&'a Property> {
+        note(&self.object.plugin, name, self.table.find(name).is_some());
+        self.object.properties.iter().find(|property| property.name == name)
+    }
+
+    /// True if `name` was given; does not mark it as read.
+    pub fn has(&self, name: &str) -> bool {
+        self.given(name).is_some()
+    }
+
+    /// True if `name` may be given.
+    pub fn allows(&self, name: &str) -> bool {
+        self.table.find(name).is_some()
     }
 
     fn take(&self, name: &str) -> Option<&'a Property> {
@@ -56,95 +78,141 @@ impl<'a> Params<'a> {
         Some(&self.object.properties[index])
     }
 
-    /// True if `name` was given; does not mark it as read.
-    pub fn has(&self, name: &str) -> bool {
-        self.object.properties.iter().any(|p| p.name == name)
-    }
-
     fn optional<T>(
         &self,
-        name: &'static str,
+        name: &str,
         expected: &str,
         read: impl FnOnce(&'a Value) -> Option<T>,
     ) -> Result<Option<T>> {
-        let Some(property) = self.property(name) else { return Ok(None) };
+        let Some(property) = self.take(name) else { return Ok(None) };
         match read(&property.value) {
             Some(value) => Ok(Some(value)),
             None => Err(wrong(property, expected)),
         }
     }
 
-    /// A finite number, where given.
+    /// A number in the range of its row, where given.
     pub fn optional_float(&self, name: &'static str) -> Result<Option<f64>> {
-        self.optional(name, "a finite number", |v| number(v).filter(|x| x.is_finite()))
-    }
-
-    /// A finite number.
-    pub fn float(&self, name: &'static str, default: f64) -> Result<f64> {
-        Ok(self.optional_float(name)?.unwrap_or(default))
-    }
-
-    /// A finite number from `low` to `high` (both allowed).
-    pub fn float_within(&self, name: &'static str, default: f64, low: f64, high: f64) -> Result<f64> {
-        let value = self.float(name, default)?;
-        if (low..=high).contains(&value) {
-            return Ok(value);
+        let (row, range) = self.row(name, |kind| match kind {
+            Kind::Number(range) | Kind::NumberOrName(range) => Some(*range),
+            _ => None,
+        })?;
+        match self.optional(name, "a finite number", |v| number(v).filter(|x| x.is_finite()))? {
+            Some(x) if !range.contains(x) => Err(self.complain(name, row.expected(x), x.to_string())),
+            given => Ok(given),
         }
-        let expected = match high == f64::MAX {
-            true => format!("a number >= {low}"),
-            false => format!("a number from {low} to {high}"),
-        };
-        Err(self.complain(name, expected, value.to_string()))
     }
 
-    /// A whole number.
-    pub fn integer(&self, name: &'static str, default: i64) -> Result<i64> {
+    /// A number in the range of its row.
+    pub fn float(&self, name: &'static str) -> Result<f64> {
+        match (self.optional_float(name)?, self.default(name)) {
+            (Some(x), _) | (None, Is(x)) => Ok(x),
+            _ => Err(self.missing(name)),
+        }
+    }
+
+    /// A whole number in the range of its row, where given.
+    pub fn optional_integer(&self, name: &'static str) -> Result<Option<i64>> {
+        let (row, range) =
+            self.row(name, |kind| if let Kind::Integer(range) = kind { Some(*range) } else { None })?;
         let read = |v: &Value| match v {
             Value::Integer(i) => Some(*i),
             Value::Float(x) if x.fract() == 0.0 && x.abs() < 1e15 => Some(*x as i64),
             _ => None,
         };
-        Ok(self.optional(name, "an integer", read)?.unwrap_or(default))
+        match self.optional(name, "an integer", read)? {
+            Some(i) if !range.contains(i as f64) => {
+                Err(self.complain(name, row.expected(i as f64), i.to_string()))
+            }
+            given => Ok(given),
+        }
+    }
+
+    /// A whole number in the range of its row.
+    pub fn integer(&self, name: &'static str) -> Result<i64> {
+        match (self.optional_integer(name)?, self.default(name)) {
+            (Some(i), _) => Ok(i),
+            (None, Is(x)) => Ok(x as i64),
+            _ => Err(self.missing(name)),
+        }
+    }
+
+    /// A truth value, where given.
+    pub fn optional_boolean(&self, name: &'static str) -> Result<Option<bool>> {
+        self.row(name, |kind| matches!(kind, Kind::Boolean).then_some(()))?;
+        self.optional(name, "a boolean", |v| if let Value::Boolean(b) = v { Some(*b) } else { None })
     }
 
     /// A truth value.
-    pub fn boolean(&self, name: &'static str, default: bool) -> Result<bool> {
-        let read = |v: &Value| if let Value::Boolean(b) = v { Some(*b) } else { None };
-        Ok(self.optional(name, "a boolean", read)?.unwrap_or(default))
+    pub fn boolean(&self, name: &'static str) -> Result<bool> {
+        match (self.optional_boolean(name)?, self.default(name)) {
+            (Some(b), _) | (None, Default::Yes(b)) => Ok(b),
+            _ => Err(self.missing(name)),
+        }
     }
 
     /// Text, where given.
     pub fn optional_string(&self, name: &'static str) -> Result<Option<&'a str>> {
+        let is_text =
+            |k: &Kind| matches!(k, Kind::Text(_) | Kind::Choice(_) | Kind::File | Kind::NumberOrName(_));
+        self.row(name, |kind| is_text(kind).then_some(()))?;
         self.optional(name, "a string", |v| if let Value::String(s) = v { Some(s.as_str()) } else { None })
     }
 
     /// Text.
-    pub fn string(&self, name: &'static str, default: &'a str) -> Result<&'a str> {
-        Ok(self.optional_string(name)?.unwrap_or(default))
+    pub fn string(&self, name: &'static str) -> Result<&'a str> {
+        match (self.optional_string(name)?, self.default(name)) {
+            (Some(text), _) | (None, Word(text)) => Ok(text),
+            _ => Err(self.missing(name)),
+        }
     }
 
-    /// One of a few words.
-    pub fn choice<T: Copy>(&self, name: &'static str, default: T, choices: &[(&str, T)]) -> Result<T> {
-        let Some(word) = self.optional_string(name)? else { return Ok(default) };
-        choices.iter().find(|(w, _)| *w == word).map(|(_, value)| *value).ok_or_else(|| {
-            let words: Vec<_> = choices.iter().map(|(w, _)| *w).collect();
-            let expected = format!("one of {}", words.join(", "));
-            let mut error = self.complain(name, expected, format!("\"{word}\""));
-            error.remedy = format!("{}{}", nearest(word, &words), error.remedy);
+    /// What one of the few words of its row means, in capitals or not.
+    pub fn choice<T: Copy>(&self, name: &'static str, meanings: &[(&str, T)]) -> Result<T> {
+        let (row, words) =
+            self.row(name, |kind| if let Kind::Choice(words) = kind { Some(*words) } else { None })?;
+        note(&self.object.plugin, name, meanings.iter().map(|(word, _)| word).eq(words));
+        let word = self.string(name)?;
+        let meaning = meanings.iter().find(|(known, _)| known.eq_ignore_ascii_case(word));
+        meaning.map(|(_, meaning)| *meaning).ok_or_else(|| {
+            let mut error = self.complain(name, row.expected(0.0), format!("\"{word}\""));
+            error.remedy = format!("{}{}", nearest(word, words), error.remedy);
             error
         })
     }
 
     /// A point or vector with finite entries, where given.
     pub fn optional_vector(&self, name: &'static str) -> Result<Option<DVec3>> {
+        self.row(name, |kind| matches!(kind, Kind::Vector).then_some(()))?;
         self.optional(name, "three finite numbers", |v| match v {
             Value::Vector(v) | Value::Rgb(v) => Some(DVec3::from(*v)).filter(|v| v.is_finite()),
             _ => None,
         })
     }
 
+    /// A point or vector with finite entries.
+    pub fn vector(&self, name: &'static str) -> Result<DVec3> {
+        match (self.optional_vector(name)?, self.default(name)) {
+            (Some(v), _) => Ok(v),
+            (None, Default::At(v)) => Ok(v.into()),
+            _ => Err(self.missing(name)),
+        }
+    }
+
+    /// One finite number for all channels or three, which must be given.
+    pub fn channels(&self, name: &'static str) -> Result<DVec3> {
+        self.row(name, |kind| matches!(kind, Kind::Channels).then_some(()))?;
+        let read = |v: &Value| match v {
+            Value::Vector(v) | Value::Rgb(v) => Some(DVec3::from(*v)),
+            other => number(other).map(DVec3::splat),
+        };
+        let given = self.optional(name, "three finite numbers", |v| read(v).filter(|v| v.is_finite()))?;
+        given.ok_or_else(|| self.missing(name))
+    }
+
     /// A transform; the identity where not given. Must be finite and invertible.
     pub fn transform(&self, name: &'static str) -> Result<DMat4> {
+        self.row(name, |kind| matches!(kind, Kind::Transform).then_some(()))?;
         let read = |v: &Value| match v {
             Value::Transform(steps) => Some(transform::compose(steps)),
             _ => None,
@@ -157,45 +225,45 @@ impl<'a> Params<'a> {
         Err(self.complain(name, "an invertible transform", found))
     }
 
-    /// A colour of matter with finite entries >= 0: a number (grey), rgb, a spectrum, or a plugin that
-    /// represents one; where given.
+    /// A colour with finite entries >= 0, where given: a number (grey), rgb, a spectrum, or a plugin that represents
+    /// one. What a spectrum becomes depends on what its row says the colour is of.
     pub fn optional_color(&self, name: &'static str) -> Result<Option<Spectrum>> {
-        self.color_of(name, Role::Matter)
+        let (row, role) = self.row(name, |kind| match kind {
+            Kind::Colour(role, _) | Kind::Texture(role, _) | Kind::Volume(role) => Some(*role),
+            _ => None,
+        })?;
+        let Some(property) = self.take(name) else { return Ok(None) };
+        let color = colour::read(property, self.library, role)?;
+        // Of textures and volumes the builder knows whether every value fits.
+        if matches!(row.kind, Kind::Colour(..)) && f64::from(color.max_element()) > row.range().high {
+            return Err(self.complain(name, row.expected(0.0), format!("{color}")));
+        }
+        Ok(Some(color))
     }
 
-    /// A colour of matter with finite entries >= 0: a reflectance, an albedo, an extinction.
-    pub fn color(&self, name: &'static str, default: f32) -> Result<Spectrum> {
-        Ok(self.optional_color(name)?.unwrap_or(Spectrum::splat(default)))
+    /// The same; what its row says where not given.
+    pub fn color(&self, name: &'static str) -> Result<Spectrum> {
+        match (self.optional_color(name)?, self.default(name)) {
+            (Some(color), _) => Ok(color),
+            (None, Is(x)) => Ok(Spectrum::splat(x as f32)),
+            _ => Err(self.missing(name)),
+        }
     }
 
-    /// An index of refraction or the like: as [`Self::color`], but spectra may exceed 1.
-    pub fn index(&self, name: &'static str, default: f32) -> Result<Spectrum> {
-        Ok(self.color_of(name, Role::Index)?.unwrap_or(Spectrum::splat(default)))
-    }
-
-    /// Radiance, irradiance or intensity, with finite entries >= 0: spectra are the light itself, not seen in
-    /// daylight.
-    pub fn emission(&self, name: &'static str, default: f32) -> Result<Spectrum> {
-        Ok(self.optional_emission(name)?.unwrap_or(Spectrum::splat(default)))
-    }
-
-    /// The same, where given.
-    pub fn optional_emission(&self, name: &'static str) -> Result<Option<Spectrum>> {
-        self.color_of(name, Role::Light)
-    }
-
-    fn color_of(&self, name: &'static str, role: Role) -> Result<Option<Spectrum>> {
-        let Some(property) = self.property(name) else { return Ok(None) };
-        colour::read(property, self.library, role).map(Some)
+    /// A spectrum of several wavelengths, where given.
+    pub fn optional_spectrum(&self, name: &'static str) -> Result<Option<&'a [(f64, f64)]>> {
+        let (row, ()) = self.row(name, |kind| matches!(kind, Kind::Spectrum).then_some(()))?;
+        match self.take(name).map(|property| &property.value) {
+            None => Ok(None),
+            Some(Value::Spectrum(pairs)) if pairs.len() > 1 => Ok(Some(pairs)),
+            Some(other) => Err(self.complain(name, row.expected(0.0), other.describe())),
+        }
     }
 
     /// A file named by the string `name`, relative to the file that names it. Must exist.
     pub fn file(&self, name: &'static str) -> Result<PathBuf> {
-        let Some(text) = self.optional_string(name)? else {
-            return Err(self.missing(name, "a file name"));
-        };
-        let property = self.object.properties.iter().find(|p| p.name == name);
-        let location = property.map_or(self.location(), |p| &p.location);
+        let text = self.string(name)?;
+        let location = self.given(name).map_or(self.location(), |p| &p.location);
         let path = self.library.file(text, location);
         if path.is_file() {
             return Ok(path);
@@ -210,15 +278,18 @@ impl<'a> Params<'a> {
 
     /// The child object called `name`, where given.
     pub fn child(&self, name: &'static str) -> Result<Option<Child<'a>>> {
-        let Some(property) = self.property(name) else { return Ok(None) };
+        let is_child = |k: &Kind| matches!(k, Kind::Object(_) | Kind::Texture(..) | Kind::Volume(_));
+        self.row(name, |kind| is_child(kind).then_some(()))?;
+        let Some(property) = self.take(name) else { return Ok(None) };
         match self.as_child(property)? {
             Some(child) => Ok(Some(child)),
             None => Err(wrong(property, "an object or a reference")),
         }
     }
 
-    /// All children (objects and references) that `wanted` accepts, marked as read, in file order.
-    pub fn children(&self, wanted: impl Fn(&Child<'a>) -> bool) -> Result<Vec<Child<'a>>> {
+    /// All children (objects and references) of the kind `tag` that `wanted` accepts, marked as read, in file order.
+    pub fn children(&self, tag: &str, wanted: impl Fn(&Child<'a>) -> bool) -> Result<Vec<Child<'a>>> {
+        note(&self.object.plugin, tag, self.table.nested(tag).is_some());
         let mut found = Vec::new();
         for (index, property) in self.object.properties.iter().enumerate() {
             if let Some(child) = self.as_child(property)?
@@ -242,22 +313,6 @@ impl<'a> Params<'a> {
         })
     }
 
-    /// Reads and drops parameters that have no meaning here, with a warning that says so.
-    pub fn accept_unused(&self, names: &[&'static str], why: &str) {
-        for name in names {
-            // Not requested: no user should be advised to use them.
-            if let Some(property) = self.take(name) {
-                self.library.warn(&property.location, &format!("\"{name}\" is accepted but not used: {why}"));
-            }
-        }
-    }
-
-    /// Reads and drops a parameter that cannot change what is rendered.
-    pub fn accept_silently(&self, name: &'static str) {
-        // Not requested: no user should be advised to use it.
-        let _ = self.take(name);
-    }
-
     /// An error at the parameter `name` (or at the object where it was not given).
     pub fn complain(&self, name: &str, expected: impl Into<String>, found: impl Into<String>) -> Error {
         let property = self.object.properties.iter().find(|p| p.name == name);
@@ -267,42 +322,85 @@ impl<'a> Params<'a> {
         Error::new(place, format!("{expected} for \"{name}\""), found, remedy)
     }
 
-    /// The error for a parameter that must be given.
-    pub fn missing(&self, name: &str, expected: &str) -> Error {
-        let found = "nothing";
-        let remedy = format!("add \"{name}\" to the {}", self.object.plugin);
-        Error::new(self.location(), format!("{expected} called \"{name}\""), found, remedy)
+    /// What is expected of `name`, if `found` is not in the range of its row.
+    pub fn expected(&self, name: &str, found: f64) -> Option<String> {
+        let row = self.table.find(name).filter(|row| !row.range().contains(found))?;
+        Some(row.expected(found))
     }
 
-    /// Every parameter must have been read.
+    /// The error for a parameter that must be given.
+    pub fn missing(&self, name: &str) -> Error {
+        let remedy = format!("add \"{name}\" to the {}", self.object.plugin);
+        let row = self.table.find(name).or(self.table.nested(name));
+        let expected = row.map_or("a value".into(), |row| row.expected(0.0));
+        Error::new(self.location(), format!("{expected} called \"{name}\""), "nothing", remedy)
+    }
+
+    fn default(&self, name: &str) -> Default {
+        self.table.find(name).map_or(Default::Optional, |row| row.default)
+    }
+
+    /// Every parameter must have been read, or be accepted without.
     pub fn finish(&self) -> Result<()> {
-        let used = self.used.borrow();
-        let Some(index) = used.iter().position(|used| !used) else { return Ok(()) };
-        let property = &self.object.properties[index];
-        let mut known = self.requested.borrow().clone();
-        known.sort_unstable();
-        known.dedup();
+        for (property, used) in self.object.properties.iter().zip(self.used.borrow().iter()) {
+            if *used {
+                continue;
+            }
+            match self.table.find(&property.name) {
+                Some(Parameter { kind: Kind::Ignored { silent: true }, .. }) => {}
+                Some(Parameter { kind: Kind::Ignored { .. }, name, about: why, .. }) => self
+                    .library
+                    .warn(&property.location, &format!("\"{name}\" is accepted but not used: {why}")),
+                row => return Err(self.unread(property, row)?),
+            }
+        }
+        Ok(())
+    }
+
+    /// The error for a parameter that was not read, though it may have a `row`.
+    fn unread(&self, property: &Property, row: Option<&Parameter>) -> Result<Error> {
+        let plugin = &self.object.plugin;
         let mut found = property.value.describe();
         let child = self.as_child(property)?.map(|child| &child.object.plugin);
         if let (Value::Reference(_), Some(plugin)) = (&property.value, child) {
             found = format!("{found}, the plugin \"{plugin}\"");
         }
-        let name = if property.name.is_empty() {
-            "an unnamed child".into()
-        } else {
-            format!("\"{}\"", property.name)
+        let name = match property.name.as_str() {
+            "" => "an unnamed child".into(),
+            name => format!("\"{name}\""),
         };
-        let remedy = suggest(&property.name, "parameters known here", &known);
-        let (expected, remedy) = match child {
-            None => (format!("a parameter of the {}", self.object.plugin), remedy),
-            Some(_) => (
-                format!("a child that a {} can hold", self.object.plugin),
-                format!("move it to where it belongs, or remove it; {remedy}"),
+        let suggested = suggest(&property.name, "parameters known here", &self.table.names());
+        let (expected, remedy) = match (row, child) {
+            (Some(row), _) => (
+                format!("a parameter that counts beside the others of the {plugin}"),
+                format!("remove it, or change the others ({}: {})", row.name, row.about),
+            ),
+            (None, None) => (format!("a parameter of the {plugin}"), suggested),
+            (None, Some(_)) => (
+                format!("a child that a {plugin} can hold"),
+                format!("move it to where it belongs, or remove it; {suggested}"),
             ),
         };
-        Err(Error::new(&property.location, expected, format!("{name}, {found}"), remedy))
+        Ok(Error::new(&property.location, expected, format!("{name}, {found}"), remedy))
     }
 }
+
+/// What builders asked for: plugin, name, and whether the plugin's table has it. For the test of all tables.
+#[cfg(test)]
+pub(crate) type Notes = std::collections::BTreeSet<(String, String, bool)>;
+
+#[cfg(test)]
+thread_local! {
+    pub(crate) static NOTES: RefCell<Notes> = RefCell::default();
+}
+
+#[cfg(test)]
+fn note(plugin: &str, name: &str, known: bool) {
+    NOTES.with_borrow_mut(|notes| notes.insert((plugin.into(), name.into(), known)));
+}
+
+#[cfg(not(test))]
+fn note(_: &str, _: &str, _: bool) {}
 
 fn number(value: &Value) -> Option<f64> {
     match value {

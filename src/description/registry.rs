@@ -1,7 +1,10 @@
 //! Registries: the names that users write, and what each refers to. Whatever lists, looks up or suggests names reads
 //! these rows. And the enum of all models of a kind, whose methods are those of the model.
 
-use super::{Library, Object, Params};
+use super::{
+    Library, Object, Params,
+    parameter::{Plugin, Table},
+};
 use crate::error::{Error, Result};
 
 /// Names of one kind, and what each refers to.
@@ -51,11 +54,23 @@ impl<V> Registry<V> {
     }
 }
 
-impl<T> Registry<Build<T>> {
+impl<B> Registry<Plugin<B>> {
+    /// Every name with its table.
+    pub fn tables(&self) -> impl Iterator<Item = (&'static str, &'static Table)> + use<B> {
+        self.rows.iter().map(|(name, plugin)| (*name, &plugin.table))
+    }
+
+    /// The parameters of `object`, to be read by its builder, which comes with them.
+    pub fn read<'a>(&self, object: &'a Object, library: &'a Library) -> Result<(Params<'a>, &'static B)> {
+        let plugin = self.find(object)?;
+        Ok((Params::new(object, library, &plugin.table), &plugin.build))
+    }
+}
+
+impl<T> Registry<Plugin<Build<T>>> {
     /// Builds `object` by its plugin name; a parameter that its builder does not read is an error.
     pub fn build(&self, object: &Object, library: &Library) -> Result<T> {
-        let build = self.find(object)?;
-        let params = Params::new(object, library);
+        let (params, build) = self.read(object, library)?;
         let built = build(&params)?;
         params.finish()?;
         Ok(built)

@@ -1,8 +1,8 @@
 //! Emission from the side of a shape that its normal points to.
 
-use super::{Profile, SurfaceEmission, SurfaceModel};
+use super::{COMMON, PROFILE, Profile, SurfaceEmission, SurfaceModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DVec3, Frame, Spectrum, Uv, Vec3, warp},
     sampling::Stream,
@@ -21,10 +21,15 @@ pub struct Area {
 }
 
 impl Area {
-    /// Reads `radiance` and `profile`.
-    pub fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) const TABLE: Table = table! {
+        "A shape that emits the same radiance in all directions from its front.";
+        light_texture("radiance", "W/(m^2 sr)", Is(1.0), "Radiance.");
+        PROFILE, COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let profile = Profile::build(params)?;
-        Ok(Self { radiance: texture::emission(params, "radiance", 1.0)?, profile })
+        Ok(Self { radiance: texture::parameter(params, "radiance")?, profile })
     }
 
     /// A direction in the frame of the normal, cosine-weighted.

@@ -1,8 +1,8 @@
 //! A disk of parallel light: a laser, a searchlight, a collimator. Beyond Mitsuba.
 
-use super::BeamModel;
+use super::{BeamModel, COMMON};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DMat4, DVec3, Spectrum, Vec3, similarity},
 };
@@ -24,15 +24,22 @@ pub struct Collimated {
 }
 
 impl Collimated {
-    /// Reads `to_world`, `radius`, and `irradiance` or `power`; it emits along local +z from the disk around the origin in
-    /// the xy plane.
-    pub fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) const TABLE: Table = table! {
+        "A disk of parallel light along +z, as of a laser or searchlight; the disk itself is not seen.";
+        transform("to_world", "Where the disk around the origin of the xy plane is, and its +z; it must stay round."),
+        number("radius", "m", above(0.0, RADII[1]), Is(1.0), "Radius of the disk, times the scale of `to_world`."),
+        light("irradiance", "W/m^2", Is(1.0), "Irradiance on a surface that faces the light."),
+        light("power", "W", Optional, "In place of `irradiance`: power of the whole beam.");
+        COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let to_world = params.transform("to_world")?;
         let Some(scale) = scale_across(to_world) else {
             let expected = "a transform that keeps a disk in the xy plane round";
             return Err(params.complain("to_world", expected, "one that does not"));
         };
-        let radius = params.float("radius", 1.0)? * scale;
+        let radius = params.float("radius")? * scale;
         if !(RADII[0]..=RADII[1]).contains(&radius) {
             return Err(params.complain(
                 "radius",
@@ -76,8 +83,8 @@ impl BeamModel for Collimated {
 
 /// Stated as such, or as the `power` of the whole beam [W].
 fn irradiance(params: &Params<'_>, radius: f64) -> Result<Spectrum> {
-    let Some(power) = params.optional_emission("power")? else {
-        return params.emission("irradiance", 1.0);
+    let Some(power) = params.optional_color("power")? else {
+        return params.color("irradiance");
     };
     if params.has("irradiance") {
         return Err(params.complain("power", "power or irradiance, not both", "both"));

@@ -1,8 +1,8 @@
 //! The same radiance from all directions at infinity.
 
-use super::InfiniteModel;
+use super::{COMMON, InfiniteModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DVec3, Spectrum, Vec3, warp},
     sampling::Stream,
@@ -17,9 +17,14 @@ pub struct Constant {
 }
 
 impl Constant {
-    /// Reads `radiance`.
-    pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { radiance: params.emission("radiance", 1.0)? })
+    pub(super) const TABLE: Table = table! {
+        "A sky of the same radiance from everywhere.";
+        light("radiance", "W/(m^2 sr)", Is(1.0), "Radiance.");
+        COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        Ok(Self { radiance: params.color("radiance")? })
     }
 }
 

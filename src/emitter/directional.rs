@@ -1,8 +1,8 @@
 //! Parallel light from infinity.
 
-use super::InfiniteModel;
+use super::{COMMON, InfiniteModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DVec3, Spectrum, Vec3},
     sampling::Stream,
@@ -18,8 +18,15 @@ pub struct Directional {
 }
 
 impl Directional {
-    /// Reads `irradiance` and `direction` or `to_world` (then it travels along local +z).
-    pub fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) const TABLE: Table = table! {
+        "Parallel light from infinity: a sun.";
+        vector("direction", "", Said("along +z of `to_world`"), "Where the light travels to."),
+        transform("to_world", "In place of `direction`: light travels along its +z."),
+        light("irradiance", "W/m^2", Is(1.0), "Irradiance on a surface that faces the light.");
+        COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let direction = match params.optional_vector("direction")? {
             Some(_) if params.has("to_world") => {
                 return Err(params.complain("direction", "direction or to_world, not both", "both"));
@@ -30,7 +37,7 @@ impl Directional {
             Some(direction) => direction,
             None => params.transform("to_world")?.transform_vector3(DVec3::Z),
         };
-        Ok(Self { direction: unit(direction).as_vec3(), irradiance: params.emission("irradiance", 1.0)? })
+        Ok(Self { direction: unit(direction).as_vec3(), irradiance: params.color("irradiance")? })
     }
 }
 

@@ -1,8 +1,8 @@
 //! Emission along the normals of a shape only: Mitsuba's `directionalarea`.
 
-use super::{SurfaceEmission, SurfaceModel};
+use super::{COMMON, SurfaceEmission, SurfaceModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DVec3, Spectrum, Uv},
     sampling::Stream,
@@ -18,9 +18,14 @@ pub struct DirectionalArea {
 }
 
 impl DirectionalArea {
-    /// Reads `radiance`: so Mitsuba calls it, though by its unit it is an exitance.
-    pub fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { exitance: texture::emission(params, "radiance", 1.0)? })
+    pub(super) const TABLE: Table = table! {
+        "A shape that emits along its normals only: parallel light from a flat one.";
+        light_texture("radiance", "W/m^2", Is(1.0), "Power per area; called radiance by Mitsuba.");
+        COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        Ok(Self { exitance: texture::parameter(params, "radiance")? })
     }
 }
 

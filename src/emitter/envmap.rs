@@ -1,8 +1,8 @@
 //! An image of the surroundings, infinitely far away: Mitsuba's `envmap`.
 
-use super::InfiniteModel;
+use super::{COMMON, InfiniteModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec3, similarity, vec3},
     sampling::{Cell, Grid, Stream},
@@ -48,11 +48,18 @@ struct Spot {
 }
 
 impl EnvMap {
-    /// Reads `filename`, `scale` and `to_world`.
-    pub fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) const TABLE: Table = table! {
+        "An image of the surroundings in latitude and longitude, +y up.";
+        file("filename", "The image: EXR, HDR, PNG, JPEG, BMP, TGA or PPM."),
+        factor("scale", 1.0, "A factor on its radiance."),
+        transform("to_world", "Turns or mirrors it."),
+        ignored("mis_compensation", "the balance heuristic is told of all strategies anyway");
+        COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let path = params.file("filename")?;
-        let scale = params.float_within("scale", 1.0, 0.0, f64::from(f32::MAX))? as f32;
-        params.accept_unused(&["mis_compensation"], "the balance heuristic is told of all strategies anyway");
+        let scale = params.float("scale")? as f32;
         let image = image::read(&path, false)?;
         if image.width < 2 || image.height < 3 {
             let found = format!("{} x {}", image.width, image.height);

@@ -22,13 +22,13 @@ use directional::Directional;
 use directionalarea::DirectionalArea;
 use envmap::EnvMap;
 use point::Point;
-use profile::Profile;
+use profile::{PROFILE, Profile};
 use projector::Projector;
 use spot::Spot;
 pub use volume::VolumeEmitter;
 
 use crate::{
-    description::{Build, Library, Object, Params, Registry, models},
+    description::{Build, Library, Object, Params, Plugin, Registry, models, parameter::Parameter, rows},
     error::Result,
     math::{DVec3, Spectrum, Uv, Vec3, spectrum::LUMINANCE},
     medium,
@@ -166,8 +166,16 @@ pub trait BeamModel {
     fn power(&self) -> DVec3;
 }
 
+/// What all emitters have.
+const COMMON: &[Parameter] = rows! {
+    // Within these bounds, f32 holds it and its products.
+    number("sampling_weight", "", within(1e-20, 1e20), Is(1.0), "A factor on the probability of choosing it."),
+    nested("medium", Optional, "The medium it is in; found where not given."),
+    text("group", "a name of 1 to 200 ASCII letters, digits and signs", Optional, "The layer that `--groups` shows it in.").ours(),
+};
+
 /// Makes an enum with its dispatch for each kind, and the registry, from one row an emitter. An emitter has
-/// `fn build(&Params) -> Result<Self>`.
+/// `fn build(&Params) -> Result<Self>` and the table of its parameters, those in [`COMMON`] included.
 macro_rules! emitters {
     ($($(#[$doc:meta])* $kind:ident($any:ident: $contract:ident) {
         $($name:literal => $model:ident,)*
@@ -175,8 +183,11 @@ macro_rules! emitters {
         $(models! { $(#[$doc])* $any: $contract [$($model)*] $($methods)* })*
 
         /// Every emitter there is, by plugin name.
-        pub const ROWS: Registry<Build<Kind>> = Registry::new("an emitter", &[
-            $($(($name, |params: &Params<'_>| $model::build(params).map($any::from).map(Kind::$kind)),)*)*
+        pub const ROWS: Registry<Plugin<Build<Kind>>> = Registry::new("an emitter", &[
+            $($(($name, Plugin {
+                table: $model::TABLE,
+                build: |params: &Params<'_>| $model::build(params).map($any::from).map(Kind::$kind),
+            }),)*)*
         ]);
     };
 }
@@ -237,11 +248,11 @@ emitters! {
 /// Builds the emitter that `object` describes; positions are still in the file's coordinates. A medium among
 /// its children (the one it is in) is read by the scene.
 pub fn build(object: &Object, library: &Library) -> Result<Emitter> {
-    let params = Params::new(object, library);
-    let (name, build) = ROWS.row(object)?;
+    let (name, _) = ROWS.row(object)?;
+    let (params, build) = ROWS.read(object, library)?;
     let kind = build(&params)?;
-    let (sampling_weight, group) = (sampling_weight(&params)?, medium::group(&params)?);
-    params.children(|child| medium::ROWS.has(child.object))?;
+    let (sampling_weight, group) = (params.float("sampling_weight")? as f32, medium::group(&params)?);
+    params.children("medium", |child| medium::ROWS.has(child.object))?;
     params.finish()?;
     Ok(Emitter { name, kind, sampling_weight, group })
 }
@@ -316,14 +327,4 @@ impl Emitter {
             _ => None,
         }
     }
-}
-
-/// Mitsuba's `sampling_weight`: a factor > 0 on the probability of choosing an emitter.
-fn sampling_weight(params: &Params<'_>) -> Result<f32> {
-    let weight = params.float("sampling_weight", 1.0)?;
-    // Within these bounds, f32 holds it and its products.
-    if (1e-20..=1e20).contains(&weight) {
-        return Ok(weight as f32);
-    }
-    Err(params.complain("sampling_weight", "a number from 1e-20 to 1e20", weight.to_string()))
 }

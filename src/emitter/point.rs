@@ -1,8 +1,8 @@
 //! A point that emits in all directions.
 
-use super::{PointModel, Profile};
+use super::{COMMON, PROFILE, PointModel, Profile};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DVec3, Frame, Spectrum, Vec3, warp},
     sampling::Stream,
@@ -20,8 +20,15 @@ pub struct Point {
 }
 
 impl Point {
-    /// Reads `intensity`, `profile`, and `position` or `to_world`.
-    pub fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) const TABLE: Table = table! {
+        "A point that emits to all sides.";
+        vector("position", "m", Said("the origin of `to_world`"), "Where it is."),
+        transform("to_world", "In place of `position`; `profile` turns about its +z."),
+        light("intensity", "W/sr", Is(1.0), "Intensity.");
+        PROFILE, COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let to_world = params.transform("to_world")?;
         let position = match params.optional_vector("position")? {
             Some(_) if params.has("to_world") => {
@@ -32,7 +39,7 @@ impl Point {
         };
         let axis = Frame::around(to_world.transform_vector3(DVec3::Z).normalize().as_vec3());
         let profile = Profile::build(params)?.map(|profile| (profile, axis));
-        Ok(Self { position, intensity: params.emission("intensity", 1.0)?, profile })
+        Ok(Self { position, intensity: params.color("intensity")?, profile })
     }
 }
 

@@ -1,7 +1,7 @@
 //! A goniometric profile: relative intensity or radiance by the angle to an axis, as lamp makers publish it.
 
 use crate::{
-    description::Params,
+    description::{Params, parameter::Parameter, rows},
     error::Result,
     math::{Vec3, warp},
     sampling::{Discrete, Stream},
@@ -32,8 +32,13 @@ struct Rings {
 /// Rings between two given angles: within each the profile is nearly constant.
 const RINGS: u32 = 8;
 
+/// What emitters have that a profile shapes.
+pub(super) const PROFILE: &[Parameter] = rows! {
+    text("profile", "pairs angle:value such as \"0:1, 30:0.8, 90:0\"", Optional,
+        "Relative brightness by the angle to the axis [degrees], linear in between.").ours(),
+};
+
 impl Profile {
-    /// Reads `profile`: pairs of an angle [degrees] and a value, such as `"0:1, 30:0.8, 90:0"`.
     pub(super) fn build(params: &Params<'_>) -> Result<Option<Self>> {
         let Some(text) = params.optional_string("profile")? else { return Ok(None) };
         let expected = "pairs angle:value (degrees from 0 to 180, increasing; values 0 or from 1e-30 to 1e30, not all 0)";

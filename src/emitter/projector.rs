@@ -1,8 +1,8 @@
 //! An image projected from a point: Mitsuba's `projector`.
 
-use super::PointModel;
+use super::{COMMON, PointModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec2, Vec3, similarity, vec2, vec3},
     sampling::{Cell, Grid, Stream},
@@ -38,12 +38,16 @@ const UNIFORM: f32 = 0.1;
 const FINEST: usize = 1024;
 
 impl Projector {
-    /// Reads `irradiance`, `scale`, `to_world` and the field of view as a perspective sensor has it.
-    pub fn build(params: &Params<'_>) -> Result<Self> {
-        if !params.has("irradiance") {
-            return Err(params.missing("irradiance", "a texture"));
-        }
-        let irradiance = texture::emission(params, "irradiance", 1.0)?;
+    pub(super) const TABLE: Table = table! {
+        "A point that throws a slide along +z.";
+        transform("to_world", "Where it is and where it looks to; it may scale evenly."),
+        light_texture("irradiance", "W/m^2", Required, "The slide: irradiance at a distance of 1."),
+        factor("scale", 1.0, "A factor on it.");
+        sensor::FIELD_OF_VIEW, COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+        let irradiance = texture::parameter(params, "irradiance")?;
         let to_world = params.transform("to_world")?;
         let Some(size) = similarity::scale_of(to_world) else {
             let expected = "a transform that neither shears nor stretches";
@@ -54,7 +58,7 @@ impl Projector {
         Ok(Self {
             position: to_world.transform_point3(DVec3::ZERO),
             // Mitsuba's projector grows brighter with its size.
-            scale: (params.float_within("scale", 1.0, 0.0, f64::from(f32::MAX))? * size) as f32,
+            scale: (params.float("scale")? * size) as f32,
             to_local: DMat3::from_mat4(to_world).inverse().as_mat3(),
             half: vec2(half as f32, (half * height / width) as f32),
             cells: Arc::new(Cells::new(&irradiance)),

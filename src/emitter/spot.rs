@@ -1,8 +1,8 @@
 //! A point that emits within a cone: constant inside the beam, falling linearly in the angle to its edge.
 
-use super::PointModel;
+use super::{COMMON, PointModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DMat3, DMat4, DVec3, Frame, Mat3, Spectrum, Vec3, similarity, vec2, warp},
     sampling::Stream,
@@ -35,23 +35,33 @@ struct Slide {
 }
 
 impl Spot {
-    /// Reads `intensity`, `cutoff_angle` and `beam_width` [degrees], `texture` and `to_world`; it emits along
-    /// local +z.
-    pub fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) const TABLE: Table = table! {
+        "A point that emits within a cone around +z.";
+        transform("to_world", "Where it is and where it points to; it may scale evenly."),
+        light("intensity", "W/sr", Is(1.0), "Intensity on the axis."),
+        number("cutoff_angle", "degrees", above(0.0, 180.0), Is(20.0), "Half angle of the whole cone."),
+        number("beam_width", "degrees", within(0.0, 180.0), Said("three quarters of `cutoff_angle`"),
+            "Half angle within which it is as bright as on the axis; at most `cutoff_angle`."),
+        texture("texture", f64::INFINITY, Optional, "A factor over the cone, which just fits the texture's unit square.");
+        COMMON
+    };
+
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let to_world = params.transform("to_world")?;
         if similarity::scale_of(to_world).is_none() {
             let expected = "a transform that neither shears nor stretches";
             return Err(params.complain("to_world", expected, "one that does"));
         }
         let axis = to_world.transform_vector3(DVec3::Z).normalize().as_vec3();
-        let cutoff = params.float_within("cutoff_angle", 20.0, 0.0, 180.0)?;
-        if cutoff == 0.0 {
-            return Err(params.complain("cutoff_angle", "an angle > 0", "0"));
+        let cutoff = params.float("cutoff_angle")?;
+        let beam = params.optional_float("beam_width")?.unwrap_or(cutoff * 0.75);
+        if beam > cutoff {
+            let expected = format!("an angle of at most cutoff_angle ({cutoff})");
+            return Err(params.complain("beam_width", expected, beam.to_string()));
         }
-        let beam = params.float_within("beam_width", cutoff * 0.75, 0.0, cutoff)?;
         Ok(Self {
             position: to_world.transform_point3(DVec3::ZERO),
-            intensity: params.emission("intensity", 1.0)?,
+            intensity: params.color("intensity")?,
             axis: Frame::around(axis),
             cutoff: cutoff.to_radians() as f32,
             beam: beam.to_radians() as f32,
@@ -123,7 +133,7 @@ impl Slide {
         if !params.has("texture") {
             return Ok(None);
         }
-        let texture = texture::parameter(params, "texture", 1.0)?;
+        let texture = texture::parameter(params, "texture")?;
         if cutoff >= 90.0 {
             let expected = "an angle below 90 where a texture fills the cone";
             return Err(params.complain("cutoff_angle", expected, cutoff.to_string()));

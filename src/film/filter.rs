@@ -6,8 +6,7 @@
 
 use super::lobes::{self, Lobes};
 use crate::{
-    description::{Build, Params, Registry},
-    error::Result,
+    description::{Build, Plugin, Registry, Table, table},
     sampling::Stream,
 };
 use std::f32::consts::PI;
@@ -43,33 +42,49 @@ pub enum Filter {
 }
 
 /// Filter names and how each reads its parameters.
-pub const ROWS: Registry<Build<Filter>> = Registry::new(
+pub const ROWS: Registry<Plugin<Build<Filter>>> = Registry::new(
     "a reconstruction filter",
     &[
-        ("box", |_| Ok(Filter::Box)),
-        ("tent", |p| Ok(Filter::Tent { radius: positive(p, "radius", 1.0)? })),
-        ("gaussian", |p| Ok(Filter::Gaussian { stddev: positive(p, "stddev", 0.5)? })),
-        ("mitchell", |p| Ok(Filter::Cubic { b: fraction(p, "B")?, c: fraction(p, "C")? })),
-        ("catmullrom", |_| Ok(Filter::Cubic { b: 0.0, c: 0.5 })),
-        ("lanczos", |p| Ok(Filter::Lanczos { lobes: lobe_count(p)? })),
+        ("box", plugin(BOX, |_| Ok(Filter::Box))),
+        ("tent", plugin(TENT, |p| Ok(Filter::Tent { radius: p.float("radius")? as f32 }))),
+        ("gaussian", plugin(GAUSSIAN, |p| Ok(Filter::Gaussian { stddev: p.float("stddev")? as f32 }))),
+        (
+            "mitchell",
+            plugin(MITCHELL, |p| Ok(Filter::Cubic { b: p.float("B")? as f32, c: p.float("C")? as f32 })),
+        ),
+        ("catmullrom", plugin(CATMULL_ROM, |_| Ok(Filter::Cubic { b: 0.0, c: 0.5 }))),
+        ("lanczos", plugin(LANCZOS, |p| Ok(Filter::Lanczos { lobes: p.integer("lobes")? as u32 }))),
     ],
 );
 
-fn positive(params: &Params<'_>, name: &'static str, default: f64) -> Result<f32> {
-    Ok(params.float_within(name, default, 1e-3, 1e3)? as f32)
+const fn plugin(table: Table, build: Build<Filter>) -> Plugin<Build<Filter>> {
+    Plugin { table, build }
 }
 
-fn fraction(params: &Params<'_>, name: &'static str) -> Result<f32> {
-    Ok(params.float_within(name, 1.0 / 3.0, 0.0, 1.0)? as f32)
-}
+const BOX: Table = table! { "The mean over the pixel."; };
 
-fn lobe_count(params: &Params<'_>) -> Result<u32> {
-    let lobes = params.integer("lobes", 3)?;
-    if (1..=32).contains(&lobes) {
-        return Ok(lobes as u32);
-    }
-    Err(params.complain("lobes", "an integer from 1 to 32", lobes.to_string()))
-}
+const TENT: Table = table! {
+    "Falls linearly to 0.";
+    number("radius", "pixels", within(1e-3, 1e3), Is(1.0), "Where it is 0."),
+};
+
+const GAUSSIAN: Table = table! {
+    "A Gaussian, cut at four standard deviations.";
+    number("stddev", "pixels", within(1e-3, 1e3), Is(0.5), "Its standard deviation."),
+};
+
+const MITCHELL: Table = table! {
+    "The cubic splines of Mitchell and Netravali 1988.";
+    number("B", "", within(0.0, 1.0), Is(1.0 / 3.0), "More blurs."),
+    number("C", "", within(0.0, 1.0), Is(1.0 / 3.0), "More rings."),
+};
+
+const CATMULL_ROM: Table = table! { "Catmull and Rom's spline: `mitchell` of B = 0 and C = 1/2."; };
+
+const LANCZOS: Table = table! {
+    "A windowed sinc: sharp, and rings.";
+    integer("lobes", within(1.0, 32.0), Is(3.0), "How many lobes to each side."),
+};
 
 impl Filter {
     /// Distance from its centre beyond which it is 0 [pixels].

@@ -1,10 +1,12 @@
 //! Which XML tag a plugin goes with. XML always says; JSON leaves it to the plugin's name and place.
 
 use crate::{
-    bsdf, emitter,
+    bsdf,
+    description::Table,
+    emitter,
     film::filter,
     medium, phase, sensor,
-    settings::{integrator, sampler},
+    settings::{film, integrator, sampler},
     shape, texture, volume,
 };
 
@@ -141,27 +143,34 @@ pub(crate) const INSIDE: [(&str, &[&str]); 13] = [
     ("volume", &["volume", "texture"]),
 ];
 
-/// Plugins that Tyndall itself builds under `tag`; none where there is no registry of them.
-pub(crate) fn ours(tag: &str) -> Vec<&'static str> {
+/// Plugins that Tyndall itself builds under `tag`, with their tables.
+pub(crate) fn tables(tag: &str) -> Vec<(&'static str, &'static Table)> {
     match tag {
-        "sensor" => sensor::ROWS.names(),
-        "integrator" => integrator::ROWS.names(),
-        "sampler" => sampler::ROWS.names(),
-        "rfilter" => filter::ROWS.names(),
-        "shape" => shape::ROWS.names(),
-        "bsdf" => bsdf::ROWS.names(),
-        "texture" => texture::ROWS.names(),
-        "emitter" => emitter::ROWS.names(),
-        "medium" => medium::ROWS.names(),
-        "phase" => phase::ROWS.names(),
-        "volume" => volume::ROWS.names(),
+        "sensor" => sensor::ROWS.tables().collect(),
+        "film" => film::ROWS.tables().collect(),
+        "integrator" => integrator::ROWS.tables().collect(),
+        "sampler" => sampler::ROWS.tables().collect(),
+        "rfilter" => filter::ROWS.tables().collect(),
+        "shape" => shape::ROWS.tables().collect(),
+        "bsdf" => bsdf::ROWS.tables().collect(),
+        "texture" => texture::ROWS.tables().collect(),
+        "emitter" => emitter::ROWS.tables().collect(),
+        "medium" => medium::ROWS.tables().collect(),
+        "phase" => phase::ROWS.tables().collect(),
+        "volume" => volume::ROWS.tables().collect(),
         _ => Vec::new(),
     }
 }
 
+/// Their names; none where there is a choice of one only.
+pub(crate) fn ours(tag: &str) -> Vec<&'static str> {
+    let tables = if tag == "film" { Vec::new() } else { tables(tag) };
+    tables.into_iter().map(|(name, _)| name).collect()
+}
+
 /// The plugin that `plugin` is a part of; none where it is complete by itself.
 pub(crate) fn whole_of(plugin: &str) -> Option<&'static str> {
-    volume::PARTS.iter().find(|(part, _)| *part == plugin).map(|(_, whole)| *whole)
+    volume::PARTS.iter().find(|(part, ..)| *part == plugin).map(|(_, whole, _)| *whole)
 }
 
 /// All tags under which there is a plugin called `plugin`.

@@ -2,23 +2,31 @@
 //! medium's bounds is examined once those are known.
 
 use super::{
-    DistanceMethod, Heterogeneous, Medium, MediumOverrides, MediumProperties, emission::EmissionDescription,
+    DistanceMethod, Heterogeneous, Medium, MediumOverrides, MediumProperties,
+    emission::{EMISSION, EmissionDescription},
     heterogeneous::Fields,
 };
 use crate::{
-    description::{Library, Location, Object, Params, Registry},
+    description::{
+        Library, Location, Object, Params, Plugin, Registry, Table, Value, parameter::Parameter, rows, table,
+    },
     error::{Error, Result},
     math::{Spectrum, Vec3},
     phase::{self, Phase},
-    volume::{self, Place, Volume},
+    volume::{self, Place},
 };
 
 /// How the parameters of a medium are read.
 pub type BuildMedium = fn(&Params<'_>, &Place) -> Result<MediumDescription>;
 
 /// Every kind of medium.
-pub const ROWS: Registry<BuildMedium> =
-    Registry::new("a medium", &[("homogeneous", homogeneous), ("heterogeneous", heterogeneous)]);
+pub const ROWS: Registry<Plugin<BuildMedium>> = Registry::new(
+    "a medium",
+    &[
+        ("homogeneous", Plugin { table: HOMOGENEOUS, build: homogeneous }),
+        ("heterogeneous", Plugin { table: HETEROGENEOUS, build: heterogeneous }),
+    ],
+);
 
 /// A medium whose parameters have been read.
 #[derive(Clone, Debug)]
@@ -41,8 +49,8 @@ pub struct MediumBounds {
 
 /// Reads the medium that `object` describes.
 pub fn build(object: &Object, library: &Library, place: &Place) -> Result<MediumDescription> {
-    let build = ROWS.find(object)?;
-    let params = Params::new(object, library);
+    let (params, build) = ROWS.read(object, library)?;
+    check_coefficients(&params)?;
     let read = build(&params, place)?;
     params.finish()?;
     Ok(read)
@@ -92,42 +100,54 @@ fn overridden(medium: Medium, overrides: &MediumOverrides) -> Medium {
     if overrides.absorbing { Medium::homogeneous(absorbing, medium.phase) } else { medium }
 }
 
-/// `sigma_t` [1/m], `albedo`, `scale`, the phase function, with Mitsuba's defaults, and what it emits.
+/// What all media have.
+const COMMON: &[Parameter] = rows! {
+    factor("scale", 1.0, "A factor on `sigma_t`."),
+    nested("phase", Optional, "The phase function: `isotropic` where not given."),
+    ignored("sample_emitters", "the scene itself decides"),
+    ignored("has_spectral_extinction", "the scene itself decides"),
+};
+
+const HOMOGENEOUS: Table = table! {
+    "A medium that is the same everywhere.";
+    colour("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient: sigma_s + sigma_a."),
+    colour("albedo", "", 1.0, Is(0.75), "Share of the extinction that is scattering: sigma_s / sigma_t.");
+    COMMON, EMISSION
+};
+
 fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> {
     let scale = scale(params)?;
-    let sigma_t = params.color("sigma_t", 1.0)? * scale;
+    let sigma_t = params.color("sigma_t")? * scale;
     if !sigma_t.is_finite() {
         return Err(params.complain("sigma_t", "a finite product with scale", format!("{sigma_t}")));
     }
-    let albedo = params.color("albedo", 0.75)?;
-    if albedo.max_element() > 1.0 {
-        return Err(params.complain("albedo", "values from 0 to 1", format!("{albedo}")));
-    }
-    let medium = Medium::homogeneous(MediumProperties::of(sigma_t, albedo), common(params)?);
+    let albedo = params.color("albedo")?;
+    let medium = Medium::homogeneous(MediumProperties::of(sigma_t, albedo), phase(params)?);
     Ok(MediumDescription { medium, fields: None, emission: EmissionDescription::read(params, place)? })
 }
 
-/// `sigma_t` [1/m] and `albedo` as volumes, `scale`, the phase function, and which tracker: `tracker`, `step` [m] or
-/// `march_error` for ray marching; and what it emits.
+const HETEROGENEOUS: Table = table! {
+    "A medium that varies in space.";
+    volume("sigma_t", "1/m", 1.0, "Extinction coefficient; one value fills the unit cube only, as in Mitsuba."),
+    volume("albedo", "", 0.75, "Share of the extinction that is scattering, from 0 to 1."),
+    choice("tracker", &words::<6, _>(&DistanceMethod::NAMES), "auto", "How free flights are sampled; `auto` takes the cheapest without error.").ours(),
+    number("step", "m", above(0.0, f64::MAX), Said("by `march_error`"), "The interval of the tracker `march`.").ours(),
+    number("march_error", "", within(1e-7, 1.0), Is(1e-3), "Greatest error of transmittance of `march`.").ours();
+    COMMON, EMISSION
+};
+
 fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> {
-    let volume = |name, default| {
-        let given = volume::parameter(params, name, place)?;
-        Ok(given.unwrap_or_else(|| Volume::constant(default, place)))
-    };
     let fields = Fields {
-        sigma_t: volume("sigma_t", 1.0)?,
+        sigma_t: volume::parameter(params, "sigma_t", place)?,
         scale: scale(params)?,
-        albedo: volume("albedo", 0.75)?,
-        tracker: params.choice("tracker", DistanceMethod::Auto, &DistanceMethod::NAMES)?,
+        albedo: volume::parameter(params, "albedo", place)?,
+        tracker: params.choice("tracker", &DistanceMethod::NAMES)?,
         step: params.optional_float("step")?,
-        march_error: params.float_within("march_error", 1e-3, 1e-7, 1.0)?,
+        march_error: params.float("march_error")?,
         recentre: place.recentre,
         location: params.location().clone(),
     };
-    if fields.step.is_some_and(|step| !(step > 0.0 && step < f64::INFINITY)) {
-        return Err(params.complain("step", "a length above 0", format!("{:?}", fields.step)));
-    }
-    let medium = Medium::homogeneous(MediumProperties::NOTHING, common(params)?);
+    let medium = Medium::homogeneous(MediumProperties::NOTHING, phase(params)?);
     Ok(MediumDescription {
         medium,
         fields: Some(fields),
@@ -136,13 +156,12 @@ fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription
 }
 
 fn scale(params: &Params<'_>) -> Result<f32> {
-    params.float_within("scale", 1.0, 0.0, f64::from(f32::MAX)).map(|scale| scale as f32)
+    params.float("scale").map(|scale| scale as f32)
 }
 
-/// What all media have: the phase function, and parameters of Mitsuba's that have no meaning here.
-fn common(params: &Params<'_>) -> Result<Phase> {
-    params.accept_unused(&["sample_emitters", "has_spectral_extinction"], "the scene itself decides");
-    match params.children(|child| phase::ROWS.has(child.object))?.as_slice() {
+/// The phase function.
+fn phase(params: &Params<'_>) -> Result<Phase> {
+    match params.children("phase", |child| phase::ROWS.has(child.object))?.as_slice() {
         [] => Ok(Phase::Isotropic(phase::Isotropic)),
         [one] => phase::build(one.object, params.library),
         [_, second, ..] => Err(Error::new(
@@ -152,4 +171,22 @@ fn common(params: &Params<'_>) -> Result<Phase> {
             "blend them with a blendphase, or remove one",
         )),
     }
+}
+
+/// Scattering and absorption have names of their own in other renderers.
+fn check_coefficients(params: &Params<'_>) -> Result<()> {
+    let given = |name: &str| params.object.properties.iter().find(|property| property.name == name);
+    let Some(first) = given("sigma_s").or(given("sigma_a")) else { return Ok(()) };
+    let number = |name| match given(name)?.value {
+        Value::Float(x) => Some(x),
+        Value::Integer(i) => Some(i as f64),
+        _ => None,
+    };
+    let numbers = match (number("sigma_s"), number("sigma_a")) {
+        (Some(s), Some(a)) if s + a > 0.0 => format!(": {} and {} here", s + a, s / (s + a)),
+        _ => String::new(),
+    };
+    let remedy = format!("give sigma_t = sigma_s + sigma_a and albedo = sigma_s / sigma_t{numbers}");
+    let found = format!("\"{}\"", first.name);
+    Err(Error::new(&first.location, "\"sigma_t\" and \"albedo\", as in Mitsuba 3", found, remedy))
 }

@@ -6,7 +6,7 @@
 
 use super::{Extinction, MediumBounds, MediumProperties};
 use crate::{
-    description::{Location, Params, Value},
+    description::{Location, Params, Value, parameter::Parameter, rows},
     error::{Error, Result},
     math::{Affine3A, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3, black_body, vec3},
     sampling::{Discrete, Stream},
@@ -43,6 +43,15 @@ pub fn group(params: &Params<'_>) -> Result<Option<String>> {
     Ok(Some(name.to_owned()))
 }
 
+/// What media have that emit.
+pub(super) const EMISSION: &[Parameter] = rows! {
+    light_volume("emission", "W/(m^3 sr)", "Radiance gained per metre, whatever absorbs.").ours(),
+    light_volume("radiance", "W/(m^2 sr)", "In place of `emission`: radiance of a thick layer, times absorption.").ours(),
+    light_volume("temperature", "K", "In place of `emission`: temperature of a black body, times absorption.").ours(),
+    factor("emission_scale", 1.0, "A factor on what is emitted.").ours(),
+    text("group", "a name of 1 to 200 ASCII letters, digits and signs", Optional, "The layer that `--groups` shows its emission in.").ours(),
+};
+
 /// Emission as the description gives it.
 #[derive(Clone, Debug)]
 pub struct EmissionDescription {
@@ -60,11 +69,11 @@ pub struct EmissionDescription {
 impl EmissionDescription {
     /// Reads `emission`, `radiance` or `temperature`, one of them at most, `emission_scale` and `group`.
     pub fn read(params: &Params<'_>, place: &Place) -> Result<Option<Self>> {
-        let scale = params.float_within("emission_scale", 1.0, 0.0, f64::from(f32::MAX))? as f32;
+        let scale = params.float("emission_scale")? as f32;
         let (group, mut given) = (group(params)?, None);
         for (name, quantity) in QUANTITIES {
             let Some(volume) = volume(params, name, place)? else { continue };
-            let location = params.property(name).map_or(params.location(), |p| &p.location).clone();
+            let location = params.given(name).map_or(params.location(), |p| &p.location).clone();
             let this = Self { name, quantity, volume, scale, place: *place, group: group.clone(), location };
             if let Some(Self { name: other, .. }) = given.replace(this) {
                 let expected = "one of emission, radiance and temperature";
@@ -100,16 +109,16 @@ impl EmissionDescription {
 
 /// The parameter `name` as a volume of light: spectra are light's own.
 fn volume(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Option<Volume>> {
-    let Some(property) = params.property(name) else { return Ok(None) };
+    let Some(property) = params.given(name) else { return Ok(None) };
     if matches!(property.value, Value::Object(_) | Value::Reference(_))
         && let Some(child) = params.child(name)?
         && volume::ROWS.has(child.object)
     {
         return volume::build(child.object, params.library, place).map(Some);
     }
-    params.emission(name, 0.0).map(|colour| {
-        Some(Volume::Constant(volume::Constant::new(colour, [Vec3::NEG_INFINITY, Vec3::INFINITY])))
-    })
+    let everywhere = [Vec3::NEG_INFINITY, Vec3::INFINITY];
+    let constant = |colour| Volume::Constant(volume::Constant::new(colour, everywhere));
+    Ok(params.optional_color(name)?.map(constant))
 }
 
 /// What absorbs where the emission is.

@@ -1,8 +1,8 @@
 //! A weighted sum of two phase functions: Mitsuba's `blendphase`, and the two-term functions of P03 eq. 3 and
 //! P03T 2.3.4.
 
-use super::{Deflection, HenyeyGreenstein, Phase, PhaseModel, Schlick, asymmetry, build, required};
-use crate::description::{Params, Value};
+use super::{Deflection, HenyeyGreenstein, Phase, PhaseModel, Schlick, build};
+use crate::description::{Params, Table, Value, parameter::Parameter, rows, table};
 use crate::error::{Error, Result};
 use crate::math::Vec3;
 use crate::sampling::Stream;
@@ -15,23 +15,34 @@ pub struct Blend {
     parts: Arc<[Phase; 2]>,
 }
 
+/// What functions of two lobes have.
+const TERMS: &[Parameter] = rows! {
+    number("r", "", within(0.0, 1.0), Required, "Share of the first lobe."),
+    number("g1", "", between(-1.0, 1.0), Required, "Asymmetry of the first lobe."),
+    number("g2", "", between(-1.0, 1.0), Required, "Asymmetry of the second lobe."),
+};
+
 impl Blend {
     /// `weight` in [0, 1] is the share of the second part.
     pub fn new(weight: f32, first: Phase, second: Phase) -> Self {
         Self { weight, parts: Arc::new([first, second]) }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "Two phase functions, mixed.";
+        number("weight", "", within(0.0, 1.0), Required, "Share of the second."),
+        nested("phase", Required, "The two."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let expected = "a number from 0 to 1 (a weight that varies in space is not supported)";
-        match params.property("weight").map(|weight| &weight.value) {
-            None => return Err(params.missing("weight", expected)),
-            Some(volume @ (Value::Object(_) | Value::Reference(_))) => {
-                return Err(params.complain("weight", expected, volume.describe()));
-            }
-            Some(_) => {}
+        if let Some(volume @ (Value::Object(_) | Value::Reference(_))) =
+            params.given("weight").map(|p| &p.value)
+        {
+            return Err(params.complain("weight", expected, volume.describe()));
         }
-        let weight = params.float_within("weight", 0.5, 0.0, 1.0)? as f32;
-        match params.children(|child| child.name != "weight")?.as_slice() {
+        let weight = params.float("weight")? as f32;
+        match params.children("phase", |child| child.name != "weight")?.as_slice() {
             [first, second] => {
                 let part = |object| build(object, params.library);
                 Ok(Self::new(weight, part(first.object)?, part(second.object)?))
@@ -45,24 +56,23 @@ impl Blend {
         }
     }
 
-    /// Two Henyey & Greenstein functions: r of asymmetry g1 and 1 - r of g2.
+    pub(super) const HG_TABLE: Table = table! {
+    "Two of Henyey and Greenstein's, mixed."; ; TERMS };
+
+    pub(super) const SCHLICK_TABLE: Table = table! {
+    "Two of Schlick's, mixed."; ; TERMS };
+
     pub(super) fn two_term_hg(params: &Params<'_>) -> Result<Self> {
         Self::two_term(params, |g| HenyeyGreenstein::new(g).into())
     }
 
-    /// The same of Schlick's functions.
     pub(super) fn two_term_schlick(params: &Params<'_>) -> Result<Self> {
         Self::two_term(params, |g| Schlick::new(g).into())
     }
 
     fn two_term(params: &Params<'_>, term: fn(f64) -> Phase) -> Result<Self> {
-        required(params, "r", "the share of the first term, a number from 0 to 1")?;
-        let first = params.float_within("r", 0.5, 0.0, 1.0)?;
-        let asymmetry = |name| {
-            required(params, name, "a number between -1 and 1")?;
-            asymmetry(params, name, 0.0)
-        };
-        Ok(Self::new((1.0 - first) as f32, term(asymmetry("g1")?), term(asymmetry("g2")?)))
+        let first = params.float("r")?;
+        Ok(Self::new((1.0 - first) as f32, term(params.float("g1")?), term(params.float("g2")?)))
     }
 
     #[cfg(test)]

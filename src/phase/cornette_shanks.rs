@@ -1,7 +1,7 @@
 //! Cornette & Shanks' phase function: Henyey & Greenstein's times Rayleigh's, made one (P03 eq. 6).
 
-use super::{Deflection, HenyeyGreenstein, PhaseModel, asymmetry};
-use crate::description::Params;
+use super::{Deflection, HenyeyGreenstein, PhaseModel};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::Vec3;
 use crate::sampling::Stream;
@@ -20,8 +20,13 @@ impl CornetteShanks {
         Self { peak: HenyeyGreenstein::new(g), g: g as f32 }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "Cornette and Shanks' function: Henyey and Greenstein's times Rayleigh's.";
+        number("g", "", between(-1.0, 1.0), Is(0.8), "Its asymmetry: above 0 forward, below 0 backward."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self::new(asymmetry(params, "g", 0.8)?))
+        Ok(Self::new(params.float("g")?))
     }
 
     #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Spheres much larger than the wavelength whose surface reflects diffusely (P03T eq. 2.17).
 
 use super::{Deflection, PhaseModel, deflect};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -15,6 +15,9 @@ use std::f32::consts::PI;
 pub struct DiffuseSphere;
 
 impl DiffuseSphere {
+    pub(super) const TABLE: Table = table! {
+    "Spheres much larger than the wavelength that reflect diffusely."; };
+
     pub(super) fn build(_: &Params<'_>) -> Result<Self> {
         Ok(Self)
     }

@@ -1,7 +1,7 @@
 //! Sakas' Gaussian phase function: a normal distribution of the angle (P03T 2.3.5).
 
-use super::{Deflection, PhaseModel, deflect, required};
-use crate::description::Params;
+use super::{Deflection, PhaseModel, deflect};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -28,9 +28,13 @@ impl Gaussian {
         Self { gamma: gamma as f32, peak: peak as f32, mean_cosine: (moment / total) as f32 }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "Sakas' Gaussian of the angle: exp(-gamma theta^2).";
+        number("gamma", "1/rad^2", within(0.0, LARGEST), Required, "How narrow the lobe is: 1 / (2 gamma) is the variance of the angle."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        required(params, "gamma", "a number >= 0")?;
-        Ok(Self::new(params.float_within("gamma", 0.4, 0.0, LARGEST)?))
+        Ok(Self::new(params.float("gamma")?))
     }
 
     /// The square of an angle whose density goes as theta exp(-gamma theta^2) up to pi.

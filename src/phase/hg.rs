@@ -1,7 +1,7 @@
 //! Henyey & Greenstein's phase function (P03 eq. 2), precise from g = 0 to within rounding of g = +-1.
 
-use super::{Deflection, PhaseModel, asymmetry, deflect};
-use crate::description::Params;
+use super::{Deflection, PhaseModel, deflect};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -28,8 +28,13 @@ impl HenyeyGreenstein {
         Self { size: size as f32, complement: (1.0 - size) as f32, sign: 1f32.copysign(g as f32) }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "Henyey and Greenstein's function, one lobe.";
+        number("g", "", between(-1.0, 1.0), Is(0.8), "The mean cosine: above 0 forward, below 0 backward."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self::new(asymmetry(params, "g", 0.8)?))
+        Ok(Self::new(params.float("g")?))
     }
 
     /// 1 - cos as seen from the peak, for a uniform `u`: the inverse of the cumulative distribution, as

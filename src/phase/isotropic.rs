@@ -1,7 +1,7 @@
 //! Scattering alike into all directions (P03 eq. 1).
 
 use super::{Deflection, PhaseModel};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -11,6 +11,9 @@ use crate::sampling::Stream;
 pub struct Isotropic;
 
 impl Isotropic {
+    pub(super) const TABLE: Table = table! {
+    "The same in all directions."; };
+
     pub(super) fn build(_: &Params<'_>) -> Result<Self> {
         Ok(Self)
     }

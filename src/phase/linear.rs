@@ -1,7 +1,7 @@
 //! Scattering a little more to one side: the linear-anisotropic phase function (P03T 2.3.2).
 
 use super::{Deflection, PhaseModel, deflect, table};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -19,8 +19,13 @@ impl Linear {
         Self { g }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "Scattering a little more to one side: (1 + g cos) / (4 pi).";
+        number("g", "", within(-1.0, 1.0), Is(0.0), "The slope; the mean cosine is a third of it."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self::new(params.float_within("g", 0.0, -1.0, 1.0)? as f32))
+        Ok(Self::new(params.float("g")? as f32))
     }
 
     #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Mie scattering by haze and by murk, approximated by a lobe over a constant (P03T 2.3.4).
 
 use super::{Deflection, PhaseModel, deflect};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -24,15 +24,21 @@ impl Mie {
     const MURKY_OF_NISHITA: Self = Self { share: 50.0 / 83.0, exponent: 32 };
     const MURKY_OF_BLASI: Self = Self { share: 0.5, exponent: 32 };
 
-    /// A hazy atmosphere: few particles.
+    pub(super) const HAZY_TABLE: Table = table! {
+    "Mie scattering by haze: few particles in the air."; };
+
+    pub(super) const MURKY_TABLE: Table = table! {
+        "Mie scattering by murk: many particles in the air.";
+        choice("form", &["nishita", "blasi"], "nishita", "Whose approximation."),
+    };
+
     pub(super) fn hazy(_: &Params<'_>) -> Result<Self> {
         Ok(Self::HAZY)
     }
 
-    /// A murky atmosphere: many particles. `form` is `nishita` (where not given) or `blasi`.
     pub(super) fn murky(params: &Params<'_>) -> Result<Self> {
         let forms = [("nishita", Self::MURKY_OF_NISHITA), ("blasi", Self::MURKY_OF_BLASI)];
-        params.choice("form", Self::MURKY_OF_NISHITA, &forms)
+        params.choice("form", &forms)
     }
 
     #[cfg(test)]

@@ -36,7 +36,7 @@ pub use schlick::Schlick;
 pub use specular_sphere::SpecularSphere;
 pub use table::Table;
 
-use crate::description::{Build, Library, Object, Params, Registry, models};
+use crate::description::{Build, Library, Object, Params, Plugin, Registry, models};
 use crate::error::Result;
 use crate::math::{Frame, Vec3};
 use crate::sampling::Stream;
@@ -54,10 +54,10 @@ pub trait PhaseModel {
 }
 
 /// Makes the enum, its dispatch, the registry and the list of test examples from one row a model: its type,
-/// and each of its names with the `fn(&Params) -> Result<Self>` that builds it. For the tests a model has
+/// and each of its names with the `fn(&Params) -> Result<Self>` that builds it and the table of its parameters. For the tests a model has
 /// `fn examples() -> Vec<Self>`.
 macro_rules! phases {
-    ($($model:ident: $($name:literal => $build:ident),+;)*) => {
+    ($($model:ident: $($name:literal => $build:ident $table:ident),+;)*) => {
         models! {
             /// Any phase function.
             Phase: PhaseModel [$($model)*]
@@ -67,8 +67,11 @@ macro_rules! phases {
         }
 
         /// Every phase function there is, by plugin name.
-        pub const ROWS: Registry<Build<Phase>> = Registry::new("a phase function", &[
-            $($(($name, |params: &Params<'_>| $model::$build(params).map(Phase::$model)),)+)*
+        pub const ROWS: Registry<Plugin<Build<Phase>>> = Registry::new("a phase function", &[
+            $($(($name, Plugin {
+                table: $model::$table,
+                build: |params: &Params<'_>| $model::$build(params).map(Phase::$model),
+            }),)+)*
         ]);
 
         /// Instances of every model, for the tests that hold for all.
@@ -82,19 +85,20 @@ macro_rules! phases {
 }
 
 phases! {
-    Isotropic: "isotropic" => build;
-    Linear: "linear" => build;
-    Rayleigh: "rayleigh" => build;
-    HenyeyGreenstein: "hg" => build;
-    CornetteShanks: "cornette_shanks" => build;
-    Schlick: "schlick" => build;
-    Mie: "mie_hazy" => hazy, "mie_murky" => murky;
-    Sakas: "sakas" => build;
-    Gaussian: "gaussian" => build;
-    DiffuseSphere: "diffuse_sphere" => build;
-    SpecularSphere: "specular_sphere" => build;
-    Table: "tabphase" => build;
-    Blend: "blendphase" => build, "two_term_hg" => two_term_hg, "two_term_schlick" => two_term_schlick;
+    Isotropic: "isotropic" => build TABLE;
+    Linear: "linear" => build TABLE;
+    Rayleigh: "rayleigh" => build TABLE;
+    HenyeyGreenstein: "hg" => build TABLE;
+    CornetteShanks: "cornette_shanks" => build TABLE;
+    Schlick: "schlick" => build TABLE;
+    Mie: "mie_hazy" => hazy HAZY_TABLE, "mie_murky" => murky MURKY_TABLE;
+    Sakas: "sakas" => build TABLE;
+    Gaussian: "gaussian" => build TABLE;
+    DiffuseSphere: "diffuse_sphere" => build TABLE;
+    SpecularSphere: "specular_sphere" => build TABLE;
+    Table: "tabphase" => build TABLE;
+    Blend: "blendphase" => build TABLE, "two_term_hg" => two_term_hg HG_TABLE,
+        "two_term_schlick" => two_term_schlick SCHLICK_TABLE;
 }
 
 /// Builds the phase function that `object` describes.
@@ -107,18 +111,4 @@ pub fn build(object: &Object, library: &Library) -> Result<Phase> {
 #[inline]
 fn deflect(direction: Vec3, local: Vec3) -> Vec3 {
     Frame::around(direction).to_world(local).normalize()
-}
-
-/// The parameter `name`, which must be given.
-fn required(params: &Params<'_>, name: &'static str, expected: &str) -> Result<f64> {
-    params.optional_float(name)?.ok_or_else(|| params.missing(name, expected))
-}
-
-/// The parameter `name` of a model that is a probability density only for values in (-1, 1).
-fn asymmetry(params: &Params<'_>, name: &'static str, default: f64) -> Result<f64> {
-    let value = params.float(name, default)?;
-    if value.abs() < 1.0 {
-        return Ok(value);
-    }
-    Err(params.complain(name, "a number between -1 and 1 (both excluded)", value.to_string()))
 }

@@ -1,7 +1,7 @@
 //! Rayleigh's phase function for particles much smaller than the wavelength (P03 eq. 5).
 
 use super::{Deflection, PhaseModel, deflect};
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -12,6 +12,9 @@ use std::f32::consts::{PI, TAU};
 pub struct Rayleigh;
 
 impl Rayleigh {
+    pub(super) const TABLE: Table = table! {
+    "Rayleigh's function, of particles far smaller than the wavelength."; };
+
     pub(super) fn build(_: &Params<'_>) -> Result<Self> {
         Ok(Self)
     }

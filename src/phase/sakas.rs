@@ -1,7 +1,7 @@
 //! Sakas' phase function: a lobe forward and its mirror image backward (P03T eq. 2.18).
 
-use super::{Deflection, PhaseModel, deflect, required};
-use crate::description::Params;
+use super::{Deflection, PhaseModel, deflect};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -22,9 +22,13 @@ impl Sakas {
         Self { n }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "Sakas', a lobe forward and its mirror image backward: 1 + |cos|^n.";
+        number("n", "", within(0.0, LARGEST), Required, "How narrow the lobes are: 0 is isotropic, 2 Rayleigh's."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        required(params, "n", "a number >= 0")?;
-        Ok(Self::new(params.float_within("n", 2.0, 0.0, LARGEST)? as f32))
+        Ok(Self::new(params.float("n")? as f32))
     }
 
     /// |cos|^n, from 1 - |cos| where that has more digits.

@@ -1,7 +1,7 @@
 //! Schlick's phase function: like Henyey & Greenstein's, without the fractional power (P03 eq. 4).
 
-use super::{Deflection, PhaseModel, asymmetry, deflect};
-use crate::description::Params;
+use super::{Deflection, PhaseModel, deflect};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::Stream;
@@ -26,8 +26,13 @@ impl Schlick {
         Self { size: size as f32, complement: (1.0 - size) as f32, sign: 1f32.copysign(k as f32) }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "Schlick's rational function, which resembles Henyey and Greenstein's.";
+        number("k", "", between(-1.0, 1.0), Is(0.0), "Its asymmetry: above 0 forward, below 0 backward."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self::new(asymmetry(params, "k", 0.0)?))
+        Ok(Self::new(params.float("k")?))
     }
 
     /// 1 - cos as seen from the peak, for a uniform `u`.

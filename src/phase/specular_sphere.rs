@@ -1,7 +1,7 @@
 //! Spheres much larger than the wavelength whose surface reflects like a mirror of glass (P03T 2.3.5).
 
-use super::{Deflection, PhaseModel, deflect, required};
-use crate::description::Params;
+use super::{Deflection, PhaseModel, deflect};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::fresnel::{Interface, Interfaces};
 use crate::math::{Vec3, warp};
@@ -75,10 +75,15 @@ impl SpecularSphere {
         }
     }
 
+    pub(super) const TABLE: Table = table! {
+        "Spheres much larger than the wavelength that reflect as glass does.";
+        number("eta", "", within(1e-3, 1e3), Required, "Index of refraction of the spheres over that around them, not 1."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let expected = "a relative index of refraction from 0.001 to 1000 that differs from 1";
-        let eta = required(params, "eta", expected)?;
-        if (1e-3..=1e3).contains(&eta) && (eta - 1.0).abs() > 1e-6 {
+        let expected = "a relative index of refraction that differs from 1";
+        let eta = params.float("eta")?;
+        if (eta - 1.0).abs() > 1e-6 {
             return Ok(Self::new(eta));
         }
         Err(params.complain("eta", expected, eta.to_string()))

@@ -1,7 +1,7 @@
 //! A tabulated phase function, linear between its entries: Mitsuba's `tabphase`.
 
 use super::{Deflection, PhaseModel, deflect};
-use crate::description::Params;
+use crate::description::{self, Params, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
 use crate::sampling::{Discrete, Stream};
@@ -38,10 +38,13 @@ impl Table {
         Self(Arc::new(Entries { values, sections, mean_cosine }))
     }
 
+    pub(super) const TABLE: description::Table = table! {
+        "Values at equal steps of the cosine, from straight back to straight on, interpolated linearly.";
+        text("values", "a string of comma-separated numbers", Required, "Two or more numbers >= 0 on any scale."),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let Some(text) = params.optional_string("values")? else {
-            return Err(params.missing("values", "a string of comma-separated numbers"));
-        };
+        let text = params.string("values")?;
         let words = text.split([',', ' ', '\n', '\t']).filter(|word| !word.is_empty());
         let values = words.map(|word| entry(params, word)).collect::<Result<Vec<f64>>>()?;
         let sum: f64 = values.iter().sum();

@@ -222,13 +222,13 @@ impl<'a> Builder<'a> {
     }
 
     fn shape(&mut self, child: &Child<'a>) -> Result<()> {
-        let params = Params::new(child.object, self.library);
-        let shape = shape::build(&params, self.recentre)?;
+        let (params, build) = shape::ROWS.read(child.object, self.library)?;
+        let shape = build(&params, self.recentre)?;
         let interior = self.side(&params, "interior")?;
         let exterior = self.side(&params, "exterior")?;
         let index = self.shapes.len() as u32;
         let emitter = self.shape_emitter(&params, index)?;
-        let bsdfs = params.children(|child| bsdf::ROWS.has(child.object))?;
+        let bsdfs = params.children("bsdf", |child| bsdf::ROWS.has(child.object))?;
         let bsdf = match bsdfs.as_slice() {
             [] => self.default_bsdf(emitter.is_some())?,
             [one] => self.bsdf(one.object)?,
@@ -251,7 +251,7 @@ impl<'a> Builder<'a> {
     }
 
     fn shape_emitter(&mut self, params: &Params<'a>, shape: u32) -> Result<Option<u32>> {
-        let emitters = params.children(|child| emitter::ROWS.has(child.object))?;
+        let emitters = params.children("emitter", |child| emitter::ROWS.has(child.object))?;
         let child = match emitters.as_slice() {
             [] => return Ok(None),
             [one] => one,
@@ -263,7 +263,7 @@ impl<'a> Builder<'a> {
             let remedy = "put it beside the shapes, in the scene itself";
             return Err(Error::new(child.location, "an area emitter on a shape", found, remedy));
         }
-        let stated = self.stated_medium(&Params::new(child.object, self.library))?;
+        let stated = self.stated_medium(&emitter::ROWS.read(child.object, self.library)?.0)?;
         self.emitters.push(Placed { emitter, shape: Some(shape), stated, location: child.location });
         Ok(Some(self.emitters.len() as u32 - 1))
     }
@@ -279,7 +279,7 @@ impl<'a> Builder<'a> {
         if surrounds(&emitter) && self.emitters.iter().any(|other| surrounds(&other.emitter)) {
             return Err(only_one(child, "environment"));
         }
-        let stated = self.stated_medium(&Params::new(child.object, self.library))?;
+        let stated = self.stated_medium(&emitter::ROWS.read(child.object, self.library)?.0)?;
         self.emitters.push(Placed { emitter, shape: None, stated, location: child.location });
         Ok(())
     }
@@ -339,7 +339,7 @@ impl<'a> Builder<'a> {
 
     /// The medium that a camera or emitter says it is in.
     fn stated_medium(&mut self, params: &Params<'a>) -> Result<Option<MediumIndex>> {
-        match params.children(|child| medium::ROWS.has(child.object))?.as_slice() {
+        match params.children("medium", |child| medium::ROWS.has(child.object))?.as_slice() {
             [] => Ok(None),
             [one] => self.medium(one.object).map(Some),
             [_, second, ..] => Err(only_one(second, "medium")),
@@ -347,21 +347,21 @@ impl<'a> Builder<'a> {
     }
 
     fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View<'a>> {
-        let params = Params::new(object, self.library);
-        let film = match params.children(film::is_film)?.as_slice() {
+        let (params, build) = sensor::ROWS.read(object, self.library)?;
+        let film = match params.children("film", film::is_film)?.as_slice() {
             [] => film::default(overrides),
             [one] => film::build(one.object, self.library, overrides)?,
             [_, second, ..] => return Err(only_one(second, "film")),
         };
         let film = film::cropped(film, overrides.crop)?;
-        let sampling = match params.children(|child| sampler::ROWS.has(child.object))?.as_slice() {
+        let sampling = match params.children("sampler", |child| sampler::ROWS.has(child.object))?.as_slice() {
             [] => Sampling::default(),
             [one] => sampler::build(one.object, self.library)?,
             [_, second, ..] => return Err(only_one(second, "sampler")),
         };
         let stated = self.stated_medium(&params)?;
         let crop = Crop { film: film.window.full_size, offset: film.window.offset };
-        let sensor = sensor::build(&params, self.recentre, crop)?;
+        let sensor = build(&params, self.recentre, crop)?;
         params.finish()?;
         let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
         let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;

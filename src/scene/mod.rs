@@ -26,6 +26,7 @@ use lights::Lights;
 pub use locate::Infinity;
 use locate::{Known, Locator};
 pub use overlap::Overlaps;
+pub(crate) use sections::TABLE;
 
 /// The properties of a shape: its BSDF, emitter and media.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use crate::{
     bsdf,
-    description::{Library, Object, Params, Position, params::Child},
+    description::{Library, Object, Params, Position, Table, params::Child, table},
     emitter,
     error::{Error, Result},
     format::{plugins, references, tags},
@@ -28,6 +28,21 @@ pub struct Sections<'a> {
     pub time: f64,
 }
 
+/// What a scene holds.
+pub(crate) const TABLE: Table = table! {
+    "What is rendered.";
+    number("time", "s", ANY, Is(0.0), "When it is seen: volumes in a `wind` have drifted since 0.").ours(),
+    nested("sensor", Required, "The camera, one."),
+    nested("integrator", Optional, "How it is rendered: `bdpt` where not given."),
+    nested("shape", Optional, "Surfaces, and boundaries of media."),
+    nested("emitter", Optional, "Emitters that are not on a shape."),
+    nested("bsdf", Optional, "To be referred to by its `id`."),
+    nested("medium", Optional, "To be referred to by its `id`."),
+    nested("phase", Optional, "To be referred to by its `id`."),
+    nested("texture", Optional, "To be referred to by its `id`."),
+    nested("volume", Optional, "To be referred to by its `id`."),
+};
+
 /// True if `object` only waits to be referred to.
 fn is_definition(object: &Object) -> bool {
     bsdf::ROWS.has(object)
@@ -44,15 +59,15 @@ fn is_shape(object: &Object) -> bool {
 impl<'a> Sections<'a> {
     /// Sorts the children of `root`; one that no scene can hold is an error.
     pub fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
-        let params = Params::new(root, library);
-        let time = params.float("time", 0.0)?;
-        let shapes = params.children(|child| is_shape(child.object))?;
-        let emitters = params.children(|child| emitter::ROWS.has(child.object))?;
-        let sensors = params.children(|child| sensor::ROWS.has(child.object))?;
-        let integrators = params.children(|child| integrator::ROWS.has(child.object))?;
-        let definitions = params.children(|child| is_definition(child.object))?;
+        let params = Params::new(root, library, &TABLE);
+        let time = params.float("time")?;
+        let shapes = params.children("shape", |child| is_shape(child.object))?;
+        let emitters = params.children("emitter", |child| emitter::ROWS.has(child.object))?;
+        let sensors = params.children("sensor", |child| sensor::ROWS.has(child.object))?;
+        let integrators = params.children("integrator", |child| integrator::ROWS.has(child.object))?;
+        let definitions = params.children("bsdf", |child| is_definition(child.object))?;
         check_idle(&definitions, root, library, time)?;
-        if let Some(unknown) = params.children(|_| true)?.iter().find(|child| {
+        if let Some(unknown) = params.children("bsdf", |_| true)?.iter().find(|child| {
             !(is_shape(child.object)
                 || emitter::ROWS.has(child.object)
                 || sensor::ROWS.has(child.object)

@@ -2,7 +2,7 @@
 
 use super::{Clip, Crop};
 use crate::{
-    description::Params,
+    description::{Params, parameter::Parameter, rows},
     error::Result,
     math::{DMat4, DVec3, Frame, Vec2, Vec3, similarity, vec2, vec3},
 };
@@ -20,6 +20,20 @@ pub(super) struct Lens {
     centre: Vec2,
 }
 
+/// What cameras with a lens have.
+pub(super) const LENS: &[Parameter] = rows! {
+    transform("to_world", "Where it is and where it looks: rotations, translations and mirrors."),
+    number("principal_point_offset_x", "widths of the film", ANY, Is(0.0), "How far the axis is off the middle, across."),
+    number("principal_point_offset_y", "heights of the film", ANY, Is(0.0), "How far the axis is off the middle, down."),
+};
+
+/// Two ways to give a field of view.
+pub(crate) const FIELD_OF_VIEW: &[Parameter] = rows! {
+    number("fov", "degrees", between(0.0, 180.0), Said("by `focal_length`"), "Field of view along `fov_axis`."),
+    choice("fov_axis", &["x", "y", "diagonal", "smaller", "larger"], "x", "Which extent of the film `fov` is across.").said("x"),
+    text("focal_length", "a length such as \"50mm\"", Word("50mm"), "In place of `fov`: the lens of a 35 mm camera."),
+};
+
 impl Lens {
     /// Reads Mitsuba's parameters of projective cameras.
     pub fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
@@ -33,8 +47,7 @@ impl Lens {
         let frame = Frame { tangent, bitangent, normal };
         let [width, height] = crop.film.map(f64::from);
         let half_width = half_width(params, width / height)?;
-        let offset =
-            [params.float("principal_point_offset_x", 0.0)?, params.float("principal_point_offset_y", 0.0)?];
+        let offset = [params.float("principal_point_offset_x")?, params.float("principal_point_offset_y")?];
         let centre = vec2(((0.5 - offset[0]) * width) as f32, ((0.5 - offset[1]) * height) as f32);
         let corner = vec2(crop.offset[0] as f32, crop.offset[1] as f32);
         Ok(Self {
@@ -88,24 +101,22 @@ impl Lens {
 /// Tangent of half the horizontal field of view, whichever way it is given; `aspect` is width / height.
 pub(crate) fn half_width(params: &Params<'_>, aspect: f64) -> Result<f64> {
     let diagonal = (1.0 + 1.0 / (aspect * aspect)).sqrt();
-    if params.has("focal_length") || !params.has("fov") {
-        if params.has("fov") {
+    let degrees = params.optional_float("fov")?;
+    let Some(degrees) = degrees.filter(|_| !params.has("focal_length")) else {
+        if degrees.is_some() {
             return Err(params.complain("fov", "fov or focal_length, not both", "both"));
         }
-        let text = params.string("focal_length", "50mm")?;
+        let text = params.string("focal_length")?;
         let length = text.strip_suffix("mm").unwrap_or(text).trim().parse::<f64>();
         return match length {
             Ok(mm) if mm > 0.0 && mm.is_finite() => Ok(36f64.hypot(24.0) / (2.0 * mm) / diagonal),
             _ => Err(params.complain("focal_length", "a length such as \"50mm\"", format!("\"{text}\""))),
         };
-    }
-    let degrees = params.float("fov", 0.0)?;
-    if !(degrees > 0.0 && degrees < 180.0) {
-        return Err(params.complain("fov", "an angle between 0 and 180 degrees", degrees.to_string()));
-    }
+    };
     let (smaller, larger) = if aspect > 1.0 { (aspect, 1.0) } else { (1.0, aspect) };
     // The tangent along the given axis, times this, is the tangent along x.
     let axes =
         [("x", 1.0), ("y", aspect), ("diagonal", 1.0 / diagonal), ("smaller", smaller), ("larger", larger)];
-    Ok((0.5 * degrees.to_radians()).tan() * params.choice("fov_axis", 1.0, &axes)?)
+    let axis = if params.has("fov_axis") { params.choice("fov_axis", &axes)? } else { 1.0 };
+    Ok((0.5 * degrees.to_radians()).tan() * axis)
 }

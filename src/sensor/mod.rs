@@ -14,13 +14,14 @@ mod perspective;
 mod tests;
 mod thinlens;
 
-pub(crate) use lens::half_width;
+use lens::LENS;
+pub(crate) use lens::{FIELD_OF_VIEW, half_width};
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use thinlens::ThinLens;
 
 use crate::{
-    description::{Library, Object, Params, Registry},
+    description::{Library, Object, Params, Plugin, Registry, Table, parameter::Parameter, rows},
     error::Result,
     math::{DVec3, Vec2, Vec3},
     sampling::Stream,
@@ -73,33 +74,52 @@ pub struct Projection {
     pub pdf: f32,
 }
 
-/// Reads the parameters of one kind of sensor (except film, sampler and medium); the point `recentre` of the
+/// Reads the parameters of one kind of sensor (film, sampler and medium remain for the scene to read, which calls
+/// `finish`); the point `recentre` of the
 /// file's coordinates becomes the origin.
 pub type BuildSensor = fn(&Params<'_>, DVec3, Crop) -> Result<Sensor>;
 
 /// All sensors: Mitsuba's plugin name and the builder.
-pub const ROWS: Registry<BuildSensor> = Registry::new(
+pub const ROWS: Registry<Plugin<BuildSensor>> = Registry::new(
     "a sensor",
     &[
-        ("perspective", |p, recentre, crop| Perspective::build(p, recentre, crop).map(Sensor::Perspective)),
-        ("thinlens", |p, recentre, crop| ThinLens::build(p, recentre, crop).map(Sensor::ThinLens)),
-        ("orthographic", |p, recentre, crop| {
-            Orthographic::build(p, recentre, crop).map(Sensor::Orthographic)
-        }),
+        (
+            "perspective",
+            plugin(Perspective::TABLE, |p, at, crop| {
+                Perspective::build(p, at, crop).map(Sensor::Perspective)
+            }),
+        ),
+        (
+            "thinlens",
+            plugin(ThinLens::TABLE, |p, at, crop| ThinLens::build(p, at, crop).map(Sensor::ThinLens)),
+        ),
+        (
+            "orthographic",
+            plugin(Orthographic::TABLE, |p, at, crop| {
+                Orthographic::build(p, at, crop).map(Sensor::Orthographic)
+            }),
+        ),
     ],
 );
 
-/// Builds the sensor that `params` describes. Does not call `finish`: film, sampler and medium remain for the
-/// scene to read.
-pub fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Sensor> {
-    let sensor = ROWS.find(params.object)?(params, recentre, crop)?;
-    params.accept_unused(&["shutter_open", "shutter_close"], "nothing moves");
-    Ok(sensor)
+const fn plugin(table: Table, build: BuildSensor) -> Plugin<BuildSensor> {
+    Plugin { table, build }
 }
+
+/// What all sensors have.
+const COMMON: &[Parameter] = rows! {
+    number("near_clip", "m", within(0.0, MAX), Is(1e-2), "Nothing nearer than this, along the axis, is seen."),
+    number("far_clip", "m", above(0.0, MAX), Is(1e4), "Nothing further than this is seen; above `near_clip`."),
+    nested("film", Optional, "The image: an `hdrfilm` as it is where not given."),
+    nested("sampler", Optional, "How many samples a pixel takes."),
+    nested("medium", Optional, "The medium that the camera is in; found where not given."),
+    ignored("shutter_open", "nothing moves"),
+    ignored("shutter_close", "nothing moves"),
+};
 
 /// The sensor's position in the file's coordinates.
 pub fn viewpoint(object: &Object, library: &Library) -> Result<DVec3> {
-    Ok(Params::new(object, library).transform("to_world")?.transform_point3(DVec3::ZERO))
+    Ok(ROWS.read(object, library)?.0.transform("to_world")?.transform_point3(DVec3::ZERO))
 }
 
 impl Sensor {
@@ -176,11 +196,8 @@ struct Clip {
 
 impl Clip {
     fn build(params: &Params<'_>) -> Result<Self> {
-        let near = params.float("near_clip", 1e-2)?;
-        if near < 0.0 {
-            return Err(params.complain("near_clip", "a distance >= 0", near.to_string()));
-        }
-        let far = params.float("far_clip", 1e4)?;
+        let near = params.float("near_clip")?;
+        let far = params.float("far_clip")?;
         if far <= near {
             return Err(params.complain(
                 "far_clip",

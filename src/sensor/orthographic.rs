@@ -1,8 +1,8 @@
 //! Parallel projection: Mitsuba's `orthographic`.
 
-use super::{Clip, Crop, Projection, SensorRay};
+use super::{COMMON, Clip, Crop, Projection, SensorRay};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DMat3, DMat4, DVec3, Mat3, Vec2, Vec3, vec2},
     shape::Ray,
@@ -29,10 +29,16 @@ pub struct Orthographic {
 }
 
 impl Orthographic {
+    pub(super) const TABLE: Table = table! {
+        "Parallel rays along +z: before `to_world` the film covers [-1, 1] across.";
+        transform("to_world", "Where it is and where it looks; scales change its size."),
+        ignored("focus_distance", "parallel rays have no focus");
+        COMMON
+    };
+
     /// Reads Mitsuba's parameters (except film, sampler and medium). As there, the near clip distance is in the
     /// units of `to_world`, that between near and far in those of the world.
     pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
-        params.accept_unused(&["focus_distance"], "parallel rays have no focus");
         let to_world = DMat4::from_translation(-recentre) * params.transform("to_world")?;
         let clip = Clip::build(params)?;
         let [width, height] = crop.film.map(f64::from);

@@ -1,8 +1,8 @@
 //! The pinhole camera: Mitsuba's `perspective`.
 
-use super::{Crop, Projection, SensorRay, lens::Lens};
+use super::{COMMON, Crop, FIELD_OF_VIEW, LENS, Projection, SensorRay, lens::Lens};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DVec3, Vec2, Vec3},
 };
@@ -12,9 +12,13 @@ use crate::{
 pub struct Perspective(Lens);
 
 impl Perspective {
-    /// Reads Mitsuba's parameters (except film, sampler and medium).
+    pub(super) const TABLE: Table = table! {
+        "A pinhole camera that looks along +z.";
+        ignored("focus_distance", "a pinhole has all in focus (a thinlens has not)");
+        LENS, FIELD_OF_VIEW, COMMON
+    };
+
     pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
-        params.accept_unused(&["focus_distance"], "a pinhole has all in focus (a thinlens has not)");
         Lens::build(params, recentre, crop).map(Self)
     }
 

@@ -11,7 +11,7 @@ const CROP: Crop = Crop { film: [200, 100], offset: [30, 10] };
 
 fn built(plugin: &str, properties: &[(&str, Value)], crop: Crop) -> Result<Sensor> {
     let (object, library) = (object(plugin, properties), Library::default());
-    let params = Params::new(&object, &library);
+    let (params, build) = ROWS.read(&object, &library)?;
     let sensor = build(&params, DVec3::ZERO, crop)?;
     params.finish()?;
     Ok(sensor)

@@ -1,8 +1,8 @@
 //! A camera with depth of field: Mitsuba's `thinlens`.
 
-use super::{Crop, Projection, SensorRay, lens::Lens};
+use super::{COMMON, Crop, FIELD_OF_VIEW, LENS, Projection, SensorRay, lens::Lens};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DVec3, Vec2, Vec3, warp},
     sampling::Stream,
@@ -20,21 +20,17 @@ pub struct ThinLens {
 }
 
 impl ThinLens {
-    /// Reads Mitsuba's parameters (except film, sampler and medium). As there, the focus lies at `far_clip`
-    /// where `focus_distance` is not given.
+    pub(super) const TABLE: Table = table! {
+        "A camera with depth of field.";
+        number("aperture_radius", "m", above(0.0, MAX), Required, "Radius of the lens; a `perspective` is the limit of 0."),
+        number("focus_distance", "m", above(0.0, MAX), Said("`far_clip`"), "Distance of what is in focus, along the axis.");
+        LENS, FIELD_OF_VIEW, COMMON
+    };
+
     pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
         let lens = Lens::build(params, recentre, crop)?;
-        let Some(radius) = params.optional_float("aperture_radius")? else {
-            return Err(params.missing("aperture_radius", "the radius of the lens"));
-        };
-        if radius <= 0.0 {
-            let expected = "a radius > 0 (a perspective sensor is the limit of 0)";
-            return Err(params.complain("aperture_radius", expected, radius.to_string()));
-        }
-        let focus = params.float("focus_distance", f64::from(lens.clip.far))?;
-        if focus <= 0.0 {
-            return Err(params.complain("focus_distance", "a distance > 0", focus.to_string()));
-        }
+        let radius = params.float("aperture_radius")?;
+        let focus = params.optional_float("focus_distance")?.unwrap_or(f64::from(lens.clip.far));
         Ok(Self { lens, radius: radius as f32, focus: focus as f32 })
     }
 

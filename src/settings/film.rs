@@ -1,7 +1,7 @@
 //! The film as a scene describes it: Mitsuba's `hdrfilm`.
 
 use crate::{
-    description::{Library, Object, Params, params::Child},
+    description::{Library, Object, Params, Plugin, Registry, Table, params::Child, table},
     error::{Error, Result},
     film::{
         Film, Window,
@@ -16,6 +16,30 @@ const DEFAULT_SIZE: [u32; 2] = [768, 576];
 /// A larger image would take more than 10 GB while it is rendered.
 const MOST_PIXELS: u64 = 1 << 28;
 const DEFAULT_FILTER: Filter = Filter::Gaussian { stddev: 0.5 };
+
+/// The film.
+pub(crate) const ROWS: Registry<Plugin<()>> =
+    Registry::new("a film", &[("hdrfilm", Plugin { table: TABLE, build: () })]);
+
+const TABLE: Table = table! {
+    "The image: its size, format and reconstruction filter.";
+    integer("width", within(1.0, MOST), Is(DEFAULT_SIZE[0] as f64), "Pixels across."),
+    integer("height", within(1.0, MOST), Is(DEFAULT_SIZE[1] as f64), "Pixels down."),
+    integer("crop_offset_x", within(0.0, MOST), Is(0.0), "Pixels to the left of the part that is rendered."),
+    integer("crop_offset_y", within(0.0, MOST), Is(0.0), "Pixels above it."),
+    integer("crop_width", within(1.0, MOST), Said("`width`"), "Its pixels across."),
+    integer("crop_height", within(1.0, MOST), Said("`height`"), "Its pixels down."),
+    choice("pixel_format", &words::<6, _>(PIXEL_FORMATS), "rgb", "Channels of the image."),
+    choice("component_format", &words::<3, _>(COMPONENT_FORMATS), "float32", "Numbers of the channels."),
+    choice("file_format", &words::<4, _>(FILE_FORMATS), "openexr", "Format of the file."),
+    boolean("sample_border", false, "True samples beyond the border as far as the filter reaches."),
+    nested("rfilter", Optional, "The reconstruction filter: a `gaussian` where not given."),
+    ignored("banner", "Mitsuba 3 does not use it either"),
+    ignored("compensate", "Mitsuba 3 does not use it either"),
+};
+
+/// Most pixels along a side.
+const MOST: f64 = 65536.0;
 
 /// True if `child` is meant to be a film.
 pub fn is_film(child: &Child<'_>) -> bool {
@@ -39,21 +63,21 @@ pub fn build(object: &Object, library: &Library, overrides: Overrides) -> Result
         let found = format!("\"{}\"", object.plugin);
         return Err(Error::new(&object.location, "the film \"hdrfilm\"", found, remedy));
     }
-    let params = Params::new(object, library);
+    let params = Params::new(object, library, &TABLE);
     let window = window(&params, overrides)?;
     let filter = rfilter(&params)?;
-    let sample_border = params.boolean("sample_border", false)?;
+    let sample_border = params.boolean("sample_border")?;
     let format = format(&params)?;
-    params.accept_unused(&["banner", "compensate"], "Mitsuba 3 does not use it either");
     params.finish()?;
     Ok(Film::new(window, filter, sample_border, format))
 }
 
 fn window(params: &Params<'_>, overrides: Overrides) -> Result<Window> {
-    let [width, height] = DEFAULT_SIZE;
-    let full_size = [size(params, "width", width)?, size(params, "height", height)?];
-    let offset = [edge(params, "crop_offset_x")?, edge(params, "crop_offset_y")?];
-    let crop = [size(params, "crop_width", full_size[0])?, size(params, "crop_height", full_size[1])?];
+    let pixels = |name| params.integer(name).map(|pixels| pixels as u32);
+    let full_size = [pixels("width")?, pixels("height")?];
+    let offset = [pixels("crop_offset_x")?, pixels("crop_offset_y")?];
+    let part = |name, whole| Ok(params.optional_integer(name)?.map_or(whole, |pixels| pixels as u32));
+    let crop = [part("crop_width", full_size[0])?, part("crop_height", full_size[1])?];
     for (axis, names) in
         [["crop_offset_x", "crop_width"], ["crop_offset_y", "crop_height"]].iter().enumerate()
     {
@@ -104,29 +128,13 @@ pub fn cropped(film: Film, crop: Option<Crop>) -> Result<Film> {
     Ok(film.part(crop.corner, crop.size))
 }
 
-fn size(params: &Params<'_>, name: &'static str, default: u32) -> Result<u32> {
-    pixels(params, name, default, 1)
-}
-
-fn edge(params: &Params<'_>, name: &'static str) -> Result<u32> {
-    pixels(params, name, 0, 0)
-}
-
-fn pixels(params: &Params<'_>, name: &'static str, default: u32, least: i64) -> Result<u32> {
-    let value = params.integer(name, i64::from(default))?;
-    if (least..=65_536).contains(&value) {
-        return Ok(value as u32);
-    }
-    Err(params.complain(name, format!("an integer from {least} to 65536"), value.to_string()))
-}
-
 fn rfilter(params: &Params<'_>) -> Result<Filter> {
     let is_filter = |child: &Child<'_>| {
         child.name == "rfilter"
             || child.object.tag.as_deref() == Some("rfilter")
             || filter::ROWS.has(child.object)
     };
-    match params.children(is_filter)?.as_slice() {
+    match params.children("rfilter", is_filter)?.as_slice() {
         [] => Ok(DEFAULT_FILTER),
         [one] => filter::ROWS.build(one.object, params.library),
         [_, second, ..] => Err(only_one(second, "rfilter")),
@@ -134,10 +142,9 @@ fn rfilter(params: &Params<'_>) -> Result<Filter> {
 }
 
 fn format(params: &Params<'_>) -> Result<Format> {
-    let all = Format::default();
-    let (colours, alpha) = choice(params, "pixel_format", (all.colours, all.alpha), PIXEL_FORMATS)?;
-    let component = choice(params, "component_format", all.component, COMPONENT_FORMATS)?;
-    let file = choice(params, "file_format", all.file, FILE_FORMATS)?;
+    let (colours, alpha) = params.choice("pixel_format", PIXEL_FORMATS)?;
+    let component = params.choice("component_format", COMPONENT_FORMATS)?;
+    let file = params.choice("file_format", FILE_FORMATS)?;
     let requested = Format { colours, alpha, component, file };
     let format = requested.in_file(file);
     if params.has("pixel_format") && (format.colours, format.alpha) != (colours, alpha)
@@ -147,14 +154,4 @@ fn format(params: &Params<'_>) -> Result<Format> {
         params.library.warn(params.location(), &text);
     }
     Ok(format)
-}
-
-/// One of a few words, in capitals or not, as Mitsuba reads them.
-fn choice<T: Copy>(params: &Params<'_>, name: &'static str, default: T, choices: &[(&str, T)]) -> Result<T> {
-    let Some(word) = params.optional_string(name)? else { return Ok(default) };
-    let found = choices.iter().find(|(known, _)| known.eq_ignore_ascii_case(word));
-    found.map(|(_, value)| *value).ok_or_else(|| {
-        let words: Vec<_> = choices.iter().map(|(word, _)| *word).collect();
-        params.complain(name, format!("one of {}", words.join(", ")), format!("\"{word}\""))
-    })
 }

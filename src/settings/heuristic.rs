@@ -2,7 +2,7 @@
 //! weights of a path sum to one, so that all give the same image; what differs is the noise.
 
 use crate::{
-    description::{Params, nearest},
+    description::{Params, nearest, parameter::Parameter, rows},
     error::{self, Error},
 };
 use std::fmt;
@@ -26,6 +26,12 @@ pub enum Heuristic {
     /// The same for every strategy that can make the path, whose heroes share it in proportion to q.
     Uniform,
 }
+
+/// What integrators have that make paths.
+pub(super) const HEURISTIC: &[Parameter] = rows! {
+    text("heuristic", "one of balance, power, maximum, cutoff, cutoff:ALPHA, uniform", Word("balance"),
+        "By which rule strategies share a path (Veach 1997, sec. 9.2): noise differs, the expected image does not.").ours(),
+};
 
 impl Heuristic {
     /// Default alpha of the cutoff heuristic.
@@ -64,7 +70,7 @@ impl Heuristic {
 
     /// Reads `heuristic`, as [`Self::parse`] does.
     pub(super) fn read(params: &Params<'_>) -> error::Result<Self> {
-        let Some(text) = params.optional_string("heuristic")? else { return Ok(Self::default()) };
+        let text = params.string("heuristic")?;
         Self::parse(text).map_err(|expected| {
             let names = Self::NAMES.map(|(name, _)| name);
             let name = text.split(':').next().unwrap_or(text);

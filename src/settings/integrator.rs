@@ -3,12 +3,18 @@
 //! `non_scattering` restrict what media do.
 
 use crate::{
-    description::{Build, Library, Location, Object, Params, Registry, params::Child, suggest},
+    description::{
+        Build, Library, Location, Object, Params, Plugin, Property, Registry, Table, Value,
+        parameter::Parameter, params::Child, rows, suggest, table,
+    },
     error::{Error, Result},
     film::layer::{Content, Layer, QUANTITIES},
     math::Spectrum,
     medium::{DistanceMethod, MediumOverrides},
-    settings::options::{Options, Strategies},
+    settings::{
+        heuristic::HEURISTIC,
+        options::{FORCED, MAX_DEPTH, Options, PATHS, Strategies},
+    },
 };
 
 /// What light does in media.
@@ -74,19 +80,19 @@ pub struct Integrator {
 }
 
 /// Every integrator. Mitsuba's path tracers say no more than that an image of the scene is wanted: strategies are chosen here.
-pub const ROWS: Registry<Build<Integrator>> = Registry::new(
+pub const ROWS: Registry<Plugin<Build<Integrator>>> = Registry::new(
     "an integrator",
     &[
-        ("bdpt", |p| build_as(p, Strategies::BDPT)),
-        ("path", |p| build_as(p, Strategies::BDPT)),
-        ("volpath", |p| build_as(p, Strategies::BDPT)),
-        ("volpathmis", |p| build_as(p, Strategies::BDPT)),
-        ("ptracer", |p| build_as(p, Strategies::LT)),
-        ("fog", build_fog),
-        ("single_scattering", build_single_scattering),
-        ("non_scattering", build_non_scattering),
-        ("aov", build_aov),
-        ("moment", build_moment),
+        ("bdpt", plugin(BDPT, |p| build_as(p, Strategies::BDPT))),
+        ("path", plugin(SAME, |p| build_as(p, Strategies::BDPT))),
+        ("volpath", plugin(SAME, |p| build_as(p, Strategies::BDPT))),
+        ("volpathmis", plugin(SAME, |p| build_as(p, Strategies::BDPT))),
+        ("ptracer", plugin(PTRACER, |p| build_as(p, Strategies::LT))),
+        ("fog", plugin(FOG, build_fog)),
+        ("single_scattering", plugin(SINGLE_SCATTERING, build_single_scattering)),
+        ("non_scattering", plugin(NON_SCATTERING, build_non_scattering)),
+        ("aov", plugin(AOV, build_aov)),
+        ("moment", plugin(MOMENT, build_moment)),
     ],
 );
 
@@ -102,6 +108,71 @@ impl Integrator {
         Ok(self)
     }
 }
+
+const fn plugin(table: Table, build: Build<Integrator>) -> Plugin<Build<Integrator>> {
+    Plugin { table, build }
+}
+
+/// What all integrators have.
+const COMMON: &[Parameter] = rows! {
+    ignored("samples_per_pass", "Tyndall divides the work itself"),
+    ignored("block_size", "Tyndall divides the work itself"),
+    ignored("timeout", "Tyndall divides the work itself"),
+};
+
+const BDPT: Table = table! {
+    "Bidirectional path tracing, of whose strategies a pilot chooses: the integrator of a scene without one."; ;
+    MAX_DEPTH, PATHS, HEURISTIC, FORCED, COMMON
+};
+
+const SAME: Table = Table { about: "The same as `bdpt`; `--integrator pt` is path tracing.", ..BDPT };
+
+const PTRACER: Table = table! {
+    "Light tracing: light subpaths connect to the camera; `--integrator lt`.";
+    ignored("forced_interaction", "light subpaths have no primary rays");
+    MAX_DEPTH, PATHS, HEURISTIC, COMMON
+};
+
+const FOG: Table = table! {
+    "A preview: the first visible surfaces, lit without shadows, behind fog of constant radiance (BMA02 eq. 5).";
+    light("fog_color", "W/(m^2 sr)", Said("the mean of the sky, else of the lit surfaces"), "Radiance of the fog."),
+    light("ambient", "W/(m^2 sr)", Said("0 under a sky, else that of the fog"),
+        "Radiance from all directions, besides the emitters."),
+    number("threshold", "m", above(0.0, MAX), Said("no limit"), "What is further is fog alone."),
+    ignored("max_depth", "a preview shows the first surfaces only");
+    PATHS, COMMON
+};
+
+const SINGLE_SCATTERING: Table = table! {
+    "Light scatters at most once, surfaces are lit directly; media that vary are marched (P03 eq. 18-19).";
+    integer("max_depth", within(0.0, Restriction::SINGLE as f64), Is(2.0), "Most segments of a path."),
+    number("step", "m", above(0.0, f64::MAX), Said("that of each medium"), "The interval of the march."),
+    number("march_error", "", within(1e-7, 1.0), Said("that of each medium"), "Greatest error of transmittance.");
+    PATHS, HEURISTIC, FORCED, COMMON
+};
+
+const NON_SCATTERING: Table = table! {
+    "Media absorb and emit, but do not scatter; surfaces are unchanged (P03T eq. 2.9)."; ;
+    MAX_DEPTH, PATHS, HEURISTIC, FORCED, COMMON
+};
+
+/// What integrators have that hold another.
+const OUTER: &[Parameter] = rows! {
+    ignored("hide_emitters", "the integrator inside decides it"),
+};
+
+const AOV: Table = table! {
+    "What the first surface is like, as layers of the image of the integrator inside.";
+    text("aovs", "a list such as \"dd:depth,nn:sh_normal\"", Required, "Names and quantities of the layers."),
+    nested("integrator", Optional, "The integrator of the image; black without.");
+    OUTER, COMMON
+};
+
+const MOMENT: Table = table! {
+    "The integrator inside, with second moments and, in Tyndall, the variance of the mean as layers.";
+    nested("integrator", Required, "The integrator of the image.");
+    OUTER, COMMON
+};
 
 /// Builds the integrator that `object` describes.
 pub fn build(object: &Object, library: &Library) -> Result<Integrator> {
@@ -129,60 +200,35 @@ fn check_names(location: &Location, layers: &[Layer]) -> Result<()> {
 }
 
 fn build_as(params: &Params<'_>, strategies: Strategies) -> Result<Integrator> {
-    accept_division(params);
     Ok(Integrator { options: Options::read(params, strategies)?, ..Integrator::default() })
 }
 
-/// `fog`: `fog_color`, `ambient`, `threshold` [m] (BMA02 sec. 3.1 and 4.2).
+/// `fog` (BMA02 sec. 3.1 and 4.2).
 fn build_fog(params: &Params<'_>) -> Result<Integrator> {
-    params.accept_unused(&["max_depth"], "a preview shows the first surfaces only");
-    params.accept_silently("rr_depth");
-    accept_division(params);
-    let threshold = match params.optional_float("threshold")? {
-        Some(far) if !(far > 0.0 && far <= f64::from(f32::MAX)) => {
-            return Err(params.complain("threshold", "a distance above 0", far.to_string()));
-        }
-        far => far.map(|far| far as f32),
-    };
-    let (color, ambient) = (params.optional_emission("fog_color")?, params.optional_emission("ambient")?);
+    let threshold = params.optional_float("threshold")?.map(|far| far as f32);
+    let (color, ambient) = (params.optional_color("fog_color")?, params.optional_color("ambient")?);
     let fog = FogSettings { color, ambient, threshold };
-    let hide_emitters = params.boolean("hide_emitters", false)?;
+    let hide_emitters = params.boolean("hide_emitters")?;
     let options = Options { strategies: Strategies::NONE, hide_emitters, ..Options::default() };
     Ok(Integrator { options, fog, ..Integrator::default() })
 }
 
 /// `single_scattering`: path tracing of at most two segments, with marching by `step` [m] or within `march_error`.
 fn build_single_scattering(params: &Params<'_>) -> Result<Integrator> {
-    let most = Restriction::SINGLE;
-    let depth = params.integer("max_depth", i64::from(most))?;
-    if !(0..=i64::from(most)).contains(&depth) {
-        let error = params.complain("max_depth", "0, 1 or 2", depth.to_string());
-        return Err(Error {
-            remedy: "light scatters once here: use volpath for longer paths".into(),
-            ..error
-        });
-    }
-    let within =
-        |name, expected: &str, range: std::ops::RangeInclusive<f64>| match params.optional_float(name)? {
-            Some(value) if !range.contains(&value) => Err(params.complain(name, expected, value.to_string())),
-            value => Ok(value),
-        };
-    let step = within("step", "a length above 0", f64::MIN_POSITIVE..=f64::MAX)?;
-    let march_error = within("march_error", "a number from 1e-7 to 1", 1e-7..=1.0)?;
-    let integrator = build_as(params, Strategies::PT)?;
+    let is_integer = |property: &Property| matches!(property.value, Value::Integer(_));
+    params.integer("max_depth").map_err(|error| match params.given("max_depth").is_some_and(is_integer) {
+        true => Error { remedy: "light scatters once here: use volpath for longer paths".into(), ..error },
+        false => error,
+    })?;
+    let (step, march_error) = (params.optional_float("step")?, params.optional_float("march_error")?);
     let restriction = Restriction::SingleScattering { step, march_error };
-    let options = Options { max_depth: Some(depth as u32), ..integrator.options };
-    Ok(Integrator { options, restriction, ..integrator })
+    Ok(Integrator { restriction, ..build_as(params, Strategies::PT)? })
 }
 
 /// `non_scattering`: media absorb and emit only, among surfaces as they are.
 fn build_non_scattering(params: &Params<'_>) -> Result<Integrator> {
     let integrator = build_as(params, Strategies::BDPT)?;
     Ok(Integrator { restriction: Restriction::NonScattering, ..integrator })
-}
-
-fn accept_division(params: &Params<'_>) {
-    params.accept_unused(&["samples_per_pass", "block_size", "timeout"], "Tyndall divides the work itself");
 }
 
 /// `aov`: what the first surface is like, and the image of the integrator inside. Without one the image is
@@ -202,14 +248,13 @@ fn build_aov(params: &Params<'_>) -> Result<Integrator> {
         }
     };
     built.layers.extend(surface_layers(params)?);
-    accept_outer(params);
     Ok(built)
 }
 
 /// `moment`: the integrator inside, with second moments of its image and, beyond Mitsuba, the variance of its
 /// mean.
 fn build_moment(params: &Params<'_>) -> Result<Integrator> {
-    let Some(child) = nested(params)? else { return Err(params.missing("integrator", "an integrator")) };
+    let Some(child) = nested(params)? else { return Err(params.missing("integrator")) };
     let inner = ROWS.build(child.object, params.library)?;
     if !inner.layers.is_empty() {
         let found = format!("\"{}\"", child.object.plugin);
@@ -217,7 +262,6 @@ fn build_moment(params: &Params<'_>) -> Result<Integrator> {
             "put the moment integrator inside the aov integrator, and one that makes paths inside it";
         return Err(Error::new(child.location, "an integrator that makes paths", found, remedy));
     }
-    accept_outer(params);
     let name = name_of(&child);
     let layers = vec![
         Layer { name: name.into(), content: Content::Mean },
@@ -227,15 +271,11 @@ fn build_moment(params: &Params<'_>) -> Result<Integrator> {
     Ok(Integrator { layers, ..inner })
 }
 
-fn accept_outer(params: &Params<'_>) {
-    accept_division(params);
-    params.accept_unused(&["hide_emitters"], "the integrator inside decides it");
-}
-
 /// The integrator inside another.
 fn nested<'a>(params: &Params<'a>) -> Result<Option<Child<'a>>> {
-    let children = params
-        .children(|child| ROWS.has(child.object) || child.object.tag.as_deref() == Some("integrator"))?;
+    let children = params.children("integrator", |child| {
+        ROWS.has(child.object) || child.object.tag.as_deref() == Some("integrator")
+    })?;
     match children.as_slice() {
         [] => Ok(None),
         [one] => Ok(Some(*one)),
@@ -259,9 +299,7 @@ fn within(outer: &str, layer: &Layer) -> Layer {
 
 /// The list `aovs`: name:quantity, separated by commas or spaces.
 fn surface_layers(params: &Params<'_>) -> Result<Vec<Layer>> {
-    let Some(text) = params.optional_string("aovs")? else {
-        return Err(params.missing("aovs", "a list such as \"dd:depth,nn:sh_normal\""));
-    };
+    let text = params.string("aovs")?;
     text.split([',', ' ']).filter(|item| !item.is_empty()).map(|item| surface_layer(params, item)).collect()
 }
 

@@ -1,7 +1,10 @@
 //! How paths are made: what a scene's integrator says, unless the command line says otherwise.
 
 use super::heuristic::Heuristic;
-use crate::{description::Params, error::Result};
+use crate::{
+    description::{Params, parameter::Parameter, rows},
+    error::Result,
+};
 
 /// Which strategies run. Their weights sum to one over those that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,29 +137,34 @@ impl Default for Options {
     }
 }
 
+/// What integrators have that make paths; `max_depth` besides.
+pub(super) const PATHS: &[Parameter] = rows! {
+    boolean("hide_emitters", false, "The camera does not see emitters, but what is behind them; emissive media stay."),
+    silent("rr_depth", "paths end by absorption, at any depth"),
+};
+
+/// The limit of paths.
+pub(super) const MAX_DEPTH: &[Parameter] = rows! {
+    integer("max_depth", within(-1.0, MAX), Is(-1.0), "Most segments of a path; -1 for no limit."),
+};
+
+/// What those have besides that follow primary rays.
+pub(super) const FORCED: &[Parameter] = rows! {
+    boolean("forced_interaction", false,
+        "Primary rays that cross media are followed both from a collision in them and from what lies behind.").ours(),
+};
+
 impl Options {
     /// Reads the parameters of integrators that make paths.
     pub(super) fn read(params: &Params<'_>, strategies: Strategies) -> Result<Self> {
-        // Most scenes of Mitsuba have it. Paths end by absorption here, which is exact at any depth: nothing to warn of.
-        params.accept_silently("rr_depth");
-        if strategies == Strategies::LT {
-            params.accept_unused(&["forced_interaction"], "light subpaths have no primary rays");
-        }
         Ok(Self {
             strategies,
             effort: Effort::default(),
-            max_depth: max_depth(params)?,
-            hide_emitters: params.boolean("hide_emitters", false)?,
-            forced_interaction: params.boolean("forced_interaction", false)?,
+            // Limits that u32 does not hold are none.
+            max_depth: u32::try_from(params.integer("max_depth")?).ok(),
+            hide_emitters: params.boolean("hide_emitters")?,
+            forced_interaction: strategies != Strategies::LT && params.boolean("forced_interaction")?,
             heuristic: Heuristic::read(params)?,
         })
-    }
-}
-
-fn max_depth(params: &Params<'_>) -> Result<Option<u32>> {
-    match params.integer("max_depth", -1)? {
-        -1 => Ok(None),
-        depth @ 0..=0xffff_fffe => Ok(Some(depth as u32)),
-        depth => Err(params.complain("max_depth", "-1 (no limit) or an integer >= 0", depth.to_string())),
     }
 }

@@ -1,24 +1,40 @@
 //! The number of samples of a scene, and the source of their random numbers.
 
 use crate::{
-    description::{Library, Object, Params, Registry},
+    description::{Library, Object, Plugin, Registry, Table, parameter::Parameter, rows},
     error::Result,
     sampling::Sampler,
 };
 
 /// Every sampler. Those of Mitsuba that stratify do so to spread numbers evenly, each in a way of its own; here all that
 /// is Sobol's sequence. Its default, `independent`, says no more than that nothing was chosen.
-pub(crate) const ROWS: Registry<Option<Sampler>> = Registry::new(
+pub(crate) const ROWS: Registry<Plugin<Option<Sampler>>> = Registry::new(
     "a sampler",
     &[
-        ("independent", None),
-        ("ldsampler", Some(Sampler::Sobol)),
-        ("multijitter", Some(Sampler::Sobol)),
-        ("orthogonal", Some(Sampler::Sobol)),
-        ("sobol", Some(Sampler::Sobol)),
-        ("stratified", Some(Sampler::Sobol)),
+        (
+            "independent",
+            plugin("No more than a number of samples: how they are drawn is left to Tyndall.", None),
+        ),
+        ("ldsampler", plugin(SOBOL, Some(Sampler::Sobol))),
+        ("multijitter", plugin(SOBOL, Some(Sampler::Sobol))),
+        ("orthogonal", plugin(SOBOL, Some(Sampler::Sobol))),
+        ("sobol", plugin("Sobol's sequence.", Some(Sampler::Sobol))),
+        ("stratified", plugin(SOBOL, Some(Sampler::Sobol))),
     ],
 );
+
+const SOBOL: &str = "The same as `sobol`.";
+
+const COMMON: &[Parameter] = rows! {
+    integer("sample_count", within(1.0, MAX), Is(4.0), "Samples per pixel."),
+    ignored("seed", "the sequence of random numbers is Tyndall's own"),
+    ignored("jitter", "the sequence of random numbers is Tyndall's own"),
+    ignored("strength", "the sequence of random numbers is Tyndall's own"),
+};
+
+const fn plugin(about: &'static str, build: Option<Sampler>) -> Plugin<Option<Sampler>> {
+    Plugin { table: Table { about, groups: &[COMMON] }, build }
+}
 
 /// The settings of a sampler.
 #[derive(Clone, Copy, Debug)]
@@ -37,13 +53,8 @@ impl Default for Sampling {
 
 /// Reads `object`.
 pub(crate) fn build(object: &Object, library: &Library) -> Result<Sampling> {
-    let sampler = *ROWS.find(object)?;
-    let params = Params::new(object, library);
-    let count = params.integer("sample_count", 4)?;
-    params.accept_unused(&["seed", "jitter", "strength"], "the sequence of random numbers is Tyndall's own");
+    let (params, sampler) = ROWS.read(object, library)?;
+    let samples_per_pixel = params.integer("sample_count")? as u64;
     params.finish()?;
-    if count < 1 {
-        return Err(params.complain("sample_count", "an integer >= 1", count.to_string()));
-    }
-    Ok(Sampling { samples_per_pixel: count as u64, sampler })
+    Ok(Sampling { samples_per_pixel, sampler: *sampler })
 }

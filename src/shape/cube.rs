@@ -1,7 +1,11 @@
 //! `cube`: [-1, 1]^3, facing outwards.
 
-use super::{Parallelograms, parallelogram::ObjectFace};
-use crate::{description::Params, error::Result, math::DVec3};
+use super::{COMMON, Parallelograms, parallelogram::ObjectFace};
+use crate::{
+    description::{Params, Table, table},
+    error::Result,
+    math::DVec3,
+};
 
 /// Corner, u and v edges and normal of each face, u and v as on Mitsuba's cube.
 const FACES: [ObjectFace; 6] = [
@@ -13,8 +17,13 @@ const FACES: [ObjectFace; 6] = [
     [[-1.0, 1.0, -1.0], [0.0, -2.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -1.0]],
 ];
 
-/// Reads `to_world` and `flip_normals`.
+/// Its parameters.
+pub const TABLE: Table = table! {
+    "A box: [-1, 1]^3, facing outwards.";
+    ignored("face_normals", "its faces are flat");
+    COMMON
+};
+
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Parallelograms> {
-    params.accept_unused(&["face_normals"], "its faces are flat");
     Parallelograms::build(params, recentre, &FACES)
 }

@@ -2,11 +2,11 @@
 //! from its axis' base whose f32 roundings would be seen on the small scale of its radius.
 
 use super::{
-    Curved, CurvedModel, Disk, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    COMMON, Curved, CurvedModel, Disk, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     placement::{Placement, is_in_range},
 };
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{
         DMat4, DVec3, Frame, Vec3,
@@ -35,11 +35,19 @@ pub struct Cylinder {
     facing: f64,
 }
 
-/// Reads `p0`, `p1`, `radius`, `to_world` and `flip_normals`.
+/// Its parameters.
+pub const TABLE: Table = table! {
+    "An exact tube, open at both ends.";
+    vector("p0", "m", At([0.0; 3]), "Where the axis begins."),
+    vector("p1", "m", At([0.0, 0.0, 1.0]), "Where it ends."),
+    number("radius", "m", ANY, Is(1.0), "Radius, not 0.");
+    COMMON
+};
+
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Cylinder> {
-    let p0 = params.optional_vector("p0")?.unwrap_or(DVec3::ZERO);
-    let p1 = params.optional_vector("p1")?.unwrap_or(DVec3::Z);
-    let radius = params.float("radius", 1.0)?;
+    let p0 = params.vector("p0")?;
+    let p1 = params.vector("p1")?;
+    let radius = params.float("radius")?;
     let mut placement = Placement::read(params, recentre)?;
     if radius == 0.0 {
         return Err(params.complain("radius", "a number other than 0", "0"));

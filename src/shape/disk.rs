@@ -1,12 +1,12 @@
 //! `disk`: the unit disk in the xy plane, facing +z; any affine transform makes it an ellipse.
 
 use super::{
-    Curved, CurvedModel, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    COMMON, Curved, CurvedModel, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     parallelogram::flat_error,
     placement::{Placement, is_in_range},
 };
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{
         DVec3, Frame, Vec2, Vec3,
@@ -35,7 +35,11 @@ pub struct Disk {
     area: f32,
 }
 
-/// Reads `to_world` and `flip_normals`.
+/// Its parameters.
+pub const TABLE: Table = table! {
+    "An exact disk: radius 1 around the origin, facing +z."; ; COMMON
+};
+
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Disk> {
     let placement = Placement::read(params, recentre)?;
     let disk = Disk::place(&placement);

@@ -8,7 +8,7 @@ use super::{
     smooth,
 };
 use crate::{
-    description::Params,
+    description::{Params, parameter::Parameter, rows},
     error::{Error, Result},
     math::{DVec3, Frame, Vec2, Vec3, axes, offset::LARGEST_COORDINATE, warp},
     memory,
@@ -50,12 +50,18 @@ pub struct Mesh {
     facing: f32,
 }
 
+/// What every mesh has.
+pub(super) const FACE_NORMALS: &[Parameter] = rows! {
+    boolean("face_normals", false,
+        "True shows flat faces; else vertex normals are those of the file, or computed where it has none."),
+};
+
 impl Mesh {
     /// Reads the parameters every mesh has, and places `data`, read from `file`, by them. As in Mitsuba,
     /// vertex normals are computed where the file has none, unless `face_normals` is set.
     pub fn build(params: &Params<'_>, recentre: DVec3, file: &Path, mut data: MeshData) -> Result<Self> {
         let placement = Placement::read(params, recentre)?;
-        let face_normals = params.boolean("face_normals", false)?;
+        let face_normals = params.boolean("face_normals")?;
         let positions: Vec<Vec3> = data.positions.iter().map(|p| placement.point(*p).as_vec3()).collect();
         if let Some(index) = positions.iter().position(|p| !is_in_range(*p)) {
             let found = format!("vertex {} at {}", index + 1, data.positions[index]);

@@ -21,7 +21,7 @@ mod sphere;
 mod spherical_rectangle;
 
 use crate::{
-    description::{Params, Registry, models},
+    description::{Params, Plugin, Registry, models, parameter::Parameter, rows},
     error::Result,
     math::{DVec3, Frame, Uv, Vec3, offset::gamma},
     sampling::Stream,
@@ -222,12 +222,23 @@ pub trait ShapeModel {
     }
 }
 
-/// Builds a shape from its geometry parameters and no others (materials, media and emitters are the scene's); the
-/// point `recentre` becomes the origin.
+/// Builds a shape from its geometry parameters and no others (materials, media and emitters remain for the scene to
+/// read, which calls `finish`); the point `recentre` becomes the origin.
 pub type BuildShape = fn(&Params<'_>, DVec3) -> Result<Shape>;
 
+/// What all shapes have.
+const COMMON: &[Parameter] = rows! {
+    transform("to_world", "Where it is."),
+    boolean("flip_normals", false, "Turns it inside out: `interior` and the front of an emitter change sides."),
+    nested("bsdf", Optional, "Its surface: a grey diffuse one where not given, black on an emitter."),
+    nested("emitter", Optional, "What it emits: `area` or `directionalarea`."),
+    object("interior", "medium", "The medium behind it, against its normals."),
+    object("exterior", "medium", "The medium before it, where its normals point."),
+    ignored("silhouette_sampling_weight", "it matters to derivatives only"),
+};
+
 /// Makes the enum, its dispatch and the registry from one row a kind: its type, and each of its names with the module
-/// that builds it.
+/// that builds it and has the table of its parameters, those in [`COMMON`] included.
 macro_rules! shapes {
     ($($model:ident: $($name:literal => $file:ident),+;)*) => {
         models! {
@@ -244,8 +255,11 @@ macro_rules! shapes {
         }
 
         /// All shapes.
-        pub const ROWS: Registry<BuildShape> = Registry::new("a shape", &[
-            $($(($name, |params, recentre| $file::build(params, recentre).map(Shape::$model)),)+)*
+        pub const ROWS: Registry<Plugin<BuildShape>> = Registry::new("a shape", &[
+            $($(($name, Plugin {
+                table: $file::TABLE,
+                build: |params, recentre| $file::build(params, recentre).map(Shape::$model),
+            }),)+)*
         ]);
     };
 }
@@ -256,13 +270,6 @@ shapes! {
     Disk: "disk" => disk;
     Cylinder: "cylinder" => cylinder;
     Mesh: "obj" => obj, "ply" => ply, "serialized" => serialized;
-}
-
-/// Builds the shape that `params` describes. Does not call `finish`: children remain for the scene to read.
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Shape> {
-    let build = ROWS.find(params.object)?;
-    params.accept_unused(&["silhouette_sampling_weight"], "it matters to derivatives only");
-    build(params, recentre)
 }
 
 impl Shape {

@@ -1,18 +1,28 @@
 //! `obj`: Wavefront meshes. Read here rather than by a crate: coordinates keep their f64 digits until the scene
 //! is recentred, every error has its line, and faces of which only some have normals stay aligned.
 
-use super::{Mesh, mesh::MeshData};
+use super::{
+    COMMON, Mesh,
+    mesh::{FACE_NORMALS, MeshData},
+};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{DVec3, vec2},
 };
 use std::{collections::HashMap, path::Path};
 
-/// Reads `filename`, `flip_tex_coords` (true by default, as in Mitsuba) and what every mesh has.
+/// Its parameters.
+pub const TABLE: Table = table! {
+    "A mesh from a Wavefront file (.obj).";
+    file("filename", "The file."),
+    boolean("flip_tex_coords", true, "True turns v of the texture coordinates upside down.");
+    FACE_NORMALS, COMMON
+};
+
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
-    let flip = params.boolean("flip_tex_coords", true)?;
+    let flip = params.boolean("flip_tex_coords")?;
     let unread = |e| Error::io(&file, "read", &e);
     let length = std::fs::metadata(&file).map_err(unread)?.len();
     MeshData::check_memory(&file, length, MEMORY_PER_BYTE)?;

@@ -19,7 +19,7 @@ impl Placement {
     /// Reads `to_world` and `flip_normals`.
     pub fn read(params: &Params<'_>, recentre: DVec3) -> Result<Self> {
         let matrix = DMat4::from_translation(-recentre) * params.transform("to_world")?;
-        Ok(Self { matrix, flip_normals: params.boolean("flip_normals", false)? })
+        Ok(Self { matrix, flip_normals: params.boolean("flip_normals")? })
     }
 
     /// The transform turns right hands into left hands.

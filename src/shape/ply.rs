@@ -1,8 +1,11 @@
 //! `ply`: Stanford meshes, ascii and binary.
 
-use super::{Mesh, mesh::MeshData};
+use super::{
+    COMMON, Mesh,
+    mesh::{FACE_NORMALS, MeshData},
+};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{DVec3, Vec2},
 };
@@ -12,10 +15,17 @@ use ply_rs_bw::{
 };
 use std::{fs::File, io::BufReader, path::Path};
 
-/// Reads `filename`, `flip_tex_coords` and what every mesh has.
+/// Its parameters.
+pub const TABLE: Table = table! {
+    "A mesh from a PLY file.";
+    file("filename", "The file."),
+    boolean("flip_tex_coords", false, "True turns v of the texture coordinates upside down.");
+    FACE_NORMALS, COMMON
+};
+
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
-    let flip = params.boolean("flip_tex_coords", false)?;
+    let flip = params.boolean("flip_tex_coords")?;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
     let length = source.metadata().map_err(|e| Error::io(&file, "read", &e))?.len();
     MeshData::check_memory(&file, length, MEMORY_PER_BYTE)?;

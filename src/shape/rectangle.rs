@@ -1,12 +1,21 @@
 //! `rectangle`: [-1, 1]^2 in the xy plane, facing +z.
 
-use super::{Parallelograms, parallelogram::ObjectFace};
-use crate::{description::Params, error::Result, math::DVec3};
+use super::{COMMON, Parallelograms, parallelogram::ObjectFace};
+use crate::{
+    description::{Params, Table, table},
+    error::Result,
+    math::DVec3,
+};
 
 const FACE: ObjectFace = [[-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Reads `to_world` and `flip_normals`.
+/// Its parameters.
+pub const TABLE: Table = table! {
+    "A rectangle: [-1, 1]^2 in the xy plane, facing +z.";
+    ignored("face_normals", "its faces are flat");
+    COMMON
+};
+
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Parallelograms> {
-    params.accept_unused(&["face_normals"], "its faces are flat");
     Parallelograms::build(params, recentre, &[FACE])
 }

@@ -1,9 +1,12 @@
 //! `serialized`: Mitsuba's compressed meshes, one or more to a file. The layout is the one that Mitsuba's
 //! documentation of the plugin gives; nothing is believed of a count until the stream has yielded the numbers.
 
-use super::{Mesh, mesh::MeshData};
+use super::{
+    COMMON, Mesh,
+    mesh::{FACE_NORMALS, MeshData},
+};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{DVec3, Vec2},
 };
@@ -14,13 +17,17 @@ use std::{
     path::Path,
 };
 
-/// Reads `filename`, `shape_index` and what every mesh has.
+/// Its parameters.
+pub const TABLE: Table = table! {
+    "A mesh from a file of Mitsuba's compressed meshes.";
+    file("filename", "The file."),
+    integer("shape_index", within(0.0, u32::MAX as f64), Is(0.0), "Which of its meshes, from 0.");
+    FACE_NORMALS, COMMON
+};
+
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
-    let index = params.integer("shape_index", 0)?;
-    let Ok(index) = u32::try_from(index) else {
-        return Err(params.complain("shape_index", "a number from 0 to 2^32 - 1", index.to_string()));
-    };
+    let index = params.integer("shape_index")? as u32;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
     let mut container = Container::open(BufReader::new(source)).map_err(|fault| fault.at(&file))?;
     container.seek(index).map_err(|fault| fault.at(&file))?;

@@ -1,11 +1,11 @@
 //! `sphere`: centre and radius, under a transform that keeps it a sphere.
 
 use super::{
-    Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    COMMON, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     placement::{Placement, is_in_range},
 };
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{
         DMat4, DVec3, Frame, Uv, Vec3, measure,
@@ -27,10 +27,17 @@ pub struct Sphere {
     facing: f32,
 }
 
-/// Reads `center`, `radius`, `to_world` and `flip_normals`.
+/// Its parameters.
+pub const TABLE: Table = table! {
+    "An exact sphere.";
+    vector("center", "m", At([0.0; 3]), "Centre."),
+    number("radius", "m", ANY, Is(1.0), "Radius, not 0; below 0 its normals face inwards.");
+    COMMON
+};
+
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Sphere> {
-    let center = params.optional_vector("center")?.unwrap_or(DVec3::ZERO);
-    let radius = params.float("radius", 1.0)?;
+    let center = params.vector("center")?;
+    let radius = params.float("radius")?;
     let mut placement = Placement::read(params, recentre)?;
     if radius == 0.0 {
         return Err(params.complain("radius", "a number other than 0", "0"));

@@ -1,10 +1,10 @@
 //! An image as a texture: Mitsuba's `bitmap`.
 
 use super::{
-    TextureModel, ToUv,
+    TO_UV, TextureModel, ToUv,
     image::{self, Image},
 };
-use crate::description::Params;
+use crate::description::{Params, Table, table};
 use crate::error::{Error, Result};
 use crate::math::{DVec3, Spectrum, Uv, Vec2, Wrap, vec2};
 use std::sync::Arc;
@@ -26,21 +26,34 @@ pub struct Bitmap {
 }
 
 impl Bitmap {
+    pub(super) const TABLE: Table = table! {
+        "An image over the unit square, v down the rows.";
+        file("filename", "The image: EXR, HDR, PNG, JPEG, BMP, TGA or PPM."),
+        choice("filter_type", &["bilinear", "nearest"], "bilinear", "How colours between pixel centres come about."),
+        choice("wrap_mode", &words::<3, _>(&Wrap::NAMES), "repeat", "What lies beyond the unit square."),
+        boolean("raw", false, "True takes the numbers as they are; else those of integer formats are sRGB."),
+        TO_UV,
+        ignored("format", "images are kept in single precision"),
+        ignored("accel", "images are kept in single precision"),
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        if params.has("data") || params.has("bitmap") {
+        if params
+            .object
+            .properties
+            .iter()
+            .any(|property| ["data", "bitmap"].contains(&property.name.as_str()))
+        {
             let remedy = "save the image to a file and give its name as \"filename\"";
             return Err(Error::new(params.location(), "an image file", "an image in memory", remedy));
         }
         let path = params.file("filename")?;
         let filters = [("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)];
-        let raw = params.boolean("raw", false)?;
-        params.choice("format", (), &[("auto", ()), ("variant", ()), ("fp16", ())])?;
-        params.boolean("accel", true)?;
-        params.accept_unused(&["format", "accel"], "images are kept in single precision");
+        let raw = params.boolean("raw")?;
         Ok(Self {
-            filter: params.choice("filter_type", Filter::Bilinear, &filters)?,
-            wrap: params.choice("wrap_mode", Wrap::Repeat, &Wrap::NAMES)?,
-            to_uv: ToUv::build(params)?,
+            filter: params.choice("filter_type", &filters)?,
+            wrap: params.choice("wrap_mode", &Wrap::NAMES)?,
+            to_uv: ToUv::read(params)?,
             image: Arc::new(image::read(&path, raw)?),
         })
     }

@@ -1,7 +1,7 @@
 //! Two colours in squares: Mitsuba's `checkerboard`.
 
-use super::{Texture, TextureModel, ToUv, fraction, parameter};
-use crate::description::Params;
+use super::{TO_UV, Texture, TextureModel, ToUv, fraction, parameter};
+use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Spectrum, Uv};
 use std::sync::Arc;
@@ -14,9 +14,16 @@ pub struct Checkerboard {
 }
 
 impl Checkerboard {
+    pub(super) const TABLE: Table = table! {
+        "Two colours in squares of half a unit.";
+        texture("color0", f64::INFINITY, Is(0.4), "Where both halves of u and v agree."),
+        texture("color1", f64::INFINITY, Is(0.2), "Where they do not."),
+        TO_UV,
+    };
+
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let colors = [parameter(params, "color0", 0.4)?, parameter(params, "color1", 0.2)?];
-        Ok(Self { colors: Arc::new(colors), to_uv: ToUv::build(params)? })
+        let colors = [parameter(params, "color0")?, parameter(params, "color1")?];
+        Ok(Self { colors: Arc::new(colors), to_uv: ToUv::read(params)? })
     }
 
     #[cfg(test)]

@@ -13,8 +13,8 @@ pub use image::Image;
 pub use uniform::Uniform;
 
 use crate::description::{
-    Build, Library, Object, Params, Registry, Value,
-    colour::{self, Role},
+    Build, Library, Object, Params, Plugin, Registry, Value, colour,
+    parameter::{self, Parameter},
 };
 use crate::error::Result;
 use crate::math::{DMat4, Spectrum, Uv, Vec2, vec2};
@@ -36,7 +36,7 @@ pub trait TextureModel {
 /// Makes the enum, its dispatch, the registry and the list of test examples from one row a model, and the
 /// names of more plugins that represent one colour.
 macro_rules! textures {
-    ($($name:literal => $model:ident,)* colors: $($color:literal,)*) => {
+    ($($name:literal => $model:ident,)* colors: $($color:literal => $table:ident,)*) => {
         /// Any texture. Cheap to clone: images are shared.
         #[derive(Clone, Debug)]
         #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
@@ -66,9 +66,12 @@ macro_rules! textures {
         }
 
         /// Every texture there is, by plugin name.
-        pub const ROWS: Registry<Build<Texture>> = Registry::new("a texture", &[
-            $(($name, |params: &Params<'_>| $model::build(params).map(Texture::$model)),)*
-            $(($color, build_color),)*
+        pub const ROWS: Registry<Plugin<Build<Texture>>> = Registry::new("a texture", &[
+            $(($name, Plugin {
+                table: $model::TABLE,
+                build: |params: &Params<'_>| $model::build(params).map(Texture::$model),
+            }),)*
+            $(($color, Plugin { table: colour::$table, build: build_color }),)*
         ]);
 
         /// Instances of every model, for the tests that hold for all.
@@ -85,7 +88,8 @@ textures! {
     "uniform" => Uniform,
     "checkerboard" => Checkerboard,
     "bitmap" => Bitmap,
-    colors: "rawconstant", "srgb", "d65", "regular", "irregular", "blackbody",
+    colors: "rawconstant" => RAW, "srgb" => SRGB, "d65" => D65, "regular" => REGULAR, "irregular" => IRREGULAR,
+    "blackbody" => BLACKBODY,
 }
 
 impl Texture {
@@ -100,37 +104,17 @@ pub fn build(object: &Object, library: &Library) -> Result<Texture> {
     ROWS.build(object, library)
 }
 
-/// The parameter `name` as a texture: a colour, or a nested or referenced texture; a grey `default` where
-/// not given. Bounds are the caller's to check, by [`Texture::max`].
-pub fn parameter(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
-    of_role(params, name, default, Role::Matter)
-}
-
-/// The same for radiance and other light. As in Mitsuba, the role ends at the texture: what a texture holds
-/// inside is matter.
-pub fn emission(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
-    of_role(params, name, default, Role::Light)
-}
-
-/// The same for indices of refraction; their spectra may exceed 1.
-pub fn index(params: &Params<'_>, name: &'static str, default: f32) -> Result<Texture> {
-    of_role(params, name, default, Role::Index)
-}
-
-fn of_role(params: &Params<'_>, name: &'static str, default: f32, role: Role) -> Result<Texture> {
-    let property = params.object.properties.iter().find(|property| property.name == name);
-    if let Some(Value::Object(_) | Value::Reference(_)) = property.map(|property| &property.value)
+/// The parameter `name` as a texture: a colour, or a nested or referenced texture. Bounds are the caller's to check, by
+/// [`Texture::max`]. As in Mitsuba, the role that its row gives it ends at the texture: what a texture holds inside is
+/// matter.
+pub fn parameter(params: &Params<'_>, name: &'static str) -> Result<Texture> {
+    if let Some(Value::Object(_) | Value::Reference(_)) = params.given(name).map(|property| &property.value)
         && let Some(child) = params.child(name)?
         && !colour::is_plugin(child.object)
     {
         return build(child.object, params.library);
     }
-    let color = match role {
-        Role::Light => params.emission(name, default),
-        Role::Index => params.index(name, default),
-        Role::Matter => params.color(name, default),
-    };
-    color.map(Texture::constant)
+    params.color(name).map(Texture::constant)
 }
 
 /// A plugin that represents one colour; or `d65` around a texture, which is that texture.
@@ -138,12 +122,20 @@ fn build_color(params: &Params<'_>) -> Result<Texture> {
     if colour::is_plugin(params.object) {
         return Uniform::build(params).map(Texture::Uniform);
     }
-    params.accept_unused(&["scale"], "Mitsuba does not scale a texture in d65 either");
-    match params.children(|_| true)?.as_slice() {
+    if let Some(scale) = params.given("scale") {
+        let text = "\"scale\" is accepted but not used: Mitsuba does not scale a texture in d65 either";
+        params.library.warn(&scale.location, text);
+        params.float("scale")?;
+    }
+    match params.children("texture", |_| true)?.as_slice() {
         [child] if !params.has("color") => build(child.object, params.library),
         _ => Err(params.complain("", "either one texture or a \"color\" in d65", "more")),
     }
 }
+
+/// The row of [`ToUv`].
+const TO_UV: Parameter =
+    parameter::transform("to_uv", "Applied to texture positions: a scale of 2 repeats twice.");
 
 /// The part of a `to_uv` transform that acts on texture positions: an affine map of the plane.
 #[derive(Clone, Copy, Debug)]
@@ -157,7 +149,7 @@ impl ToUv {
         Self { columns: [column(0), column(1), column(3)] }
     }
 
-    fn build(params: &Params<'_>) -> Result<Self> {
+    fn read(params: &Params<'_>) -> Result<Self> {
         params.transform("to_uv").map(Self::new)
     }
 

@@ -1,7 +1,7 @@
 //! What holds for every texture, and agreement with Mitsuba.
 
 use super::*;
-use crate::description::{Location, TransformStep};
+use crate::description::{Location, Table, TransformStep, table};
 use crate::math::vec3;
 use crate::testing::{nowhere, object};
 use ::image::{Rgb, RgbImage};
@@ -86,9 +86,7 @@ fn bitmaps_are_read_as_mitsuba_reads_them() {
         let object = object("bitmap", &[("filename", path.clone()), (name, value)]);
         check(&build(&object, &Library::default()).unwrap(), &values);
     }
-    for (name, value) in
-        [("format", text("fp8")), ("accel", text("no")), ("data", text("x")), ("foo", text("x"))]
-    {
+    for (name, value) in [("filter_type", text("cubic")), ("data", text("x")), ("foo", text("x"))] {
         let object = object("bitmap", &[("filename", path.clone()), (name, value)]);
         assert!(build(&object, &Library::default()).is_err(), "{name}");
     }
@@ -118,12 +116,18 @@ fn integer_images_are_made_linear_unless_raw() {
     assert!(read(true).distance(vec3(10.0, 128.0, 200.0) / 255.0) < 1e-6);
 }
 
+const TABLE: Table = table! {
+    "Any plugin.";
+    texture("reflectance", 1.0, Is(0.5), ""),
+    light_texture("radiance", "", Optional, ""),
+};
+
 #[test]
 fn a_parameter_is_a_number_a_colour_or_a_texture() {
     let library = Library::default();
     let read = |value: Value| {
         let object = object("diffuse", &[("reflectance", value)]);
-        parameter(&Params::new(&object, &library), "reflectance", 0.5).map(|texture| texture.max())
+        parameter(&Params::new(&object, &library, &TABLE), "reflectance").map(|texture| texture.max())
     };
     assert_eq!(read(Value::Float(0.25)), Ok(Spectrum::splat(0.25)));
     assert_eq!(read(Value::Rgb([1.0, 0.5, 0.0])), Ok(vec3(1.0, 0.5, 0.0)));
@@ -131,7 +135,7 @@ fn a_parameter_is_a_number_a_colour_or_a_texture() {
     assert!(read(Value::Object(object("chequers", &[]))).is_err());
     assert!(read(Value::Float(-1.0)).is_err());
     let nothing = object("diffuse", &[]);
-    let default = parameter(&Params::new(&nothing, &library), "reflectance", 0.5).unwrap();
+    let default = parameter(&Params::new(&nothing, &library, &TABLE), "reflectance").unwrap();
     assert_eq!(default.max(), Spectrum::splat(0.5));
 }
 
@@ -150,12 +154,12 @@ fn light_and_matter_read_spectra_differently_and_textures_hold_matter() {
         (Value::Object(object("d65", &[])), Spectrum::ONE, Spectrum::ONE),
     ];
     for (value, as_matter, as_light) in rows {
-        let object = object("any", &[("v", value)]);
-        let texture = |read: fn(&Params<'_>, &'static str, f32) -> Result<Texture>| {
-            read(&Params::new(&object, &library), "v", 0.5).unwrap().eval(Vec2::splat(0.2))
+        let texture = |name| {
+            let object = object("any", &[(name, value.clone())]);
+            parameter(&Params::new(&object, &library, &TABLE), name).unwrap().eval(Vec2::splat(0.2))
         };
-        assert!(texture(parameter).distance(as_matter) < 2e-6, "{object:?}");
-        assert!(texture(emission).distance(as_light) < 2e-6, "{object:?}");
+        assert!(texture("reflectance").distance(as_matter) < 2e-6, "{value:?}");
+        assert!(texture("radiance").distance(as_light) < 2e-6, "{value:?}");
     }
     let both = object("d65", &[("", Value::Object(board())), ("color", Value::Rgb([0.5; 3]))]);
     assert!(build(&both, &library).is_err());

@@ -2,7 +2,7 @@
 
 use super::TextureModel;
 use crate::description::{
-    Params,
+    Params, Table,
     colour::{self, Role},
 };
 use crate::error::Result;
@@ -13,6 +13,8 @@ use crate::math::{Spectrum, Uv};
 pub struct Uniform(pub Spectrum);
 
 impl Uniform {
+    pub(super) const TABLE: Table = colour::UNIFORM;
+
     /// Of any plugin that represents one colour. As light, for that has the widest range; where a plugin is
     /// nested in another, [`super::parameter`] reads it as what it is there.
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {

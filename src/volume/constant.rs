@@ -3,7 +3,7 @@
 
 use super::{Place, VolumeModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{Channels, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3, boxes},
 };
@@ -16,11 +16,17 @@ pub struct Constant {
 }
 
 impl Constant {
+    pub(super) const TABLE: Table = table! {
+        "One value. As `sigma_t` of a medium it fills the unit cube of `to_world` only, as in Mitsuba.";
+        colour("value", "", f64::INFINITY, Is(1.0), "The value."),
+        transform("to_world", "Where the unit cube is."),
+    };
+
     /// Reads `value` and `to_world`.
     pub fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         let to_world = place.to_world(params)?;
         let [low, high] = boxes::image(&to_world, [DVec3::ZERO, DVec3::ONE]).map(|corner| corner.as_vec3());
-        Ok(Self::new(params.color("value", 1.0)?, [low, high]))
+        Ok(Self::new(params.color("value")?, [low, high]))
     }
 
     /// `value`, and the box that it fills as an extinction.

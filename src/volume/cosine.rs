@@ -1,12 +1,11 @@
 //! `cosine`: a constant and waves, c_0 + sum c_i cos(k_i . x + phi_i) (BMA02 3.2.1).
 //!
-//! `constant` is c_0 (1 where not given). Every nested `wave` has an `amplitude` c_i (of either sign, 1 where not
-//! given), a `vector` k_i [rad/m] (it must be given) and a `phase` phi_i [rad] (0 where not given). The product of two
-//! cosines is two waves: cos a cos b = (cos(a + b) + cos(a - b)) / 2.
+//! Every nested `wave` has an `amplitude` c_i, a `vector` k_i and a `phase` phi_i. The product of two cosines is two
+//! waves: cos a cos b = (cos(a + b) + cos(a - b)) / 2.
 
-use super::placed::{Function, Line, Placed, parts, vector};
+use super::placed::{COMMON, Function, Line, Placed, parts};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::DVec3,
 };
@@ -34,11 +33,18 @@ struct Wave {
     phase: f64,
 }
 
+pub(super) const WAVE: Table = table! {
+    "A wave of a `cosine`: amplitude cos(vector . x + phase).";
+    number("amplitude", "", ANY, Is(1.0), "Its height, of either sign."),
+    vector("vector", "rad/m", Required, "Where it goes to; 2 pi over the wavelength long."),
+    number("phase", "rad", ANY, Is(0.0), "Where in the wave the origin is."),
+};
+
 fn wave(params: &Params<'_>) -> Result<Wave> {
     Ok(Wave {
-        amplitude: params.float("amplitude", 1.0)?,
-        vector: vector(params, "vector")?,
-        phase: params.float("phase", 0.0)?,
+        amplitude: params.float("amplitude")?,
+        vector: params.vector("vector")?,
+        phase: params.float("phase")?,
     })
 }
 
@@ -72,9 +78,16 @@ fn cosines(middle: f64, half: f64) -> [f64; 2] {
 }
 
 impl Function for Waves {
+    const TABLE: Table = table! {
+        "A constant and waves: constant + sum of amplitude cos(vector . x + phase) (BMA02 3.2.1).";
+        number("constant", "", ANY, Is(1.0), "The constant."),
+        nested("volume", Required, "Its waves, plugins `wave`.");
+        COMMON
+    };
+
     fn read(params: &Params<'_>) -> Result<Self> {
-        let constant = params.float("constant", 1.0)?;
-        let waves = parts(params, "wave", wave)?;
+        let constant = params.float("constant")?;
+        let waves = parts(params, "wave", &WAVE, wave)?;
         match waves.is_empty() {
             false => Ok(Self { constant, waves: waves.into() }),
             true => Err(Error::new(

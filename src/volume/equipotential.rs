@@ -1,17 +1,19 @@
 //! `equipotential`: fog that thickens around a thing, strength / (c + d r^2) (BMA02 3.2.3).
 //!
 //! `shape` says what the thing is, and what r [m of own coordinates] is with it:
-//! - `point` (where not given): the distance to `center`;
+//! - `point`: the distance to `center`;
 //! - `line`: the distance to the endless line through `p0` and `p1`;
 //! - `segment`: the distance to the nearest point between `p0` and `p1`;
 //! - `sphere`: the length of the tangent to the sphere of `radius` around `center`, r^2 = |x - center|^2 - radius^2,
 //!   and 0 within. BMA02 leaves this open; of the choices that are 0 on the sphere this is the one that integrates to
 //!   an arctangent, as the others do.
-//!
-//! `c` > 0 and `d` >= 0 are 1 where not given. `strength` may be negative, to take away in a sum.
 
-use super::placed::{Function, Line, Placed, positive, vector};
-use crate::{description::Params, error::Result, math::DVec3};
+use super::placed::{COMMON, Function, Line, Placed};
+use crate::{
+    description::{Params, Table, table},
+    error::Result,
+    math::DVec3,
+};
 
 /// Fog around a thing.
 pub type Equipotential = Placed<Potential>;
@@ -84,14 +86,14 @@ fn across(vector: DVec3, axis: DVec3) -> DVec3 {
 impl Thing {
     fn read(params: &Params<'_>) -> Result<Self> {
         let shapes = [("point", 0), ("line", 1), ("segment", 2), ("sphere", 3)];
-        match params.choice("shape", 0, &shapes)? {
+        match params.choice("shape", &shapes)? {
             0 => Ok(Self::Point(params.optional_vector("center")?.unwrap_or_default())),
-            3 => {
-                let center = params.optional_vector("center")?.unwrap_or_default();
-                Ok(Self::Sphere(center, positive(params, "radius", 1.0)?))
-            }
+            3 => Ok(Self::Sphere(
+                params.optional_vector("center")?.unwrap_or_default(),
+                params.optional_float("radius")?.unwrap_or(1.0),
+            )),
             shape => {
-                let (p0, p1) = (vector(params, "p0")?, vector(params, "p1")?);
+                let (p0, p1) = (params.vector("p0")?, params.vector("p1")?);
                 let Some(axis) = (p1 - p0).try_normalize() else {
                     return Err(params.complain("p1", "a point other than \"p0\"", p1.to_string()));
                 };
@@ -190,9 +192,23 @@ impl Potential {
 }
 
 impl Function for Potential {
+    const TABLE: Table = table! {
+        "Fog that thickens around a thing: strength / (c + d r^2), r being the distance (BMA02 3.2.3).";
+        choice("shape", &["point", "line", "segment", "sphere"], "point",
+            "The thing; of a sphere, r is the length of the tangent, and 0 within."),
+        vector("center", "", Said("the origin"), "Where a point or sphere is."),
+        vector("p0", "", Said("needed for line and segment"), "A point of the line, or where the segment begins."),
+        vector("p1", "", Said("needed for line and segment"), "Another one, or where it ends."),
+        number("radius", "", above(0.0, f64::MAX), Said("1"), "Radius of the sphere."),
+        number("strength", "", ANY, Is(1.0), "The numerator; below 0 to take away in a sum."),
+        number("c", "", above(0.0, f64::MAX), Is(1.0), "strength / c is the value at the thing."),
+        number("d", "", within(0.0, f64::MAX), Is(1.0), "How fast it thins away from the thing.");
+        COMMON
+    };
+
     fn read(params: &Params<'_>) -> Result<Self> {
-        let (strength, c) = (params.float("strength", 1.0)?, positive(params, "c", 1.0)?);
-        let d = params.float_within("d", 1.0, 0.0, f64::MAX)?;
+        let (strength, c) = (params.float("strength")?, params.float("c")?);
+        let d = params.float("d")?;
         if (strength / c).abs() > 1e30 {
             return Err(params.complain("c", "a number that keeps strength / c within 1e30", c.to_string()));
         }

@@ -1,11 +1,13 @@
 //! `exponential`: fog that thins with height, exp(-(up . x - height) / scale_height).
 //!
-//! `up` is any vector (its length is of no matter; 0, 1, 0 where not given). At `height` (0 where not given) the
-//! value is `value`; it falls to 1/e of that every `scale_height` (> 0, 1 where not given). Far below, 60 scale heights
-//! under `height`, it grows no further: there it has risen by 1e26 already.
+//! Far below, 60 scale heights under `height`, it grows no further: there it has risen by 1e26 already.
 
-use super::placed::{Function, Line, Placed, positive};
-use crate::{description::Params, error::Result, math::DVec3};
+use super::placed::{COMMON, Function, Line, Placed};
+use crate::{
+    description::{Params, Table, table},
+    error::Result,
+    math::DVec3,
+};
 
 /// Height fog.
 pub type Exponential = Placed<Haze>;
@@ -38,12 +40,20 @@ fn mean(top: f64, fall: f64) -> f64 {
 }
 
 impl Function for Haze {
+    const TABLE: Table = table! {
+        "Fog that thins with height: exp(-(up . x - height) / scale_height).";
+        vector("up", "", At([0.0, 1.0, 0.0]), "Upwards; its length is of no matter."),
+        number("height", "", ANY, Is(0.0), "Where the value is `value`."),
+        number("scale_height", "", above(0.0, f64::MAX), Is(1.0), "In every such height it falls to 1/e.");
+        COMMON
+    };
+
     fn read(params: &Params<'_>) -> Result<Self> {
-        let given = params.optional_vector("up")?.unwrap_or(DVec3::Y);
+        let given = params.vector("up")?;
         let up = given
             .try_normalize()
             .ok_or_else(|| params.complain("up", "a vector > 0 in length", given.to_string()))?;
-        let (height, scale_height) = (params.float("height", 0.0)?, positive(params, "scale_height", 1.0)?);
+        let (height, scale_height) = (params.float("height")?, params.float("scale_height")?);
         Ok(Self { up, height, scale_height })
     }
 

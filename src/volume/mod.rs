@@ -35,7 +35,7 @@ pub use sum::Sum;
 pub use wind::Wind;
 
 use crate::{
-    description::{Library, Object, Params, Registry, Value},
+    description::{Library, Object, Params, Plugin, Registry, Table, Value, parameter::Parameter, rows},
     error::{Error, Result},
     math::{Channels, DAffine3, DVec3, RaySegment, Spectrum, Vec3},
 };
@@ -147,9 +147,10 @@ macro_rules! volumes {
         }
 
         /// Every volume there is, by plugin name.
-        pub const ROWS: Registry<BuildVolume> = Registry::new("a volume", &[
-            $(($name, |params: &Params<'_>, place: &Place| {
-                $model::build(params, place).map(Volume::$model)
+        pub const ROWS: Registry<Plugin<BuildVolume>> = Registry::new("a volume", &[
+            $(($name, Plugin {
+                table: $model::TABLE,
+                build: |params: &Params<'_>, place: &Place| $model::build(params, place).map(Volume::$model),
             }),)*
         ]);
 
@@ -177,7 +178,11 @@ volumes! {
 }
 
 /// Plugins that are parts of a volume and none themselves, each with the volume that it is a part of.
-pub const PARTS: &[(&str, &str)] = &[("wave", "cosine"), ("term", "polynomial")];
+pub const PARTS: &[(&str, &str, Table)] =
+    &[("wave", "cosine", cosine::WAVE), ("term", "polynomial", polynomial::TERM)];
+
+/// What volumes have that hold others.
+const NESTED: &[Parameter] = rows! { nested("volume", Required, "The volumes, one or more.") };
 
 /// How a volume is built.
 pub type BuildVolume = fn(&Params<'_>, &Place) -> Result<Volume>;
@@ -232,26 +237,21 @@ impl Volume {
 
 /// Builds the volume that `object` describes.
 pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Volume> {
-    let build = ROWS.find(object)?;
-    let params = Params::new(object, library);
+    let (params, build) = ROWS.read(object, library)?;
     let built = build(&params, place)?;
     params.finish()?;
     Ok(built)
 }
 
-/// The parameter `name` as a volume: a nested or referenced volume, or a number or colour for one everywhere; none
-/// where not given.
-pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Option<Volume>> {
-    let constant = |color| Some(Volume::Constant(Constant::new(color, place.unit_cube())));
-    let property = params.object.properties.iter().find(|property| property.name == name);
-    match property.map(|property| &property.value) {
-        None => Ok(None),
-        Some(Value::Object(_) | Value::Reference(_)) => match params.child(name)? {
-            Some(child) if ROWS.has(child.object) => build(child.object, params.library, place).map(Some),
-            _ => params.color(name, 0.0).map(constant),
-        },
-        Some(_) => params.color(name, 0.0).map(constant),
+/// The parameter `name` as a volume: a nested or referenced volume, or a number or colour for one everywhere.
+pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Volume> {
+    if let Some(Value::Object(_) | Value::Reference(_)) = params.given(name).map(|property| &property.value)
+        && let Some(child) = params.child(name)?
+        && ROWS.has(child.object)
+    {
+        return build(child.object, params.library, place);
     }
+    params.color(name).map(|color| Volume::Constant(Constant::new(color, place.unit_cube())))
 }
 
 /// `volumes` at `time`; none where all are the same at all times.
@@ -263,7 +263,7 @@ fn all_at_time(volumes: &[Volume], time: f64) -> Option<Arc<[Volume]>> {
 
 /// All volumes nested in another, at least one; a child of another kind is an error.
 fn nested(params: &Params<'_>, place: &Place) -> Result<Vec<Volume>> {
-    let children = params.children(|_| true)?;
+    let children = params.children("volume", |_| true)?;
     if children.is_empty() {
         let remedy = format!("put a volume into the {}", params.object.plugin);
         return Err(Error::new(params.location(), "one or more nested volumes", "none", remedy));

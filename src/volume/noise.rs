@@ -1,16 +1,14 @@
 //! `noise`: turbulence, max(0, bias + amplitude s), s being a mean of octaves of Perlin's gradient noise.
 //!
-//! Octave i has `frequency` lacunarity^i (in cells per metre) and the weight gain^i. The `style` `turbulence` (where not
-//! given) takes absolute values, so that s is from 0 to 1 with creases; with `fractal` it is from -1 to 1 and smooth.
+//! Octave i has `frequency` lacunarity^i (in cells per metre) and the weight gain^i. The `style` `turbulence` takes absolute values, so that s is from 0 to 1 with creases; with `fractal` it is from -1 to 1 and smooth.
 //! Where the sum is below 0 the value is 0, which makes clouds with clear air between them. The same `seed` gives the
 //! same noise everywhere.
 //!
-//! Defaults: `frequency` 1, `octaves` 4 (1 to 16), `lacunarity` 2, `gain` 0.5, `amplitude` 1, `bias` 0, `seed` 0. There
-//! is no closed form along a line.
+//! There is no closed form along a line.
 
-use super::placed::{Function, Line, Placed, positive};
+use super::placed::{COMMON, Function, Line, Placed};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{DVec3, axes},
 };
@@ -88,31 +86,31 @@ impl Turbulence {
     }
 }
 
-/// A whole number from `low` to `high`.
-fn whole(params: &Params<'_>, name: &'static str, default: i64, [low, high]: [i64; 2]) -> Result<i64> {
-    match params.integer(name, default)? {
-        number if (low..=high).contains(&number) => Ok(number),
-        other => {
-            Err(params.complain(name, format!("a whole number from {low} to {high}"), other.to_string()))
-        }
-    }
-}
-
 impl Function for Turbulence {
+    const TABLE: Table = table! {
+        "Turbulence: max(0, bias + amplitude s), s being a mean of octaves of Perlin's noise.";
+        number("frequency", "cells/m", above(0.0, 1e30), Is(1.0), "Frequency of the first octave."),
+        integer("octaves", within(1.0, 16.0), Is(4.0), "How many octaves."),
+        number("lacunarity", "", within(0.0, 100.0), Is(2.0), "Frequency of each octave over that of the one before."),
+        number("gain", "", within(0.0, 100.0), Is(0.5), "Weight of each octave over that of the one before."),
+        choice("style", &["turbulence", "fractal"], "turbulence",
+            "Absolute values with creases, s from 0 to 1; or smooth, s from -1 to 1."),
+        number("amplitude", "", within(-1e30, 1e30), Is(1.0), "A factor on s."),
+        number("bias", "", within(-1e30, 1e30), Is(0.0), "What is added; below 0 there is clear air between the clouds."),
+        integer("seed", within(0.0, u32::MAX as f64), Is(0.0), "The same seed gives the same noise.");
+        COMMON
+    };
+
     fn read(params: &Params<'_>) -> Result<Self> {
-        let count = whole(params, "octaves", 4, [1, 16])? as i32;
-        let frequency = positive(params, "frequency", 1.0)?;
-        let lacunarity = params.float_within("lacunarity", 2.0, 0.0, 100.0)?;
-        let gain = params.float_within("gain", 0.5, 0.0, 100.0)?;
-        let seed = whole(params, "seed", 0, [0, i64::from(u32::MAX)])? as u32;
-        let limit = |name, default| params.float_within(name, default, -1e30, 1e30);
-        let creases = params.choice("style", true, &[("turbulence", true), ("fractal", false)])?;
-        if frequency > 1e30 {
-            return Err(params.complain("frequency", "a number of at most 1e30", frequency.to_string()));
-        }
+        let count = params.integer("octaves")? as i32;
+        let frequency = params.float("frequency")?;
+        let lacunarity = params.float("lacunarity")?;
+        let gain = params.float("gain")?;
+        let seed = params.integer("seed")? as u32;
+        let creases = params.choice("style", &[("turbulence", true), ("fractal", false)])?;
         let [frequencies, weights] = [(frequency, lacunarity), (1.0, gain)]
             .map(|(first, ratio)| (0..count).map(|i| first * ratio.powi(i)).collect::<Vec<_>>());
-        let levels = [limit("bias", 0.0)?, limit("amplitude", 1.0)?];
+        let levels = [params.float("bias")?, params.float("amplitude")?];
         Ok(Self::new(levels, creases, &frequencies, &weights, seed))
     }
 

@@ -1,15 +1,11 @@
 //! What all density functions share: a place in the world, a factor, and a box outside of which they are 0.
 //!
-//! Common parameters: `to_world` (any affine map from the function's own coordinates), `value` (the factor, a number
-//! or colour >= 0, 1 where not given), `min` and `max` (corners of the box, in own coordinates; without limit where
-//! not given).
-//!
 //! Functions work in f64 in their own coordinates: a function may be defined far from where it is seen, and its
 //! phases must not lose what the recentred f32 positions have.
 
 use super::{Place, VolumeModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, parameter::Parameter, rows},
     error::Result,
     math::{Channels, DAffine3, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3, boxes},
 };
@@ -32,8 +28,19 @@ impl Line {
     }
 }
 
+/// What all density functions have.
+pub(super) const COMMON: &[Parameter] = rows! {
+    transform("to_world", "From its own coordinates to those of the scene."),
+    colour("value", "", f64::INFINITY, Is(1.0), "A factor on it."),
+    vector("min", "", Said("no limit"), "It is 0 outside the box from here, in its own coordinates,"),
+    vector("max", "", Said("no limit"), "to here."),
+};
+
 /// A density function in its own coordinates, without its factor.
 pub trait Function: Clone + Debug + Send + Sync {
+    /// Its parameters, those in [`COMMON`] included.
+    const TABLE: Table;
+
     /// Reads its parameters.
     fn read(params: &Params<'_>) -> Result<Self>;
 
@@ -87,11 +94,13 @@ pub struct Placed<F> {
 }
 
 impl<F: Function> Placed<F> {
+    pub(super) const TABLE: Table = F::TABLE;
+
     /// Reads the function and the parameters that all have.
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         let function = F::read(params)?;
         let bounds = bounds(params)?;
-        Ok(Self::new(function, place.to_world(params)?, params.color("value", 1.0)?, bounds))
+        Ok(Self::new(function, place.to_world(params)?, params.color("value")?, bounds))
     }
 
     fn new(function: F, to_world: DAffine3, value: Spectrum, bounds: [DVec3; 2]) -> Self {
@@ -213,30 +222,22 @@ impl<F: Function> VolumeModel for Placed<F> {
     }
 }
 
-/// The parameter `name`, a number > 0.
-pub(super) fn positive(params: &Params<'_>, name: &'static str, default: f64) -> Result<f64> {
-    match params.float(name, default)? {
-        number if number > 0.0 => Ok(number),
-        other => Err(params.complain(name, "a number > 0", other.to_string())),
-    }
-}
-
-/// A vector that must be given.
-pub(super) fn vector(params: &Params<'_>, name: &'static str) -> Result<DVec3> {
-    params.optional_vector(name)?.ok_or_else(|| params.missing(name, "three numbers"))
-}
-
 /// All nested `plugin`s, which are parts of a function and no volumes of their own.
 pub(super) fn parts<T>(
     params: &Params<'_>,
     plugin: &str,
+    table: &'static Table,
     read: impl Fn(&Params<'_>) -> Result<T>,
 ) -> Result<Vec<T>> {
     let read = |object| {
-        let part = Params::new(object, params.library);
+        let part = Params::new(object, params.library, table);
         let built = read(&part)?;
         part.finish()?;
         Ok(built)
     };
-    params.children(|child| child.object.plugin == plugin)?.iter().map(|child| read(child.object)).collect()
+    params
+        .children("volume", |child| child.object.plugin == plugin)?
+        .iter()
+        .map(|child| read(child.object))
+        .collect()
 }

@@ -14,11 +14,11 @@
 //! between is taken to be like them.
 
 use super::{
-    placed::{Function, Line, Placed, parts, positive, vector},
+    placed::{COMMON, Function, Line, Placed, parts},
     quadrature::gauss,
 };
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{DVec3, axes},
 };
@@ -53,14 +53,22 @@ const DEGREE: usize = 31;
 /// So many boxes are crossed one by one.
 const CROSSED: f64 = 8192.0;
 
+pub(super) const TERM: Table = table! {
+    "A term of a `polynomial`: a coefficient times powers of the coordinates.";
+    number("coefficient", "", ANY, Is(1.0), "The coefficient."),
+    vector("powers", "", Required, "Three whole numbers >= 0, the powers of x, y and z."),
+};
+
+const NUMBERS: &str = "numbers in a string";
+
 fn term(params: &Params<'_>) -> Result<Term> {
-    let given = vector(params, "powers")?;
+    let given = params.vector("powers")?;
     let is_power = |p: &f64| p.fract() == 0.0 && *p >= 0.0;
     if !given.to_array().iter().all(is_power) || given.element_sum() > DEGREE as f64 {
         let expected = format!("three whole numbers >= 0 with a sum of at most {DEGREE}");
         return Err(params.complain("powers", expected, given.to_string()));
     }
-    Ok(Term { coefficient: params.float("coefficient", 1.0)?, powers: given.to_array().map(|p| p as u32) })
+    Ok(Term { coefficient: params.float("coefficient")?, powers: given.to_array().map(|p| p as u32) })
 }
 
 /// The numbers in the string `name`; none where not given.
@@ -286,9 +294,20 @@ pub(super) fn product([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
 }
 
 impl Function for Tile {
+    const TABLE: Table = table! {
+        "A polynomial of the coordinates on a box, repeated in space or 0 outside (BMA02 3.2.2).";
+        text("x", NUMBERS, Optional, "Coefficients of the powers of x, constant first: \"0.8, -1, 0, 0, 1\" is 0.8 - x + x^4."),
+        text("y", NUMBERS, Optional, "Those of y."),
+        text("z", NUMBERS, Optional, "Those of z."),
+        nested("volume", Optional, "Mixed terms, plugins `term`."),
+        number("half_width", "", above(0.0, f64::MAX), Is(1.0), "The box is from minus this to this along every axis."),
+        choice("wrap", &["repeat", "zero"], "repeat", "What is outside: the same again, or 0.");
+        COMMON
+    };
+
     fn read(params: &Params<'_>) -> Result<Self> {
         let axes = [coefficients(params, "x")?, coefficients(params, "y")?, coefficients(params, "z")?];
-        let terms = parts(params, "term", term)?;
+        let terms = parts(params, "term", &TERM, term)?;
         if terms.is_empty() && axes.iter().all(Vec::is_empty) {
             return Err(Error::new(
                 params.location(),
@@ -297,8 +316,8 @@ impl Function for Tile {
                 "add \"x\", \"y\" or \"z\", such as \"0.8, -1, 0, 0, 1\", or a nested plugin \"term\"",
             ));
         }
-        let repeats = params.choice("wrap", true, &[("repeat", true), ("zero", false)])?;
-        let tile = Self::new(axes, &terms, positive(params, "half_width", 1.0)?, repeats);
+        let repeats = params.choice("wrap", &[("repeat", true), ("zero", false)])?;
+        let tile = Self::new(axes, &terms, params.float("half_width")?, repeats);
         let most = tile.greatest();
         match most <= 1e30 {
             true => Ok(tile),

@@ -1,8 +1,8 @@
 //! `product`: the values of nested volumes, multiplied: a shape times a texture.
 
-use super::{Place, Volume, VolumeModel, all_at_time, nested};
+use super::{NESTED, Place, Volume, VolumeModel, all_at_time, nested};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{Channels, DVec3, RaySegment, Spectrum, Vec3},
 };
@@ -19,6 +19,9 @@ pub struct Product {
 }
 
 impl Product {
+    pub(super) const TABLE: Table =
+        table! { "Nested volumes, multiplied: a shape times a texture."; ; NESTED };
+
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         nested(params, place).map(Self::new)
     }

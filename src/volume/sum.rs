@@ -1,8 +1,8 @@
 //! `sum`: the values of nested volumes, added (BMA02 eq. 7). What takes away is a function with negative values.
 
-use super::{Place, Volume, VolumeModel, all_at_time, nested};
+use super::{NESTED, Place, Volume, VolumeModel, all_at_time, nested};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::Result,
     math::{Channels, DVec3, RaySegment, Spectrum, Vec3},
 };
@@ -13,6 +13,8 @@ use std::sync::Arc;
 pub struct Sum(Arc<[Volume]>);
 
 impl Sum {
+    pub(super) const TABLE: Table = table! { "Nested volumes, added."; ; NESTED };
+
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         nested(params, place).map(|terms| Self(terms.into()))
     }

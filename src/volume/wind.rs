@@ -1,9 +1,9 @@
 //! `wind`: a nested volume that drifts with `velocity` [m/s], from where it is at the time 0 to where it is at the
 //! scene's `time` [s] (BMA02 5). What is added to it, in a sum, stays.
 
-use super::{Place, Volume, VolumeModel, nested, placed::vector};
+use super::{Place, Volume, VolumeModel, nested};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{Channels, DVec3, RaySegment, Spectrum, Vec3},
 };
@@ -22,8 +22,14 @@ pub struct Wind {
 }
 
 impl Wind {
+    pub(super) const TABLE: Table = table! {
+        "A nested volume that drifts: it is in its place at the scene's `time` 0.";
+        vector("velocity", "m/s", Required, "Where to, and how fast."),
+        nested("volume", Required, "The volume."),
+    };
+
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
-        let velocity = vector(params, "velocity")?;
+        let velocity = params.vector("velocity")?;
         let moved = Place { recentre: place.recentre - velocity * place.time, ..*place };
         let [inner] = <[Volume; 1]>::try_from(nested(params, &moved)?).map_err(|several| {
             Error::new(

@@ -10,6 +10,7 @@ mod converting;
 mod cropping;
 mod diff;
 mod errors;
+mod explain;
 mod flights;
 mod grouping;
 mod html;

@@ -20,7 +20,7 @@ fn emission(parameters: &[(&str, Value)], within: Within) -> Result<Option<Emiss
     let object = object("homogeneous", parameters);
     let library = Library::default();
     let place = Place { recentre: DVec3::ZERO, time: 0.0 };
-    let given = EmissionDescription::read(&Params::new(&object, &library), &place)?;
+    let given = EmissionDescription::read(&crate::medium::ROWS.read(&object, &library)?.0, &place)?;
     given.map_or(Ok(None), |given| Emission::new(given, within, &AROUND))
 }
 
@@ -73,7 +73,7 @@ fn spectra_are_those_of_light() {
     let light = emitting(&[("emission", red.clone())], properties(0.0, 0.0)).at(vec3(0.0, 0.5, 1.0));
     let object = object("point", &[("intensity", red)]);
     let library = Library::default();
-    assert_eq!(light, Params::new(&object, &library).emission("intensity", 1.0).unwrap());
+    assert_eq!(light, crate::emitter::ROWS.read(&object, &library).unwrap().0.color("intensity").unwrap());
 }
 
 /// 4 pi times the integral, in closed form; the means of cells are averages over few points of them.

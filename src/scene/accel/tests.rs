@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    description::{Library, Location, Object, Params, Position, Property, TransformStep, Value},
+    description::{Library, Location, Object, Position, Property, TransformStep, Value},
     math::{DVec3, Vec2, offset::leave_surface, vec2, vec3, warp},
     sampling::stream::Purpose,
     shape,
@@ -26,8 +26,8 @@ fn shape_of(plugin: &str, properties: &[(&str, Value)], recentre: DVec3) -> crat
     let object =
         Object { tag: None, plugin: plugin.into(), id: None, properties, location: location.clone() };
     let library = Library::default();
-    let params = Params::new(&object, &library);
-    let shape = shape::build(&params, recentre)?;
+    let (params, build) = shape::ROWS.read(&object, &library)?;
+    let shape = build(&params, recentre)?;
     params.finish()?;
     Ok(shape)
 }

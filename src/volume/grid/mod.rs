@@ -16,7 +16,7 @@ mod wrap;
 
 use super::{Coarse, Place, VolumeModel};
 use crate::{
-    description::Params,
+    description::{Params, Table, table},
     error::{Error, Result},
     math::{
         Affine3A, Channels, DAffine3, DVec3, RaySegment, Spectrum, SpectrumExt, Vec3, axes,
@@ -92,25 +92,36 @@ macro_rules! each {
 }
 
 impl Grid {
-    /// Reads `filename`, `filter_type`, `wrap_mode`, `use_grid_bbox` (true by default for files that know where they
-    /// lie, `.vdb` and `.nvdb`), `to_world`, and `grid`, the name of one of several; `raw`, `accel` and `max_value`
-    /// change nothing.
-    pub fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
+    pub(super) const TABLE: Table = table! {
+        "Voxels from a file; they fill the unit cube of `to_world`, or the file's own box.";
+        file("filename", "The file: .vol, .vdb or .nvdb."),
+        text("grid", "the name of a grid", Said("density, or the only one"), "Which of several grids of a .vdb or .nvdb file.").ours(),
+        choice("filter_type", &["trilinear", "nearest"], "trilinear", "How values between voxel centres come about."),
+        choice("wrap_mode", &words::<3, _>(&Wrap::NAMES), "clamp", "What lies beyond the voxels, within the world box around them."),
+        boolean("raw", false, "Without effect: voxels are numbers."),
+        boolean("use_grid_bbox", false, "True places the voxels in the file's own box.").said("true of .vdb and .nvdb files, else false"),
+        transform("to_world", "Where the unit cube is."),
+        ignored("accel", "the maximum is known, and no texture unit runs"),
+        ignored("max_value", "the maximum is known, and no texture unit runs"),
+    };
+
+    pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         let path = params.file("filename")?;
         let is_vdb = file::is_vdb(&path);
-        if params.has("data") || (params.has("grid") && !is_vdb) {
+        if params.object.properties.iter().any(|property| property.name == "data")
+            || (params.has("grid") && !is_vdb)
+        {
             let remedy = "save the grid to a file and give its name as \"filename\"; \"grid\" names one of several \
                           in a .vdb or .nvdb file";
             return Err(Error::new(params.location(), "a grid file", "a grid in memory", remedy));
         }
         let grid = params.optional_string("grid")?;
         let filters = [("trilinear", Filter::Trilinear), ("nearest", Filter::Nearest)];
-        let filter = params.choice("filter_type", Filter::Trilinear, &filters)?;
-        let wrap = params.choice("wrap_mode", Wrap::Clamp, &Wrap::NAMES)?;
-        params.boolean("raw", false)?;
-        params.accept_unused(&["accel", "max_value"], "the maximum is known, and no texture unit runs");
+        let filter = params.choice("filter_type", &filters)?;
+        let wrap = params.choice("wrap_mode", &Wrap::NAMES)?;
+        params.boolean("raw")?;
         let mut to_world = place.to_world(params)?;
-        let uses_file_box = params.boolean("use_grid_bbox", is_vdb)?;
+        let uses_file_box = params.optional_boolean("use_grid_bbox")?.unwrap_or(is_vdb);
         let source = file::open(&path, grid)?;
         if uses_file_box {
             check_box(&path, &source.to_file)?;

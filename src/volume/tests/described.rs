@@ -1,7 +1,7 @@
 //! Volumes from scene files: both spellings, time and wind, and what is wrong with them.
 
 use super::*;
-use crate::{format, format::Spelling};
+use crate::{description::table, format, format::Spelling};
 use std::path::Path;
 
 /// The volume called `fog` of a scene, and the scene's description.
@@ -199,6 +199,15 @@ fn recentring_changes_nothing() {
     }
 }
 
+const TABLE: Table = table! {
+    "Any plugin.";
+    volume("a", "", 0.25, ""),
+    volume("b", "", 0.25, ""),
+    volume("c", "", 0.25, ""),
+    volume("d", "", 0.25, ""),
+    volume("e", "", 0.25, ""),
+};
+
 #[test]
 fn a_parameter_may_be_a_number_or_a_volume() {
     let text = r#"{"type": "scene", "fog": {"type": "heterogeneous", "a": 0.5, "b": {"type": "exponential"},
@@ -209,16 +218,18 @@ fn a_parameter_may_be_a_number_or_a_volume() {
     std::fs::write(&path, text).unwrap();
     let root = format::read(&path, &[]).unwrap();
     let library = Library::new(&root).unwrap();
-    let params = Params::new(library.resolve("fog", &root.location).unwrap(), &library);
+    let params = Params::new(library.resolve("fog", &root.location).unwrap(), &library, &TABLE);
     let get = |name| parameter(&params, name, &HERE).unwrap();
     assert!(
-        matches!(get("a"), Some(Volume::Constant(c)) if c.eval::<Spectrum>(Vec3::ZERO) == Spectrum::splat(0.5))
+        matches!(get("a"), Volume::Constant(c) if c.eval::<Spectrum>(Vec3::ZERO) == Spectrum::splat(0.5))
     );
-    assert!(matches!(get("b"), Some(Volume::Exponential(_))));
+    assert!(matches!(get("b"), Volume::Exponential(_)));
     assert!(
-        matches!(get("c"), Some(Volume::Constant(c)) if c.eval::<Spectrum>(Vec3::ZERO) == Spectrum::new(1.0, 2.0, 3.0))
+        matches!(get("c"), Volume::Constant(c) if c.eval::<Spectrum>(Vec3::ZERO) == Spectrum::new(1.0, 2.0, 3.0))
     );
-    assert!(matches!(get("d"), Some(Volume::Cosine(_))));
-    assert!(get("e").is_none());
+    assert!(matches!(get("d"), Volume::Cosine(_)));
+    assert!(
+        matches!(get("e"), Volume::Constant(c) if c.eval::<Spectrum>(Vec3::ZERO) == Spectrum::splat(0.25))
+    );
     params.finish().unwrap();
 }

@@ -195,7 +195,8 @@ fn warned(name: &str, text: &[u8]) -> (Shape, Vec<String>) {
     let plugin = name.rsplit('.').next().unwrap().into();
     let object = Object { tag: None, plugin, id: None, properties: vec![filename], location };
     let library = Library::default();
-    let shape = shape::build(&Params::new(&object, &library), DVec3::ZERO).unwrap();
+    let (params, build) = shape::ROWS.read(&object, &library).unwrap();
+    let shape = build(&params, DVec3::ZERO).unwrap();
     (shape, library.take_warnings())
 }
 

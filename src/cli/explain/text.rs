@@ -1,0 +1,137 @@
+//! Explanations for the terminal.
+
+use super::{KINDS, everything, is_ours, plugins, rows, star};
+use crate::description::{
+    Table,
+    parameter::{Default, Kind, Parameter, plain},
+};
+
+/// One line a plugin.
+pub fn kind(tag: &str) -> String {
+    let heading = KINDS.iter().find(|(known, _)| *known == tag).map_or(tag, |(_, heading)| heading);
+    let names = plugins(tag).into_iter().map(|(name, table)| (marked(tag, name), table.about));
+    format!("{heading} ({tag}, * not in Mitsuba)\n{}", columns(names.collect()))
+}
+
+/// A plugin and all of its parameters.
+pub fn plugin(tag: &str, name: &str, table: &'static Table) -> String {
+    let (used, ignored) = rows(table);
+    let rows = used.into_iter().map(|row| {
+        let written = format!("{}{}", written(row), star(row.ours));
+        (written, format!("{}; {}. {}", allowed(row), default(row), row.about))
+    });
+    let kind = if tag == name { String::new() } else { format!(" ({tag})") };
+    let mut text = format!("{}{kind}: {}\n{}", marked(tag, name), table.about, columns(rows.collect()));
+    if !ignored.is_empty() {
+        let rows = ignored.into_iter().map(|row| (row.name.to_owned(), row.about));
+        text += &format!("\nAccepted, without effect:\n{}", columns(rows.collect()));
+    }
+    if tag != "scene" {
+        text += &format!("\nIn a scene, with every plain default written out:\n  {}\n", example(name, table));
+    }
+    text
+}
+
+/// All plugins that have a parameter, if any has.
+pub fn parameter(name: &str) -> Option<String> {
+    let holders = everything().filter_map(|(tag, plugin, table)| {
+        let row = table.find(name).filter(|row| !row.is_ignored())?;
+        Some((format!("{plugin} ({tag})"), format!("{}; {}. {}", allowed(row), default(row), row.about)))
+    });
+    let holders: Vec<_> = holders.collect();
+    (!holders.is_empty()).then(|| format!("{name}, a parameter of\n{}", columns(holders)))
+}
+
+fn marked(tag: &str, name: &str) -> String {
+    format!("{name}{}", star(is_ours(tag, name)))
+}
+
+/// A parameter's name; of what is nested under any name, its kind.
+fn written(row: &Parameter) -> String {
+    if row.kind == Kind::Nested { format!("({})", row.name) } else { row.name.to_owned() }
+}
+
+/// Names, and beside each a text.
+fn columns(lines: Vec<(String, impl AsRef<str>)>) -> String {
+    let width = lines.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let line = |(name, text): &(String, _)| {
+        format!("  {name:width$}  {}\n", wrapped(AsRef::as_ref(text), width + 4))
+    };
+    lines.iter().map(line).collect()
+}
+
+/// In lines of at most 100 characters, all but the first of which begin with `indent` spaces.
+fn wrapped(text: &str, indent: usize) -> String {
+    let (mut lines, mut column) = (String::new(), indent);
+    for word in text.split(' ') {
+        if column > indent && column + word.len() >= 100 {
+            lines += &format!("\n{:indent$}", "");
+            column = indent;
+        } else if column > indent {
+            lines.push(' ');
+        }
+        lines += word;
+        column += word.len() + 1;
+    }
+    lines
+}
+
+/// What may be given.
+pub fn allowed(row: &Parameter) -> String {
+    let range = row.range();
+    let bounded = if range.is_bounded() { range.to_string() } else { String::new() };
+    let text = match row.kind {
+        Kind::Number(_) => format!("number{range}"),
+        Kind::NumberOrName(_) => format!("number{range}, or the name of a material"),
+        Kind::Integer(_) => format!("integer{range}"),
+        Kind::Boolean => "true or false".into(),
+        Kind::Text(what) => format!("text: {what}"),
+        Kind::Choice(words) => words.join(", "),
+        Kind::Vector => "three numbers".into(),
+        Kind::Channels => "a number or three".into(),
+        Kind::Transform => "transform".into(),
+        Kind::Colour(..) => format!("colour{bounded}"),
+        Kind::Texture(..) => format!("colour or texture{bounded}"),
+        Kind::Volume(_) => "colour or volume".into(),
+        Kind::Spectrum => "spectrum".into(),
+        Kind::File => "file".into(),
+        Kind::Object(tag) => tag.into(),
+        Kind::Nested => "nested, under any name".into(),
+        Kind::Ignored { .. } => "anything".into(),
+    };
+    if row.unit.is_empty() { text } else { format!("{text} [{}]", row.unit) }
+}
+
+/// What counts where it is not given.
+pub fn default(row: &Parameter) -> String {
+    match row.default {
+        Default::Required => "required".into(),
+        Default::Optional => "optional".into(),
+        Default::Is(x) => format!("default {}", plain(rounded(x))),
+        Default::Yes(b) => format!("default {b}"),
+        Default::Word(word) => format!("default {word}"),
+        Default::At([x, y, z]) => format!("default {x}, {y}, {z}"),
+        Default::Said(text) => format!("default: {}", text.replace('`', "")),
+    }
+}
+
+/// To six digits: thirds have endless ones.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+/// The plugin as JSON.
+pub fn example(name: &str, table: &Table) -> String {
+    let value = |row: &Parameter| match (row.default, row.kind) {
+        (Default::Is(x), _) => Some(plain(rounded(x))),
+        (Default::Yes(b), _) => Some(b.to_string()),
+        (Default::Word(word), _) => Some(format!("\"{word}\"")),
+        (Default::At(v), _) => Some(format!("{v:?}").replace(".0", "")),
+        (Default::Required, Kind::File | Kind::Text(_)) => Some("\"...\"".into()),
+        (Default::Required, Kind::Nested) => Some("{ ... }".into()),
+        (Default::Required, _) => Some("...".into()),
+        (Default::Optional | Default::Said(_), _) => None,
+    };
+    let given = table.rows().filter_map(|row| Some(format!(", \"{}\": {}", row.name, value(row)?)));
+    format!("\"my_{name}\": {{ \"type\": \"{name}\"{} }}", given.collect::<String>())
+}
