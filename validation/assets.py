@@ -8,9 +8,9 @@ import mitsuba as mi
 import numpy as np
 import numpy.typing as npt
 
+from tyndall.volume_file import UNIT, vol
 from validation import mitsuba
 from validation.places import CROSSCHECK
-from validation.volume_file import UNIT, vol
 
 SERIALIZED_FORMAT, SERIALIZED_VERSION = 0x041C, 4
 NORMALS, TEXTURE_COORDINATES, SINGLE_PRECISION = 0x0001, 0x0002, 0x1000

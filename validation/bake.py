@@ -8,10 +8,10 @@ from typing import Any
 import mitsuba as mi
 import numpy as np
 
+from tyndall.failure import Failure
+from tyndall.volume_file import vol
 from validation import densities, mitsuba
-from validation.failure import Failure
 from validation.places import TARGET
-from validation.volume_file import vol
 
 FOLDER = TARGET / "validation-baked"
 RESOLUTION = 64

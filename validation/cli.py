@@ -4,14 +4,33 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from validation import assets, cells, compare, comparison_page, coverage, efficiency, full, growth, instructions, matrix, package_tests, page, plume, rays, references, selftest
-from validation import studies, truths, tyndall
+from tyndall import program
+from tyndall.failure import Failure
+from tyndall.scene import open_scene
+from validation import (
+    assets,
+    cells,
+    compare,
+    comparison_page,
+    coverage,
+    efficiency,
+    full,
+    growth,
+    instructions,
+    matrix,
+    package_tests,
+    page,
+    plume,
+    rays,
+    references,
+    selftest,
+    studies,
+    truths,
+)
 from validation.cluster import cli as cluster
 from validation.compare import Effort
-from validation.failure import Failure
-from validation.places import OUTPUT, REPORTS, SCENES
-from validation.scene import open_scene
 from validation.made_by import made_by_command
+from validation.places import OUTPUT, REPORTS, SCENES
 
 Commands = argparse._SubParsersAction  # argparse gives it no public name
 
@@ -218,7 +237,7 @@ def add_record(commands: Commands) -> None:
 
 
 def run_record(options: argparse.Namespace) -> bool:
-    print(tyndall.call([str(tyndall.binary()), "report", str(options.folder), "--record", str(options.output)]).stdout.strip())
+    print(program.call([str(program.binary()), "report", str(options.folder), "--record", str(options.output)]).stdout.strip())
     return True
 
 

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from validation import mitsuba, picture, tyndall
-from validation.failure import Failure
+import tyndall
+from tyndall.failure import Failure
+from tyndall.scene import Scene, derived
+from validation import mitsuba, picture
 from validation.places import OUTPUT
-from validation.scene import Scene, derived
 from validation.statistics import Estimate, estimate, exact, sidak_limit, standard_score
 
 ACCEPTED = 0.9975

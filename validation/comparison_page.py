@@ -6,12 +6,12 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from tyndall.failure import Failure
+from tyndall.scene import Scene
 from validation import flip, picture
 from validation.compare import RETRY, Effort, Verdict
-from validation.failure import Failure
 from validation.files import write_text
 from validation.made_by import made_by_command
-from validation.scene import Scene
 
 TEMPLATES = Path(__file__).parent / "templates"
 SHARPEST = 4.0

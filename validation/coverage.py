@@ -10,9 +10,9 @@ from typing import Any
 
 import mitsuba as mi
 
+from tyndall.failure import Failure
+from tyndall.program import binary
 from validation.cases import CASES, Case
-from validation.failure import Failure
-from validation.tyndall import binary
 
 PLUGIN_FOLDER = Path(mi.__file__).parent / "plugins"
 PLACES = (

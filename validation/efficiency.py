@@ -12,11 +12,11 @@ from typing import Any, cast
 
 import numpy as np
 
+from tyndall.failure import Failure
+from tyndall.volume_file import vol
 from validation import plume, studies
-from validation.failure import Failure
 from validation.made_by import made_by_command
 from validation.places import OUTPUT, REPORTS, SCENES
-from validation.volume_file import vol
 
 FOLDER = SCENES / "efficiency"
 WANTED = {

@@ -10,8 +10,8 @@ from typing import Any
 import mitsuba as mi
 import numpy as np
 
-from validation.failure import Failure
-from validation.scene import Scene, changed
+from tyndall.failure import Failure
+from tyndall.scene import Scene, changed
 
 TRANSFORM_STEPS = ("scale", "rotate", "translate", "lookat", "matrix")
 OUR_INTEGRATORS = ("bdpt", "pt", "lt")

@@ -10,8 +10,8 @@ import mitsuba as mi
 import numpy as np
 from playwright.sync_api import Browser, Error, FloatRect, Locator, Page
 
+from tyndall.failure import Failure
 from validation.browser import Opened, Scheme, chromium, opened, running
-from validation.failure import Failure
 
 DESKTOP, PHONE = (1280, 900), (375, 800)
 WIDTHS = (320, 375, 768, 1280, 1920)

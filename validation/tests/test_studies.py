@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validation import cli, contender, exr, mitsuba, studies, tyndall
-from validation.failure import Failure
+from tyndall import exr, program
+from tyndall.failure import Failure
+from tyndall.scene import Scene, open_scene
+from validation import cli, contender, mitsuba, studies
 from validation.places import CROSSCHECK, ROOT, SCENES
-from validation.scene import Scene, open_scene
 
 ROOM = CROSSCHECK / "cube_in_room.json"
 
@@ -97,5 +98,5 @@ def test_mitsuba_takes_part_in_a_study(tmp_path: Path) -> None:
     assert (theirs["name"], ours["name"]) == ("mitsuba volpath scalar_rgb", "bdpt")
     assert theirs["load_seconds"] > 0 and theirs["points"][1]["relmse"]["mean"] > 0 and ours["ratio"]["mean"] > 0
     assert "mitsuba volpath scalar_rgb" in scene["reference"]["how"]
-    print(tyndall.call([str(tyndall.binary()), "report", str(tmp_path), "--record", str(tmp_path / "record")]).stdout)
+    print(program.call([str(program.binary()), "report", str(tmp_path), "--record", str(tmp_path / "record")]).stdout)
     assert {path.name for path in (tmp_path / "record").iterdir()} == {"convergence.md", "convergence.svg", "convergence_strips.svg"}

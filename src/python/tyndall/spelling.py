@@ -5,15 +5,17 @@ Both have the same words; what differs is values. Here numbers and points of num
 for a file (a bitmap's `data` or `bitmap`, a gridvolume's `data` or `grid`) become that file. Nothing is imported of
 Mitsuba: its objects are known by what they can do."""
 
+import itertools
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from validation import exr
-from validation.failure import Failure
-from validation.volume_file import vol
+from tyndall import exr
+from tyndall.failure import Failure
+from tyndall.volume_file import vol
 
 PICTURES = {"bitmap": ("data", "bitmap"), "envmap": ("data", "bitmap")}
 """Plugins that show an image file, and the parameters that may hold the image itself."""
@@ -31,7 +33,7 @@ class Speller:
 
     def __init__(self, folder: Path):
         self.folder = folder
-        self.files = 0
+        self.paths: set[Path] = set()
 
     def object(self, tree: Mapping[str, Any], place: str) -> dict[str, Any]:
         """A dictionary."""
@@ -44,11 +46,17 @@ class Speller:
         for table, end, write in ((PICTURES, ".exr", write_picture), (VOXELS, ".vol", write_voxels)):
             for key in table.get(kind, ()) if isinstance(kind, str) else ():
                 if key in tree and not isinstance(tree[key], (str, Mapping)):
-                    path = self.folder / f"array-{self.files}{end}"
-                    self.files += 1
-                    tree = {**tree, "filename": write(path, tree[key], f"{place}.{key}")}
+                    tree = {**tree, "filename": write(self.path(f"{place}.{key}", end), tree[key], f"{place}.{key}")}
                     del tree[key]
         return tree
+
+    def path(self, place: str, end: str) -> Path:
+        """A new file, named after the place of what it holds: so do messages about it."""
+        name = re.sub(r"[^\w.-]", "_", place.removeprefix("$."))
+        paths = (self.folder / f"{name}{number or ''}{end}" for number in itertools.count())
+        path = next(path for path in paths if path not in self.paths)
+        self.paths.add(path)
+        return path
 
     def value(self, value: Any, place: str) -> Any:
         """Anything that a dictionary can hold."""

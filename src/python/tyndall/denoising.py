@@ -1,0 +1,40 @@
+"""Open Image Denoise on pictures, with albedo and normals where a render made them. Its package is an extra:
+`pip install tyndall[denoise]`."""
+
+from typing import Any
+
+import numpy as np
+
+from tyndall.failure import Failure
+from tyndall.picture import Picture
+from tyndall.scene import Scene, load
+
+ALBEDO, NORMAL = "albedo", "normal"
+"""Names of the layers."""
+INTEGRATORS = "bdpt", "path", "volpath", "volpathmis", "ptracer", "fog", "single_scattering", "non_scattering", "aov", "moment"
+
+
+def with_features(scene: Scene) -> Scene:
+    """The scene with layers for denoising: its integrator inside an `aov`."""
+    tree = load(scene)
+    own = next((name for name, child in tree.items() if isinstance(child, dict) and child.get("type") in INTEGRATORS), "integrator")
+    layers = {"type": "aov", "aovs": f"{ALBEDO}:albedo,{NORMAL}:sh_normal", "image": tree.get(own, {"type": "volpath"})}
+    return Scene({**tree, own: layers}, scene.name)
+
+
+def denoised(picture: Picture) -> Picture:
+    """The picture as Open Image Denoise sees it."""
+    try:
+        import pyoidn
+    except ImportError:
+        raise Failure("Open Image Denoise is not installed", "pip install pyoidn, or tyndall[denoise] in place of tyndall") from None
+    layers = picture.layers
+    features: dict[str, Any] = {name: single(layers[name]) for name in (ALBEDO, NORMAL) if name in layers}
+    found = pyoidn.denoise(single(picture), hdr=True, **features)
+    return Picture(found, {}, picture.metadata | {"denoised": "Open Image Denoise"}, picture.report, is_denoised=True)
+
+
+def single(image: np.ndarray) -> np.ndarray:
+    """In single precision."""
+    return np.ascontiguousarray(image, dtype=np.float32)
+
