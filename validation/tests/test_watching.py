@@ -72,7 +72,7 @@ def test_what_takes_too_long_is_ended() -> None:
 def test_warnings_of_the_program_are_pythons() -> None:
     with pytest.warns(tyndall.TyndallWarning, match="tracker has no effect") as found:
         tyndall.render(CROSSCHECK / "fog_isotropic.json", spp=1, size=(4, 4), tracker="exact")
-    assert found[0].filename == __file__
+    assert [warning.filename for warning in found] == [__file__]
 
 
 def test_a_bar_is_shown_where_it_is_wanted(capsys: pytest.CaptureFixture[str]) -> None:
