@@ -9,8 +9,9 @@ import mitsuba as mi
 import numpy as np
 
 from tyndall.failure import Failure
+from tyndall.load_dict import to_mitsuba
 from tyndall.volume_file import vol
-from validation import densities, mitsuba
+from validation import densities
 from validation.places import TARGET
 
 FOLDER = TARGET / "validation-baked"
@@ -59,7 +60,7 @@ def box_of(tree: dict, medium: dict) -> np.ndarray:
         held_by = f"a density function in a medium that {len(shapes)} shapes hold"
         raise Failure(f"{held_by} cannot be baked", "let one shape hold it")
     kept = {k: v for k, v in shapes[0].items() if k not in ("bsdf", "interior", "exterior", "emitter")}
-    box = mi.load_dict({k: mitsuba.transform(v) if mitsuba.is_transform(v) else v for k, v in kept.items()}).bbox()
+    box = mi.load_dict(to_mitsuba({**kept})).bbox()
     return np.array([box.min, box.max], dtype=float)
 
 

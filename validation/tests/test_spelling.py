@@ -11,7 +11,7 @@ import pytest
 from tyndall import exr
 from tyndall.failure import Failure
 from tyndall.spelling import spelled
-from validation.mitsuba import transform
+from tyndall.load_dict import transform
 
 
 @pytest.fixture(autouse=True, params=["scalar_rgb", "numpy only"])

@@ -140,7 +140,7 @@ def test_messages_name_no_file_that_is_gone() -> None:
     assert refused(UNREADABLE).startswith("the scene $.thing: expected the type of a plugin")
     smoke = {"type": "heterogeneous", "sigma_t": {"type": "gridvolume", "data": -np.ones((2, 2, 2))}}
     scene = {"type": "scene", "camera": {"type": "perspective"}, "cloud": {"type": "cube", "interior": smoke}}
-    assert refused(scene).startswith("cloud.interior.sigma_t.data.vol: expected voxels")
+    assert refused(scene).startswith("$.cloud.interior.sigma_t.data: expected voxels")
 
 
 def test_one_frame_is_a_picture() -> None:

@@ -8,6 +8,7 @@
 from tyndall.arguments import options
 from tyndall.commands import diff, info, study
 from tyndall.failure import Failure, TyndallWarning
+from tyndall.load_dict import from_mitsuba, to_mitsuba
 from tyndall.picture import Picture, read
 from tyndall.rendering import ALL_STRATEGIES, Rendering, render, render_batches, run
 from tyndall.scene import AnyScene, Scene, load
@@ -21,6 +22,7 @@ __all__ = [
     "Scene",
     "TyndallWarning",
     "diff",
+    "from_mitsuba",
     "info",
     "load",
     "options",
@@ -29,4 +31,5 @@ __all__ = [
     "render_batches",
     "run",
     "study",
+    "to_mitsuba",
 ]

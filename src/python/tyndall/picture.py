@@ -39,6 +39,11 @@ class Picture(np.ndarray):
     def __array_finalize__(self, other: object) -> None:
         self.channels, self.metadata, self.report, self.is_denoised = {}, {}, {}, False
 
+    def __array_wrap__(self, array: np.ndarray, context: Any = None, return_scalar: bool = False) -> Any:
+        """What is computed and no image is an ordinary array, or a number."""
+        is_image = array.ndim == 3 and array.shape[2] == 3
+        return array.view(Picture) if is_image else np.asarray(array)[()]
+
     def __reduce__(self) -> tuple[Any, ...]:
         return Picture, (np.asarray(self), self.channels, self.metadata, self.report, self.is_denoised)
 

@@ -132,8 +132,10 @@ def rendering(folder: Path, outcome: watching.Outcome, command: list[str]) -> Re
 
 
 def lasting(text: str, folder: Path) -> str:
-    """Text in which the scene that was written to a folder that is gone is called that."""
-    return text.replace(str(folder / "scene.json"), "the scene").replace(f"{folder}/", "")
+    """Text in which what was written to a folder that is gone is called by what it was: the scene, or a place in it."""
+    text = text.replace(str(folder / "scene.json"), "the scene")
+    text = re.sub(rf"{re.escape(str(folder))}/(?!image\.)([\w.-]+)\.(?:exr|vol|png)", r"$.\1", text)
+    return text.replace(f"{folder}/", "")
 
 
 def warnings_in(said: str) -> list[str]:
