@@ -3,14 +3,13 @@ program is used, its options are checked before anything runs."""
 
 import difflib
 import re
-import subprocess
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from tyndall.failure import Failure
-from tyndall.program import binary, flag, text
+from tyndall.program import binary, call, flag, text
 
 OTHERWISE = {
     "output": "call .save(file) of the picture",
@@ -34,7 +33,7 @@ def options(command: str = "render") -> str:
 @cache
 def help_of(program: Path, command: str) -> str:
     """The short help of a command."""
-    return subprocess.run([str(program), command, "-h"], capture_output=True, text=True, check=True).stdout
+    return call([str(program), command, "-h"]).stdout
 
 
 def names(command: str = "render") -> list[str]:

@@ -41,6 +41,12 @@ def clones() -> list[Path]:
     return [Path(os.environ.get("CARGO_TARGET_DIR", CLONE / "target")).resolve() / "release" / "tyndall"]
 
 
+def environment() -> dict[str, str]:
+    """That of the program: its words are read, so they have no colours, which notebooks ask for."""
+    kept = {name: value for name, value in os.environ.items() if name not in ("CLICOLOR_FORCE", "FORCE_COLOR")}
+    return {**kept, "NO_COLOR": "1"}
+
+
 def flags(options: Mapping[str, Option]) -> list[str]:
     """Options as on the command line."""
     return [part for name, value in options.items() for part in flag(f"--{name.replace('_', '-')}", value)]
@@ -70,7 +76,7 @@ def definitions(parameters: Mapping[str, str]) -> list[str]:
 def call(command: list[str], patience: float | None = None, accepted: tuple[int, ...] = (0,)) -> subprocess.CompletedProcess[str]:
     """Runs the program, for so many seconds at most; what it says on stderr is shown only when it fails."""
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=patience)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=patience, env=environment())
     except subprocess.TimeoutExpired:
         raise too_slow(command, patience) from None
     if done.returncode not in accepted:

@@ -12,7 +12,7 @@ import warnings
 from dataclasses import dataclass, field
 from typing import IO, Any, Protocol
 
-from tyndall.program import too_slow
+from tyndall.program import environment, too_slow
 
 
 @dataclass
@@ -39,7 +39,9 @@ class Show(Protocol):
 def run(command: list[str], show: Show, patience: float | None = None) -> Outcome:
     """Runs the program to its end. It is in a process group of its own, so that a Ctrl-C, which terminals and notebooks send
     to whole groups, comes to it once, from here: a second one would end it before it has written its image."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, process_group=0)
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, process_group=0, env=environment()
+    )
     try:
         return followed(process, command, show, patience)
     finally:
@@ -107,10 +109,10 @@ class Bar:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # without ipywidgets notebooks get the text
             from tqdm.auto import tqdm
-        self.bar = tqdm(total=100, unit="%", leave=False, bar_format="{l_bar}{bar}| {postfix} [{elapsed}<{remaining}]")
+        self.bar = tqdm(total=100, unit="%", leave=False, bar_format="{percentage:3.0f}%|{bar}| {desc} [{elapsed}<{remaining}]")
 
     def update(self, progress: dict[str, Any]) -> None:
-        self.bar.set_postfix_str(described(progress), refresh=False)
+        self.bar.set_description_str(described(progress), refresh=False)
         self.bar.update(100 * progress["done"] - self.bar.n)
 
     def close(self) -> None:
@@ -118,7 +120,9 @@ class Bar:
 
 
 def described(progress: dict[str, Any]) -> str:
-    """Samples and noise, as the program's own bar has them."""
+    """Samples and noise, as the program's own bar has them; of a study what it is doing."""
+    if "doing" in progress:
+        return str(progress["doing"])
     noise, within = progress.get("noise"), progress.get("within")
     state = f"noise {100 * noise:.2g} %" if noise is not None else "noise not known yet"
     state = state if within is None else f"{100 * within:.1f} % of the pixels within the error"
