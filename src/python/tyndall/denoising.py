@@ -18,7 +18,7 @@ def with_features(scene: Scene) -> Scene:
     """The scene with layers for denoising: its integrator inside an `aov`."""
     tree = load(scene)
     own = next((name for name, child in tree.items() if isinstance(child, dict) and child.get("type") in INTEGRATORS), "integrator")
-    layers = {"type": "aov", "aovs": f"{ALBEDO}:albedo,{NORMAL}:sh_normal", "image": tree.get(own, {"type": "volpath"})}
+    layers = {"type": "aov", "aovs": f"{ALBEDO}:first_albedo,{NORMAL}:first_normal", "image": tree.get(own, {"type": "volpath"})}
     return Scene({**tree, own: layers}, scene.name)
 
 
