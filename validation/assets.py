@@ -4,7 +4,6 @@ import struct
 import zlib
 from pathlib import Path
 
-import mitsuba as mi
 import numpy as np
 import numpy.typing as npt
 
@@ -29,7 +28,7 @@ def run(folder: Path = CROSSCHECK / "assets") -> bool:
     }
     for name, pixels in images.items():
         kind = np.uint8 if pixels.dtype == np.uint8 else np.float32
-        mi.Bitmap(np.ascontiguousarray(pixels, dtype=kind)).write(str(folder / name))
+        mitsuba.package().Bitmap(np.ascontiguousarray(pixels, dtype=kind)).write(str(folder / name))
     solids = [(*pyramid(), 0), (*lantern(), NORMALS | TEXTURE_COORDINATES)]
     (folder / "solids.serialized").write_bytes(serialized(solids))
     (folder / "tent.obj").write_text(TENT)

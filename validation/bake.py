@@ -5,11 +5,11 @@ import hashlib
 import json
 from typing import Any
 
-import mitsuba as mi
 import numpy as np
 
 from tyndall.failure import Failure
-from tyndall.load_dict import to_mitsuba
+from tyndall.load_dict import translated
+from tyndall.scene import changed
 from tyndall.volume_file import vol
 from validation import densities
 from validation.places import TARGET
@@ -60,7 +60,9 @@ def box_of(tree: dict, medium: dict) -> np.ndarray:
         held_by = f"a density function in a medium that {len(shapes)} shapes hold"
         raise Failure(f"{held_by} cannot be baked", "let one shape hold it")
     kept = {k: v for k, v in shapes[0].items() if k not in ("bsdf", "interior", "exterior", "emitter")}
-    box = mi.load_dict(to_mitsuba({**kept})).bbox()
+    import mitsuba as mi
+
+    box = mi.load_dict(changed(kept, translated)).bbox()
     return np.array([box.min, box.max], dtype=float)
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
-import mitsuba as mi
 import numpy as np
 
 from tyndall.failure import Failure
@@ -33,6 +32,15 @@ def libllvm() -> str | None:
     return named or next((path for place in LLVM_PLACES for path in sorted(glob(place))), None)
 
 
+def package() -> Any:
+    """The package `mitsuba`, imported once it is needed."""
+    try:
+        import mitsuba as mi
+    except ImportError as error:
+        raise Failure(f"Mitsuba is not there: {error}", "pip install mitsuba, or run python3 -m validation, which has its own") from None
+    return mi
+
+
 def use(variant: str) -> None:
     """Chooses `scalar_rgb` or `llvm_ad_rgb` (which needs LLVM 19)."""
     if variant.startswith("llvm"):
@@ -40,6 +48,7 @@ def use(variant: str) -> None:
         if path is None:
             raise Failure("LLVM 19 was not found", "install it (Debian: libllvm19) or set DRJIT_LIBLLVM_PATH to its library")
         os.environ["DRJIT_LIBLLVM_PATH"] = path
+    mi = package()
     mi.set_variant(variant)
     mi.set_log_level(mi.LogLevel.Error)  # what it rounds and clamps is not what the table is about
 
@@ -54,7 +63,7 @@ def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None
             loaded = load_file(scene)
             return loaded if size is None else with_size(loaded, size)
         tree = to_mitsuba(Scene(bake.baked(scene.dictionary()), scene.name, {}, scene.folder))
-        return mi.load_dict(changed(tree, lambda o: sized(o, size)))
+        return package().load_dict(changed(tree, lambda o: sized(o, size)))
     except (RuntimeError, TypeError, ValueError) as error:
         problem = f"Mitsuba cannot load {scene.name} ({variant}): {error}"
         raise Failure(problem, "name a scene that Mitsuba has all plugins of, or contenders without Mitsuba")
@@ -67,18 +76,18 @@ def render(scene: Scene, spp: int, seed: int = 0, variant: str = "scalar_rgb", s
 
 def image(loaded: Any, spp: int, seed: int, integrator: Any = None) -> np.ndarray:
     """One image of a loaded scene, by its own integrator or another one that is loaded."""
-    return np.array(mi.render(loaded, integrator=integrator, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
+    return np.array(package().render(loaded, integrator=integrator, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
 
 
 def load_file(scene: Scene) -> Any:
     """An XML scene with its parameters."""
     parameters: dict[str, Any] = dict(scene.parameters)
-    return mi.load_file(str(scene.source), **parameters)
+    return package().load_file(str(scene.source), **parameters)
 
 
 def with_size(loaded: Any, size: tuple[int, int]) -> Any:
     """Changes the film of a loaded scene."""
-    parameters = mi.traverse(loaded.sensors()[0])
+    parameters = package().traverse(loaded.sensors()[0])
     parameters["film.size"] = list(size)
     parameters.update()
     return loaded

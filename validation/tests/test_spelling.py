@@ -10,8 +10,8 @@ import pytest
 
 from tyndall import exr
 from tyndall.failure import Failure
-from tyndall.spelling import spelled
 from tyndall.load_dict import transform
+from tyndall.spelling import spelled
 
 
 @pytest.fixture(autouse=True, params=["scalar_rgb", "numpy only"])

@@ -7,17 +7,16 @@ import numpy as np
 
 from tyndall.failure import Failure
 from tyndall.picture import Picture
-from tyndall.scene import Scene, load
+from tyndall.scene import Scene, integrator, load
 
 ALBEDO, NORMAL = "albedo", "normal"
 """Names of the layers."""
-INTEGRATORS = "bdpt", "path", "volpath", "volpathmis", "ptracer", "fog", "single_scattering", "non_scattering", "aov", "moment"
 
 
 def with_features(scene: Scene) -> Scene:
     """The scene with layers for denoising: its integrator inside an `aov`."""
     tree = load(scene)
-    own = next((name for name, child in tree.items() if isinstance(child, dict) and child.get("type") in INTEGRATORS), "integrator")
+    own = integrator(tree) or "integrator"
     layers = {"type": "aov", "aovs": f"{ALBEDO}:first_albedo,{NORMAL}:first_normal", "image": tree.get(own, {"type": "volpath"})}
     return Scene({**tree, own: layers}, scene.name)
 

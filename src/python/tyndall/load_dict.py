@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tyndall.failure import Failure
-from tyndall.scene import AnyScene, changed, load
+from tyndall.scene import AnyScene, changed, integrator, load
 from tyndall.spelling import Speller, files
 
 TRANSFORM_STEPS = ("scale", "rotate", "translate", "lookat", "matrix")
@@ -30,9 +30,11 @@ def from_mitsuba(tree: Mapping[str, Any], folder: str | Path | None = None) -> d
 
 def to_mitsuba(scene: AnyScene, parameters: Mapping[str, object] | None = None) -> dict[str, Any]:
     """The scene as `mitsuba.load_dict` takes it; a variant of Mitsuba must have been set. Lists of steps and matrices become
-    transforms, arrays bitmaps and grids, names of files whole; `bdpt`, `pt` and `lt` become `volpath`, which
-    estimates the same image. Plugins that Mitsuba has not remain, and it will refuse them."""
-    return changed(load(scene, parameters), translated)
+    transforms, arrays bitmaps and grids, names of files whole; `bdpt`, `pt` and `lt`, and no integrator at all, become `volpath`,
+    which estimates the same image. Plugins that Mitsuba has not remain, and it will refuse them."""
+    tree = load(scene, parameters)
+    own = {} if integrator(tree) else {"integrator": {"type": "bdpt"}}
+    return changed({**tree, **own}, translated)
 
 
 def translated(o: dict[str, Any]) -> dict[str, Any]:

@@ -145,6 +145,15 @@ def load(scene: AnyScene, parameters: Mapping[str, object] | None = None) -> dic
         return changed(tree, lambda o: absolute(o, target.parent))
 
 
+INTEGRATORS = "bdpt", "pt", "lt", "path", "volpath", "volpathmis", "ptracer", "fog", "single_scattering", "non_scattering", "aov", "moment", "direct", "depth"
+"""Those of both renderers, as far as scenes may have them."""
+
+
+def integrator(tree: Mapping[str, Any]) -> str | None:
+    """The name of the integrator in a scene, if it has one."""
+    return next((name for name, child in tree.items() if isinstance(child, Mapping) and child.get("type") in INTEGRATORS), None)
+
+
 def scene_file(scene: Scene, folder: Path) -> Path:
     """The file of a scene; a dictionary is written into `folder` first."""
     if isinstance(scene.source, Path):
