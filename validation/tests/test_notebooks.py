@@ -22,6 +22,7 @@ def test_notebooks_run_and_show_pictures(path: Path, tmp_path: Path, monkeypatch
     nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert any("image/png" in output.get("data", {}) for output in outputs)
+    assert any("samples/pixel, noise" in output.get("text", "") for output in outputs), "no bar was shown"
     assert not any("Warning" in output.get("text", "") for output in outputs), outputs
 
 

@@ -55,22 +55,27 @@ def followed(process: subprocess.Popen[str], command: list[str], show: Show, pat
     """Everything it says, until it ends."""
     assert process.stderr is not None
     lines = listened(process.stderr)
-    until = None if patience is None else time.monotonic() + patience
+    until = float("inf") if patience is None else time.monotonic() + patience
     outcome = Outcome(0)
-    while True:
+    while time.monotonic() < until:
         try:
-            line = lines.get(timeout=None if until is None else max(0, until - time.monotonic()))
+            line = lines.get(timeout=WAKE)
             if line is None:
                 outcome.code = process.wait()
                 return outcome
             take(line, show, outcome)
         except queue.Empty:
-            raise too_slow(command, patience) from None
+            continue
         except KeyboardInterrupt:
             if outcome.was_interrupted:
                 raise
             outcome.was_interrupted = True
             process.send_signal(signal.SIGINT)
+    raise too_slow(command, patience)
+
+
+WAKE = 0.1
+"""So often the main thread looks up [s]: where another thread is the one that gets the signal of a Ctrl-C, a wait does not end."""
 
 
 def listened(stream: IO[str]) -> "queue.Queue[str | None]":
@@ -138,7 +143,9 @@ def shown(progress: bool | None) -> Show:
 
 def is_watched() -> bool:
     """True in a notebook, and where standard error is a terminal."""
-    return "ipykernel" in sys.modules or (sys.stderr is not None and sys.stderr.isatty())
+    ipython = sys.modules.get("IPython")
+    in_notebook = ipython is not None and hasattr(ipython.get_ipython(), "kernel")
+    return in_notebook or (sys.stderr is not None and sys.stderr.isatty())
 
 
 def warn(message: str, kind: type[Warning]) -> None:
