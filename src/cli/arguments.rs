@@ -21,7 +21,8 @@ use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 #[derive(Clone, Debug, Parser, PartialEq)]
 #[command(version, about, propagate_version = true, after_help = EXIT_CODES)]
 pub struct Arguments {
-    /// Print no progress, plan, summary or table; warnings, errors and what is asked for as data (--json) remain
+    /// Print no progress, plan, summary or table; warnings, errors and what is asked for as data (--json, --progress json)
+    /// remain
     #[arg(short, long, global = true)]
     pub quiet: bool,
 

@@ -67,6 +67,7 @@ def test_parameters_and_info() -> None:
     lampbox = SCENES / "lampbox_up.xml"
     assert tyndall.render(lampbox, spp=1, parameters={"res": 6}).shape == (6, 6, 3)
     assert "6 x 6" in tyndall.info(lampbox, parameters={"res": 6})
+    assert json.loads(tyndall.info(lampbox, json=True, integrator="pt"))["plan"]["integrator"] == "pt"
 
 
 def test_dictionaries_of_mitsubas_types_are_rendered() -> None:
@@ -141,6 +142,17 @@ def test_messages_name_no_file_that_is_gone() -> None:
     smoke = {"type": "heterogeneous", "sigma_t": {"type": "gridvolume", "data": -np.ones((2, 2, 2))}}
     scene = {"type": "scene", "camera": {"type": "perspective"}, "cloud": {"type": "cube", "interior": smoke}}
     assert refused(scene).startswith("$.cloud.interior.sigma_t.data: expected voxels")
+
+
+def test_renders_of_dictionaries_go_on(tmp_path: Path) -> None:
+    voxels = np.random.default_rng(1).uniform(0, 1, (4, 4, 4))
+    smoke = {"type": "heterogeneous", "sigma_t": {"type": "gridvolume", "data": voxels}}
+    cube = {"type": "cube", "bsdf": {"type": "null"}, "interior": smoke}
+    sensor = {"type": "perspective", "to_world": [{"type": "translate", "value": [0.5, 0.5, -4]}]}
+    scene = {"type": "scene", "sensor": sensor, "sky": {"type": "constant"}, "cloud": cube}
+    options: dict[str, Any] = {"size": (8, 8), "sums": tmp_path / "cloud.sums"}
+    tyndall.render(scene, spp=2, **options)
+    assert (tyndall.render(scene, spp=4, resume=True, **options) == tyndall.render(scene, spp=4, size=(8, 8))).all()
 
 
 def test_one_frame_is_a_picture() -> None:

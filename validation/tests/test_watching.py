@@ -81,6 +81,12 @@ def test_a_bar_is_shown_where_it_is_wanted(capsys: pytest.CaptureFixture[str]) -
     assert capsys.readouterr().err == ""
 
 
-def test_studies_show_their_progress_too(tmp_path: Path) -> None:
-    found = tyndall.study(SCENE, tmp_path / "study", integrators=["pt", "bdpt"], seeds=2, doublings=2, spp=2, size=(8, 8), reference_spp=16)
+def test_studies_return_their_numbers_and_go_on(tmp_path: Path) -> None:
+    options: dict[str, Any] = {"integrators": ["pt", "bdpt"], "seeds": 2, "doublings": 2, "spp": 2, "size": (8, 8), "reference_spp": 16}
+    found = tyndall.study(SCENE, tmp_path / "study", **options)
     assert json.loads((tmp_path / "study" / "study.json").read_text()) == found and (tmp_path / "study" / "study.html").is_file()
+    scene = tyndall.load(SCENE)
+    of_dictionary = tyndall.study(scene, tmp_path / "again", **options)
+    assert tyndall.study(scene, tmp_path / "again", **options)["scenes"] == of_dictionary["scenes"]
+    with pytest.raises(Failure, match="did you mean integrators"):
+        tyndall.study(scene, tmp_path / "other", integrator=["pt"])

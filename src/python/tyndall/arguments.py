@@ -47,7 +47,7 @@ def words(given: Mapping[str, Any], command: str = "render") -> list[str]:
     """The options as on the command line; an error for what the program does not have."""
     known = names(command)
     for name in given:
-        if name in OTHERWISE:
+        if name in OTHERWISE and command == "render":
             raise Failure(f"{name} is no option here", OTHERWISE[name])
         if name not in known or name == "progress":
             raise Failure(f"there is no option {name}", remedy(name, known))

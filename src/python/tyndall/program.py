@@ -43,8 +43,7 @@ def clones() -> list[Path]:
 
 def environment() -> dict[str, str]:
     """That of the program: its words are read, so they have no colours, which notebooks ask for."""
-    kept = {name: value for name, value in os.environ.items() if name not in ("CLICOLOR_FORCE", "FORCE_COLOR")}
-    return {**kept, "NO_COLOR": "1"}
+    return {**os.environ, "NO_COLOR": "1"}
 
 
 def flags(options: Mapping[str, Option]) -> list[str]:

@@ -159,12 +159,19 @@ def scene_file(scene: Scene, folder: Path) -> Path:
     if isinstance(scene.source, Path):
         return scene.source
     path = folder / "scene.json"
-    tree = changed(spelled(scene.source, folder), lambda o: absolute(o, scene.folder))
+    tree = changed(spelled(scene.source, folder), lambda o: beside(o, folder) or absolute(o, scene.folder))
     try:
         path.write_text(json.dumps(tree, allow_nan=False))
     except ValueError:
         raise Failure("the scene's dictionary holds a number that is not finite", "give finite numbers") from None
     return path
+
+
+def beside(o: dict[str, Any], folder: Path) -> dict[str, Any] | None:
+    """The object with the bare name of the file it names, if that is in `folder`: the same scene has the same text then, and a
+    render of it goes on."""
+    path = Path(o.get("filename", ""))
+    return {**o, "filename": path.name} if path.parent == folder else None
 
 
 def absolute(o: dict[str, Any], folder: Path) -> dict[str, Any]:
