@@ -121,7 +121,9 @@ UNREADABLE = {"type": "scene", "thing": {"type": "unicorn"}}
 def test_the_programs_help_names_the_options() -> None:
     names = arguments.names()
     assert {"spp", "max_depth", "forced_interaction", "sums", "checkpoint", "sums_every", "tev", "crop", "size"} <= set(names)
-    assert "--max-depth" in tyndall.options() and "contender" in arguments.names("study")
+    assert re.search(r"^max_depth <N> +Maximum number", tyndall.options(), re.MULTILINE) and "\nreport" not in tyndall.options()
+    assert len(tyndall.options().splitlines()) > 20 and "--" not in tyndall.options()
+    assert "contender" in arguments.names("study")
     assert arguments.words({"contender": {"a": "--spp 1", "b": ""}, "integrators": ["pt", "lt"], "reference": ["a.exr", "b.exr"]}, "study") == [
         "--contender=a: --spp 1",
         "--contender=b: ",

@@ -45,11 +45,11 @@ def test_progress_is_lines_of_json(tmp_path: Path) -> None:
     assert 0 < kept.updates[-1]["noise"] < 1 and kept.updates[-1]["seconds"] > 0
 
 
-def test_an_interrupt_returns_the_image_so_far() -> None:
+def test_an_interrupt_returns_the_image_so_far(tmp_path: Path) -> None:
     interrupted_after(1.5)
     start = time.monotonic()
-    with pytest.warns(tyndall.TyndallWarning, match="interrupted after .* the image so far"):
-        image = tyndall.render(SCENE, time_limit=60, size=(32, 32))
+    with pytest.warns(tyndall.TyndallWarning, match="interrupted after .* the image so far .* resume=True"):
+        image = tyndall.render(SCENE, time_limit=60, size=(32, 32), sums=tmp_path / "image.sums")
     assert time.monotonic() - start < 20 and image.shape == (32, 32, 3) and image.mean() > 0
     assert 0 < image.report["samples_per_pixel"] == image.metadata["samples_per_pixel"]
 

@@ -26,8 +26,10 @@ OTHERWISE = {
 
 
 def options(command: str = "render") -> str:
-    """What the program's help says of the options of a command; write `_` for `-`, as in max_depth=8."""
-    return help_of(binary(), command)
+    """The options of a command, with what the program's help says of each."""
+    found = re.findall(r"^ +(?:-\w, )?--([a-z][a-z-]*) ?(\S*) {2,}(.*)$", help_of(binary(), command), re.MULTILINE)
+    python = [(name.replace("-", "_"), takes, spelled(text, command)) for name, takes, text in found]
+    return "\n".join(f"{f'{name} {takes}':30} {text}" for name, takes, text in python if name not in OTHERWISE and name != "progress")
 
 
 @cache

@@ -84,7 +84,8 @@ def render(
     for message in done.messages:
         watching.warn(message, TyndallWarning)
     if done.was_interrupted:
-        watching.warn(f"interrupted after {done.samples_per_pixel:g} samples per pixel: the image so far is returned", TyndallWarning)
+        more = "; the same call with resume=True goes on" if options.get("sums") else ""
+        watching.warn(f"interrupted after {done.samples_per_pixel:g} samples per pixel: the image so far is returned{more}", TyndallWarning)
     return done.picture
 
 
