@@ -33,6 +33,7 @@ pub struct Arguments {
     /// the nearest limit (0 to 1), the relative error of the image so far, or null where it is not known yet, the share of
     /// the pixels within --error, the time since the render began, and which frame or batch it is. study says what it is
     /// doing ("doing") in place of samples and noise; strategies has "done" alone. With --quiet, other lines are warnings and errors.
+    /// A render whose standard error is closed meanwhile ends as on Ctrl-C.
     #[arg(long, global = true, value_enum, value_name = "FORM", default_value_t = ProgressForm::Bar)]
     pub progress: ProgressForm,
 

@@ -1,6 +1,6 @@
 //! What the program says: results and summaries to standard output, plans, progress and warnings to standard error.
 
-use super::outputs::check_short;
+use super::{interrupt, outputs::check_short};
 use crate::error::{Error, Result};
 use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
@@ -135,7 +135,8 @@ const UPDATE_EVERY: Duration = Duration::from_millis(100);
 
 static UPDATED: Mutex<Option<Instant>> = Mutex::new(None);
 
-/// An update of the progress for --progress json, to standard error; the last one is never left out.
+/// An update of the progress for --progress json, to standard error; the last one is never left out. Where nobody reads
+/// it any more, whoever asked for the render is gone: it ends.
 pub fn update(is_last: bool, progress: impl FnOnce() -> Value) {
     if !LINES.load(Relaxed) {
         return;
@@ -143,6 +144,8 @@ pub fn update(is_last: bool, progress: impl FnOnce() -> Value) {
     let Ok(mut updated) = UPDATED.lock() else { return };
     if is_last || updated.is_none_or(|before| before.elapsed() >= UPDATE_EVERY) {
         *updated = Some(Instant::now());
-        complain(&progress().to_string());
+        if writeln!(io::stderr(), "{}", progress()).is_err() {
+            interrupt::hang_up();
+        }
     }
 }

@@ -3,8 +3,11 @@
 import json
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +16,7 @@ import pytest
 import tyndall
 from tyndall import program, watching
 from tyndall.failure import Failure
-from validation.places import CROSSCHECK
+from validation.places import CROSSCHECK, PYTHON
 
 SCENE = CROSSCHECK / "cube_in_room.json"
 
@@ -58,6 +61,26 @@ def test_an_interrupt_before_there_is_an_image_is_one() -> None:
     interrupted_after(0.5)
     outcome = watching.run(["sleep", "60"], watching.Silence())
     assert outcome.was_interrupted and outcome.code != 0
+
+
+def test_a_render_ends_with_whoever_asked_for_it() -> None:
+    code = f"import tyndall; tyndall.render({str(SCENE)!r}, time_limit=60, size=(32, 32))"
+    asking = subprocess.Popen([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": str(PYTHON)})
+    renders = found_soon(lambda: Path(f"/proc/{asking.pid}/task/{asking.pid}/children").read_text().split())
+    time.sleep(0.5)
+    asking.kill()
+    asking.wait()
+    assert found_soon(lambda: not any(Path("/proc", render).exists() for render in renders))
+
+
+def found_soon(ask: Callable[[], Any]) -> Any:
+    """The first answer that is one, within 20 s."""
+    until = time.monotonic() + 20
+    while time.monotonic() < until:
+        if answer := ask():
+            return answer
+        time.sleep(0.1)
+    raise AssertionError("not within 20 s")
 
 
 def test_what_takes_too_long_is_ended() -> None:
