@@ -4,13 +4,12 @@ import struct
 import zlib
 from pathlib import Path
 
-import mitsuba as mi
 import numpy as np
 import numpy.typing as npt
 
+from tyndall.volume_file import UNIT, vol
 from validation import mitsuba
 from validation.places import CROSSCHECK
-from validation.volume_file import UNIT, vol
 
 SERIALIZED_FORMAT, SERIALIZED_VERSION = 0x041C, 4
 NORMALS, TEXTURE_COORDINATES, SINGLE_PRECISION = 0x0001, 0x0002, 0x1000
@@ -29,7 +28,7 @@ def run(folder: Path = CROSSCHECK / "assets") -> bool:
     }
     for name, pixels in images.items():
         kind = np.uint8 if pixels.dtype == np.uint8 else np.float32
-        mi.Bitmap(np.ascontiguousarray(pixels, dtype=kind)).write(str(folder / name))
+        mitsuba.package().Bitmap(np.ascontiguousarray(pixels, dtype=kind)).write(str(folder / name))
     solids = [(*pyramid(), 0), (*lantern(), NORMALS | TEXTURE_COORDINATES)]
     (folder / "solids.serialized").write_bytes(serialized(solids))
     (folder / "tent.obj").write_text(TENT)

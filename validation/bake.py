@@ -5,13 +5,14 @@ import hashlib
 import json
 from typing import Any
 
-import mitsuba as mi
 import numpy as np
 
-from validation import densities, mitsuba
-from validation.failure import Failure
+from tyndall.failure import Failure
+from tyndall.load_dict import translated
+from tyndall.scene import changed
+from tyndall.volume_file import vol
+from validation import densities
 from validation.places import TARGET
-from validation.volume_file import vol
 
 FOLDER = TARGET / "validation-baked"
 RESOLUTION = 64
@@ -59,7 +60,9 @@ def box_of(tree: dict, medium: dict) -> np.ndarray:
         held_by = f"a density function in a medium that {len(shapes)} shapes hold"
         raise Failure(f"{held_by} cannot be baked", "let one shape hold it")
     kept = {k: v for k, v in shapes[0].items() if k not in ("bsdf", "interior", "exterior", "emitter")}
-    box = mi.load_dict({k: mitsuba.transform(v) if mitsuba.is_transform(v) else v for k, v in kept.items()}).bbox()
+    import mitsuba as mi
+
+    box = mi.load_dict(changed(kept, translated)).bbox()
     return np.array([box.min, box.max], dtype=float)
 
 

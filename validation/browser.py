@@ -10,7 +10,7 @@ from typing import Literal
 
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from validation.failure import Failure
+from tyndall.failure import Failure
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
+from tyndall.scene import Scene, derived
 from validation.places import CROSSCHECK
-from validation.scene import Scene, derived
 
 ALL = ("pt", "lt", "bdpt")
 EYE = ("pt", "bdpt")

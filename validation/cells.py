@@ -9,9 +9,9 @@ from itertools import combinations, product
 from random import Random
 from typing import Any
 
+from tyndall.scene import Scene
 from validation.cases import ALL, EYE
 from validation.places import CROSSCHECK
-from validation.scene import Scene
 
 SEED = 1
 SAMPLE = 24

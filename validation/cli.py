@@ -4,14 +4,33 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from validation import assets, cells, compare, comparison_page, coverage, efficiency, full, growth, instructions, matrix, package_tests, page, plume, rays, references, selftest
-from validation import studies, truths, tyndall
+from tyndall import program
+from tyndall.failure import Failure
+from tyndall.scene import open_scene
+from validation import (
+    assets,
+    cells,
+    compare,
+    comparison_page,
+    coverage,
+    efficiency,
+    full,
+    growth,
+    instructions,
+    matrix,
+    package_tests,
+    page,
+    rays,
+    reach,
+    references,
+    selftest,
+    studies,
+    truths,
+)
 from validation.cluster import cli as cluster
 from validation.compare import Effort
-from validation.failure import Failure
-from validation.places import OUTPUT, REPORTS, SCENES
-from validation.scene import open_scene
 from validation.made_by import made_by_command
+from validation.places import OUTPUT, REPORTS, SCENES
 
 Commands = argparse._SubParsersAction  # argparse gives it no public name
 
@@ -63,6 +82,8 @@ def effort_of(options: argparse.Namespace) -> Effort:
     """What was asked for."""
     if options.batches < 2:
         raise Failure("--batches is below 2: no variance can be known", "give at least 8")
+    if options.spp < 1:
+        raise Failure(f"--spp is {options.spp}", "give at least 1")
     return Effort(options.batches, options.spp, options.seed)
 
 
@@ -98,12 +119,13 @@ def add_compare(commands: Commands) -> None:
 
 
 def run_compare(options: argparse.Namespace) -> bool:
+    methods, effort, size = reach.methods(options.integrators), effort_of(options), options.size
     scene = open_scene(options.scene, parameters_of(options))
+    expected = reach.differences(scene, methods)
     reference = references.cached(scene, options.size)
     print(compare.HEADER, flush=True)
-    methods, effort, size = options.integrators.split(","), effort_of(options), options.size
     candidates = {method: compare.candidate_renderer(scene, method, size) for method in methods}
-    found = {method: compare.tested(scene, method, effort, reference, candidates[method], options.output) for method in methods}
+    found = {method: compare.tested(scene, method, effort, reference, candidates[method], options.output, expected[method]) for method in methods}
     page = options.output / f"{scene.name}.html"
     comparison_page.write(comparison_page.page(scene, effort, found), page)
     print(f"pictures (Mitsuba, Tyndall, z from blue -4 to red +4) are in {options.output}, and all there is to see in {page}")
@@ -197,6 +219,8 @@ def add_plume(commands: Commands) -> None:
 
 
 def run_plume(options: argparse.Namespace) -> bool:
+    from validation import plume  # it needs Mitsuba
+
     return plume.run(options.rounds, options.spp)
 
 
@@ -218,7 +242,7 @@ def add_record(commands: Commands) -> None:
 
 
 def run_record(options: argparse.Namespace) -> bool:
-    print(tyndall.call([str(tyndall.binary()), "report", str(options.folder), "--record", str(options.output)]).stdout.strip())
+    print(program.call([str(program.binary()), "report", str(options.folder), "--record", str(options.output)]).stdout.strip())
     return True
 
 

@@ -2,17 +2,18 @@
 
 import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from validation import mitsuba, picture, tyndall
-from validation.failure import Failure
+import tyndall
+from tyndall.failure import Failure
+from tyndall.scene import Scene, derived
+from validation import mitsuba, picture
 from validation.places import OUTPUT
-from validation.scene import Scene, derived
 from validation.statistics import Estimate, estimate, exact, sidak_limit, standard_score
 
 ACCEPTED = 0.9975
@@ -102,10 +103,22 @@ class Verdict:
     found: np.ndarray | None = None
     """The mean of the candidate's."""
     reference_seconds: float | None = None
+    expected: tuple[str, ...] = ()
+    """Light that only one of both sides reaches: a disagreement is no fault then."""
 
     @property
     def passed(self) -> bool:
         return self.accepted >= ACCEPTED and self.tile_score <= 1 and abs(self.image_score) <= IMAGE_ERRORS
+
+    @property
+    def word(self) -> str:
+        """The verdict in a word."""
+        return "agree" if self.passed else "DIFFER" if self.expected else "DISAGREE"
+
+    @property
+    def why(self) -> str:
+        """Why a difference is no fault, on lines of its own."""
+        return "" if self.passed else "".join(f"\n  no fault: {reason}" for reason in self.expected)
 
     def row(self) -> str:
         where = "" if self.passed else f"  worst pixel {self.worst}"
@@ -113,7 +126,7 @@ class Verdict:
         return (
             f"{self.scene:{NAME_WIDTH}} {self.integrator:{METHOD_WIDTH}} {100 * self.accepted:8.2f} % {self.tile_score:6.2f} {self.image_score:+8.2f}"
             f" {100 * self.difference:+8.2f} % {100 * self.resolution:7.2f} % {self.seconds:7.1f} s"
-            f"  {'agree' if self.passed else 'DISAGREE'}{where}{again}"
+            f"  {self.word}{where}{again}{self.why}"
         )
 
 
@@ -201,8 +214,10 @@ def compare(
     reference: Renderer,
     candidate: Renderer,
     output: Path | None = None,
+    expected: Sequence[str] = (),
 ) -> Verdict:
-    """Tests a candidate against a reference; a disagreement gets harder trials, the last of which decides."""
+    """Tests a candidate against a reference; a disagreement gets harder trials, the last of which decides. One that is
+    `expected`, because a side does not reach all light, gets none."""
     trials = 0
     while True:
         trials += 1
@@ -210,12 +225,12 @@ def compare(
         start = time.perf_counter()
         ours = candidate(effort)
         verdict = judge(scene.name, method, ours, theirs, time.perf_counter() - start)
-        if verdict.passed or trials == TRIALS:
+        if verdict.passed or expected or trials == TRIALS:
             break
         effort = effort.harder()
     if output:
         save_picture(output / f"{scene.name}-{slug(method)}.png", theirs.pixels.mean, ours.pixels.mean, z_of(verdict))
-    return replace(verdict, trials=trials, reference_seconds=getattr(reference, "seconds", None))
+    return replace(verdict, trials=trials, expected=tuple(expected), reference_seconds=getattr(reference, "seconds", None))
 
 
 def z_of(verdict: Verdict) -> np.ndarray:
@@ -228,10 +243,10 @@ def slug(method: str) -> str:
     return method.replace(":", "-")
 
 
-def tested(scene: Scene, method: str, effort: Effort, reference: Renderer, candidate: Renderer, output: Path) -> Verdict | Failure:
+def tested(scene: Scene, method: str, effort: Effort, reference: Renderer, candidate: Renderer, output: Path, expected: Sequence[str] = ()) -> Verdict | Failure:
     """Compares and prints the row: the verdict, or why there is none."""
     try:
-        verdict = compare(scene, method, effort, reference, candidate, output)
+        verdict = compare(scene, method, effort, reference, candidate, output, expected)
     except Failure as failure:
         print(f"{scene.name:{NAME_WIDTH}} {method:{METHOD_WIDTH}} CANNOT: {failure}", flush=True)
         return failure
@@ -240,8 +255,8 @@ def tested(scene: Scene, method: str, effort: Effort, reference: Renderer, candi
 
 
 def agree(found: Verdict | Failure) -> bool:
-    """What cannot be rendered is a disagreement too."""
-    return isinstance(found, Verdict) and found.passed
+    """What cannot be rendered is a disagreement too; what one side cannot reach is none."""
+    return isinstance(found, Verdict) and (found.passed or bool(found.expected))
 
 
 def all_agree(tests: Iterable[Callable[[], Verdict | Failure]], claim: str) -> bool:

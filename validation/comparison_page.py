@@ -6,12 +6,13 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from tyndall import display
+from tyndall.failure import Failure
+from tyndall.scene import Scene
 from validation import flip, picture
 from validation.compare import RETRY, Effort, Verdict
-from validation.failure import Failure
 from validation.files import write_text
 from validation.made_by import made_by_command
-from validation.scene import Scene
 
 TEMPLATES = Path(__file__).parent / "templates"
 SHARPEST = 4.0
@@ -61,9 +62,9 @@ def section(method: str, verdict: Verdict) -> Section:
     white = picture.white_of(verdict.reference)
     differences, mean = flip.compared(verdict.reference, verdict.found)
     shown = [
-        ("Mitsuba", picture.png(picture.displayed(verdict.reference, white))),
-        ("Tyndall", picture.png(picture.displayed(verdict.found, white))),
-        ("z, Tyndall less Mitsuba", picture.png(picture.diverging(verdict.map, SHARPEST))),
+        ("Mitsuba", display.png(picture.displayed(verdict.reference, white))),
+        ("Tyndall", display.png(picture.displayed(verdict.found, white))),
+        ("z, Tyndall less Mitsuba", display.png(picture.diverging(verdict.map, SHARPEST))),
         ("FLIP", differences),
     ]
     return Section(method, verdict, [(title, picture.data_url(file)) for title, file in shown], mean)

@@ -15,8 +15,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from validation.failure import Failure
-
 STARTED = time.perf_counter()
 INTEGRATORS = ("volpath", "volpathmis")
 VARIANTS = ("llvm_ad_rgb", "scalar_rgb")
@@ -29,8 +27,8 @@ def main(arguments: list[str]) -> None:
     options = parser().parse_args(arguments)
     import drjit as dr  # only importable inside the environment
 
+    from tyndall.scene import open_scene
     from validation import mitsuba
-    from validation.scene import open_scene
 
     dr.set_thread_count(options.threads)
     scene = open_scene(options.scene, dict(pair.split("=", 1) for pair in options.D))
@@ -65,7 +63,8 @@ def render(loaded: Any, integrator: Any, options: argparse.Namespace) -> None:
     import drjit as dr
     import numpy as np
 
-    from validation import exr, mitsuba
+    from tyndall import exr
+    from validation import mitsuba
 
     load_seconds = time.perf_counter() - STARTED
     width, height = loaded.sensors()[0].film().crop_size()
@@ -92,12 +91,13 @@ def seed_of(seed: int, number: int) -> int:
 
 def tree(scene: Any) -> dict[str, Any]:
     """The scene as one dictionary, parameters filled in, in whichever format it is written."""
-    from validation import tyndall
+    from tyndall import program
+    from tyndall.scene import scene_file
 
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
-        source, target = tyndall.scene_file(scene, Path(folder)), Path(folder, "converted.json")
-        given = tyndall.definitions(scene.parameters)
-        tyndall.call([str(tyndall.binary()), "convert", "--fill", *given, str(source), str(target)])
+        source, target = scene_file(scene, Path(folder)), Path(folder, "converted.json")
+        given = program.definitions(scene.parameters)
+        program.call([str(program.binary()), "convert", "--fill", *given, str(source), str(target)])
         return json.loads(target.read_text())
 
 
@@ -116,7 +116,7 @@ ALL = (*OURS, "path", "volpath", "volpathmis", "ptracer")
 def integrator_like(whole: dict[str, Any], kind: str) -> dict[str, Any]:
     """Mitsuba's integrator `kind` with the depths that the scene's own has. Where that is one of Tyndall's, which has no
     Russian roulette, Mitsuba's begins late, which makes it less noisy than by its default."""
-    from validation.mitsuba import ROULETTE
+    from tyndall.load_dict import ROULETTE
 
     own: dict[str, Any] = next((o for o in objects(whole) if o["type"] in ALL), {"type": "path"})
     kept: dict[str, Any] = {key: own[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in own}
@@ -127,8 +127,10 @@ def integrator_like(whole: dict[str, Any], kind: str) -> dict[str, Any]:
 if __name__ == "__main__":
     from validation import environment
 
+    environment.enter("validation.contender")
+    from tyndall.failure import Failure
+
     try:
-        environment.enter("validation.contender")
         main(sys.argv[1:])
     except Failure as failure:
         sys.exit(" ".join(failure.problem.split()))

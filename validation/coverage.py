@@ -8,13 +8,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import mitsuba as mi
-
+from tyndall.failure import Failure
+from tyndall.program import binary
+from validation import mitsuba
 from validation.cases import CASES, Case
-from validation.failure import Failure
-from validation.tyndall import binary
 
-PLUGIN_FOLDER = Path(mi.__file__).parent / "plugins"
 PLACES = (
     lambda plugin: {"thing": plugin},
     lambda plugin: {"sensor": {"type": "perspective", "film": {"type": "hdrfilm", "rfilter": plugin}}},
@@ -35,7 +33,7 @@ def shared() -> set[str]:
     """The plugins that both renderers have."""
     if any(known(UNKNOWN, place) for place in PLACES):
         raise Failure("tyndall info does not refuse a plugin that nobody has", "see how it words that now, and adapt `known`")
-    theirs = {path.stem for path in PLUGIN_FOLDER.glob("*.*")}
+    theirs = {path.stem for path in Path(mitsuba.package().__file__).parent.glob("plugins/*.*")}
     return {name for name in theirs if any(known(name, place) for place in PLACES)}
 
 

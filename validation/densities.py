@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from validation import mitsuba
+from tyndall import load_dict
 
 FAR_BELOW = 60.0
 """Scale heights below which `exponential` grows no further."""
@@ -43,7 +43,7 @@ def to_own(o: dict, points: np.ndarray) -> np.ndarray:
     """World points in the function's own coordinates."""
     if "to_world" not in o:
         return points
-    matrix = np.linalg.inv(np.array(mitsuba.transform(o["to_world"]).matrix, dtype=float))
+    matrix = np.linalg.inv(np.array(load_dict.transform(o["to_world"]).matrix, dtype=float))
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 

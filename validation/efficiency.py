@@ -12,11 +12,11 @@ from typing import Any, cast
 
 import numpy as np
 
-from validation import plume, studies
-from validation.failure import Failure
+from tyndall.failure import Failure
+from tyndall.volume_file import vol
+from validation import studies
 from validation.made_by import made_by_command
 from validation.places import OUTPUT, REPORTS, SCENES
-from validation.volume_file import vol
 
 FOLDER = SCENES / "efficiency"
 WANTED = {
@@ -251,6 +251,8 @@ def volumes() -> None:
     """Writes the grids that the scenes name, too large for the repository."""
     folder = FOLDER / "assets"
     folder.mkdir(exist_ok=True)
+    from validation import plume  # it needs Mitsuba
+
     for name, samples in (("plume", plume.smoke), ("cloud", cloud)):
         path = folder / f"{name}.vol"
         if not path.is_file():
@@ -272,5 +274,7 @@ def cloud(voxels: int) -> np.ndarray:
         centre = random.uniform((0.3, 0.22, 0.3), (0.7, 0.75 - radius, 0.7))
         distance = np.sqrt((z - centre[0]) ** 2 + (y - centre[1]) ** 2 + (x - centre[2]) ** 2)
         body = np.maximum(body, 1 - distance / radius)
+    from validation import plume
+
     billows = body + 0.9 * (plume.turbulence(voxels, 11) - 0.45)
     return (np.clip(4 * billows, 0, 1) * np.clip(20 * (y - 0.12), 0, 1)).astype(np.float32)

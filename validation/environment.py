@@ -10,9 +10,10 @@ import venv
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NoReturn
 
-from validation.failure import Failure
 from validation.places import ENVIRONMENT, REQUIREMENTS, REQUIREMENTS_DEV, ROOT
+from validation.places import PYTHON as PACKAGE
 
 PYTHON = ENVIRONMENT / "bin" / "python"
 STAMP = ENVIRONMENT / "stamp"
@@ -23,10 +24,16 @@ def enter(module: str = "validation") -> None:
     if Path(sys.prefix).resolve() == ENVIRONMENT.resolve():
         return
     if sys.version_info < (3, 11):
-        raise Failure(f"Python 3.11 or newer is needed, this is {sys.version.split()[0]}", "install a newer Python 3")
+        stop(f"Python 3.11 or newer is needed, this is {sys.version.split()[0]}", "install a newer Python 3")
     make_once()
-    variables = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONNOUSERSITE": "1"}
+    variables = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (ROOT, PACKAGE))), "PYTHONNOUSERSITE": "1"}
     os.execve(PYTHON, [str(PYTHON), "-m", module, *sys.argv[1:]], variables)
+
+
+def stop(problem: str, remedy: str) -> NoReturn:
+    """Ends the program: no package is there yet that has an exception for this."""
+    print(f"{problem}\n  remedy: {remedy}", file=sys.stderr)
+    sys.exit(2)
 
 
 def make_once() -> None:
@@ -58,7 +65,7 @@ def make() -> None:
     try:
         venv.create(ENVIRONMENT, with_pip=True)
     except (subprocess.CalledProcessError, OSError) as error:
-        raise Failure(f"no virtual environment could be made: {error}", "install Python's venv module (Debian: python3-venv)")
+        stop(f"no virtual environment could be made: {error}", "install Python's venv module (Debian: python3-venv)")
     install(REQUIREMENTS_DEV)
 
 
@@ -78,4 +85,4 @@ def install(requirements: Path) -> None:
     """Installs by pip. Its messages go to stderr: stdout belongs to the command's table."""
     command: list[str | Path] = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile", "-r", requirements]
     if subprocess.run(command, stdout=sys.stderr).returncode != 0:
-        raise Failure("pip could not install the requirements", f"see its message above; then run again ({requirements})")
+        stop("pip could not install the requirements", f"see its message above; then run again ({requirements})")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation import exr, tyndall
+from tyndall import exr, program
 
 
 def compared(reference: np.ndarray, image: np.ndarray) -> tuple[bytes, float]:
@@ -15,6 +15,6 @@ def compared(reference: np.ndarray, image: np.ndarray) -> tuple[bytes, float]:
         ours, theirs, found, shown = (Path(folder, name) for name in ("image.exr", "reference.exr", "found.json", "map.png"))
         exr.write_image(ours, image)
         exr.write_image(theirs, reference)
-        options = tyndall.flags({"report": found, "map": shown, "map_of": "flip"})
-        tyndall.call([str(tyndall.binary()), "diff", str(ours), str(theirs), *options])
+        options = program.flags({"report": found, "map": shown, "map_of": "flip"})
+        program.call([str(program.binary()), "diff", str(ours), str(theirs), *options])
         return shown.read_bytes(), float(json.loads(found.read_text())["flip"])

@@ -5,9 +5,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from validation import environment, matrix, package_tests, page, truths, tyndall
+from tyndall import program
+from tyndall.failure import Failure
+from validation import environment, matrix, package_tests, page, truths
 from validation.compare import Effort
-from validation.failure import Failure
 from validation.places import CROSSCHECK, OUTPUT, REQUIREMENTS_CLUSTER
 from validation.stability import run as stability
 
@@ -55,5 +56,5 @@ def study_page() -> bool:
     scenes = [str(CROSSCHECK / name) for name in ("cube_in_room.json", "vacuum_room.json")]
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         effort = ["--spp", "8", "--doublings", "4", "--seeds", "2", "--reference-spp", "64", "--size", "24x18"]
-        tyndall.call([str(tyndall.binary()), "study", *scenes, "-o", folder, *effort])
+        program.call([str(program.binary()), "study", *scenes, "-o", folder, *effort])
         return page.run(Path(folder, "study.html"), OUTPUT / "page", if_possible=True)

@@ -15,11 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from validation import instructions, tyndall
-from validation.failure import Failure
+import tyndall
+from tyndall import program
+from tyndall.failure import Failure
+from tyndall.volume_file import vol
+from validation import instructions
 from validation.made_by import made_by_command
 from validation.places import REPORTS, SCENES
-from validation.volume_file import vol
 
 SAMPLES = (1, 3)
 """Per pixel, of two renders whose difference is counted."""
@@ -121,7 +123,7 @@ def memory(folder: Path) -> Curve:
     """Of ever more samples."""
 
     def cost(spp: int) -> float:
-        command = [str(tyndall.binary()), "--quiet", "render", str(SCENES / "lampbox_up.xml"), "-o", str(folder / "image.exr")]
+        command = [str(program.binary()), "--quiet", "render", str(SCENES / "lampbox_up.xml"), "-o", str(folder / "image.exr")]
         return most_memory([*command, "--spp", str(spp), "--size", "256x256", "--threads", "1", "--strategies", tyndall.ALL_STRATEGIES])
 
     return curve("samples per pixel", "greatest memory in MB", (1, 4, 16, 64), cost, "lampbox_up, 256 x 256", 1.05)
@@ -167,7 +169,7 @@ def starting() -> float:
     found = []
     for _ in range(50):
         start = time.perf_counter()
-        tyndall.call([str(tyndall.binary()), "--version"])
+        program.call([str(program.binary()), "--version"])
         found.append(time.perf_counter() - start)
     return min(found)
 

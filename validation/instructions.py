@@ -7,7 +7,10 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from validation import efficiency, tyndall
+import tyndall
+from tyndall import program
+from tyndall.scene import as_scene, scene_file
+from validation import efficiency
 from validation.places import CROSSCHECK, REPORTS, ROOT, SCENES
 
 GUARDED = (SCENES / "lampbox_up.xml", efficiency.FOLDER / "glass_fog_sky.xml", CROSSCHECK / "grid_sparse.json")
@@ -40,19 +43,19 @@ def change(count: float, known: float | None) -> str:
     return "" if known is None else f"{100 * (count / known - 1):+.2f} % of the recorded {known}"
 
 
-def per_sample(scene: tyndall.AnyScene, samples: tuple[int, int] = SAMPLES, side: int = SIDE, **options: tyndall.Option) -> float:
+def per_sample(scene: tyndall.AnyScene, samples: tuple[int, int] = SAMPLES, side: int = SIDE, **options: program.Option) -> float:
     """Of a pixel sample of `bdpt`, as a pilot chooses it or by other `options`, in an image of `side` x `side` pixels."""
     few, many = (instructions(scene, {"spp": spp, "size": f"{side}x{side}", **options}) for spp in samples)
     return (many - few) / ((samples[1] - samples[0]) * side * side)
 
 
-def instructions(scene: tyndall.AnyScene, options: dict[str, tyndall.Option]) -> int:
+def instructions(scene: tyndall.AnyScene, options: dict[str, program.Option]) -> int:
     """Of a whole render on one thread."""
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
-        usual: dict[str, tyndall.Option] = {"integrator": "bdpt", "sampler": "independent", "threads": 1, "output": Path(folder, "image.exr")}
-        count = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", str(tyndall.binary()), "render"]
-        path = tyndall.scene_file(tyndall.as_scene(scene), Path(folder))
-        return collected(tyndall.call([*count, str(path), *tyndall.flags({**usual, **options})]).stderr)
+        usual: dict[str, program.Option] = {"integrator": "bdpt", "sampler": "independent", "threads": 1, "output": Path(folder, "image.exr")}
+        count = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", str(program.binary()), "render"]
+        path = scene_file(as_scene(scene), Path(folder))
+        return collected(program.call([*count, str(path), *program.flags({**usual, **options})]).stderr)
 
 
 def collected(text: str) -> int:

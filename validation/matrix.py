@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 
+from tyndall.failure import Failure
+from tyndall.scene import Scene
 from validation import cells, compare, coverage, references
 from validation.cases import CASES, Case
 from validation.compare import Effort, Renderer, Verdict
-from validation.failure import Failure
 from validation.places import OUTPUT, RECORDED
-from validation.scene import Scene
 
 DEEP = Effort(batches=16, spp=80, seed=5001)
 DEEP_CELLS = 120

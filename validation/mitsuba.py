@@ -7,17 +7,12 @@ from pathlib import Path
 from threading import RLock
 from typing import Any
 
-import mitsuba as mi
 import numpy as np
 
-from validation.failure import Failure
-from validation.scene import Scene, changed
+from tyndall.failure import Failure
+from tyndall.load_dict import to_mitsuba
+from tyndall.scene import Scene, changed
 
-TRANSFORM_STEPS = ("scale", "rotate", "translate", "lookat", "matrix")
-OUR_INTEGRATORS = ("bdpt", "pt", "lt")
-ROULETTE = {True: 24, False: 1000}
-"""From which depth Mitsuba ends paths at random, for unlimited and for limited depth. Its default, 5, makes much
-noise; without any, paths of unlimited depth in a closed room would go on until their weight underflows."""
 ALONE = RLock()
 """Held by whoever loads and renders: the variant is Mitsuba's, not a scene's, and it uses all processors by itself."""
 LLVM_PLACES = (
@@ -37,6 +32,15 @@ def libllvm() -> str | None:
     return named or next((path for place in LLVM_PLACES for path in sorted(glob(place))), None)
 
 
+def package() -> Any:
+    """The package `mitsuba`, imported once it is needed."""
+    try:
+        import mitsuba as mi
+    except ImportError as error:
+        raise Failure(f"Mitsuba is not there: {error}", "pip install mitsuba, or run python3 -m validation, which has its own") from None
+    return mi
+
+
 def use(variant: str) -> None:
     """Chooses `scalar_rgb` or `llvm_ad_rgb` (which needs LLVM 19)."""
     if variant.startswith("llvm"):
@@ -44,6 +48,7 @@ def use(variant: str) -> None:
         if path is None:
             raise Failure("LLVM 19 was not found", "install it (Debian: libllvm19) or set DRJIT_LIBLLVM_PATH to its library")
         os.environ["DRJIT_LIBLLVM_PATH"] = path
+    mi = package()
     mi.set_variant(variant)
     mi.set_log_level(mi.LogLevel.Error)  # what it rounds and clamps is not what the table is about
 
@@ -57,8 +62,8 @@ def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None
         if scene.is_xml:
             loaded = load_file(scene)
             return loaded if size is None else with_size(loaded, size)
-        tree = changed(bake.baked(scene.dictionary()), lambda o: translate_object(o, scene.folder, size))
-        return mi.load_dict(tree)
+        tree = to_mitsuba(Scene(bake.baked(scene.dictionary()), scene.name, {}, scene.folder))
+        return package().load_dict(changed(tree, lambda o: sized(o, size)))
     except (RuntimeError, TypeError, ValueError) as error:
         problem = f"Mitsuba cannot load {scene.name} ({variant}): {error}"
         raise Failure(problem, "name a scene that Mitsuba has all plugins of, or contenders without Mitsuba")
@@ -71,65 +76,23 @@ def render(scene: Scene, spp: int, seed: int = 0, variant: str = "scalar_rgb", s
 
 def image(loaded: Any, spp: int, seed: int, integrator: Any = None) -> np.ndarray:
     """One image of a loaded scene, by its own integrator or another one that is loaded."""
-    return np.array(mi.render(loaded, integrator=integrator, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
+    return np.array(package().render(loaded, integrator=integrator, spp=spp, seed=seed), dtype=np.float64)[:, :, :3]
 
 
 def load_file(scene: Scene) -> Any:
     """An XML scene with its parameters."""
     parameters: dict[str, Any] = dict(scene.parameters)
-    return mi.load_file(str(scene.source), **parameters)
+    return package().load_file(str(scene.source), **parameters)
 
 
 def with_size(loaded: Any, size: tuple[int, int]) -> Any:
     """Changes the film of a loaded scene."""
-    parameters = mi.traverse(loaded.sensors()[0])
+    parameters = package().traverse(loaded.sensors()[0])
     parameters["film.size"] = list(size)
     parameters.update()
     return loaded
 
 
-def translate_object(o: dict, folder: Path, size: tuple[int, int] | None) -> dict:
-    """What `mitsuba.load_dict` needs otherwise than our JSON spells it."""
-    out = {key: transform(value) if is_transform(value) else value for key, value in o.items()}
-    if o["type"] in OUR_INTEGRATORS:
-        kept = {key: o[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in o}
-        return {"type": "volpath", "rr_depth": ROULETTE[o.get("max_depth", -1) < 0], **kept}
-    if o["type"] == "scene":
-        out.pop("time", None)
-    if o["type"] == "heterogeneous":
-        for ours in ("tracker", "step", "march_error"):
-            out.pop(ours, None)  # Mitsuba has only one way
-    if "filename" in o:
-        out["filename"] = str(folder / o["filename"])  # an absolute name stays itself
-    if size and o["type"] == "hdrfilm":
-        out["width"], out["height"] = size
-    return out
-
-
-def is_transform(value: Any) -> bool:
-    """A transform is a list of steps."""
-    return isinstance(value, list) and all(isinstance(s, dict) and s.get("type") in TRANSFORM_STEPS for s in value)
-
-
-def transform(steps: list[dict]) -> Any:
-    """The product of all steps, the first applied first."""
-    product = mi.ScalarTransform4f()
-    for s in steps:
-        product = step(s) @ product
-    return product
-
-
-def step(s: dict) -> Any:
-    """One step of a transform."""
-    identity = mi.ScalarTransform4f()
-    match s["type"]:
-        case "scale":
-            return identity.scale(s["value"])
-        case "rotate":
-            return identity.rotate(s["axis"], s["angle"])
-        case "translate":
-            return identity.translate(s["value"])
-        case "lookat":
-            return identity.look_at(s["origin"], s["target"], s["up"])
-        case "matrix":
-            return mi.ScalarTransform4f(np.reshape(s["value"], (4, 4)))
+def sized(o: dict, size: tuple[int, int] | None) -> dict:
+    """A film of that size, if it is one."""
+    return {**o, "width": size[0], "height": size[1]} if size and o["type"] == "hdrfilm" else o

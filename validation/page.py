@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import get_args
 
-import mitsuba as mi
 import numpy as np
 from playwright.sync_api import Browser, Error, FloatRect, Locator, Page
 
+from tyndall.failure import Failure
+from validation import mitsuba
 from validation.browser import Opened, Scheme, chromium, opened, running
-from validation.failure import Failure
 
 DESKTOP, PHONE = (1280, 900), (375, 800)
 WIDTHS = (320, 375, 768, 1280, 1920)
@@ -85,6 +85,7 @@ def of_picture(browser: Browser, file: Path, size: tuple[int, int], scheme: Sche
 
 def blank(picture: Path) -> str:
     """Why a picture cannot be a page with curves and images."""
+    mi = mitsuba.package()
     mi.set_variant("scalar_rgb")
     pixels = np.array(mi.Bitmap(str(picture)))[::3, ::3, :3].astype(np.uint32)
     colours = len(np.unique(pixels @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)))
@@ -210,6 +211,7 @@ def exposure(page: Page, scene: Locator) -> str:
 
 def brightness(png: bytes) -> float:
     """The mean of a picture's bytes."""
+    mi = mitsuba.package()
     mi.set_variant("scalar_rgb")
     stream = mi.MemoryStream()
     stream.write(png)

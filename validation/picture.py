@@ -3,23 +3,14 @@
 import base64
 from pathlib import Path
 
-import mitsuba as mi
 import numpy as np
 
-from validation.mitsuba import use
-
-
-def bitmap(pixels: np.ndarray) -> mi.Bitmap:
-    """Mitsuba's picture of an array."""
-    if mi.variant() is None:
-        use("scalar_rgb")
-    return mi.Bitmap(np.ascontiguousarray(pixels))
+from tyndall import display
 
 
 def displayed(image: np.ndarray, white: float) -> np.ndarray:
     """Linear RGB as 8-bit sRGB, `white` becoming full white."""
-    linear = bitmap(np.clip(image / white, 0, 1).astype(np.float32))
-    return np.array(linear.convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.UInt8, srgb_gamma=True))
+    return display.encoded(display.shown(image / white))
 
 
 def white_of(image: np.ndarray) -> float:
@@ -48,17 +39,10 @@ def side_by_side(*pictures: np.ndarray, gap: int = 4) -> np.ndarray:
     return np.concatenate([part for p in large for part in (p, rule)][:-1], axis=1)
 
 
-def png(pixels: np.ndarray) -> bytes:
-    """A PNG file of 8-bit pixels."""
-    stream = mi.MemoryStream()
-    bitmap(pixels).write(stream, mi.Bitmap.FileFormat.PNG)
-    return bytes(stream.raw_buffer())
-
-
 def write_png(path: Path, pixels: np.ndarray) -> None:
     """Writes 8-bit pixels."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(png(pixels))
+    path.write_bytes(display.png(pixels))
 
 
 def data_url(file: bytes) -> str:

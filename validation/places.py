@@ -4,6 +4,8 @@ import os
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+PYTHON = ROOT / "src" / "python"
+"""The package `tyndall`."""
 SCENES = ROOT / "scenes"
 CROSSCHECK = SCENES / "crosscheck"
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()

@@ -25,11 +25,11 @@ import mitsuba as mi
 import numpy as np
 from scipy import ndimage
 
+from tyndall.failure import Failure
+from tyndall.scene import Scene
+from tyndall.volume_file import vol
 from validation import mitsuba
-from validation.failure import Failure
 from validation.places import OUTPUT, ROOT
-from validation.scene import Scene
-from validation.volume_file import vol
 
 FOLDER = OUTPUT / "plume"
 VOXELS = 256

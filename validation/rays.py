@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from tyndall.failure import Failure
 from validation import environment, growth
-from validation.failure import Failure
 from validation.places import ROOT
 
 REQUIREMENTS = ROOT / "validation" / "requirements-rays.txt"

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from tyndall.failure import Failure
+from tyndall.scene import Scene
 from validation import mitsuba
 from validation.compare import Effort, Measured, Renderer, Size, mitsuba_renderer
-from validation.failure import Failure
 from validation.places import CACHE, RECORDED
-from validation.scene import Scene
 from validation.statistics import Estimate
 
 

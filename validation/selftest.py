@@ -1,9 +1,9 @@
 """The test of the test: Mitsuba must agree with itself, and must not with a scene that is 5 % off."""
 
+from tyndall.scene import open_scene
 from validation import compare, references
 from validation.compare import Effort
 from validation.places import CROSSCHECK
-from validation.scene import open_scene
 
 SCENES = ("fog_isotropic.json", "fog_hg_backward.json", "camera_inside_cube.json", "fog_table_coarse.json", "grid_trilinear.json")
 PERTURBATION = 0.05

@@ -10,9 +10,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from validation import mitsuba, tyndall
+from tyndall import program
+from tyndall.failure import Failure
+from validation import mitsuba
 from validation.contender import INTEGRATORS, VARIANTS
-from validation.failure import Failure
 from validation.places import CROSSCHECK, OUTPUT, SCENES
 
 OURS = ("bdpt", "pt", "lt")
@@ -55,12 +56,12 @@ def words(scenes: list[Path], contenders: list[str], options: dict[str, Any], mo
     ours = [name for name in contenders if name in OURS]
     theirs = [word for name in contenders if name not in OURS for word in contender(name)]
     integrators = ["--integrators", ",".join(ours)] if ours else []
-    return ["study", *map(os.path.relpath, scenes), *theirs, *integrators, *tyndall.flags(options), *more]
+    return ["study", *map(os.path.relpath, scenes), *theirs, *integrators, *program.flags(options), *more]
 
 
 def run(line: list[str]) -> bool:
     """Runs the study; it prints its table and says where its page is."""
-    return subprocess.run([str(tyndall.binary()), *line], env={**os.environ, "TYNDALL_BINARY": str(tyndall.binary())}).returncode == 0
+    return subprocess.run([str(program.binary()), *line], env={**os.environ, "TYNDALL_BINARY": str(program.binary())}).returncode == 0
 
 
 def add_options(command: argparse.ArgumentParser, contenders: str, output: str) -> None:

@@ -1,6 +1,11 @@
 //! The arguments of the command line.
 
-use super::{estimator::Estimator, study::Study, viewer, voice::Answer};
+use super::{
+    estimator::Estimator,
+    study::Study,
+    viewer,
+    voice::{Answer, ProgressForm},
+};
 use crate::{
     film::accumulator::MOST_PASSES,
     format,
@@ -16,9 +21,21 @@ use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 #[derive(Clone, Debug, Parser, PartialEq)]
 #[command(version, about, propagate_version = true, after_help = EXIT_CODES)]
 pub struct Arguments {
-    /// Print no progress, plan, summary or table; warnings, errors and what is asked for as data (--json) remain
+    /// Print no progress, plan, summary or table; warnings, errors and what is asked for as data (--json, --progress json)
+    /// remain
     #[arg(short, long, global = true)]
     pub quiet: bool,
+
+    /// Form of the progress on standard error: a bar on a terminal, or lines of JSON for other programs, also with --quiet
+    ///
+    /// json: a line for each update, ten a second at most and one at the end, such as
+    /// {"done": 0.25, "samples_per_pixel": 16, "noise": 0.031, "within": null, "seconds": 2.1, "image": null}: the part of the way to
+    /// the nearest limit (0 to 1), the relative error of the image so far, or null where it is not known yet, the share of
+    /// the pixels within --error, the time since the render began, and which frame or batch it is. study says what it is
+    /// doing ("doing") in place of samples and noise; strategies has "done" alone. With --quiet, other lines are warnings and errors.
+    /// A render whose standard error is closed meanwhile ends as on Ctrl-C.
+    #[arg(long, global = true, value_enum, value_name = "FORM", default_value_t = ProgressForm::Bar)]
+    pub progress: ProgressForm,
 
     /// What to do.
     #[command(subcommand)]

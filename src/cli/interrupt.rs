@@ -37,6 +37,17 @@ fn ignored() -> u64 {
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
+/// From here on as if the terminal had gone.
+pub fn hang_up() {
+    #[cfg(unix)]
+    const GONE: i32 = consts::SIGHUP;
+    #[cfg(not(unix))]
+    const GONE: i32 = consts::SIGTERM;
+    if let Some(came) = CAME.get() {
+        came.store(GONE as usize, Ordering::Relaxed);
+    }
+}
+
 /// True once a signal came.
 pub fn came() -> bool {
     signal().is_some()

@@ -45,7 +45,7 @@ pub fn run() -> ExitCode {
     match Arguments::try_parse() {
         Ok(arguments) => {
             let json = arguments.command.answer().is_some_and(|answer| answer.json);
-            voice::set(arguments.quiet, json);
+            voice::set(arguments.quiet, json, arguments.progress);
             judged(obey(&arguments.command).and_then(|holds| heard().map(|()| holds)))
         }
         // Help, the version, or what is wrong with the arguments.

@@ -3,6 +3,7 @@
 use super::voice;
 use crate::render::{Progress, Settings, adaptive::Precision};
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::{Value, json};
 
 /// A progress bar that shows the nearest of the limits.
 pub struct Bar {
@@ -10,6 +11,7 @@ pub struct Bar {
     settings: Settings,
     precision: Option<Precision>,
     pixels: usize,
+    label: Option<String>,
 }
 
 /// Steps of the bar.
@@ -24,7 +26,7 @@ impl Bar {
             bar.set_style(style);
         }
         bar.set_prefix(label.map_or(String::new(), |label| format!("{label}  ")));
-        Self { bar, settings, precision, pixels }
+        Self { bar, settings, precision, pixels, label: label.map(str::to_owned) }
     }
 
     /// Shows how far the render is.
@@ -39,6 +41,19 @@ impl Bar {
         };
         self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
         self.bar.set_position((STEPS * self.done(progress)) as u64);
+        voice::update(progress.is_last, || self.line(progress));
+    }
+
+    /// The same for other programs.
+    fn line(&self, progress: &Progress) -> Value {
+        json!({
+            "done": self.done(progress),
+            "samples_per_pixel": progress.passes,
+            "noise": progress.noise,
+            "within": progress.within,
+            "seconds": progress.elapsed.as_secs_f64(),
+            "image": self.label,
+        })
     }
 
     /// The part of the way to the limit that is nearest.

@@ -81,6 +81,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let mut show = |done: usize, total: usize| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
+        let share = || serde_json::json!({ "done": done as f64 / total.max(1) as f64 });
+        voice::update(done == total, share);
     };
     let pool = super::threads(arguments.threads)?;
     let findings = pool.install(|| strategies::examine(&setup, &settings, &plan, &mut show))?;

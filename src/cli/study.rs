@@ -421,6 +421,7 @@ impl Bar {
         let Progress { share, doing, is_old } = progress;
         self.bar.set_message(doing.clone());
         self.bar.set_position((share * STEPS) as u64);
+        voice::update(*share >= 1.0, || serde_json::json!({ "done": share, "doing": doing }));
         if *is_old {
             self.bar.reset_eta();
         }

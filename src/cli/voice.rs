@@ -1,17 +1,18 @@
 //! What the program says: results and summaries to standard output, plans, progress and warnings to standard error.
 
-use super::outputs::check_short;
+use super::{interrupt, outputs::check_short};
 use crate::error::{Error, Result};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use indicatif::ProgressBar;
 use serde_json::Value;
 use std::{
     io::{self, ErrorKind, Write as _},
     path::{Path, PathBuf},
     sync::{
-        OnceLock,
+        Mutex, OnceLock,
         atomic::{AtomicBool, Ordering::Relaxed},
     },
+    time::{Duration, Instant},
 };
 
 /// How a command gives its result.
@@ -44,15 +45,27 @@ impl Answer {
     }
 }
 
+/// What progress looks like.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq, ValueEnum)]
+pub enum ProgressForm {
+    /// A bar, on a terminal
+    #[default]
+    Bar,
+    /// Lines of JSON
+    Json,
+}
+
 // Of the process, as its standard output and standard error are. Tests run the program, one process each.
 static TEXT: AtomicBool = AtomicBool::new(true);
 static PROGRESS: AtomicBool = AtomicBool::new(true);
+static LINES: AtomicBool = AtomicBool::new(false);
 
 /// From here on nothing is said but warnings, errors and what was asked for as data (`quiet`), or JSON takes the place
-/// of text on standard output (`json`).
-pub fn set(quiet: bool, json: bool) {
+/// of text on standard output (`json`). `progress` is asked for as data where it is JSON.
+pub fn set(quiet: bool, json: bool, progress: ProgressForm) {
     TEXT.store(!quiet && !json, Relaxed);
     PROGRESS.store(!quiet, Relaxed);
+    LINES.store(progress == ProgressForm::Json, Relaxed);
 }
 
 /// A result or summary for people, to standard output, unless --quiet or --json.
@@ -111,7 +124,28 @@ pub fn complain(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// A progress bar of `length` steps, on standard error, unless --quiet.
+/// A progress bar of `length` steps, on standard error, unless --quiet or --progress json.
 pub fn bar(length: u64) -> ProgressBar {
-    if PROGRESS.load(Relaxed) { ProgressBar::new(length) } else { ProgressBar::hidden() }
+    let is_shown = PROGRESS.load(Relaxed) && !LINES.load(Relaxed);
+    if is_shown { ProgressBar::new(length) } else { ProgressBar::hidden() }
+}
+
+/// Time between two updates, at least.
+const UPDATE_EVERY: Duration = Duration::from_millis(100);
+
+static UPDATED: Mutex<Option<Instant>> = Mutex::new(None);
+
+/// An update of the progress for --progress json, to standard error; the last one is never left out. Where nobody reads
+/// it any more, whoever asked for the render is gone: it ends.
+pub fn update(is_last: bool, progress: impl FnOnce() -> Value) {
+    if !LINES.load(Relaxed) {
+        return;
+    }
+    let Ok(mut updated) = UPDATED.lock() else { return };
+    if is_last || updated.is_none_or(|before| before.elapsed() >= UPDATE_EVERY) {
+        *updated = Some(Instant::now());
+        if writeln!(io::stderr(), "{}", progress()).is_err() {
+            interrupt::hang_up();
+        }
+    }
 }

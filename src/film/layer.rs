@@ -3,7 +3,7 @@
 
 use crate::description::Registry;
 
-/// Quantities of the first surface that a primary ray hits.
+/// Quantities of the first surface that a primary ray hits, or of where it interacts first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// pi times the BSDF towards the normal; of a diffuse surface its reflectance.
@@ -32,9 +32,14 @@ pub enum Quantity {
     PrimitiveIndex,
     /// Number of the shape in the order of the scene file, from 1 (Mitsuba's depend on how it stores shapes).
     ShapeIndex,
+    /// Albedo where the ray interacts first: of the medium at a collision, else of the surface. Media are seen here, and
+    /// their boundaries are not; denoisers look at this.
+    FirstAlbedo,
+    /// Shading normal where the ray interacts first, world space; at a collision the direction back to the camera.
+    FirstNormal,
 }
 
-/// Every quantity by Mitsuba's name.
+/// Every quantity by Mitsuba's name; `first_albedo` and `first_normal` are ours.
 pub const QUANTITIES: Registry<Quantity> = Registry::new(
     "a quantity",
     &[
@@ -50,19 +55,29 @@ pub const QUANTITIES: Registry<Quantity> = Registry::new(
         ("duv_dy", Quantity::DuvDy),
         ("prim_index", Quantity::PrimitiveIndex),
         ("shape_index", Quantity::ShapeIndex),
+        ("first_albedo", Quantity::FirstAlbedo),
+        ("first_normal", Quantity::FirstNormal),
     ],
 );
 
 impl Quantity {
+    /// True of those of the first interaction.
+    pub fn is_of_interaction(self) -> bool {
+        matches!(self, Self::FirstAlbedo | Self::FirstNormal)
+    }
+
     /// Mitsuba's names of its channels.
     pub fn channels(self) -> &'static [&'static str] {
         match self {
-            Self::Albedo => &["R", "G", "B"],
+            Self::Albedo | Self::FirstAlbedo => &["R", "G", "B"],
             Self::Depth => &["T"],
             Self::Uv | Self::DuvDx | Self::DuvDy => &["U", "V"],
-            Self::Position | Self::GeometricNormal | Self::ShadingNormal | Self::DpDu | Self::DpDv => {
-                &["X", "Y", "Z"]
-            }
+            Self::Position
+            | Self::GeometricNormal
+            | Self::ShadingNormal
+            | Self::FirstNormal
+            | Self::DpDu
+            | Self::DpDv => &["X", "Y", "Z"],
             Self::PrimitiveIndex | Self::ShapeIndex => &["I"],
         }
     }

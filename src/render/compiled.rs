@@ -19,7 +19,7 @@ use crate::{
     scene::{Scene, lights::Starts},
     shape::Ray,
     transport::{
-        Estimator, Heuristic,
+        Estimator, Heuristic, Interaction,
         profile::{
             Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName,
             Smoke, Vacuum,
@@ -42,6 +42,8 @@ pub(super) trait Compiled: Sync {
     ) -> Outcome;
     /// See [`Estimator::transmittance`].
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum;
+    /// See [`Estimator::first_interaction`].
+    fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction>;
     /// See [`strategy_images::block`].
     fn parts(&self, table: StrategyTable, pass: usize, block: usize) -> Vec<CellContribution>;
     /// See [`timing::block`].
@@ -111,6 +113,9 @@ impl<P: Profile> Compiled for Ready<'_, P> {
     }
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
         self.estimator.transmittance(primary, stream)
+    }
+    fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction> {
+        self.estimator.first_interaction(primary, stream)
     }
     fn parts(&self, table: StrategyTable, pass: usize, block: usize) -> Vec<CellContribution> {
         strategy_images::block(self, table, pass, block)

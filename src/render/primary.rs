@@ -12,6 +12,7 @@ use crate::{
     sampling::Stream,
     scene::Scene,
     shape::{Hit, Ray, SurfacePoint},
+    transport::Interaction,
 };
 use rayon::prelude::*;
 
@@ -51,6 +52,10 @@ impl Pass {
         Self { alpha, quantities }
     }
 
+    fn interacts(&self) -> bool {
+        self.quantities.iter().any(|quantity| quantity.is_of_interaction())
+    }
+
     /// Traces as many primary rays per pixel as there were `passes`, or fewer once `is_over`, but one at least.
     pub fn run(&self, bench: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
         let Instrument { scene, film, settings, compiled, .. } = bench;
@@ -67,7 +72,11 @@ impl Pass {
                 let mut start = blocks.camera_start(scene, film, settings.seed, done as usize, pixel);
                 let view = View::new(bench, environment, &start, passes);
                 let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
-                let values = self.quantities.iter().map(|quantity| view.quantity(*quantity));
+                let first = self.interacts().then(|| view.first_interaction(&mut start.stream)).flatten();
+                let values = self.quantities.iter().map(|quantity| match quantity.is_of_interaction() {
+                    true => view.quantity_of(first.as_ref(), *quantity),
+                    false => view.quantity(*quantity),
+                });
                 for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
                     *sum += (value * start.weight).as_dvec3();
                 }
@@ -120,6 +129,21 @@ impl<'a> View<'a> {
         1.0 - (through.x + through.y + through.z) / 3.0
     }
 
+    fn first_interaction(&self, stream: &mut Stream) -> Option<Interaction> {
+        self.bench.compiled.first_interaction(self.ray, stream)
+    }
+
+    /// 0 where there is none.
+    fn quantity_of(&self, first: Option<&Interaction>, quantity: Quantity) -> Vec3 {
+        match (first, quantity) {
+            (None, _) => Vec3::ZERO,
+            (Some(Interaction::Medium(_, properties)), Quantity::FirstAlbedo) => properties.albedo,
+            (Some(Interaction::Medium(..)), _) => -self.ray.direction,
+            (Some(Interaction::Surface(point)), Quantity::FirstAlbedo) => self.albedo(point),
+            (Some(Interaction::Surface(point)), _) => point.shading.normal,
+        }
+    }
+
     /// 0 where nothing is met.
     fn quantity(&self, quantity: Quantity) -> Vec3 {
         let Some((hit, point)) = &self.hit else { return Vec3::ZERO };
@@ -137,6 +161,8 @@ impl<'a> View<'a> {
             Quantity::DuvDy => self.uv_change(hit, point, vec2(0.0, 1.0)).extend(0.0),
             Quantity::PrimitiveIndex => vec3(geometry.local_primitive(hit) as f32, 0.0, 0.0),
             Quantity::ShapeIndex => vec3((point.shape + 1) as f32, 0.0, 0.0),
+            // Those of the first interaction, which has a function of its own.
+            Quantity::FirstAlbedo | Quantity::FirstNormal => Vec3::ZERO,
         }
     }
 

@@ -162,7 +162,8 @@ const OUTER: &[Parameter] = rows! {
 };
 
 const AOV: Table = table! {
-    "What the first surface is like, as layers of the image of the integrator inside.";
+    "What is seen first, as layers of the image of the integrator inside: Mitsuba's quantities of the first surface, and \
+     `first_albedo` and `first_normal`, of where a free flight first interacts, in media too (for denoisers).";
     text("aovs", "a list such as \"dd:depth,nn:sh_normal\"", Required, "Names and quantities of the layers."),
     nested("integrator", Optional, "The integrator of the image; black without.");
     OUTER, COMMON

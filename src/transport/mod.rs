@@ -260,6 +260,15 @@ impl<'a, P: Profile> Estimator<'a, P> {
         passed.map_or(Spectrum::ZERO, |passed| passed.transmittance)
     }
 
+    /// Where a primary ray interacts first, as channel 0 samples it: by a collision, or at a surface that it does not pass; none
+    /// where it leaves the scene.
+    #[cold]
+    pub fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction> {
+        let Scene { sensor_medium, .. } = *self.scene;
+        let ahead = Segment::along(self.scene, primary, sensor_medium, self.hide_emitters);
+        segment::sample_free_flight::<P>(ahead, 0, stream, &mut |_, _| ()).interaction
+    }
+
     /// One camera subpath of channel `hero` through `film` [pixels] and a point of the aperture; what it
     /// contributes goes to `observer`.
     pub fn sample_pixel<R: Observer<P::MisSums>>(

@@ -138,6 +138,25 @@ fn info_shows_the_plan_of_any_integrator() {
     sandbox.run("info scene.json --integrator pt --strategies lens").refuses(&["--strategies"]);
 }
 
+/// Each a JSON document, the last one of the whole; nothing else is said.
+#[test]
+fn progress_can_be_lines_of_json() {
+    let sandbox = Sandbox::with_scene(&foggy_room());
+    let run = sandbox.run("-q render scene.json --spp 300 --progress json").ends(0);
+    let lines: Vec<Value> = run.err().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let done = |line: &Value| line["done"].as_f64().unwrap();
+    assert!(lines.windows(2).all(|pair| done(&pair[0]) <= done(&pair[1])), "{lines:?}");
+    let last = lines.last().unwrap();
+    assert!(done(last) == 1.0 && last["samples_per_pixel"] == 300 && last["seconds"].is_number(), "{last}");
+    assert!((0.0..1.0).contains(&last["noise"].as_f64().unwrap()) && last["within"].is_null(), "{last}");
+    let run = sandbox.run("-q render scene.json --spp 1 --batches 2 --progress json").ends(0);
+    assert!(run.err().contains(r#""image":"batch 2 of 2""#), "{}", run.err());
+    assert_eq!(
+        sandbox.run("-q strategies scene.json --spp 1 --progress json").ends(0).err().lines().last(),
+        Some(r#"{"done":1.0}"#)
+    );
+}
+
 #[test]
 fn quiet_leaves_warnings_and_what_is_missing() {
     let scene = with(glass_ball(), &[("idle", diffuse(0.5))]);

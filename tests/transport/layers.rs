@@ -139,6 +139,36 @@ fn null_boundaries_are_seen_and_nothing_is_nothing() {
     assert!(empty.layers.iter().all(|channel| channel.values.iter().all(|value| *value == 0.0)));
 }
 
+/// What a denoiser looks at: behind the boundary of a slab of fog, whose albedo is 1, a red wall is seen with the chance
+/// that a flight reaches it.
+#[test]
+fn the_first_interaction_is_that_of_a_free_flight() {
+    const SAMPLES: u64 = 1024;
+    // Of 64 pixels, one is further off with a probability of 1e-3.
+    const LIMIT: f64 = 4.4;
+    let fog = null_box([-9.0, -9.0, 1.0], [9.0, 9.0, 2.0], Some(medium(0.7, 1.0, 0.0)));
+    let wall = json!({"type": "rectangle", "bsdf": diffuse(rgb(0.5, 0.0, 0.0)), "to_world": place([3.0; 3], [0.0; 3])});
+    let layers = aov("a:first_albedo,n:first_normal,g:geo_normal");
+    let scene = with(facing([0.0; 3], &[("fog", fog)]), &[("integrator", layers), ("wall", wall)]);
+    let image = image(&Stage::new(&scene), SAMPLES, 1);
+    let normals = vectors(&image, "n");
+    for (pixel, collided) in channel(&image, "a.G").iter().enumerate() {
+        let collided = f64::from(*collided);
+        let chances = corners(pixel).map(|(x, y)| 1.0 - (-0.7 * (1.0 + x * x + y * y).sqrt()).exp());
+        let (least, most) =
+            (chances.iter().copied().fold(1.0, f64::min), chances.iter().copied().fold(0.0, f64::max));
+        let off = (least - collided).max(collided - most);
+        let z = off / (most * (1.0 - most) / SAMPLES as f64).sqrt();
+        assert!(z < LIMIT, "pixel {pixel}: {collided}, not within {least} and {most}: z {z}");
+        let red = f64::from(channel(&image, "a.R")[pixel]);
+        assert!((red - (0.5 + 0.5 * collided)).abs() < 1e-4, "{red}, {collided}");
+        // Of collisions towards the camera, of the wall (0, 0, 1).
+        let sideways = corners(pixel).map(|(x, y)| -x * collided / (1.0 + x * x + y * y).sqrt());
+        assert_within(normals[pixel].x, sideways, 0.02);
+        assert!(normals[pixel].length() > 0.9 && normals[pixel].length() <= 1.0 + 1e-5);
+    }
+}
+
 #[test]
 fn alpha_is_the_chance_to_meet_something() {
     let film = |scene: Value| {

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from validation.scene import Scene
+from tyndall.scene import Scene
 
 SIZE = 8
 """Pixels a side: the truth is smooth, so few pixels with many samples tell most."""

@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from tyndall.scene import Scene
 from validation.closed_forms.case import SKY, Case, camera, medium, scene
-from validation.scene import Scene
 
 ISOTROPIC = {"type": "isotropic"}
 FORWARD = {"type": "hg", "g": 0.8}

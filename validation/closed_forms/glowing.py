@@ -8,11 +8,11 @@
 
 import numpy as np
 
+from tyndall.scene import Scene
 from validation.closed_forms import varying
 from validation.closed_forms.case import SKY, Case, camera, scene
 from validation.closed_forms.case import medium as homogeneous
 from validation.closed_forms.slab import Slab, lit_slab
-from validation.scene import Scene
 
 ALL = ("pt", "lt", "bdpt")
 RADIANCE = np.array([1.0, 0.5, 0.2])

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import quad
 
+from tyndall.scene import Scene
 from validation.closed_forms.case import SIZE, Case, camera, medium, scene
-from validation.scene import Scene
 
 SIGMA_T = (0.2, 0.5, 1.0)
 ALBEDO = 0.8

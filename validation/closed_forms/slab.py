@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import iadpython
 
+from tyndall.scene import Scene
 from validation.closed_forms.case import SKY, Case, camera, medium, scene
-from validation.scene import Scene
 
 QUADRATURE_POINTS = 16
 HALF_WIDTH = 200

@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tyndall.scene import Scene
+from tyndall.volume_file import vol
 from validation import densities
 from validation.closed_forms.case import SIZE, SKY, Case, camera, scene
 from validation.closed_forms.slab import HALF_WIDTH, Slab, lit_slab
 from validation.places import TARGET
-from validation.scene import Scene
-from validation.volume_file import vol
 
 FOLDER = TARGET / "validation-volumes"
 CONTRAST = 1e6

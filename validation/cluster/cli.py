@@ -6,11 +6,11 @@ import shlex
 import sys
 from pathlib import Path
 
+from tyndall.failure import Failure
 from validation import environment
 from validation.cluster import farm, parts, render, study, tiles
 from validation.cluster.job import Job, job
 from validation.cluster.parts import part_size
-from validation.failure import Failure
 from validation.places import REQUIREMENTS_CLUSTER
 
 TEXT = "One picture, or one study, by many processes or machines over Dask distributed (validation/cluster/README.md)."

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from tyndall.failure import Failure
 from validation.cluster import task
-from validation.failure import Failure
 
 Client = Any
 Future = Any

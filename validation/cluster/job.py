@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from validation import tyndall
+from tyndall import program
+from tyndall.failure import Failure
 from validation.cluster import parts
 from validation.cluster.parts import Range
-from validation.failure import Failure
 
 OURS = {"--samples", "--crop", "--sums", "--checkpoint", "--resume"}
 """Options that say what a part is."""
@@ -57,7 +57,7 @@ class Job:
 
     def render(self) -> list[str]:
         """What all parts share."""
-        return [str(tyndall.binary().absolute()), "--quiet", "render", str(self.scene), *self.options]
+        return [str(program.binary().absolute()), "--quiet", "render", str(self.scene), *self.options]
 
 
 def job(scene: str, output: Path, options: list[str], spp: int | None, folder: Path | None) -> Job:
@@ -95,5 +95,5 @@ def info(scene: Path, options: list[str]) -> dict[str, Any]:
     """What the scene itself says, with the parameters that `options` give it."""
     places = [i for i, word in enumerate(options) if word == "-D"]
     parameters = [word for i in places for word in options[i : i + 2]]
-    told: dict[str, Any] = json.loads(tyndall.call([str(tyndall.binary()), "info", str(scene), "--json", *parameters]).stdout)
+    told: dict[str, Any] = json.loads(program.call([str(program.binary()), "info", str(scene), "--json", *parameters]).stdout)
     return told

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
-from validation.failure import Failure
+from tyndall.failure import Failure
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable
 
-from validation.failure import Failure
+from tyndall.failure import Failure
 
 Range = tuple[int, int]
 """The samples A to B - 1 of every pixel."""

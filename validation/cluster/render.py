@@ -3,13 +3,13 @@
 import sys
 from typing import Any
 
-from validation import tyndall
+from tyndall import program
+from tyndall.failure import Failure
 from validation.cluster import farm, parts, task
 from validation.cluster.job import Job
 from validation.cluster.locked import alone
 from validation.cluster.parts import Range
 from validation.cluster.sums import Sums
-from validation.failure import Failure
 
 
 def run(client: Any, job: Job, size: int, retries: int) -> None:
@@ -37,7 +37,7 @@ def begin(job: Job, sums: Sums) -> None:
     first = sums.there[0][0] if sums.there else 0
     resume = ["--resume"] if sums.there else []
     try:
-        tyndall.call([*job.part((first, first + 1)), "--sums", str(sums.file), "-o", str(job.output), *resume])
+        program.call([*job.part((first, first + 1)), "--sums", str(sums.file), "-o", str(job.output), *resume])
     except Failure as failure:
         raise Failure(failure.problem, f"correct the command; {sums.file} may be of another picture") from None
     sums.read()
@@ -52,7 +52,7 @@ def take(job: Job, sums: Sums, paths: list[str]) -> None:
 
 def finish(job: Job, sums: Sums) -> None:
     """Writes the picture from the sums, as one render would that was resumed."""
-    tyndall.call(job.whole(sums.file))
+    program.call(job.whole(sums.file))
     sums.read()
     sums.sweep()
     tell(job, sums, f"{job.output} is done")

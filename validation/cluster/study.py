@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from validation import files, tyndall
+from tyndall import program
+from tyndall.failure import Failure
+from validation import files
 from validation.cluster import farm, task
-from validation.failure import Failure
 
 PER_SCENE = ("--reference", "--reference-error")
 """Options that are given once for each scene, in their order."""
@@ -22,7 +23,7 @@ def run(client: Any, scenes: list[Path], output: Path, options: list[str], retri
     futures = []
     for scene, folder, more in zip(scenes, folders, own):
         folder.mkdir(parents=True, exist_ok=True)
-        words = [str(tyndall.binary().absolute()), "--quiet", "study", str(scene.absolute()), "-o", str(folder), *shared, *more]
+        words = [str(program.binary().absolute()), "--quiet", "study", str(scene.absolute()), "-o", str(folder), *shared, *more]
         futures.append(farm.submit(client, task.study, [words, str(folder)], f"study-{scene.stem}", retries))
     farm.finished(client, futures, lambda _: combine(folders, output, command))
 
@@ -69,5 +70,5 @@ def combine(folders: list[Path], output: Path, command: str) -> None:
     tables = [(folder / "study.csv").read_text().splitlines(keepends=True) for folder in done]
     files.write_text(output / "study.csv", "".join([tables[0][0], *(row for table in tables for row in table[1:])]))
     files.write_text(output / "study.json", json.dumps(whole, indent=2) + "\n")
-    tyndall.call([str(tyndall.binary()), "--quiet", "report", str(output)])
+    program.call([str(program.binary()), "--quiet", "report", str(output)])
     print(f"{len(done)} of {len(folders)} scenes: {output / 'study.html'}", flush=True)

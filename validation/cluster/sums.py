@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from validation import tyndall
+from tyndall import program
+from tyndall.failure import Failure
 from validation.cluster import parts
 from validation.cluster.parts import Range
-from validation.failure import Failure
 
 RESTRAINT = 10
 """Time between two pictures so far over the time that one takes."""
@@ -112,4 +112,4 @@ def info(path: Path) -> dict[str, Any]:
 
 def call(*words: str) -> str:
     """Runs the program here; its output."""
-    return tyndall.call([str(tyndall.binary()), "--quiet", *words]).stdout
+    return program.call([str(program.binary()), "--quiet", *words]).stdout

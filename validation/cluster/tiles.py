@@ -5,12 +5,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from validation import tyndall
+from tyndall import program
+from tyndall.failure import Failure
 from validation.cluster import farm, task
 from validation.cluster.job import Job
 from validation.cluster.locked import alone
 from validation.cluster.sums import awaited, call, info
-from validation.failure import Failure
 
 
 def cut(width: int, height: int, count: int) -> list[str]:
@@ -54,7 +54,7 @@ def begin(job: Job, crops: list[str]) -> list[str]:
     """Renders one sample here: whatever is wrong with the command, the program says before anything is sent. The parts
     that are there already, which must be of this picture."""
     trial = job.folder / "trial.sums"
-    tyndall.call([*job.render(), "--spp", "1", "--sums", str(trial), "-o", str(job.folder / job.output.name)])
+    program.call([*job.render(), "--spp", "1", "--sums", str(trial), "-o", str(job.folder / job.output.name)])
     there = [crop for crop in crops if file(job, crop).is_file()]
     for crop in there:
         if settings(file(job, crop)) != settings(trial):

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from tyndall.scene import Scene, derived
 from validation.closed_forms.case import SIZE, camera, medium, scene
-from validation.scene import Scene, derived
 from validation.statistics import Estimate, exact
 
 Known = float | np.ndarray | Estimate

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from tyndall.scene import Scene
 from validation.closed_forms import varying
 from validation.closed_forms.case import SIZE, scene
 from validation.closed_forms.slab import Slab, lit_slab
-from validation.scene import Scene
 from validation.stability.case import ALL, BLACK, EYE, NULL, Case, ball, fog, lamp, methods, moved, named, oven, parallel, with_object
 from validation.stability.thickness import AWAY
 

@@ -4,10 +4,10 @@ from functools import partial
 
 import numpy as np
 
+from tyndall.scene import Scene
 from validation.closed_forms import point_light
 from validation.closed_forms.case import scene
 from validation.closed_forms.slab import Slab, lit_slab
-from validation.scene import Scene
 from validation.stability.anisotropy import fog_image
 from validation.stability.case import (
     ALL,

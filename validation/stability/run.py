@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from validation import tyndall
+import tyndall
+from tyndall.failure import Failure
+from tyndall.scene import Scene, changed
 from validation.closed_forms.case import SIZE
-from validation.failure import Failure
-from validation.scene import Scene, changed
 from validation.stability import (
     albedo,
     anisotropy,

@@ -2,14 +2,14 @@
 
 from functools import cache, partial
 
+from tyndall.scene import Scene
 from validation import references
 from validation.closed_forms import point_light
 from validation.closed_forms.case import camera, scene
 from validation.closed_forms.slab import Slab, lit_slab
 from validation.compare import Effort
-from validation.scene import Scene
-from validation.stability.case import ALL, EYE, ISOTROPIC, NULL, Case, diffuse, fog, lamp, moved, named, scaled
 from validation.stability.anisotropy import fog_image
+from validation.stability.case import ALL, EYE, ISOTROPIC, NULL, Case, diffuse, fog, lamp, moved, named, scaled
 from validation.statistics import Estimate
 
 SCALE = "scene scale 1e-6 to 1e6"

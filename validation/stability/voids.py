@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from tyndall.scene import Scene
 from validation.closed_forms import varying
 from validation.closed_forms.case import SIZE, camera, scene
-from validation.scene import Scene
 from validation.stability.case import ALL, NULL, TRACKERS, Case, diffuse, lamp, methods
 from validation.stability.lamps import FLOOR_VIEW, PLACE, lit_floor, lit_image
 

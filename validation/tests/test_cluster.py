@@ -18,12 +18,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tyndall import exr, program
+from tyndall.failure import Failure
 from validation import cli as whole_cli
-from validation import environment, exr, tyndall
+from validation import environment
 from validation.cluster import cli, farm, locked, parts, render, study, task, tiles
 from validation.cluster.job import Job, job
 from validation.cluster.sums import Sums
-from validation.failure import Failure
 from validation.places import CROSSCHECK, ROOT, SCENES
 
 ROOM = CROSSCHECK / "cube_in_room.json"
@@ -48,7 +49,7 @@ def equal(some: Path, other: Path) -> bool:
 def single(of: Job, folder: Path) -> Path:
     """The same picture by one render."""
     image = folder / "single.exr"
-    tyndall.call([*of.render(), "--spp", str(of.spp), "-o", str(image)])
+    program.call([*of.render(), "--spp", str(of.spp), "-o", str(image)])
     return image
 
 
@@ -100,7 +101,7 @@ def test_what_the_driver_does_not_know_is_for_the_program(tmp_path: Path, monkey
     assert cli.main(words.split()) == 0
     [(picture, size)] = pictures
     assert picture.options == "-D res=8 --max-depth -1 --size 8x6 --threads 1".split() and (picture.spp, size) == (64, 16)
-    tyndall.call([*picture.render(), "--spp", "1", "-o", str(tmp_path / "b.exr")])
+    program.call([*picture.render(), "--spp", "1", "-o", str(tmp_path / "b.exr")])
 
 
 def test_command_lines_of_parts_make_the_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -109,7 +110,7 @@ def test_command_lines_of_parts_make_the_picture(tmp_path: Path, capsys: pytest.
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 3
     for line in lines:
-        tyndall.call(shlex.split(line))
+        program.call(shlex.split(line))
     picture = job(str(ROOM), tmp_path / "a.exr", ["--size", "8x6"], 10, None)
     sums = Sums(picture.output, picture.folder)
     sums.gather()
@@ -166,7 +167,7 @@ def test_a_part_goes_on_from_what_a_stopped_attempt_left(tmp_path: Path, monkeyp
 
     monkeypatch.setattr(task, "run", watched)
     left = picture.folder / f"{parts.name((0, 16))}.0.attempt"
-    tyndall.call([*picture.part((0, 4)), "--sums", str(left)])
+    program.call([*picture.part((0, 4)), "--sums", str(left)])
     part = rendered(picture, 0, 16)
     assert resumed == [True] and not left.exists()
     sums = Sums(picture.output, picture.folder)
@@ -233,13 +234,13 @@ def test_a_picture_to_an_error_is_cut_into_parts_of_the_image(client: Any, tmp_p
     assert picture.spp == 0 and picture.size() == (24, 18)
     assert whole_cli.main(["cluster", "commands", str(ROOM), "-o", str(tmp_path / "b.exr"), "--parts", "4", *words]) == 0
     for line in capsys.readouterr().out.splitlines():
-        tyndall.call(shlex.split(line))
+        program.call(shlex.split(line))
     files = map(str, (tmp_path / "b.exr.parts").glob("*.sums"))
-    tyndall.call([str(tyndall.binary()), "merge", *files, "-o", str(tmp_path / "b.exr")])
+    program.call([str(program.binary()), "merge", *files, "-o", str(tmp_path / "b.exr")])
     part = Path(tmp_path, "b.exr.parts", "crop-12x9+12+9.sums")
     picture.folder.mkdir()
     there = part.replace(picture.folder / part.name)
-    tyndall.call([*picture.tile("12x9+0+0"), "--spp", "2", "--sums", str(picture.folder / "crop-12x9+0+0.0.attempt")])
+    program.call([*picture.tile("12x9+0+0"), "--spp", "2", "--sums", str(picture.folder / "crop-12x9+0+0.0.attempt")])
     tiles.run(client, picture, 4, retries=0)
     told = capsys.readouterr().err
     assert "0 of 4 parts" not in told and "1 of 4 parts" in told and "4 of 4 parts" in told and not there.exists() and not picture.folder.exists()
@@ -250,7 +251,7 @@ def test_parts_of_another_picture_are_refused(tmp_path: Path) -> None:
     words = ["--size", "8x6", "--error", "0.9"]
     picture = job(str(ROOM), tmp_path / "a.exr", words, 4, None)
     picture.folder.mkdir()
-    tyndall.call([*job(str(ROOM), tmp_path / "a.exr", [*words, "--seed", "2"], 4, None).tile("8x6+0+0"), "--sums", str(tiles.file(picture, "8x6+0+0"))])
+    program.call([*job(str(ROOM), tmp_path / "a.exr", [*words, "--seed", "2"], 4, None).tile("8x6+0+0"), "--sums", str(tiles.file(picture, "8x6+0+0"))])
     with pytest.raises(Failure, match="a part of another picture"):
         tiles.run(None, picture, 1, retries=0)
     with pytest.raises(Failure, match="--samples-per-part is given"):

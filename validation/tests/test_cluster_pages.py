@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from validation import tyndall
+from tyndall import program
 from validation.cluster import cli
 from validation.places import CROSSCHECK, ROOT
 from validation.tests.test_cluster import equal
@@ -68,7 +68,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     scene = json.loads((CROSSCHECK / "cube_in_room.json").read_text())
     scene["sensor"]["film"] |= {"width": 6, "height": 4}
     (tmp_path / "fog.json").write_text(json.dumps(scene))
-    (programs / "tyndall").symlink_to(tyndall.binary().absolute())
+    (programs / "tyndall").symlink_to(program.binary().absolute())
     python = f'#!/bin/sh\nexec {shlex.quote(sys.executable)} "$@"\n'  # this environment: a test makes none
     for name, text in (("python3", python), ("sbatch", SBATCH), ("srun", '#!/bin/sh\nexec "$@"\n'), ("cuecmd", CUECMD), ("curl", CURL)):
         (programs / name).write_text(text)

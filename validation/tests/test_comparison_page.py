@@ -6,10 +6,10 @@ from html.parser import HTMLParser
 import numpy as np
 from markupsafe import escape
 
+from tyndall.failure import Failure
+from tyndall.scene import Scene
 from validation import comparison_page, flip
 from validation.compare import Effort, Measured, Verdict, judge
-from validation.failure import Failure
-from validation.scene import Scene
 
 EVIL = "<script>alert('x')</script>\"><img src=http://evil.example/x.png>"
 

@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation import cli, efficiency, exr, mitsuba, studies, tyndall
+import tyndall
+from tyndall import exr
+from tyndall.failure import Failure
+from tyndall.scene import open_scene
+from validation import cli, efficiency, mitsuba, studies
 from validation.efficiency import Effort, Ratio, Reference
-from validation.failure import Failure
-from validation.scene import open_scene
 
 
 def interval(middle: float, off: float = 1.1) -> dict[str, float]:

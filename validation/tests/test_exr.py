@@ -7,8 +7,9 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from validation import exr, picture
-from validation.failure import Failure
+from tyndall import exr
+from tyndall.failure import Failure
+from validation import picture
 
 RANDOM = np.random.default_rng(7)
 

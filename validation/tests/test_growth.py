@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation import growth, tyndall
+import tyndall
+from validation import growth
 
 
 def test_balls_are_closed() -> None:

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tyndall.failure import Failure
+from tyndall.scene import Scene, open_scene
 from validation import compare, matrix, references
 from validation.compare import Effort, Measured
-from validation.failure import Failure
 from validation.places import CROSSCHECK
-from validation.scene import Scene, open_scene
 
 EFFORT = Effort(batches=8, spp=4)
 SCENE = Scene({"type": "scene"}, "little")

@@ -8,10 +8,10 @@ import mitsuba as mi
 import numpy as np
 import pytest
 
-from validation import exr
-from validation.failure import Failure
-from validation.mitsuba import transform
-from validation.spelling import spelled
+from tyndall import exr
+from tyndall.failure import Failure
+from tyndall.load_dict import transform
+from tyndall.spelling import spelled
 
 
 @pytest.fixture(autouse=True, params=["scalar_rgb", "numpy only"])

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from validation import cli, contender, exr, mitsuba, studies, tyndall
-from validation.failure import Failure
+from tyndall import exr, load_dict, program
+from tyndall.failure import Failure
+from tyndall.scene import Scene, open_scene
+from validation import cli, contender, mitsuba, studies
 from validation.places import CROSSCHECK, ROOT, SCENES
-from validation.scene import Scene, open_scene
 
 ROOM = CROSSCHECK / "cube_in_room.json"
 
@@ -48,7 +49,7 @@ def test_mitsubas_integrators_have_the_depths_of_the_scenes_own() -> None:
     assert contender.integrator_like(lampbox, "volpathmis") == {"type": "volpathmis", "max_depth": 17, "rr_depth": 1000}
     assert lampbox["sensor"]["film"]["width"] == 7
     ours = {"type": "scene", "integrator": {"type": "bdpt", "max_depth": 5}}
-    assert contender.integrator_like(ours, "volpath") == {"type": "volpath", "max_depth": 5, "rr_depth": mitsuba.ROULETTE[False]}
+    assert contender.integrator_like(ours, "volpath") == {"type": "volpath", "max_depth": 5, "rr_depth": load_dict.ROULETTE[False]}
     theirs = {"type": "scene", "i": {"type": "aov", "nested": {"type": "path", "hide_emitters": True}}}
     assert contender.integrator_like(theirs, "volpath") == {"type": "volpath", "hide_emitters": True}
 
@@ -97,5 +98,5 @@ def test_mitsuba_takes_part_in_a_study(tmp_path: Path) -> None:
     assert (theirs["name"], ours["name"]) == ("mitsuba volpath scalar_rgb", "bdpt")
     assert theirs["load_seconds"] > 0 and theirs["points"][1]["relmse"]["mean"] > 0 and ours["ratio"]["mean"] > 0
     assert "mitsuba volpath scalar_rgb" in scene["reference"]["how"]
-    print(tyndall.call([str(tyndall.binary()), "report", str(tmp_path), "--record", str(tmp_path / "record")]).stdout)
+    print(program.call([str(program.binary()), "report", str(tmp_path), "--record", str(tmp_path / "record")]).stdout)
     assert {path.name for path in (tmp_path / "record").iterdir()} == {"convergence.md", "convergence.svg", "convergence_strips.svg"}

@@ -11,20 +11,21 @@ import mitsuba as mi
 import numpy as np
 import pytest
 
-from validation import tyndall
-from validation.failure import Failure
+import tyndall
+from tyndall import arguments, display, program, rendering
+from tyndall.failure import Failure
+from tyndall.scene import as_scene, open_scene
 from validation.places import CROSSCHECK, ROOT, SCENES
-from validation.scene import open_scene
 
 SCENE = CROSSCHECK / "cube_in_room.json"
 LAYERED = CROSSCHECK / "integrator_aov.json"
 
 
 def test_options_are_those_of_the_command_line() -> None:
-    given: dict[str, tyndall.Option] = {"heuristic": "power", "forced_interaction": True, "quiet": False, "spp": 4, "error": None, "strategies": ["hit", "join"]}
-    assert tyndall.flags(given) == ["--heuristic=power", "--forced-interaction", "--spp=4", "--strategies=hit,join"]
-    assert tyndall.flags({"max_depth": -1}) == ["--max-depth=-1"]  # not an option called -1
-    assert tyndall.definitions(tyndall.as_scene({}, {"res": 48, "on": True}).parameters) == ["-D", "res=48", "-D", "on=true"]
+    given: dict[str, program.Option] = {"heuristic": "power", "forced_interaction": True, "quiet": False, "spp": 4, "error": None, "strategies": ["hit", "join"]}
+    assert program.flags(given) == ["--heuristic=power", "--forced-interaction", "--spp=4", "--strategies=hit,join"]
+    assert program.flags({"max_depth": -1}) == ["--max-depth=-1"]  # not an option called -1
+    assert program.definitions(as_scene({}, {"res": 48, "on": True}).parameters) == ["-D", "res=48", "-D", "on=true"]
 
 
 def test_an_image_is_an_array_that_the_seed_decides() -> None:
@@ -44,7 +45,7 @@ def test_a_file_a_scene_and_a_dictionary_give_the_same_image(monkeypatch: pytest
 
 
 def test_layers_come_by_name() -> None:
-    layers = tyndall.render(LAYERED, spp=1, layers=True)
+    layers = tyndall.render(LAYERED, spp=1).layers
     done = tyndall.run(LAYERED, spp=1)
     assert {"<root>", "nested", "normal", "place", "depth"} == layers.keys() == done.layers.keys()
     assert layers["normal"].shape == (*layers["depth"].shape, 3) and layers["normal"].dtype == np.float32
@@ -66,6 +67,7 @@ def test_parameters_and_info() -> None:
     lampbox = SCENES / "lampbox_up.xml"
     assert tyndall.render(lampbox, spp=1, parameters={"res": 6}).shape == (6, 6, 3)
     assert "6 x 6" in tyndall.info(lampbox, parameters={"res": 6})
+    assert json.loads(tyndall.info(lampbox, json=True, integrator="pt"))["plan"]["integrator"] == "pt"
 
 
 def test_dictionaries_of_mitsubas_types_are_rendered() -> None:
@@ -78,25 +80,93 @@ def test_dictionaries_of_mitsubas_types_are_rendered() -> None:
 
 
 def test_failures_carry_the_programs_message() -> None:
-    with pytest.raises(Failure, match="no-such-option"):
-        tyndall.render(SCENE, no_such_option=3)
     with pytest.raises(Failure, match="unicorn"):
         tyndall.render({"type": "scene", "thing": {"type": "unicorn"}})
     with pytest.raises(Failure, match="no such scene"):
         tyndall.render("nowhere.json")
     with pytest.raises(Failure, match="is no scene"):
-        tyndall.render(7)  # type: ignore[call-overload]
+        tyndall.render(7)  # type: ignore[arg-type]
     with pytest.raises(Failure, match="not finite"):
         tyndall.render({"type": "scene", "ball": {"type": "sphere", "radius": float("nan")}})
-    with pytest.raises(Failure, match="none was written"):
-        tyndall.render(SCENE, spp=1, size=(4, 4), frames="0..1")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"max_dept": 3}, "did you mean max_depth"),
+        ({"no_such_option": 3}, "there is no option no_such_option"),
+        ({"parameter": {}}, "did you mean parameters"),
+        ({"size": 64}, r"give size=\(64, 64\)"),
+        ({"size": (64, 0)}, "from 1 to 65536"),
+        ({"size": (64.5, 3)}, r"expected \(width, height\)"),
+        ({"frames": "0..3"}, "for frame in range"),
+        ({"spp": -3}, "invalid value '-3' for spp: expected a whole number"),
+        ({"spp": True}, "a value is required for spp"),
+        ({"integrator": "bdp"}, "a similar value exists: 'bdpt'"),
+        ({"strategies": ["hit", "jion"]}, "'join'"),
+        ({"batches": 4, "error": 0.1}, "the argument batches cannot be used with error"),
+        ({"output": "fog.exr"}, r"\.save"),
+        ({"report": "fog.json"}, r"\.report"),
+    ],
+)
+def test_options_are_checked_before_anything_runs(options: dict[str, Any], said: str) -> None:
+    with pytest.raises(Failure, match=said):
+        tyndall.render(UNREADABLE, **options)
+
+
+UNREADABLE = {"type": "scene", "thing": {"type": "unicorn"}}
+"""What is found wrong with the options is found before this."""
+
+
+def test_the_programs_help_names_the_options() -> None:
+    names = arguments.names()
+    assert {"spp", "max_depth", "forced_interaction", "sums", "checkpoint", "sums_every", "tev", "crop", "size"} <= set(names)
+    assert re.search(r"^max_depth <N> +Maximum number", tyndall.options(), re.MULTILINE) and "\nreport" not in tyndall.options()
+    assert len(tyndall.options().splitlines()) > 20 and "--" not in tyndall.options()
+    assert "contender" in arguments.names("study")
+    assert arguments.words({"contender": {"a": "--spp 1", "b": ""}, "integrators": ["pt", "lt"], "reference": ["a.exr", "b.exr"]}, "study") == [
+        "--contender=a: --spp 1",
+        "--contender=b: ",
+        "--integrators=pt,lt",
+        "--reference=a.exr",
+        "--reference=b.exr",
+    ]
+
+
+def test_messages_name_no_file_that_is_gone() -> None:
+    def refused(scene: Any) -> str:
+        with pytest.raises(Failure) as found:
+            tyndall.render(scene)
+        assert "/tmp" not in str(found.value) and "remedy: " in str(found.value)
+        return str(found.value)
+
+    assert refused(UNREADABLE).startswith("the scene $.thing: expected the type of a plugin")
+    smoke = {"type": "heterogeneous", "sigma_t": {"type": "gridvolume", "data": -np.ones((2, 2, 2))}}
+    scene = {"type": "scene", "camera": {"type": "perspective"}, "cloud": {"type": "cube", "interior": smoke}}
+    assert refused(scene).startswith("$.cloud.interior.sigma_t.data: expected voxels")
+
+
+def test_renders_of_dictionaries_go_on(tmp_path: Path) -> None:
+    voxels = np.random.default_rng(1).uniform(0, 1, (4, 4, 4))
+    smoke = {"type": "heterogeneous", "sigma_t": {"type": "gridvolume", "data": voxels}}
+    cube = {"type": "cube", "bsdf": {"type": "null"}, "interior": smoke}
+    sensor = {"type": "perspective", "to_world": [{"type": "translate", "value": [0.5, 0.5, -4]}]}
+    scene = {"type": "scene", "sensor": sensor, "sky": {"type": "constant"}, "cloud": cube}
+    options: dict[str, Any] = {"size": (8, 8), "sums": tmp_path / "cloud.sums"}
+    tyndall.render(scene, spp=2, **options)
+    assert (tyndall.render(scene, spp=4, resume=True, **options) == tyndall.render(scene, spp=4, size=(8, 8))).all()
+
+
+def test_one_frame_is_a_picture() -> None:
+    image = tyndall.render(CROSSCHECK / "function_wind.json", spp=1, size=(8, 8), frames=3)
+    assert image.shape == (8, 8, 3) and image.report["frame"] == 3
 
 
 def test_numbers_that_are_none_are_refused() -> None:
     image = np.ones((2, 3, 3))
     image[1, 2, 0] = np.inf
     with pytest.raises(Failure, match=r"pixel \(2, 1\), channel 0"):
-        tyndall.finite(image)
+        rendering.finite(image)
 
 
 def test_a_program_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -107,7 +177,7 @@ def test_a_program_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_nothing_but_numpy_and_openexr_is_imported() -> None:
     heavy = "mitsuba", "drjit", "scipy", "jinja2"
-    code = f"import sys; from validation import tyndall; print([m for m in {heavy} if m in sys.modules])"
+    code = f"import sys; import tyndall; print([m for m in {heavy} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
@@ -117,8 +187,9 @@ def test_other_files_are_no_scenes() -> None:
         tyndall.render(Path(__file__))
 
 
-def test_the_readmes_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(ROOT)
+def test_the_readmes_example_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scenes").symlink_to(SCENES)
     found = re.search(r"```python\n(.*?)```", (ROOT / "validation" / "README.md").read_text(), re.DOTALL)
     assert found
     code = found[1]
@@ -128,4 +199,4 @@ def test_the_readmes_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     names: dict[str, Any] = {}
     exec(code, names)
     assert names["image"].shape == (240, 320, 3) and names["image"].dtype == np.float64
-    assert names["done"].image.shape == (120, 160, 3)
+    assert names["cloud"].shape == (120, 160, 3) and (tmp_path / "foggy_room.exr").is_file()

@@ -1,11 +1,14 @@
 """OpenEXR files as numpy arrays, by the package `OpenEXR`: nothing of Mitsuba's is needed."""
 
+import json
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import OpenEXR
 
-from validation.failure import Failure
+from tyndall.failure import Failure
 
 ROOT = "<root>"
 """Name of the layer whose channels have no layer in their names: the picture. Mitsuba's `Bitmap.split` calls it so too."""
@@ -14,6 +17,8 @@ ORDER = "RGBXYZA"
 XYZ_OF_RGB = np.array([[0.412453, 0.357580, 0.180423], [0.212671, 0.715160, 0.072169], [0.019334, 0.119193, 0.950227]])
 """Linear sRGB (ITU-R BT.709 primaries, white D65) to CIE XYZ."""
 UINT32_MAX = 4294967295
+MADE = "tyndall"
+"""The attribute in which the program says how an image was made, as JSON."""
 
 Layers = dict[str, dict[str, np.ndarray]]
 """Channels (height, width) by their names, by the layers' names."""
@@ -65,17 +70,43 @@ def read_image(path: str | Path) -> np.ndarray:
     return colours(read(path).get(ROOT, {}))
 
 
+def batches(channels: Layers) -> np.ndarray | None:
+    """The independent images of a file that holds some, (batches, height, width, 3)."""
+    names = [f"batch.{k}" for k in range(len(channels)) if f"batch.{k}" in channels]
+    return np.stack([colours(channels[name]) for name in names]) if names else None
+
+
+def made(path: str | Path) -> dict[str, Any]:
+    """How the image was made, as the program wrote it into the file; nothing of other programs' files."""
+    with OpenEXR.File(str(path), header_only=True) as file:
+        said = file.header().get(MADE)
+    return json.loads(said) if isinstance(said, str) else {}
+
+
 def write_image(path: str | Path, image: np.ndarray) -> None:
     """Writes (height, width, channels) or (height, width) as 32-bit floats, whole or not at all: Y, R G B or R G B A."""
     pixels = np.atleast_3d(np.asarray(image, dtype=np.float32))
     names = {1: "Y", 3: "RGB", 4: "RGBA"}.get(pixels.shape[2])
     if names is None or pixels.ndim != 3:
         raise Failure(f"an array of shape {np.shape(image)} is no image", "give (height, width) or (height, width, 1, 3 or 4)")
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    planes = {name: np.ascontiguousarray(pixels[:, :, i]) for i, name in enumerate(names)}
-    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
-    partial = path.with_name(f"{path.stem}.partial.exr")
-    with OpenEXR.File(header, planes) as file:
-        file.write(str(partial))
-    partial.replace(path)
+    write(path, {ROOT: {name: pixels[:, :, i] for i, name in enumerate(names)}})
+
+
+def write(path: str | Path, channels: Layers, made: Mapping[str, Any] | None = None) -> None:
+    """Writes layers of channels as 32-bit floats, with how they were made, whole or not at all."""
+    header: dict[str, Any] = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    header |= {MADE: json.dumps(made)} if made else {}
+    planes = {name if layer == ROOT else f"{layer}.{name}": plane for layer, inner in channels.items() for name, plane in inner.items()}
+    with OpenEXR.File(header, {name: np.ascontiguousarray(plane, dtype=np.float32) for name, plane in planes.items()}) as file:
+        whole(Path(path), file.write)
+
+
+def whole(path: Path, write: Callable[[str], object]) -> None:
+    """Writes a file whole or not at all, its folder made if need be."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        partial = path.with_name(f"{path.stem}.partial{path.suffix}")
+        write(str(partial))
+        partial.replace(path)
+    except (OSError, RuntimeError) as error:
+        raise Failure(f"{path}: the file cannot be written: {error}", "name a file in a folder that you may write to") from None

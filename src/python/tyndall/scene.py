@@ -3,12 +3,15 @@
 import hashlib
 import json
 import re
-from collections.abc import Callable
-from dataclasses import dataclass, field
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from validation.failure import Failure
+from tyndall import program
+from tyndall.failure import Failure
+from tyndall.spelling import spelled
 
 Change = Callable[[dict[str, Any]], dict[str, Any]]
 """What is done to an object of a scene."""
@@ -112,3 +115,65 @@ def changed(tree: Any, change: Change) -> Any:
     if isinstance(tree, list):
         return [changed(value, change) for value in tree]
     return tree
+
+
+AnyScene = Scene | str | Path | Mapping[str, Any]
+"""A scene, the file of one (.json or .xml), or a dictionary as for `mitsuba.load_dict`."""
+
+
+def as_scene(scene: AnyScene, parameters: Mapping[str, object] | None = None) -> Scene:
+    """Whatever stands for a scene, as one."""
+    given = {name: program.text(value) for name, value in (parameters or {}).items()}
+    if isinstance(scene, Scene):
+        return replace(scene, parameters={**scene.parameters, **given})
+    if isinstance(scene, Mapping):
+        return Scene(dict(scene), "scene", given)
+    if not isinstance(scene, (str, Path)):
+        raise Failure(f"a {type(scene).__name__} is no scene", "give a file's name or the dictionary of mitsuba.load_dict")
+    return open_scene(Path(scene).expanduser(), given)
+
+
+def load(scene: AnyScene, parameters: Mapping[str, object] | None = None) -> dict[str, Any]:
+    """The scene as a dictionary, its parameters filled in and its file names whole, to be changed and rendered."""
+    scene = as_scene(scene, parameters)
+    if isinstance(scene.source, dict):
+        return changed(scene.dictionary(), lambda o: absolute(o, scene.folder))
+    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
+        target = Path(folder, "scene.json")
+        program.call([str(program.binary()), "convert", "--fill", *program.definitions(scene.parameters), str(scene.source.resolve()), str(target)])
+        tree: dict[str, Any] = json.loads(target.read_text())
+        return changed(tree, lambda o: absolute(o, target.parent))
+
+
+INTEGRATORS = "bdpt", "pt", "lt", "path", "volpath", "volpathmis", "ptracer", "fog", "single_scattering", "non_scattering", "aov", "moment", "direct", "depth"
+"""Those of both renderers, as far as scenes may have them."""
+
+
+def integrator(tree: Mapping[str, Any]) -> str | None:
+    """The name of the integrator in a scene, if it has one."""
+    return next((name for name, child in tree.items() if isinstance(child, Mapping) and child.get("type") in INTEGRATORS), None)
+
+
+def scene_file(scene: Scene, folder: Path) -> Path:
+    """The file of a scene; a dictionary is written into `folder` first."""
+    if isinstance(scene.source, Path):
+        return scene.source
+    path = folder / "scene.json"
+    tree = changed(spelled(scene.source, folder), lambda o: beside(o, folder) or absolute(o, scene.folder))
+    try:
+        path.write_text(json.dumps(tree, allow_nan=False))
+    except ValueError:
+        raise Failure("the scene's dictionary holds a number that is not finite", "give finite numbers") from None
+    return path
+
+
+def beside(o: dict[str, Any], folder: Path) -> dict[str, Any] | None:
+    """The object with the bare name of the file it names, if that is in `folder`: the same scene has the same text then, and a
+    render of it goes on."""
+    path = Path(o.get("filename", ""))
+    return {**o, "filename": path.name} if path.parent == folder else None
+
+
+def absolute(o: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """The object with the whole path of the file it names."""
+    return {**o, "filename": str((folder / o["filename"]).resolve())} if "filename" in o else o

@@ -5,15 +5,17 @@ Both have the same words; what differs is values. Here numbers and points of num
 for a file (a bitmap's `data` or `bitmap`, a gridvolume's `data` or `grid`) become that file. Nothing is imported of
 Mitsuba: its objects are known by what they can do."""
 
+import itertools
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from validation import exr
-from validation.failure import Failure
-from validation.volume_file import vol
+from tyndall import exr
+from tyndall.failure import Failure
+from tyndall.volume_file import vol
 
 PICTURES = {"bitmap": ("data", "bitmap"), "envmap": ("data", "bitmap")}
 """Plugins that show an image file, and the parameters that may hold the image itself."""
@@ -27,28 +29,33 @@ def spelled(tree: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 class Speller:
-    """Spells one scene; knows where its files go."""
+    """Spells one scene; knows where its files go: without a folder, arrays that stand for a file stay arrays of numpy."""
 
-    def __init__(self, folder: Path):
+    def __init__(self, folder: Path | None):
         self.folder = folder
-        self.files = 0
+        self.paths: set[Path] = set()
 
     def object(self, tree: Mapping[str, Any], place: str) -> dict[str, Any]:
         """A dictionary."""
-        whole = self.with_files(dict(tree), place)
-        return {str(key): self.value(inner, f"{place}.{key}") for key, inner in whole.items()}
+        whole = dict(tree)
+        held = {key: self.held(whole.pop(key), key, kind, f"{place}.{key}") for key, kind in files(whole).items()}
+        spelled = {str(key): self.value(inner, f"{place}.{key}") for key, inner in whole.items()}
+        return {**spelled, **dict(held.values())}
 
-    def with_files(self, tree: dict[str, Any], place: str) -> dict[str, Any]:
-        """The dictionary with the names of files in place of what they hold."""
-        kind = tree.get("type")
-        for table, end, write in ((PICTURES, ".exr", write_picture), (VOXELS, ".vol", write_voxels)):
-            for key in table.get(kind, ()) if isinstance(kind, str) else ():
-                if key in tree and not isinstance(tree[key], (str, Mapping)):
-                    path = self.folder / f"array-{self.files}{end}"
-                    self.files += 1
-                    tree = {**tree, "filename": write(path, tree[key], f"{place}.{key}")}
-                    del tree[key]
-        return tree
+    def held(self, value: Any, key: str, kind: str, place: str) -> tuple[str, Any]:
+        """What stands for a file, as that file or else as an array."""
+        if self.folder is None:
+            return key, np.array(value)
+        end, write = WRITERS[kind]
+        return "filename", write(self.path(self.folder, place, end), value, place)
+
+    def path(self, folder: Path, place: str, end: str) -> Path:
+        """A new file, named after the place of what it holds: so do messages about it."""
+        name = re.sub(r"[^\w.-]", "_", place.removeprefix("$."))
+        paths = (folder / f"{name}{number or ''}{end}" for number in itertools.count())
+        path = next(path for path in paths if path not in self.paths)
+        self.paths.add(path)
+        return path
 
     def value(self, value: Any, place: str) -> Any:
         """Anything that a dictionary can hold."""
@@ -65,6 +72,13 @@ class Speller:
         if type(value).__name__.startswith("Color"):
             return {"type": "rgb", "value": numbers(value, place).tolist()}
         return plain(numbers(value, place), place)
+
+
+def files(tree: Mapping[str, Any]) -> dict[str, str]:
+    """The parameters of an object that stand for a file, and what kind of one."""
+    kind = str(tree.get("type"))
+    found = {key: name for name, table in (("picture", PICTURES), ("voxels", VOXELS)) for key in table.get(kind, ())}
+    return {key: name for key, name in found.items() if key in tree and not isinstance(tree[key], (str, Mapping))}
 
 
 def numbers(value: Any, place: str) -> np.ndarray:
@@ -129,3 +143,7 @@ def array(value: Any, axes: tuple[int, int], place: str, expected: str) -> np.nd
         emptied = "; mi.load_dict empties the TensorXf that it reads: make the dictionary anew" if found.size == 0 else ""
         raise Failure(f"{place}: found an array of shape {found.shape}", f"give {expected}{emptied}")
     return found
+
+
+WRITERS = {"picture": (".exr", write_picture), "voxels": (".vol", write_voxels)}
+"""The files of each kind: their names' ends, and what writes them."""

@@ -1,0 +1,69 @@
+"""Scenes as Mitsuba takes them, and back."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import mitsuba as mi
+import numpy as np
+import pytest
+
+import tyndall
+from tyndall import load_dict
+from tyndall.failure import Failure
+from validation.places import CROSSCHECK, SCENES
+
+STEPS: list[dict[str, Any]] = [{"type": "scale", "value": [2, 3, 4]}, {"type": "rotate", "axis": [0, 1, 0], "angle": 90}, {"type": "translate", "value": [5, 6, 7]}]
+
+
+@pytest.fixture(autouse=True)
+def variant() -> None:
+    mi.set_variant("scalar_rgb")
+
+
+def scene(**more: Any) -> dict[str, Any]:
+    """A cloud under a sky, of every kind of value."""
+    film = {"type": "hdrfilm", "width": np.int64(12), "height": 8}
+    sensor = {"type": "perspective", "fov": np.float32(40), "film": film, "to_world": [{"type": "lookat", "origin": [0, 1, 5], "target": [0, 0, 0], "up": [0, 1, 0]}]}
+    voxels = np.random.default_rng(3).uniform(0, 1, (3, 4, 5))
+    smoke = {"type": "gridvolume", "data": voxels, "to_world": np.array([[2, 0, 0, -1], [0, 2, 0, -1], [0, 0, 2, -1], [0, 0, 0, 1.0]])}
+    cloud = {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "heterogeneous", "albedo": 0.8, "sigma_t": smoke, "tracker": "exact"}}
+    sky = {"type": "envmap", "bitmap": np.ones((4, 8, 3)), "to_world": STEPS[1:2]}
+    return {"type": "scene", "integrator": {"type": "bdpt", "max_depth": 6}, "sensor": sensor, "cloud": cloud, "sky": sky, **more}
+
+
+def test_every_kind_of_value_goes_both_ways() -> None:
+    theirs = tyndall.to_mitsuba(scene())
+    assert isinstance(theirs["sensor"]["to_world"], mi.ScalarTransform4f) and isinstance(theirs["sky"]["bitmap"], mi.Bitmap)
+    assert isinstance(theirs["cloud"]["interior"]["sigma_t"]["grid"], mi.VolumeGrid) and theirs["integrator"]["type"] == "volpath"
+    back = tyndall.from_mitsuba(theirs)
+    options: dict[str, Any] = {"spp": 64, "integrator": "pt", "max_depth": 6, "tracker": "exact"}
+    ours, again, direct = (tyndall.render(tree, **options) for tree in (scene(), back, theirs))
+    assert (again == direct).all() and again.mean() == pytest.approx(ours.mean(), rel=1e-3)
+    truth = np.array(mi.render(mi.load_dict(theirs), spp=512))[..., :3]
+    assert truth.mean(axis=(0, 1)) == pytest.approx(ours.mean(axis=(0, 1)), rel=0.02)  # noise: some 0.5 %
+
+
+def test_with_a_folder_all_of_it_is_json(tmp_path: Path) -> None:
+    plain = tyndall.from_mitsuba(tyndall.to_mitsuba(scene()), tmp_path / "files")
+    assert sorted(path.name for path in (tmp_path / "files").iterdir()) == ["cloud.interior.sigma_t.grid.vol", "sky.bitmap.exr"]
+    (tmp_path / "scene.json").write_text(json.dumps(plain))
+    assert tyndall.render(tmp_path / "scene.json", spp=1).shape == (8, 12, 3)
+
+
+def test_steps_are_applied_first_to_last() -> None:
+    expected = np.array([[0, 0, 4, 5], [0, 3, 0, 6], [-2, 0, 0, 7], [0, 0, 0, 1]])
+    assert np.array(load_dict.transform(STEPS).matrix) == pytest.approx(expected, abs=1e-6)
+
+
+def test_files_go_too() -> None:
+    theirs = tyndall.to_mitsuba(SCENES / "lampbox_up.xml", {"res": 8})
+    assert tuple(mi.load_dict(theirs).sensors()[0].film().size()) == (8, 8)
+    theirs = tyndall.to_mitsuba(CROSSCHECK / "grid_trilinear.json")
+    assert mi.load_dict(theirs) is not None and tyndall.render(theirs, spp=1, size=(8, 8)).mean() > 0
+
+
+def test_without_a_variant_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mi, "variant", lambda: None)
+    with pytest.raises(Failure, match="set_variant"):
+        tyndall.to_mitsuba(scene())
