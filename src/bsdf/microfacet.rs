@@ -45,7 +45,7 @@ pub(super) const ROUGHNESS: &[Parameter] = rows! {
     boolean("sample_visible", true, "Visible normals are sampled all the same: a warning if false."),
 };
 
-/// What those have besides whose roughness may differ by direction.
+/// The two of them by direction.
 pub(super) const ANISOTROPY: &[Parameter] = rows! {
     texture("alpha_u", GREATEST_ALPHA, Optional, "Roughness along u, in place of `alpha`, with `alpha_v`."),
     texture("alpha_v", GREATEST_ALPHA, Optional, "Roughness along v."),
@@ -59,7 +59,7 @@ impl Roughness {
             let place = params.given("sample_visible").map_or(params.location(), |p| &p.location);
             params.library.warn(place, "visible normals are sampled all the same: it changes noise only");
         }
-        let anisotropic = ["alpha_u", "alpha_v"].map(|name| params.allows(name) && params.has(name));
+        let anisotropic = ["alpha_u", "alpha_v"].map(|name| params.has(name));
         let alpha = match (params.has("alpha"), anisotropic) {
             (_, [false, false]) => {
                 let alpha = bounded(params, "alpha", "")?;

@@ -1,6 +1,6 @@
 //! A diffuse base under a rough coat of clear dielectric: Mitsuba's `roughplastic`.
 
-use super::microfacet::{Microfacets, ROUGHNESS, Roughness};
+use super::microfacet::{ANISOTROPY, Microfacets, ROUGHNESS, Roughness};
 use super::plastic::{BASE, Base, Shares};
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index};
 use crate::description::{Params, Table, table};
@@ -79,7 +79,8 @@ fn returned(microfacets: &Microfacets, inside: &Interface) -> f32 {
 }
 
 impl RoughPlastic {
-    pub(super) const TABLE: Table = table! { "A diffuse base under a rough clear coat."; ; BASE, ROUGHNESS };
+    pub(super) const TABLE: Table =
+        table! { "A diffuse base under a rough clear coat."; ; BASE, ROUGHNESS, ANISOTROPY };
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let interfaces = index::interfaces(params)?;

@@ -67,11 +67,6 @@ impl<'a> Params<'a> {
         self.given(name).is_some()
     }
 
-    /// True if `name` may be given.
-    pub fn allows(&self, name: &str) -> bool {
-        self.table.find(name).is_some()
-    }
-
     fn take(&self, name: &str) -> Option<&'a Property> {
         let index = self.object.properties.iter().position(|p| p.name == name)?;
         self.used.borrow_mut()[index] = true;
