@@ -26,6 +26,7 @@ mod strategies;
 mod study;
 mod viewer;
 mod voice;
+mod volumes;
 
 use crate::{
     error::{Error, Result},

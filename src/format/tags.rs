@@ -141,6 +141,9 @@ pub(crate) const INSIDE: [(&str, &[&str]); 13] = [
     ("volume", &["volume", "texture"]),
 ];
 
+/// Shapes that stand for others, of which they are composed before anything is built.
+const COMPOSED: &[&str] = &["smoke"];
+
 /// Plugins that Tyndall itself builds under `tag`; none where there is no registry of them.
 pub(crate) fn ours(tag: &str) -> Vec<&'static str> {
     match tag {
@@ -148,7 +151,7 @@ pub(crate) fn ours(tag: &str) -> Vec<&'static str> {
         "integrator" => integrator::ROWS.names(),
         "sampler" => sampler::ROWS.names(),
         "rfilter" => filter::ROWS.names(),
-        "shape" => shape::ROWS.names(),
+        "shape" => [&shape::ROWS.names()[..], COMPOSED].concat(),
         "bsdf" => bsdf::ROWS.names(),
         "texture" => texture::ROWS.names(),
         "emitter" => emitter::ROWS.names(),
@@ -207,7 +210,7 @@ mod tests {
         assert_eq!(derive("tent", "filter", "film"), Some("rfilter"));
         assert_eq!(derive("clay", "bsdf_2", "scene"), Some("bsdf"));
         assert_eq!(derive("clay", "wall", "scene"), None);
-        assert_eq!(derive("smoke", "interior", "shape"), Some("medium"));
+        assert_eq!(derive("haze", "interior", "shape"), Some("medium"));
         assert_eq!(derive("turbulence", "sigma_t", "medium"), Some("volume"));
         assert_eq!(derive("odd", "film", "shape"), None);
     }

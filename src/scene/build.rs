@@ -11,6 +11,7 @@ use super::{
     placement::{Names, Placement, place_camera},
     range,
     sections::Sections,
+    smoke::{self, Taken},
     unseen::{self, Unseen},
 };
 use crate::{
@@ -58,13 +59,16 @@ pub struct Setup {
     pub bsdf_names: Vec<String>,
     /// When the scene is seen [s].
     pub time: f64,
+    /// What each smoke was made of.
+    pub smoke: Vec<Taken>,
 }
 
 /// Builds the scene that `root` describes.
 pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     plugins::check(root)?;
-    let library = Library::new(root)?;
-    let sections = Sections::sort(root, &library)?;
+    let (root, smoke) = smoke::expand(root)?;
+    let library = Library::new(&root)?;
+    let sections = Sections::sort(&root, &library)?;
     let recentre = sections.viewpoint(&library)?;
     let mut builder = Builder::new(&library, Place { recentre, time: sections.time });
     for child in &sections.shapes {
@@ -100,6 +104,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         shape_names,
         bsdf_names,
         time,
+        smoke,
     })
 }
 

@@ -9,6 +9,7 @@ mod locate;
 mod placement;
 mod range;
 mod sections;
+pub mod smoke;
 mod time;
 mod unseen;
 

@@ -5,6 +5,8 @@
 //! around the transformed cube. [`VolumeModel::eval`] goes on beyond it as `wrap_mode` says, and so it does
 //! in what a turned or sheared cube leaves of its box; integrals and inversions count the box and no more.
 
+mod catalogue;
+mod convert;
 mod file;
 mod lattice;
 #[cfg(test)]
@@ -25,12 +27,14 @@ use crate::{
     },
     memory,
 };
+use convert::Convert;
 use lattice::{BRICK, Brick, Extent, Fault, Lattice};
 use std::{path::Path, sync::Arc};
 use voxel::Voxel;
 use walk::{Line, Target, Walk};
 
 pub use crate::math::Wrap;
+pub use catalogue::{Catalogue, Contents};
 pub use file::{Source, Values};
 pub use lattice::Filter;
 
@@ -93,8 +97,8 @@ macro_rules! each {
 
 impl Grid {
     /// Reads `filename`, `filter_type`, `wrap_mode`, `use_grid_bbox` (true by default for files that know where they
-    /// lie, `.vdb` and `.nvdb`), `to_world`, and `grid`, the name of one of several; `raw`, `accel` and `max_value`
-    /// change nothing.
+    /// lie, `.vdb` and `.nvdb`), `to_world`, `grid`, the name of one of several, and what [`Convert`] reads; `raw`,
+    /// `accel` and `max_value` change nothing.
     pub fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         let path = params.file("filename")?;
         let is_vdb = file::is_vdb(&path);
@@ -111,7 +115,7 @@ impl Grid {
         params.accept_unused(&["accel", "max_value"], "the maximum is known, and no texture unit runs");
         let mut to_world = place.to_world(params)?;
         let uses_file_box = params.boolean("use_grid_bbox", is_vdb)?;
-        let source = file::open(&path, grid)?;
+        let source = file::open(&path, grid, Convert::read(params)?)?;
         if uses_file_box {
             check_box(&path, &source.to_file)?;
             to_world *= source.to_file;
