@@ -1,6 +1,7 @@
 //! The command line: arguments in, exit code out.
 
 pub mod arguments;
+mod clip;
 mod contenders;
 mod convert;
 pub mod diff;
@@ -29,6 +30,7 @@ mod voice;
 mod volumes;
 
 use crate::{
+    description::Object,
     error::{Error, Result},
     format,
     scene::{self, build::Setup},
@@ -92,8 +94,12 @@ fn judged(outcome: Result<bool>) -> ExitCode {
 
 /// Reads and builds a scene; warnings go to standard error.
 fn load(scene: &arguments::Scene, overrides: Overrides) -> Result<Setup> {
-    let root = format::read(&scene.file, &scene.definitions)?;
-    let setup = scene::build::build(&root, overrides)?;
+    built(&format::read(&scene.file, &scene.definitions)?, overrides)
+}
+
+/// Builds what was read; warnings go to standard error.
+fn built(root: &Object, overrides: Overrides) -> Result<Setup> {
+    let setup = scene::build::build(root, overrides)?;
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
     }

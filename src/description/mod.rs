@@ -60,6 +60,17 @@ pub struct Object {
     pub location: Location,
 }
 
+impl Object {
+    /// The number called `name`, if it is one.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.properties.iter().find(|property| property.name == name)?.value {
+            Value::Float(x) => Some(x),
+            Value::Integer(i) => Some(i as f64),
+            _ => None,
+        }
+    }
+}
+
 /// One parameter or child of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Property {

@@ -20,6 +20,7 @@ mod phase;
 mod pixel;
 mod reading;
 mod saying;
+mod smoke;
 mod strategies;
 mod study;
 mod unseen;

@@ -6,12 +6,17 @@
 mod parameters;
 mod parts;
 mod taken;
+#[cfg(test)]
+mod tests;
 
 use crate::{
-    description::{Library, Object, Params, Value},
+    description::{Library, Object, Params, Property, Value},
     error::Result,
     volume::{
-        files::roles::{self, Roles},
+        files::{
+            roles::{self, Roles},
+            sequence::Sequence,
+        },
         grid::{Catalogue, Contents},
     },
 };
@@ -22,28 +27,54 @@ pub use taken::{Glow, Taken};
 /// The name of the plugin.
 pub const PLUGIN: &str = "smoke";
 
+/// True if some smoke in `root` is of numbered files, and so depends on the time.
+pub fn has_sequence(root: &Object) -> bool {
+    smokes(root).any(|smoke| {
+        let named = smoke.properties.iter().find(|property| property.name == "filename");
+        let path = named.and_then(|property| match &property.value {
+            Value::String(name) => Some(Library::default().file(name, &property.location)),
+            _ => None,
+        });
+        path.is_some_and(|path| Sequence::new(&path).is_some())
+    })
+}
+
+/// When the scene is seen, as it says itself [s].
+pub fn time_of(root: &Object) -> f64 {
+    root.number("time").unwrap_or(0.0)
+}
+
+fn smokes(root: &Object) -> impl Iterator<Item = &Object> {
+    root.properties.iter().filter_map(|property| match &property.value {
+        Value::Object(child) => Some(child).filter(|child| child.plugin == PLUGIN),
+        _ => None,
+    })
+}
+
 /// `root` with all smoke in it replaced, and what that was made of.
 pub fn expand(root: &Object) -> Result<(Cow<'_, Object>, Vec<Taken>)> {
-    let is_smoke = |value: &Value| matches!(value, Value::Object(child) if child.plugin == PLUGIN);
-    if !root.properties.iter().any(|property| is_smoke(&property.value)) {
+    if smokes(root).next().is_none() {
         return Ok((Cow::Borrowed(root), vec![]));
     }
     let library = Library::new(root)?;
     let time = Params::new(root, &library).float("time", 0.0)?;
-    let (mut expanded, mut all) = (root.clone(), vec![]);
+    let (mut expanded, mut media, mut all) = (root.clone(), vec![], vec![]);
     for property in &mut expanded.properties {
         let Value::Object(child) = &mut property.value else { continue };
         if child.plugin == PLUGIN {
-            let (object, taken) = container(child, &library, time)?;
+            let (object, medium, taken) = container(child, &library, time)?;
             *child = object;
+            let of_medium = |medium| Property { value: Value::Object(medium), ..property.clone() };
+            media.extend(medium.map(of_medium));
             all.push(taken);
         }
     }
+    expanded.properties.extend(media);
     Ok((Cow::Owned(expanded), all))
 }
 
-/// The shape that `smoke` stands for, and what is in it.
-fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Taken)> {
+/// The shape that `smoke` stands for, the medium in it, and what that was made of.
+fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Option<Object>, Taken)> {
     let params = Params::new(smoke, library);
     let given = Parameters::read(&params, time)?;
     params.finish()?;
@@ -60,7 +91,8 @@ fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Ta
         given.glow(label, fire.range[1][0], roles::is_fire(label))
     });
     let taken = Taken::new(smoke, &given, &file, &roles, glow);
-    Ok((parts::container(smoke, &given, &taken, [low, high]), taken))
+    let (object, medium) = parts::container(smoke, &given, &taken, [low, high]);
+    Ok((object, medium, taken))
 }
 
 fn contents(file: &mut Catalogue, number: Option<usize>) -> Result<Option<Contents>> {

@@ -31,7 +31,7 @@ pub struct Parameters<'a> {
     pub to_world: Vec<TransformStep>,
     /// Extinction of a density of 1 [1/m].
     pub density_scale: f64,
-    /// Brightness: 1 m of fire radiates so many times what a black body does.
+    /// Brightness: 1 m of fire radiates so much of what a black body of its temperature does [1/m].
     pub emission_scale: f64,
     /// Fraction of light that is scattered, not absorbed; where a grid gives a colour, a factor of that.
     pub albedo: Option<Spectrum>,
@@ -53,6 +53,9 @@ const FLAME: f64 = 1500.0;
 /// What a temperature of 1 is, where 2 is hot [K]; Blender's and Houdini's shaders have the same default.
 const UNIT: f64 = 1000.0;
 
+/// Brightness [1/m]: flames look like flames beside lights of about 1.
+const EMISSION: f64 = 0.01;
+
 /// The hottest that may be asked for [K].
 const HOTTEST: f64 = 1e9;
 
@@ -62,7 +65,7 @@ impl<'a> Parameters<'a> {
         let (name, file, sequence) = read_file(params, time)?;
         let location = params.property("filename").map_or(params.location(), |property| &property.location);
         let largest = f64::from(f32::MAX);
-        let emission_scale = params.float_within("emission_scale", 1.0, 0.0, largest)?;
+        let emission_scale = params.float_within("emission_scale", EMISSION, 0.0, largest)?;
         Ok(Self {
             file,
             name,

@@ -13,25 +13,33 @@ struct Maker<'a> {
     location: &'a Location,
 }
 
-/// The boundary around the box from `low` to `high` of the file's world.
-pub fn container(smoke: &Object, given: &Parameters<'_>, taken: &Taken, [low, high]: [DVec3; 2]) -> Object {
+/// The boundary around the box from `low` to `high` of the file's world; and the medium in it, where that has a name by
+/// which the boundary and others may refer to it.
+pub fn container(
+    smoke: &Object,
+    given: &Parameters<'_>,
+    taken: &Taken,
+    [low, high]: [DVec3; 2],
+) -> (Object, Option<Object>) {
     let maker = Maker { given, taken, location: &smoke.location };
     let fit = [
         TransformStep::Scale((0.5 * (high - low)).to_array()),
         TransformStep::Translate((0.5 * (low + high)).to_array()),
     ];
     let steps = fit.into_iter().chain(given.to_world.iter().cloned()).collect();
-    let mut medium = maker.medium();
-    // Whatever refers to the smoke means what is in it.
-    medium.id.clone_from(&smoke.id);
+    let medium = Object { id: smoke.id.clone(), ..maker.medium() };
+    let (interior, medium) = match &smoke.id {
+        None => (Value::Object(medium), None),
+        Some(id) => (Value::Reference(id.clone()), Some(medium)),
+    };
     let mut parts = vec![
         maker.property("to_world", Value::Transform(steps)),
         maker.property("bsdf", Value::Object(maker.plugin("null", vec![]))),
-        maker.property("interior", Value::Object(medium)),
+        maker.property("interior", interior),
     ];
     parts.extend(given.exterior.cloned());
     let id = smoke.id.as_ref().map(|id| format!("{id} (its box)"));
-    Object { id, ..maker.plugin("cube", parts) }
+    (Object { id, ..maker.plugin("cube", parts) }, medium)
 }
 
 impl Maker<'_> {

@@ -2,7 +2,8 @@
 
 use super::parameters::Parameters;
 use crate::{
-    description::Object,
+    description::{Location, Object},
+    error::Result,
     volume::{
         files::{
             Label,
@@ -21,6 +22,8 @@ pub struct Taken {
     pub name: String,
     /// The file that was read.
     pub file: PathBuf,
+    /// Where the scene names it.
+    pub location: Location,
     /// The frames that it is one of.
     pub sequence: Option<(Sequence, Clock)>,
     /// The grid of densities; its name is empty in files whose grids have none.
@@ -62,6 +65,7 @@ impl Taken {
         Self {
             name: smoke.id.clone().unwrap_or_else(|| smoke.plugin.clone()),
             file: given.file.clone(),
+            location: given.location.clone(),
             sequence: given.sequence.clone(),
             density: roles.density.map(|number| labels[number].name.clone()),
             is_surface: roles.density.is_some_and(|number| labels[number].is_level_set()),
@@ -69,6 +73,14 @@ impl Taken {
             color: roles.color.iter().map(|number| labels[*number].name.clone()).collect(),
             unused: unused.map(|(_, label)| described(label)).collect(),
         }
+    }
+}
+
+impl Taken {
+    /// The file that is shown at `time` [s].
+    pub fn at(&self, time: f64) -> Result<PathBuf> {
+        let Some((sequence, clock)) = &self.sequence else { return Ok(self.file.clone()) };
+        sequence.at(time, *clock).map_err(|problem| problem.at(&self.location))
     }
 }
 

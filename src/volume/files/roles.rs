@@ -18,7 +18,7 @@ const COLORS: [&str; 2] = ["Cd", "color"];
 const COMPONENTS: [[&str; 3]; 2] = [["_r", "_g", "_b"], [".x", ".y", ".z"]];
 
 /// Names of velocities, which no still picture shows; alone or with a component's name.
-const VELOCITIES: [&str; 4] = ["vel", "velocity", "v", "motion"];
+const VELOCITIES: [&str; 5] = ["vel", "velocity", "v", "motion", "voxel_velocity"];
 
 /// What the user says of grids; an empty name takes none.
 #[derive(Clone, Copy, Debug, Default)]

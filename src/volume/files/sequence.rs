@@ -1,6 +1,7 @@
 //! Numbered files, one to a frame: `smoke_####.vdb` or `smoke_%04d.vdb`.
 
 use super::{Problem, Result};
+use crate::description::Object;
 use std::path::{Path, PathBuf};
 
 /// No more runs of frames than these are listed.
@@ -31,6 +32,12 @@ pub struct Clock {
 impl Clock {
     /// Frames per second where nothing is said.
     pub const FPS: f64 = 24.0;
+
+    /// As a plugin states it, whose parameters need not be right.
+    pub fn of(object: &Object) -> Self {
+        let fps = object.number("fps").unwrap_or(Self::FPS);
+        Self { fps, first: object.number("first_frame").map(|frame| frame as i64) }
+    }
 }
 
 /// Before, of how many digits, and after the number that a pattern stands for: `#`s, or printf's `%d` or `%04d`.
