@@ -98,7 +98,7 @@ fn beside(place: &Location, name: &str) -> PathBuf {
 
 /// The file that `path` is at `time` [s] for a plugin, which may show numbered ones.
 fn shown(object: &Object, path: PathBuf, time: f64) -> PathBuf {
-    let sequence = Sequence::new(&path).and_then(|sequence| sequence.at(time, Clock::of(object)).ok());
+    let sequence = Sequence::new(&path, Clock::of(object)).and_then(|sequence| sequence.at(time).ok());
     sequence.unwrap_or(path)
 }
 

@@ -15,7 +15,7 @@ use crate::{
     volume::{
         files::{
             roles::{self, Roles},
-            sequence::Sequence,
+            sequence::{Clock, Sequence},
         },
         grid::{Catalogue, Contents},
     },
@@ -35,7 +35,7 @@ pub fn has_sequence(root: &Object) -> bool {
             Value::String(name) => Some(Library::default().file(name, &property.location)),
             _ => None,
         });
-        path.is_some_and(|path| Sequence::new(&path).is_some())
+        path.is_some_and(|path| Sequence::new(&path, Clock::of(smoke)).is_some())
     })
 }
 
@@ -78,7 +78,7 @@ fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Op
     let params = Params::new(smoke, library);
     let given = Parameters::read(&params, time)?;
     params.finish()?;
-    let mut file = Catalogue::open(&given.file)?;
+    let mut file = Catalogue::open(&given.file.path)?;
     let roles = Roles::of_file(&file.labels, given.wanted).map_err(|problem| problem.at(given.location))?;
     let density = contents(&mut file, roles.density)?;
     let fire = contents(&mut file, roles.temperature)?;

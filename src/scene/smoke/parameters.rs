@@ -17,12 +17,8 @@ use std::path::PathBuf;
 
 /// What has been read.
 pub struct Parameters<'a> {
-    /// The file that is shown: of a sequence, the one of the scene's time.
-    pub file: PathBuf,
-    /// The same as the scene would name it.
-    pub name: String,
-    /// True if the file depends on the time.
-    pub sequence: Option<(Sequence, Clock)>,
+    /// What is shown.
+    pub file: Shown,
     /// Where the file is named.
     pub location: &'a Location,
     /// Grids that the user chooses.
@@ -41,6 +37,16 @@ pub struct Parameters<'a> {
     pub exterior: Option<&'a Property>,
     temperature_scale: Option<f64>,
     temperature_offset: Option<f64>,
+}
+
+/// A file: of numbered ones, that of the scene's time.
+pub struct Shown {
+    /// The file itself.
+    pub path: PathBuf,
+    /// The same as the scene would name it.
+    pub name: String,
+    /// The files that it is one of.
+    pub sequence: Option<Sequence>,
 }
 
 /// Temperatures above this are in kelvin, not in thousands of it.
@@ -62,14 +68,12 @@ const HOTTEST: f64 = 1e9;
 impl<'a> Parameters<'a> {
     /// Reads all of them; the scene is seen at `time` [s].
     pub fn read(params: &Params<'a>, time: f64) -> Result<Self> {
-        let (name, file, sequence) = read_file(params, time)?;
+        let file = read_file(params, time)?;
         let location = params.property("filename").map_or(params.location(), |property| &property.location);
         let largest = f64::from(f32::MAX);
         let emission_scale = params.float_within("emission_scale", EMISSION, 0.0, largest)?;
         Ok(Self {
             file,
-            name,
-            sequence,
             location,
             wanted: wanted(params, emission_scale)?,
             to_world: to_world(params)?,
@@ -105,25 +109,24 @@ impl<'a> Parameters<'a> {
 
 /// `filename`: a .vdb, .nvdb or .vol file, or numbered ones (`smoke_####.vdb`, `smoke_%04d.vdb`), of which frame
 /// `first_frame` (by default the first that there is) is shown at the time 0, and `fps` (24) of them in a second.
-fn read_file(params: &Params<'_>, time: f64) -> Result<(String, PathBuf, Option<(Sequence, Clock)>)> {
+fn read_file(params: &Params<'_>, time: f64) -> Result<Shown> {
     let fps = params.float_within("fps", Clock::FPS, 1e-6, 1e9)?;
     let first = if params.has("first_frame") { Some(params.integer("first_frame", 0)?) } else { None };
     let text = params.string("filename", "")?;
     let location = params.property("filename").map_or(params.location(), |property| &property.location);
-    let sequence = Sequence::new(&params.library.file(text, location));
+    let sequence = Sequence::new(&params.library.file(text, location), Clock { fps, first });
     let Some(sequence) = sequence.filter(|_| !text.is_empty()) else {
         if let Some(name) = ["fps", "first_frame"].into_iter().find(|name| params.has(name)) {
             let remedy = "write # or %04d in place of the number in the name of the file, or remove it";
             let expected = format!("numbered files for \"{name}\"");
             return Err(Error::new(location, expected, format!("\"{text}\""), remedy));
         }
-        return Ok((text.to_owned(), params.file("filename")?, None));
+        return Ok(Shown { path: params.file("filename")?, name: text.to_owned(), sequence: None });
     };
-    let clock = Clock { fps, first };
-    let file = sequence.at(time, clock).map_err(|problem| problem.at(location))?;
+    let path = sequence.at(time).map_err(|problem| problem.at(location))?;
     let folder = text.rfind(['/', std::path::MAIN_SEPARATOR]).map_or("", |end| &text[..=end]);
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    Ok((format!("{folder}{name}"), file, Some((sequence, clock))))
+    let name = format!("{folder}{}", path.file_name().unwrap_or_default().to_string_lossy());
+    Ok(Shown { path, name, sequence: Some(sequence) })
 }
 
 /// `density_grid`, `temperature_grid`, `color_grid`: names of grids, where they are not known by their names; "" takes

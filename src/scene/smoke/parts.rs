@@ -87,7 +87,7 @@ impl Maker<'_> {
     /// The grid called `name`; the only one of a file where grids have no names.
     fn grid(&self, name: &str, convert: Vec<Property>) -> Object {
         let mut parts = vec![
-            self.property("filename", Value::String(self.given.name.clone())),
+            self.property("filename", Value::String(self.given.file.name.clone())),
             self.property("use_grid_bbox", Value::Boolean(true)),
             self.property("to_world", Value::Transform(self.given.to_world.clone())),
         ];

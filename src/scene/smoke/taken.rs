@@ -8,7 +8,7 @@ use crate::{
         files::{
             Label,
             roles::{Roles, is_velocity},
-            sequence::{Clock, Sequence},
+            sequence::Sequence,
         },
         grid::Catalogue,
     },
@@ -25,7 +25,7 @@ pub struct Taken {
     /// Where the scene names it.
     pub location: Location,
     /// The frames that it is one of.
-    pub sequence: Option<(Sequence, Clock)>,
+    pub sequence: Option<Sequence>,
     /// The grid of densities; its name is empty in files whose grids have none.
     pub density: Option<String>,
     /// True if it is a level set.
@@ -64,9 +64,9 @@ impl Taken {
         let unused = labels.iter().enumerate().filter(|(number, _)| !roles.has(*number));
         Self {
             name: smoke.id.clone().unwrap_or_else(|| smoke.plugin.clone()),
-            file: given.file.clone(),
+            file: given.file.path.clone(),
             location: given.location.clone(),
-            sequence: given.sequence.clone(),
+            sequence: given.file.sequence.clone(),
             density: roles.density.map(|number| labels[number].name.clone()),
             is_surface: roles.density.is_some_and(|number| labels[number].is_level_set()),
             glow,
@@ -79,8 +79,8 @@ impl Taken {
 impl Taken {
     /// The file that is shown at `time` [s].
     pub fn at(&self, time: f64) -> Result<PathBuf> {
-        let Some((sequence, clock)) = &self.sequence else { return Ok(self.file.clone()) };
-        sequence.at(time, *clock).map_err(|problem| problem.at(&self.location))
+        let Some(sequence) = &self.sequence else { return Ok(self.file.clone()) };
+        sequence.at(time).map_err(|problem| problem.at(&self.location))
     }
 }
 

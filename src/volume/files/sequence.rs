@@ -11,13 +11,14 @@ const LISTED: usize = 8;
 const MOST_DIGITS: usize = 9;
 
 /// Files whose names differ in a number.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
     folder: PathBuf,
     prefix: String,
     suffix: String,
     /// Numbers of fewer digits are filled up with zeros.
     digits: usize,
+    clock: Clock,
 }
 
 /// Which frame is shown when.
@@ -53,12 +54,12 @@ fn pattern(name: &str) -> Option<(&str, usize, &str)> {
 }
 
 impl Sequence {
-    /// The sequence that `path` stands for; none of the name of a file, be it a strange one.
-    pub fn new(path: &Path) -> Option<Self> {
+    /// The sequence that `path` stands for, shown by `clock`; none of the name of a file, be it a strange one.
+    pub fn new(path: &Path, clock: Clock) -> Option<Self> {
         let name = path.file_name()?.to_str()?;
         let (prefix, digits, suffix) = pattern(name).filter(|_| !path.is_file())?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        Some(Self { folder, prefix: prefix.to_owned(), suffix: suffix.to_owned(), digits })
+        Some(Self { folder, prefix: prefix.to_owned(), suffix: suffix.to_owned(), digits, clock })
     }
 
     /// The name of the file of a frame.
@@ -69,7 +70,7 @@ impl Sequence {
 
     /// All frames that there are, in order.
     pub fn frames(&self) -> Vec<i64> {
-        let names = std::fs::read_dir(&self.folder_to_list()).into_iter().flatten().flatten();
+        let names = std::fs::read_dir(self.folder_to_list()).into_iter().flatten().flatten();
         let mut frames: Vec<_> = names.filter_map(|entry| self.number(entry.file_name().to_str()?)).collect();
         frames.sort_unstable();
         frames
@@ -87,8 +88,8 @@ impl Sequence {
     }
 
     /// The file that is shown at `time` [s]: that of the nearest frame.
-    pub fn at(&self, time: f64, clock: Clock) -> Result<PathBuf> {
-        let Clock { fps, first } = clock;
+    pub fn at(&self, time: f64) -> Result<PathBuf> {
+        let Clock { fps, first } = self.clock;
         let shift = (time * fps).round();
         let frame = |first: i64| first.saturating_add(shift as i64);
         // Where it is said which frame is meant, no folder need be listed.
@@ -166,10 +167,11 @@ mod tests {
         {
             fs::write(folder.path().join(name), "").unwrap();
         }
-        let sequence = Sequence::new(&folder.path().join("a_####.vdb")).unwrap();
-        assert_eq!(sequence.frames(), [9, 10, 11, 13, 10000]);
+        let path = folder.path().join("a_####.vdb");
+        let sequence = |first| Sequence::new(&path, Clock { fps: 24.0, first }).unwrap();
+        assert_eq!(sequence(None).frames(), [9, 10, 11, 13, 10000]);
         let at = |time: f64, first| {
-            let path = sequence.at(time, Clock { fps: 24.0, first })?;
+            let path = sequence(first).at(time)?;
             Ok(path.file_name().unwrap().to_str().unwrap().to_owned())
         };
         // Every frame's time, whatever its rounding.
@@ -188,13 +190,11 @@ mod tests {
     fn a_file_of_that_very_name_is_no_pattern() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("take #2.vdb");
-        assert!(Sequence::new(&path).is_some());
+        let clock = Clock { fps: 24.0, first: None };
+        assert!(Sequence::new(&path, clock).is_some());
         fs::write(&path, "").unwrap();
-        assert_eq!(Sequence::new(&path), None);
-        let none = Sequence::new(&folder.path().join("b_%03d.vdb")).unwrap();
-        assert_eq!(
-            none.at(0.0, Clock { fps: 24.0, first: None }).unwrap_err().found,
-            "none for \"b_###.vdb\""
-        );
+        assert_eq!(Sequence::new(&path, clock), None);
+        let none = Sequence::new(&folder.path().join("b_%03d.vdb"), clock).unwrap();
+        assert_eq!(none.at(0.0).unwrap_err().found, "none for \"b_###.vdb\"");
     }
 }
