@@ -71,15 +71,15 @@ impl Roles {
     fn of(grids: &[Label], wanted: Wanted<'_>) -> Result<Self> {
         let search = Search { grids, fog: wanted.level_set_to_fog };
         let color = match wanted.color {
-            Some(name) => search.named(name, "color_grid")?.into_iter().collect(),
+            Some(name) => search.named(name, "color_grid", &[1, 3])?.into_iter().collect(),
             None => search.color(),
         };
         let temperature = match wanted.temperature {
-            Some(name) => search.named(name, "temperature_grid")?,
+            Some(name) => search.named(name, "temperature_grid", &[1])?,
             None => search.first(&FIRES, 1).or_else(|| search.first(&TEMPERATURES, 1)),
         };
         let density = match wanted.density {
-            Some(name) => search.named(name, "density_grid")?,
+            Some(name) => search.named(name, "density_grid", &[1, 3])?,
             None => search.density(temperature),
         };
         if density.is_none() && temperature.is_none() {
@@ -100,8 +100,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The grid that the user calls `name`.
-    fn named(&self, name: &str, parameter: &str) -> Result<Option<usize>> {
+    /// The grid that the user calls `name` by `parameter`, whose samples must be of one of so many numbers.
+    fn named(&self, name: &str, parameter: &str, channels: &[usize]) -> Result<Option<usize>> {
         if name.is_empty() {
             return Ok(None);
         }
@@ -109,7 +109,20 @@ impl Search<'_> {
             expected: format!("{} for \"{parameter}\"", problem.expected),
             ..problem
         };
-        choose(self.grids, Some(name)).map(Some).map_err(explain)
+        let number = choose(self.grids, Some(name)).map_err(explain)?;
+        let label = &self.grids[number];
+        let found = format!("\"{}\" of type {}", shown(&label.name), shown(&label.kind));
+        if label.is_level_set() && !self.fog {
+            let remedy = "set \"level_set_to_fog\" to true, or name another grid";
+            let found = format!("\"{}\", a level set (distances to a surface)", shown(&label.name));
+            return Err(Problem::new(format!("a grid of densities for \"{parameter}\""), found, remedy));
+        }
+        if label.channels.is_none_or(|count| !channels.contains(&count)) {
+            let kind = if channels == [1] { "real numbers" } else { "real numbers or colours" };
+            let remedy = format!("name another of the file's grids: {}", list(self.grids));
+            return Err(Problem::new(format!("a grid of {kind} for \"{parameter}\""), found, remedy));
+        }
+        Ok(Some(number))
     }
 
     /// The first grid of the first of `names` that a grid has.
@@ -199,6 +212,16 @@ mod tests {
         assert_eq!(roles(&names, wanted).unwrap(), (Some(1), None, vec![3]));
         let problem = roles(&names, Wanted { density: Some("sot"), ..Wanted::default() }).unwrap_err();
         assert!(problem.expected.contains("density_grid") && problem.remedy.contains("soot"), "{problem:?}");
+        let wrong = |names: &[&str], wanted| roles(names, wanted).unwrap_err();
+        let of_tint = wrong(&names, Wanted { temperature: Some("tint"), ..Wanted::default() });
+        assert!(
+            of_tint.expected.contains("temperature_grid") && of_tint.remedy.contains("flame"),
+            "{of_tint:?}"
+        );
+        let of_points = wrong(&["p:points", "density"], Wanted { density: Some("p"), ..Wanted::default() });
+        assert!(of_points.expected.contains("real numbers or colours"), "{of_points:?}");
+        let of_surface = wrong(&["s:surface"], Wanted { density: Some("s"), ..Wanted::default() });
+        assert!(of_surface.remedy.contains("level_set_to_fog"), "{of_surface:?}");
     }
 
     #[test]
