@@ -81,7 +81,7 @@ fn animate(
         let moved = setup.scene.set_time(time).map_err(|error| clip.explain(frame, error))?;
         if !(moved || clip.reads_files) && frame == first && first < last {
             super::complain(
-                "warning: nothing in this scene moves (no \"wind\"): frames differ by noise only",
+                "warning: nothing in this scene moves (no \"wind\", no numbered files): frames differ by noise only",
             );
         }
         let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };

@@ -76,6 +76,7 @@ fn roles_are_those_of_the_tool_that_wrote_the_file() {
             "kelvin.vdb",
             r#"density from "density", light from "temperature" (0 K + 1 K x its value, up to 1800 K)"#.to_owned(),
         ),
+        ("zip.nvdb", r#"density from "density""#.to_owned()),
         ("twins.vdb", r#"density from "density[0]"; not used: "density[1]""#.to_owned()),
     ];
     for (name, expected) in cases {

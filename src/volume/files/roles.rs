@@ -70,10 +70,6 @@ impl Roles {
     /// Those of `grids`.
     fn of(grids: &[Label], wanted: Wanted<'_>) -> Result<Self> {
         let search = Search { grids, fog: wanted.level_set_to_fog };
-        let color = match wanted.color {
-            Some(name) => search.named(name, "color_grid", &[1, 3])?.into_iter().collect(),
-            None => search.color(),
-        };
         let temperature = match wanted.temperature {
             Some(name) => search.named(name, "temperature_grid", &[1])?,
             None => search.first(&FIRES, 1).or_else(|| search.first(&TEMPERATURES, 1)),
@@ -85,6 +81,12 @@ impl Roles {
         if density.is_none() && temperature.is_none() {
             return Err(search.nothing());
         }
+        let color = match wanted.color {
+            Some(name) => search.named(name, "color_grid", &[1, 3])?.into_iter().collect(),
+            // It is smoke that has one.
+            None if density.is_none() => vec![],
+            None => search.color(),
+        };
         Ok(Self { density, temperature, color })
     }
 
@@ -199,7 +201,7 @@ mod tests {
         assert_eq!(of(&["density", "color_r", "color_g"]), (Some(0), None, vec![]));
         assert_eq!(of(&["density[0]", "density[1]"]), (Some(0), None, vec![]));
         assert_eq!(of(&["anything"]), (Some(0), None, vec![]));
-        assert_eq!(of(&["flame"]), (None, Some(0), vec![]));
+        assert_eq!(of(&["flame", "Cd:3"]), (None, Some(0), vec![]));
         // What is of no type that is read has no role.
         assert_eq!(of(&["density:points", "density[0]", "Cd"]), (Some(1), None, vec![]));
     }

@@ -177,6 +177,7 @@ mod tests {
         // Every frame's time, whatever its rounding.
         assert_eq!(at(0.0, None), Ok("a_0009.vdb".to_owned()));
         assert_eq!(at(1.0 / 24.0, None), Ok("a_0010.vdb".to_owned()));
+        assert_eq!(at(0.07, None), Ok("a_0011.vdb".to_owned()));
         assert_eq!(at(0.1, None), Ok("a_0011.vdb".to_owned()));
         assert_eq!(at(10.0 / 24.0, Some(1)), Ok("a_0011.vdb".to_owned()));
         assert_eq!(at(9999.0 / 24.0, Some(1)), Ok("a_10000.vdb".to_owned()));
