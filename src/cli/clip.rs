@@ -68,9 +68,13 @@ impl<'a> Clip<'a> {
     /// The scene at `time` [s].
     fn at(&self, time: f64) -> Object {
         let mut root = self.root.clone();
-        root.properties.retain(|property| property.name != "time");
-        let location = root.location.clone();
-        root.properties.push(Property { name: "time".to_owned(), value: Value::Float(time), location });
+        let (value, location) = (Value::Float(time), root.location.clone());
+        match root.properties.iter_mut().find(|property| property.name == "time") {
+            None => root.properties.push(Property { name: "time".to_owned(), value, location }),
+            Some(own) if matches!(own.value, Value::Float(_) | Value::Integer(_)) => own.value = value,
+            // What is no time is refused where the scene is built.
+            Some(_) => {}
+        }
         root
     }
 }

@@ -1,6 +1,6 @@
 //! The objects that smoke is replaced by, as a user would have written them.
 
-use super::{Taken, parameters::Parameters};
+use super::{Glow, Taken, parameters::Parameters};
 use crate::{
     description::{Location, Object, Property, TransformStep, Value},
     math::{DVec3, Spectrum},
@@ -57,8 +57,8 @@ impl Maker<'_> {
             None => vec![self.property("sigma_t", Value::Float(0.0))],
         };
         parts.extend(self.given.phase.cloned());
-        if self.taken.glow.is_some() {
-            parts.push(self.property("emission", Value::Object(self.light())));
+        if let Some(glow) = &self.taken.glow {
+            parts.push(self.property("emission", Value::Object(self.light(glow))));
             parts.push(self.property("emission_scale", Value::Float(self.given.emission_scale)));
         }
         let plugin = if self.taken.density.is_some() { "heterogeneous" } else { "homogeneous" };
@@ -74,8 +74,7 @@ impl Maker<'_> {
         ]
     }
 
-    fn light(&self) -> Object {
-        let Some(glow) = &self.taken.glow else { return self.plugin("constvolume", vec![]) };
+    fn light(&self, glow: &Glow) -> Object {
         let convert = vec![
             self.property("convert", Value::String("blackbody".to_owned())),
             self.property("temperature_scale", Value::Float(glow.scale)),
