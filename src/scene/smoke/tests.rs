@@ -138,6 +138,27 @@ fn factors_are_of_density_brightness_and_size() {
     );
 }
 
+/// The albedo at some points of the smoke.
+fn albedos(setup: &Setup) -> Vec<Spectrum> {
+    let varying = setup.scene.media[1].heterogeneous().unwrap();
+    let points = [[0.5, 0.2, 0.5], [0.3, 1.0, 0.6], [0.55, 0.72, 0.41]].map(DVec3::from);
+    points
+        .iter()
+        .map(|point| varying.at::<Spectrum>((*point - setup.scene.recentre).as_vec3()).albedo)
+        .collect()
+}
+
+#[test]
+fn three_grids_of_a_component_are_one_of_colours() {
+    let one = albedos(&smoke("houdini.vdb", r#", "albedo": 0.8"#));
+    for (name, rounding) in [("houdini_old.vdb", 1e-6), ("blender.vdb", 1e-3)] {
+        let three = albedos(&smoke(name, r#", "albedo": 0.8"#));
+        let off = one.iter().zip(&three).map(|(a, b)| (*a - *b).abs().max_element());
+        assert!(off.fold(0.0, f32::max) < rounding, "{name}: {three:?} for {one:?}");
+    }
+    assert!(one[1].x > 0.5 && one[1].z < 0.25, "{one:?}");
+}
+
 #[test]
 fn the_container_holds_smoke_and_fire() {
     let [low, high] = container(&smoke("kelvin.vdb", ""));
