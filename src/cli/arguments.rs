@@ -77,6 +77,9 @@ pub enum Command {
     /// with other pixels (--crop) are put side by side; they must cover the image and not overlap.
     Merge(super::merge::Merge),
     /// Print a summary of a scene without rendering it
+    ///
+    /// Of an image or sums, print how they were made; of a volume file (.vdb, .nvdb, .vol), the grids in it, and which
+    /// of them the plugin smoke takes by itself.
     Info(Info),
     /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML
     ///

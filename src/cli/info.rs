@@ -3,7 +3,7 @@
 use super::{
     arguments, load, picture,
     plan::{self, Plan},
-    say,
+    say, volumes,
 };
 use crate::{
     emitter::Kind,
@@ -30,6 +30,9 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     if let Some(made) = picture::made(&arguments.scene.file)? {
         return picture::show(&made, &arguments.answer);
     }
+    if volumes::is_one(&arguments.scene.file) {
+        return volumes::run(&arguments.scene.file, &arguments.answer);
+    }
     let setup =
         load(&arguments.scene, Overrides { tracker: arguments.estimator.tracker, ..Overrides::default() })?;
     let budget = Budget::samples(setup.samples_per_pixel);
@@ -53,6 +56,7 @@ fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
     lines.extend(
         scene.lights.all.iter().map(|light| format!("emitter     {}", describe_emitter(setup, light))),
     );
+    lines.extend(setup.smoke.iter().map(|taken| format!("smoke       {taken}")));
     lines.push(format!("camera      in {}", setup.medium_name(scene.sensor_medium)));
     if scene.lights.has_infinite() {
         lines.push(format!("infinity    {}", describe_infinity(setup)));
@@ -84,6 +88,7 @@ fn figures(setup: &Setup, plan: &Plan) -> Value {
         "emitters": emitters
             .map(|light| json!({ "type": light.emitter.name, "medium": setup.medium_name(light.medium) }))
             .collect::<Vec<_>>(),
+        "smoke": setup.smoke.iter().map(volumes::taken).collect::<Vec<_>>(),
         "camera": { "medium": setup.medium_name(scene.sensor_medium) },
         "media": (1..=setup.medium_names.len()).map(|index| medium_figures(setup, index)).collect::<Vec<_>>(),
         "overlaps": overlapping(setup).collect::<Vec<_>>(),

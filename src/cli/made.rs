@@ -19,7 +19,7 @@ pub fn settings(
     chosen: Option<Choice>,
     precision: Option<Precision>,
 ) -> Result<Value> {
-    let sources = format::sources(&scene.file, &scene.definitions)?;
+    let sources = format::sources(&scene.file, &scene.definitions, Some(setup.time))?;
     // The scene may have another name elsewhere.
     let names = |(index, (name, print)): (usize, (String, String))| {
         (if index == 0 { "scene".to_owned() } else { name }, print.into())

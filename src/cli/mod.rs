@@ -1,6 +1,7 @@
 //! The command line: arguments in, exit code out.
 
 pub mod arguments;
+mod clip;
 mod contenders;
 mod convert;
 pub mod diff;
@@ -27,8 +28,10 @@ mod strategies;
 mod study;
 mod viewer;
 mod voice;
+mod volumes;
 
 use crate::{
+    description::Object,
     error::{Error, Result},
     format,
     scene::{self, build::Setup},
@@ -93,8 +96,12 @@ fn judged(outcome: Result<bool>) -> ExitCode {
 
 /// Reads and builds a scene; warnings go to standard error.
 fn load(scene: &arguments::Scene, overrides: Overrides) -> Result<Setup> {
-    let root = format::read(&scene.file, &scene.definitions)?;
-    let setup = scene::build::build(&root, overrides)?;
+    built(&format::read(&scene.file, &scene.definitions)?, overrides)
+}
+
+/// Builds what was read; warnings go to standard error.
+fn built(root: &Object, overrides: Overrides) -> Result<Setup> {
+    let setup = scene::build::build(root, overrides)?;
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
     }

@@ -2,10 +2,11 @@
 
 use super::{
     arguments,
+    clip::Clip,
     goal::Goal,
     interrupt,
     keeper::{Keeper, SumsFile},
-    load, made,
+    made,
     plan::Plan,
     precision::precision,
     progress::{Bar, percent, samples_text},
@@ -37,37 +38,34 @@ use std::{
 /// Runs the command.
 pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
-    let mut setup = load(&arguments.scene, arguments.overrides())?;
+    let clip = Clip::read(arguments)?;
+    let mut setup = clip.first()?;
     let goal = Goal::new(arguments, &setup)?;
     super::outputs::check_render(arguments, &setup, &goal)?;
     let pool = threads(arguments.threads)?;
-    let (settings, chosen) = pool.install(|| settings(arguments, &setup))?;
-    let precision = precision(arguments, &setup, &settings)?;
-    let made = made::made(made::settings(&arguments.scene, &setup, &settings, chosen, precision)?);
-    check_kept(arguments, &settings, &goal)?;
-    let viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
-    let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, arguments.error);
-    let settings = Settings { seed: arguments.seed_of_part(), ..settings };
-    let task = Task { settings, precision, arguments, made, viewer: &Mutex::new(viewer) };
+    let viewer = Mutex::new(None);
+    let (task, chosen) = pool.install(|| Task::new(arguments, &setup, &viewer))?;
+    check_kept(arguments, &task.settings, &goal)?;
+    if let Ok(mut viewer) = viewer.lock() {
+        *viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
+    }
+    let plan = Plan::new(&setup, &arguments.estimator, task.settings, chosen, arguments.error);
     // Before this there is nothing that a signal should save.
     interrupt::listen();
     plan.announce();
     let load_time = started.elapsed().as_secs_f64();
     let figures = match arguments.frames {
         None => vec![pool.install(|| shoot(&setup, &task, &goal, None))?],
-        Some(frames) => pool.install(|| animate(arguments, &mut setup, &task, &goal, frames))?,
+        Some(frames) => pool.install(|| animate(&clip, &mut setup, task, &goal, frames))?,
     };
     arguments.answer.give(&report(figures, load_time, arguments.frames.is_some(), &plan))
 }
 
-/// Default number of frames per second.
-const FPS: f64 = 24.0;
-
 /// Renders frame after frame; their figures.
 fn animate(
-    arguments: &arguments::Render,
+    clip: &Clip<'_>,
     setup: &mut Setup,
-    task: &Task<'_>,
+    mut task: Task<'_>,
     goal: &Goal,
     frames: arguments::Frames,
 ) -> Result<Vec<Value>> {
@@ -75,21 +73,22 @@ fn animate(
     let digits = frames.digits();
     let mut figures = Vec::new();
     for frame in first..=last {
-        let time = setup.time + f64::from(frame) / arguments.fps.unwrap_or(FPS);
-        let moved = setup.scene.set_time(time).map_err(|error| {
-            let place = format!("frame {frame}, at {time} s: {}", error.place);
-            Error { place, ..error }
-        })?;
-        if !moved && frame == first && first < last {
+        let time = clip.time(frame);
+        if clip.reads_files && frame > first {
+            *setup = clip.frame(frame)?;
+            task = Task::new(task.arguments, setup, task.viewer)?.0;
+        }
+        let moved = setup.scene.set_time(time).map_err(|error| clip.explain(frame, error))?;
+        if !(moved || clip.reads_files) && frame == first && first < last {
             super::complain(
-                "warning: nothing in this scene moves (no \"wind\"): frames differ by noise only",
+                "warning: nothing in this scene moves (no \"wind\", no numbered files): frames differ by noise only",
             );
         }
         let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };
         let mut made = task.made.clone();
         made["settings"]["seed"] = settings.seed.into();
         made["settings"]["time"] = time.into();
-        let task = Task { settings, made, ..*task };
+        let task = Task { settings, made, ..task };
         let label = format!("frame {frame} of {first}..{last}");
         let mut figure = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
         figure["frame"] = frame.into();
@@ -120,7 +119,20 @@ pub struct Task<'a> {
     viewer: &'a Mutex<Option<Viewer>>,
 }
 
-impl Task<'_> {
+impl<'a> Task<'a> {
+    /// That of `setup`, and what a pilot chose.
+    fn new(
+        arguments: &'a arguments::Render,
+        setup: &Setup,
+        viewer: &'a Mutex<Option<Viewer>>,
+    ) -> Result<(Self, Option<Choice>)> {
+        let (settings, chosen) = settings(arguments, setup)?;
+        let precision = precision(arguments, setup, &settings)?;
+        let made = made::made(made::settings(&arguments.scene, setup, &settings, chosen, precision)?);
+        let settings = Settings { seed: arguments.seed_of_part(), ..settings };
+        Ok((Self { settings, precision, arguments, made, viewer }, chosen))
+    }
+
     /// Shows what there is in the viewer, if there is one; it goes when it fails.
     pub fn show(&self, sums: &dyn Kept) {
         let Ok(mut viewer) = self.viewer.lock() else { return };

@@ -217,7 +217,7 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
     let scene = |(name, file): (String, &PathBuf)| {
         Ok(SceneQuestion {
             name,
-            fingerprint: fingerprint_of(&format::sources(file, &arguments.definitions)?)?,
+            fingerprint: fingerprint_of(&format::sources(file, &arguments.definitions, None)?)?,
         })
     };
     let effort = match (arguments.spp, arguments.seconds) {

@@ -75,6 +75,15 @@ impl Object {
             && self.properties.len() == other.properties.len()
             && self.properties.iter().zip(&other.properties).all(same)
     }
+
+    /// The number called `name`, if it is one.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.properties.iter().find(|property| property.name == name)?.value {
+            Value::Float(x) => Some(x),
+            Value::Integer(i) => Some(i as f64),
+            _ => None,
+        }
+    }
 }
 
 /// One parameter or child of an object.

@@ -7,6 +7,7 @@ use super::{
 use crate::{
     description::{Location, Object, Value},
     error::{Error, Result},
+    volume::files::sequence::{Clock, Sequence},
 };
 use std::{
     fs::File,
@@ -25,12 +26,13 @@ pub struct Sources {
     pub spectra: Vec<Vec<(f64, f64)>>,
 }
 
-/// The sources of the scene at `path`, read with the user's `definitions` as by [`super::read`].
-pub fn sources(path: &Path, definitions: &[(String, String)]) -> Result<Sources> {
+/// The sources of the scene at `path`, read with the user's `definitions` as by [`super::read`]. Of numbered files, the
+/// one that is shown at `time` [s]; where that is not given, at the scene's own.
+pub fn sources(path: &Path, definitions: &[(String, String)], time: Option<f64>) -> Result<Sources> {
     let (root, origins) = read_with_origins(path, definitions)?;
     let mut sources = Sources { files: vec![path.to_owned()], spectra: Vec::new() };
     origins.included.into_iter().for_each(|file| sources.add(file));
-    sources.walk(&root);
+    sources.walk(&root, time.or(root.number("time")).unwrap_or(0.0));
     Ok(sources)
 }
 
@@ -68,13 +70,13 @@ impl Sources {
         Ok(all)
     }
 
-    fn walk(&mut self, object: &Object) {
+    fn walk(&mut self, object: &Object, time: f64) {
         for property in &object.properties {
             match &property.value {
-                Value::Object(child) => self.walk(child),
+                Value::Object(child) => self.walk(child, time),
                 Value::Spectrum(pairs) => self.spectra.push(pairs.clone()),
                 Value::String(name) if property.name.ends_with("filename") => {
-                    self.add(beside(&property.location, name));
+                    self.add(shown(object, beside(&property.location, name), time));
                 }
                 _ => {}
             }
@@ -92,6 +94,12 @@ impl Sources {
 /// The file called `name` at `place`, as plugins look for it.
 fn beside(place: &Location, name: &str) -> PathBuf {
     place.file.parent().unwrap_or(Path::new("")).join(name)
+}
+
+/// The file that `path` is at `time` [s] for a plugin, which may show numbered ones.
+fn shown(object: &Object, path: PathBuf, time: f64) -> PathBuf {
+    let sequence = Sequence::new(&path, Clock::of(object)).and_then(|sequence| sequence.at(time).ok());
+    sequence.unwrap_or(path)
 }
 
 #[cfg(test)]
@@ -115,7 +123,7 @@ mod tests {
         for (name, text) in files.into_iter().chain([("sky.exr", ""), ("parts/wall.obj", "")]) {
             fs::write(path(name), text).unwrap();
         }
-        let mut found = sources(&path("scene.xml"), &[]).unwrap();
+        let mut found = sources(&path("scene.xml"), &[], None).unwrap();
         found.files.sort();
         assert_eq!(found.files, ["parts/wall.obj", "parts/wall.xml", "scene.xml", "sky.exr"].map(path));
         assert_eq!(found.spectra, [[(400.0, 0.5), (700.0, 0.25)]]);

@@ -151,7 +151,8 @@ pub(crate) fn tables(tag: &str) -> Vec<(&'static str, &'static Table)> {
         "integrator" => integrator::ROWS.tables().collect(),
         "sampler" => sampler::ROWS.tables().collect(),
         "rfilter" => filter::ROWS.tables().collect(),
-        "shape" => shape::ROWS.tables().collect(),
+        // Smoke is composed of other shapes before anything is built.
+        "shape" => shape::ROWS.tables().chain([(shape::SMOKE, &shape::SMOKE_TABLE)]).collect(),
         "bsdf" => bsdf::ROWS.tables().collect(),
         "texture" => texture::ROWS.tables().collect(),
         "emitter" => emitter::ROWS.tables().collect(),
@@ -216,7 +217,7 @@ mod tests {
         assert_eq!(derive("tent", "filter", "film"), Some("rfilter"));
         assert_eq!(derive("clay", "bsdf_2", "scene"), Some("bsdf"));
         assert_eq!(derive("clay", "wall", "scene"), None);
-        assert_eq!(derive("smoke", "interior", "shape"), Some("medium"));
+        assert_eq!(derive("haze", "interior", "shape"), Some("medium"));
         assert_eq!(derive("turbulence", "sigma_t", "medium"), Some("volume"));
         assert_eq!(derive("odd", "film", "shape"), None);
     }

@@ -12,6 +12,7 @@ use super::{
     placement::{Names, Placement, place_camera},
     range,
     sections::Sections,
+    smoke::{self, Taken},
     unseen::{self, Unseen},
 };
 use crate::{
@@ -59,6 +60,8 @@ pub struct Setup {
     pub bsdf_names: Vec<String>,
     /// When the scene is seen [s].
     pub time: f64,
+    /// What each smoke was made of.
+    pub smoke: Vec<Taken>,
 }
 
 impl Setup {
@@ -78,8 +81,9 @@ impl Setup {
 /// Builds the scene that `root` describes.
 pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     plugins::check(root)?;
-    let library = Library::new(root)?;
-    let sections = Sections::sort(root, &library)?;
+    let (root, smoke) = smoke::expand(root)?;
+    let library = Library::new(&root)?;
+    let sections = Sections::sort(&root, &library)?;
     let recentre = sections.viewpoint(&library)?;
     let mut builder = Builder::new(&library, Place { recentre, time: sections.time });
     for child in &sections.shapes {
@@ -118,6 +122,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         shape_names,
         bsdf_names,
         time,
+        smoke,
     })
 }
 

@@ -10,6 +10,7 @@ mod overlap;
 mod placement;
 mod range;
 mod sections;
+pub mod smoke;
 mod time;
 mod unseen;
 

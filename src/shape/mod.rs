@@ -16,6 +16,7 @@ mod placement;
 mod ply;
 mod rectangle;
 mod serialized;
+mod smoke;
 mod smooth;
 mod sphere;
 mod spherical_rectangle;
@@ -31,6 +32,7 @@ pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use mesh::Mesh;
 pub use parallelogram::{Parallelogram, Parallelograms};
+pub use smoke::{SMOKE, SMOKE_TABLE};
 pub use sphere::Sphere;
 
 /// A ray; t in (0, `t_max`).

@@ -12,3 +12,17 @@ pub trait Samples<V> {
     /// they are equal; a sparse file does so for what it leaves out.
     fn uniform(&self, low: [usize; 3], high: [usize; 3]) -> Option<V>;
 }
+
+impl<V, S: Samples<V> + ?Sized> Samples<V> for Box<S> {
+    fn size(&self) -> [usize; 3] {
+        (**self).size()
+    }
+
+    fn at(&self, index: [usize; 3]) -> V {
+        (**self).at(index)
+    }
+
+    fn uniform(&self, low: [usize; 3], high: [usize; 3]) -> Option<V> {
+        (**self).uniform(low, high)
+    }
+}

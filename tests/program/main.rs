@@ -22,6 +22,7 @@ mod phase;
 mod pixel;
 mod reading;
 mod saying;
+mod smoke;
 mod strategies;
 mod study;
 mod unseen;

@@ -6,23 +6,41 @@ use crate::description::nearest;
 /// The name that is meant where none is given.
 const USUAL: &str = "density";
 
+/// The class of grids whose values are distances to a surface.
+pub const LEVEL_SET: &str = "level set";
+
 /// No more grids than these are listed.
 const LISTED: usize = 24;
 
 /// No more of a name is shown [characters].
 const SHOWN: usize = 80;
 
-/// Name and type of a grid.
+/// What a file says of a grid before its values.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Label {
     /// The name.
     pub name: String,
     /// The type, as the file's makers call it.
     pub kind: String,
+    /// What the values are meant for, as the file's makers call it; empty where they do not say.
+    pub class: String,
+    /// Numbers to a sample, 1 or 3; none of types that are not read.
+    pub channels: Option<usize>,
 }
 
 impl Label {
     fn is_called(&self, name: &str) -> bool {
-        self.name == name || self.name.strip_suffix("[0]") == Some(name)
+        self.name == name || self.plain_name() == name
+    }
+
+    /// The name without the number that the first of several of one name has.
+    pub fn plain_name(&self) -> &str {
+        self.name.strip_suffix("[0]").unwrap_or(&self.name)
+    }
+
+    /// True if values are distances to a surface.
+    pub fn is_level_set(&self) -> bool {
+        self.class == LEVEL_SET
     }
 }
 
@@ -41,7 +59,8 @@ pub fn choose(grids: &[Label], wanted: Option<&str>) -> Result<usize> {
     }
 }
 
-fn list(grids: &[Label]) -> String {
+/// Names and types, as a message may quote them.
+pub fn list(grids: &[Label]) -> String {
     let one = |grid: &Label| format!("\"{}\" ({})", shown(&grid.name), shown(&grid.kind));
     let names: Vec<_> = grids.iter().take(LISTED).map(one).collect();
     let more = grids.len().saturating_sub(LISTED);

@@ -7,11 +7,10 @@ mod tree;
 
 use super::{
     Problem, Result, Source, blosc,
-    choice::{Label, choose, shown},
+    choice::{LEVEL_SET, Label, shown},
     inflate,
     input::Input,
-    value::array,
-    vdb::surface,
+    value::{Value, array},
 };
 use crate::math::{DAffine3, DMat3, DVec3, Vec3};
 use image::Image;
@@ -38,8 +37,8 @@ const MAP_SHIFT: usize = MAP_MATRIX + 2 * 72;
 const CLASS: usize = 632;
 const KIND: usize = 636;
 
-/// The class of level sets.
-const LEVEL_SET: u32 = 1;
+/// Names of the first classes of grids, by number.
+const CLASSES: [&str; 4] = ["", LEVEL_SET, "fog volume", "staggered"];
 
 /// Names of the types of grids, by number.
 const KINDS: [&str; 27] = [
@@ -73,8 +72,9 @@ const KINDS: [&str; 27] = [
 ];
 
 /// A grid of the file.
-struct Entry {
-    label: Label,
+pub struct Entry {
+    /// What is said of it.
+    pub label: Label,
     codec: u16,
     /// Where it is.
     start: u64,
@@ -82,20 +82,20 @@ struct Entry {
     lengths: [u64; 2],
 }
 
-/// Reads the grid that is meant; the input is positioned after the first magic bytes.
-pub fn read<R: Read + Seek>(input: &mut Input<R>, wanted: Option<&str>) -> Result<Source> {
+/// All grids; the input is positioned after the first magic bytes.
+pub fn entries<R: Read + Seek>(input: &mut Input<R>) -> Result<Vec<Entry>> {
     input.seek(0)?;
     let mut entries = vec![];
     while input.left() > 0 {
         segment(input, &mut entries)?;
     }
-    let (labels, places): (Vec<_>, Vec<_>) =
-        entries.into_iter().map(|entry| (entry.label, (entry.codec, entry.start, entry.lengths))).unzip();
-    let number = choose(&labels, wanted)?;
-    let (codec, start, lengths) = places[number];
-    input.seek(start)?;
-    let image = Image::new(load(input, codec, lengths)?)?;
-    source(&labels[number].name, &image)
+    Ok(entries)
+}
+
+/// Reads the grid of `entry`.
+pub fn source<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Result<Source> {
+    input.seek(entry.start)?;
+    grid(&entry.label, &Image::new(load(input, entry.codec, entry.lengths)?)?)
 }
 
 fn segment<R: Read + Seek>(input: &mut Input<R>, entries: &mut Vec<Entry>) -> Result<()> {
@@ -129,16 +129,30 @@ fn segment<R: Read + Seek>(input: &mut Input<R>, entries: &mut Vec<Entry>) -> Re
 fn entry<R: Read + Seek>(input: &mut Input<R>, codec: u16) -> Result<Entry> {
     let notes: [u8; NOTES] = input.array()?;
     let [whole, packed] = [0, 8].map(|at| u64::from_le_bytes(array(&notes, at)));
-    let [kind, length] = [32, 136].map(|at| u32::from_le_bytes(array(&notes, at)));
+    let [kind, class, length] = [32, 36, 136].map(|at| u32::from_le_bytes(array(&notes, at)));
     let mut name = vec![];
     input.load(&mut name, length.into())?;
     let name = String::from_utf8_lossy(&name).trim_end_matches('\0').to_owned();
-    let label = Label { name, kind: kind_name(kind).into() };
+    let class = class_name(class).into();
+    let label = Label { name, kind: kind_name(kind).into(), class, channels: channels(kind) };
     Ok(Entry { label, codec, start: 0, lengths: [packed, whole] })
 }
 
 fn kind_name(kind: u32) -> &'static str {
     KINDS.get(kind as usize).unwrap_or(&KINDS[0])
+}
+
+fn class_name(class: u32) -> &'static str {
+    CLASSES.get(class as usize).unwrap_or(&CLASSES[0])
+}
+
+/// Numbers to a value of a type that is read.
+fn channels(kind: u32) -> Option<usize> {
+    match kind {
+        1 | 13..=16 => Some(f32::CHANNELS),
+        6 => Some(Vec3::CHANNELS),
+        _ => None,
+    }
 }
 
 /// The image of a grid, which the file packs as `codec` says.
@@ -175,22 +189,21 @@ fn unpack_pieces<R: Read + Seek>(input: &mut Input<R>, whole: u64, image: &mut V
     Ok(())
 }
 
-fn source(name: &str, image: &Image) -> Result<Source> {
-    if image.u32(CLASS)? == LEVEL_SET {
-        return Err(surface(name));
-    }
+fn grid(label: &Label, image: &Image) -> Result<Source> {
+    let label = Label { class: class_name(image.u32(CLASS)?).into(), ..label.clone() };
+    let name = label.name.clone();
     let to_world = to_world(image)?;
-    let numbers = |leaf| Source::new(name.into(), to_world, tree::read::<f32>(image, leaf)?);
+    let numbers = |leaf| Source::new(label.clone(), to_world, tree::read::<f32>(image, leaf)?);
     match image.u32(KIND)? {
         1 => numbers(Leaf::Plain),
-        6 => Source::new(name.into(), to_world, tree::read::<Vec3>(image, Leaf::Plain)?),
+        6 => Source::new(label, to_world, tree::read::<Vec3>(image, Leaf::Plain)?),
         13 => numbers(Leaf::Bits(4)),
         14 => numbers(Leaf::Bits(8)),
         15 => numbers(Leaf::Bits(16)),
         16 => numbers(Leaf::AnyBits),
         kind => {
             let expected = "a grid of type float, Vec3f, Fp4, Fp8, Fp16 or FpN";
-            let found = format!("\"{}\" of type {}", shown(name), kind_name(kind));
+            let found = format!("\"{}\" of type {}", shown(&name), kind_name(kind));
             let remedy = "name another grid with the parameter \"grid\", or convert this one to float";
             Err(Problem::new(expected, found, remedy))
         }

@@ -15,7 +15,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(super) fn new(
+    pub(in crate::volume) fn new(
         expected: impl Into<String>,
         found: impl Into<String>,
         remedy: impl Into<String>,

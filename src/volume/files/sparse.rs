@@ -21,6 +21,16 @@ pub struct Sparse<V> {
     low: [i64; 3],
     size: [usize; 3],
     tree: Tree<V>,
+    active: Active<V>,
+}
+
+/// The samples that a file says are active.
+#[derive(Clone, Copy, Debug)]
+pub struct Active<V> {
+    /// How many there are.
+    pub count: u64,
+    /// The least and the greatest value of every channel; the background where there are none.
+    pub range: [V; 2],
 }
 
 #[derive(Clone, Debug)]
@@ -51,6 +61,24 @@ impl<V: Value> Tree<V> {
         }
         let tile = |(tiles, level): (&HashMap<_, V>, u32)| tiles.get(&place(index, level)).copied();
         Content::Uniform(self.tiles.iter().zip(LEVELS).find_map(tile).unwrap_or(self.background))
+    }
+}
+
+impl<V: Copy> Sparse<V> {
+    /// What is active.
+    pub fn active(&self) -> Active<V> {
+        self.active
+    }
+
+    /// The value of what the file does not name; of a level set, the greatest distance that it holds.
+    pub fn background(&self) -> V {
+        self.tree.background
+    }
+
+    /// Memory that the values take, as they are held while they are read [bytes].
+    pub fn bytes(&self) -> u64 {
+        let tiles: usize = self.tree.tiles.iter().map(HashMap::len).sum();
+        ((self.tree.blocks.len() * BLOCK + tiles) * size_of::<V>()) as u64
     }
 }
 
@@ -120,6 +148,8 @@ pub struct Builder<V> {
     tree: Tree<V>,
     /// The box of active samples, both included; the wrong way round where there are none.
     active: [[i64; 3]; 2],
+    count: u64,
+    range: Option<[V; 2]>,
 }
 
 impl<V: Value> Builder<V> {
@@ -127,7 +157,7 @@ impl<V: Value> Builder<V> {
     pub fn new(background: V) -> Self {
         let tree =
             Tree { background, blocks: HashMap::new(), tiles: std::array::from_fn(|_| HashMap::new()) };
-        Self { tree, active: [[i64::MAX; 3], [i64::MIN; 3]] }
+        Self { tree, active: [[i64::MAX; 3], [i64::MIN; 3]], count: 0, range: None }
     }
 
     /// The value of what no file names.
@@ -135,7 +165,10 @@ impl<V: Value> Builder<V> {
         self.tree.background
     }
 
-    fn include(&mut self, low: [i64; 3], high: [i64; 3]) {
+    fn include(&mut self, low: [i64; 3], high: [i64; 3], value: V) {
+        self.count += (0..3).map(|axis| (high[axis] - low[axis] + 1) as u64).product::<u64>();
+        let [least, greatest] = self.range.unwrap_or([value; 2]);
+        self.range = Some([least.least(value), greatest.greatest(value)]);
         for axis in 0..3 {
             self.active[0][axis] = self.active[0][axis].min(low[axis]);
             self.active[1][axis] = self.active[1][axis].max(high[axis]);
@@ -147,7 +180,7 @@ impl<V: Value> Builder<V> {
         let origin = origin.map(i64::from);
         if active {
             let side = 1 << LEVELS[level];
-            self.include(origin, origin.map(|i| i + side - 1));
+            self.include(origin, origin.map(|i| i + side - 1), value);
         }
         if value != self.tree.background {
             self.tree.tiles[level].insert(place(origin, LEVELS[level]), value);
@@ -160,7 +193,7 @@ impl<V: Value> Builder<V> {
         for n in (0..BLOCK).filter(|&n| is_set(mask, n)) {
             let offset = unpack(n, LEVELS[0]);
             let index = std::array::from_fn(|axis| start[axis] + i64::from(offset[axis]));
-            self.include(index, index);
+            self.include(index, index, values[n]);
         }
         if values.iter().all(|value| *value == values[0]) {
             self.tile(0, origin, values[0], false);
@@ -181,6 +214,7 @@ impl<V: Value> Builder<V> {
             (low, high) = ([0; 3], [0; 3]);
         }
         let size = std::array::from_fn(|axis| (high[axis] - low[axis] + 3) as usize);
-        Ok(Sparse { low: low.map(|i| i - 1), size, tree: self.tree })
+        let active = Active { count: self.count, range: self.range.unwrap_or([self.tree.background; 2]) };
+        Ok(Sparse { low: low.map(|i| i - 1), size, tree: self.tree, active })
     }
 }

@@ -2,7 +2,7 @@
 //! and NanoVDB 32.4.2), and files that are cut off, damaged or of another kind.
 
 use super::*;
-use crate::{math::DVec3, volume::Samples};
+use crate::volume::Samples;
 use flate2::read::GzDecoder;
 use std::{fs, io::Cursor};
 
@@ -18,7 +18,7 @@ fn sample(name: &str) -> Vec<u8> {
 }
 
 fn get(bytes: &[u8], grid: Option<&str>) -> Result<Source> {
-    read(Cursor::new(bytes), grid)
+    Archive::new(Cursor::new(bytes))?.chosen(grid)?.no_surface()
 }
 
 fn names() -> impl Iterator<Item = String> {
@@ -66,13 +66,6 @@ fn golden(text: &str) -> Golden {
 }
 
 impl Source {
-    fn size(&self) -> [usize; 3] {
-        match &self.samples {
-            Field::Grey(samples) => samples.size(),
-            Field::Colour(samples) => samples.size(),
-        }
-    }
-
     fn at(&self, index: [usize; 3]) -> Vec<f64> {
         match &self.samples {
             Field::Grey(samples) => vec![samples.at(index).into()],
@@ -112,7 +105,7 @@ fn every_grid_holds_what_its_makers_say() {
     for golden in goldens {
         let source = get(&sample(&golden.file), Some(&golden.name)).unwrap();
         let label = format!("{} of {}", golden.name, golden.file);
-        assert_eq!(source.name, golden.name, "{label}");
+        assert_eq!(source.label.name, golden.name, "{label}");
         assert_eq!(source.channels(), golden.channels, "{label}");
         assert_eq!(source.low, golden.low.map(|i| i - 1), "{label}");
         let size = [0, 1, 2].map(|axis| (golden.high[axis] - golden.low[axis] + 3) as usize);
@@ -189,9 +182,9 @@ fn refused(file: &str, grid: Option<&str>, found: &str, remedy: &str) {
 
 #[test]
 fn the_density_or_the_only_grid_is_meant_if_none_is_named() {
-    assert_eq!(get(&sample("zip.vdb"), None).unwrap().name, "density");
-    assert_eq!(get(&sample("tiles.nvdb"), None).unwrap().name, "smoke");
-    assert_eq!(get(&sample("several.vdb"), Some("flame")).unwrap().name, "flame[0]");
+    assert_eq!(get(&sample("zip.vdb"), None).unwrap().label.name, "density");
+    assert_eq!(get(&sample("tiles.nvdb"), None).unwrap().label.name, "smoke");
+    assert_eq!(get(&sample("several.vdb"), Some("flame")).unwrap().label.name, "flame[0]");
     let list = "\"Cd\" (Tree_vec3s_5_4_3), \"color\" (Tree_vec3s_5_4_3 as half)";
     refused("several.vdb", None, list, "\"grid\"");
     refused("several.nvdb", None, "\"Cd\" (Vec3f), \"ids\" (int32)", "\"grid\"");

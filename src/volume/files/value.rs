@@ -55,6 +55,10 @@ pub trait Value: Copy + PartialEq {
     fn from_numbers(number: impl Fn(usize) -> f32) -> Self;
     /// All numbers with the other sign.
     fn negated(self) -> Self;
+    /// The lesser number of every channel.
+    fn least(self, other: Self) -> Self;
+    /// The greater number of every channel.
+    fn greatest(self, other: Self) -> Self;
     /// Samples of unknown type again.
     fn field(samples: Sparse<Self>) -> Field;
 }
@@ -69,6 +73,14 @@ impl Value for f32 {
 
     fn negated(self) -> Self {
         -self
+    }
+
+    fn least(self, other: Self) -> Self {
+        self.min(other)
+    }
+
+    fn greatest(self, other: Self) -> Self {
+        self.max(other)
     }
 
     fn field(samples: Sparse<Self>) -> Field {
@@ -86,6 +98,14 @@ impl Value for Vec3 {
 
     fn negated(self) -> Self {
         -self
+    }
+
+    fn least(self, other: Self) -> Self {
+        self.min(other)
+    }
+
+    fn greatest(self, other: Self) -> Self {
+        self.max(other)
     }
 
     fn field(samples: Sparse<Self>) -> Field {

@@ -8,35 +8,41 @@ mod values;
 
 use super::{
     Result, Source,
-    choice::{choose, shown},
+    choice::{Label, shown},
     input::Input,
     problem::Problem,
     value::{Format, Value},
 };
 use crate::math::Vec3;
-use archive::{Entry, Metadata};
+use archive::Metadata;
+pub use archive::{Entry, read as entries};
 use std::io::{Read, Seek};
 use values::Coding;
 
 /// First bytes of every file.
 pub const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";
 
-/// Reads the grid that is meant; the input is positioned after the magic bytes.
-pub fn read<R: Read + Seek>(input: &mut Input<R>, wanted: Option<&str>) -> Result<Source> {
-    let entries = archive::read(input)?;
-    let labels: Vec<_> = entries.iter().map(Entry::label).collect();
-    let entry = &entries[choose(&labels, wanted)?];
+/// What the file says of the grid of `entry`; of no class where its notes are damaged.
+pub fn label<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Label {
+    let mut notes = || {
+        input.seek(entry.grid)?;
+        input.u32()?;
+        Metadata::read(input)
+    };
+    let class = notes().map_or_else(|_| String::new(), |notes| notes.class);
+    Label { class, channels: numbers(entry).ok().map(|(_, channels)| channels), ..entry.label() }
+}
+
+/// Reads the grid of `entry`, one of `entries`.
+pub fn source<R: Read + Seek>(input: &mut Input<R>, entries: &[Entry], entry: &Entry) -> Result<Source> {
     let (format, channels) = numbers(entry)?;
     input.seek(entry.grid)?;
     let mut packing = input.u32()?;
     let metadata = Metadata::read(input)?;
-    if metadata.class == "level set" {
-        return Err(surface(&entry.label().name));
-    }
     let to_world = map::read(input)?;
     let mut half = metadata.half || entry.half;
     let mut start = entry.blocks;
-    if let Some(parent) = archive::parent(&entries, entry)? {
+    if let Some(parent) = archive::parent(entries, entry)? {
         // A grid that shares the tree of another has only a map of its own.
         input.seek(parent.grid)?;
         packing = input.u32()?;
@@ -45,11 +51,11 @@ pub fn read<R: Read + Seek>(input: &mut Input<R>, wanted: Option<&str>) -> Resul
         start = parent.blocks;
     }
     let coding = Coding::new(packing, half, format)?;
-    let name = entry.label().name;
+    let label = Label { class: metadata.class, channels: Some(channels), ..entry.label() };
     if channels == f32::CHANNELS {
-        Source::new(name, to_world, tree::read::<f32, R>(input, coding, start)?)
+        Source::new(label, to_world, tree::read::<f32, R>(input, coding, start)?)
     } else {
-        Source::new(name, to_world, tree::read::<Vec3, R>(input, coding, start)?)
+        Source::new(label, to_world, tree::read::<Vec3, R>(input, coding, start)?)
     }
 }
 
@@ -71,11 +77,4 @@ fn numbers(entry: &Entry) -> Result<(Format, usize)> {
             Err(Problem::new(expected, found, remedy))
         }
     }
-}
-
-/// Distances to a surface are no densities.
-pub fn surface(name: &str) -> Problem {
-    let found = format!("\"{}\", a level set (distances to a surface)", shown(name));
-    let remedy = "convert it to a fog volume (in Houdini \"Convert VDB\", in OpenVDB sdfToFogVolume)";
-    Problem::new("a grid of densities or colours", found, remedy)
 }

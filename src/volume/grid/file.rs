@@ -1,10 +1,10 @@
 //! Grid files of all formats, seen alike.
 
-use super::{super::Samples, vol};
+use super::{super::Samples, convert::Convert, vol};
 use crate::{
     error::Result,
-    math::{DAffine3, DVec3, Spectrum},
-    volume::files::{self, Field},
+    math::{DAffine3, DMat3, DVec3, Spectrum},
+    volume::files,
 };
 use std::path::Path;
 
@@ -32,24 +32,18 @@ pub fn is_vdb(path: &Path) -> bool {
 
 /// Opens a grid file; the format follows from the extension, and is Mitsuba's `.vol` for any not known. `grid` is the
 /// name of the one that is meant, for formats that hold several.
-pub fn open(path: &Path, grid: Option<&str>) -> Result<Source> {
+pub fn open(path: &Path, grid: Option<&str>, convert: Convert) -> Result<Source> {
+    let explain = |problem: files::Problem| problem.at(path.display());
     if !is_vdb(path) {
-        return vol::read(path);
+        let Source { values, to_file } = vol::read(path)?;
+        return Ok(Source { values: convert.of(values).map_err(explain)?, to_file });
     }
-    let source = files::open(path, grid).map_err(|problem| problem.at(path.display()))?;
-    let values = match source.samples {
-        Field::Grey(samples) => Values::Grey(Box::new(samples)),
-        Field::Colour(samples) => Values::Chromatic(Box::new(samples)),
-    };
-    let size = match &values {
-        Values::Grey(samples) => samples.size(),
-        Values::Chromatic(samples) => samples.size(),
-    };
-    // Samples lie at integer indices, in the middle of their voxels.
-    let low = DVec3::from(source.low.map(|index| index as f64 - 0.5));
-    let box_of_voxels = DAffine3 {
-        matrix3: crate::math::DMat3::from_diagonal(DVec3::from(size.map(|n| n as f64))),
-        translation: low,
-    };
-    Ok(Source { values, to_file: source.to_world * box_of_voxels })
+    let source = files::open(path, grid).map_err(explain)?;
+    let to_file = source.to_world * cube_to(source.voxels());
+    Ok(Source { values: convert.of_source(source).map_err(explain)?, to_file })
+}
+
+/// From the unit cube to a box.
+fn cube_to([low, high]: [DVec3; 2]) -> DAffine3 {
+    DAffine3 { matrix3: DMat3::from_diagonal(high - low), translation: low }
 }

@@ -5,6 +5,8 @@
 //! around the transformed cube. [`VolumeModel::eval`] goes on beyond it as `wrap_mode` says, and so it does
 //! in what a turned or sheared cube leaves of its box; integrals and inversions count the box and no more.
 
+mod catalogue;
+mod convert;
 mod file;
 mod lattice;
 #[cfg(test)]
@@ -25,12 +27,15 @@ use crate::{
     },
     memory,
 };
+use convert::Convert;
+pub use convert::HOTTEST;
 use lattice::{BRICK, Brick, Extent, Fault, Lattice};
 use std::{path::Path, sync::Arc};
 use voxel::Voxel;
 use walk::{Line, Target, Walk};
 
 pub use crate::math::Wrap;
+pub use catalogue::{Catalogue, Contents};
 pub use file::{Source, Values};
 pub use lattice::Filter;
 
@@ -101,6 +106,9 @@ impl Grid {
         boolean("raw", false, "Without effect: voxels are numbers."),
         boolean("use_grid_bbox", false, "True places the voxels in the file's own box.").said("true of .vdb and .nvdb files, else false"),
         transform("to_world", "Where the unit cube is."),
+        choice("convert", &words::<3, _>(&Convert::NAMES), "none", "Makes fog of a level set, or light of a temperature.").ours(),
+        number("temperature_scale", "K", within(0.0, HOTTEST), Is(1.0), "Of `blackbody`: what a value of 1 adds.").ours(),
+        number("temperature_offset", "K", within(0.0, HOTTEST), Is(0.0), "Of `blackbody`: temperature of a value of 0.").ours(),
         ignored("accel", "the maximum is known, and no texture unit runs"),
         ignored("max_value", "the maximum is known, and no texture unit runs"),
     };
@@ -122,7 +130,7 @@ impl Grid {
         params.boolean("raw")?;
         let mut to_world = place.to_world(params)?;
         let uses_file_box = params.optional_boolean("use_grid_bbox")?.unwrap_or(is_vdb);
-        let source = file::open(&path, grid)?;
+        let source = file::open(&path, grid, Convert::read(params)?)?;
         if uses_file_box {
             check_box(&path, &source.to_file)?;
             to_world *= source.to_file;

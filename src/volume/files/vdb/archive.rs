@@ -39,7 +39,7 @@ impl Entry {
             None => self.name.clone(),
         };
         let half = if self.half { " as half" } else { "" };
-        Label { name, kind: format!("{}{half}", self.kind) }
+        Label { name, kind: format!("{}{half}", self.kind), ..Label::default() }
     }
 }
 

@@ -235,3 +235,41 @@ fn parameters_that_make_no_sense_are_errors() {
         assert!(volume::build(&lost, &Library::default(), &place).is_err());
     }
 }
+
+#[test]
+fn numbers_become_the_light_of_their_temperature() {
+    let ramp = [("temperature_scale", Value::Float(1000.0)), ("temperature_offset", Value::Float(500.0))];
+    let mut properties = vec![("convert", text("blackbody")), ("filter_type", text("nearest"))];
+    properties.extend(ramp);
+    let mut numbers = NUMBERS;
+    // Nothing, less than nothing, and what is left of nothing: no fire, whatever the offset.
+    numbers[..3].copy_from_slice(&[0.0, -0.2, 0.009]);
+    let volume = build(&vol([4, 3, 2, 1], UNIT, &numbers), &properties).unwrap();
+    for (index, number) in numbers.iter().enumerate() {
+        let at = [index % 4, index / 4 % 3, index / 12];
+        let position = Vec3::from_array([0, 1, 2].map(|i| (at[i] as f32 + 0.5) / [4.0, 3.0, 2.0][i]));
+        let expected = match index {
+            0..3 => Spectrum::ZERO,
+            _ => crate::math::black_body::radiance(500.0 + 1000.0 * number),
+        };
+        let found: Spectrum = volume.eval(position);
+        assert!(
+            (found - expected).abs().max_element() <= 1e-5 * expected.max_element(),
+            "{number}: {found} {expected}"
+        );
+    }
+    numbers[5] = f32::NAN;
+    let error = build(&vol([4, 3, 2, 1], UNIT, &numbers), &properties).unwrap_err();
+    assert!(error.found.contains("NaN"), "{error}");
+}
+
+#[test]
+fn what_cannot_be_converted_is_told() {
+    let convert = |word| [("convert", text(word))];
+    let colours = build(&vol([2, 2, 2, 3], UNIT, &COLOURS), &convert("blackbody")).unwrap_err();
+    assert!(colours.expected.contains("one number per voxel"), "{colours}");
+    let plain = build(&vol([4, 3, 2, 1], UNIT, &NUMBERS), &convert("fog")).unwrap_err();
+    assert!(plain.expected.contains("a level set"), "{plain}");
+    let unknown = build(&vol([4, 3, 2, 1], UNIT, &NUMBERS), &convert("fogg")).unwrap_err();
+    assert!(unknown.remedy.contains("did you mean \"fog\""), "{unknown}");
+}

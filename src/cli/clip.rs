@@ -1,0 +1,80 @@
+//! The frames of an animation: when each is, and the scene that it shows.
+
+use super::{arguments, built};
+use crate::{
+    description::{Object, Property, Value},
+    error::{Error, Result},
+    format,
+    scene::{
+        build::{self, Setup},
+        smoke,
+    },
+};
+
+/// Default number of frames per second.
+const FPS: f64 = 24.0;
+
+/// A scene file as it is read for one frame or many.
+pub struct Clip<'a> {
+    arguments: &'a arguments::Render,
+    root: Object,
+    /// True if frames show different files, so that the scene is built again for each.
+    pub reads_files: bool,
+}
+
+impl<'a> Clip<'a> {
+    /// Reads the scene file.
+    pub fn read(arguments: &'a arguments::Render) -> Result<Self> {
+        let root = format::read(&arguments.scene.file, &arguments.scene.definitions)?;
+        let reads_files = arguments.frames.is_some() && smoke::has_sequence(&root);
+        Ok(Self { arguments, root, reads_files })
+    }
+
+    /// Builds the scene at its own time, or where frames show different files, as the first frame shows it.
+    pub fn first(&self) -> Result<Setup> {
+        match self.arguments.frames.filter(|_| self.reads_files) {
+            None => built(&self.root, self.arguments.overrides()),
+            Some(frames) => {
+                let setup = built(&self.at(self.time(frames.first)), self.arguments.overrides())?;
+                (frames.first..=frames.last).try_for_each(|frame| self.check(&setup, frame))?;
+                Ok(setup)
+            }
+        }
+    }
+
+    /// Builds the scene as `frame` shows it. What the user should know has been said of the first.
+    pub fn frame(&self, frame: u32) -> Result<Setup> {
+        let built = build::build(&self.at(self.time(frame)), self.arguments.overrides());
+        built.map_err(|error| self.explain(frame, error))
+    }
+
+    /// When a frame is [s].
+    pub fn time(&self, frame: u32) -> f64 {
+        smoke::time_of(&self.root) + f64::from(frame) / self.arguments.fps.unwrap_or(FPS)
+    }
+
+    /// `error` in a frame.
+    pub fn explain(&self, frame: u32, error: Error) -> Error {
+        Error { place: format!("frame {frame}, at {} s: {}", self.time(frame), error.place), ..error }
+    }
+
+    /// Every frame has its files, which is better known before hours of rendering than after.
+    fn check(&self, setup: &Setup, frame: u32) -> Result<()> {
+        let time = self.time(frame);
+        let missing = setup.smoke.iter().find_map(|taken| taken.at(time).err());
+        missing.map_or(Ok(()), |error| Err(self.explain(frame, error)))
+    }
+
+    /// The scene at `time` [s].
+    fn at(&self, time: f64) -> Object {
+        let mut root = self.root.clone();
+        let (value, location) = (Value::Float(time), root.location.clone());
+        match root.properties.iter_mut().find(|property| property.name == "time") {
+            None => root.properties.push(Property { name: "time".to_owned(), value, location }),
+            Some(own) if matches!(own.value, Value::Float(_) | Value::Integer(_)) => own.value = value,
+            // What is no time is refused where the scene is built.
+            Some(_) => {}
+        }
+        root
+    }
+}

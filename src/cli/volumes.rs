@@ -1,0 +1,150 @@
+//! `tyndall info` of a volume file: the grids in it, and what `smoke` would take of them.
+
+use super::voice::{Answer, say};
+use crate::{
+    error::Result,
+    math::DVec3,
+    scene::smoke::{Glow, Taken},
+    volume::{
+        files::{
+            Label,
+            roles::{self, Roles, Wanted},
+        },
+        grid::{Catalogue, Contents},
+    },
+};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// True if the file at `path` is one by its name.
+pub fn is_one(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    ["vdb", "nvdb", "vol"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+}
+
+/// Lists the grids of the file at `path`.
+pub fn run(path: &Path, answer: &Answer) -> Result<()> {
+    let mut file = Catalogue::open(path)?;
+    let (mut lines, mut figures) = (vec![], vec![]);
+    for number in 0..file.labels.len() {
+        let contents = file.contents(number);
+        let label = &file.labels[number];
+        lines.push(format!("grid        {}", headline(label)));
+        match &contents {
+            Ok(contents) => lines.extend(describe(contents)),
+            Err(error) => lines.push(format!("  not read  {}: {}", error.expected, error.found)),
+        }
+        figures.push(figures_of(label, contents.ok().as_ref()));
+    }
+    let use_of = use_of(&file);
+    lines.push(format!("smoke       {}", use_of.0));
+    say(&lines.join("\n"));
+    answer.give(&json!({ "grids": figures, "smoke": use_of.1 }))
+}
+
+/// What the plugin `smoke` takes without being told, in words and for scripts.
+fn use_of(file: &Catalogue) -> (String, Value) {
+    let labels = &file.labels;
+    let roles = match Roles::of_file(labels, Wanted::default()) {
+        Ok(roles) => roles,
+        Err(problem) => return (format!("nothing by itself: {}", problem.remedy), Value::Null),
+    };
+    let name = |number: &usize| labels[*number].name.as_str();
+    let mut parts = vec![];
+    parts.extend(roles.density.iter().map(|number| format!("density from {}", quoted(name(number)))));
+    parts.extend(roles.temperature.iter().map(|number| format!("light from {}", quoted(name(number)))));
+    if !roles.color.is_empty() {
+        let names: Vec<_> = roles.color.iter().map(|number| quoted(name(number))).collect();
+        parts.push(format!("colour from {}", names.join(", ")));
+    }
+    let figures = json!({
+        "density": roles.density.as_ref().map(name),
+        "temperature": roles.temperature.as_ref().map(name),
+        "color": roles.color.iter().map(name).collect::<Vec<_>>(),
+    });
+    (parts.join(", "), figures)
+}
+
+fn quoted(name: &str) -> String {
+    if name.is_empty() { "the only grid".to_owned() } else { format!("\"{name}\"") }
+}
+
+/// Name, type and class.
+fn headline(label: &Label) -> String {
+    let class = if label.class.is_empty() { "no class" } else { &label.class };
+    let velocity = if roles::is_velocity(label) { ", a velocity" } else { "" };
+    format!("{}, {}, {class}{velocity}", quoted(&label.name), label.kind)
+}
+
+fn describe(contents: &Contents) -> Vec<String> {
+    let Contents { active, range: [low, high], bytes, .. } = contents;
+    let Some(([first, last], [from, to])) = contents.active_box.zip(contents.active_world()) else {
+        return vec!["  voxels    none is active".to_owned()];
+    };
+    let size = [0, 1, 2].map(|axis| last[axis] - first[axis] + 1);
+    let [x, y, z] = size;
+    vec![
+        format!("  voxels    {x} x {y} x {z}, from {first:?} to {last:?}; {active} are active"),
+        format!(
+            "  world     {} to {}, voxels of {}",
+            numbers(from),
+            numbers(to),
+            numbers(contents.voxel_size())
+        ),
+        format!("  values    {} to {}", list(low), list(high)),
+        format!("  memory    {}", size_in_words(*bytes)),
+    ]
+}
+
+fn numbers(v: DVec3) -> String {
+    let [x, y, z] = v.to_array().map(short);
+    format!("[{x}, {y}, {z}]")
+}
+
+/// At most six digits after the point.
+fn short(x: f64) -> f64 {
+    let rounded = (x * 1e6).round() / 1e6;
+    if rounded == 0.0 || !rounded.is_finite() { x } else { rounded }
+}
+
+fn list(values: &[f32]) -> String {
+    values.iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
+}
+
+fn size_in_words(bytes: u64) -> String {
+    let units = ["bytes", "kB", "MB", "GB"];
+    let step = (0..3).rev().find(|step| bytes >= 1000_u64.pow(step + 1)).map_or(0, |step| step + 1);
+    let amount = bytes as f64 / 1000_f64.powi(step as i32);
+    if step == 0 { format!("{bytes} bytes") } else { format!("{amount:.1} {}", units[step as usize]) }
+}
+
+fn figures_of(label: &Label, contents: Option<&Contents>) -> Value {
+    let mut figures = json!({ "name": label.name, "type": label.kind, "class": label.class });
+    if let Some(contents) = contents {
+        figures["active_voxels"] = contents.active.into();
+        figures["box"] = json!(contents.active_box);
+        figures["world"] = json!(contents.active_world().map(|ends| ends.map(|end| end.to_array())));
+        figures["voxel_size"] = json!(contents.voxel_size().to_array());
+        figures["least"] = json!(contents.range[0]);
+        figures["greatest"] = json!(contents.range[1]);
+        figures["memory"] = contents.bytes.into();
+    }
+    figures
+}
+
+/// What smoke of a scene was made of, for scripts.
+pub fn taken(taken: &Taken) -> Value {
+    json!({
+        "name": taken.name,
+        "file": taken.file.display().to_string(),
+        "density": taken.density,
+        "temperature": taken.glow.as_ref().map(|Glow { grid, scale, offset, most }| json!({
+            "grid": grid,
+            "scale": scale,
+            "offset": offset,
+            "greatest": most,
+        })),
+        "color": taken.color,
+        "unused": taken.unused,
+    })
+}

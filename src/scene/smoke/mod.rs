@@ -1,0 +1,98 @@
+//! `smoke`: a volume file as a user of Blender or Houdini has it, put into a scene like a shape.
+//!
+//! It is no model of its own: before anything is built, it is replaced by what twenty lines of a scene would say, a
+//! `cube` of `null` around the grid's box whose interior is a medium made of `gridvolume`s. Nothing else knows of it.
+
+mod parameters;
+mod parts;
+mod taken;
+#[cfg(test)]
+mod tests;
+
+use crate::{
+    description::{Library, Object, Params, Property, Value},
+    error::Result,
+    shape::{SMOKE, SMOKE_TABLE},
+    volume::{
+        files::{
+            roles::{self, Roles},
+            sequence::{Clock, Sequence},
+        },
+        grid::{Catalogue, Contents},
+    },
+};
+use parameters::Parameters;
+use std::borrow::Cow;
+pub use taken::{Glow, Taken};
+
+/// True if some smoke in `root` is of numbered files, and so depends on the time.
+pub fn has_sequence(root: &Object) -> bool {
+    smokes(root).any(|smoke| {
+        let named = smoke.properties.iter().find(|property| property.name == "filename");
+        let path = named.and_then(|property| match &property.value {
+            Value::String(name) => Some(Library::default().file(name, &property.location)),
+            _ => None,
+        });
+        path.is_some_and(|path| Sequence::new(&path, Clock::of(smoke)).is_some())
+    })
+}
+
+/// When the scene is seen, as it says itself [s].
+pub fn time_of(root: &Object) -> f64 {
+    root.number("time").unwrap_or(0.0)
+}
+
+fn smokes(root: &Object) -> impl Iterator<Item = &Object> {
+    root.properties.iter().filter_map(|property| match &property.value {
+        Value::Object(child) => Some(child).filter(|child| child.plugin == SMOKE),
+        _ => None,
+    })
+}
+
+/// `root` with all smoke in it replaced, and what that was made of.
+pub fn expand(root: &Object) -> Result<(Cow<'_, Object>, Vec<Taken>)> {
+    if smokes(root).next().is_none() {
+        return Ok((Cow::Borrowed(root), vec![]));
+    }
+    let library = Library::new(root)?;
+    let time = Params::new(root, &library, &super::TABLE).float("time")?;
+    let (mut expanded, mut media, mut all) = (root.clone(), vec![], vec![]);
+    for property in &mut expanded.properties {
+        let Value::Object(child) = &mut property.value else { continue };
+        if child.plugin == SMOKE {
+            let (object, medium, taken) = container(child, &library, time)?;
+            *child = object;
+            let of_medium = |medium| Property { value: Value::Object(medium), ..property.clone() };
+            media.extend(medium.map(of_medium));
+            all.push(taken);
+        }
+    }
+    expanded.properties.extend(media);
+    Ok((Cow::Owned(expanded), all))
+}
+
+/// The shape that `smoke` stands for, the medium in it, and what that was made of.
+fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Option<Object>, Taken)> {
+    let params = Params::new(smoke, library, &SMOKE_TABLE);
+    let given = Parameters::read(&params, time)?;
+    params.finish()?;
+    let mut file = Catalogue::open(&given.file.path)?;
+    let roles = Roles::of_file(&file.labels, given.wanted).map_err(|problem| problem.at(given.location))?;
+    let density = contents(&mut file, roles.density)?;
+    let fire = contents(&mut file, roles.temperature)?;
+    let boxes = density.iter().chain(&fire).map(|contents| contents.domain);
+    let Some([low, high]) = boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]) else {
+        return Err(given.nothing_left());
+    };
+    let glow = roles.temperature.zip(fire).map(|(number, fire)| {
+        let label = &file.labels[number];
+        given.glow(label, fire.range[1][0], roles::is_fire(label))
+    });
+    let taken = Taken::new(smoke, &given, &file, &roles, glow);
+    let (object, medium) = parts::container(smoke, &given, &taken, [low, high]);
+    Ok((object, medium, taken))
+}
+
+fn contents(file: &mut Catalogue, number: Option<usize>) -> Result<Option<Contents>> {
+    number.map(|number| file.contents(number)).transpose()
+}

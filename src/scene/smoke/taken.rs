@@ -1,0 +1,113 @@
+//! What smoke was made of, for those who ask.
+
+use super::parameters::Parameters;
+use crate::{
+    description::{Location, Object},
+    error::Result,
+    volume::{
+        files::{
+            Label,
+            roles::{Roles, is_velocity},
+            sequence::Sequence,
+        },
+        grid::Catalogue,
+    },
+};
+use std::{fmt, path::PathBuf};
+
+/// What of a file became smoke.
+#[derive(Clone, Debug)]
+pub struct Taken {
+    /// The name of the smoke in the scene.
+    pub name: String,
+    /// The file that was read.
+    pub file: PathBuf,
+    /// Where the scene names it.
+    pub location: Location,
+    /// The frames that it is one of.
+    pub sequence: Option<Sequence>,
+    /// The grid of densities; its name is empty in files whose grids have none.
+    pub density: Option<String>,
+    /// True if it is a level set.
+    pub is_surface: bool,
+    /// What glows.
+    pub glow: Option<Glow>,
+    /// The grid of colours, or three of a component each.
+    pub color: Vec<String>,
+    /// Grids that are not used, and what they are where that is known.
+    pub unused: Vec<String>,
+}
+
+/// A grid as the light of black bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Glow {
+    /// Its name.
+    pub grid: String,
+    /// Temperature that a number of 1 adds [K].
+    pub scale: f64,
+    /// Temperature of what is barely above nothing [K].
+    pub offset: f64,
+    /// The highest temperature [K].
+    pub most: f64,
+}
+
+impl Taken {
+    /// What `roles` of `file` became the smoke that is `given`.
+    pub fn new(
+        smoke: &Object,
+        given: &Parameters<'_>,
+        file: &Catalogue,
+        roles: &Roles,
+        glow: Option<Glow>,
+    ) -> Self {
+        let labels = &file.labels;
+        let unused = labels.iter().enumerate().filter(|(number, _)| !roles.has(*number));
+        Self {
+            name: smoke.id.clone().unwrap_or_else(|| smoke.plugin.clone()),
+            file: given.file.path.clone(),
+            location: given.location.clone(),
+            sequence: given.file.sequence.clone(),
+            density: roles.density.map(|number| labels[number].name.clone()),
+            is_surface: roles.density.is_some_and(|number| labels[number].is_level_set()),
+            glow,
+            color: roles.color.iter().map(|number| labels[*number].name.clone()).collect(),
+            unused: unused.map(|(_, label)| described(label)).collect(),
+        }
+    }
+}
+
+impl Taken {
+    /// The file that is shown at `time` [s].
+    pub fn at(&self, time: f64) -> Result<PathBuf> {
+        let Some(sequence) = &self.sequence else { return Ok(self.file.clone()) };
+        sequence.at(time).map_err(|problem| problem.at(&self.location))
+    }
+}
+
+/// A grid that is not used.
+fn described(label: &Label) -> String {
+    let what = if is_velocity(label) { " (a velocity)" } else { "" };
+    format!("\"{}\"{what}", label.name)
+}
+
+impl fmt::Display for Taken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.name, self.file.display())?;
+        match self.density.as_deref() {
+            Some("") => write!(f, ", density from its grid")?,
+            Some(density) if self.is_surface => write!(f, ", density from the level set \"{density}\"")?,
+            Some(density) => write!(f, ", density from \"{density}\"")?,
+            None => write!(f, ", no density")?,
+        }
+        if let Some(Glow { grid, scale, offset, most }) = &self.glow {
+            write!(f, ", light from \"{grid}\" ({offset} K + {scale} K x its value, up to {most:.0} K)")?;
+        }
+        if !self.color.is_empty() {
+            write!(f, ", colour from \"{}\"", self.color.join("\", \""))?;
+        }
+        if !self.unused.is_empty() {
+            write!(f, "; not used: {}", self.unused.join(", "))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,145 @@
+//! What a grid file holds, without building a volume of it.
+
+use super::file::{Values, is_vdb};
+use super::vol;
+use crate::{
+    error::Result,
+    math::{DAffine3, DVec3, Spectrum, boxes::image},
+    volume::{
+        Samples,
+        files::{Archive, Field, Label, Source, Sparse},
+    },
+};
+use std::path::{Path, PathBuf};
+
+/// A file, and what it says of its grids.
+pub struct Catalogue {
+    path: PathBuf,
+    archive: Option<Archive>,
+    /// In the file's order. The one of a `.vol` file has no name.
+    pub labels: Vec<Label>,
+}
+
+/// What a grid is like, its values read.
+#[derive(Clone, Debug)]
+pub struct Contents {
+    /// The first and the last active voxel; none where no voxel is active.
+    pub active_box: Option<[[i64; 3]; 2]>,
+    /// How many voxels are active.
+    pub active: u64,
+    /// The least and the greatest active value of every channel.
+    pub range: [Vec<f32>; 2],
+    /// From indices to where the file says that voxels lie; the centres of voxels have integer indices.
+    pub to_world: DAffine3,
+    /// The box around all that a `gridvolume` of the grid fills.
+    pub domain: [DVec3; 2],
+    /// Memory that the values take when they have been read [bytes].
+    pub bytes: u64,
+}
+
+impl Contents {
+    /// The box around all active voxels in the file's world.
+    pub fn active_world(&self) -> Option<[DVec3; 2]> {
+        let ends = self.active_box?.map(|index| DVec3::from(index.map(|i| i as f64)));
+        Some(image(&self.to_world, [ends[0] - 0.5, ends[1] + 0.5]))
+    }
+
+    /// Length of a voxel along each axis of the grid.
+    pub fn voxel_size(&self) -> DVec3 {
+        let axes = self.to_world.matrix3;
+        DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length())
+    }
+}
+
+impl Catalogue {
+    /// Opens the file at `path`.
+    pub fn open(path: &Path) -> Result<Self> {
+        let path = path.to_owned();
+        if !is_vdb(&path) {
+            let channels = match vol::read(&path)?.values {
+                Values::Grey(_) => 1,
+                Values::Chromatic(_) => 3,
+            };
+            let kind = if channels == 1 { "float32" } else { "3 x float32" }.to_owned();
+            let label = Label { kind, channels: Some(channels), ..Label::default() };
+            return Ok(Self { path, archive: None, labels: vec![label] });
+        }
+        let mut archive = Archive::open(&path).map_err(|problem| problem.at(path.display()))?;
+        let labels = archive.labels();
+        Ok(Self { path, archive: Some(archive), labels })
+    }
+
+    /// True if its grids have names.
+    pub fn has_names(&self) -> bool {
+        self.archive.is_some()
+    }
+
+    /// Reads grid `number`.
+    pub fn contents(&mut self, number: usize) -> Result<Contents> {
+        match &mut self.archive {
+            None => vol::read(&self.path).map(|source| of_vol(&source)),
+            Some(archive) => {
+                let source = archive.source(number).map_err(|problem| problem.at(self.path.display()))?;
+                Ok(of_vdb(&source))
+            }
+        }
+    }
+}
+
+fn of_vdb(source: &Source) -> Contents {
+    let (active, range, bytes) = match &source.samples {
+        Field::Grey(samples) => figures(samples, |value| vec![value]),
+        Field::Colour(samples) => figures(samples, |value| value.to_array().to_vec()),
+    };
+    let (low, size) = (source.low, source.size());
+    let last = [0, 1, 2].map(|axis| low[axis] + size[axis] as i64 - 2);
+    Contents {
+        active_box: (active > 0).then_some([low.map(|i| i + 1), last]),
+        active,
+        range,
+        to_world: source.to_world,
+        domain: image(&source.to_world, source.voxels()),
+        bytes,
+    }
+}
+
+fn figures<V: Copy>(samples: &Sparse<V>, numbers: impl Fn(V) -> Vec<f32>) -> (u64, [Vec<f32>; 2], u64) {
+    let active = samples.active();
+    (active.count, active.range.map(numbers), samples.bytes())
+}
+
+fn of_vol(source: &super::Source) -> Contents {
+    let (size, range) = match &source.values {
+        Values::Grey(samples) => {
+            let [low, high] = range(&**samples, f32::min, f32::max);
+            (samples.size(), [vec![low], vec![high]])
+        }
+        Values::Chromatic(samples) => {
+            let ends = range(&**samples, Spectrum::min, Spectrum::max);
+            (samples.size(), ends.map(|end| end.to_array().to_vec()))
+        }
+    };
+    let active = size.iter().map(|n| *n as u64).product();
+    let voxel = DVec3::from(size.map(|n| 1.0 / n as f64));
+    Contents {
+        active_box: Some([[0; 3], size.map(|n| n as i64 - 1)]),
+        active,
+        bytes: active * 4 * range[0].len() as u64,
+        range,
+        to_world: source.to_file
+            * DAffine3::from_scale(voxel)
+            * DAffine3::from_translation(DVec3::splat(0.5)),
+        domain: image(&source.to_file, [DVec3::ZERO, DVec3::ONE]),
+    }
+}
+
+/// The least and the greatest of all samples, by each channel.
+fn range<V: Copy>(samples: &dyn Samples<V>, least: fn(V, V) -> V, greatest: fn(V, V) -> V) -> [V; 2] {
+    let [x, y, z] = samples.size();
+    let first = samples.at([0; 3]);
+    let indices = (0..z).flat_map(|k| (0..y).flat_map(move |j| (0..x).map(move |i| [i, j, k])));
+    indices.fold([first; 2], |[low, high], index| {
+        let value = samples.at(index);
+        [least(low, value), greatest(high, value)]
+    })
+}
