@@ -81,8 +81,11 @@ impl EmissionDescription {
                 return Err(Error::new(params.location(), expected, found, "remove one of them"));
             }
         }
-        let alone = [("emission_scale", "an emission to scale"), ("group", "an emission to show in a group")];
-        let alone = alone.into_iter().find(|(name, _)| given.is_none() && params.has(name));
+        let alone = match (&given, scale != 1.0, params.has("group")) {
+            (None, true, _) => Some(("emission_scale", "an emission to scale")),
+            (None, _, true) => Some(("group", "an emission to show in a group")),
+            _ => None,
+        };
         if let Some((name, expected)) = alone {
             let remedy =
                 format!("give \"emission\", \"radiance\" or \"temperature\" too, or remove \"{name}\"");
