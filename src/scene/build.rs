@@ -163,6 +163,8 @@ struct Surveyed {
     survey: Survey,
     sensor_medium: MediumIndex,
     overlaps: Option<Box<Overlaps>>,
+    /// Boundaries contradict each other even so.
+    contradicts: bool,
 }
 
 /// Its id, or the name of its plugin.
@@ -379,7 +381,7 @@ impl<'a> Builder<'a> {
         let geometry = self.geometry();
         let stated = self.surfaces.clone();
         let (geometry, surveyed) = self.survey(geometry, &mut camera)?;
-        let Surveyed { known, survey, sensor_medium, overlaps } = surveyed;
+        let Surveyed { known, survey, sensor_medium, overlaps, contradicts } = surveyed;
         let outside = known.infinity.most();
         let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
         self.names().warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
@@ -389,6 +391,10 @@ impl<'a> Builder<'a> {
         range::check(&media[1..], &self.medium_locations, &extents, self.library)?;
         let lights = self.lights(&geometry, &known, &media, overlaps.as_deref(), sensor_medium);
         media.extend(overlaps.as_ref().map(|overlaps| overlaps.build(&media)).into_iter().flatten());
+        let nowhere = contradicts.then(|| {
+            media.push(Medium::vacuum());
+            MediumIndex(media.len() as u32 - 1)
+        });
         // Parallel rays start all over a plane: in a shape here, out of it there.
         if !camera.sensor.is_parallel() {
             let (surfaces, viewpoint) = (&self.surfaces, camera.start);
@@ -408,6 +414,7 @@ impl<'a> Builder<'a> {
             known,
             sensor_medium,
             overlaps,
+            nowhere,
             recentre,
         };
         Ok((scene, shape_names, bsdf_names))
@@ -429,8 +436,9 @@ impl<'a> Builder<'a> {
         let open = overlap::open(&geometry, &self.surfaces, contradictions);
         if !open.is_empty() {
             geometry = self.close(geometry, &open, &mut overlaps)?;
-            (known, _) = self.without(&overlaps, &geometry, camera);
+            (known, left) = self.without(&overlaps, &geometry, camera);
         }
+        let contradicts = !left.as_ref().unwrap_or(&survey).shapes().is_empty();
         let found = overlaps.find_regions(self.media.len(), &self.bases(camera));
         found.map_err(|found| self.too_many_overlap(&found))?;
         // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
@@ -439,7 +447,7 @@ impl<'a> Builder<'a> {
         let place = || place_camera(&geometry, &self.surfaces, &mut known, start, &names, location);
         let sensor_medium = overlaps.at(stated.unwrap_or_else(place), start, Vec3::X);
         let overlaps = (!overlaps.is_empty()).then(|| Box::new(overlaps));
-        Ok((geometry, Surveyed { known, survey, sensor_medium, overlaps }))
+        Ok((geometry, Surveyed { known, survey, sensor_medium, overlaps, contradicts }))
     }
 
     /// What is known without the boundaries that overlap, and what contradicts itself even so.

@@ -23,7 +23,7 @@ use crate::{
 };
 use accel::Geometry;
 use boundary::Boundary;
-use lights::Lights;
+use lights::{EmitterSample, Lights};
 pub use locate::Infinity;
 use locate::{Known, Locator};
 pub use overlap::Overlaps;
@@ -68,6 +68,9 @@ pub struct Scene {
     pub sensor_medium: MediumIndex,
     /// What lies where boundaries of media overlap; none where none do.
     pub overlaps: Option<Box<Overlaps>>,
+    /// What walks carry from where a boundary says that they are in another medium than they are in; only in scenes whose
+    /// boundaries contradict each other.
+    pub nowhere: Option<MediumIndex>,
     /// Where the origin of all positions lies in the file's coordinates [m].
     pub recentre: DVec3,
 }
@@ -85,10 +88,46 @@ impl Scene {
         &self.bsdfs[self.surfaces[shape as usize].bsdf as usize]
     }
 
-    /// The medium that a ray in `medium` is in when it leaves `point` in `direction`.
+    /// The medium that a ray is in when it leaves `point` in `direction`, which came from the direction `incoming`, in
+    /// `medium`.
     #[inline]
-    pub fn medium_towards(&self, point: &SurfacePoint, direction: Vec3, medium: MediumIndex) -> MediumIndex {
-        self.surface(point.shape).boundary.side(point.normal.dot(direction)).unwrap_or(medium)
+    pub fn medium_towards(
+        &self,
+        point: &SurfacePoint,
+        incoming: Vec3,
+        direction: Vec3,
+        medium: MediumIndex,
+    ) -> MediumIndex {
+        let Surface { boundary, touching, .. } = *self.surface(point.shape);
+        if let Some(nowhere) = self.nowhere
+            && !touching
+            && let Some(here) = boundary.side(point.normal.dot(incoming))
+            && here != self.base(medium)
+        {
+            return nowhere;
+        }
+        boundary.side(point.normal.dot(direction)).unwrap_or(medium)
+    }
+
+    /// What `medium` is without the boundaries that overlap.
+    fn base(&self, medium: MediumIndex) -> MediumIndex {
+        self.overlaps.as_ref().map_or(medium, |overlaps| overlaps.base(medium))
+    }
+
+    /// True unless boundaries contradict each other about the two ends of a segment that meet in the media `a` and `b`.
+    /// Light that came around an open boundary to where its sides say that it is not carries nothing: whichever end a path
+    /// is followed from, it carries something in the same media or in none.
+    #[inline]
+    pub fn agree(&self, a: MediumIndex, b: MediumIndex) -> bool {
+        self.nowhere.is_none_or(|nowhere| a != nowhere && self.base(a) == self.base(b))
+    }
+
+    /// The medium in which light of an emitter's point `sample` sets out in the unit direction `towards`.
+    pub fn medium_of(&self, sample: &EmitterSample, towards: Vec3) -> MediumIndex {
+        match sample.point.ray_origin(towards) {
+            Some(origin) => self.emission_medium(sample.light, origin, towards),
+            None => self.known.infinity.towards(-towards),
+        }
     }
 
     /// The medium that `ray` is in, which has passed `point` from within `medium`. Where two boundaries share a
@@ -103,7 +142,7 @@ impl Scene {
         if touching && let Some(found) = self.locator().ahead(ray) {
             return found;
         }
-        self.medium_towards(point, ray.direction, medium)
+        self.medium_towards(point, -ray.direction, ray.direction, medium)
     }
 
     fn locator(&self) -> Locator<'_> {

@@ -184,22 +184,27 @@ impl Overlaps {
         self.region(index).map(|region| region.members.as_slice())
     }
 
+    /// What would be in the region `index` without these boundaries; of a medium itself.
+    pub fn base(&self, index: MediumIndex) -> MediumIndex {
+        self.region(index).map_or(index, |region| region.base)
+    }
+
     fn region(&self, index: MediumIndex) -> Option<&Region> {
-        (index.0 as usize).checked_sub(self.media).map(|index| &self.regions[index])
+        (index.0 as usize).checked_sub(self.media).and_then(|index| self.regions.get(index))
     }
 
     /// The region of `part` of a ray, between two surfaces, of a walk that carries `medium`.
     pub fn along(&self, medium: MediumIndex, part: &RaySegment) -> MediumIndex {
         // Nothing closed lies around what has no end.
         if part.length == f32::INFINITY {
-            return self.region(medium).map_or(medium, |region| region.base);
+            return self.base(medium);
         }
         self.at(medium, part.at(0.5 * part.length), part.direction)
     }
 
     /// The region at `position`; rays in any direction find the same.
     pub fn at(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> MediumIndex {
-        let base = self.region(medium).map_or(medium, |region| region.base);
+        let base = self.base(medium);
         let holding = self.boundaries.iter().enumerate().filter(|(_, b)| b.holds(position, direction));
         let holders = holding.fold(0, |holders, (index, _)| holders | 1 << index);
         self.index.get(&(base, holders)).copied().unwrap_or(base)

@@ -96,8 +96,7 @@ impl Names<'_> {
         let text = format!(
             "the boundaries of media contradict each other: an unblocked way from {} in {} ends on the side of \
              \"{}\" in {}, near {place:.3}{others}. No image is right then. Openings of cylinders and meshes are \
-             taken to be closed by flat lids; around other open shapes, camera and light subpaths may differ. Close \
-             shapes that bound media, and state the exterior of those that lie within a medium",
+             taken to be closed by flat lids, and light that gets around other open shapes is left out. Close shapes that bound media, and state the exterior of those that lie within a medium",
             self.shape(*from),
             self.medium(*medium),
             self.shapes[at.shape as usize],

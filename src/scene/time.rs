@@ -4,14 +4,15 @@ use super::{
     Scene,
     lights::{Lights, emissive},
 };
-use crate::{emitter::Kind, error::Result};
+use crate::{emitter::Kind, error::Result, medium::Medium};
 
 impl Scene {
     /// Moves the scene to `time` [s]; false where nothing in it depends on time. Media that change are
     /// examined again, and so are the emitters, as the extent and the emission of media may have changed.
     pub fn set_time(&mut self, time: f64) -> Result<bool> {
         let mut changed = false;
-        let given = self.overlaps.as_ref().map_or(self.media.len(), |overlaps| overlaps.media());
+        let behind = self.nowhere.iter().count();
+        let given = self.overlaps.as_ref().map_or(self.media.len() - behind, |overlaps| overlaps.media());
         for medium in &mut self.media[..given] {
             if let Some(moved) = medium.at_time(time)? {
                 *medium = moved;
@@ -29,6 +30,7 @@ impl Scene {
             self.lights = Lights::new(lights.collect(), &self.geometry, outside);
             let regions = self.overlaps.as_ref().map(|overlaps| overlaps.build(&self.media));
             self.media.extend(regions.into_iter().flatten());
+            self.media.extend(self.nowhere.map(|_| Medium::vacuum()));
         }
         Ok(changed)
     }

@@ -68,7 +68,11 @@ pub fn emitter_end<P: Profile>(
     End {
         origin: sample.point.ray_origin(towards),
         lift: lift(&sample.point, towards),
-        medium: if within { light.medium } else { medium },
+        medium: match (within, estimator.scene.nowhere) {
+            (true, _) => light.medium,
+            (false, None) => medium,
+            (false, Some(_)) => estimator.scene.medium_of(sample, towards),
+        },
         within,
         value: sample.value / sample.pdf,
         pdf_fwd: estimator.pdf_start(sample, reference, towards) / sample.pdf,
@@ -190,6 +194,9 @@ pub fn connect_along<P: Profile>(
     let Span { ray, cut, distance_squared, hidden } = *span;
     let between = segment::transmittance::<P>(scene, ray, cut, a.medium, hidden, stream)?;
     if P::EMISSIVE && b.within && !scene.components(&between.medium).contains(&b.medium) {
+        return None;
+    }
+    if P::NULLS && !b.within && !scene.agree(between.medium, b.medium) {
         return None;
     }
     // Where nothing comes through, weights may be 0 times an overflowed ratio of densities: no numbers.

@@ -134,7 +134,7 @@ impl Needs {
             media: scene.media.iter().any(|medium| medium.bound().sigma_t != Spectrum::ZERO),
             chromatic: scene.media.iter().any(Medium::is_chromatic),
             heterogeneous: overlap || scene.media.iter().any(|medium| medium.heterogeneous().is_some()),
-            nulls: nulls || passed || overlap,
+            nulls: nulls || passed || overlap || scene.nowhere.is_some(),
             infinite: scene.lights.has_parallel() || scene.sensor.is_parallel(),
             emissive: scene.lights.has_media(),
         }

@@ -118,7 +118,7 @@ impl<'a> Segment<'a> {
 
     /// The segment along `ray`, which leaves `point` in another direction.
     pub fn deflected(&self, point: &SurfacePoint, ray: Ray) -> Self {
-        let medium = self.scene.medium_towards(point, ray.direction, self.medium);
+        let medium = self.scene.medium_towards(point, -self.ray.direction, ray.direction, self.medium);
         Self::along(self.scene, ray, medium, false)
     }
 

@@ -97,7 +97,7 @@ impl<S: MisSums> Vertex<S> {
             Interaction::Medium(position, _) => (*position, self.subpath.medium),
             Interaction::Surface(point) => {
                 let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
-                (origin, scene.medium_towards(point, direction, self.subpath.medium))
+                (origin, scene.medium_towards(point, self.subpath.incoming, direction, self.subpath.medium))
             }
         }
     }

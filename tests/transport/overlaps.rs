@@ -202,3 +202,38 @@ fn an_open_mesh_is_closed() {
     }
     claims.settle();
 }
+
+/// Light that gets around an open boundary of no volume is left out, whichever end it is followed from.
+#[test]
+fn light_around_a_flat_boundary_is_left_out_by_all() {
+    let turned = |half: f64, degrees: f64, at: [f64; 3]| {
+        json!({"type": "rectangle", "to_world": [
+            {"type": "scale", "value": half}, {"type": "rotate", "axis": [1, 0, 0], "angle": degrees},
+            {"type": "translate", "value": at},
+        ]})
+    };
+    let wall =
+        |half: f64, degrees: f64, at: [f64; 3]| with(turned(half, degrees, at), &[("bsdf", diffuse(0.6))]);
+    let window = with(turned(0.7, 0.0, [0.0, 0.0, 0.9]), &[("bsdf", json!({"type": "null"}))]);
+    // Around the window there is a gap.
+    let parts = [
+        ("sensor", camera([0.2, 0.3, 5.0], [0.0, -0.1, 0.0], 8)),
+        ("window", with(window, &[("exterior", medium(0.0, 0.0, 0.0)), ("interior", medium(0.7, 0.8, 0.3))])),
+        ("back", wall(1.0, 0.0, [0.0, 0.0, -1.0])),
+        ("floor", wall(1.0, -90.0, [0.0, -1.0, 0.0])),
+        ("ceiling", wall(1.0, 90.0, [0.0, 1.0, 0.0])),
+        ("lamp", lamp_ball([0.3, 0.2, 2.5], 0.4, 20.0)),
+        ("depth", depth(5)),
+    ];
+    let stage = Stage::new(&scene(&parts));
+    assert!(stage.setup.warnings.iter().any(|w| w.contains("left out")), "{:?}", stage.setup.warnings);
+    let sample = |set, first| Sample::of(&stage.renders(set, 256, first..first + 8), stage.width());
+    let expected = sample(Strategies::BDPT, 0);
+    let mut claims = Claims::new();
+    for (first, (name, set)) in (1..).zip(METHODS) {
+        claims.equal(name, &sample(set, 100 * first), &expected);
+    }
+    claims.settle();
+    let lit: f32 = stage.render(Strategies::BDPT, 16, 1).iter().map(|v| v.y).sum();
+    assert!(lit > 0.0, "black");
+}

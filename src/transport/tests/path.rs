@@ -129,7 +129,7 @@ impl Node {
         match self.place {
             Place::Surface(point) => {
                 let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
-                (origin, scene.medium_towards(&point, direction, self.medium))
+                (origin, scene.medium_towards(&point, direction, direction, self.medium))
             }
             Place::Lens(position) => {
                 let seen = scene.sensor.project_direction(direction, APERTURE);
@@ -209,7 +209,7 @@ impl Way {
                 return None;
             }
             way.depth.iter_mut().for_each(|depth| *depth -= passing.ln());
-            medium = scene.medium_towards(&point, ray.direction, medium);
+            medium = scene.medium_towards(&point, -ray.direction, ray.direction, medium);
             left = point.position.as_dvec3();
             way.cross(scene, medium, &point, direction);
             ray = beyond(&ray, &point);
