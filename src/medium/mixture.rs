@@ -23,17 +23,23 @@ impl Mixture {
     }
 
     /// What the medium that collides is like at `position`.
+    #[cold]
+    #[inline(never)]
     pub fn properties_at<M: MediaProfile>(&self, component: usize, position: Vec3) -> MediumProperties {
         self.0[component].properties_at::<M>(0, position)
     }
 
     /// See [`Medium::optical_depth`].
+    #[cold]
+    #[inline(never)]
     pub fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Channels {
         let add = |sum: M::Channels, medium: &Medium| sum + medium.optical_depth::<M>(interval);
         self.0.iter().fold(M::Channels::splat(0.0), add)
     }
 
     /// See [`Medium::attenuation`].
+    #[cold]
+    #[inline(never)]
     pub fn attenuation<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
@@ -62,6 +68,8 @@ impl Mixture {
     }
 
     /// See [`Medium::transmittance_ratio`].
+    #[cold]
+    #[inline(never)]
     pub fn transmittance_ratio<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
@@ -89,6 +97,8 @@ impl Mixture {
 
     /// See [`Medium::sample_distance`]. Flights have no memory: every medium draws its own, and the optical depth that
     /// the flight came with is left for the media behind these.
+    #[cold]
+    #[inline(never)]
     pub fn sample_distance<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
@@ -113,11 +123,15 @@ impl Mixture {
     }
 
     /// See [`Medium::forced_depth`].
+    #[cold]
+    #[inline(never)]
     pub fn forced_depth<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
         self.0.iter().map(|medium| medium.forced_depth::<M>(interval, hero)).sum()
     }
 
     /// See [`Medium::unforced`].
+    #[cold]
+    #[inline(never)]
     pub fn unforced<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
@@ -139,6 +153,8 @@ impl Mixture {
 
     /// See [`Medium::force_collision`]. A medium is chosen by its share of the depth, and collides where it has used up
     /// the same part of its own depth as `remaining` is of all: the density of both is exp(-`remaining`) sigma_t.
+    #[cold]
+    #[inline(never)]
     pub fn force_collision<M: MediaProfile>(
         &self,
         interval: &MediumInterval,

@@ -98,15 +98,21 @@ impl Scene {
         direction: Vec3,
         medium: MediumIndex,
     ) -> MediumIndex {
-        let Surface { boundary, touching, .. } = *self.surface(point.shape);
         if let Some(nowhere) = self.nowhere
-            && !touching
-            && let Some(here) = boundary.side(point.normal.dot(incoming))
-            && here != self.base(medium)
+            && self.is_elsewhere(point, incoming, medium)
         {
             return nowhere;
         }
-        boundary.side(point.normal.dot(direction)).unwrap_or(medium)
+        self.surface(point.shape).boundary.side(point.normal.dot(direction)).unwrap_or(medium)
+    }
+
+    /// True if `point` states another medium than `medium` on the side of `incoming`.
+    #[cold]
+    #[inline(never)]
+    fn is_elsewhere(&self, point: &SurfacePoint, incoming: Vec3, medium: MediumIndex) -> bool {
+        let Surface { boundary, touching, .. } = *self.surface(point.shape);
+        let here = boundary.side(point.normal.dot(incoming));
+        !touching && here.is_some_and(|here| here != self.base(medium))
     }
 
     /// What `medium` is without the boundaries that overlap.
@@ -119,10 +125,18 @@ impl Scene {
     /// is followed from, it carries something in the same media or in none.
     #[inline]
     pub fn agree(&self, a: MediumIndex, b: MediumIndex) -> bool {
-        self.nowhere.is_none_or(|nowhere| a != nowhere && self.base(a) == self.base(b))
+        self.nowhere.is_none_or(|nowhere| self.agree_beyond(nowhere, a, b))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn agree_beyond(&self, nowhere: MediumIndex, a: MediumIndex, b: MediumIndex) -> bool {
+        a != nowhere && self.base(a) == self.base(b)
     }
 
     /// The medium in which light of an emitter's point `sample` sets out in the unit direction `towards`.
+    #[cold]
+    #[inline(never)]
     pub fn medium_of(&self, sample: &EmitterSample, towards: Vec3) -> MediumIndex {
         match sample.point.ray_origin(towards) {
             Some(origin) => self.emission_medium(sample.light, origin, towards),

@@ -194,6 +194,8 @@ impl Overlaps {
     }
 
     /// The region of `part` of a ray, between two surfaces, of a walk that carries `medium`.
+    #[cold]
+    #[inline(never)]
     pub fn along(&self, medium: MediumIndex, part: &RaySegment) -> MediumIndex {
         // Nothing closed lies around what has no end.
         if part.length == f32::INFINITY {
