@@ -102,7 +102,7 @@ pub enum Met {
 
 /// Most surfaces that a ray is followed through: it cannot hit more than there are, except a sphere twice;
 /// the bound ends even a faulty loop.
-const MOST_SURFACES: u32 = 10_000;
+pub const MOST_SURFACES: u32 = 10_000;
 
 /// The first thing that `ray` hits. Where `through_walls`, opaque surfaces are passed if they say nothing.
 pub fn first(geometry: &Geometry, surfaces: &[Surface], mut ray: Ray, through_walls: bool) -> Met {

@@ -425,8 +425,7 @@ impl<'a> Builder<'a> {
     fn survey(&mut self, geometry: Geometry, camera: &mut Camera<'_>) -> Result<(Geometry, Surveyed)> {
         let mut geometry = geometry;
         let (mut known, survey) = self.look_around(&geometry, camera);
-        let found = Overlaps::find(&geometry, &self.surfaces, &survey);
-        let mut overlaps = found.map_err(|found| self.too_many_overlap(&found))?;
+        let mut overlaps = Overlaps::find(&geometry, &self.surfaces, &survey);
         let mut left = None;
         if !overlaps.is_empty() {
             (known, left) = self.without(&overlaps, &geometry, camera);
@@ -439,8 +438,7 @@ impl<'a> Builder<'a> {
             (known, left) = self.without(&overlaps, &geometry, camera);
         }
         let contradicts = !left.as_ref().unwrap_or(&survey).shapes().is_empty();
-        let found = overlaps.find_regions(self.media.len(), &self.bases(camera));
-        found.map_err(|found| self.too_many_overlap(&found))?;
+        overlaps.find_regions(self.media.len(), &self.bases(camera));
         // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
         let Camera { start, stated, location, .. } = *camera;
         let names = self.names();
@@ -514,11 +512,6 @@ impl<'a> Builder<'a> {
         let stated = self.emitters.iter().map(|placed| placed.stated);
         let named = sides.chain(stated).chain([camera.stated, Some(MediumIndex::VACUUM)]);
         named.flatten().map(|medium| medium.0).collect()
-    }
-
-    fn too_many_overlap(&self, found: &str) -> Error {
-        let remedy = "let fewer shapes that bound media overlap, or put one shape around several volumes";
-        Error::new(&self.shape_locations[0], "few boundaries of media that overlap", found.to_owned(), remedy)
     }
 
     /// All emitters, emissive media among them, with the medium that each lies in.

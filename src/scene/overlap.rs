@@ -9,23 +9,27 @@
 //! indices of media: what would be there without these boundaries (their base, which walks find as in other scenes),
 //! and the boundaries that hold the part of the ray at hand.
 
-use super::{Surface, accel::Geometry, locate::Survey};
+use super::{Surface, accel::Geometry, boundary::MOST_SURFACES, locate::Survey};
 use crate::{
     math::{RaySegment, Vec3, offset, vec3, warp},
     medium::{Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
-    shape::{Ray, Shape},
+    shape::{Ray, Shape, ShapeModel as _},
 };
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
 
-/// Boundaries that hold a point, one bit each.
-type Holders = u128;
+/// Points at which each pair of boundaries is examined, and how many tests of all of these may take.
+const POINTS: u64 = 64;
+const MOST_TESTS: u64 = 200_000_000;
 
-/// Points at which each pair of boundaries is examined.
-const POINTS: u32 = 64;
+/// Larger shapes are examined only if rays show that they overlap others.
+const MOST_PRIMITIVES: usize = 100_000;
 
-/// Most regions.
-const MOST_REGIONS: usize = 4096;
+/// More regions than these are not foreseen, but looked for.
+const FORESEEN: usize = 4096;
+
+/// Points at which they are looked for.
+const LOOKS: u32 = 50_000;
 
 /// The boundaries of a scene that overlap, and what lies where.
 #[derive(Clone, Debug, Default)]
@@ -34,7 +38,9 @@ pub struct Overlaps {
     /// How many media there are besides.
     media: usize,
     regions: Vec<Region>,
-    index: HashMap<(MediumIndex, Holders), MediumIndex>,
+    /// From a medium or region, and the number of one more boundary, to the region where that is too. Those of a region
+    /// come in ascending order.
+    next: HashMap<(MediumIndex, usize), MediumIndex>,
 }
 
 /// A closed shape that bounds a medium.
@@ -55,29 +61,28 @@ struct ClosedBoundary {
 #[derive(Clone, Debug)]
 struct Region {
     base: MediumIndex,
+    /// How often each medium is there: once at the base and for every boundary, once less for each that it is outside of.
+    counts: BTreeMap<u32, i32>,
     /// What is there, vacuum left out.
     members: Vec<MediumIndex>,
 }
 
 impl Overlaps {
     /// The closed boundaries that overlap, by points that they hold or by what rays of a `survey` met, and all that lie in
-    /// or across these. An error says how many are too many.
-    pub fn find(geometry: &Geometry, surfaces: &[Surface], survey: &Survey) -> Result<Self, String> {
-        let closed = |shape: u32| {
-            let Surface { boundary, transmits, .. } = surfaces[shape as usize];
-            transmits && boundary.is_known() && geometry.shapes()[shape as usize].is_closed()
+    /// or across these.
+    pub fn find(geometry: &Geometry, surfaces: &[Surface], survey: &Survey) -> Self {
+        let closed = |shape: &u32| {
+            let Surface { boundary, transmits, .. } = surfaces[*shape as usize];
+            transmits && boundary.is_known() && geometry.shapes()[*shape as usize].is_closed()
         };
-        let bounding = |shape: &u32| closed(*shape);
-        let mut chosen: BTreeSet<u32> = survey.shapes().into_iter().filter(bounding).collect();
-        let near = Near::of(geometry, (0..surfaces.len() as u32).filter(bounding).collect());
-        let mut boundaries = near.boundaries(geometry, surfaces);
-        chosen.extend(near.contradictory(&boundaries));
+        let mut chosen: BTreeSet<u32> = survey.shapes().into_iter().filter(closed).collect();
+        let near = Near::of(geometry, (0..surfaces.len() as u32).filter(closed).collect());
+        let new = |shape: u32| ClosedBoundary::new(&geometry.shapes()[shape as usize], &[], surfaces, shape);
+        let small = |shape: &u32| geometry.shapes()[*shape as usize].primitive_count() <= MOST_PRIMITIVES;
+        let examined: Vec<_> = near.shapes().into_iter().filter(small).map(new).collect();
+        chosen.extend(near.contradictory(&examined));
         near.spread(&mut chosen);
-        if chosen.len() > Holders::BITS as usize {
-            return Err(format!("{} shapes", chosen.len()));
-        }
-        boundaries.retain(|boundary| chosen.contains(&boundary.shape));
-        Ok(Self { boundaries, ..Self::default() })
+        Self { boundaries: chosen.into_iter().map(new).collect(), ..Self::default() }
     }
 
     /// Another boundary: `shape`, which is number `index` and closed by `lids`.
@@ -104,54 +109,60 @@ impl Overlaps {
         }
     }
 
-    /// Finds all regions, of as many `media`, on top of each of `bases`. An error says how many are too many.
-    pub fn find_regions(&mut self, media: usize, bases: &BTreeSet<u32>) -> Result<(), String> {
-        if self.boundaries.len() > Holders::BITS as usize {
-            return Err(format!("{} shapes", self.boundaries.len()));
-        }
+    /// Finds the regions, of as many `media`, on top of each of `bases`: all that boxes of boundaries allow, the smaller
+    /// sets of boundaries first; of very many, those that hold points.
+    pub fn find_regions(&mut self, media: usize, bases: &BTreeSet<u32>) {
         self.media = media;
-        let mut found = Vec::new();
-        self.extend(0, 0, (Vec3::NEG_INFINITY, Vec3::INFINITY), &mut found);
-        for holders in found {
-            for base in bases.iter().map(|base| MediumIndex(*base)) {
-                let index = MediumIndex((media + self.regions.len()) as u32);
-                self.regions.push(Region { base, members: self.members(base, holders) });
-                self.index.insert((base, holders), index);
-            }
-            if self.regions.len() > MOST_REGIONS {
-                return Err(format!("more than {MOST_REGIONS} combinations"));
-            }
-        }
-        Ok(())
-    }
-
-    /// Adds to `found` all sets of boundaries that are `holders` and some from `next` on, and whose boxes have points in
-    /// common, those of `within` among them.
-    fn extend(&self, holders: Holders, next: usize, within: (Vec3, Vec3), found: &mut Vec<Holders>) {
-        for index in next..self.boundaries.len() {
-            if found.len() > MOST_REGIONS {
-                return;
-            }
-            if let Some(within) = common(within, self.boundaries[index].geometry.bounds()) {
-                found.push(holders | 1 << index);
-                self.extend(holders | 1 << index, index + 1, within, found);
+        let everywhere = (Vec3::NEG_INFINITY, Vec3::INFINITY);
+        let starts = bases.iter().map(|base| (MediumIndex(*base), 0, everywhere));
+        let mut waiting: VecDeque<_> = starts.collect();
+        while let Some((from, first, within)) = waiting.pop_front() {
+            for index in first..self.boundaries.len() {
+                if self.regions.len() >= FORESEEN {
+                    return self.look_for_regions(bases);
+                }
+                if let Some(within) = common(within, self.boundaries[index].geometry.bounds()) {
+                    waiting.push_back((self.with(from, index), index + 1, within));
+                }
             }
         }
     }
 
-    /// The media that lie within `holders`, where `base` would lie without them.
-    fn members(&self, base: MediumIndex, holders: Holders) -> Vec<MediumIndex> {
-        let mut counts = BTreeMap::from([(base.0, 1)]);
-        for boundary in self.held_by(holders) {
-            *counts.entry(boundary.inside.0).or_insert(0) += 1;
-            *counts.entry(boundary.outside.0).or_insert(0) -= 1;
+    /// Adds the regions of points that are spread over the boxes of all boundaries.
+    fn look_for_regions(&mut self, bases: &BTreeSet<u32>) {
+        let mut stream = Stream::new(8, 0, 0, Purpose::Pilot);
+        for _ in 0..LOOKS {
+            let bounds = self.boundaries[stream.below(self.boundaries.len())].geometry.bounds();
+            let (position, direction) = (within(bounds, &mut stream), warp::to_sphere(stream.square()));
+            let holding: Vec<usize> = self.holding(position, direction).collect();
+            for base in bases {
+                holding.iter().fold(MediumIndex(*base), |region, index| self.with(region, *index));
+            }
         }
-        let there = counts.into_iter().filter(|(medium, count)| *medium != 0 && *count > 0);
-        there.map(|(medium, _)| MediumIndex(medium)).collect()
     }
 
-    fn held_by(&self, holders: Holders) -> impl Iterator<Item = &ClosedBoundary> {
-        self.boundaries.iter().enumerate().filter(move |(index, _)| holders >> index & 1 == 1).map(|(_, b)| b)
+    /// The region within boundary number `index` too.
+    fn with(&mut self, from: MediumIndex, index: usize) -> MediumIndex {
+        if let Some(known) = self.next.get(&(from, index)) {
+            return *known;
+        }
+        let new = MediumIndex((self.media + self.regions.len()) as u32);
+        let ClosedBoundary { inside, outside, .. } = self.boundaries[index];
+        let mut counts =
+            self.region(from).map_or_else(|| BTreeMap::from([(from.0, 1)]), |region| region.counts.clone());
+        *counts.entry(inside.0).or_insert(0) += 1;
+        *counts.entry(outside.0).or_insert(0) -= 1;
+        let there = counts.iter().filter(|(medium, count)| **medium != 0 && **count > 0);
+        let members = there.map(|(medium, _)| MediumIndex(*medium)).collect();
+        self.regions.push(Region { base: self.base(from), counts, members });
+        self.next.insert((from, index), new);
+        new
+    }
+
+    /// The boundaries that hold `position`, in order.
+    fn holding(&self, position: Vec3, direction: Vec3) -> impl Iterator<Item = usize> {
+        let holds = move |(_, boundary): &(usize, &ClosedBoundary)| boundary.holds(position, direction);
+        self.boundaries.iter().enumerate().filter(holds).map(|(index, _)| index)
     }
 
     /// What the regions are made of, in the order of their indices, which follow those of `media`.
@@ -206,10 +217,8 @@ impl Overlaps {
 
     /// The region at `position`; rays in any direction find the same.
     pub fn at(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> MediumIndex {
-        let base = self.base(medium);
-        let holding = self.boundaries.iter().enumerate().filter(|(_, b)| b.holds(position, direction));
-        let holders = holding.fold(0, |holders, (index, _)| holders | 1 << index);
-        self.index.get(&(base, holders)).copied().unwrap_or(base)
+        let further = |region, index| self.next.get(&(region, index)).copied().unwrap_or(region);
+        self.holding(position, direction).fold(self.base(medium), further)
     }
 
     /// The media that boundaries put at `position`, or anywhere.
@@ -231,7 +240,6 @@ pub fn open(geometry: &Geometry, surfaces: &[Surface], survey: &Survey) -> Vec<u
 
 /// Closed boundaries, and which of them have points of their boxes in common.
 struct Near {
-    shapes: Vec<u32>,
     pairs: Vec<Pair>,
 }
 
@@ -253,27 +261,25 @@ impl Near {
                 }
             }
         }
-        Self { shapes, pairs }
+        Self { pairs }
     }
 
     /// Those that are near others.
-    fn boundaries(&self, geometry: &Geometry, surfaces: &[Surface]) -> Vec<ClosedBoundary> {
-        let paired: BTreeSet<u32> = self.pairs.iter().flat_map(|pair| pair.shapes).collect();
-        let near = self.shapes.iter().filter(|shape| paired.contains(*shape));
-        let shape = |index: &u32| &geometry.shapes()[*index as usize];
-        near.map(|index| ClosedBoundary::new(shape(index), &[], surfaces, *index)).collect()
+    fn shapes(&self) -> BTreeSet<u32> {
+        self.pairs.iter().flat_map(|pair| pair.shapes).collect()
     }
 
     /// Those that overlap: at some point no order of crossing all that hold it makes the medium before one what it states
     /// as its exterior, or the medium before all is another than elsewhere.
     fn contradictory(&self, boundaries: &[ClosedBoundary]) -> BTreeSet<u32> {
         let mut found = BTreeSet::new();
+        let tests = 3 * self.pairs.len() as u64 * boundaries.len() as u64;
+        let points_per_pair = (MOST_TESTS / tests.max(1)).clamp(1, POINTS);
         for (index, pair) in self.pairs.iter().enumerate() {
             let mut stream = Stream::new(7, index as u64, 0, Purpose::Pilot);
-            let points = (0..POINTS).flat_map(|_| pair.boxes).map(|(low, high)| {
-                let place = vec3(stream.uniform(), stream.uniform(), stream.uniform());
-                (low + (high - low) * place, warp::to_sphere(stream.square()))
-            });
+            let points = (0..points_per_pair)
+                .flat_map(|_| pair.boxes)
+                .map(|bounds| (within(bounds, &mut stream), warp::to_sphere(stream.square())));
             let mut around = None;
             if !points.into_iter().all(|(position, direction)| {
                 let held = boundaries.iter().filter(|boundary| boundary.holds(position, direction));
@@ -368,13 +374,20 @@ fn is_outward(shape: &Geometry) -> bool {
     let start = shape.sample_area(0, &mut stream);
     let origin = offset::leave_surface(start.position, start.error, start.normal, start.normal);
     let mut ray = Ray { origin, direction: start.normal, t_max: f32::INFINITY };
-    let mut crossings = 0;
-    while let Some(hit) = shape.closest(&ray) {
-        let point = shape.surface(&ray, &hit);
-        ray.origin = offset::leave_surface(point.position, point.error, point.normal, ray.direction);
-        crossings += 1;
-    }
-    crossings % 2 == 0
+    let crossings = (0..MOST_SURFACES).take_while(|_| {
+        let hit = shape.closest(&ray);
+        let point = hit.map(|hit| shape.surface(&ray, &hit));
+        if let Some(point) = &point {
+            ray.origin = offset::leave_surface(point.position, point.error, point.normal, ray.direction);
+        }
+        point.is_some()
+    });
+    crossings.count() % 2 == 0
+}
+
+/// A point of a box, by least and greatest corner.
+fn within((low, high): (Vec3, Vec3), stream: &mut Stream) -> Vec3 {
+    low + (high - low) * vec3(stream.uniform(), stream.uniform(), stream.uniform())
 }
 
 /// The points that two boxes, by least and greatest corner, have in common.

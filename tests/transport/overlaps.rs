@@ -237,3 +237,28 @@ fn light_around_a_flat_boundary_is_left_out_by_all() {
     let lit: f32 = stage.render(Strategies::BDPT, 16, 1).iter().map(|v| v.y).sum();
     assert!(lit > 0.0, "black");
 }
+
+/// Of very many that overlap, the sets that hold points are looked for: twenty clouds of fog, each a boundary of its own.
+#[test]
+fn many_media_overlap() {
+    let clouds: Vec<(String, Value)> = (0..20)
+        .map(|i| {
+            let fog = json!({"type": "homogeneous", "sigma_t": 0.05 + 0.001 * f64::from(i), "albedo": 0.0});
+            let shift = 0.01 * f64::from(i);
+            (format!("cloud_{i}"), in_box([[-1.0 + shift, -1.0, -1.0], [1.0, 1.0, 1.0 + shift]], fog))
+        })
+        .collect();
+    let mut parts =
+        vec![("sensor", camera([0.5, 0.0, 5.0], [0.5, 0.0, 0.0], 1)), ("sky", sky(1.0)), ("depth", depth(3))];
+    parts.extend(clouds.iter().map(|(name, cloud)| (name.as_str(), cloud.clone())));
+    let view =
+        json!({"type": "perspective", "fov": 0.01, "film": {"type": "hdrfilm", "width": 1, "height": 1}});
+    parts[0].1 = with(view, &[("to_world", parts[0].1["to_world"].clone())]);
+    let stage = Stage::new(&scene(&parts));
+    let depth: f64 = (0..20).map(f64::from).map(|i| (0.05 + 0.001 * i) * (2.0 + 0.01 * i)).sum();
+    let values: Vec<f64> =
+        (0..16).map(|seed| f64::from(stage.render(Strategies::PT, 4096, seed)[0].y)).collect();
+    let mut claims = Claims::new();
+    claims.mean("transmittance", &values, (-depth).exp());
+    claims.settle();
+}
