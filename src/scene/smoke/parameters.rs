@@ -109,7 +109,8 @@ fn read_file(params: &Params<'_>, time: f64) -> Result<Shown> {
     let location = params.given("filename").map_or(params.location(), |property| &property.location);
     let sequence = Sequence::new(&params.library.file(text, location), Clock { fps, first });
     let Some(sequence) = sequence.filter(|_| !text.is_empty()) else {
-        if let Some(name) = ["fps", "first_frame"].into_iter().find(|name| params.has(name)) {
+        let meant = [("fps", fps != Clock::FPS), ("first_frame", first.is_some())];
+        if let Some((name, _)) = meant.into_iter().find(|(_, meant)| *meant) {
             let remedy = "write # or %04d in place of the number in the name of the file, or remove it";
             let expected = format!("numbered files for \"{name}\"");
             return Err(Error::new(location, expected, format!("\"{text}\""), remedy));
