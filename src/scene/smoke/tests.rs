@@ -210,7 +210,7 @@ fn mistakes_are_explained_at_the_smoke() {
     assert!(nothing.found.contains("\"density\""), "{nothing}");
     let white = refused("houdini.vdb", r#", "albedo": 1.5"#, "");
     assert!(white.place.ends_with("$.plume.albedo"), "{white}");
-    let still = refused("houdini.vdb", r#", "fps": 24"#, "");
+    let still = refused("houdini.vdb", r#", "fps": 12"#, "");
     assert!(still.remedy.contains("%04d"), "{still}");
     let lobes = r#", "a": {"type": "hg"}, "b": {"type": "isotropic"}"#;
     assert!(refused("houdini.vdb", lobes, "").place.ends_with("$.plume.b"));
