@@ -134,10 +134,18 @@ impl Scene {
         a != nowhere && self.base(a) == self.base(b)
     }
 
-    /// The medium in which light of an emitter's point `sample` sets out in the unit direction `towards`.
+    /// The medium in which light of an emitter's point `sample` sets out in the unit direction `towards`, to arrive in
+    /// `medium`: only where boundaries contradict each other may it be another than the way back says.
+    #[inline]
+    pub fn medium_of(&self, sample: &EmitterSample, towards: Vec3, medium: MediumIndex) -> MediumIndex {
+        // A walk meets the emission of a medium only in that medium.
+        let is_met_within = self.nowhere.is_none() || sample.point.is_volume();
+        if is_met_within { medium } else { self.start_medium(sample, towards) }
+    }
+
     #[cold]
     #[inline(never)]
-    pub fn medium_of(&self, sample: &EmitterSample, towards: Vec3) -> MediumIndex {
+    fn start_medium(&self, sample: &EmitterSample, towards: Vec3) -> MediumIndex {
         match sample.point.ray_origin(towards) {
             Some(origin) => self.emission_medium(sample.light, origin, towards),
             None => self.known.infinity.towards(-towards),

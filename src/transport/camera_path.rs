@@ -277,12 +277,8 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         if counts.emitter_hit <= 0.0 || (subpath.edges == 1 && hidden) {
             return None;
         }
-        let scene = self.estimator.scene;
-        if P::NULLS
-            && scene.nowhere.is_some()
-            && !sample.point.is_volume()
-            && !scene.agree(subpath.medium, scene.medium_of(sample, subpath.incoming))
-        {
+        let (scene, medium) = (self.estimator.scene, subpath.medium);
+        if P::NULLS && !scene.agree(medium, scene.medium_of(sample, subpath.incoming, medium)) {
             return None;
         }
         // Both ends of the segment before must be connectible for next-event estimation to connect across it. An

@@ -68,11 +68,7 @@ pub fn emitter_end<P: Profile>(
     End {
         origin: sample.point.ray_origin(towards),
         lift: lift(&sample.point, towards),
-        medium: match (within, estimator.scene.nowhere) {
-            (true, _) => light.medium,
-            (false, None) => medium,
-            (false, Some(_)) => estimator.scene.medium_of(sample, towards),
-        },
+        medium: if within { light.medium } else { estimator.scene.medium_of(sample, towards, medium) },
         within,
         value: sample.value / sample.pdf,
         pdf_fwd: estimator.pdf_start(sample, reference, towards) / sample.pdf,

@@ -30,6 +30,8 @@ fn same(claims: &mut Claims, what: &str, overlapping: &Value, apart: &Value) {
     assert!(overlapping.setup.scene.overlaps.is_some(), "{what}: nothing overlaps");
     assert!(apart.setup.scene.overlaps.is_none(), "{what}: the other overlaps too");
     assert!(apart.setup.warnings.is_empty(), "{what}: {:?}", apart.setup.warnings);
+    let warnings = &overlapping.setup.warnings;
+    assert!(warnings.iter().all(|warning| warning.contains("flat lids")), "{what}: {warnings:?}");
     let sample =
         |stage: &Stage, set, first| Sample::of(&stage.renders(set, 64, first..first + 8), stage.width());
     let expected = sample(&apart, Strategies::BDPT, 0);

@@ -1,0 +1,136 @@
+//! Which media lie where: what boundaries say of each other, those that overlap put in order and open ones closed.
+
+use super::{Builder, Camera};
+use crate::{
+    bsdf::{self, Bsdf},
+    error::Result,
+    math::Vec3,
+    medium::MediumIndex,
+    scene::{
+        Surface,
+        accel::Geometry,
+        boundary::Boundary,
+        locate::{Known, Survey},
+        overlap::{self, Overlaps},
+        placement::place_camera,
+    },
+};
+use std::collections::BTreeSet;
+
+/// What is known about where media lie.
+pub(super) struct Surveyed {
+    pub known: Known,
+    pub survey: Survey,
+    pub sensor_medium: MediumIndex,
+    pub overlaps: Option<Box<Overlaps>>,
+    /// Boundaries contradict each other even so.
+    pub contradicts: bool,
+}
+
+impl Builder<'_> {
+    /// What is known about where media lie, how far, and the medium of the camera. Boundaries that overlap are put in
+    /// order, open ones closed.
+    pub(super) fn survey(
+        &mut self,
+        geometry: Geometry,
+        camera: &mut Camera<'_>,
+    ) -> Result<(Geometry, Surveyed)> {
+        let mut geometry = geometry;
+        let (mut known, survey) = self.look_around(&geometry, camera);
+        let mut overlaps = Overlaps::find(&geometry, &self.surfaces, &survey);
+        let mut left = None;
+        if !overlaps.is_empty() {
+            (known, left) = self.without(&overlaps, &geometry, camera);
+        }
+        let contradictions = left.as_ref().unwrap_or(&survey);
+        self.names().warn_of_contradictions(contradictions);
+        let open = overlap::open(&geometry, &self.surfaces, contradictions);
+        if !open.is_empty() {
+            geometry = self.close(geometry, &open, &mut overlaps)?;
+            (known, left) = self.without(&overlaps, &geometry, camera);
+        }
+        let contradicts = !left.as_ref().unwrap_or(&survey).shapes().is_empty();
+        overlaps.find_regions(self.media.len(), &self.bases(camera));
+        // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
+        let Camera { start, stated, location, .. } = *camera;
+        let names = self.names();
+        let place = || place_camera(&geometry, &self.surfaces, &mut known, start, &names, location);
+        let sensor_medium = overlaps.at(stated.unwrap_or_else(place), start, Vec3::X);
+        let overlaps = (!overlaps.is_empty()).then(|| Box::new(overlaps));
+        Ok((geometry, Surveyed { known, survey, sensor_medium, overlaps, contradicts }))
+    }
+
+    /// What is known without the boundaries that overlap, and what contradicts itself even so.
+    fn without(
+        &mut self,
+        overlaps: &Overlaps,
+        geometry: &Geometry,
+        camera: &mut Camera<'_>,
+    ) -> (Known, Option<Survey>) {
+        overlaps.take_from(&mut self.surfaces);
+        self.forget_what_overlaps(overlaps, camera);
+        let (known, left) = self.look_around(geometry, camera);
+        (known, Some(left))
+    }
+
+    /// Closes `open` shapes by lids that light passes, and counts them among the boundaries that overlap.
+    fn close(&mut self, geometry: Geometry, open: &[u32], overlaps: &mut Overlaps) -> Result<Geometry> {
+        self.shapes = geometry.into_shapes();
+        let null = self.add_bsdf(Bsdf::Null(bsdf::Null), "null".to_owned());
+        for &shape in open {
+            let lids = self.shapes[shape as usize].lids();
+            overlaps.add(&self.shapes[shape as usize], &lids, &self.surfaces, shape);
+            for lid in lids {
+                self.shapes.push(lid);
+                self.shape_names.push(format!("lid of {}", self.shape_names[shape as usize]));
+                self.shape_locations.push(self.shape_locations[shape as usize].clone());
+                self.surfaces.push(Surface {
+                    bsdf: null,
+                    emitter: None,
+                    boundary: Boundary::default(),
+                    transmits: true,
+                    touching: false,
+                    connectible: false,
+                });
+            }
+        }
+        self.check_memory()?;
+        Ok(self.geometry())
+    }
+
+    fn look_around(&self, geometry: &Geometry, camera: &Camera<'_>) -> (Known, Survey) {
+        let points = self.stated_points(camera.start, camera.stated);
+        Known::survey(geometry, &self.surfaces, points, camera.stated.unwrap_or(MediumIndex::VACUUM))
+    }
+
+    /// A camera or emitter that states a medium which boundaries that overlap put there says no more than these.
+    fn forget_what_overlaps(&mut self, overlaps: &Overlaps, camera: &mut Camera<'_>) {
+        let recentre = self.recentre;
+        let forget = |stated: &mut Option<MediumIndex>, position: Option<Vec3>| {
+            let added = overlaps.added(position);
+            *stated = stated.filter(|medium| !added.contains(medium));
+        };
+        forget(&mut camera.stated, Some(camera.start));
+        for placed in &mut self.emitters {
+            let position = placed.emitter.position().map(|position| (position - recentre).as_vec3());
+            forget(&mut placed.stated, position);
+        }
+    }
+
+    /// The media that lie where no boundary that overlaps another does.
+    fn bases(&self, camera: &Camera<'_>) -> BTreeSet<u32> {
+        let sides =
+            self.surfaces.iter().flat_map(|surface| [surface.boundary.interior, surface.boundary.exterior]);
+        let stated = self.emitters.iter().map(|placed| placed.stated);
+        let named = sides.chain(stated).chain([camera.stated, Some(MediumIndex::VACUUM)]);
+        named.flatten().map(|medium| medium.0).collect()
+    }
+
+    /// Camera and emitters at points whose medium the file states; the camera is at `start`.
+    fn stated_points(&self, start: Vec3, medium: Option<MediumIndex>) -> Vec<(Vec3, MediumIndex)> {
+        let emitters = self.emitters.iter().filter_map(|placed| {
+            Some(((placed.emitter.position()? - self.recentre).as_vec3(), placed.stated?))
+        });
+        medium.map(|medium| (start, medium)).into_iter().chain(emitters).collect()
+    }
+}
