@@ -382,7 +382,7 @@ impl<'a> Builder<'a> {
         let extents = Extents { geometry: &geometry, surfaces, viewpoint, outside, survey: &survey };
         let mut media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
         range::check(&media[1..], &self.medium_locations, &extents, self.library)?;
-        let lights = self.lights(&geometry, &known, &media, overlaps.as_deref(), sensor_medium);
+        let lights = self.lights(&geometry, &known, &media, overlaps.as_deref(), contradicts, sensor_medium);
         media.extend(overlaps.as_ref().map(|overlaps| overlaps.build(&media)).into_iter().flatten());
         let nowhere = contradicts.then(|| {
             media.push(Medium::vacuum());
@@ -420,6 +420,7 @@ impl<'a> Builder<'a> {
         known: &Known,
         media: &[Medium],
         overlaps: Option<&Overlaps>,
+        contradict: bool,
         ambient: MediumIndex,
     ) -> Lights {
         let outside = known.infinity.most();
@@ -431,7 +432,7 @@ impl<'a> Builder<'a> {
             let medium = overlaps.map(|overlaps| overlaps.at(light.medium, light.position, Vec3::X));
             Light { medium: medium.unwrap_or(light.medium), ..light }
         });
-        let all = emitters.chain(emissive(media, locator, overlaps, outside)).collect();
+        let all = emitters.chain(emissive(media, locator, overlaps, contradict, outside)).collect();
         let around = if known.infinity.is_uniform() { outside } else { MediumIndex::VACUUM };
         Lights::new(all, geometry, &media[around.0 as usize])
     }
@@ -479,5 +480,5 @@ fn light(placed: &Placed<'_>, recentre: DVec3, placement: &Placement<'_>) -> Lig
         },
         (None, None, None) => placement.of_infinite(&emitter),
     };
-    Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles }
+    Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles, clearings: None }
 }

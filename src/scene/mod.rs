@@ -23,7 +23,7 @@ use crate::{
 };
 use accel::Geometry;
 use boundary::Boundary;
-use lights::{EmitterSample, Lights};
+use lights::{EmitterSample, Light, Lights};
 pub use locate::Infinity;
 use locate::{Known, Locator};
 pub use overlap::Overlaps;
@@ -184,8 +184,17 @@ impl Scene {
         self.locator().along(origin, direction).unwrap_or(light.medium)
     }
 
-    /// True if `position` lies in `medium`, as far as a ray from there towards `direction` can show.
-    pub fn is_within(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> bool {
+    /// True if `position` lies in the emissive medium that `light` is, as far as a ray from there towards `direction` can
+    /// show.
+    #[inline]
+    pub fn is_lit(&self, light: u32, position: Vec3, direction: Vec3) -> bool {
+        let Light { clearings, medium, .. } = &self.lights.all[light as usize];
+        let known = clearings.as_ref().and_then(|clearings| clearings.hold(position, &self.geometry));
+        known.unwrap_or_else(|| self.is_within(*medium, position, direction))
+    }
+
+    #[inline(never)]
+    fn is_within(&self, medium: MediumIndex, position: Vec3, direction: Vec3) -> bool {
         let base = self.locator().along(position, direction).unwrap_or(self.outside);
         overlap::lies_in(self.overlaps.as_deref(), base, medium, position, direction)
     }

@@ -23,7 +23,8 @@ impl Scene {
             let steady = std::mem::take(&mut self.lights).all.into_iter();
             self.media.truncate(given);
             let overlaps = self.overlaps.as_deref();
-            let emissive = emissive(&self.media, self.locator(), overlaps, self.outside);
+            let emissive =
+                emissive(&self.media, self.locator(), overlaps, self.nowhere.is_some(), self.outside);
             let lights =
                 steady.filter(|light| !matches!(light.emitter.kind, Kind::Medium(_))).chain(emissive);
             let outside = &self.media[self.outside.0 as usize];

@@ -208,7 +208,6 @@ impl CurvedModel for Cylinder {
         })
     }
 
-    #[cfg(test)]
     fn distance(&self, p: DVec3) -> f64 {
         let from = p - self.base;
         ((from - self.axis * self.axis.dot(from)).length() - self.radius).abs()

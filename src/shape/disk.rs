@@ -123,7 +123,6 @@ impl CurvedModel for Disk {
         (u * u + v * v <= limit * limit).then_some([t, u, v])
     }
 
-    #[cfg(test)]
     fn distance(&self, p: DVec3) -> f64 {
         let normal = self.edge_u.as_dvec3().cross(self.edge_v.as_dvec3()).normalize();
         (p - self.center.as_dvec3()).dot(normal).abs()

@@ -164,7 +164,6 @@ pub trait CurvedModel {
     fn closest(&self, ray: &Ray, t_max: f32) -> Option<[f32; 3]>;
 
     /// Distance of `p` from the surface that it is a part of [m].
-    #[cfg(test)]
     fn distance(&self, p: DVec3) -> f64;
 }
 
@@ -174,7 +173,7 @@ models! {
     fn bounds() -> (Vec3, Vec3);
     fn rounding() -> Vec3;
     #[inline] fn closest(ray: &Ray, t_max: f32) -> Option<[f32; 3]>;
-    #[cfg(test)] fn distance(p: DVec3) -> f64;
+    fn distance(p: DVec3) -> f64;
 }
 
 /// What every kind of shape can do.

@@ -68,10 +68,8 @@ pub fn begin<P: Profile>(estimator: &Estimator<'_, P>, stream: &mut Stream) -> O
     let scene = estimator.scene;
     let start = scene.lights.sample_emission(&scene.geometry, estimator.starts.as_deref(), stream)?;
     // Points are sampled in the box around an emissive medium: not all lie in it.
-    let astray = P::EMISSIVE && start.point.is_volume() && {
-        let medium = scene.lights.all[start.light as usize].medium;
-        !scene.is_within(medium, start.ray.origin, start.ray.direction)
-    };
+    let Ray { origin, direction, .. } = start.ray;
+    let astray = P::EMISSIVE && start.point.is_volume() && !scene.is_lit(start.light, origin, direction);
     (!astray).then_some(start)
 }
 

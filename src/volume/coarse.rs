@@ -56,20 +56,24 @@ impl Coarse {
         value: impl Fn(Vec3) -> Spectrum,
         range: impl Fn(Vec3, Vec3) -> [f32; 2],
     ) -> Self {
+        let lattice = Coarse::lattice(low, high);
+        lattice.fill(|index| {
+            let [least, most] =
+                range(lattice.position(index, Vec3::ZERO), lattice.position(index, Vec3::ONE));
+            Summary { least, most, mean: mean_of(|u| value(lattice.position(index, u))) }
+        })
+    }
+}
+
+impl Coarse<()> {
+    /// The cells of the box from `low` to `high`, about as long as wide, with nothing in them.
+    pub fn lattice(low: Vec3, high: Vec3) -> Self {
         let extent = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
         let counts = (extent * (CELLS / extent.max_element())).ceil().max(Vec3::splat(FEWEST));
         let size = counts.to_array().map(|count| count as u32);
         let to_world = Affine3A::from_scale_rotation_translation(extent / counts, glam::Quat::IDENTITY, low);
         let to_cells = Affine3A::from_scale(counts / extent) * Affine3A::from_translation(-low);
-        let summary = |index| {
-            let [x, y, z] = cell_of(index, size);
-            let corner = vec3(x as f32, y as f32, z as f32);
-            let [least, most] =
-                range(to_world.transform_point3(corner), to_world.transform_point3(corner + 1.0));
-            Summary { least, most, mean: mean_of(|p| value(to_world.transform_point3(corner + p))) }
-        };
-        let cells = (0..size.iter().product::<u32>()).map(summary).collect();
-        Self { to_cells, to_world, size, cells }
+        Self { to_cells, to_world, size, cells: vec![(); size.iter().product::<u32>() as usize] }
     }
 }
 
@@ -81,8 +85,13 @@ impl<T> Coarse<T> {
 
     /// What `change` makes of every cell.
     pub fn map<U>(&self, change: impl Fn(&T) -> U) -> Coarse<U> {
+        self.fill(|index| change(self.cell(index)))
+    }
+
+    /// The same lattice, with what `value` gives for the number of every cell.
+    pub fn fill<U>(&self, value: impl FnMut(u32) -> U) -> Coarse<U> {
         let Self { to_cells, to_world, size, .. } = *self;
-        Coarse { to_cells, to_world, size, cells: self.cells.iter().map(change).collect() }
+        Coarse { to_cells, to_world, size, cells: (0..self.cells.len() as u32).map(value).collect() }
     }
 
     /// All cells, x fastest.
@@ -121,6 +130,29 @@ impl<T> Coarse<T> {
         let size = axes(|i| self.size[i] as f32);
         let inside = (0..3).all(|axis| cell[axis] >= 0.0 && cell[axis] < size[axis]);
         inside.then(|| index_of([cell.x as u32, cell.y as u32, cell.z as u32], self.size))
+    }
+
+    /// The cells that the box from `low` to `high` touches, of a lattice along the axes.
+    pub fn cells_around(&self, low: Vec3, high: Vec3) -> impl Iterator<Item = u32> + use<T> {
+        let [low, high] = [low, high].map(|corner| self.to_cells.transform_point3(corner).floor());
+        let size = self.size;
+        let along = |axis: usize| {
+            let end = |floor: f32| floor.clamp(0.0, size[axis] as f32) as u32;
+            end(low[axis])..end(high[axis] + 1.0)
+        };
+        let [x, y, z] = [along(0), along(1), along(2)];
+        let rows = z.flat_map(move |k| y.clone().map(move |j| (j, k)));
+        rows.flat_map(move |(j, k)| x.clone().map(move |i| index_of([i, j, k], size)))
+    }
+
+    /// The cells that share a face with `cell`.
+    pub fn neighbours(&self, cell: u32) -> impl Iterator<Item = u32> + use<T> {
+        let (at, size) = (cell_of(cell, self.size), self.size);
+        (0..6).filter_map(move |side| {
+            let (axis, mut beside) = (side / 2, at);
+            beside[axis] = if side % 2 == 0 { at[axis].checked_sub(1)? } else { at[axis] + 1 };
+            (beside[axis] < size[axis]).then(|| index_of(beside, size))
+        })
     }
 
     /// The pieces of `segment` in the cells that it crosses, in order.

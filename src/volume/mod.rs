@@ -10,6 +10,7 @@ mod exponential;
 pub mod files;
 pub mod grid;
 mod noise;
+mod perlin;
 mod placed;
 mod polynomial;
 mod product;

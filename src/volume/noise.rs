@@ -6,14 +6,16 @@
 //!
 //! There is no closed form along a line.
 
-use super::placed::{COMMON, Function, Line, Placed};
+use super::{
+    perlin::Perlin,
+    placed::{COMMON, Function, Line, Placed},
+};
 use crate::{
     description::{Params, Table, table},
     error::Result,
-    math::{DVec3, axes},
+    math::DVec3,
 };
-use noise::{NoiseFn, Perlin};
-use std::{fmt, sync::Arc};
+use std::sync::Arc;
 
 /// Turbulence.
 pub type Noise = Placed<Turbulence>;
@@ -28,6 +30,7 @@ pub struct Turbulence {
     octaves: Arc<[Octave]>,
 }
 
+#[derive(Debug)]
 struct Octave {
     noise: Perlin,
     frequency: f64,
@@ -37,16 +40,6 @@ struct Octave {
     shift: DVec3,
 }
 
-impl fmt::Debug for Octave {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let seed = noise::Seedable::seed(&self.noise);
-        write!(f, "Octave({seed}, {}, {}, {})", self.frequency, self.weight, self.shift)
-    }
-}
-
-/// The noise repeats after so many cells, as its table of gradients has 256 entries.
-const PERIOD: f64 = 256.0;
-
 /// No slope of the noise is greater [1/cell]. It interpolates, with a fade of slope s' along every axis, between
 /// g . (x - corner) with |g|^2 = 2, and scales the result by 2 / sqrt 3. Its slope is a mean of the g, and along
 /// every axis s' times a difference of two such terms. Interpolated along the other axes a term is at most
@@ -55,9 +48,9 @@ const PERIOD: f64 = 256.0;
 const SLOPE: f64 = 1.154_700_538_379_252 * (std::f64::consts::SQRT_2 + 3.78 * 1.732_050_807_568_878);
 
 impl Octave {
+    #[inline]
     fn at(&self, position: DVec3) -> f64 {
-        let cells = position * self.frequency + self.shift;
-        self.noise.get(axes(|i| cells[i].rem_euclid(PERIOD)))
+        self.noise.at(position * self.frequency + self.shift)
     }
 }
 
@@ -181,7 +174,7 @@ mod tests {
             let slope = |axis: usize| {
                 let mut beside = at;
                 beside[axis] += step;
-                (noise.get(beside) - noise.get(at)) / step
+                (noise.at(beside.into()) - noise.at(at.into())) / step
             };
             steepest.max(DVec3::new(slope(0), slope(1), slope(2)).length())
         });

@@ -7,6 +7,7 @@
 //! emitters at infinity, whose "point" is a direction (discrete for a beam, which has one), and per volume [1/m^3] for emissive media.
 //! For how camera subpaths sample a point of those, and so the density of s = 0, see [`Emission::rate`].
 
+mod clearings;
 mod disk;
 mod emission_sample;
 mod emitter_sample;
@@ -18,6 +19,7 @@ mod point;
 mod starts;
 mod volume;
 
+pub use clearings::Clearings;
 pub use disk::Disk;
 pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
@@ -34,6 +36,7 @@ use crate::{
     sampling::Discrete,
 };
 use light_sampler::{Extent, LightSampler};
+use std::sync::Arc;
 
 /// An emitter placed in its scene.
 #[derive(Clone, Debug)]
@@ -48,6 +51,8 @@ pub struct Light {
     pub medium: MediumIndex,
     /// Its light starts in several media: that of each ray is located, and `medium` is where nothing is known.
     pub straddles: bool,
+    /// Of an emissive medium, where its box is certainly filled; none where that is not known.
+    pub clearings: Option<Arc<Clearings>>,
 }
 
 /// All emitters.
