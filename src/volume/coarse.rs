@@ -56,7 +56,7 @@ impl Coarse {
         value: impl Fn(Vec3) -> Spectrum,
         range: impl Fn(Vec3, Vec3) -> [f32; 2],
     ) -> Self {
-        let lattice = Coarse::lattice(low, high);
+        let lattice = Coarse::lattice(low, high, CELLS);
         lattice.fill(|index| {
             let [least, most] =
                 range(lattice.position(index, Vec3::ZERO), lattice.position(index, Vec3::ONE));
@@ -66,10 +66,11 @@ impl Coarse {
 }
 
 impl Coarse<()> {
-    /// The cells of the box from `low` to `high`, about as long as wide, with nothing in them.
-    pub fn lattice(low: Vec3, high: Vec3) -> Self {
+    /// The cells of the box from `low` to `high`, about as long as wide, `most` of them along its longest side, with
+    /// nothing in them.
+    pub fn lattice(low: Vec3, high: Vec3, most: f32) -> Self {
         let extent = (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
-        let counts = (extent * (CELLS / extent.max_element())).ceil().max(Vec3::splat(FEWEST));
+        let counts = (extent * (most / extent.max_element())).ceil().max(Vec3::splat(FEWEST));
         let size = counts.to_array().map(|count| count as u32);
         let to_world = Affine3A::from_scale_rotation_translation(extent / counts, glam::Quat::IDENTITY, low);
         let to_cells = Affine3A::from_scale(counts / extent) * Affine3A::from_translation(-low);

@@ -11,6 +11,8 @@ use crate::{
     volume::Coarse,
 };
 
+/// Cells along the longest side of a box.
+const CELLS: f32 = 64.0;
 /// Connected parts that are located: the largest.
 const MOST: usize = 64;
 /// Surfaces reach this far beyond themselves [cells]: more than positions are rounded by.
@@ -28,7 +30,7 @@ impl Clearings {
         geometry: &Geometry,
         mut holds: impl FnMut(Vec3) -> Option<bool>,
     ) -> Self {
-        let lattice = Coarse::lattice(low, high);
+        let lattice = Coarse::lattice(low, high, CELLS);
         let mut parts = parts(&lattice, geometry);
         parts.sort_by_key(|part| std::cmp::Reverse(part.len()));
         let mut cells = vec![None; lattice.cells().len()];
