@@ -1,6 +1,7 @@
 //! The arguments of the command line.
 
 use super::{
+    display::Display,
     estimator::Estimator,
     study::Study,
     viewer,
@@ -81,7 +82,10 @@ pub enum Command {
     /// Of an image or sums, print how they were made; of a volume file (.vdb, .nvdb, .vol), the grids in it, and which
     /// of them the plugin smoke takes by itself.
     Info(Info),
-    /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML
+    /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML; or an image to a PNG
+    ///
+    /// An image (.exr, .pfm, .rgbe, .hdr) becomes the PNG that render would write beside it, with another --exposure or
+    /// --view: tyndall convert fog.exr fog.png --exposure auto --view agx
     ///
     /// Plugins, names, ids, references, order, the exact value of every number, colours, spectra, the steps of
     /// transforms, and parameters with their defaults are preserved (<default> in XML is "$defaults" in JSON).
@@ -161,6 +165,10 @@ pub struct Render {
     /// Default: the name of the scene, in the current folder, in the file format of its film.
     #[arg(short, long, value_name = "FILE", value_parser = image_file)]
     pub output: Option<PathBuf>,
+
+    /// How its PNG shows it.
+    #[command(flatten)]
+    pub display: Display,
 
     /// Where the statistics of the render go: time, samples, noise, how paths were sampled.
     #[command(flatten)]
@@ -354,11 +362,11 @@ pub struct Manual {
 /// Convert a scene.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Convert {
-    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input
+    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input; or an image
     #[arg(value_name = "IN", value_parser = scene_file())]
     pub input: PathBuf,
 
-    /// Scene file to write: .xml or .json
+    /// Scene file to write: .xml or .json; of an image: .png
     #[arg(value_name = "OUT")]
     pub output: PathBuf,
 
@@ -369,6 +377,10 @@ pub struct Convert {
     /// Write the values of parameters instead of their names (mitsuba.load_dict does not support parameters)
     #[arg(long)]
     pub fill: bool,
+
+    /// How the PNG of an image shows it.
+    #[command(flatten)]
+    pub display: Display,
 }
 
 /// Make the page of a study.

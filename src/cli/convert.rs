@@ -1,11 +1,41 @@
-//! `tyndall convert`: converts a scene between XML and JSON.
+//! `tyndall convert`: converts a scene between XML and JSON, or an image to a PNG.
 
-use super::{arguments, complain, outputs::check_short};
-use crate::{error::Result, film, format, format::Naming};
+use super::{arguments, complain, display::Display, made, outputs::check_short};
+use crate::{
+    analysis::picture,
+    error::{Error, Result},
+    film,
+    format::{self, Naming},
+};
+use std::path::Path;
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Convert) -> Result<()> {
-    let arguments::Convert { input, output, definitions, fill } = arguments;
+    let arguments::Convert { definitions, fill, display, output, .. } = arguments;
+    let of_scenes = [(!definitions.is_empty(), "-D"), (*fill, "--fill")];
+    let of_images = [(display.exposure.is_some(), "--exposure"), (display.view.is_some(), "--view")];
+    if output.extension().is_some_and(|end| end.eq_ignore_ascii_case("png")) {
+        refuse(of_scenes, "a scene file to write", output)?;
+        show(&arguments.input, output, *display)
+    } else {
+        refuse(of_images, "a PNG to write", output)?;
+        scene(arguments)
+    }
+}
+
+/// Refuses options that do not go with this output.
+fn refuse(options: [(bool, &str); 2], expected: &str, output: &Path) -> Result<()> {
+    match options.into_iter().find(|(is_given, _)| *is_given) {
+        None => Ok(()),
+        Some((_, name)) => {
+            let remedy = format!("remove {name}, or name another file to write");
+            Err(Error::new(name, expected, output.display().to_string(), remedy))
+        }
+    }
+}
+
+fn scene(arguments: &arguments::Convert) -> Result<()> {
+    let arguments::Convert { input, output, definitions, fill, .. } = arguments;
     let naming = if *fill { Naming::Fill } else { Naming::Keep };
     let conversion = format::convert(input, output, definitions, naming)?;
     check_short([output], &[])?;
@@ -14,5 +44,19 @@ pub fn run(arguments: &arguments::Convert) -> Result<()> {
         complain(&format!("note: {note}"));
     }
     super::say(&output.display().to_string());
+    Ok(())
+}
+
+/// The PNG `output` of the image `input`, which says what the image says of its making.
+fn show(input: &Path, output: &Path, mut display: Display) -> Result<()> {
+    let image = picture::read(input)?;
+    check_short([&output.to_owned()], &[input])?;
+    let exposure = display.choose(&image.pixels).unwrap_or_default();
+    let display = display.of(&image.pixels);
+    let is_openexr = input.extension().is_some_and(|end| end.eq_ignore_ascii_case("exr"));
+    let made = if is_openexr { film::exr::made(input)? } else { None };
+    let made = made::shown(made.as_deref().unwrap_or("{}"), display);
+    film::png::write_with(output, image.width, image.height, &image.pixels, display, Some(&made))?;
+    super::say(&format!("{}{exposure}", output.display()));
     Ok(())
 }

@@ -1,12 +1,13 @@
 //! The image file of a render: where, and what is in it.
 
-use super::{arguments, complain, made};
+use super::{arguments, complain, display::Display, made};
 use crate::{
     error::{Error, Result},
     film::{
         self, Film,
         format::{FileKind, Format},
     },
+    math::Spectrum,
     render::{Image, any_sums::Kept},
     scene::build::Setup,
 };
@@ -17,6 +18,8 @@ use std::path::PathBuf;
 pub(super) struct Goal {
     pub path: PathBuf,
     pub format: Format,
+    /// How the PNG shows it.
+    pub display: Display,
 }
 
 impl Goal {
@@ -49,12 +52,17 @@ impl Goal {
             let (holds, names) = (file.holds(), format.names().concat());
             complain(&format!("warning: {} contains {holds}; {names} is written", path.display()));
         }
-        Ok(Self { path, format })
+        Ok(Self { path, format, display: arguments.display })
     }
 
     /// The PNG; none beside a device or pipe.
     pub fn preview(&self) -> Option<PathBuf> {
         (!film::output::is_stream(&self.path)).then(|| self.path.with_extension("png"))
+    }
+
+    /// Chooses an exposure for `pixels`, where that is to be done; says which.
+    pub fn expose(&mut self, pixels: &[Spectrum]) -> Option<String> {
+        self.preview().and_then(|_| self.display.choose(pixels))
     }
 
     /// Where its sums are, unless the user wants them elsewhere: no other image has the same.
@@ -67,7 +75,8 @@ impl Goal {
     /// The same for one frame of an animation: its number before the ending.
     pub fn numbered(&self, frame: u32, digits: usize) -> Self {
         let end = self.path.extension().unwrap_or_default().to_string_lossy();
-        Self { path: self.path.with_extension(format!("{frame:0digits$}.{end}")), format: self.format }
+        let path = self.path.with_extension(format!("{frame:0digits$}.{end}"));
+        Self { path, format: self.format, display: self.display }
     }
 
     /// Writes the image, and the layers that it then no longer has; and its PNG.
@@ -84,14 +93,17 @@ impl Goal {
             FileKind::Pfm => film::raster::write_pfm(&self.path, width, height, &channels),
             FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
         }?;
-        let write = |path: PathBuf| film::png::write_with(&path, width, height, &image.pixels, Some(&made));
+        let display = self.display.of(&image.pixels);
+        let made = made::shown(&made, display);
+        let write =
+            |path: PathBuf| film::png::write_with(&path, width, height, &image.pixels, display, Some(&made));
         self.preview().map_or(Ok(()), write)
     }
 
     /// Writes the image so far: without alpha and layers, which are rendered at the end.
     pub fn draw(&self, film: &Film, sums: &dyn Kept, made: &Value) -> Result<()> {
         let format = Format { alpha: false, ..self.format };
-        let goal = Self { path: self.path.clone(), format };
+        let goal = Self { path: self.path.clone(), format, display: self.display };
         goal.write(film, &mut sums.image(), made)
     }
 }

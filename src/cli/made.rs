@@ -4,6 +4,7 @@ use super::arguments::Scene;
 use crate::{
     analysis::study::question::differ,
     error::{Error, Result},
+    film::view::Display,
     format,
     render::{Image, Settings, adaptive::Precision, pilot::Choice},
     scene::build::Setup,
@@ -91,6 +92,18 @@ pub fn metadata(made: &Value, image: &Image) -> String {
     all["render_seconds"] = image.elapsed.as_secs_f64().into();
     all["relative_error"] = image.noise.into();
     all["machine"] = machine().into();
+    ascii(&all)
+}
+
+/// The same for a PNG, with how it shows the image.
+pub fn shown(metadata: &str, display: Display) -> String {
+    let mut all: Value = serde_json::from_str(metadata).unwrap_or_else(|_| json!({}));
+    all["view"] = display.view.name().into();
+    all["exposure"] = json!(display.stops);
+    ascii(&all)
+}
+
+fn ascii(all: &Value) -> String {
     let escaped = |character: char| -> String {
         let mut units = [0; 2];
         character.encode_utf16(&mut units).iter().map(|unit| format!("\\u{unit:04x}")).collect()

@@ -3,6 +3,7 @@
 use super::{
     arguments::{self, Arguments, Command, Render},
     complain,
+    display::Display,
     goal::Goal,
     made::{self, made, must_equal},
     outputs::check_short,
@@ -46,6 +47,10 @@ pub struct Merge {
     /// The scene of the parts, where it is no longer at the place that they name
     #[arg(long, value_name = "SCENE")]
     pub scene: Option<PathBuf>,
+
+    /// How the PNG shows the image; else as the parts' command says.
+    #[command(flatten)]
+    pub display: Display,
 }
 
 /// Runs the command.
@@ -161,18 +166,21 @@ fn write(arguments: &Merge, output: &Path, mut parts: Vec<Part>) -> Result<()> {
         scene.file = arguments.scene.clone().unwrap_or_else(|| folder.join(&scene.file));
     }
     let crop = parts[0].render.crop.filter(|_| parts.len() == 1);
-    let whole = Render { output: Some(output.to_owned()), crop, ..parts[0].render.clone() };
+    let first = parts[0].render.clone();
+    let display = arguments.display.or(first.display);
+    let whole = Render { output: Some(output.to_owned()), crop, display, ..first };
     let root = format::read(&whole.scene.file, &whole.scene.definitions)?;
     let setup = build(&root, whole.overrides())?;
-    let goal = Goal::new(&whole, &setup)?;
+    let mut goal = Goal::new(&whole, &setup)?;
     let others: Vec<&Path> = arguments.parts.iter().chain(&arguments.sums).map(PathBuf::as_path).collect();
     check_short([&goal.path].into_iter().chain(&goal.preview()), &others)?;
     let (mut image, what) = match parts.as_mut_slice() {
         [part] => (part.image(&setup)?, part.describe()),
         parts => (side_by_side(parts, &root, &setup)?, format!("{} parts", parts.len())),
     };
+    let exposure = goal.expose(&image.pixels);
     goal.write(&setup.film, &mut image, &made_again(&whole, &setup)?.0)?;
-    say(&format!("{what}: {}", goal.path.display()));
+    say(&format!("{what}: {}{}", goal.path.display(), exposure.unwrap_or_default()));
     Ok(())
 }
 

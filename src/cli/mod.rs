@@ -5,6 +5,7 @@ mod clip;
 mod contenders;
 mod convert;
 pub mod diff;
+mod display;
 mod estimator;
 mod explain;
 pub mod flights;

@@ -40,7 +40,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let started = Instant::now();
     let clip = Clip::read(arguments)?;
     let mut setup = clip.first()?;
-    let goal = Goal::new(arguments, &setup)?;
+    let mut goal = Goal::new(arguments, &setup)?;
     super::outputs::check_render(arguments, &setup, &goal)?;
     let pool = threads(arguments.threads)?;
     let viewer = Mutex::new(None);
@@ -55,8 +55,8 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     plan.announce();
     let load_time = started.elapsed().as_secs_f64();
     let figures = match arguments.frames {
-        None => vec![pool.install(|| shoot(&setup, &task, &goal, None))?],
-        Some(frames) => pool.install(|| animate(&clip, &mut setup, task, &goal, frames))?,
+        None => vec![pool.install(|| shoot(&setup, &task, &mut goal, None))?],
+        Some(frames) => pool.install(|| animate(&clip, &mut setup, task, goal, frames))?,
     };
     arguments.answer.give(&report(figures, load_time, arguments.frames.is_some(), &plan))
 }
@@ -66,7 +66,7 @@ fn animate(
     clip: &Clip<'_>,
     setup: &mut Setup,
     mut task: Task<'_>,
-    goal: &Goal,
+    mut goal: Goal,
     frames: arguments::Frames,
 ) -> Result<Vec<Value>> {
     let arguments::Frames { first, last } = frames;
@@ -90,7 +90,10 @@ fn animate(
         made["settings"]["time"] = time.into();
         let task = Task { settings, made, ..task };
         let label = format!("frame {frame} of {first}..{last}");
-        let mut figure = shoot(setup, &task, &goal.numbered(frame, digits), Some(&label))?;
+        let mut numbered = goal.numbered(frame, digits);
+        let mut figure = shoot(setup, &task, &mut numbered, Some(&label))?;
+        // What was chosen for the first frame holds for all.
+        goal.display = numbered.display;
         figure["frame"] = frame.into();
         figure["time"] = time.into();
         figures.push(figure);
@@ -183,7 +186,7 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
 }
 
 /// Renders one image and writes it; its figures.
-fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<Value> {
+fn shoot(setup: &Setup, task: &Task<'_>, goal: &mut Goal, label: Option<&str>) -> Result<Value> {
     let (mut image, written) = match task.arguments.batches {
         None => watched(setup, task, goal, label)?,
         Some(count) => (batches(setup, task, goal, count, label)?, Ok(None)),
@@ -191,8 +194,10 @@ fn shoot(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Re
     report_faults(&image, setup);
     let mut figures = figures(&image, task);
     if !task.arguments.is_part() {
+        let exposure = goal.expose(&image.pixels).unwrap_or_default();
         goal.write(&setup.film, &mut image, &task.made)?;
-        print_summary(&image, task, &goal.path, goal.preview().as_deref(), label);
+        print_summary(&image, task, goal, &exposure, label);
+        figures["exposure"] = goal.display.of(&image.pixels).stops.into();
         figures["image"] = goal.path.display().to_string().into();
     }
     // The image is not lost where the sums are.
@@ -363,7 +368,7 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
     }
 }
 
-fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: Option<&Path>, label: Option<&str>) {
+fn print_summary(image: &Image, task: &Task<'_>, goal: &Goal, exposure: &str, label: Option<&str>) {
     let noise = image.noise.map_or(String::new(), |noise| format!(", noise {}", percent(noise)));
     let noise = match (&image.reached, task.precision) {
         (Some(reached), Some(Precision { error, .. })) => {
@@ -373,12 +378,12 @@ fn print_summary(image: &Image, task: &Task<'_>, output: &Path, preview: Option<
         _ => noise,
     };
     let label = label.map_or(String::new(), |label| format!("{label}: "));
-    let preview = preview.map_or(String::new(), |preview| format!(" and {}", preview.display()));
+    let preview = goal.preview().map_or(String::new(), |preview| format!(" and {}", preview.display()));
     super::say(&format!(
-        "{label}{} samples/pixel in {:.1} s{noise}: {}{preview}",
+        "{label}{} samples/pixel in {:.1} s{noise}: {}{preview}{exposure}",
         samples_text(image.samples()),
         image.elapsed.as_secs_f64(),
-        output.display(),
+        goal.path.display(),
     ));
 }
 

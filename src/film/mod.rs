@@ -10,6 +10,7 @@ pub mod moments;
 pub mod output;
 pub mod png;
 pub mod raster;
+pub mod view;
 
 use crate::{
     error::Result,

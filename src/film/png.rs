@@ -1,18 +1,21 @@
 //! PNG images: what was estimated, made fit for a screen.
 //!
-//! The tone curve, at exposure 1: luminance L becomes L (1 + L / w^2) / (1 + L) (Reinhard et al. 2002, eq. 4),
+//! The tone curve of the view `standard`: luminance L becomes L (1 + L / w^2) / (1 + L) (Reinhard et al. 2002, eq. 4),
 //! where the white point w is the larger of 1 and the luminance that 99.5 % of the pixels do not exceed. An image
 //! without highlights (w = 1) is thus shown as it is, and w itself becomes white. Hue is kept: a colour is scaled
 //! by what its luminance is scaled by, and where a channel would then exceed 1, mixed with grey of the same
 //! luminance until none does. Then comes the sRGB transfer function and rounding to 8 bits. NaN and negative
 //! channels are shown black, infinite ones white.
 
-use super::output;
+use super::{
+    output,
+    view::{Display, encoded},
+};
 use crate::{
     error::{Error, Result},
     math::{
         Spectrum, SpectrumExt,
-        srgb::{Srgb as _, byte, shown, white},
+        srgb::{shown, white},
     },
 };
 use png::{BitDepth, ColorType, Decoder, DecodingError, Encoder};
@@ -27,19 +30,20 @@ const BELOW_WHITE: f64 = 0.995;
 
 /// Writes `pixels` (row-major, top row first; linear sRGB) to `path`, tone-mapped.
 pub fn write(path: &Path, width: usize, height: usize, pixels: &[Spectrum]) -> Result<()> {
-    write_with(path, width, height, pixels, None)
+    write_with(path, width, height, pixels, Display::default(), None)
 }
 
-/// The same, with how the image was made, as [`made`] gives it again.
+/// The same, shown so, with how the image was made, as [`made`] gives it again.
 pub fn write_with(
     path: &Path,
     width: usize,
     height: usize,
     pixels: &[Spectrum],
+    display: Display,
     made: Option<&str>,
 ) -> Result<()> {
     output::check_size(path, width, height, pixels.len())?;
-    encode(path, width, height, &tone_mapped(pixels), made)
+    encode(path, width, height, &display.bytes(pixels), made)
 }
 
 /// Writes `bytes`, 8-bit sRGB, three a pixel, as they are.
@@ -95,17 +99,16 @@ impl ToneCurve {
 
     /// A pixel as shown: sRGB-encoded channels in [0, 1].
     pub fn show(self, pixel: Spectrum) -> Spectrum {
-        let shown = match self {
+        encoded(self.map(pixel))
+    }
+
+    /// The same in linear channels.
+    pub fn map(self, pixel: Spectrum) -> Spectrum {
+        match self {
             Self::White(white) => displayed(shown(pixel), white),
             Self::Scale(scale) => (shown(pixel) * scale).min(Spectrum::ONE),
-        };
-        Spectrum::from_array(shown.to_array().map(|c| c.clamp(0.0, 1.0).srgb_encoded()))
+        }
     }
-}
-
-fn tone_mapped(pixels: &[Spectrum]) -> Vec<u8> {
-    let curve = ToneCurve::of(pixels);
-    pixels.iter().flat_map(|pixel| curve.show(*pixel).to_array().map(byte)).collect()
 }
 
 fn displayed(pixel: Spectrum, white: f32) -> Spectrum {
@@ -131,6 +134,10 @@ fn displayed(pixel: Spectrum, white: f32) -> Spectrum {
 mod tests {
     use super::*;
     use crate::math::vec3;
+
+    fn tone_mapped(pixels: &[Spectrum]) -> Vec<u8> {
+        Display::default().bytes(pixels)
+    }
 
     #[test]
     fn images_without_highlights_are_shown_as_they_are() {

@@ -9,6 +9,7 @@ mod command_line;
 mod converting;
 mod cropping;
 mod diff;
+mod display;
 mod errors;
 mod explain;
 mod flights;
