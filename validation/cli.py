@@ -9,6 +9,7 @@ from tyndall.failure import Failure
 from tyndall.scene import open_scene
 from validation import (
     assets,
+    bias,
     cells,
     compare,
     comparison_page,
@@ -52,6 +53,7 @@ def parser() -> argparse.ArgumentParser:
     add_efficiency(commands)
     add_instructions(commands)
     add_growth(commands)
+    add_bias(commands)
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
@@ -204,6 +206,11 @@ def add_instructions(commands: Commands) -> None:
 def add_growth(commands: Commands) -> None:
     command = add(commands, "growth", lambda options: growth.run(options.output), "How the cost of a sample grows with depth, triangles, voxels, lights, pixels and threads.")
     command.add_argument("--output", type=Path, help="folder for growth.md and .json (default: validation/reports)")
+
+
+def add_bias(commands: Commands) -> None:
+    command = add(commands, "bias", bias.run, "Bias of ray marching against its step, in a cosine cloud and a noise cloud.")
+    bias.add_options(command)
 
 
 def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:

@@ -3,6 +3,7 @@
 use super::{
     display::Display,
     estimator::Estimator,
+    preview::Preview,
     study::Study,
     viewer,
     voice::{Answer, ProgressForm},
@@ -281,6 +282,10 @@ pub struct Render {
     #[command(flatten)]
     pub estimator: Estimator,
 
+    /// How the preview looks.
+    #[command(flatten)]
+    pub fog: Preview,
+
     /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
     #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
     pub size: Option<Size>,
@@ -298,7 +303,8 @@ pub struct Render {
 impl Render {
     /// What the options override in the scene.
     pub fn overrides(&self) -> Overrides {
-        Overrides { crop: self.crop, groups: self.groups, ..self.estimator.overrides(self.size) }
+        let fog = self.fog.settings();
+        Overrides { crop: self.crop, groups: self.groups, fog, ..self.estimator.overrides(self.size) }
     }
 
     /// Seed of the random numbers: of parts of an image, no two share one, or the noise of one would be repeated in others.
@@ -684,9 +690,9 @@ mod tests {
         assert_eq!(render("--frames 7").frames, frames(7, 7));
         assert_eq!(render("--frames 3..3").frames, frames(3, 3));
         assert_eq!((render("--frames 1").fps, render("--frames 1 --fps 29.97").fps), (None, Some(29.97)));
-        assert_eq!((render("").frames, render("").estimator.tracker), (None, None));
+        assert_eq!((render("").frames, render("").estimator.media.tracker), (None, None));
         for (name, choice) in DistanceMethod::NAMES {
-            assert_eq!(render(&format!("--tracker {name}")).estimator.tracker, Some(choice));
+            assert_eq!(render(&format!("--tracker {name}")).estimator.media.tracker, Some(choice));
         }
     }
 

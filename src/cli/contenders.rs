@@ -169,15 +169,18 @@ fn product(axes: &[Axis]) -> Vec<Contender> {
     all.into_iter().map(|(name, words)| Contender { name, how: How::Options(words) }).collect()
 }
 
-/// Who may make a reference, best first, each with every bound on the depth of paths that one of `contenders` has, and with
-/// flights that are sampled without bias. Light tracing is not among them: what it rarely finds makes a bad truth.
+/// Who may make a reference, best first, each with every bound on the depth of paths that one of `contenders` has, with flights
+/// that are sampled without bias, and with the light that they all speak of. Light tracing is not among them: what it rarely
+/// finds makes a bad truth.
 pub fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
-    let mut depths = Vec::new();
+    let mut requested = Vec::new();
     for Contender { name, how } in contenders {
         if let How::Options(words) = how {
-            depths.push(parse(name, words)?.max_depth);
+            requested.push(parse(name, words)?);
         }
     }
+    let light = same_light(&requested);
+    let mut depths: Vec<_> = requested.iter().map(|estimator| estimator.max_depth).collect();
     if depths.is_empty() {
         depths.push(None);
     }
@@ -190,13 +193,31 @@ pub fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
                 Some(MaxDepth::Unbounded) => " --max-depth -1".to_owned(),
                 Some(MaxDepth::Edges(edges)) => format!(" --max-depth {edges}"),
             };
-            let how = How::Options(format!("--integrator {name} --tracker auto{depth}"));
+            let how = How::Options(format!("--integrator {name} --tracker auto{light}{depth}"));
             if !referees.contains(&how) {
                 referees.push(how);
             }
         }
     }
     Ok(referees)
+}
+
+/// Words for what decides about the light of the image, besides its depth, where all of `requested` want the same; else the
+/// scene decides.
+fn same_light(requested: &[Estimator]) -> String {
+    let words = |estimator: &Estimator| {
+        let scattering =
+            estimator.media.scattering.map(|scattering| format!(" --scattering {}", scattering.name()));
+        let switches = [
+            (estimator.hide_emitters, " --hide-emitters"),
+            (estimator.no_hide_emitters, " --no-hide-emitters"),
+        ];
+        let switch = switches.into_iter().find_map(|(is_on, words)| is_on.then_some(words));
+        format!("{}{}", scattering.unwrap_or_default(), switch.unwrap_or_default())
+    };
+    let mut all = requested.iter().map(words);
+    let first = all.next().unwrap_or_default();
+    if all.all(|words| words == first) { first } else { String::new() }
 }
 
 /// Names for scenes out of their files' names, each its own.
@@ -291,6 +312,9 @@ mod tests {
             (["--vary", "max-depth=deep"], "number of edges"),
             (["--vary", "max-depth=2,,3"], "--vary max-depth: expected values"),
             (["--samplers", "sobol,"], "--samplers: expected values"),
+            (["--vary", "step=0.1,0"], "a length above 0"),
+            (["--contender", "a: --step 0.1 --march-error 0.1"], "cannot be used with"),
+            (["--contender", "a: --scattering once"], "multiple, single, none"),
             (["--vary", "forced-interaction=yes"], "on, off"),
         ] {
             let error = contenders(&options).unwrap_err().to_string();
@@ -315,6 +339,19 @@ mod tests {
         assert_eq!(depths(&["--vary", "max-depth=2,3,-1"]), " --max-depth 2, --max-depth 3, --max-depth -1");
         let unequal = ["--contender", "a: --max-depth 4", "--contender", "b: --integrator pt"];
         assert_eq!(depths(&unequal), " --max-depth 4,");
+    }
+
+    /// What single scattering leaves out is no error of a contender that is to leave it out.
+    #[test]
+    fn references_have_the_light_of_all_contenders() {
+        let first = |options: &[&str]| words(referees(&contenders(options).unwrap()).unwrap().remove(1));
+        let pt = "--integrator pt --tracker auto";
+        let marched =
+            ["--contender", "a: --scattering single --step 0.1", "--contender", "b: --scattering single"];
+        assert_eq!(first(&marched), format!("{pt} --scattering single"));
+        assert_eq!(first(&["--vary", "scattering=multiple,single"]), pt);
+        assert_eq!(first(&["--vary", "hide-emitters=off"]), format!("{pt} --no-hide-emitters"));
+        assert_eq!(first(&["--vary", "step=0.1,0.2"]), pt);
     }
 
     #[test]

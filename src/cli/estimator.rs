@@ -1,11 +1,13 @@
 //! How paths are made: the options of the command line, put over what the scene says.
 
-use super::arguments::{Size, one_of};
+use super::{
+    arguments::{Size, one_of},
+    media::Media,
+};
 use crate::{
     analysis::coverage,
     error::{Error, Result},
     film::layer::Content,
-    medium::DistanceMethod,
     render::{
         Settings,
         budget::Budget,
@@ -25,21 +27,16 @@ use clap::{Args, ValueEnum};
 /// How paths are sampled and weighted.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Estimator {
-    /// Free-flight sampling method in heterogeneous media [default: the setting of each medium]
-    ///
-    /// auto: the cheapest unbiased method; closed_form: closed-form optical depth, not available for every
-    /// volume; exact: regular tracking of grids, cell by cell; march: ray marching, biased by its step size;
-    /// null_collision: delta tracking and ratio tracking; residual_ratio: delta tracking and residual ratio
-    /// tracking.
-    #[arg(long, value_name = "NAME", value_parser = one_of(&DistanceMethod::NAMES))]
-    pub tracker: Option<DistanceMethod>,
+    /// How light goes through media.
+    #[command(flatten)]
+    pub media: Media,
 
     /// Light transport algorithm [default: the scene's integrator]
     ///
     /// bdpt: bidirectional path tracing; pt: path tracing from the camera; lt: light tracing (particle tracing)
     /// from the emitters; fog: a preview of the first visible surfaces without shadows, behind fog of constant
     /// radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
-    /// non_scattering its restriction of media still applies.
+    /// non_scattering its restriction of media still applies, unless --scattering says otherwise.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Strategies::INTEGRATORS))]
     pub integrator: Option<Strategies>,
 
@@ -89,6 +86,15 @@ pub struct Estimator {
     #[arg(long, overrides_with = "forced_interaction")]
     pub no_forced_interaction: bool,
 
+    /// Show what is behind emitters in place of the emitters that the camera sees; emissive media stay [default: the scene's
+    /// hide_emitters]
+    #[arg(long, overrides_with = "no_hide_emitters")]
+    pub hide_emitters: bool,
+
+    /// Show emitters to the camera, overriding the scene
+    #[arg(long, overrides_with = "hide_emitters")]
+    pub no_hide_emitters: bool,
+
     /// Specialisation of the compiled code; the expected image is the same, only the time differs
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]
     pub profile: Profile,
@@ -127,7 +133,7 @@ fn heuristic(text: &str) -> std::result::Result<Heuristic, String> {
 impl Estimator {
     /// What these options and a `size` override in a scene.
     pub fn overrides(&self, size: Option<Size>) -> Overrides {
-        Overrides { size: size.map(Into::into), tracker: self.tracker, ..Overrides::default() }
+        Overrides { size: size.map(Into::into), ..self.media.overrides() }
     }
 
     /// A render of `setup`, its paths made as these options say, or else as the scene says, or else as a pilot chooses.
@@ -175,7 +181,8 @@ impl Estimator {
             super::complain(&format!("warning: the strategy equiangular has no effect: it needs {needs}"));
         }
         let forced_interaction = self.forced_interaction(setup, strategies);
-        Ok(Options { strategies, heuristic, max_depth, forced_interaction, ..scene })
+        let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
+        Ok(Options { strategies, heuristic, max_depth, forced_interaction, hide_emitters, ..scene })
     }
 
     fn sampler(&self, setup: &Setup) -> Sampler {
@@ -231,9 +238,9 @@ impl Estimator {
         if single && edges.is_none_or(|edges| edges > Restriction::SINGLE) {
             return Err(Error::new(
                 "--max-depth",
-                "0, 1 or 2, for the scene's integrator single_scattering",
+                "0, 1 or 2, for single_scattering",
                 edges.map_or("-1".to_owned(), |edges| edges.to_string()),
-                "replace the integrator in the scene, by volpath for example",
+                "leave it out, or let light scatter more often by --scattering multiple",
             ));
         }
         Ok(edges)

@@ -17,7 +17,7 @@ use crate::{
     phase::PhaseModel,
     render::{Settings, budget::Budget},
     scene::{Infinity, Scene, build::Setup, lights::Light},
-    settings::{Overrides, integrator::Restriction},
+    settings::integrator::Restriction,
     shape::ShapeModel,
     transport::{Options, Strategies},
 };
@@ -33,8 +33,7 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     if volumes::is_one(&arguments.scene.file) {
         return volumes::run(&arguments.scene.file, &arguments.answer);
     }
-    let setup =
-        load(&arguments.scene, Overrides { tracker: arguments.estimator.tracker, ..Overrides::default() })?;
+    let setup = load(&arguments.scene, arguments.estimator.overrides(None))?;
     let budget = Budget::samples(setup.samples_per_pixel);
     let (settings, chosen) = arguments.estimator.chosen(&setup, 0, budget)?;
     let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, None);
@@ -219,7 +218,8 @@ fn describe_tracker(setup: &Setup, varying: &Heterogeneous) -> String {
     let why = match (varying.forced(), varying.requested()) {
         (Some(DistanceMethod::Auto), _) | (None, DistanceMethod::Auto) => "chosen by cost",
         (Some(forced), _) if restricted == Some(forced) => "set by the integrator",
-        (Some(_), _) => "forced by --tracker",
+        (Some(_), _) if march.is_empty() => "forced by --tracker",
+        (Some(_), _) => "forced by the command line",
         (None, requested) if requested == tracker.choice() => "set by the scene",
         (None, _) => "chosen by cost",
     };

@@ -33,7 +33,7 @@ pub fn settings(
     let trackers: Vec<String> =
         trackers.map(|medium| medium.forced().unwrap_or(medium.requested()).name().to_owned()).collect();
     let film = &setup.film;
-    Ok(json!({
+    let mut all = json!({
         "program": program(),
         "files": files,
         "definitions": definitions,
@@ -56,7 +56,12 @@ pub fn settings(
         "chosen_by_pilot": chosen.map(by_pilot),
         "error": precision.map(|precision| precision.error),
         "confidence": precision.map(|precision| precision.confidence),
-    }))
+    });
+    // Only where there is something: earlier sums, which know of none of it, can go on.
+    if let (overridden, Some(all)) = (setup.overrides.json(), all.as_object_mut()) {
+        all.extend((!overridden.is_empty()).then(|| ("overridden".to_owned(), Value::Object(overridden))));
+    }
+    Ok(all)
 }
 
 /// What a pilot chose; learnt starts are named where there are any, so that earlier sums without them can go on.

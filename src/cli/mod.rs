@@ -15,6 +15,7 @@ mod interrupt;
 mod keeper;
 mod made;
 mod manual;
+mod media;
 pub mod merge;
 mod outputs;
 pub mod phase;
@@ -22,6 +23,7 @@ mod picture;
 mod pixel;
 mod plan;
 mod precision;
+mod preview;
 mod progress;
 mod render;
 mod report;
@@ -106,10 +108,7 @@ fn built(root: &Object, overrides: Overrides) -> Result<Setup> {
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
     }
-    if overrides.tracker.is_some() && setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none())
-    {
-        complain("warning: --tracker has no effect: this scene has no heterogeneous medium");
-    }
+    media::warn_of_idle(&overrides, &setup);
     Ok(setup)
 }
 

@@ -339,6 +339,7 @@ fn figures(image: &Image, task: &Task<'_>) -> Value {
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<(Settings, Option<Choice>)> {
     let endless = Budget::ENDLESS;
     let (settings, chosen) = arguments.estimator.chosen(setup, arguments.seed, endless)?;
+    arguments.fog.warn_of_idle(settings.options.strategies);
     let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
     Ok((Settings { budget, ..settings }, chosen))
 }

@@ -2,7 +2,7 @@
 
 use super::{
     arguments::{Size, confidence, definition, duration, positive_u32, size, threads as threads_of},
-    complain, contenders,
+    complain, contenders, media,
     outputs::NUMBERS,
     say, threads,
     voice::{self, Answer},
@@ -21,7 +21,6 @@ use crate::{
     error::{Error, Result},
     format,
     format::Sources,
-    medium::DistanceMethod,
     render::budget::Budget,
     scene::build::{self, Setup},
     settings::Overrides,
@@ -304,12 +303,12 @@ fn check(stage: &mut Stage<'_>, question: &Question) -> Result<()> {
     Ok(())
 }
 
-/// The scene at work, as it was built for each tracker.
+/// The scene at work, as it was built for contenders that override different things.
 struct Stage<'a> {
     arguments: &'a Study,
     threads: usize,
     scene: Option<(usize, Object, f64)>,
-    setups: Vec<(Option<DistanceMethod>, Arc<Setup>, f64)>,
+    setups: Vec<(Overrides, Arc<Setup>, f64)>,
 }
 
 impl<'a> Stage<'a> {
@@ -319,11 +318,12 @@ impl<'a> Stage<'a> {
 
     /// The scene as its file says.
     fn load(&mut self, scene: usize) -> Result<Arc<Setup>> {
-        Ok(self.setup(scene, None)?.0)
+        let size = self.arguments.size.map(Into::into);
+        Ok(self.setup(scene, Overrides { size, ..Overrides::default() })?.0)
     }
 
-    /// The scene with `tracker`, and the time that reading and building it took [s].
-    fn setup(&mut self, scene: usize, tracker: Option<DistanceMethod>) -> Result<(Arc<Setup>, f64)> {
+    /// The scene with `overrides`, and the time that reading and building it took [s].
+    fn setup(&mut self, scene: usize, overrides: Overrides) -> Result<(Arc<Setup>, f64)> {
         let started = Instant::now();
         let (root, reading) = match self.scene.take() {
             Some((index, root, reading)) if index == scene => (root, reading),
@@ -334,15 +334,13 @@ impl<'a> Stage<'a> {
             }
         };
         let (_, root, _) = self.scene.insert((scene, root, reading));
-        if let Some((_, setup, seconds)) = self.setups.iter().find(|(other, ..)| *other == tracker) {
+        if let Some((_, setup, seconds)) = self.setups.iter().find(|(other, ..)| *other == overrides) {
             return Ok((setup.clone(), *seconds));
         }
         let started = Instant::now();
-        let size = self.arguments.size.map(Into::into);
-        let overrides = Overrides { size, tracker, ..Overrides::default() };
         let setup = Arc::new(build::build(root, overrides)?);
         let seconds = reading + started.elapsed().as_secs_f64();
-        self.setups.push((tracker, setup.clone(), seconds));
+        self.setups.push((overrides, setup.clone(), seconds));
         Ok((setup, seconds))
     }
 
@@ -365,22 +363,19 @@ impl<'a> Stage<'a> {
 
     fn own(&mut self, scene: usize, words: &str) -> Result<Entry> {
         let requested = contenders::parse("contender", words)?;
-        let (setup, load_seconds) = self.setup(scene, requested.tracker)?;
+        let overrides = requested.overrides(self.arguments.size);
+        let (setup, load_seconds) = self.setup(scene, overrides)?;
         let budget = Budget::samples(1);
         let settings = requested.settings(&setup, 0, budget)?;
         if settings.options.strategies == Strategies::NONE {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));
         }
-        let still = setup.scene.media.iter().all(|medium| medium.heterogeneous().is_none());
-        let idle = (requested.tracker.is_some() && still).then(|| IDLE_TRACKER.to_owned());
-        let renderer = Renderer::Own { settings, load_seconds };
-        Ok(Entry { setup, renderer, notes: idle.into_iter().collect() })
+        // The name of a contender that is no other promises a difference that does not exist.
+        let notes = media::idle(&overrides, &setup.scene).into_iter().collect();
+        Ok(Entry { setup, renderer: Renderer::Own { settings, load_seconds }, notes })
     }
 }
-
-/// A warning about a contender with a name that promises a difference that does not exist.
-const IDLE_TRACKER: &str = "its tracker has no effect: this scene has no heterogeneous medium";
 
 /// The command, as a shell takes it.
 fn command() -> String {

@@ -14,3 +14,13 @@ pub struct MediumOverrides {
     /// They absorb as before but do not scatter: sigma_t becomes sigma_a (P03T eq. 2.9).
     pub absorbing: bool,
 }
+
+impl MediumOverrides {
+    /// These, and where they say nothing, `others`. A step or an error goes before both of those: it says how fine the march is.
+    pub fn over(self, others: Self) -> Self {
+        let is_fineness = self.step.is_some() || self.march_error.is_some();
+        let Self { step, march_error, .. } = if is_fineness { self } else { others };
+        let absorbing = self.absorbing || others.absorbing;
+        Self { tracker: self.tracker.or(others.tracker), step, march_error, absorbing }
+    }
+}

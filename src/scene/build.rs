@@ -65,6 +65,8 @@ pub struct Setup {
     pub time: f64,
     /// What each smoke was made of.
     pub smoke: Vec<Taken>,
+    /// What the command line set.
+    pub overrides: Overrides,
 }
 
 impl Setup {
@@ -99,11 +101,10 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     let integrator = match sections.integrator {
         Some(object) => integrator::build(object, &library)?,
         None => Integrator::default(),
-    };
+    }
+    .overridden(&overrides);
     let medium_names = builder.medium_names.clone();
-    let medium_overrides = integrator.restriction.medium_overrides();
-    let medium_overrides =
-        MediumOverrides { tracker: overrides.tracker.or(medium_overrides.tracker), ..medium_overrides };
+    let medium_overrides = overrides.media.over(integrator.restriction.medium_overrides());
     let time = builder.place.time;
     let (scene, shape_names, bsdf_names) = builder.finish(view.camera, &medium_overrides)?;
     unseen::warn_of_darkness(&scene.lights, &integrator, &root.location, &library);
@@ -126,6 +127,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         bsdf_names,
         time,
         smoke,
+        overrides,
     })
 }
 

@@ -12,6 +12,7 @@ use crate::{
     math::Spectrum,
     medium::{DistanceMethod, MediumOverrides},
     settings::{
+        Overrides,
         heuristic::HEURISTIC,
         options::{FORCED, MAX_DEPTH, Options, PATHS, Strategies},
     },
@@ -37,6 +38,22 @@ pub enum Restriction {
 impl Restriction {
     /// Most segments of a path that single scattering has.
     pub const SINGLE: u32 = 2;
+
+    /// Each as typed: how often media scatter light.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("multiple", Self::None),
+        ("single", Self::SingleScattering { step: None, march_error: None }),
+        ("none", Self::NonScattering),
+    ];
+
+    /// As typed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "multiple",
+            Self::SingleScattering { .. } => "single",
+            Self::NonScattering => "none",
+        }
+    }
 
     /// Its overrides of all media.
     pub fn medium_overrides(&self) -> MediumOverrides {
@@ -96,7 +113,42 @@ pub const ROWS: Registry<Plugin<Build<Integrator>>> = Registry::new(
     ],
 );
 
+impl FogSettings {
+    /// These, and where they leave something open, `others`.
+    fn over(self, others: Self) -> Self {
+        Self {
+            color: self.color.or(others.color),
+            ambient: self.ambient.or(others.ambient),
+            threshold: self.threshold.or(others.threshold),
+        }
+    }
+}
+
 impl Integrator {
+    /// The same as the command line wants it.
+    pub fn overridden(self, overrides: &Overrides) -> Self {
+        let fog = overrides.fog.over(self.fog);
+        match overrides.scattering {
+            Some(wanted) if wanted.name() != self.restriction.name() => {
+                let options = Options { max_depth: self.depth_by(wanted), ..self.options };
+                Self { options, restriction: wanted, fog, ..self }
+            }
+            _ => Self { fog, ..self },
+        }
+    }
+
+    /// The limit of paths under another restriction: what single scattering was limited by is no limit without it.
+    fn depth_by(&self, wanted: Restriction) -> Option<u32> {
+        let is_single = |restriction| matches!(restriction, Restriction::SingleScattering { .. });
+        match self.options.max_depth {
+            depth if is_single(wanted) => {
+                Some(depth.map_or(Restriction::SINGLE, |d| d.min(Restriction::SINGLE)))
+            }
+            Some(Restriction::SINGLE) if is_single(self.restriction) => None,
+            depth => depth,
+        }
+    }
+
     /// The same with a layer for each of the `groups` of emitters of a scene, which is at `location`.
     pub fn with_groups(mut self, groups: &[&str], location: &Location) -> Result<Self> {
         let layer = |(group, name): (u32, &&str)| Layer {

@@ -6,19 +6,44 @@ pub mod integrator;
 pub mod options;
 pub mod sampler;
 
-use crate::{description::params::Child, error::Error, film::Window, medium::DistanceMethod};
+use crate::{
+    description::params::Child,
+    error::Error,
+    film::Window,
+    medium::MediumOverrides,
+    settings::integrator::{FogSettings, Restriction},
+};
+use serde_json::{Map, Value};
 
 /// Settings of the command line that override those of the scene.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Overrides {
     /// Width and height [pixels].
     pub size: Option<(u32, u32)>,
     /// The only part of the image to render.
     pub crop: Option<Crop>,
-    /// Free-flight sampling methods in heterogeneous media.
-    pub tracker: Option<DistanceMethod>,
+    /// How flights in heterogeneous media are sampled.
+    pub media: MediumOverrides,
+    /// What light does in media, in place of what the integrator says.
+    pub scattering: Option<Restriction>,
+    /// How the preview `fog` looks.
+    pub fog: FogSettings,
     /// Also an image of what each group of emitters contributes.
     pub groups: bool,
+}
+
+impl Overrides {
+    /// Those that decide about samples and that nothing else of a setup tells.
+    pub fn json(&self) -> Map<String, Value> {
+        let MediumOverrides { step, march_error, .. } = self.media;
+        let scattering = self.scattering.map(Restriction::name);
+        let all = [
+            ("step", step.map(Value::from)),
+            ("march_error", march_error.map(Value::from)),
+            ("scattering", scattering.map(Value::from)),
+        ];
+        all.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect()
+    }
 }
 
 /// A part of an image [pixels].

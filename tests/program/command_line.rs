@@ -185,6 +185,83 @@ fn integrators_that_do_less_say_so() {
     );
 }
 
+/// What a scene says about marching and scattering, the command line can say: the images are the same, bit for bit.
+#[test]
+fn the_command_line_says_what_scenes_say_of_media() {
+    let restricted =
+        |integrator: Value| Sandbox::with_scene(&with(drifting(), &[("integrator", integrator)]));
+    let plain = restricted(json!({"type": "path"}));
+    let same = |scene: Value, words: &str| {
+        let said = restricted(scene);
+        said.run("render scene.json --integrator pt --spp 2").ends(0);
+        plain.run(&format!("render scene.json --integrator pt --spp 2 {words}")).ends(0);
+        assert_eq!(said.channels("scene.exr"), plain.channels("scene.exr"), "{words}");
+        said.channels("scene.exr")
+    };
+    let marched = json!({"type": "single_scattering", "step": 0.3});
+    let single = same(marched.clone(), "--scattering single --step 0.3");
+    let fine = same(
+        json!({"type": "single_scattering", "march_error": 1e-4}),
+        "--scattering single --march-error 1e-4",
+    );
+    let none = same(json!({"type": "non_scattering"}), "--scattering none");
+    let all = same(json!({"type": "path"}), "");
+    assert!(single != fine && fine != none && none != all);
+    let single = restricted(marched);
+    single.run("render scene.json --integrator pt --spp 2 --scattering multiple").ends(0);
+    assert_eq!(single.channels("scene.exr"), all);
+    let step = plain.run("info scene.json --step 0.25").ends(0).out();
+    assert!(step.contains("march by steps of at most 0.25 m, forced by the command line"), "{step}");
+    let idle = plain.run("info scene.json --step 0.25 --tracker closed_form").ends(0).err();
+    assert!(idle.contains("--step has no effect: --tracker closed_form does not march"), "{idle}");
+    plain.run("render scene.json --scattering single --max-depth 3").refuses(&["--scattering multiple"]);
+}
+
+/// Sums of one step are not those of another.
+#[test]
+fn sums_know_the_step_that_was_marched_by() {
+    let sandbox = Sandbox::with_scene(&drifting());
+    sandbox.run("render scene.json --spp 1 --step 0.3 --sums a.sums").ends(0);
+    sandbox.run("render scene.json --spp 2 --step 0.3 --sums a.sums --resume").ends(0);
+    sandbox
+        .run("render scene.json --spp 3 --step 0.2 --sums a.sums --resume")
+        .refuses(&["overridden.step = 0.2"]);
+}
+
+#[test]
+fn the_command_line_says_what_scenes_say_of_the_preview() {
+    let fog = json!({"type": "fog", "threshold": 2.5, "fog_color": {"type": "rgb", "value": [0.5, 0.25, 1]}, "ambient": 0.125});
+    let sandbox = Sandbox::with_scene(&with(drifting(), &[("integrator", fog)]));
+    sandbox.run("render scene.json").ends(0);
+    let plain = Sandbox::with_scene(&drifting());
+    let words = "--integrator fog --threshold 2.5 --fog-color 0.5,0.25,1 --ambient 0.125";
+    plain.run(&format!("render scene.json {words}")).ends(0);
+    assert_eq!(sandbox.channels("scene.exr"), plain.channels("scene.exr"));
+    plain.run("render scene.json --integrator fog -o own.exr").ends(0);
+    assert_ne!(plain.channels("scene.exr"), plain.channels("own.exr"));
+    let idle = plain.run("render scene.json --spp 1 --threshold 2").ends(0).err();
+    assert!(idle.contains("--threshold has no effect"), "{idle}");
+    for words in ["--fog-color 1,2", "--ambient -1", "--threshold 0"] {
+        plain.run(&format!("render scene.json --integrator fog {words}")).refuses(&["such as"]);
+    }
+}
+
+#[test]
+fn emitters_are_hidden_or_shown_by_the_command_line() {
+    let hidden = Sandbox::with_scene(&with(
+        drifting(),
+        &[("integrator", json!({"type": "path", "hide_emitters": true}))],
+    ));
+    let shown = Sandbox::with_scene(&drifting());
+    let render = |sandbox: &Sandbox, words: &str| {
+        sandbox.run(&format!("render scene.json --integrator pt --spp 2 {words}")).ends(0);
+        sandbox.channels("scene.exr")
+    };
+    assert_eq!(render(&hidden, ""), render(&shown, "--hide-emitters"));
+    assert_eq!(render(&shown, ""), render(&hidden, "--no-hide-emitters"));
+    assert_ne!(render(&shown, ""), render(&hidden, ""));
+}
+
 /// A foggy room whose film has more to it.
 fn filmed(more: &[(&str, Value)]) -> Value {
     let sensor = foggy_room()["sensor"].clone();

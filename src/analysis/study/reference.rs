@@ -15,6 +15,8 @@ use crate::{
     },
     error::{Error, Result},
     math::{DVec3, relative::Relative},
+    medium::DistanceMethod,
+    scene::Scene,
 };
 use std::path::PathBuf;
 
@@ -120,6 +122,12 @@ fn check_depth(entry: &Entry, contenders: &[Option<&Entry>]) -> Result<()> {
     }
 }
 
+/// True if some medium is marched through, with bias.
+fn marches(scene: &Scene) -> bool {
+    let mut media = scene.media.iter().filter_map(|medium| medium.heterogeneous());
+    media.any(|varying| varying.tracker().choice() == DistanceMethod::RayMarching)
+}
+
 fn choose(
     question: &Question,
     scene: usize,
@@ -147,7 +155,18 @@ fn choose(
             return Ok((how.clone(), entry));
         }
     }
-    match good.first().copied().or(deep.first()) {
+    // Rather noise than bias, which would be taken for the truth.
+    let marched = |entry: &Entry| marches(&entry.setup.scene);
+    for how in others.iter().filter(|_| good.iter().all(|(_, entry)| marched(entry))) {
+        match enter(scene, how) {
+            Ok(entry) if is_deep(&entry) && is_good(&entry) && !marched(&entry) => {
+                return Ok((how.clone(), entry));
+            }
+            _ => {}
+        }
+    }
+    let exact = good.iter().find(|(_, entry)| !marched(entry));
+    match exact.or(good.first()).copied().or(deep.first()) {
         Some((how, entry)) => Ok(((*how).clone(), (*entry).clone())),
         None => {
             let how = others.first().cloned().unwrap_or(How::Options(String::new()));

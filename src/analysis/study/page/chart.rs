@@ -6,7 +6,7 @@ use super::{
     measure::{Axis, Measure},
 };
 use crate::{
-    analysis::study::outcome::SceneOutcome,
+    analysis::study::outcome::{ContenderOutcome, Interval, Point, SceneOutcome},
     error::{Error, Result},
 };
 use plotters::{
@@ -29,43 +29,50 @@ type Coordinate = WithKeyPoints<LogCoord<f64>>;
 type Plane<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Coordinate, Coordinate>>;
 type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// Error over an axis, of all contenders of a scene.
-pub struct Chart<'a> {
-    scene: &'a SceneOutcome,
-    measure: &'a Measure,
-    axis: &'a Axis,
+/// Curves with their intervals.
+pub struct Chart {
+    /// Of each series, x and y of its points.
+    curves: Vec<Vec<(f64, Interval)>>,
+    /// Of the guiding lines.
+    slope: Option<f64>,
+    /// What no curve can be seen to fall below.
+    floor: Option<f64>,
     across: Span,
     up: Span,
 }
 
-impl<'a> Chart<'a> {
-    /// With scales that hold all of it.
-    pub fn new(scene: &'a SceneOutcome, measure: &'a Measure, axis: &'a Axis) -> Self {
-        let points = || scene.contenders.iter().flat_map(|contender| &contender.points);
-        let across = Span::around(points().map(axis.of));
-        let means: Vec<f64> = points().map(|point| (measure.of)(point).mean).collect();
-        // The ends of wide intervals must not squeeze the curves.
-        let core = Span::around(means.iter().copied());
-        let ends = points().map(measure.of).flat_map(|interval| [interval.low, interval.high]);
-        let ends = ends.filter(|end| core.is_near(*end));
-        let floor = Self::floor_of(scene, measure).filter(|floor| core.is_near(*floor));
-        let up = Span::around(means.iter().copied().chain(ends).chain(floor));
-        Self { scene, measure, axis, across, up }
+impl Chart {
+    /// Error over an axis, of all contenders of a scene; the reference's own error is the floor.
+    pub fn new(scene: &SceneOutcome, measure: &Measure, axis: &Axis) -> Self {
+        let point = |point: &Point| ((axis.of)(point), (measure.of)(point));
+        let curve = |contender: &ContenderOutcome| contender.points.iter().map(point).collect();
+        let curves = scene.contenders.iter().map(curve).collect();
+        let own = scene.reference.own_relmse.filter(|own| *own > 0.0 && measure.key == "relmse");
+        Self::of(curves, Some(measure.slope), own)
     }
 
-    /// What no contender can be seen to fall below: the reference's own error.
-    fn floor_of(scene: &SceneOutcome, measure: &Measure) -> Option<f64> {
-        scene.reference.own_relmse.filter(|own| *own > 0.0 && measure.key == "relmse")
+    /// With scales that hold all of `curves`.
+    pub fn of(curves: Vec<Vec<(f64, Interval)>>, slope: Option<f64>, floor: Option<f64>) -> Self {
+        let points = || curves.iter().flatten();
+        let across = Span::around(points().map(|(x, _)| *x));
+        let means: Vec<f64> = points().map(|(_, interval)| interval.mean).collect();
+        // The ends of wide intervals must not squeeze the curves.
+        let core = Span::around(means.iter().copied());
+        let ends = points().flat_map(|(_, interval)| [interval.low, interval.high]);
+        let ends = ends.filter(|end| core.is_near(*end));
+        let near = floor.filter(|floor| core.is_near(*floor));
+        let up = Span::around(means.iter().copied().chain(ends).chain(near));
+        Self { curves, slope, floor, across, up }
     }
 
     /// The inside of the SVG element.
     pub fn svg(&self) -> Result<String> {
         let mut parts = vec![group("mesh", &self.layer(|plane| self.draw_mesh(plane))?)];
         parts.push(group("guide", &self.layer(|plane| self.draw_guide(plane))?));
-        if let Some(floor) = Self::floor_of(self.scene, self.measure) {
+        if let Some(floor) = self.floor {
             parts.push(group("floor", &self.layer(|plane| self.draw_level(plane, floor))?));
         }
-        let all = 0..self.scene.contenders.len();
+        let all = 0..self.curves.len();
         // Below every line, so that one contender's interval does not hide another's curve.
         for series in all.clone() {
             parts.push(of_series("band", series, &self.layer(|plane| self.draw_band(plane, series))?));
@@ -112,7 +119,7 @@ impl<'a> Chart<'a> {
 
     /// Lines of equal efficiency: an unbiased contender stays on its own, and each is ten times as good as the next.
     fn draw_guide(&self, plane: &mut Plane<'_>) -> Drawn {
-        for line in self.across.parallels(&self.up, self.measure.slope) {
+        for line in self.slope.iter().flat_map(|slope| self.across.parallels(&self.up, *slope)) {
             plane.draw_series(LineSeries::new(line, BLACK))?;
         }
         Ok(())
@@ -125,11 +132,10 @@ impl<'a> Chart<'a> {
     }
 
     fn draw_band(&self, plane: &mut Plane<'_>, series: usize) -> Drawn {
-        let points = &self.scene.contenders[series].points;
-        let x = |point| self.across.clamped((self.axis.of)(point));
-        let ends = |point| (self.measure.of)(point);
-        let lower = points.iter().map(|point| (x(point), self.up.clamped(ends(point).low)));
-        let upper = points.iter().rev().map(|point| (x(point), self.up.clamped(ends(point).high)));
+        let points = &self.curves[series];
+        let place = |x: f64, y: f64| (self.across.clamped(x), self.up.clamped(y));
+        let lower = points.iter().map(|(x, interval)| place(*x, interval.low));
+        let upper = points.iter().rev().map(|(x, interval)| place(*x, interval.high));
         let outline: Vec<(f64, f64)> = lower.chain(upper).collect();
         // One budget has no area: its interval is a bar.
         if let [a, b] = outline[..] {
@@ -139,10 +145,8 @@ impl<'a> Chart<'a> {
     }
 
     fn curve(&self, series: usize) -> Vec<(f64, f64)> {
-        let place = |point| {
-            (self.across.clamped((self.axis.of)(point)), self.up.clamped((self.measure.of)(point).mean))
-        };
-        self.scene.contenders[series].points.iter().map(place).collect()
+        let place = |(x, y): &(f64, Interval)| (self.across.clamped(*x), self.up.clamped(y.mean));
+        self.curves[series].iter().map(place).collect()
     }
 
     fn draw_line(&self, plane: &mut Plane<'_>, series: usize) -> Drawn {

@@ -2,6 +2,7 @@
 //! [`write`] from a folder with `study.json` and the images it names.
 
 mod axis;
+mod bias;
 mod chart;
 mod data;
 mod figures;

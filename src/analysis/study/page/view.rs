@@ -1,6 +1,7 @@
 //! What the page's template is filled with: texts, numbers as texts, and images, all of them ready to be shown.
 
 use super::{
+    bias::BiasView,
     chart::{self, Chart},
     data, figures,
     measure::{AXES, Axis, MEASURES, Measure},
@@ -141,6 +142,7 @@ pub(super) struct SceneView<'a> {
     pub(super) scene: &'a SceneOutcome,
     pub(super) rows: Vec<Row<'a>>,
     pub(super) charts: Vec<ChartView>,
+    biases: Vec<BiasView>,
     pub(super) strips: Strips,
     notes: Vec<String>,
 }
@@ -154,6 +156,7 @@ impl<'a> SceneView<'a> {
             scene,
             rows: contenders.map(|(series, contender)| Row::new(scene, series, contender)).collect(),
             charts: charts(scene)?,
+            biases: BiasView::all(scene)?,
             strips: Strips::new(folder, outcome, scene)?,
             notes: notes(scene),
         })
