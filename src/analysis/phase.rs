@@ -43,6 +43,8 @@ pub struct Check {
     pub standard_error: f64,
     /// How well the samples fit the density, cell by cell.
     pub fit: ChiSquare,
+    /// Samples per cell of the sphere: slice by slice from straight on, in each one cell between two meridians.
+    pub cells: Vec<u64>,
     /// Samples per slice of equal angle, from straight on to straight back.
     pub histogram: Vec<u64>,
 }
@@ -99,6 +101,7 @@ pub fn check(sampled: &Phase, pdf: &Phase, division: Division, samples: u64, see
         sampled_mean_cosine: mean,
         standard_error: (variance / (n - 1.0)).sqrt(),
         fit: chi_square(&drawn.cells, &expected),
+        cells: drawn.cells,
         histogram: drawn.histogram,
     }
 }

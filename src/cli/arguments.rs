@@ -109,7 +109,7 @@ pub enum Command {
     /// Measures are given in radiance and in display units (both images tone-mapped with the same curve). Exit
     /// code: 0, 1 if a measure is above its --fail-above, 2 on an error.
     Diff(super::diff::Diff),
-    /// Test whether the samples of a phase function match its pdf, and draw it as a polar plot (SVG) and a mesh (PLY)
+    /// Test whether the samples of a phase function match its pdf, or draw both: a polar plot (SVG) and meshes (PLY)
     ///
     /// Exit code: 0, 1 if they do not match, 2 on an error.
     Phase(super::phase::Phase),

@@ -41,6 +41,11 @@ pub fn run(arguments: &arguments::Explain) -> Result<()> {
     Ok(())
 }
 
+/// All plugins of the kind `tag`, each with its parameters.
+pub fn listing(tag: &str) -> String {
+    text::listing(tag)
+}
+
 /// A plugin, a kind of plugins, or a parameter; several where they share the name.
 fn explained(topic: &str) -> Result<String> {
     let mut texts: Vec<String> = Vec::new();

@@ -1,21 +1,27 @@
 //! `tyndall phase`: a phase function by itself.
 
-use super::{outputs::check_short, say, voice::Answer};
+use super::{
+    explain,
+    outputs::check_short,
+    say,
+    voice::{self, Answer},
+};
 use crate::{
-    analysis::phase::{self, Check, Division, described, drawing, mesh::Lobe},
+    analysis::phase::{self, Check, Division, described, drawing, mesh::Mesh},
     error::Result,
     film::output,
+    phase::Phase as Model,
 };
 use clap::Args;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Test and draw a phase function.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Phase {
     /// Plugin name of the phase function, such as hg
-    #[arg(value_name = "NAME")]
-    pub name: String,
+    #[arg(value_name = "NAME", required_unless_present = "list")]
+    pub name: Option<String>,
 
     /// Parameters: numbers, text (values=0.5,1,3), or @FILE for the contents of a file
     ///
@@ -23,6 +29,10 @@ pub struct Phase {
     /// its name: blendphase weight=0.3 a=hg a.g=0.9 b=isotropic
     #[arg(value_name = "name=value")]
     pub parameters: Vec<String>,
+
+    /// List all phase functions: formulas with their sources, and parameters
+    #[arg(long, exclusive = true)]
+    pub list: bool,
 
     /// Number of directions to sample
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(2..=1_000_000_000_000))]
@@ -44,9 +54,10 @@ pub struct Phase {
     #[arg(long, value_name = "P", default_value_t = 1e-3, value_parser = significance)]
     pub significance: f64,
 
-    /// Folder for NAME.svg, a polar plot, and NAME.ply, a mesh
-    #[arg(short, long, value_name = "FOLDER", default_value = ".")]
-    pub output: PathBuf,
+    /// Also draw: NAME.svg, a polar plot, NAME.ply, a mesh of the pdf, and NAME_samples.ply, one of the sampled flux,
+    /// to this folder
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
 
     /// How the test is given.
     #[command(flatten)]
@@ -60,20 +71,51 @@ fn significance(text: &str) -> std::result::Result<f64, String> {
 
 /// Runs the command; true if the samples are as the density says.
 pub fn run(arguments: &Phase) -> Result<bool> {
-    let phase = described::build(&arguments.name, &arguments.parameters)?;
-    let [svg, ply] = ["svg", "ply"].map(|end| arguments.output.join(format!("{}.{end}", arguments.name)));
-    check_short([&svg, &ply], &[])?;
+    let Some(name) = &arguments.name else {
+        voice::print(explain::listing("phase").trim_end());
+        return Ok(true);
+    };
+    let phase = described::build(name, &arguments.parameters)?;
+    let drawings = arguments.output.as_ref().map(|folder| Drawings::new(folder, name));
+    check_short(drawings.iter().flat_map(Drawings::files).chain(&arguments.answer.report), &[])?;
     let division = Division { parallels: arguments.parallels.into(), meridians: arguments.meridians.into() };
     let check = phase::check(&phase, &phase, division, arguments.samples, arguments.seed);
     let failures = check.failures(arguments.significance);
     say(&describe(arguments, &check, &failures));
-    let title = std::iter::once(&arguments.name).chain(&arguments.parameters).cloned().collect::<Vec<_>>();
-    let drawing = drawing::svg(&title.join(" "), &phase, &check)?;
-    output::write(&svg, |file| file.write_all(drawing.as_bytes()))?;
-    output::write(&ply, |mut file| Lobe::new(&phase, division).write(&mut file))?;
-    say(&format!("{} and {}", svg.display(), ply.display()));
+    if let Some(drawings) = drawings {
+        let title = std::iter::once(name).chain(&arguments.parameters).cloned().collect::<Vec<_>>();
+        drawings.write(&title.join(" "), &phase, &check, division)?;
+    }
     arguments.answer.give(&figures(arguments, &check, &failures))?;
     Ok(failures.is_empty())
+}
+
+/// The files that are drawn.
+struct Drawings {
+    polar: PathBuf,
+    density: PathBuf,
+    samples: PathBuf,
+}
+
+impl Drawings {
+    fn new(folder: &Path, name: &str) -> Self {
+        let file = |end: &str| folder.join(format!("{name}{end}"));
+        Self { polar: file(".svg"), density: file(".ply"), samples: file("_samples.ply") }
+    }
+
+    fn files(&self) -> [&PathBuf; 3] {
+        [&self.polar, &self.density, &self.samples]
+    }
+
+    fn write(&self, title: &str, phase: &Model, check: &Check, division: Division) -> Result<()> {
+        let polar = drawing::svg(title, phase, check)?;
+        output::write(&self.polar, |file| file.write_all(polar.as_bytes()))?;
+        output::write(&self.density, |mut file| Mesh::of_density(phase, division).write(&mut file))?;
+        let samples = Mesh::of_samples(&check.cells, division);
+        output::write(&self.samples, |mut file| samples.write(&mut file))?;
+        say(&self.files().map(|file| file.display().to_string()).join(", "));
+        Ok(())
+    }
 }
 
 fn figures(arguments: &Phase, check: &Check, failures: &[&str]) -> Value {

@@ -3,7 +3,7 @@
 //!
 //! Spectra become the colours that Mitsuba's rgb variants make of them, clamping included. Those variants
 //! cannot evaluate the plugins `regular`, `irregular` and `blackbody`; here they are taken like the plain
-//! spectra of the same values, which is also what the spectral variants show.
+//! spectra of the same values, which is also what the spectral variants show. `inverse_power` is Tyndall's own.
 
 use super::{
     Library, Object, Params, Plugin, Property, Registry, Table, Value,
@@ -45,6 +45,7 @@ const ROWS: Registry<Plugin<ReadColour>> = Registry::new(
         ("regular", Plugin { table: REGULAR, build: regular }),
         ("irregular", Plugin { table: IRREGULAR, build: irregular }),
         ("blackbody", Plugin { table: BLACKBODY, build: blackbody }),
+        ("inverse_power", Plugin { table: INVERSE_POWER, build: inverse_power }),
     ],
 );
 
@@ -284,6 +285,28 @@ fn blackbody(params: &Params<'_>, role: Role) -> Result<DVec3> {
     let within = |wavelength| (low..=high).contains(&wavelength);
     let value = |w: f64| if within(w) { black_body(temperature, w) } else { 0.0 };
     Ok(of_spectrum(Illuminant::Equal, value).max(DVec3::ZERO))
+}
+
+/// What falls as a power of the wavelength.
+pub const INVERSE_POWER: Table = table! {
+    "A power of the wavelength: value (wavelength / lambda)^exponent; the coefficient of Rayleigh scattering falls as 1 / lambda^4 (P03 eq. 5; P03T 2.3.3).";
+    number("value", "", within(0.0, MAX), Is(1.0), "The value at `wavelength`."),
+    number("wavelength", "nm", within(1.0, 1e6), Is(550.0), "Where it has that value."),
+    number("exponent", "", within(-8.0, 8.0), Is(4.0), "4 of Rayleigh scattering, about 1.3 of haze (Angstrom's exponent), 0 of what is grey."),
+};
+
+/// Each channel is the mean of the power over the wavelengths that it answers to, by the colour of the spectrum over
+/// that of 1 at all wavelengths: an exponent of 0 gives exactly what `value` alone would. Of matter and 1 / lambda^4 the
+/// channels are as at 656, 547 and 444 nm.
+fn inverse_power(params: &Params<'_>, role: Role) -> Result<DVec3> {
+    let [value, wavelength, exponent] =
+        [params.float("value")?, params.float("wavelength")?, params.float("exponent")?];
+    let (illuminant, one) = match role {
+        Role::Light => (Illuminant::Equal, of_equal_light()),
+        Role::Matter | Role::Index => (Illuminant::D65, DVec3::ONE),
+    };
+    let power = of_spectrum(illuminant, |lambda| (wavelength / lambda).powf(exponent));
+    Ok(value * one * power / of_spectrum(illuminant, |_| 1.0))
 }
 
 /// Two or more finite numbers in a text, with commas or space between them.

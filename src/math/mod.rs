@@ -7,6 +7,7 @@ pub mod cells;
 pub mod channels;
 pub mod cie;
 pub mod colour;
+pub mod cubic;
 pub mod exact_sums;
 pub mod frame;
 pub mod fresnel;

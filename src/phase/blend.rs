@@ -29,7 +29,7 @@ impl Blend {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Two phase functions, mixed.";
+        "Two phase functions, mixed: (1 - weight) first + weight second.";
         number("weight", "", within(0.0, 1.0), Required, "Share of the second."),
         nested("phase", Required, "The two."),
     };
@@ -57,10 +57,10 @@ impl Blend {
     }
 
     pub(super) const HG_TABLE: Table = table! {
-    "Two of Henyey and Greenstein's, mixed."; ; TERMS };
+    "Two of Henyey and Greenstein's, mixed: r hg(g1) + (1 - r) hg(g2) (P03 eq. 3)."; ; TERMS };
 
     pub(super) const SCHLICK_TABLE: Table = table! {
-    "Two of Schlick's, mixed."; ; TERMS };
+    "Two of Schlick's, mixed (P03T 2.3.4); r, g1, g2 as Blasi et al. fit them: Rayleigh's 0.5, -0.46, 0.46, haze 0.12, -0.5, 0.7, murk 0.19, -0.65, 0.91."; ; TERMS };
 
     pub(super) fn two_term_hg(params: &Params<'_>) -> Result<Self> {
         Self::two_term(params, |g| HenyeyGreenstein::new(g).into())

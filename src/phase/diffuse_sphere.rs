@@ -16,7 +16,7 @@ pub struct DiffuseSphere;
 
 impl DiffuseSphere {
     pub(super) const TABLE: Table = table! {
-    "Spheres much larger than the wavelength that reflect diffusely."; };
+    "Spheres much larger than the wavelength that reflect diffusely: 2 (sin(theta) - theta cos) / (3 pi^2) (P03T eq. 2.17)."; };
 
     pub(super) fn build(_: &Params<'_>) -> Result<Self> {
         Ok(Self)

@@ -29,7 +29,7 @@ impl Gaussian {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Sakas' Gaussian of the angle: exp(-gamma theta^2).";
+        "Sakas' Gaussian of the angle: exp(-gamma theta^2), normalised (P03T 2.3.5).";
         number("gamma", "1/rad^2", within(0.0, LARGEST), Required, "How narrow the lobe is: 1 / (2 gamma) is the variance of the angle."),
     };
 

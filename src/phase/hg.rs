@@ -21,15 +21,18 @@ pub struct HenyeyGreenstein {
     sign: f32,
 }
 
+/// Sharper peaks turn no direction of f32, and the third power of their 1 - |g| is 0 in f32.
+const SHARPEST: f64 = 1.0 - 1e-12;
+
 impl HenyeyGreenstein {
     /// `g` is the mean cosine, in (-1, 1).
     pub fn new(g: f64) -> Self {
-        let size = g.abs();
+        let size = g.abs().min(SHARPEST);
         Self { size: size as f32, complement: (1.0 - size) as f32, sign: 1f32.copysign(g as f32) }
     }
 
     pub(super) const TABLE: Table = table! {
-        "Henyey and Greenstein's function, one lobe.";
+        "Henyey and Greenstein's function, one lobe: (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^1.5) (P03 eq. 2).";
         number("g", "", between(-1.0, 1.0), Is(0.8), "The mean cosine: above 0 forward, below 0 backward."),
     };
 
@@ -92,6 +95,17 @@ mod tests {
                 let found = cumulative(g, f64::from(model.invert(u)));
                 assert!((found - f64::from(u)).abs() < 1e-5, "g {g}, u {u}: {found}");
             }
+        }
+    }
+
+    /// Where the third power of 1 - |g| leaves f32.
+    #[test]
+    fn no_g_makes_a_lobe_of_no_width() {
+        for g in [1.0 - f64::EPSILON, -1.0 + f64::EPSILON / 2.0] {
+            let model = HenyeyGreenstein::new(g);
+            let pdf = |d| model.pdf_sr(Deflection::of(d, 1f32.copysign(g as f32)));
+            assert!(pdf(0.0).is_finite() && pdf(0.0) > 1e20 && pdf(1.0) >= 0.0, "{model:?}");
+            assert!([0.0, 0.5, 1.0].iter().all(|u| (0.0..=2.0).contains(&model.invert(*u))), "{model:?}");
         }
     }
 

@@ -12,7 +12,7 @@ pub struct Isotropic;
 
 impl Isotropic {
     pub(super) const TABLE: Table = table! {
-    "The same in all directions."; };
+    "The same in all directions: 1 / (4 pi) (P03 eq. 1)."; };
 
     pub(super) fn build(_: &Params<'_>) -> Result<Self> {
         Ok(Self)

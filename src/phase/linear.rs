@@ -20,7 +20,7 @@ impl Linear {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Scattering a little more to one side: (1 + g cos) / (4 pi).";
+        "Scattering a little more to one side: (1 + g cos) / (4 pi) (P03T 2.3.2).";
         number("g", "", within(-1.0, 1.0), Is(0.0), "The slope; the mean cosine is a third of it."),
     };
 

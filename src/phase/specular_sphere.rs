@@ -76,7 +76,7 @@ impl SpecularSphere {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Spheres much larger than the wavelength that reflect as glass does.";
+        "Spheres much larger than the wavelength that reflect as glass does: Fresnel's reflectance at (pi - theta) / 2, normalised (P03T 2.3.5).";
         number("eta", "", within(1e-3, 1e3), Required, "Index of refraction of the spheres over that around them, not 1."),
     };
 

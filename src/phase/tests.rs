@@ -177,6 +177,22 @@ fn values_are_those_printed() {
             vec![number("g", 0.6)],
             Box::new(|x| 1.5 * (1.0 + x.cos().powi(2)) / 2.36 * hg(0.6, x.cos())),
         ),
+        (
+            "cornette_shanks",
+            // Its g is 0.7, by the mean cosine: 0.6 g (4 + g^2) / (2 + g^2).
+            vec![number("u", 0.6 * 0.7 * 4.49 / 2.49)],
+            Box::new(|x| 1.5 * (1.0 + x.cos().powi(2)) / 2.49 * hg(0.7, x.cos())),
+        ),
+        (
+            "mie",
+            vec![number("m", 3.0), number("n", 5.0)],
+            Box::new(|x| 7.0 / 13.0 * (1.0 + 3.0 * (0.5 * x).cos().powi(5))),
+        ),
+        (
+            "mie_reflecting",
+            vec![],
+            Box::new(|x| 0.6 * ((1.0 - 0.5 * x.cos()).powi(2) + (x.cos() - 0.5).powi(2))),
+        ),
         ("mie_hazy", vec![], Box::new(|x| 0.5 * (1.0 + 9.0 * (0.5 * x).cos().powi(16)))),
         ("mie_murky", vec![], Box::new(|x| 33.0 / 83.0 * (1.0 + 50.0 * (0.5 * x).cos().powi(64)))),
         (
@@ -274,6 +290,11 @@ fn parameters_out_of_range_are_errors() {
         ("two_term_hg", vec![("r", number(0.5)), ("g1", number(0.5)), ("g2", number(-1.0))]),
         ("two_term_schlick", vec![("r", number(1.5)), ("g1", number(0.5)), ("g2", number(-0.5))]),
         ("cornette_shanks", vec![("g", number(-1.0))]),
+        ("cornette_shanks", vec![("u", number(1.0))]),
+        ("cornette_shanks", vec![("u", number(0.7)), ("g", number(0.7))]),
+        ("mie", vec![("m", number(9.0))]),
+        ("mie", vec![("m", number(-1.0)), ("n", number(16.0))]),
+        ("mie_reflecting", vec![("g", number(0.5))]),
         ("mie_hazy", vec![("form", text("nishita"))]),
         ("mie_murky", vec![("form", text("mie"))]),
         ("sakas", vec![]),

@@ -89,7 +89,7 @@ textures! {
     "checkerboard" => Checkerboard,
     "bitmap" => Bitmap,
     colors: "rawconstant" => RAW, "srgb" => SRGB, "d65" => D65, "regular" => REGULAR, "irregular" => IRREGULAR,
-    "blackbody" => BLACKBODY,
+    "blackbody" => BLACKBODY, "inverse_power" => INVERSE_POWER,
 }
 
 impl Texture {

@@ -88,7 +88,7 @@ fn what_cannot_be_written_is_said_before_the_first_ray() {
         (format!("strategies scene.json {LONG} -o t"), folder),
         (format!("{flights} --report missing/f.json"), missing),
         (format!("{flights} --svg f --report f"), same),
-        ("phase hg --samples 1000000000000".into(), folder),
+        ("phase hg --samples 1000000000000 -o .".into(), folder),
         ("phase isotropic --samples 1000000000000 -o missing".into(), missing),
         ("diff scene.exr scene.png --report missing/d.json".into(), missing),
         ("diff scene.exr scene.exr --map scene.png --report scene.exr".into(), same),

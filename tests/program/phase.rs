@@ -5,7 +5,7 @@ use crate::sandbox::Sandbox;
 #[test]
 fn a_phase_function_is_judged_and_drawn() {
     let sandbox = Sandbox::new();
-    let run = sandbox.run("phase hg g=0.6 --samples 200000 --seed 3").ends(0);
+    let run = sandbox.run("phase hg g=0.6 --samples 200000 --seed 3 -o .").ends(0);
     for hint in [
         "normalisation      1.000000",
         "mean cosine        0.6000",
@@ -14,11 +14,11 @@ fn a_phase_function_is_judged_and_drawn() {
     ] {
         assert!(run.out().contains(hint), "no {hint} in {}", run.out());
     }
-    assert_eq!(sandbox.files(), ["hg.ply", "hg.svg"]);
+    assert_eq!(sandbox.files(), ["hg.ply", "hg.svg", "hg_samples.ply"]);
     assert!(sandbox.text("hg.svg").contains("hg g=0.6") && sandbox.text("hg.svg").contains("<polyline"));
     let ply = sandbox.text("hg.ply");
     assert!(ply.starts_with("ply\nformat ascii") && ply.contains("element vertex 2018"), "{}", &ply[..300]);
-    let again = sandbox.run("phase hg g=0.6 --samples 200000 --seed 3").ends(0);
+    let again = sandbox.run("phase hg g=0.6 --samples 200000 --seed 3 -o .").ends(0);
     assert_eq!(run.out(), again.out());
 }
 
@@ -26,7 +26,7 @@ fn a_phase_function_is_judged_and_drawn() {
 #[test]
 fn the_mesh_is_a_shape() {
     let sandbox = Sandbox::new();
-    sandbox.run("phase isotropic --samples 1000").ends(0);
+    sandbox.run("phase isotropic --samples 1000 -o .").ends(0);
     let scene = serde_json::json!({
         "type": "scene",
         "sensor": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 4},
@@ -52,6 +52,25 @@ fn nested_functions_tables_and_files_are_understood() {
     }
 }
 
+/// Without -o nothing is written; the list names every function, its formula and where it is from.
+#[test]
+fn nothing_is_written_unasked() {
+    let sandbox = Sandbox::new();
+    sandbox.run("phase hg --samples 1000").ends(0);
+    let list = sandbox.run("phase --list").ends(0);
+    for hint in [
+        "mie_hazy*",
+        "mie_murky*",
+        "mie_reflecting*",
+        "cos^n(theta/2)",
+        "Nishita et al. 1987",
+        "P03T eq. 2.16",
+    ] {
+        assert!(list.out().contains(hint), "no {hint} in {}", list.out());
+    }
+    assert_eq!(sandbox.files(), [""; 0]);
+}
+
 #[test]
 fn mistakes_are_explained() {
     let sandbox = Sandbox::new();
@@ -59,6 +78,8 @@ fn mistakes_are_explained() {
     sandbox.run("phase hg k=1").refuses(&["\"k\"", "known here: g"]);
     sandbox.run("phase hg g=1").refuses(&["phase g=1", "between -1 and 1", "remedy"]);
     sandbox.run("phase hg -o nowhere --samples 100").refuses(&["create the folder nowhere"]);
+    sandbox.run("phase").refuses(&["<NAME"]);
+    sandbox.run("phase hg --list").refuses(&["--list"]);
     sandbox.run("phase hg --parallels 2").refuses(&["3..=1025"]);
     sandbox.run("phase hg --significance 1").refuses(&["between 0 and 1"]);
     assert_eq!(sandbox.files(), [""; 0]);

@@ -662,3 +662,34 @@ fn long_chains_and_fans_of_references_are_errors() {
         .collect();
     assert!(read_xml(&fan, &[]).unwrap_err().to_string().contains("counted as a copy"));
 }
+
+/// Light through 5 m of air that extinguishes as 1 / lambda^4: e^-1 at 550 nm, less blue, more red.
+#[test]
+fn a_power_of_the_wavelength_is_a_coefficient_in_both_spellings() {
+    let air = serde_json::json!({"type": "homogeneous", "albedo": 0,
+        "sigma_t": {"type": "inverse_power", "value": 0.2, "exponent": 4}});
+    let look = |from: i32, to: i32| serde_json::json!([{"type": "lookat", "origin": [0, 0, from], "target": [0, 0, to], "up": [0, 1, 0]}]);
+    let around = serde_json::json!({"type": "ref", "id": "air"});
+    let sandbox = Sandbox::with_scene(&serde_json::json!({
+        "type": "scene",
+        "integrator": {"type": "non_scattering"},
+        "air": air,
+        "camera": {"type": "perspective", "fov": 1, "medium": around, "to_world": look(0, 1),
+                   "film": {"type": "hdrfilm", "width": 2, "height": 2},
+                   "sampler": {"type": "independent", "sample_count": 1}},
+        "lamp": {"type": "rectangle", "to_world": look(5, 0), "exterior": around,
+                 "emitter": {"type": "area", "radiance": 1}},
+    }));
+    sandbox.run("convert scene.json scene.xml").ends(0);
+    assert!(sandbox.text("scene.xml").contains("<texture type=\"inverse_power\" name=\"sigma_t\">"));
+    for scene in ["scene.json", "scene.xml"] {
+        sandbox.run(&format!("render {scene} -o a.exr")).ends(0);
+        let channels = sandbox.channels("a.exr");
+        for (name, power) in [("R", 0.493_680_74f32), ("G", 1.024_496), ("B", 2.357_694)] {
+            assert!(
+                channels[name].iter().all(|x| (x / (-power).exp() - 1.0).abs() < 1e-3),
+                "{scene}: {channels:?}"
+            );
+        }
+    }
+}

@@ -43,6 +43,16 @@ pub fn pdf_at(phase: &Phase, place: f64) -> f64 {
     f64::from(phase.pdf_sr(turn))
 }
 
+/// The solid angle between the places `low` < `high`, all around [sr].
+pub fn solid_angle(low: f64, high: f64) -> f64 {
+    let height = match (low < 0.5, high <= 0.5) {
+        (true, true) => one_minus_cos(high) - one_minus_cos(low),
+        (true, false) => 2.0 - one_minus_cos(low) - one_minus_cos(1.0 - high),
+        (false, _) => one_minus_cos(1.0 - low) - one_minus_cos(1.0 - high),
+    };
+    TAU * height
+}
+
 /// 1 - |cos| at a place in [0, 1/2].
 fn one_minus_cos(place: f64) -> f64 {
     (2.0 * place).powi(4)

@@ -82,9 +82,9 @@ fn the_mean_cosine_is_that_of_theory() {
 /// Volume by the divergence theorem: of a sphere of radius 1 / (4 pi) for the isotropic function.
 #[test]
 fn the_mesh_is_closed_and_points_outward() {
-    let lobe = mesh::Lobe::new(&phase("isotropic"), Division { parallels: 129, meridians: 128 });
-    let volume: f64 = lobe
-        .triangles
+    let lobe = mesh::Mesh::of_density(&phase("isotropic"), Division { parallels: 129, meridians: 128 });
+    let triangles: Vec<[u32; 3]> = lobe.faces.iter().map(|face| face[..].try_into().unwrap()).collect();
+    let volume: f64 = triangles
         .iter()
         .map(|t| t.map(|i| lobe.corners[i as usize]))
         .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
@@ -92,7 +92,7 @@ fn the_mesh_is_closed_and_points_outward() {
     let sphere = 4.0 / 3.0 * PI * (2.0 * TAU).powi(-3);
     assert!((volume / sphere - 1.0).abs() < 0.01, "{volume} for {sphere}");
     let mut edges = std::collections::HashMap::new();
-    for [a, b, c] in &lobe.triangles {
+    for [a, b, c] in &triangles {
         for edge in [(a, b), (b, c), (c, a)] {
             *edges.entry(edge).or_insert(0) += 1;
         }
@@ -102,7 +102,7 @@ fn the_mesh_is_closed_and_points_outward() {
 
 #[test]
 fn the_mesh_is_read_back() {
-    let lobe = mesh::Lobe::new(&phase("hg g=0.8"), DIVISION);
+    let lobe = mesh::Mesh::of_density(&phase("hg g=0.8"), DIVISION);
     let mut bytes = Vec::new();
     lobe.write(&mut bytes).unwrap();
     let parser = ply_rs_bw::parser::Parser::<ply_rs_bw::ply::DefaultElement>::new();
@@ -112,6 +112,37 @@ fn the_mesh_is_read_back() {
     // The density straight on: (1 - g^2) / (4 pi (1 - g)^3).
     let peak = 0.36 / (2.0 * TAU * 0.008);
     assert!((lobe.corners[0].z / peak - 1.0).abs() < 1e-5 && lobe.corners[0].x == 0.0);
+}
+
+/// The faces of samples: what a cell holds over its solid angle, outward, in a plane, and all together every sample.
+#[test]
+fn faces_of_samples_hold_every_sample() {
+    let (hg, n) = (phase("hg g=0.4"), 50_000);
+    for division in
+        [DIVISION, Division { parallels: 3, meridians: 3 }, Division { parallels: 4, meridians: 5 }]
+    {
+        let check = check(&hg, &hg, division, n, 3);
+        let mesh = mesh::Mesh::of_samples(&check.cells, division);
+        assert_eq!(mesh.faces.len(), check.cells.iter().filter(|count| **count > 0).count());
+        let held = |face: &Vec<u32>| {
+            let corners: Vec<_> = face.iter().map(|i| mesh.corners[*i as usize]).collect();
+            let [a, b, c] = [corners[0], corners[1], corners[2]];
+            let normal = (b - a).cross(c - a);
+            assert!(normal.dot(a) > 0.0, "{division:?}: {corners:?} faces inward");
+            let flat = corners.last().is_some_and(|d| (*d - a).dot(normal.normalize()).abs() < 1e-9);
+            assert!(flat, "{division:?}: {corners:?} is no plane");
+            // Archimedes: the solid angle is the height of the slice times its angle.
+            let heights = || corners.iter().map(|corner| corner.normalize().z);
+            let height = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
+            a.length() * TAU / division.meridians as f64 * height
+        };
+        let all: f64 = mesh.faces.iter().map(held).sum();
+        assert!((all - 1.0).abs() < 1e-9, "{division:?}: {all}");
+    }
+    let none = mesh::Mesh::of_samples(&[0, 0, 0, 0, 0, 4], Division { parallels: 3, meridians: 3 });
+    let distance = |corner: &crate::math::DVec3| corner.length();
+    assert_eq!((none.faces.len(), none.corners.len()), (1, 3));
+    assert!(none.corners.iter().map(distance).all(|d| (d - 1.5 / PI).abs() < 1e-12), "{none:?}");
 }
 
 #[test]

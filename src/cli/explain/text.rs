@@ -13,15 +13,25 @@ pub fn kind(tag: &str) -> String {
     format!("{heading} ({tag}, * not in Mitsuba)\n{}", columns(names.collect()))
 }
 
+/// All plugins of a kind, each with its parameters.
+pub fn listing(tag: &str) -> String {
+    let of = |(name, table): (&'static str, &'static Table)| {
+        let used = columns(rows(table).0.into_iter().map(line).collect());
+        format!("{}\n  {}\n{used}", marked(tag, name), wrapped(table.about, 2))
+    };
+    plugins(tag).into_iter().map(of).collect::<Vec<_>>().join("\n")
+}
+
 /// A plugin and all of its parameters.
 pub fn plugin(tag: &str, name: &str, table: &'static Table) -> String {
     let (used, ignored) = rows(table);
-    let rows = used.into_iter().map(|row| {
-        let written = format!("{}{}", written(row), star(row.ours));
-        (written, format!("{}; {}. {}", allowed(row), default(row), row.about))
-    });
     let kind = if tag == name { String::new() } else { format!(" ({tag})") };
-    let mut text = format!("{}{kind}: {}\n{}", marked(tag, name), table.about, columns(rows.collect()));
+    let mut text = format!(
+        "{}{kind}: {}\n{}",
+        marked(tag, name),
+        table.about,
+        columns(used.into_iter().map(line).collect())
+    );
     if !ignored.is_empty() {
         let rows = ignored.into_iter().map(|row| (row.name.to_owned(), row.about));
         text += &format!("\nAccepted, without effect:\n{}", columns(rows.collect()));
@@ -40,6 +50,12 @@ pub fn parameter(name: &str) -> Option<String> {
     });
     let holders: Vec<_> = holders.collect();
     (!holders.is_empty()).then(|| format!("{name}, a parameter of\n{}", columns(holders)))
+}
+
+/// A parameter, and what is said of it.
+fn line(row: &Parameter) -> (String, String) {
+    let written = format!("{}{}", written(row), star(row.ours));
+    (written, format!("{}; {}. {}", allowed(row), default(row), row.about))
 }
 
 fn marked(tag: &str, name: &str) -> String {

@@ -151,12 +151,48 @@ fn black_bodies_are_light_only() {
     assert!(of(1e300).is_err() && of(0.0).is_err() && of(-5.0).is_err());
 }
 
+/// Channels over the value at 550 nm, by numpy from the tables of CIE 018 under D65: 1 / lambda^4 and 1 / lambda^1.3.
+#[test]
+fn powers_of_the_wavelength_have_their_colours() {
+    let of = |value: f64, wavelength: f64, exponent: f64, role| {
+        let numbers =
+            [("value", float(value)), ("wavelength", float(wavelength)), ("exponent", float(exponent))];
+        plugin("inverse_power", &numbers, role).unwrap()
+    };
+    let near = |found: DVec3, truth: DVec3| (found / truth - 1.0).abs().max_element() < 2e-6;
+    let rayleigh = DVec3::new(0.493_680_74, 1.024_496_03, 2.357_694_08);
+    let haze = DVec3::new(0.807_737_85, 1.013_821_27, 1.325_658_82);
+    let role = Role::Matter;
+    assert!(near(plugin("inverse_power", &[], role).unwrap().0, rayleigh));
+    assert!(near(of(0.25, 550.0, 1.3, role).0, 0.25 * haze));
+    // Ten times the coefficient is no reflectance: nothing is clamped to 1.
+    assert!(near(of(10.0, 550.0, 4.0, role).0, 10.0 * rayleigh));
+    // Stated at another wavelength.
+    assert!(near(of(1.0, 680.0, 4.0, role).0, (680.0f64 / 550.0).powi(4) * rayleigh));
+    for role in [Role::Matter, Role::Index, Role::Light] {
+        let one = reported(Value::Spectrum(vec![(0.0, 0.3)]), role).unwrap().0;
+        assert!(near(of(0.3, 550.0, 0.0, role).0, one), "{role:?}");
+        assert_eq!(of(0.0, 550.0, 4.0, role).0, DVec3::ZERO);
+        let extremes = [-8.0, 8.0].map(|exponent| of(1.0, 550.0, exponent, role).0.min_element());
+        assert!(extremes.iter().all(|least| *least > 0.0), "{role:?}: {extremes:?}");
+        // As the same spectrum in pairs, which is one part in 1000 short where it is of matter.
+        let pairs: Vec<_> = (360..=830).map(f64::from).map(|w| (w, (550.0 / w).powi(4))).collect();
+        let (sampled, power) =
+            (reported(Value::Spectrum(pairs), Role::Index).unwrap().0, of(1.0, 550.0, 4.0, Role::Index).0);
+        assert!((sampled / power - 1.0).abs().max_element() < 1.5e-3, "{sampled} for {power}");
+    }
+}
+
 #[test]
 fn broken_plugins_are_errors() {
     let pairs = Value::Spectrum(vec![(0.0, 0.5)]);
     let range = |low, high| [("wavelength_min", float(low)), ("wavelength_max", float(high))];
-    let cases: [(&str, Vec<(&str, Value)>); 14] = [
+    let cases: [(&str, Vec<(&str, Value)>); 18] = [
         ("uniform", vec![]),
+        ("inverse_power", vec![("exponent", float(9.0))]),
+        ("inverse_power", vec![("wavelength", float(0.0))]),
+        ("inverse_power", vec![("value", float(-1.0))]),
+        ("inverse_power", vec![("value", float(3e38))]),
         ("uniform", vec![("value", float(-1.0))]),
         ("uniform", vec![("value", Value::Rgb([0.5; 3]))]),
         ("rawconstant", vec![]),

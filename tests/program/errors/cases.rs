@@ -368,6 +368,8 @@ pub fn all() -> Vec<Case> {
         Case::json("a blend of one", r#""a": {"type": "blendbsdf", "weight": 0.5, "b": {"type": "diffuse"}}"#),
         Case::json("plastic of no depth", r#""a": {"type": "plastic", "int_ior": -1}"#),
         Case::json("a pane that gives light", r#""a": {"type": "translucent", "transmittance": 2}"#),
+        Case::json("a phase function stated twice", r#""fog": {"type": "homogeneous", "p": {"type": "cornette_shanks", "g": 0.7, "u": 0.8}}"#),
+        Case::json("a lobe without its height", r#""fog": {"type": "homogeneous", "p": {"type": "mie", "n": 16}}"#),
         Case::json("a phase function out of range", r#""fog": {"type": "homogeneous", "p": {"type": "cornette_shanks", "g": 1}}"#),
         Case::json("an unknown form", r#""fog": {"type": "homogeneous", "p": {"type": "mie_murky", "form": "nishita2"}}"#),
         Case::json("a black body of no temperature", r#""lamp": {"type": "point", "intensity": {"type": "blackbody"}}"#),
