@@ -63,7 +63,7 @@ def stone(mesh, x0, y0, x1, y1):
             return
     depth = RANDOM.uniform(0.008, 0.035)
     turn = about((0, 0, 1), RANDOM.normal(0, 0.7)) @ about((0, 1, 0), RANDOM.normal(0, 1.2))
-    mesh.box((x0 + joint, y0 + joint, FRONT - 0.05), (x1 - joint, y1 - joint, FRONT + depth), turn)
+    mesh.box((x0 + joint, y0 + joint, FRONT - 0.05), (x1 - joint, y1 - joint, FRONT + depth), turn, "z")
 
 
 def wedge(mesh, angle, half):

@@ -143,11 +143,11 @@ def wall():
     """A wall of stones along the far side of the road."""
     mesh, y = Mesh(), 0.0
     for height in (0.26, 0.22, 0.2, 0.17, 0.09):
-        x = -16.0
-        while x < 16:
+        x = -12.0
+        while x < 13:
             width = RANDOM.uniform(0.3, 0.75) if height > 0.1 else 0.6
             depth = RANDOM.uniform(0, 0.04) + 0.06 * (height < 0.1)
-            mesh.box((x + 0.012, y + 0.01, -0.25), (x + width - 0.012, y + height - 0.008, depth), about((0, 0, 1), RANDOM.normal(0, 0.8)))
+            mesh.box((x + 0.012, y + 0.01, -0.25), (x + width - 0.012, y + height - 0.008, depth), about((0, 0, 1), RANDOM.normal(0, 0.8)), "z")
             x += width
         y += height
     return mesh

@@ -29,14 +29,15 @@ class Mesh:
         """A flat convex polygon, counterclockwise from the front."""
         return self.add(corners, [(0, i, i + 1) for i in range(1, len(corners) - 1)])
 
-    def box(self, low, high, turn=None, bottom=True):
-        """A box between two corners, turned about its middle."""
+    def box(self, low, high, turn=None, without=""):
+        """A box between two corners, turned about its middle, without the sides named: x, X, y, Y, z, Z (lower, upper)."""
         low, high = np.asarray(low, float), np.asarray(high, float)
         turn, middle = np.eye(3) if turn is None else turn, (low + high) / 2
         corner = [turn @ (np.where(np.array([i & 1, i & 2, i & 4]) > 0, high, low) - middle) + middle for i in range(8)]
-        sides = [(0, 4, 6, 2), (1, 3, 7, 5), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)] + [(0, 1, 5, 4)] * bottom
-        for side in sides:
-            self.face(*(corner[i] for i in side))
+        sides = {"x": (0, 4, 6, 2), "X": (1, 3, 7, 5), "y": (0, 1, 5, 4), "Y": (2, 6, 7, 3), "z": (0, 2, 3, 1), "Z": (4, 5, 7, 6)}
+        for name, side in sides.items():
+            if name not in without:
+                self.face(*(corner[i] for i in side))
         return self
 
     def grid(self, points, closed=False):
@@ -78,11 +79,12 @@ class Mesh:
         points, faces = np.concatenate(self.points), np.concatenate(self.faces)
         a, b, c = (points[faces[:, i]] for i in range(3))
         faces = faces[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-12]  # those at the poles of a lathe are none
+        index = ("ushort", "<u2") if len(points) < 1 << 16 else ("int", "<i4")
         header = (
             f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\n"
-            f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
+            f"property float z\nelement face {len(faces)}\nproperty list uchar {index[0]} vertex_indices\nend_header\n"
         )
-        rows = np.zeros(len(faces), [("n", "u1"), ("i", "<i4", 3)])
+        rows = np.zeros(len(faces), [("n", "u1"), ("i", index[1], 3)])
         rows["n"], rows["i"] = 3, faces
         with open(path, "wb") as file:
             file.write(header.encode() + points.astype("<f4").tobytes() + rows.tobytes())
