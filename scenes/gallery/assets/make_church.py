@@ -195,7 +195,24 @@ def glass():
     image.quantize(32).save(HERE / "church_window.png", optimize=True)
 
 
+def rose():
+    """The picture of a rose window: petals around a middle, dark stone between and around them."""
+    size, random = 256, np.random.default_rng(6)
+    y, x = (np.mgrid[0:size, 0:size] + 0.5) / size * 2 - 1
+    r, turn = np.hypot(x, y), np.arctan2(y, x) / (2 * np.pi) % 1
+    image = np.zeros((size, size, 3))
+    for inner, outer, count, hues in ((0.0, 0.2, 1, [3]), (0.25, 0.56, 8, [0, 1]), (0.61, 0.93, 16, [2, 0, 4, 0])):
+        petal = (turn * count).astype(int) % count
+        edge = np.abs(turn * count % 1 - 0.5) * 2 * np.pi * r / count
+        open_ = (r > inner) & (r < outer) & ((count == 1) | (edge < np.pi * r / count - 0.035))
+        colours = np.array([(84, 124, 255), (255, 84, 70), (110, 210, 160), (255, 235, 160), (220, 110, 210)])[np.array(hues)[petal % len(hues)]]
+        image = np.where(open_[..., None], colours, image)
+    glints = np.kron(random.uniform(0.6, 1.25, (32, 32)), np.ones((8, 8)))
+    Image.fromarray(np.clip(image * glints[..., None], 0, 255).astype(np.uint8)).quantize(48).save(HERE / "church_rose.png", optimize=True)
+
+
 if __name__ == "__main__":
     for make in (vault, ribs, columns, arcade, walls, tracery, pews, altar):
         make().write(HERE / f"church_{make.__name__}.ply")
     glass()
+    rose()

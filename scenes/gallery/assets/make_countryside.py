@@ -1,10 +1,6 @@
-"""Writes the meshes of countryside.json beside itself: python3 make_countryside.py (needs numpy).
-
-With the name of a picture and numbered ones, it makes an animation of them (needs Pillow):
-    python3 make_countryside.py wind.png wind.0*.png"""
+"""Writes the meshes of countryside.json beside itself: python3 make_countryside.py (needs numpy)."""
 
 from pathlib import Path
-import sys
 
 import numpy as np
 
@@ -161,17 +157,7 @@ def fence():
     return mesh
 
 
-def animate(name, pictures):
-    """An animated PNG of pictures, 12 in a second."""
-    from PIL import Image
-
-    first, *others = (Image.open(picture).quantize(96, dither=Image.Dither.NONE) for picture in pictures)
-    first.save(name, save_all=True, append_images=others, duration=1000 / 12, loop=0, optimize=True)
-
-
 if __name__ == "__main__":
-    if len(sys.argv) > 2:
-        sys.exit(animate(sys.argv[1], sys.argv[2:]))
     wood, tips = trunk()
     meshes = dict(land=land(), bridge=bridge(), house=house(), roof=roof(), openings=openings(), trunk=wood, leaves=leaves(tips), fence=fence())
     for name, mesh in meshes.items():

@@ -82,8 +82,8 @@ def wedge(mesh, angle, half):
 def wood():
     """The mantel, beams of the ceiling, the window's frame, a stool."""
     mesh = Mesh()
-    mesh.box((-1.4, 1.43, FRONT - 0.05), (1.4, 1.54, 0.6))
-    for x in (-1.2, 1.1):
+    mesh.box((-1.24, 1.43, FRONT - 0.05), (1.24, 1.54, 0.6))
+    for x in (-1.12, 1.02):
         mesh.box((x, 1.23, FRONT), (x + 0.1, 1.43, 0.54))
     for x in (-2.1, -1.26, -0.42, 0.42, 1.26, 2.1):
         mesh.box((x - 0.075, 2.42, 0), (x + 0.075, 2.61, 5.2))
@@ -93,7 +93,7 @@ def wood():
 
 def window(mesh):
     """A frame of two by three panes."""
-    left, right, low, high = -2.24, -1.5, 0.95, 2.1
+    left, right, low, high = -2.3, -1.64, 0.95, 2.1
     for x in (left, (left + right) / 2, right):
         mesh.box((x - 0.025, low - 0.03, 0), (x + 0.025, high + 0.03, 0.05))
     for y in np.linspace(low, high, 4):
@@ -132,7 +132,7 @@ def brass():
     """Candlesticks on the mantel, and the fire's andirons."""
     mesh = Mesh()
     stick = [(0.06, 0), (0.055, 0.012), (0.015, 0.03), (0.012, 0.1), (0.022, 0.12), (0.012, 0.14), (0.012, 0.22), (0.035, 0.24), (0.03, 0.25), (0, 0.25)]
-    for x in (-1.08, -0.9, 1.12):
+    for x in (-1.08, -0.9, 1.08):
         mesh.lathe(stick, (x, 1.54, 0.48))
     for x in (-0.34, 0.34):
         knob = [(0.03, 0), (0.014, 0.03), (0.014, 0.3), (0.035, 0.33), (0.038, 0.36), (0.02, 0.39), (0, 0.4)]
@@ -144,7 +144,7 @@ def brass():
 def candles():
     """Unlit."""
     mesh = Mesh()
-    for x, height in [(-1.08, 0.2), (-0.9, 0.14), (1.12, 0.17)]:
+    for x, height in [(-1.08, 0.2), (-0.9, 0.14), (1.08, 0.17)]:
         mesh.lathe([(0.017, 0), (0.017, height), (0.004, height + 0.004), (0.002, height + 0.02), (0, height + 0.02)], (x, 1.79, 0.48), 12)
     return mesh
 
@@ -186,8 +186,8 @@ def painting():
     """Hills under an evening sky, for the wall above the mantel."""
     width, height = 240, 160
     y, x = np.mgrid[0:height, 0:width]
-    sky = np.array([[70, 92, 122]]) + (np.array([[226, 168, 110]]) - np.array([[70, 92, 122]])) * (y / height)[..., None] ** 1.3
-    for level, colour, wave, bump in [(0.55, (104, 112, 118), 35, 8), (0.66, (72, 88, 78), 50, 12), (0.8, (48, 60, 40), 70, 9)]:
+    sky = np.array([[120, 150, 190]]) + (np.array([[255, 225, 170]]) - np.array([[120, 150, 190]])) * (y / height)[..., None] ** 1.3
+    for level, colour, wave, bump in [(0.55, (150, 160, 165), 35, 8), (0.66, (118, 140, 112), 50, 12), (0.8, (92, 108, 66), 70, 9)]:
         edge = height * level + bump * np.sin(x / wave + level * 20) + 0.4 * bump * np.sin(x / wave * 2.7)
         sky[y > edge] = colour
     noise = RANDOM.normal(0, 5, (height, width, 1))
