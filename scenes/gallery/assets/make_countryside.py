@@ -18,7 +18,8 @@ def river(z):
 def ground(x, z):
     """Height of the land: meadows, hills far off, the bed of the river."""
     bank = np.abs(x - river(z))
-    hills = 7 * np.exp(-(((z + 70) / 26) ** 2)) * (1 + 0.5 * np.sin(x / 17 + 1)) + 3.5 * np.exp(-(((x - 42) / 16) ** 2)) + 4 * np.exp(-(((x + 44) / 15) ** 2))
+    hills = 7 * np.exp(-(((z + 70) / 26) ** 2)) * (1 + 0.5 * np.sin(x / 17 + 1))
+    hills += 3.5 * np.exp(-(((x - 42) / 16) ** 2)) + 4 * np.exp(-(((x + 44) / 15) ** 2))
     rough = 0.35 * np.sin(x / 4.1 + 1) * np.cos(z / 5.3) + 0.15 * np.sin(x / 1.7 + z / 2.3)
     meadow = np.clip((bank - 4.5) / 8, 0, 1) * (0.5 + rough) + hills
     ramp = 1.15 * np.exp(-(((z + 6) / 2.4) ** 4)) * np.clip((np.abs(x + 1.6) - 6.5) / 2.5, 0, 1) * np.exp(-(((x + 1.6) / 22) ** 4))
@@ -52,7 +53,7 @@ def underneath(x):
 def bridge():
     """Three arches, a humped road, parapets; its road leads along x."""
     mesh, half = Mesh(), 1.5
-    edges = [m + s * h * np.cos(t) for m, h, _ in SPANS for s in (1,) for t in np.linspace(0, np.pi, 17)]
+    edges = [m + h * np.cos(t) for m, h, _ in SPANS for t in np.linspace(0, np.pi, 17)]
     xs = np.unique(np.round(np.concatenate([np.linspace(-11, 11, 45), edges]), 4))
     for a, b in zip(xs, xs[1:]):
         low = [underneath(a + 1e-4), underneath(b - 1e-4)]

@@ -45,7 +45,10 @@ def gem():
 def frosted():
     """A vase of solid glass: no hollow."""
     profile = [(0, 0), (0.2, 0), (0.22, 0.01), (0.27, 0.16), (0.24, 0.36), (0.14, 0.54), (0.12, 0.62), (0.16, 0.72), (0.15, 0.73), (0, 0.73)]
-    return Mesh().lathe(profile[:2], sides=48).lathe(smooth(profile[2:-2]), sides=48).lathe(profile[-2:], sides=48).lathe(profile[1:3], sides=48).lathe(profile[-3:-1], sides=48)
+    mesh = Mesh().lathe(smooth(profile[2:-2]), sides=48)
+    for flat in (profile[:2], profile[1:3], profile[-3:-1], profile[-2:]):
+        mesh.lathe(flat, sides=48)
+    return mesh
 
 
 def smooth(profile, n=32):

@@ -58,7 +58,7 @@ def section(x, angles, more=0.0):
     stations = np.array(BODY)
     low, high, half = (np.interp(x, stations[:, 0], stations[:, i]) for i in (1, 2, 3))
     bent = lambda t: np.sign(t) * np.abs(t) ** 0.45
-    tumble = 1 - 0.16 * np.clip((np.cos(angles) ** 1 - 0.1), 0, 1)
+    tumble = 1 - 0.16 * np.clip(np.cos(angles) - 0.1, 0, 1)
     y = (low + high) / 2 + (high - low) / 2 * bent(np.cos(angles)) + more * np.cos(angles)
     z = half * bent(np.sin(angles)) * tumble + more * np.sin(angles)
     return np.stack([np.full_like(y, x), y, z], -1)
@@ -86,8 +86,8 @@ def wing(mesh, x, side):
     turns, across = np.linspace(-0.25, np.pi * 0.98, 26), np.linspace(-np.pi / 2, np.pi / 2, 11)
     rows = []
     for turn in turns:
-        reach = 0.43 + 0.12 * max(0, np.cos(turn)) ** 2 * (-1 if x < 0 else 1) * 0.4
-        rows.append([(x + (reach + 0.05 * np.cos(a)) * np.cos(turn), 0.34 + (reach + 0.05 * np.cos(a)) * np.sin(turn), side * 0.66 + 0.14 * np.sin(a)) for a in across])
+        reach = 0.43 + 0.05 * np.sign(x) * max(0, np.cos(turn)) ** 2 + 0.05 * np.cos(across)
+        rows.append(np.stack([x + reach * np.cos(turn), 0.34 + reach * np.sin(turn), side * 0.66 + 0.14 * np.sin(across)], -1))
     mesh.grid(rows)
 
 
@@ -132,7 +132,8 @@ def wheel_parts(profile):
 def lamp():
     """The street lamp's post, arm and shade; its light is at (0, 5, 0) under the shade."""
     mesh = Mesh()
-    bow = [(0, 4.6, -1.7)] + [(0, 4.6 + 0.75 * np.sin(t), -1.7 + 0.85 * (1 - np.cos(t))) for t in np.linspace(0.1, np.pi / 2, 9)] + [(0, 5.34, -0.4), (0, 5.3, 0)]
+    curve = [(0, 4.6 + 0.75 * np.sin(t), -1.7 + 0.85 * (1 - np.cos(t))) for t in np.linspace(0, np.pi / 2, 10)]
+    bow = [*curve, (0, 5.34, -0.4), (0, 5.3, 0)]
     mesh.tube([(0, 0, -1.7), (0, 2.5, -1.7)], [0.075, 0.06]).tube([(0, 2.5, -1.7), (0, 4.6, -1.7)], [0.05, 0.045]).tube(bow, 0.035)
     mesh.lathe([(0.12, 0), (0.12, 0.5), (0.08, 0.56)], (0, 0, -1.7), 16)
     mesh.lathe([(0.3, 4.96), (0.29, 5.0), (0.2, 5.08), (0.08, 5.14), (0.07, 5.32), (0, 5.34)])
