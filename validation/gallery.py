@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 import tyndall
-from tyndall import display, exr, program
+from tyndall import exr, program
 from tyndall.failure import Failure
-from validation import mitsuba, picture
+from validation import mitsuba
 from validation.animation import animation
 from validation.files import write_text
 from validation.places import OUTPUT, ROOT, SCENES
@@ -30,6 +30,8 @@ README = SCENES / "README.md"
 TABLE = re.compile(r"(?<=<!-- gallery -->\n).*?(?=<!-- end -->)", re.DOTALL)
 PILOT = 4
 """Samples per pixel by which Mitsuba's time is known."""
+VIEW = {"--exposure", "--view"}
+"""Options that Mitsuba's picture is shown by too."""
 OTHER_SEED = 1
 """Of the second render: the difference of both is their error."""
 
@@ -144,9 +146,9 @@ def measured(entry: Entry, threads: int, folder: Path) -> Measured:
     if not entry.mitsuba:
         return Measured(seconds, threads, relmse)
     kind = "volpathmis" if is_chromatic(entry) else "volpath"
-    theirs, took = by_mitsuba(entry, kind, seconds, threads, folder, image.shape[1::-1])
-    picture.write_png(entry.pictures[1], alike(theirs, image, entry))
-    return Measured(seconds, threads, relmse, took, max(0, relmse_of(theirs, mean) - relmse / 2), kind)
+    file, took = by_mitsuba(entry, kind, seconds, threads, folder, image.shape[1::-1])
+    shown_as(entry, file, entry.pictures[1])
+    return Measured(seconds, threads, relmse, took, max(0, relmse_of(exr.read_image(file), mean) - relmse / 2), kind)
 
 
 def rendered(entry: Entry, threads: int, output: Path, seed: int = 0) -> float:
@@ -169,15 +171,15 @@ def is_chromatic(entry: Entry) -> bool:
     return any(len(set(medium["largest_sigma_t"])) > 1 for medium in media)
 
 
-def by_mitsuba(entry: Entry, kind: str, seconds: float, threads: int, folder: Path, size: tuple[int, ...]) -> tuple[np.ndarray, float]:
-    """Mitsuba's image after as many seconds, and the seconds it took: few samples tell how many that are."""
+def by_mitsuba(entry: Entry, kind: str, seconds: float, threads: int, folder: Path, size: tuple[int, ...]) -> tuple[Path, float]:
+    """The file of Mitsuba's image after as many seconds, and the seconds it took: few samples tell how many fit."""
     variant = "llvm_ad_rgb" if mitsuba.libllvm() else "scalar_rgb"
     command = [sys.executable, "-m", "validation.contender", str(entry.scene), *entry.parameters, "--integrator", kind, "--variant", variant]
     command += ["--seed", "0", "--size", f"{size[0]}x{size[1]}", "--threads", str(threads), "--folder", str(folder)]
     pilot = json.loads(program.call([*command, "--spp", str(PILOT)]).stdout)
     spp = max(1, round(PILOT * seconds / pilot["seconds"]))
     took = json.loads(program.call([*command, "--spp", str(spp)]).stdout)["seconds"]
-    return exr.read_image(folder / f"{spp}.exr"), float(took)
+    return folder / f"{spp}.exr", float(took)
 
 
 def animated(entry: Entry, threads: int, folder: Path) -> Measured:
@@ -188,9 +190,11 @@ def animated(entry: Entry, threads: int, folder: Path) -> Measured:
     return Measured(seconds, threads)
 
 
-def alike(theirs: np.ndarray, ours: np.ndarray, entry: Entry) -> np.ndarray:
-    """Mitsuba's pixels through the exposure and the curve of our picture."""
-    return display.tone_mapped(theirs)
+def shown_as(entry: Entry, image: Path, png: Path) -> None:
+    """Mitsuba's picture through the exposure and the view transform of ours."""
+    words = entry.options
+    view = [word for at, word in enumerate(words) if VIEW & {word.partition("=")[0], *words[at - 1 : at]}]
+    program.call([str(program.binary()), "convert", str(image), str(png), *view])
 
 
 def holds(entry: Entry) -> bool:

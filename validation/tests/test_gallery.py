@@ -47,7 +47,7 @@ def test_the_gallery_of_the_repository_holds() -> None:
 
 def test_an_entry_is_rendered_measured_and_shown(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mitsuba, "libllvm", lambda: None)
-    hang(folder, cube=entry(mitsuba=True), other=entry())
+    hang(folder, cube=entry(mitsuba=True, command=f"{COMMAND} --exposure -1 --view=agx"), other=entry())
     assert cli.main(["gallery", "cube", "--threads", "1"]) == 0
     found = json.loads((folder / "measured.json").read_text())["cube"]
     assert 0 < found["relmse"] < 1 and 0 < found["mitsuba_relmse"] and found["mitsuba_by"] == "volpath"

@@ -20,7 +20,7 @@ def waves() -> tuple[np.ndarray, np.ndarray]:
 
 def bed() -> tuple[np.ndarray, np.ndarray]:
     """Sand in ripples, which rises towards the walls."""
-    z, x = np.mgrid[-1:1:80j, -1:1:80j]
+    z, x = np.mgrid[-1:1:64j, -1:1:64j]
     x, z = 5.5 * x, 5.5 * z - 2.5
     at = np.stack([x, z], -1)
     height = 0.12 * noise(at * 0.6, 3, 3) + 0.03 * np.sin(6 * (z + 0.4 * noise(at * 0.7, 4, 3))) + 0.8 * np.clip(np.hypot(x, (z + 3.2) * 0.8) / 4.5, 0, 2) ** 4
@@ -29,7 +29,7 @@ def bed() -> tuple[np.ndarray, np.ndarray]:
 
 def roof() -> tuple[np.ndarray, np.ndarray]:
     """The rock above, with a ragged opening."""
-    z, x = np.mgrid[-1:1:90j, -1:1:90j]
+    z, x = np.mgrid[-1:1:70j, -1:1:70j]
     at = np.stack([5.5 * x, 5.5 * z - 2.5], -1)
     off = at - HOLE
     edge = np.hypot(*np.moveaxis(off, -1, 0)) - 0.95 - 0.22 * noise(at * 2.1, 31, 4)
@@ -41,7 +41,7 @@ def roof() -> tuple[np.ndarray, np.ndarray]:
 
 def wall() -> tuple[np.ndarray, np.ndarray]:
     """The rock behind and to both sides, in folds."""
-    y, around = np.mgrid[-0.5:4.2:40j, -1:1:110j]
+    y, around = np.mgrid[-0.5:4.2:32j, -1:1:84j]
     angle = 1.25 * np.pi / 2 * around
     at = np.stack([4.2 * angle, 1.3 * y], -1)
     radius = 4.7 + 0.5 * noise(at * 0.8, 41, 5) + 0.35 * np.abs(noise(at * 1.3, 42, 3)) - 0.6 * (y / 4) ** 2
@@ -50,7 +50,7 @@ def wall() -> tuple[np.ndarray, np.ndarray]:
 
 def boulder(centre: tuple[float, float, float], size: tuple[float, float, float], seed: int) -> tuple[np.ndarray, np.ndarray]:
     """A ball, dented by noise."""
-    polar, around = np.mgrid[0.02 : np.pi - 0.02 : 26j, 0 : 2 * np.pi * (1 - 1 / 40) : 40j]
+    polar, around = np.mgrid[0.02 : np.pi - 0.02 : 20j, 0 : 2 * np.pi * (1 - 1 / 32) : 32j]
     ball = np.stack([np.sin(polar) * np.cos(around), np.cos(polar), np.sin(polar) * np.sin(around)], -1)
     dents = 1 + 0.14 * noise(1.6 * ball[..., :2] + 1.1 * ball[..., 2:], seed, 4)
     return (ball * dents[..., None] * size + centre).reshape(-1, 3), lattice(*polar.shape, around=True)[:, ::-1]
