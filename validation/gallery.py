@@ -248,7 +248,7 @@ def with_table(text: str) -> str:
 def row(entry: Entry, found: Measured | None) -> str:
     """A line of the table."""
     ours = f"about {entry.seconds} s" if found is None else figures(found.seconds, found.relmse)
-    theirs = entry.why_not
+    theirs = f"none: {entry.why_not}"
     if entry.mitsuba:
         told = "" if found is None or found.mitsuba_seconds is None else f"<br>{found.mitsuba_by}: {figures(found.mitsuba_seconds, found.mitsuba_relmse)}"
         theirs = shown(entry.pictures[1]) + told
