@@ -16,6 +16,7 @@ from validation import (
     coverage,
     efficiency,
     full,
+    gallery,
     growth,
     instructions,
     matrix,
@@ -51,6 +52,7 @@ def parser() -> argparse.ArgumentParser:
     add_closed_forms(commands)
     add_studies(commands)
     add_efficiency(commands)
+    add_gallery(commands)
     add_instructions(commands)
     add_growth(commands)
     add_bias(commands)
@@ -196,6 +198,11 @@ def add_studies(commands: Commands) -> None:
 def add_efficiency(commands: Commands) -> None:
     command = add(commands, "efficiency", efficiency.run, "Time to equal error against Mitsuba on the scenes of scenes/efficiency.")
     efficiency.add_options(command)
+
+
+def add_gallery(commands: Commands) -> None:
+    command = add(commands, "gallery", gallery.run, "Renders the scenes of scenes/gallery, and Mitsuba for the same seconds, for the table of scenes/README.md.")
+    gallery.add_options(command)
 
 
 def add_instructions(commands: Commands) -> None:

@@ -1,0 +1,266 @@
+"""The gallery: renders its scenes by their own commands, measures their error, gives Mitsuba the same seconds, and renews the
+table of scenes/README.md."""
+
+import argparse
+import json
+import os
+import re
+import shlex
+import shutil
+import sys
+from dataclasses import asdict, dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tyndall
+from tyndall import exr, program
+from tyndall.failure import Failure
+from validation import mitsuba
+from validation.animation import animation
+from validation.files import write_text
+from validation.places import OUTPUT, ROOT, SCENES
+
+FOLDER = SCENES / "gallery"
+ENTRIES = FOLDER / "gallery.json"
+MEASURED = FOLDER / "measured.json"
+README = SCENES / "README.md"
+TABLE = re.compile(r"(?<=<!-- gallery -->\n).*?(?=<!-- end -->)", re.DOTALL)
+PILOT = 4
+"""Samples per pixel by which Mitsuba's time is known."""
+VIEW = {"--exposure", "--view"}
+"""Options that Mitsuba's picture is shown by too."""
+OTHER_SEED = 1
+"""Of the second render: the difference of both is their error."""
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Those of the command line."""
+    command.add_argument("names", nargs="*", metavar="NAME", help="entries of scenes/gallery/gallery.json (default: all)")
+    command.add_argument("--check", action="store_true", help="render nothing: scenes load, commands and pictures are there, the table is current")
+    command.add_argument("--table", action="store_true", help="render nothing: only write the table anew")
+    command.add_argument("--threads", type=int, default=os.cpu_count(), help="of both renderers alike (default %(default)s)")
+
+
+def run(options: argparse.Namespace) -> bool:
+    """Renders, measures, and writes the table."""
+    entries = chosen(options.names)
+    if options.check:
+        return all([holds(entry) for entry in entries]) & is_current()
+    if not options.table:
+        for entry in entries:
+            renew(entry, options.threads)
+    write_text(README, with_table(README.read_text()))
+    return True
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A picture of the gallery."""
+
+    name: str
+    title: str
+    shows: str
+    after: str
+    command: str
+    seconds: float
+    mitsuba: bool
+    why_not: str = ""
+
+    @property
+    def options(self) -> list[str]:
+        """The words of the command after the scene."""
+        program, command, _, *options = [*shlex.split(self.command), *3 * [""]]
+        if (program, command) != ("tyndall", "render"):
+            raise Failure(f"{ENTRIES}: {self.name}: the command is {self.command}", "write `tyndall render scenes/gallery/NAME.json`, then options")
+        return list(filter(None, options))
+
+    @property
+    def scene(self) -> Path:
+        """The scene that the command names."""
+        return ROOT / shlex.split(self.command)[2]
+
+    @property
+    def parameters(self) -> list[str]:
+        """What -D gives."""
+        return [word for before, pair in zip(self.options, self.options[1:]) if before == "-D" for word in (before, pair)]
+
+    @property
+    def pictures(self) -> list[Path]:
+        """Tyndall's, and Mitsuba's if there is one."""
+        return [FOLDER / f"{self.name}{end}" for end in (".png", ".mitsuba.png")[: 1 + self.mitsuba]]
+
+    @property
+    def moves(self) -> bool:
+        """Of many frames."""
+        return "--frames" in self.options
+
+
+def entries() -> list[Entry]:
+    """All of the gallery."""
+    return [Entry(name, **fields) for name, fields in json.loads(ENTRIES.read_text()).items()]
+
+
+def chosen(names: list[str]) -> list[Entry]:
+    """Those asked for."""
+    all_of_them = entries()
+    unknown = set(names) - {entry.name for entry in all_of_them}
+    if unknown:
+        raise Failure(f"{', '.join(sorted(unknown))}: not in {ENTRIES}", f"name any of {', '.join(entry.name for entry in all_of_them)}")
+    return [entry for entry in all_of_them if not names or entry.name in names]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was found of an entry: seconds of rendering, relMSE, threads; the same of Mitsuba, and by which integrator."""
+
+    seconds: float
+    threads: int
+    relmse: float | None = None
+    mitsuba_seconds: float | None = None
+    mitsuba_relmse: float | None = None
+    mitsuba_by: str = ""
+
+
+def renew(entry: Entry, threads: int) -> None:
+    """Renders an entry, and Mitsuba's picture beside it."""
+    folder = OUTPUT / "gallery" / entry.name
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    found = animated(entry, threads, folder) if entry.moves else measured(entry, threads, folder)
+    known = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
+    write_text(MEASURED, json.dumps({**known, entry.name: asdict(found)}, indent=1, sort_keys=True) + "\n")
+    print(f"{entry.name:24} {found}", flush=True)
+
+
+def measured(entry: Entry, threads: int, folder: Path) -> Measured:
+    """A picture: rendered twice, the second time by another seed."""
+    seconds = rendered(entry, threads, folder / "image.exr")
+    rendered(entry, threads, folder / "other.exr", OTHER_SEED)
+    image, other = (exr.read_image(folder / name) for name in ("image.exr", "other.exr"))
+    mean = (image + other) / 2
+    shutil.copy(folder / "image.png", entry.pictures[0])
+    relmse = 2 * relmse_of(image, mean)
+    if not entry.mitsuba:
+        return Measured(seconds, threads, relmse)
+    kind = "volpathmis" if is_chromatic(entry) else "volpath"
+    file, took = by_mitsuba(entry, kind, seconds, threads, folder, image.shape[1::-1])
+    shown_as(entry, file, entry.pictures[1])
+    return Measured(seconds, threads, relmse, took, max(0, relmse_of(exr.read_image(file), mean) - relmse / 2), kind)
+
+
+def rendered(entry: Entry, threads: int, output: Path, seed: int = 0) -> float:
+    """Runs the command; seconds of rendering, of all frames."""
+    report = output.with_suffix(".json")
+    more = program.flags({"output": output, "report": report, "threads": threads, "seed": seed})
+    program.call([str(program.binary()), "render", str(entry.scene), *entry.options, *more])
+    written = json.loads(report.read_text())
+    return sum(float(image["render_seconds"]) for image in written.get("frames", [written]))
+
+
+def relmse_of(image: np.ndarray, reference: np.ndarray) -> float:
+    """As `tyndall diff` measures it."""
+    return float(tyndall.diff(image, reference)["radiance"]["relmse"])
+
+
+def is_chromatic(entry: Entry) -> bool:
+    """Whether extinction differs between the channels, which volpath has no weights for."""
+    media = json.loads(program.call([str(program.binary()), "info", "--json", *entry.parameters, str(entry.scene)]).stdout)["media"]
+    return any(len(set(medium["largest_sigma_t"])) > 1 for medium in media)
+
+
+def by_mitsuba(entry: Entry, kind: str, seconds: float, threads: int, folder: Path, size: tuple[int, ...]) -> tuple[Path, float]:
+    """The file of Mitsuba's image after as many seconds, and the seconds it took: few samples tell how many fit."""
+    variant = "llvm_ad_rgb" if mitsuba.libllvm() else "scalar_rgb"
+    command = [sys.executable, "-m", "validation.contender", str(entry.scene), *entry.parameters, "--integrator", kind, "--variant", variant]
+    command += ["--seed", "0", "--size", f"{size[0]}x{size[1]}", "--threads", str(threads), "--folder", str(folder)]
+    pilot = json.loads(program.call([*command, "--spp", str(PILOT)]).stdout)
+    spp = max(1, round(PILOT * seconds / pilot["seconds"]))
+    took = json.loads(program.call([*command, "--spp", str(spp)]).stdout)["seconds"]
+    return folder / f"{spp}.exr", float(took)
+
+
+def animated(entry: Entry, threads: int, folder: Path) -> Measured:
+    """A moving picture: its frames are measured by nobody."""
+    seconds = rendered(entry, threads, folder / "frame.exr")
+    fps = dict(zip(entry.options, entry.options[1:])).get("--fps", "24")
+    entry.pictures[0].write_bytes(animation([path.read_bytes() for path in sorted(folder.glob("frame.*.png"))], float(fps)))
+    return Measured(seconds, threads)
+
+
+def shown_as(entry: Entry, image: Path, png: Path) -> None:
+    """Mitsuba's picture through the exposure and the view transform of ours."""
+    words = entry.options
+    view = [word for at, word in enumerate(words) if VIEW & {word.partition("=")[0], *words[at - 1 : at]}]
+    program.call([str(program.binary()), "convert", str(image), str(png), *view])
+
+
+def holds(entry: Entry) -> bool:
+    """Whether the entry's scene loads without a warning, its options exist, and its pictures are there; says what does not hold."""
+    wrong = [f"{path} is not there: python3 -m validation gallery {entry.name}" for path in [entry.scene, *entry.pictures] if not path.is_file()]
+    wrong += [f"tyndall render has no option {option}" for option in set(options_of(entry)) - known_options()]
+    wrong += warnings(entry) if entry.scene.is_file() else []
+    for what in wrong:
+        print(f"{entry.name}: {what}")
+    return not wrong
+
+
+def options_of(entry: Entry) -> list[str]:
+    """Names of those that the command has."""
+    return [word.partition("=")[0] for word in entry.options if word.startswith("--")]
+
+
+@cache
+def known_options() -> set[str]:
+    """Of `tyndall render`."""
+    return set(re.findall(r"--[a-z][\w-]*", program.call([str(program.binary()), "render", "--help"]).stdout))
+
+
+def warnings(entry: Entry) -> list[str]:
+    """What `tyndall info` says against the scene."""
+    try:
+        return list(json.loads(program.call([str(program.binary()), "info", "--json", *entry.parameters, str(entry.scene)]).stdout)["warnings"])
+    except Failure as failure:
+        return [str(failure)]
+
+
+def is_current() -> bool:
+    """Whether the table says what is known; says if not."""
+    text = README.read_text()
+    if text != with_table(text):
+        print(f"{README}: its gallery is not that of gallery.json: python3 -m validation gallery --table")
+    return text == with_table(text)
+
+
+def with_table(text: str) -> str:
+    """The README with the table as it should be."""
+    known = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
+    head = ["| picture | shows | command | seconds, relMSE | Mitsuba, in the same seconds |", "|---|---|---|---|---|"]
+    rows = [row(entry, Measured(**known[entry.name]) if entry.name in known else None) for entry in entries()]
+    table = "".join(f"{line}\n" for line in [*head, *rows])
+    if not TABLE.search(text):
+        raise Failure(f"{README}: no place for the gallery", "write `<!-- gallery -->` and `<!-- end -->` on lines of their own")
+    return TABLE.sub(lambda _: table, text)
+
+
+def row(entry: Entry, found: Measured | None) -> str:
+    """A line of the table."""
+    ours = f"about {entry.seconds} s" if found is None else figures(found.seconds, found.relmse)
+    theirs = f"none: {entry.why_not}"
+    if entry.mitsuba:
+        told = "" if found is None or found.mitsuba_seconds is None else f"<br>{found.mitsuba_by}: {figures(found.mitsuba_seconds, found.mitsuba_relmse)}"
+        theirs = shown(entry.pictures[1]) + told
+    after = f" ({entry.after})" if entry.after else ""
+    return f"| {shown(entry.pictures[0])} | **{entry.title}**{after}: {entry.shows} | `{entry.command}` | {ours} | {theirs} |"
+
+
+def figures(seconds: float, relmse: float | None) -> str:
+    """Seconds, and relMSE where it is known."""
+    return f"{seconds:.0f} s" + ("" if relmse is None else f", {relmse:.2g}")
+
+
+def shown(path: Path) -> str:
+    """A picture in Markdown; narrow, for both stand in one line."""
+    return f'<img src="{path.relative_to(SCENES)}" width="240">'
