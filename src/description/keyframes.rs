@@ -103,7 +103,8 @@ impl Keyframes {
 /// Two keys must follow each other, in the same form.
 fn check(first: &Key, second: &Key) -> Result<()> {
     let place = &second.value.location;
-    if !(first.time < second.time) {
+    let grows = first.time < second.time;
+    if !grows {
         let expected = format!("keys at growing times, the next one after {} s", first.time);
         let remedy = "put keys in order of time; for a jump, leave a millionth of a second between two";
         return Err(Error::new(place, expected, format!("one at {} s", second.time), remedy));
