@@ -7,7 +7,7 @@ use crate::{
     format,
     scene::{
         build::{self, Setup},
-        smoke,
+        keyframes, smoke,
     },
 };
 
@@ -18,21 +18,21 @@ const FPS: f64 = 24.0;
 pub struct Clip<'a> {
     arguments: &'a arguments::Render,
     root: Object,
-    /// True if frames show different files, so that the scene is built again for each.
-    pub reads_files: bool,
+    /// True if the scene is built again for each frame: its description changes, or frames show different files.
+    pub rebuilds: bool,
 }
 
 impl<'a> Clip<'a> {
     /// Reads the scene file.
     pub fn read(arguments: &'a arguments::Render) -> Result<Self> {
         let root = format::read(&arguments.scene.file, &arguments.scene.definitions)?;
-        let reads_files = arguments.frames.is_some() && smoke::has_sequence(&root);
-        Ok(Self { arguments, root, reads_files })
+        let changes = smoke::has_sequence(&root) || keyframes::has_any(&root);
+        Ok(Self { arguments, root, rebuilds: arguments.frames.is_some() && changes })
     }
 
-    /// Builds the scene at its own time, or where frames show different files, as the first frame shows it.
+    /// Builds the scene at its own time, or where it is built for each frame, as the first shows it.
     pub fn first(&self) -> Result<Setup> {
-        match self.arguments.frames.filter(|_| self.reads_files) {
+        match self.arguments.frames.filter(|_| self.rebuilds) {
             None => built(&self.root, self.arguments.overrides()),
             Some(frames) => {
                 let setup = built(&self.at(self.time(frames.first)), self.arguments.overrides())?;
@@ -42,9 +42,11 @@ impl<'a> Clip<'a> {
         }
     }
 
-    /// Builds the scene as `frame` shows it. What the user should know has been said of the first.
-    pub fn frame(&self, frame: u32) -> Result<Setup> {
-        let built = build::build(&self.at(self.time(frame)), self.arguments.overrides());
+    /// Builds the scene as `frame` shows it, from what of the frame `before` has not changed. What the user should know has
+    /// been said of the first.
+    pub fn frame(&self, frame: u32, before: &Setup) -> Result<Setup> {
+        let root = self.at(self.time(frame));
+        let built = build::build_again(&root, self.arguments.overrides(), Some(before));
         built.map_err(|error| self.explain(frame, error))
     }
 

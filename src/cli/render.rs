@@ -74,15 +74,17 @@ fn animate(
     let mut figures = Vec::new();
     for frame in first..=last {
         let time = clip.time(frame);
-        if clip.reads_files && frame > first {
-            *setup = clip.frame(frame)?;
+        if !clip.rebuilds {
+            let moved = setup.scene.set_time(time).map_err(|error| clip.explain(frame, error))?;
+            if !moved && frame == first && first < last {
+                super::complain(
+                    "warning: nothing in this scene moves (no \"wind\", no keyframes, no numbered files): frames \
+                     differ by noise only",
+                );
+            }
+        } else if frame > first {
+            *setup = clip.frame(frame, setup)?;
             task = Task::new(task.arguments, setup, task.viewer)?.0;
-        }
-        let moved = setup.scene.set_time(time).map_err(|error| clip.explain(frame, error))?;
-        if !(moved || clip.reads_files) && frame == first && first < last {
-            super::complain(
-                "warning: nothing in this scene moves (no \"wind\", no numbered files): frames differ by noise only",
-            );
         }
         let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };
         let mut made = task.made.clone();

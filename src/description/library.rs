@@ -40,6 +40,11 @@ impl Library {
         })
     }
 
+    /// The object called `id`, if there is one.
+    pub fn find(&self, id: &str) -> Option<&Object> {
+        self.objects.get(id)
+    }
+
     /// The object called `id`, referred to from `location`.
     pub fn resolve(&self, id: &str, location: &Location) -> Result<&Object> {
         self.objects.get(id).ok_or_else(|| {

@@ -1,12 +1,14 @@
 //! The scene description: one tree for all file formats, from which models are built.
 
 pub mod colour;
+pub mod keyframes;
 mod library;
 pub mod parameter;
 pub mod params;
 mod registry;
 pub mod transform;
 
+pub use keyframes::Keyframes;
 pub use library::Library;
 pub use parameter::{Plugin, Table};
 pub(crate) use parameter::{rows, table};
@@ -120,6 +122,8 @@ pub enum Value {
     Object(Object),
     /// The id of an object elsewhere in the tree.
     Reference(String),
+    /// Any of those of numbers, which changes in time. Builders see what it is at the scene's time.
+    Keyframes(Keyframes),
 }
 
 impl Value {
@@ -136,6 +140,7 @@ impl Value {
             Self::Transform(_) => "a transform".into(),
             Self::Object(o) => format!("the plugin \"{}\"", o.plugin),
             Self::Reference(id) => format!("a reference to \"{id}\""),
+            Self::Keyframes(_) => "keyframes".into(),
         }
     }
 }

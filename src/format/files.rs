@@ -5,7 +5,7 @@ use super::{
     read::read_with_origins,
 };
 use crate::{
-    description::{Location, Object, Value},
+    description::{Location, Object, Value, keyframes::Key},
     error::{Error, Result},
     volume::files::sequence::{Clock, Sequence},
 };
@@ -75,6 +75,9 @@ impl Sources {
             match &property.value {
                 Value::Object(child) => self.walk(child, time),
                 Value::Spectrum(pairs) => self.spectra.push(pairs.clone()),
+                Value::Keyframes(keyframes) => {
+                    self.spectra.extend(keyframes.keys().iter().filter_map(spectrum))
+                }
                 Value::String(name) if property.name.ends_with("filename") => {
                     self.add(shown(object, beside(&property.location, name), time));
                 }
@@ -89,6 +92,10 @@ impl Sources {
             self.files.push(file);
         }
     }
+}
+
+fn spectrum(key: &Key) -> Option<Vec<(f64, f64)>> {
+    if let Value::Spectrum(pairs) = &key.value.value { Some(pairs.clone()) } else { None }
 }
 
 /// The file called `name` at `place`, as plugins look for it.

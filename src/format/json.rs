@@ -21,6 +21,7 @@
 //! | `[{step}, ...]` | a transform; steps in order, in XML's words: `translate`, `rotate`, `scale`, `lookat`, `matrix` |
 //! | `{"type": "rgb", "value": ...}` | a linear colour: a number, three, or `"#rrggbb"` (sRGB-encoded) |
 //! | `{"type": "spectrum", "value": ...}` | a number or `[[wavelength in nm, value], ...]`; or a `"filename"` |
+//! | `{"type": "keyframes", "value": [[time in s, value], ...]}` | a value of numbers that changes in time: a number, vector, colour, transform, or string of numbers; with `"interpolation": "smooth"` it eases in and out |
 //! | `{"type": "ref", "id": ...}` | a reference to the object with that id |
 //! | `{"type": ..., ...}` | a plugin |
 //!
@@ -128,6 +129,7 @@ fn value(node: &Node) -> Result<Value> {
             "ref" => values::reference(node),
             "rgb" => values::rgb(node),
             "spectrum" => values::spectrum(node),
+            "keyframes" => values::keyframes(node),
             step if super::steps::WORDS.contains(&step) => {
                 let found = format!("one step, a {step}");
                 let remedy = "put [ and ] around it";

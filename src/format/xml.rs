@@ -3,6 +3,10 @@
 //! All of Mitsuba's tags are read: objects, values, `transform`, `ref`, `include`, `default`, `alias`, `path`.
 //! What Mitsuba would refuse is refused here; beyond that, text between tags and a `path` that is no folder are
 //! errors too, an `alias` may precede what it names, and colours may be written `#rrggbb`.
+//!
+//! `keyframes` are Tyndall's own: a value of numbers that changes in time is
+//! `<keyframes name="..."><float time="0" value="1"/><float time="2.5" value="3"/></keyframes>`, with elements for any
+//! kind of number, or `transform`s; with `interpolation="smooth"` it eases in and out.
 
 mod element;
 mod files;
@@ -14,9 +18,10 @@ use super::{
     read::{DEEPEST, Draft},
     references::Alias,
     tags::TAGS,
+    text,
 };
 use crate::{
-    description::{Object, Property, TransformStep, Value, nearest},
+    description::{Keyframes, Object, Property, TransformStep, Value, keyframes::Key, nearest},
     error::{Error, Result},
 };
 use element::Element;
@@ -24,7 +29,7 @@ use files::{Folders, Source};
 use std::path::{Path, PathBuf};
 
 /// Tags that direct the reading.
-const DIRECTIONS: [&str; 6] = ["ref", "transform", "include", "default", "alias", "path"];
+const DIRECTIONS: [&str; 7] = ["ref", "transform", "keyframes", "include", "default", "alias", "path"];
 
 /// As in Mitsuba.
 const DEEPEST_INCLUDE: usize = 15;
@@ -143,16 +148,46 @@ impl Reader<'_> {
                 child.require("name")?.nonempty()?;
                 Value::Transform(self.steps(page, child)?)
             }
+            "keyframes" => Value::Keyframes(self.keyframes(page, child)?),
             tag if TAGS.contains(&tag) || child.is_spectrum_plugin() => {
                 Value::Object(self.object(page, child, &[], depth + 1)?)
             }
             tag => match values::ROWS.get(tag) {
-                Some(row) => values::read(row, child, &page.folders)?,
+                Some(row) => values::read(row, child, "name", &page.folders)?,
                 None => return Err(unknown(child)),
             },
         };
         let name = child.optional_name("name")?.unwrap_or_default();
         add(parent, Property { name, value, location: child.location.clone() })
+    }
+
+    fn keyframes(&mut self, page: &Page, element: &Element) -> Result<Keyframes> {
+        element.allow(&["name", "interpolation"])?;
+        element.require("name")?.nonempty()?;
+        let interpolation = element.get("interpolation").map(values::interpolation).transpose()?;
+        let mut keys = Vec::new();
+        for node in element.children()? {
+            let key = self.element(page, node)?;
+            keys.push(self.key(page, key)?);
+        }
+        Keyframes::new(interpolation.unwrap_or_default(), keys, &element.location)
+    }
+
+    fn key(&mut self, page: &Page, element: Element) -> Result<Key> {
+        let value = match values::ROWS.get(element.tag) {
+            Some(row) => values::read(row, &element, "time", &page.folders)?,
+            None if element.tag == "transform" => {
+                element.allow(&["time"])?;
+                Value::Transform(self.steps(page, &element)?)
+            }
+            None => {
+                let found = format!("<{}>", element.tag);
+                let remedy = "write it like <float time=\"0\" value=\"1.5\"/>";
+                return Err(Error::new(element.location, "a value at a time in <keyframes>", found, remedy));
+            }
+        };
+        let time = element.require("time")?.parse(text::float)?;
+        Ok(Key { time, value: Property { name: String::new(), value, location: element.location } })
     }
 
     fn steps(&mut self, page: &Page, transform: &Element) -> Result<Vec<TransformStep>> {

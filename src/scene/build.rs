@@ -6,8 +6,10 @@ mod media;
 use super::{
     Scene, Surface,
     accel::Geometry,
+    again::{Before, Parts},
     boundary::{self, Boundary},
     extents::Extents,
+    keyframes,
     lights::{Disk, Light, Lights, emissive},
     locate::{Known, Locator},
     overlap::Overlaps,
@@ -67,6 +69,10 @@ pub struct Setup {
     pub smoke: Vec<Taken>,
     /// What the command line set.
     pub overrides: Overrides,
+    /// What all of it was built from: the description at that time, without smoke.
+    pub(super) root: Object,
+    /// What became of that.
+    pub(super) parts: Parts,
 }
 
 impl Setup {
@@ -85,12 +91,20 @@ impl Setup {
 
 /// Builds the scene that `root` describes.
 pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
+    build_again(root, overrides, None)
+}
+
+/// The same, if `before` was built from the same file and with the same overrides for another time: what has not changed
+/// since is taken from there.
+pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) -> Result<Setup> {
     plugins::check(root)?;
+    let root = &keyframes::resolve(root);
     let (root, smoke) = smoke::expand(root)?;
     let library = Library::new(&root)?;
     let sections = Sections::sort(&root, &library)?;
     let recentre = sections.viewpoint(&library)?;
-    let mut builder = Builder::new(&library, Place { recentre, time: sections.time });
+    let before = before.map(Before::new).transpose()?;
+    let mut builder = Builder::new(&library, Place { recentre, time: sections.time }, before.as_ref());
     for child in &sections.shapes {
         builder.shape(child)?;
     }
@@ -106,6 +120,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     let medium_names = builder.medium_names.clone();
     let medium_overrides = overrides.media.over(integrator.restriction.medium_overrides());
     let time = builder.place.time;
+    let parts = std::mem::take(&mut builder.parts);
     let (scene, shape_names, bsdf_names) = builder.finish(view.camera, &medium_overrides)?;
     unseen::warn_of_darkness(&scene.lights, &integrator, &root.location, &library);
     let integrator = match overrides.groups {
@@ -128,6 +143,8 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
         time,
         smoke,
         overrides,
+        parts,
+        root: root.into_owned(),
     })
 }
 
@@ -198,10 +215,14 @@ struct Builder<'a> {
     emitters: Vec<Placed<'a>>,
     /// BSDF of shapes that name none: diffuse 0.5, and black on emitters.
     default_bsdf: [Option<u32>; 2],
+    before: Option<&'a Before<'a>>,
+    /// True if all shapes so far are those of before.
+    has_old_shapes: bool,
+    parts: Parts,
 }
 
 impl<'a> Builder<'a> {
-    fn new(library: &'a Library, place: Place) -> Self {
+    fn new(library: &'a Library, place: Place, before: Option<&'a Before<'a>>) -> Self {
         Self {
             library,
             recentre: place.recentre,
@@ -220,12 +241,16 @@ impl<'a> Builder<'a> {
             medium_objects: Vec::new(),
             emitters: Vec::new(),
             default_bsdf: [None; 2],
+            before,
+            has_old_shapes: before.is_some(),
+            parts: Parts::default(),
         }
     }
 
     fn shape(&mut self, child: &Child<'a>) -> Result<()> {
         let (params, build) = shape::ROWS.read(child.object, self.library)?;
-        let shape = build(&params, self.recentre)?;
+        let old = self.before.and_then(|before| before.shape(child.object, self.recentre));
+        let shape = old.cloned().map_or_else(|| build(&params, self.recentre), Ok)?;
         let interior = self.side(&params, "interior")?;
         let exterior = self.side(&params, "exterior")?;
         let index = self.shapes.len() as u32;
@@ -236,7 +261,12 @@ impl<'a> Builder<'a> {
             [one] => self.bsdf(one.object)?,
             [_, second, ..] => return Err(only_one(second, "bsdf")),
         };
-        params.finish()?;
+        // One that was built before has been read then.
+        if old.is_none() {
+            params.finish()?;
+        }
+        self.has_old_shapes &= old.is_some();
+        self.parts.shapes.insert(child.object.location.clone(), self.shapes.len());
         self.shapes.push(shape);
         self.shape_names.push(name_of(child.object));
         self.shape_locations.push(child.location.clone());
@@ -259,7 +289,7 @@ impl<'a> Builder<'a> {
             [one] => one,
             [_, second, ..] => return Err(only_one(second, "emitter")),
         };
-        let emitter = emitter::build(child.object, self.library)?;
+        let emitter = self.built_emitter(child.object)?;
         if !emitter.needs_shape() {
             let found = format!("\"{}\"", child.object.plugin);
             let remedy = "put it beside the shapes, in the scene itself";
@@ -271,7 +301,7 @@ impl<'a> Builder<'a> {
     }
 
     fn emitter(&mut self, child: &Child<'a>) -> Result<()> {
-        let emitter = emitter::build(child.object, self.library)?;
+        let emitter = self.built_emitter(child.object)?;
         if emitter.needs_shape() {
             let expected = format!("the {} emitter on a shape", emitter.name);
             let remedy = "put it inside the shape that emits";
@@ -286,6 +316,12 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
+    fn built_emitter(&mut self, object: &Object) -> Result<Emitter> {
+        self.parts.emitters.insert(object.location.clone(), self.emitters.len());
+        let old = self.before.and_then(|before| before.emitter(object, self.library));
+        old.cloned().map_or_else(|| emitter::build(object, self.library), Ok)
+    }
+
     /// The one object behind all references to it, the place among them where it is written.
     fn original(&self, object: &'a Object) -> Result<&'a Object> {
         object.id.as_ref().map_or(Ok(object), |id| self.library.resolve(id, &object.location))
@@ -296,7 +332,10 @@ impl<'a> Builder<'a> {
         if let Some(index) = self.bsdf_index.get(&std::ptr::from_ref(object)) {
             return Ok(*index);
         }
-        let index = self.add_bsdf(bsdf::build(object, self.library)?, name_of(object));
+        let old = self.before.and_then(|before| before.bsdf(object, self.library));
+        let bsdf = old.cloned().map_or_else(|| bsdf::build(object, self.library), Ok)?;
+        let index = self.add_bsdf(bsdf, name_of(object));
+        self.parts.bsdfs.insert(object.location.clone(), index as usize);
         self.bsdf_index.insert(std::ptr::from_ref(object), index);
         Ok(index)
     }
@@ -331,7 +370,10 @@ impl<'a> Builder<'a> {
             return Ok(MediumIndex(index as u32 + 1));
         }
         let index = MediumIndex(self.media.len() as u32);
-        self.media.push(medium::build(object, self.library, &self.place)?);
+        let old = self.before.and_then(|before| before.medium(object, self.library, self.recentre));
+        let medium = old.cloned().map_or_else(|| medium::build(object, self.library, &self.place), Ok)?;
+        self.parts.media.insert(object.location.clone(), medium.clone());
+        self.media.push(medium);
         self.medium_names.push(name_of(object));
         self.medium_locations.push(object.location.clone());
         self.medium_ids.push(object.id.clone());
@@ -449,7 +491,12 @@ impl<'a> Builder<'a> {
 
     /// All shapes, indexed; their surfaces learn which of them may share faces.
     fn geometry(&mut self) -> Geometry {
-        let geometry = Geometry::build(std::mem::take(&mut self.shapes));
+        let shapes = std::mem::take(&mut self.shapes);
+        let old =
+            self.before.filter(|_| self.has_old_shapes).and_then(|before| before.geometry(shapes.len()));
+        let geometry = old.cloned().unwrap_or_else(|| Geometry::build(shapes));
+        // What is added later was not there before.
+        self.has_old_shapes = false;
         let touching = boundary::touching(&geometry, &self.surfaces);
         self.surfaces.iter_mut().zip(touching).for_each(|(surface, touching)| surface.touching = touching);
         geometry

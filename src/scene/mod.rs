@@ -1,9 +1,11 @@
 //! A scene ready to render, and how it is made: read a description, build it, index it.
 
 pub mod accel;
+mod again;
 pub mod boundary;
 pub mod build;
 mod extents;
+pub mod keyframes;
 pub mod lights;
 mod locate;
 mod overlap;

@@ -106,7 +106,7 @@ pub trait VolumeModel {
 
 /// Makes the enum, its dispatch, the registry and the list of test examples from one row a model.
 macro_rules! volumes {
-    ($($name:literal => $model:ident,)*) => {
+    ($($name:expr => $model:ident,)*) => {
         /// Any volume. Cheap to clone: grids are shared.
         #[derive(Clone, Debug)]
         #[expect(missing_docs, reason = "each variant is the model of its name, documented there")]
@@ -174,9 +174,12 @@ volumes! {
     "noise" => Noise,
     "sum" => Sum,
     "product" => Product,
-    "wind" => Wind,
+    WIND => Wind,
     "gridvolume" => Grid,
 }
+
+/// What drifts. Its `velocity` may change in time: where it is then follows from the mean of that.
+pub const WIND: &str = "wind";
 
 /// Plugins that are parts of a volume and none themselves, each with the volume that it is a part of.
 pub const PARTS: &[(&str, &str, Table)] =

@@ -149,7 +149,10 @@ impl Tile {
     /// The mean over one box of what depends on `axis`.
     fn mean(&self, axis: usize) -> f64 {
         let half = self.0.half;
-        self.0.rules[axis].iter().map(|[x, weight]| weight * horner(&self.0.axes[axis].coefficients, x * half)).sum()
+        self.0.rules[axis]
+            .iter()
+            .map(|[x, weight]| weight * horner(&self.0.axes[axis].coefficients, x * half))
+            .sum()
     }
 
     /// The integral of what depends on `axis` from `first` to `last`, all in the box `cell`.
@@ -373,7 +376,8 @@ impl Function for Tile {
         let folded = axes(|axis| self.folded(low[axis], high[axis]));
         let mut sum = [0.0; 2];
         let mut add = |[least, most]: [f64; 2]| sum = [sum[0] + least, sum[1] + most];
-        for (axis, [a, b]) in self.0.axes.iter().zip(folded).filter(|(axis, _)| !axis.coefficients.is_empty()) {
+        for (axis, [a, b]) in self.0.axes.iter().zip(folded).filter(|(axis, _)| !axis.coefficients.is_empty())
+        {
             let (a, b) = (axis.bounds(a), axis.bounds(b));
             add([a[0].min(b[0]), a[1].max(b[1])]);
         }

@@ -1,5 +1,6 @@
 //! `wind`: a nested volume that drifts with `velocity` [m/s], from where it is at the time 0 to where it is at the
-//! scene's `time` [s] (BMA02 5). What is added to it, in a sum, stays.
+//! scene's `time` [s] (BMA02 5). What is added to it, in a sum, stays. Of a velocity that changes in time this sees the
+//! mean since 0, which takes it as far.
 
 use super::{Place, Volume, VolumeModel, nested};
 use crate::{
@@ -24,7 +25,7 @@ pub struct Wind {
 impl Wind {
     pub(super) const TABLE: Table = table! {
         "A nested volume that drifts: it is in its place at the scene's `time` 0.";
-        vector("velocity", "m/s", Required, "Where to, and how fast."),
+        vector("velocity", "m/s", Required, "Where to, and how fast; of keyframes, what they add up to since 0 counts."),
         nested("volume", Required, "The volume."),
     };
 

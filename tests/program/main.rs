@@ -5,6 +5,7 @@
 mod common;
 mod sandbox;
 
+mod animating;
 mod command_line;
 mod converting;
 mod cropping;

@@ -4,6 +4,7 @@
 use super::{KINDS, everything, plugins, rows, text};
 use crate::description::{
     Table, colour,
+    keyframes::Interpolation,
     parameter::{Default, Kind, Parameter, Range},
 };
 use serde_json::{Map, Value, json};
@@ -67,6 +68,8 @@ fn values() -> Map<String, Value> {
         "spectrum": {"type": "object", "additionalProperties": false,
             "properties": {"type": {}, "value": {"type": ["number", "array", "string"]}, "filename": {"type": "string"}}},
         "ref": object("id", json!({"type": {}, "id": {"type": "string"}})),
+        "keyframes": object("value", json!({"type": {}, "interpolation": {"enum": Interpolation::NAMES}, "value": {
+            "type": "array", "minItems": 1, "items": {"type": "array", "minItems": 2, "maxItems": 2}}})),
         "transform": {"type": "array", "items": of_types(STEPS.map(|(step, _)| (step, step.to_owned())).into())},
     });
     let step = |(step, keys): (&str, &[&str])| {
@@ -167,6 +170,11 @@ fn value_of(row: &Parameter) -> Value {
         Kind::Object(tag) => one(tag),
         Kind::Nested | Kind::Ignored { .. } => json!({}),
     };
+    if can_change(row.kind) {
+        let is_one =
+            json!({"type": "object", "required": ["type"], "properties": {"type": {"const": "keyframes"}}});
+        value = json!({"if": is_one, "then": {"$ref": "#/definitions/keyframes"}, "else": value});
+    }
     value["description"] = json!(format!("{} ({}; {})", row.about, text::allowed(row), text::default(row)));
     match row.default {
         Default::Is(x) => value["default"] = json!(x),
@@ -176,6 +184,20 @@ fn value_of(row: &Parameter) -> Value {
         _ => {}
     }
     value
+}
+
+/// True for what is made of numbers, or may be.
+fn can_change(kind: Kind) -> bool {
+    !matches!(
+        kind,
+        Kind::Integer(_)
+            | Kind::Boolean
+            | Kind::Choice(_)
+            | Kind::File
+            | Kind::Object(_)
+            | Kind::Nested
+            | Kind::Ignored { .. }
+    )
 }
 
 fn number(range: Range, kind: &str) -> Value {

@@ -2,10 +2,14 @@
 
 use super::{
     super::text::{self, Spectrum, one_or_triple},
-    Json, Node,
+    Json, Node, value,
 };
 use crate::{
-    description::Value,
+    description::{
+        Property, Value,
+        keyframes::{Interpolation, Key, Keyframes},
+        nearest,
+    },
     error::{Error, Result},
 };
 use std::path::Path;
@@ -25,6 +29,30 @@ pub(super) fn rgb(node: &Node) -> Result<Value> {
         _ => one_or_triple(&value.one_or_more()?),
     };
     value.check(rgb).map(Value::Rgb)
+}
+
+/// `{"type": "keyframes", "value": [[time, value], ...]}`
+pub(super) fn keyframes(node: &Node) -> Result<Value> {
+    node.allow(&["value", "interpolation"])?;
+    let interpolation = node.get("interpolation").map(|word| interpolation(&word)).transpose()?;
+    let keys = node.require("value")?.items()?.iter().map(key).collect::<Result<_>>()?;
+    Keyframes::new(interpolation.unwrap_or_default(), keys, &node.location).map(Value::Keyframes)
+}
+
+fn key(pair: &Node) -> Result<Key> {
+    let items = pair.items().map_err(|_| pair.wrong("a pair [time, value]"))?;
+    let [time, given] = items.as_slice() else { return Err(pair.wrong("a pair [time, value]")) };
+    let (name, location) = (String::new(), given.location.clone());
+    Ok(Key { time: time.number()?, value: Property { name, value: value(given)?, location } })
+}
+
+fn interpolation(node: &Node) -> Result<Interpolation> {
+    let word = node.string()?;
+    let names = Interpolation::NAMES;
+    Interpolation::named(word).ok_or_else(|| {
+        let remedy = format!("{}known: {}", nearest(word, &names), names.join(", "));
+        Error::new(&node.location, "an interpolation", format!("\"{word}\""), remedy)
+    })
 }
 
 /// `{"type": "spectrum", "value": ...}` or `{"type": "spectrum", "filename": ...}`. A constant spectrum is a

@@ -1,12 +1,17 @@
 //! The outline of a scene, from its tree and from what reading replaced.
 
 use super::{
-    super::{origins::Origins, parameters::Parameters, tags},
-    outline::{Entry, Item, Leaf, Node, Numbers, Step, Texts, made_up},
+    super::{
+        json::{below, index, key},
+        origins::Origins,
+        parameters::Parameters,
+        tags,
+    },
+    outline::{Entry, Item, Key, Leaf, Node, Numbers, Step, Texts, made_up},
     paths,
 };
 use crate::{
-    description::{Location, Object, Position, Property, TransformStep, Value},
+    description::{Keyframes, Location, Object, Position, Property, TransformStep, Value, keyframes},
     error::{Error, Result},
 };
 use std::{
@@ -144,7 +149,21 @@ impl<'a> Pen<'a> {
                 let text = self.origins.attribute(place, "id").filter(is_id).map(str::to_owned);
                 Item::Reference(Leaf { value: id.clone(), text })
             }
+            Value::Keyframes(keyframes) => {
+                Item::Keyframes(keyframes.interpolation(), self.keys(keyframes, place)?)
+            }
         })
+    }
+
+    fn keys(&self, keyframes: &'a Keyframes, place: &Location) -> Result<Vec<Key>> {
+        let list = below(place, &key("value"));
+        let draw = |(i, of): (usize, &'a keyframes::Key)| {
+            let location = of.value.location.clone();
+            let text = self.origins.item(&below(&list, &index(i)), 0);
+            let text = text.or_else(|| self.origins.attribute(&location, "time")).map(str::to_owned);
+            Ok(Key { time: Leaf { value: of.time, text }, item: self.item(&of.value, "")?, location })
+        };
+        keyframes.keys().iter().enumerate().map(draw).collect()
     }
 
     /// The numbers that the items of the list at `place` are.
@@ -170,7 +189,7 @@ impl<'a> Pen<'a> {
             return Numbers { values: values.to_vec(), text: Texts::Whole(text.to_owned()) };
         }
         if let Position::Path(_) = place.position {
-            let list = super::super::json::below(place, &super::super::json::key(whole));
+            let list = below(place, &key(whole));
             if (0..values.len()).any(|i| self.origins.item(&list, i).is_some()) {
                 return self.listed(&list, values);
             }

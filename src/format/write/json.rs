@@ -5,11 +5,11 @@ use super::{
     keys::Keys,
     kinds::{kinds, split},
     layout::Json,
-    outline::{Entry, Item, Leaf, Node, Numbers, Step, Texts},
+    outline::{Entry, Item, Key, Leaf, Node, Numbers, Step, Texts},
     plain, unspeakable,
 };
 use crate::{
-    description::Location,
+    description::{Location, keyframes::Interpolation},
     error::Result,
     format::{
         origins::{Declaration, Kind},
@@ -68,7 +68,7 @@ impl Writer<'_, '_> {
         for entry in &node.entries {
             let key = keys.of(entry, outermost);
             let top = outermost.then_some(key.as_str());
-            let mut value = self.item(entry, top)?;
+            let mut value = self.item(&entry.item, &entry.location, top)?;
             self.add_tag(&mut value, entry, &key, &node.tag);
             entries.push((key, value));
         }
@@ -84,9 +84,8 @@ impl Writer<'_, '_> {
         }
     }
 
-    fn item(&mut self, entry: &Entry, key: Option<&str>) -> Result<Json> {
-        let place = &entry.location;
-        Ok(match &entry.item {
+    fn item(&mut self, item: &Item, place: &Location, key: Option<&str>) -> Result<Json> {
+        Ok(match item {
             Item::Boolean(leaf) => self.whole(leaf, Kind::Boolean, place, bool::to_string),
             Item::Integer(leaf) => self.whole(leaf, Kind::Integer, place, i64::to_string),
             Item::Float(leaf) => self.whole(leaf, Kind::Float, place, |x| format!("{x:?}")),
@@ -100,7 +99,22 @@ impl Writer<'_, '_> {
                 let id = self.string(leaf, place);
                 Json::Map(vec![("type".into(), Json::string("ref")), ("id".into(), id)])
             }
+            Item::Keyframes(interpolation, keys) => self.keyframes(*interpolation, keys)?,
         })
+    }
+
+    fn keyframes(&mut self, interpolation: Interpolation, keys: &[Key]) -> Result<Json> {
+        let pair = |Key { time, item, location }: &Key| {
+            let time = self.whole(time, Kind::Float, location, |x| plain(*x));
+            Ok(Json::List(vec![time, self.item(item, location, None)?]))
+        };
+        let keys = Json::List(keys.iter().map(pair).collect::<Result<_>>()?);
+        let mut entries = vec![("type".to_owned(), Json::string("keyframes"))];
+        if interpolation != Interpolation::default() {
+            entries.push(("interpolation".into(), Json::string(interpolation.name())));
+        }
+        entries.push(("value".into(), keys));
+        Ok(Json::Map(entries))
     }
 
     fn spectrum(&mut self, leaf: &Leaf<Vec<(f64, f64)>>, place: &Location) -> Json {

@@ -3,7 +3,7 @@
 use super::{
     Known,
     keys::is_key,
-    outline::{Item, Node, Numbers, Texts},
+    outline::{Item, Key, Node, Numbers, Texts},
 };
 use crate::format::{
     origins::{Declaration, Kind},
@@ -54,18 +54,26 @@ struct Uses<'k, 'a> {
 
 impl Uses<'_, '_> {
     fn node(&mut self, node: &Node) {
-        for entry in &node.entries {
-            match &entry.item {
-                Item::Boolean(leaf) => self.add(leaf.text.as_deref(), Kind::Boolean),
-                Item::Integer(leaf) => self.add(leaf.text.as_deref(), Kind::Integer),
-                Item::Float(leaf) => self.add(leaf.text.as_deref(), Kind::Float),
-                Item::Rgb(numbers) | Item::Vector(numbers) => self.numbers(numbers),
-                Item::Transform(steps) => {
-                    steps.iter().flat_map(|step| &step.parts).for_each(|(_, numbers)| self.numbers(numbers));
+        node.entries.iter().for_each(|entry| self.item(&entry.item));
+    }
+
+    fn item(&mut self, item: &Item) {
+        match item {
+            Item::Boolean(leaf) => self.add(leaf.text.as_deref(), Kind::Boolean),
+            Item::Integer(leaf) => self.add(leaf.text.as_deref(), Kind::Integer),
+            Item::Float(leaf) => self.add(leaf.text.as_deref(), Kind::Float),
+            Item::Rgb(numbers) | Item::Vector(numbers) => self.numbers(numbers),
+            Item::Transform(steps) => {
+                steps.iter().flat_map(|step| &step.parts).for_each(|(_, numbers)| self.numbers(numbers));
+            }
+            Item::Object(node) => self.node(node),
+            Item::Spectrum(leaf) => self.add(leaf.text.as_deref(), Kind::Float),
+            Item::String(_) | Item::Reference(_) => {}
+            Item::Keyframes(_, keys) => {
+                for Key { time, item, .. } in keys {
+                    self.add(time.text.as_deref(), Kind::Float);
+                    self.item(item);
                 }
-                Item::Object(node) => self.node(node),
-                Item::Spectrum(leaf) => self.add(leaf.text.as_deref(), Kind::Float),
-                Item::String(_) | Item::Reference(_) => {}
             }
         }
     }

@@ -91,5 +91,5 @@ impl Json {
 
 fn is_value(entries: &[(String, Json)]) -> bool {
     let Some((_, Json::Word(kind))) = entries.first() else { return false };
-    ["\"rgb\"", "\"spectrum\"", "\"ref\""].contains(&kind.as_str())
+    ["\"rgb\"", "\"spectrum\"", "\"ref\"", "\"keyframes\""].contains(&kind.as_str())
 }

@@ -1,7 +1,7 @@
 //! A scene to be written in either format: every value with the text that represents it where parameters are
 //! in it, names only where they mean something, names of files as the target's folder reaches them.
 
-use crate::description::Location;
+use crate::description::{Location, keyframes::Interpolation};
 
 /// A value, and the text with `$` in it that represents it.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +55,15 @@ pub(super) enum Item {
     Transform(Vec<Step>),
     Object(Node),
     Reference(Leaf<String>),
+    Keyframes(Interpolation, Vec<Key>),
+}
+
+/// A value at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Key {
+    pub time: Leaf<f64>,
+    pub item: Item,
+    pub location: Location,
 }
 
 /// A step of a transform: its word, and its parts by name, in JSON's words.

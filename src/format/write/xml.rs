@@ -2,10 +2,14 @@
 
 use super::{
     Known, constant,
-    outline::{Entry, Item, Leaf, Node, Numbers, Step, Texts},
+    outline::{Entry, Item, Key, Leaf, Node, Numbers, Step, Texts},
     plain, unspeakable,
 };
-use crate::{description::Location, error::Result, format::parameters::escaped};
+use crate::{
+    description::{Location, keyframes::Interpolation},
+    error::Result,
+    format::parameters::escaped,
+};
 
 /// The text of a file that holds `root`.
 pub(super) fn file(root: &Node, known: &mut Known<'_>) -> Result<String> {
@@ -72,9 +76,21 @@ impl Writer<'_, '_> {
 
     fn entry(&mut self, entry: &Entry, depth: usize) -> Result<()> {
         let Entry { name, item, location, .. } = entry;
-        let name = (!name.is_empty()).then(|| ("name", escaped(name)));
+        let attribute = (!name.is_empty()).then(|| ("name", escaped(name)));
+        self.item(item, attribute, vector_tag(name), (location, depth))
+    }
+
+    /// `known` is the attribute by which it is known: its name, if it has one, or its time. Vectors are written with
+    /// the tag `vector`.
+    fn item(
+        &mut self,
+        item: &Item,
+        known: Option<Attribute<'_>>,
+        vector: &str,
+        (location, depth): (&Location, usize),
+    ) -> Result<()> {
         let value = |writer: &mut Self, tag: &str, value: String| {
-            let attributes: Vec<_> = name.clone().into_iter().chain([("value", value)]).collect();
+            let attributes: Vec<_> = known.clone().into_iter().chain([("value", value)]).collect();
             writer.element(tag, &attributes, location, depth, |_| Ok(()))
         };
         match item {
@@ -89,20 +105,33 @@ impl Writer<'_, '_> {
             }
             Item::Vector(numbers) => {
                 let text = self.numbers(numbers, location);
-                value(self, vector_tag(&entry.name), text)
+                value(self, vector, text)
             }
             Item::Transform(steps) => {
-                let attributes: Vec<_> = name.into_iter().collect();
+                let attributes: Vec<_> = known.into_iter().collect();
                 self.element("transform", &attributes, location, depth, |writer| {
                     steps.iter().try_for_each(|step| writer.step(step, location, depth + 1))
                 })
             }
-            Item::Object(node) => self.node(node, name, depth),
+            Item::Object(node) => self.node(node, known, depth),
             Item::Reference(leaf) => {
-                let attributes: Vec<_> = name.into_iter().chain([("id", spelled(leaf))]).collect();
+                let attributes: Vec<_> = known.into_iter().chain([("id", spelled(leaf))]).collect();
                 self.element("ref", &attributes, location, depth, |_| Ok(()))
             }
+            Item::Keyframes(interpolation, keys) => {
+                let linear = *interpolation == Interpolation::default();
+                let how = (!linear).then(|| ("interpolation", interpolation.name().to_owned()));
+                let attributes: Vec<_> = known.into_iter().chain(how).collect();
+                self.element("keyframes", &attributes, location, depth, |writer| {
+                    keys.iter().try_for_each(|key| writer.key(key, vector, depth + 1))
+                })
+            }
         }
+    }
+
+    fn key(&mut self, Key { time, item, location }: &Key, vector: &str, depth: usize) -> Result<()> {
+        let time = written(time, |x| plain(*x));
+        self.item(item, Some(("time", time)), vector, (location, depth))
     }
 
     fn node(&mut self, node: &Node, name: Option<Attribute<'_>>, depth: usize) -> Result<()> {

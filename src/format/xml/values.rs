@@ -2,19 +2,19 @@
 
 use super::{
     super::text::{self, Parsed, Spectrum, one_or_triple},
-    element::Element,
+    element::{Attribute, Element},
     files::Folders,
 };
 use crate::{
-    description::{Registry, Value},
+    description::{Registry, Value, keyframes::Interpolation, nearest},
     error::{Error, Result},
 };
 
-/// The attributes that a tag may have, and how it is read.
+/// The attributes that a tag may have beside that by which it is known, and how it is read.
 pub(super) struct Row(&'static [&'static str], fn(&Element, &Folders) -> Result<Value>);
 
-const VALUE: &[&str] = &["name", "value"];
-const POINT: &[&str] = &["name", "value", "x", "y", "z"];
+const VALUE: &[&str] = &["value"];
+const POINT: &[&str] = &["value", "x", "y", "z"];
 
 /// All tags of values.
 pub(super) const ROWS: Registry<Row> = Registry::new(
@@ -25,18 +25,32 @@ pub(super) const ROWS: Registry<Row> = Registry::new(
         ("boolean", Row(VALUE, |e, _| parse(e, text::boolean).map(Value::Boolean))),
         ("string", Row(VALUE, |e, _| parse(e, |t| Ok(Value::String(t.to_owned()))))),
         ("rgb", Row(VALUE, |e, _| parse(e, text::rgb).map(Value::Rgb))),
-        ("spectrum", Row(&["name", "value", "filename"], spectrum)),
+        ("spectrum", Row(&["value", "filename"], spectrum)),
         ("point", Row(POINT, |e, _| vector(e))),
         ("vector", Row(POINT, |e, _| vector(e))),
     ],
 );
 
-/// The value of `element`, which `row` describes.
-pub(super) fn read(Row(attributes, read): &Row, element: &Element, folders: &Folders) -> Result<Value> {
-    element.allow(attributes)?;
-    element.require("name")?.nonempty()?;
+/// The value of `element`, which `row` describes. It is known by the attribute `key`, its name or its time.
+pub(super) fn read(
+    Row(attributes, read): &Row,
+    element: &Element,
+    key: &str,
+    folders: &Folders,
+) -> Result<Value> {
+    element.allow(&[&[key], *attributes].concat())?;
+    element.require(key)?.nonempty()?;
     element.childless()?;
     read(element, folders)
+}
+
+/// How numbers between two keys follow from them.
+pub(super) fn interpolation(attribute: &Attribute) -> Result<Interpolation> {
+    let names = Interpolation::NAMES;
+    Interpolation::named(&attribute.value).ok_or_else(|| {
+        let remedy = format!("{}known: {}", nearest(&attribute.value, &names), names.join(", "));
+        attribute.wrong("an interpolation", remedy)
+    })
 }
 
 fn parse<T>(element: &Element, read: impl FnOnce(&str) -> Parsed<T>) -> Result<T> {

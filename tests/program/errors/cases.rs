@@ -382,6 +382,18 @@ pub fn all() -> Vec<Case> {
         Case::json("a camera shut in", r#""a": {"type": "sphere"}, "sky": {"type": "constant"}"#).warned(),
         Case::json("a medium shut in", r#""a": {"type": "sphere", "center": [0, 0, 5], "interior": {"type": "homogeneous"}}, "sky": {"type": "constant"}"#).warned(),
         Case::json("a medium in an open boundary", r#""a": {"type": "cylinder", "p0": [3, 0, 5], "p1": [3, 0, 6], "bsdf": {"type": "null"}, "interior": {"type": "homogeneous"}}, "lamp": {"type": "point"}"#).warned(),
+        Case::json("keyframes out of order", r#""sky": {"type": "constant", "radiance": {"type": "keyframes", "value": [[0, 1], [2, 3], [1, 2]]}}"#),
+        Case::json("keyframes of two kinds", r#""sky": {"type": "constant", "radiance": {"type": "keyframes", "value": [[0, 1], [2, {"type": "rgb", "value": [1, 2, 3]}]]}}"#),
+        Case::json("keyframes of other lengths", r#""a": {"type": "polynomial", "x": {"type": "keyframes", "value": [[0, "1, 2"], [2, "1, 2, 3"]]}}"#),
+        Case::json("keyframes of what has no numbers", r#""a": {"type": "sphere", "flip_normals": {"type": "keyframes", "value": [[0, true], [2, false]]}}"#),
+        Case::json("keyframes without keys", r#""sky": {"type": "constant", "radiance": {"type": "keyframes", "value": []}}"#),
+        Case::json("a key that is no pair", r#""sky": {"type": "constant", "radiance": {"type": "keyframes", "value": [1, 2]}}"#),
+        Case::json("an unknown interpolation", r#""sky": {"type": "constant", "radiance": {"type": "keyframes", "interpolation": "smoth", "value": [[0, 1]]}}"#),
+        Case::json("a time that changes in time", r#""time": {"type": "keyframes", "value": [[0, 1]]}, "sky": {"type": "constant"}"#),
+        Case::json("a value between keys that is out of range", r#""time": 1, "sky": {"type": "constant", "radiance": {"type": "keyframes", "value": [[0, 1], [2, -2]]}}"#),
+        Case::xml("a key without a time", r#"<emitter type="constant"><keyframes name="radiance"><float value="1"/></keyframes></emitter>"#),
+        Case::xml("a key that is no value", r#"<emitter type="constant"><keyframes name="radiance"><ref id="a"/></keyframes></emitter>"#),
+        Case::xml("a key with a name", r#"<emitter type="constant"><keyframes name="radiance"><float name="a" time="0" value="1"/></keyframes></emitter>"#),
         Case::json("a medium that nothing refers to", r#""fog": {"type": "homogeneous"}, "sky": {"type": "constant"}"#).warned(),
     ]
 }

@@ -1,0 +1,49 @@
+//! The description of a scene at its own time: whatever is keyframed in it has the value of that moment, so that no
+//! builder knows of keyframes (BMA02 sec. 5).
+
+use super::smoke::time_of;
+use crate::{
+    description::{Keyframes, Object, Value},
+    volume::WIND,
+};
+use std::borrow::Cow;
+
+/// `root` at its own time. That time itself does not change.
+pub fn resolve(root: &Object) -> Cow<'_, Object> {
+    if !has_any(root) {
+        return Cow::Borrowed(root);
+    }
+    let mut resolved = root.clone();
+    let time = time_of(root);
+    for property in resolved.properties.iter_mut().filter(|property| property.name != "time") {
+        fill(&mut property.value, time, Keyframes::at);
+    }
+    Cow::Owned(resolved)
+}
+
+/// True if something in `root` changes in time by keyframes.
+pub fn has_any(root: &Object) -> bool {
+    root.properties.iter().any(|property| match &property.value {
+        Value::Object(child) => has_any(child),
+        Value::Keyframes(_) => true,
+        _ => false,
+    })
+}
+
+/// Puts what `of` makes of keyframes in place of them.
+fn fill(value: &mut Value, time: f64, of: fn(&Keyframes, f64) -> Value) {
+    match value {
+        Value::Object(object) => {
+            for property in &mut object.properties {
+                // A wind takes things as far as its velocity adds up to since the time 0.
+                let is_rate = object.plugin == WIND && property.name == "velocity";
+                fill(&mut property.value, time, if is_rate { Keyframes::mean } else { Keyframes::at });
+            }
+        }
+        Value::Keyframes(keyframes) => *value = of(keyframes, time),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests;
