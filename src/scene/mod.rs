@@ -191,7 +191,7 @@ impl Scene {
     #[inline]
     pub fn is_lit(&self, light: u32, position: Vec3, direction: Vec3) -> bool {
         let Light { clearings, medium, .. } = &self.lights.all[light as usize];
-        let known = clearings.as_ref().and_then(|clearings| clearings.hold(position, &self.geometry));
+        let known = clearings.as_ref().and_then(|clearings| clearings.holds(position, &self.geometry));
         known.unwrap_or_else(|| self.is_within(*medium, position, direction))
     }
 

@@ -43,7 +43,7 @@ impl Clearings {
 
     /// Whether `position` lies in the medium, if that is certain: as its cell does, or one beside it that is in sight.
     #[inline]
-    pub fn hold(&self, position: Vec3, geometry: &Geometry) -> Option<bool> {
+    pub fn holds(&self, position: Vec3, geometry: &Geometry) -> Option<bool> {
         let cell = self.0.cell_at(position)?;
         self.0.cell(cell).or_else(|| self.beside(position, geometry))
     }
@@ -152,12 +152,12 @@ mod tests {
         let mut unknown = 0;
         for _ in 0..20_000 {
             let p = 2.0 * Vec3::new(stream.uniform(), stream.uniform(), stream.uniform()) - 1.0;
-            match clearings.hold(p, &geometry) {
+            match clearings.holds(p, &geometry) {
                 Some(found) => assert_eq!(found, between(p), "{p}"),
                 None => unknown += 1,
             }
         }
         assert!(unknown < 20, "{unknown}");
-        assert_eq!(clearings.hold(Vec3::splat(1.5), &geometry), None);
+        assert_eq!(clearings.holds(Vec3::splat(1.5), &geometry), None);
     }
 }

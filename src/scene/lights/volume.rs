@@ -31,7 +31,7 @@ pub fn emissive<'a>(
         let clearings = is_plain.then(|| Arc::new(clearings(&emission, medium, locator, outside)));
         let mut lit = |point: Vec3, direction: Vec3| {
             if let Some(known) =
-                clearings.as_ref().and_then(|clearings| clearings.hold(point, locator.geometry))
+                clearings.as_ref().and_then(|clearings| clearings.holds(point, locator.geometry))
             {
                 return known;
             }
