@@ -107,8 +107,8 @@ pub fn differ(place: &str, old: &Value, new: &Value) -> Option<(String, String, 
     let inside = |name: &str| if place.is_empty() { name.to_owned() } else { format!("{place}.{name}") };
     match (old, new) {
         _ if old == new => None,
-        // What is not there is null.
-        (Value::Object(a), Value::Object(b)) => {
+        // What is not there is null; unless all is other.
+        (Value::Object(a), Value::Object(b)) if a.keys().any(|name| b.contains_key(name)) => {
             let value = |of: &Map<String, Value>, name| of.get(name).cloned().unwrap_or_default();
             a.keys().chain(b.keys()).find_map(|name| differ(&inside(name), &value(a, name), &value(b, name)))
         }
