@@ -1,6 +1,7 @@
 //! What every strategy of the estimator is worth in a scene (LW96 sec. 4; Veach 1997, sec. 10.3): its image weighted
 //! and alone, its share of energy, variance and time; and which kinds of strategies the scene could do without.
 
+mod lettering;
 pub mod pilot;
 mod sheet;
 mod table;
@@ -436,12 +437,32 @@ impl Findings {
         layers.iter().flat_map(|layer| (0..3).map(move |at| channel(layer, at))).collect()
     }
 
+    /// How long the paths of a row are.
+    fn length(&self, length: Option<u32>) -> String {
+        match length {
+            Some(1) => "1 segment".to_owned(),
+            Some(length) => format!("{length} segments"),
+            None => format!("> {} segments", self.parts.table.depth),
+        }
+    }
+
     fn rows(&self, which: Which) -> Vec<Row> {
+        let image =
+            |(cell, images): (StrategyCell, Option<&CellImages>)| (caption(cell), self.image(images, which));
         let row = |report: &RowReport| Row {
+            caption: self.length(report.length),
             exposure: report.exposure,
-            images: self.parts.of(report.length).map(|(_, images)| self.image(images, which)).collect(),
+            images: self.parts.of(report.length).map(image).collect(),
         };
         self.report.rows.iter().map(row).collect()
+    }
+}
+
+/// (s, t) of a strategy; of several, their kind.
+fn caption(cell: StrategyCell) -> String {
+    match cell {
+        StrategyCell::Strategy { s, t } => format!("({s},{t})"),
+        StrategyCell::Longer(kind) => kind.name().to_owned(),
     }
 }
 

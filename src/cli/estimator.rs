@@ -17,7 +17,7 @@ use crate::{
     scene::build::Setup,
     settings::{Overrides, integrator::Restriction},
     transport::{
-        Heuristic, Options, Strategies, equiangular_applies,
+        Connections, Heuristic, Options, Strategies, equiangular_applies,
         observer::StrategyKind,
         profile::{Needs, ProfileName},
     },
@@ -59,6 +59,15 @@ pub struct Estimator {
     /// The expected image is the same; the noise differs. All heuristics except balance use the profile "everything".
     #[arg(long, value_name = "NAME", value_parser = heuristic)]
     pub heuristic: Option<Heuristic>,
+
+    /// Vertices of light subpaths that those of a camera subpath are connected with (the strategy join) [default: the scene's, or
+    /// cached]
+    ///
+    /// cached: some that are drawn from the light subpaths of many pixels; all: every one of a light subpath that belongs to the
+    /// sample alone, as Lafortune and Willems (1996) have it. The expected image is the same; with all, which no pilot
+    /// judges, each strategy takes one sample, whatever it is worth.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Connections::NAMES))]
+    pub connections: Option<Connections>,
 
     /// Maximum number of segments of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 means no limit
     /// [default: the scene's]
@@ -144,8 +153,9 @@ impl Estimator {
     /// The same, and what the pilot chose, if there was one.
     pub fn chosen(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<(Settings, Option<Choice>)> {
         let mut settings = self.requested(setup, seed, budget)?;
-        let Options { strategies, heuristic, .. } = settings.options;
-        if !self.strategies.is_empty() || strategies == Strategies::NONE || heuristic != Heuristic::Balance {
+        let Options { strategies, heuristic, connections, .. } = settings.options;
+        let is_judged = heuristic == Heuristic::Balance && connections == Connections::Cached;
+        if !self.strategies.is_empty() || strategies == Strategies::NONE || !is_judged {
             return Ok((settings, None));
         }
         let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);
@@ -181,8 +191,26 @@ impl Estimator {
             super::complain(&format!("warning: the strategy equiangular has no effect: it needs {needs}"));
         }
         let forced_interaction = self.forced_interaction(setup, strategies);
+        let connections = self.connections(scene, strategies);
         let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
-        Ok(Options { strategies, heuristic, max_depth, forced_interaction, hide_emitters, ..scene })
+        Ok(Options {
+            strategies,
+            heuristic,
+            max_depth,
+            forced_interaction,
+            hide_emitters,
+            connections,
+            ..scene
+        })
+    }
+
+    /// Where nothing is connected, a pilot may judge all there is.
+    fn connections(&self, scene: Options, strategies: Strategies) -> Connections {
+        if self.connections.is_some() && !strategies.connection {
+            super::complain("warning: --connections has no effect: the strategy join is not in use");
+        }
+        let wanted = self.connections.unwrap_or(scene.connections);
+        if strategies.connection { wanted } else { Connections::default() }
     }
 
     fn sampler(&self, setup: &Setup) -> Sampler {

@@ -8,6 +8,7 @@ use crate::{
     format,
     render::{Image, Settings, adaptive::Precision, pilot::Choice},
     scene::build::Setup,
+    transport::Connections,
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -57,11 +58,19 @@ pub fn settings(
         "error": precision.map(|precision| precision.error),
         "confidence": precision.map(|precision| precision.confidence),
     });
-    // Only where there is something: earlier sums, which know of none of it, can go on.
-    if let (overridden, Some(all)) = (setup.overrides.json(), all.as_object_mut()) {
-        all.extend((!overridden.is_empty()).then(|| ("overridden".to_owned(), Value::Object(overridden))));
-    }
+    extend(&mut all, setup, options.connections);
     Ok(all)
+}
+
+/// Adds what else decides, only where there is something: earlier sums, which know of none of it, can go on.
+fn extend(settings: &mut Value, setup: &Setup, connections: Connections) {
+    let overridden = setup.overrides.json();
+    if !overridden.is_empty() {
+        settings["overridden"] = Value::Object(overridden);
+    }
+    if connections == Connections::All {
+        settings["connections"] = "all".into();
+    }
 }
 
 /// What a pilot chose; learnt starts are named where there are any, so that earlier sums without them can go on.

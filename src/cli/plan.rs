@@ -7,7 +7,7 @@ use crate::{
     medium::{DistanceMethod, Medium},
     render::{Settings, budget::Budget, pilot::Choice},
     scene::build::Setup,
-    transport::{Effort, Options, Strategies, Survival},
+    transport::{Connections, Effort, Options, Strategies, Survival},
 };
 use serde_json::{Value, json};
 
@@ -72,6 +72,9 @@ impl Plan {
         let Options { strategies, effort, .. } = self.settings.options;
         let Effort { survival, light_walks, connections, learnt_starts } = effort;
         let mut text = String::new();
+        if self.settings.options.connections == Connections::All {
+            text += "; every vertex joins all of a light subpath";
+        }
         if connections != 1 {
             text += &format!("; {connections} joins a vertex");
         }
@@ -128,14 +131,18 @@ impl Plan {
     /// The same facts for scripts.
     pub fn json(&self) -> Value {
         let Settings { options, sampler: points, budget, seed, profile } = self.settings;
-        let Options { effort, heuristic, max_depth, hide_emitters, forced_interaction, .. } = options;
+        let Options { effort, connections, heuristic, max_depth, .. } = options;
+        let Options { hide_emitters, forced_interaction, .. } = options;
         let unreached = self.unreached.iter();
         json!({
             "integrator": self.integrator,
             "strategies": self.strategies,
             "survival": effort.survival.name(),
             "light_walks": effort.light_walks,
-            "connections": effort.connections,
+            "connections": match connections {
+                Connections::Cached => Value::from(effort.connections),
+                Connections::All => "all".into(),
+            },
             "learnt_starts": effort.learnt_starts,
             "time_of_all_strategies": self.chosen.map(|choice| choice.gain),
             "sampler": points.name(),

@@ -35,6 +35,8 @@ pub struct Blocks {
     walks_per_block: u64,
     heroes: u64,
     sampler: Sampler,
+    /// The inverse of `stride` modulo `pixels`, where every pixel has a light subpath for itself.
+    inverse: Option<usize>,
 }
 
 /// How a camera subpath starts.
@@ -49,6 +51,8 @@ pub struct CameraStart {
     pub aperture: Vec2,
     /// What it counts for.
     pub weight: f32,
+    /// Which light subpath of its block it has for itself, where each has one.
+    pub walk: usize,
 }
 
 /// What a block adds to its pass.
@@ -145,7 +149,13 @@ impl Blocks {
         let heroes = heroes as u64;
         let walks = (pixels.div_ceil(count) as f64 * f64::from(light_walks)).ceil() as u64;
         let walks_per_block = walks.div_ceil(heroes) * heroes;
-        Self { pixels, count, stride, walks_per_block, heroes, sampler }
+        Self { pixels, count, stride, walks_per_block, heroes, sampler, inverse: None }
+    }
+
+    /// The same where every pixel has one of the light subpaths for itself, of which there are as many: both have the same
+    /// hero channel, and a light subpath's random numbers are spread evenly over the samples of its pixel.
+    pub fn paired(self) -> Self {
+        Self { inverse: Some(inverse(self.stride, self.pixels)), ..self }
     }
 
     /// Number of blocks.
@@ -165,8 +175,25 @@ impl Blocks {
 
     /// The pixels of `block`.
     pub fn pixels(&self, block: usize) -> impl Iterator<Item = usize> + '_ {
-        let (low, high) = (block * self.pixels / self.count, (block + 1) * self.pixels / self.count);
-        (low..high).map(|i| (i as u128 * self.stride as u128 % self.pixels as u128) as usize)
+        self.places(block).map(|place| self.pixel_at(place))
+    }
+
+    /// Places of the pixels of `block` in the order of all pixels.
+    fn places(&self, block: usize) -> Range<usize> {
+        block * self.pixels / self.count..(block + 1) * self.pixels / self.count
+    }
+
+    fn pixel_at(&self, place: usize) -> usize {
+        (place as u128 * self.stride as u128 % self.pixels as u128) as usize
+    }
+
+    /// Which of its block's light subpaths `pixel` has for itself; 0 where none has.
+    fn walk_of(&self, pixel: usize) -> usize {
+        let Some(inverse) = self.inverse else { return 0 };
+        let place = (pixel as u128 * inverse as u128 % self.pixels as u128) as usize;
+        // The last block that begins there or before.
+        let block = ((place + 1) * self.count - 1) / self.pixels;
+        place - self.places(block).start
     }
 
     /// Where the camera subpath of `pixel` in `pass` starts.
@@ -179,17 +206,28 @@ impl Blocks {
         pass: usize,
         pixel: usize,
     ) -> CameraStart {
-        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, 0, 1, Purpose::Camera);
-        let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
+        let (mut stream, hero) = self.camera_stream(seed, pass, pixel);
         let (position, weight) = film.sample(pixel, &mut stream);
         let aperture = scene.sensor.sample_aperture(&mut stream);
-        CameraStart { stream, hero, position, aperture, weight }
+        CameraStart { stream, hero, position, aperture, weight, walk: self.walk_of(pixel) }
+    }
+
+    /// The random numbers of the camera subpath of `pixel` in `pass`, and its hero channel.
+    #[inline]
+    fn camera_stream(&self, seed: u64, pass: usize, pixel: usize) -> (Stream, usize) {
+        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, 0, 1, Purpose::Camera);
+        let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
+        (stream, hero)
     }
 
     /// The random numbers of light subpath `walk` of a pass. All walks of a block contribute to the same
-    /// pixels: a sampler that distributes them evenly distributes all of them together, pass after pass.
+    /// pixels: a sampler that distributes them evenly distributes all of them together, pass after pass; unless each belongs to
+    /// a pixel.
     #[inline]
     pub fn light_stream(&self, seed: u64, pass: usize, walk: u64) -> Stream {
+        if self.inverse.is_some() {
+            return self.sampler.stream(seed, walk, pass as u64, 0, 1, Purpose::Light);
+        }
         let per_block = self.walks_per_block;
         self.sampler.stream(seed, walk / per_block, pass as u64, walk % per_block, per_block, Purpose::Light)
     }
@@ -233,7 +271,7 @@ impl Blocks {
         if estimator.needs_light_walks() {
             for walk in self.light_paths(block) {
                 let mut stream = self.light_stream(seed, pass, walk);
-                estimator.trace_light(&mut cache, observer, self.hero(walk), &mut stream);
+                estimator.trace_light(&mut cache, observer, self.hero(seed, pass, walk), &mut stream);
             }
         }
         cache
@@ -245,9 +283,15 @@ impl Blocks {
         first..first + self.walks_per_block
     }
 
-    /// The channel that samples the distances of a light subpath: all equally often in every block.
-    pub fn hero(&self, walk: u64) -> usize {
-        (walk % self.walks_per_block % self.heroes) as usize
+    /// The channel that samples the distances of a light subpath: all equally often in every block, or that of the pixel that
+    /// it belongs to.
+    pub fn hero(&self, seed: u64, pass: usize, walk: u64) -> usize {
+        let (block, number) = (walk / self.walks_per_block, walk % self.walks_per_block);
+        let places = self.places(block as usize);
+        if self.inverse.is_some() && self.heroes > 1 && number < places.len() as u64 {
+            return self.camera_stream(seed, pass, self.pixel_at(places.start + number as usize)).1;
+        }
+        (number % self.heroes) as usize
     }
 }
 
@@ -260,8 +304,8 @@ impl CameraStart {
         cache: &LightCache<P::MisSums>,
         observer: R,
     ) -> R {
-        let Self { position, aperture, hero, .. } = self;
-        estimator.sample_pixel(cache, position, aperture, hero, observer, &mut self.stream)
+        let Self { position, aperture, hero, walk, .. } = self;
+        estimator.sample_pixel(cache, [position, aperture], (hero, walk), observer, &mut self.stream)
     }
 }
 
@@ -355,6 +399,16 @@ impl Outcome {
     }
 }
 
+/// The number that times `a`, coprime to `n`, is 1 modulo `n`: by Euclid's extended algorithm.
+fn inverse(a: usize, n: usize) -> usize {
+    let (mut before, mut at) = ((n as i64, 0i64), ((a % n.max(1)) as i64, 1i64));
+    while at.0 != 0 {
+        let times = before.0 / at.0;
+        (before, at) = (at, (before.0 - times * at.0, before.1 - times * at.1));
+    }
+    before.1.rem_euclid(n.max(1) as i64) as usize
+}
+
 fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
@@ -371,6 +425,21 @@ mod tests {
             (0..blocks.count()).flat_map(|b| blocks.pixels(b)).for_each(|p| seen[p] += 1);
             assert!(seen.iter().all(|n| *n == 1), "{pixels}");
             assert_eq!(Blocks::new(pixels, 3, Sampler::Sobol, 0.25).walks_per_block() % 3, 0);
+        }
+    }
+
+    #[test]
+    fn every_pixel_has_a_light_subpath_of_its_own_and_of_its_channel() {
+        for pixels in [1, 2, 3, 7, 1023, 1024, 1025, 48 * 48, 160 * 120] {
+            let blocks = Blocks::new(pixels, 3, Sampler::Sobol, 1.0).paired();
+            for block in 0..blocks.count() {
+                let walks: Vec<usize> = blocks.pixels(block).map(|pixel| blocks.walk_of(pixel)).collect();
+                assert!(walks.iter().copied().eq(0..walks.len()), "{pixels}: {walks:?}");
+                assert!(walks.len() as u64 <= blocks.walks_per_block());
+                for (pixel, walk) in blocks.pixels(block).zip(blocks.light_paths(block)) {
+                    assert_eq!(blocks.hero(5, 2, walk), blocks.camera_stream(5, 2, pixel).1);
+                }
+            }
         }
     }
 }

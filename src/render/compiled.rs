@@ -19,7 +19,7 @@ use crate::{
     scene::{Scene, lights::Starts},
     shape::Ray,
     transport::{
-        Estimator, Heuristic, Interaction,
+        Connections, Estimator, Heuristic, Interaction, Options,
         profile::{
             Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName,
             Smoke, Vacuum,
@@ -79,8 +79,12 @@ impl<'a, P: Profile> Ready<'a, P> {
         settings: &Settings,
         starts: Option<Arc<Starts>>,
     ) -> Self {
-        let light_walks = settings.options.effort.light_walks;
-        let blocks = Blocks::new(film.len(), P::Channels::COUNT, settings.sampler, light_walks);
+        let Options { effort, connections, .. } = settings.options;
+        let blocks = |light_walks| Blocks::new(film.len(), P::Channels::COUNT, settings.sampler, light_walks);
+        let blocks = match connections {
+            Connections::Cached => blocks(effort.light_walks),
+            Connections::All => blocks(1.0).paired(),
+        };
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let Settings { options, seed, .. } = *settings;
         let estimator = Estimator::<P>::new(scene, options, starts, seed, per_pass, per_block);

@@ -264,7 +264,7 @@ fn trace<P: Profile>(
 ) -> usize {
     let Ready { estimator, blocks, seed, .. } = ready;
     let mut stream = blocks.light_stream(*seed, pass, walk);
-    let hero = blocks.hero(walk);
+    let hero = blocks.hero(*seed, pass, walk);
     let mut observer = observer;
     estimator.trace_light(cache, &mut observer, hero, &mut stream);
     hero

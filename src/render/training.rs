@@ -21,7 +21,7 @@ use crate::{
     },
     settings::options::Effort,
     transport::{
-        Contribution, Departure, Heuristic, MisSums, Options, Strategies, Vertex,
+        Connections, Contribution, Departure, Heuristic, MisSums, Options, Strategies, Vertex,
         observer::{Meeting, Observer, StrategyKind},
         profile::{Profile, ProfileName},
     },
@@ -51,6 +51,7 @@ pub(super) fn starts(scene: &Scene, film: &Film, options: &Options) -> Option<Ar
     let options = Options {
         strategies: Strategies::BDPT,
         effort: Effort::default(),
+        connections: Connections::default(),
         heuristic: Heuristic::Balance,
         max_depth: Some(options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST))),
         ..*options

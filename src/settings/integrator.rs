@@ -14,7 +14,7 @@ use crate::{
     settings::{
         Overrides,
         heuristic::HEURISTIC,
-        options::{FORCED, MAX_DEPTH, Options, PATHS, Strategies},
+        options::{CONNECTIONS, Connections, FORCED, MAX_DEPTH, Options, PATHS, Strategies},
     },
 };
 
@@ -100,10 +100,10 @@ pub struct Integrator {
 pub const ROWS: Registry<Plugin<Build<Integrator>>> = Registry::new(
     "an integrator",
     &[
-        ("bdpt", plugin(BDPT, |p| build_as(p, Strategies::BDPT))),
-        ("path", plugin(SAME, |p| build_as(p, Strategies::BDPT))),
-        ("volpath", plugin(SAME, |p| build_as(p, Strategies::BDPT))),
-        ("volpathmis", plugin(SAME, |p| build_as(p, Strategies::BDPT))),
+        ("bdpt", plugin(BDPT, build_bdpt)),
+        ("path", plugin(SAME, build_bdpt)),
+        ("volpath", plugin(SAME, build_bdpt)),
+        ("volpathmis", plugin(SAME, build_bdpt)),
         ("ptracer", plugin(PTRACER, |p| build_as(p, Strategies::LT))),
         ("fog", plugin(FOG, build_fog)),
         ("single_scattering", plugin(SINGLE_SCATTERING, build_single_scattering)),
@@ -174,7 +174,7 @@ const COMMON: &[Parameter] = rows! {
 
 const BDPT: Table = table! {
     "Bidirectional path tracing, of whose strategies a pilot chooses: the integrator of a scene without one."; ;
-    MAX_DEPTH, PATHS, HEURISTIC, FORCED, COMMON
+    MAX_DEPTH, PATHS, HEURISTIC, CONNECTIONS, FORCED, COMMON
 };
 
 const SAME: Table = Table { about: "The same as `bdpt`; `--integrator pt` is path tracing.", ..BDPT };
@@ -254,6 +254,12 @@ fn check_names(location: &Location, layers: &[Layer]) -> Result<()> {
 
 fn build_as(params: &Params<'_>, strategies: Strategies) -> Result<Integrator> {
     Ok(Integrator { options: Options::read(params, strategies)?, ..Integrator::default() })
+}
+
+fn build_bdpt(params: &Params<'_>) -> Result<Integrator> {
+    let connections = params.choice("connections", &Connections::NAMES)?;
+    let integrator = build_as(params, Strategies::BDPT)?;
+    Ok(Integrator { options: Options { connections, ..integrator.options }, ..integrator })
 }
 
 /// `fog` (BMA02 sec. 3.1 and 4.2).

@@ -85,6 +85,21 @@ impl Survival {
     }
 }
 
+/// Which vertices of light subpaths those of a camera subpath are connected with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Connections {
+    /// Draws from the light subpaths of a block of pixels: as many at every vertex, however long light subpaths are.
+    #[default]
+    Cached,
+    /// All vertices of one light subpath, with which no other camera subpath is connected (LW96 sec. 4).
+    All,
+}
+
+impl Connections {
+    /// Each as typed.
+    pub const NAMES: [(&'static str, Self); 2] = [("cached", Self::Cached), ("all", Self::All)];
+}
+
 /// How many samples the strategies take, for each pixel sample, and how long walks are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
@@ -112,6 +127,8 @@ pub struct Options {
     pub strategies: Strategies,
     /// How often.
     pub effort: Effort,
+    /// With [`Connections::All`] there is one light subpath a pixel sample, whatever `effort` says.
+    pub connections: Connections,
     /// By which they share the paths that several of them can make. All but [`Heuristic::Balance`] run on the profile
     /// `everything`.
     pub heuristic: Heuristic,
@@ -129,6 +146,7 @@ impl Default for Options {
         Self {
             strategies: Strategies::BDPT,
             effort: Effort::default(),
+            connections: Connections::default(),
             heuristic: Heuristic::default(),
             max_depth: None,
             hide_emitters: false,
@@ -148,6 +166,12 @@ pub(super) const MAX_DEPTH: &[Parameter] = rows! {
     integer("max_depth", within(-1.0, MAX), Is(-1.0), "Most segments of a path; -1 for no limit."),
 };
 
+/// What those have besides that connect camera and light subpaths.
+pub(super) const CONNECTIONS: &[Parameter] = rows! {
+    choice("connections", &words::<2, _>(&Connections::NAMES), "cached",
+        "With what a vertex is connected: `cached`, vertices drawn from many light subpaths; `all` of its own one (LW96).").ours(),
+};
+
 /// What those have besides that follow primary rays.
 pub(super) const FORCED: &[Parameter] = rows! {
     boolean("forced_interaction", false,
@@ -160,6 +184,7 @@ impl Options {
         Ok(Self {
             strategies,
             effort: Effort::default(),
+            connections: Connections::default(),
             // Limits that u32 does not hold are none.
             max_depth: u32::try_from(params.integer("max_depth")?).ok(),
             hide_emitters: params.boolean("hide_emitters")?,

@@ -1,13 +1,15 @@
-//! The cache of light subpaths that the camera subpaths of a block are connected to: connecting every camera
-//! vertex to a fixed number of its vertices, drawn uniformly, bounds the cost of a pixel sample linearly in
-//! its length.
+//! The light subpaths that the camera subpaths of a block are connected to. Connecting every camera vertex to a fixed number
+//! of their vertices, drawn uniformly, bounds the cost of a pixel sample linearly in its length; connecting it to all of one
+//! light subpath is the estimator of LW96.
 
 use super::{mis::MisSums, vertex::Vertex};
+use crate::sampling::Stream;
 
 /// Vertices of light subpaths, those of one hero channel together.
 #[derive(Clone, Debug)]
 pub struct LightCache<S: MisSums> {
     pools: Vec<Pool<S>>,
+    walks: Vec<Begun>,
 }
 
 #[derive(Clone, Debug)]
@@ -17,14 +19,56 @@ struct Pool<S: MisSums> {
     walks: f32,
 }
 
+/// Where the vertices of a walk begin.
+#[derive(Clone, Copy, Debug)]
+struct Begun {
+    hero: usize,
+    first: usize,
+}
+
+/// The light vertices that the vertices of one camera subpath are connected to.
+#[derive(Clone, Copy, Debug)]
+pub struct Partners<'a, S: MisSums> {
+    vertices: &'a [Vertex<S>],
+    /// The first of them in its pool.
+    first: usize,
+    /// How many of them each camera vertex is connected to.
+    pub count: usize,
+    /// True if they are drawn; else each has its turn.
+    is_drawn: bool,
+    /// The factor that makes the sum over these connections an estimate of that over all vertices of one light subpath:
+    /// vertices / (connections x walks) where they are drawn.
+    pub scale: f32,
+}
+
+impl<'a, S: MisSums> Partners<'a, S> {
+    /// Nothing to connect to.
+    pub const NONE: Self = Self { vertices: &[], first: 0, count: 0, is_drawn: false, scale: 1.0 };
+
+    /// The vertex for connection number `turn`, and its index in the pool.
+    #[inline]
+    pub fn pick(&self, turn: usize, stream: &mut Stream) -> (usize, &'a Vertex<S>) {
+        let index = if self.is_drawn { stream.below(self.vertices.len()) } else { turn };
+        (self.first + index, &self.vertices[index])
+    }
+
+    /// All of them.
+    #[cfg(test)]
+    pub fn vertices(&self) -> &'a [Vertex<S>] {
+        self.vertices
+    }
+}
+
 impl<S: MisSums> LightCache<S> {
     /// No walks, for `heroes` hero channels.
     pub fn new(heroes: usize) -> Self {
-        Self { pools: (0..heroes).map(|_| Pool { vertices: Vec::new(), walks: 0.0 }).collect() }
+        let pool = |_| Pool { vertices: Vec::new(), walks: 0.0 };
+        Self { pools: (0..heroes).map(pool).collect(), walks: Vec::new() }
     }
 
     /// Counts one walk of `hero` whose vertices are kept with probability `keep`.
     pub fn add_walk(&mut self, hero: usize, keep: f32) {
+        self.walks.push(Begun { hero, first: self.pools[hero].vertices.len() });
         self.pools[hero].walks += keep;
     }
 
@@ -34,15 +78,24 @@ impl<S: MisSums> LightCache<S> {
         self.pools[hero].vertices.push(vertex);
     }
 
-    /// The vertices for camera subpaths of `hero`, and the factor that makes `connections` uniform draws from them an
-    /// estimate of the sum over all vertices of one light subpath: vertices / (connections x walks).
+    /// `connections` uniform draws from the vertices for camera subpaths of `hero`.
     #[inline]
-    pub fn pool(&self, hero: usize, connections: u32) -> Option<(&[Vertex<S>], f32)> {
+    pub fn drawn(&self, hero: usize, connections: u32) -> Partners<'_, S> {
         let pool = &self.pools[hero];
         if pool.vertices.is_empty() || connections == 0 {
-            return None;
+            return Partners::NONE;
         }
-        Some((&pool.vertices, pool.vertices.len() as f32 / (connections as f32 * pool.walks)))
+        let scale = pool.vertices.len() as f32 / (connections as f32 * pool.walks);
+        Partners { vertices: &pool.vertices, first: 0, count: connections as usize, is_drawn: true, scale }
+    }
+
+    /// All vertices of one `walk`, by its number in the cache.
+    pub fn all_of(&self, walk: usize) -> Partners<'_, S> {
+        let Some(Begun { hero, first }) = self.walks.get(walk).copied() else { return Partners::NONE };
+        let next = self.walks[walk + 1..].iter().find(|next| next.hero == hero);
+        let all = &self.pools[hero].vertices;
+        let vertices = &all[first..next.map_or(all.len(), |next| next.first)];
+        Partners { vertices, first, count: vertices.len(), ..Partners::NONE }
     }
 
     /// Vertices kept in all.

@@ -3,7 +3,7 @@
 
 use super::{
     Estimator,
-    cache::LightCache,
+    cache::Partners,
     connect::{self, Contribution, Span},
     equiangular::FirstCollision,
     mis::{self, MisSums, Weight},
@@ -25,7 +25,7 @@ use crate::{
 /// Gathers the radiance of one pixel sample.
 pub struct CameraPath<'a, P: Profile, R> {
     pub(super) estimator: &'a Estimator<'a, P>,
-    cache: &'a LightCache<P::MisSums>,
+    light: Partners<'a, P::MisSums>,
     hero: usize,
     /// The last vertex that the walk left, from which next-event estimation would have been done.
     previous: Vec3,
@@ -36,11 +36,11 @@ pub struct CameraPath<'a, P: Profile, R> {
     pub(super) observer: R,
 }
 
-/// One camera subpath through `film` [pixels] and a point of the aperture, connected to the light subpaths of
-/// `cache`; its radiance goes to `observer`.
+/// One camera subpath through `film` [pixels] and a point of the aperture, connected to vertices of `light` subpaths; its
+/// radiance goes to `observer`.
 pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     estimator: &Estimator<'_, P>,
-    cache: &LightCache<P::MisSums>,
+    light: Partners<'_, P::MisSums>,
     film: Vec2,
     aperture: Vec2,
     hero: usize,
@@ -54,7 +54,7 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
         survival: estimator.survival,
     };
     let departure = depart(estimator, film, aperture);
-    let mut camera = CameraPath::new(estimator, cache, hero, observer);
+    let mut camera = CameraPath::new(estimator, light, hero, observer);
     walk(estimator.scene, kind, departure, &mut camera, stream);
     camera.beside_walk(&departure, stream);
     camera.observer
@@ -118,7 +118,7 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
             if self.estimator.counts.next_event > 0.0 {
                 self.next_event(vertex, stream);
             }
-            self.connect_cached(vertex, stream);
+            self.connect_light(vertex, stream);
         }
     }
 
@@ -148,11 +148,11 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
     /// Its contributions go to `observer`.
     pub fn new(
         estimator: &'a Estimator<'a, P>,
-        cache: &'a LightCache<P::MisSums>,
+        light: Partners<'a, P::MisSums>,
         hero: usize,
         observer: R,
     ) -> Self {
-        Self { estimator, cache, hero, previous: Vec3::ZERO, pdf_fwd: 0.0, first: None, observer }
+        Self { estimator, light, hero, previous: Vec3::ZERO, pdf_fwd: 0.0, first: None, observer }
     }
 
     /// What else there is along the primary ray, once the walk is done: it comes to the evenly spread numbers first.
@@ -356,21 +356,17 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         }
     }
 
-    /// s >= 2: vertices drawn from the cache of light subpaths.
+    /// s >= 2: vertices of light subpaths.
     #[inline]
-    fn connect_cached(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
-        let estimator = self.estimator;
-        let Some((pool, scale)) = self.cache.pool(self.hero, estimator.connections_per_vertex) else {
-            return;
-        };
-        for _ in 0..estimator.connections_per_vertex {
-            let index = stream.below(pool.len());
-            let other = &pool[index];
-            if vertex.subpath.edges + other.subpath.edges < estimator.max_edges {
+    fn connect_light(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
+        let light = self.light;
+        for turn in 0..light.count {
+            let (index, other) = light.pick(turn, stream);
+            if vertex.subpath.edges + other.subpath.edges < self.estimator.max_edges {
                 let (s, t) = (other.subpath.edges + 1, vertex.subpath.edges + 1);
                 self.observer.start();
                 let contribution =
-                    self.connect_with(vertex, other, stream).map(|contribution| contribution * scale);
+                    self.connect_with(vertex, other, stream).map(|contribution| contribution * light.scale);
                 self.observer.contribute(s, t, Meeting::Light(index, other), contribution.as_ref());
                 self.observer.stop(StrategyKind::Connection, s, t);
             }

@@ -10,7 +10,7 @@
 
 use super::{
     Estimator,
-    cache::LightCache,
+    cache::Partners,
     camera_path::{CameraPath, depart},
     observer::Observer,
     profile::Profile,
@@ -27,7 +27,7 @@ use crate::{
 /// One camera sample with a forced interaction; the rest as in [`super::camera_path::sample`].
 pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     estimator: &Estimator<'_, P>,
-    cache: &LightCache<P::MisSums>,
+    light: Partners<'_, P::MisSums>,
     film: Vec2,
     aperture: Vec2,
     hero: usize,
@@ -37,7 +37,7 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     let (scene, max_edges) = (estimator.scene, estimator.max_edges);
     let kind = Kind { transport: Transport::Radiance, hero, max_edges, survival: estimator.survival };
     let departure = depart(estimator, film, aperture);
-    let mut camera = CameraPath::new(estimator, cache, hero, observer);
+    let mut camera = CameraPath::new(estimator, light, hero, observer);
     if max_edges == 0 {
         return camera.into_observer();
     }

@@ -33,11 +33,11 @@
 //! |---|---|---|
 //! | s = 0 | the camera subpath hits an emitter | [`camera_path::Eye::emitter_hit`] |
 //! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`camera_path::Eye::join_emitter`] |
-//! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache | [`camera_path::Eye::connect_with`] |
+//! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache, or with all of one walk ([`Connections`]) | [`camera_path::Eye::connect_with`] |
 //! | s >= 1, t = 1 | the light subpath is seen by the lens, through any pixel | [`light_path::Light::connect_to_lens`] |
 //! | s = 1, t = 2 in media | a distance along the primary ray, likely near an emitter, then as s = 1 | [`equiangular`] |
 //!
-//! A pixel sample is one camera subpath; the light subpaths of a block of pixels fill the cache. `pt` and
+//! A pixel sample is one camera subpath; the light subpaths of a block of pixels fill the cache, or each belongs to one pixel. `pt` and
 //! `lt` are the same with strategies left out ([`Strategies`]), other heuristics than eq. 14 sum n p
 //! otherwise ([`MisSums`]), and the flight densities are part of p in all of them.
 //!
@@ -77,6 +77,7 @@ mod vertex;
 mod walk;
 
 pub use cache::LightCache;
+use cache::Partners;
 pub use connect::Contribution;
 pub use equiangular::applies as equiangular_applies;
 pub use mis::MisSums;
@@ -86,7 +87,7 @@ pub use walk::Departure;
 
 pub use crate::{
     settings::heuristic::Heuristic,
-    settings::options::{Effort, Options, Strategies, Survival},
+    settings::options::{Connections, Effort, Options, Strategies, Survival},
 };
 
 use crate::{
@@ -125,6 +126,7 @@ pub struct Estimator<'a, P: Profile> {
     heuristic: Heuristic,
     survival: Survival,
     connections_per_vertex: u32,
+    connections: Connections,
     /// Probability that a light vertex is kept for connections.
     keep: f32,
     max_edges: u32,
@@ -147,7 +149,8 @@ impl<'a, P: Profile> Estimator<'a, P> {
         walks_per_pass: u64,
         walks_per_block: u64,
     ) -> Self {
-        let Options { strategies, effort, heuristic, max_depth, hide_emitters, forced_interaction } = options;
+        let Options { strategies, effort, connections, heuristic, max_depth, .. } = options;
+        let Options { hide_emitters, forced_interaction, .. } = options;
         let lit = !scene.lights.is_empty();
         let count = |on: bool, n: f32| if on && lit { n } else { 0.0 };
         let mut estimator = Self {
@@ -162,6 +165,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             heuristic,
             survival: effort.survival,
             connections_per_vertex: 0,
+            connections,
             keep: 0.0,
             max_edges: max_depth.unwrap_or(u32::MAX).min(P::MisSums::MOST_EDGES),
             hide_emitters,
@@ -169,8 +173,11 @@ impl<'a, P: Profile> Estimator<'a, P> {
             starts,
             profile: std::marker::PhantomData,
         };
-        if strategies.connection && lit {
-            estimator.plan_connections(effort.connections, seed, walks_per_block);
+        match connections {
+            _ if !(strategies.connection && lit) => {}
+            Connections::Cached => estimator.plan_connections(effort.connections, seed, walks_per_block),
+            // Every strategy takes one sample of each pair of subpaths, as LW96 eq. 14 has it.
+            Connections::All => (estimator.keep, estimator.counts.connection) = (1.0, 1.0),
         }
         estimator
     }
@@ -233,7 +240,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
 
     /// True if light subpaths have something to do.
     pub fn needs_light_walks(&self) -> bool {
-        self.connections_per_vertex > 0 || self.counts.lens > 0.0
+        self.counts.connection > 0.0 || self.counts.lens > 0.0
     }
 
     /// True if the first vertex of a light subpath is connected to the lens, see [`Strategies::runs`].
@@ -269,21 +276,37 @@ impl<'a, P: Profile> Estimator<'a, P> {
         segment::sample_free_flight::<P>(ahead, 0, stream, &mut |_, _| ()).interaction
     }
 
+    /// The light vertices for a camera subpath of channel `hero`, which may have light subpath number `walk` of the cache for
+    /// itself.
+    #[inline]
+    fn partners<'c>(
+        &self,
+        cache: &'c LightCache<P::MisSums>,
+        hero: usize,
+        walk: usize,
+    ) -> Partners<'c, P::MisSums> {
+        match self.connections {
+            Connections::Cached => cache.drawn(hero, self.connections_per_vertex),
+            Connections::All if self.counts.connection > 0.0 => cache.all_of(walk),
+            Connections::All => Partners::NONE,
+        }
+    }
+
     /// One camera subpath of channel `hero` through `film` [pixels] and a point of the aperture; what it
-    /// contributes goes to `observer`.
+    /// contributes goes to `observer`. `walk` as in [`Self::partners`].
     pub fn sample_pixel<R: Observer<P::MisSums>>(
         &self,
         cache: &LightCache<P::MisSums>,
-        film: Vec2,
-        aperture: Vec2,
-        hero: usize,
+        [film, aperture]: [Vec2; 2],
+        (hero, walk): (usize, usize),
         observer: R,
         stream: &mut Stream,
     ) -> R {
+        let light = self.partners(cache, hero, walk);
         if P::MEDIA && self.forced_interaction {
-            return forced::sample(self, cache, film, aperture, hero, observer, stream);
+            return forced::sample(self, light, film, aperture, hero, observer, stream);
         }
-        camera_path::sample(self, cache, film, aperture, hero, observer, stream)
+        camera_path::sample(self, light, film, aperture, hero, observer, stream)
     }
 }
 

@@ -226,6 +226,11 @@ fn sums_know_the_step_that_was_marched_by() {
     sandbox
         .run("render scene.json --spp 3 --step 0.2 --sums a.sums --resume")
         .refuses(&["overridden.step = 0.2"]);
+    sandbox.run("render scene.json --spp 3 --sums a.sums --resume").refuses(&["trackers[0] = \"auto\""]);
+    let all = "--strategies hit,next-event,join,lens --sums b.sums";
+    sandbox.run(&format!("render scene.json --spp 1 {all}")).ends(0);
+    let pairs = format!("render scene.json --spp 2 {all} --resume --connections all");
+    sandbox.run(&pairs).refuses(&["connections = \"all\""]);
 }
 
 #[test]

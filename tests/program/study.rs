@@ -346,6 +346,22 @@ fn bias_flattens_the_curve_and_shifts_the_mean() {
     assert_eq!(scene["contenders"].as_array().unwrap().len(), 2);
 }
 
+/// LW96 sec. 5: the bias of each step against flights without any, whatever the scene's own.
+#[test]
+fn bias_is_drawn_over_the_step() {
+    let desk = Desk::new(&[("cloud.json", layered())]);
+    let words =
+        "cloud.json -o out --vary step=1.9,0.1 --spp 128 --doublings 1 --seeds 4 --reference-spp 2048";
+    desk.study(&words.split(' ').collect::<Vec<_>>());
+    let scene = &desk.json("out/study.json")["scenes"][0];
+    let how = scene["reference"]["how"].as_str().unwrap();
+    assert!(how.contains("--tracker auto"), "{how}");
+    let bias = |index: usize| number(&scene["contenders"][index]["points"][0]["difference"]["mean"]).abs();
+    assert!(bias(0) > 5.0 * bias(1), "{} {}", bias(0), bias(1));
+    let page = fs::read_to_string(desk.path("out/study.html")).unwrap();
+    assert!(page.contains("<h3>Bias over step</h3>") && !page.contains("Bias over seed"));
+}
+
 /// A mirror under a lamp, which light subpaths cannot show.
 fn mirror() -> Value {
     let mirror = with(floor(-0.5, 0.6, 0.5), &[("bsdf", json!({"type": "conductor"}))]);

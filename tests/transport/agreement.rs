@@ -11,7 +11,7 @@ use crate::common::{
 use serde_json::{Value, json};
 use tyndall::{
     analysis::coverage,
-    transport::{Options, Strategies},
+    transport::{Connections, Options, Strategies},
 };
 
 /// What decides which strategies can make all paths of a scene.
@@ -61,6 +61,13 @@ fn all_agree(name: &str, scene: &Value, kind: Kind, samples_per_pixel: u64) {
     let sets: Vec<(Strategies, Sample)> = measured.by_ref().collect();
     let (_, all) = sets.iter().find(|(set, _)| *set == Strategies::BDPT).expect("covers everything");
     let mut claims = Claims::new();
+    let mut paired = stage;
+    paired.setup.integrator.options.connections = Connections::All;
+    let pairs = Sample::of(
+        &paired.renders(Strategies::BDPT, samples_per_pixel, 50_000..50_000 + SEEDS),
+        paired.width(),
+    );
+    claims.equal(&format!("{name}: pairs of walks against all strategies"), &pairs, all);
     for (set, sample) in sets.iter().filter(|(set, _)| *set != Strategies::BDPT) {
         claims.equal(&format!("{name}: {} against all strategies", name_of(*set)), sample, all);
     }

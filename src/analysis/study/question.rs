@@ -2,7 +2,7 @@
 
 use super::contender::{Contender, How};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// All that decides about the numbers of a study.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -107,8 +107,10 @@ pub fn differ(place: &str, old: &Value, new: &Value) -> Option<(String, String, 
     let inside = |name: &str| if place.is_empty() { name.to_owned() } else { format!("{place}.{name}") };
     match (old, new) {
         _ if old == new => None,
-        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
-            a.iter().find_map(|(name, old)| differ(&inside(name), old, &b[name]))
+        // What is not there is null; unless all is other.
+        (Value::Object(a), Value::Object(b)) if a.keys().any(|name| b.contains_key(name)) => {
+            let value = |of: &Map<String, Value>, name| of.get(name).cloned().unwrap_or_default();
+            a.keys().chain(b.keys()).find_map(|name| differ(&inside(name), &value(a, name), &value(b, name)))
         }
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
             (0..a.len()).find_map(|i| differ(&format!("{place}[{i}]"), &a[i], &b[i]))

@@ -11,6 +11,7 @@ use crate::{
     },
     transport::{
         Estimator, LightCache,
+        cache::Partners,
         camera_path::{self, CameraPath},
         connect::Contribution,
         equiangular::FirstCollision,
@@ -79,7 +80,6 @@ impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::MisSums> {
 /// A camera subpath through `film`.
 pub fn camera_walk<'a, P: Profile>(
     estimator: &'a Estimator<'a, P>,
-    cache: &'a LightCache<P::MisSums>,
     film: Vec2,
     hero: usize,
     stream: &mut Stream,
@@ -91,7 +91,7 @@ pub fn camera_walk<'a, P: Profile>(
         survival: estimator.survival,
     };
     let departure = camera_path::depart(estimator, film, APERTURE);
-    let mut trail = Trail::new(CameraPath::new(estimator, cache, hero, Sum::default()));
+    let mut trail = Trail::new(CameraPath::new(estimator, Partners::NONE, hero, Sum::default()));
     walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
     let first = trail.vertices.first();
     trail.visitor.first =
@@ -121,8 +121,7 @@ pub fn cases<P: Profile>(
     hero: usize,
     stream: &mut Stream,
 ) -> Vec<Case> {
-    let cache = LightCache::new(P::Channels::COUNT);
-    let camera = camera_walk(estimator, &cache, film, hero, stream);
+    let camera = camera_walk(estimator, film, hero, stream);
     let mut cases = Cases { scene: estimator.scene, hidden: estimator.hide_emitters, hero, all: Vec::new() };
     of_eye(estimator, &camera, &mut cases, stream);
     of_pivots(estimator, film, &camera.visitor, &mut cases, stream);
@@ -138,8 +137,8 @@ pub fn cases<P: Profile>(
 /// Paths of at least `length` vertices: one by next-event estimation, one by a connection, one by the lens.
 pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, stream: &mut Stream) -> Vec<Case> {
     let scene = estimator.scene;
-    let (cache, mut kept) = (LightCache::new(P::Channels::COUNT), LightCache::new(P::Channels::COUNT));
-    let camera = camera_walk(estimator, &cache, vec2(8.0, 6.0), 0, stream);
+    let mut kept = LightCache::new(P::Channels::COUNT);
+    let camera = camera_walk(estimator, vec2(8.0, 6.0), 0, stream);
     let start = scene.lights.sample_emission(&scene.geometry, None, stream).unwrap();
     let mut film = WideFilm;
     let light =

@@ -16,7 +16,7 @@ pub mod scenes;
 mod starts;
 
 use super::{
-    Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
+    Connections, Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
     profile::{
         Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum,
     },
@@ -34,6 +34,7 @@ use scenes::*;
 const ALL: Options = Options {
     strategies: Strategies::BDPT,
     effort: Effort { survival: Survival::Albedo, light_walks: 1.0, connections: 1, learnt_starts: false },
+    connections: Connections::Cached,
     heuristic: Heuristic::Balance,
     max_depth: None,
     hide_emitters: false,
@@ -116,6 +117,26 @@ fn other_efforts() {
         assert_eq!(report.paths, examine::<ByKind>(name, &build(parts), options, 500).paths);
         assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
     }
+}
+
+/// One sample of each strategy for each pair of subpaths (LW96 eq. 14).
+#[test]
+fn all_vertices_of_a_pair_of_walks() {
+    let options = Options { connections: Connections::All, ..ALL };
+    let all = |name: &'static str, report: Report| {
+        assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
+    };
+    let room = build(&[FOG, INSIDE, ROOM, LAMP, POINT, BALL]);
+    assert_eq!(Estimator::<Fog>::new(&room.scene, options, None, SEED, 64, 64).counts.connection, 1.0);
+    all("room", examine::<Fog>("pairs, in a room", &room, options, 500));
+    let glass = build(&[FOG, INSIDE, ROOM, LAMP, GLASS_BALL, MIRROR]);
+    all("glass", examine::<Fog>("pairs, with glass", &glass, options, 400));
+    let open = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]);
+    all("open", examine::<ByKind>("pairs, in the open", &open, options, 500));
+    let waves = build(&[OUTSIDE, WAVES, GROUND, LAMP, BULB]);
+    all("waves", examine::<Smoke>("pairs, in waves", &waves, options, 500));
+    let vacuum = build(&[OUTSIDE, GROUND, LAMP, BALL]);
+    all("vacuum", examine::<Vacuum>("pairs, in a vacuum", &vacuum, options, 2000));
 }
 
 /// Emitters of all kinds with learnt starts.
@@ -470,7 +491,7 @@ fn joins_are_counted_as_often_as_they_come() {
             estimator.trace_light(&mut cache, &mut Nowhere, 0, &mut stream);
         }
         // Every walk has a first vertex here, so of the draws this part are first vertices:
-        let (pool, _) = cache.pool(0, 1).unwrap();
+        let pool = cache.drawn(0, 1).vertices();
         let first = pool.iter().filter(|vertex| vertex.subpath.edges == 1).count() as f32 / pool.len() as f32;
         let count = estimator.counts.connection;
         assert!((count / first - 1.0).abs() < 0.1, "{count} counted, {first} came");

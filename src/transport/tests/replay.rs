@@ -14,6 +14,7 @@ use crate::{
     shape::Ray,
     transport::{
         Estimator, LightCache,
+        cache::Partners,
         camera_path::{self, CameraPath},
         equiangular::FirstCollision,
         light_path::{self, LightPath},
@@ -51,11 +52,10 @@ pub fn weights<P: Profile>(
     path: &Path,
     hero: usize,
 ) -> Vec<Option<f64>> {
-    let cache = LightCache::new(P::Channels::COUNT);
     let (mut kept, mut film) = (LightCache::new(P::Channels::COUNT), WideFilm);
     let start = start(reference, path);
     let light = LightPath::new(estimator, &mut kept, &mut film, start, hero);
-    let mut camera = CameraPath::new(estimator, &cache, hero, Sum::default());
+    let mut camera = CameraPath::new(estimator, Partners::NONE, hero, Sum::default());
     let by_light = by_light(estimator, reference, path, &start, hero, &light);
     let by_eye = by_eye(estimator, reference, path, hero, &camera);
     camera.first = by_eye.vertices.first().and_then(|vertex| first(path, vertex, reference));
