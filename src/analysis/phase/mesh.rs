@@ -75,7 +75,7 @@ impl Mesh {
         ply.header.elements.add(vertex);
         ply.header.elements.add(face);
         ply.payload.insert("vertex".into(), self.corners.iter().map(vertex_of).collect());
-        ply.payload.insert("face".into(), self.faces.iter().map(face_of).collect());
+        ply.payload.insert("face".into(), self.faces.iter().map(|corners| face_of(corners)).collect());
         Writer::new().write_ply(out, &mut ply).map(|_| ())
     }
 }
@@ -118,9 +118,9 @@ fn vertex_of(corner: &DVec3) -> DefaultElement {
     element
 }
 
-fn face_of(corners: &Vec<u32>) -> DefaultElement {
+fn face_of(corners: &[u32]) -> DefaultElement {
     let mut element = DefaultElement::new();
-    element.insert(CORNERS.into(), Property::ListUInt(corners.clone()));
+    element.insert(CORNERS.into(), Property::ListUInt(corners.to_vec()));
     element
 }
 
