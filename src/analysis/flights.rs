@@ -1,20 +1,25 @@
 //! Ways of sampling flights through a medium, one against the other (P03T A.2.1, `mcs3d`).
 //!
-//! Photons of unit power enter a slab or a cube of homogeneous medium at one point in one direction. What leaves
-//! through each face, and what is absorbed, is recorded for each way of choosing how far they fly.
+//! Photons of unit power enter a slab or a cube, of one medium or subdivided, at one point in one direction. What leaves
+//! through each face, and what is absorbed, is recorded for each way of choosing how far they fly: of so many photons, or
+//! of as many as an error takes.
 
+pub mod cells;
 pub mod drawing;
 pub mod law;
+pub mod stop;
 pub mod tally;
 #[cfg(test)]
 mod tests;
 mod walk;
 
 use crate::phase::Phase;
+use cells::{Cells, Matter};
 use law::{FreePath, Law};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::time::Instant;
+use stop::Stop;
 use tally::{Estimate, QUANTITIES, Tally};
 
 /// The form of the medium.
@@ -26,17 +31,15 @@ pub enum Shape {
     Cube,
 }
 
-/// Homogeneous matter in a form.
+/// Matter in a form.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     /// Its form.
     pub shape: Shape,
     /// Thickness of the slab, or side length of the cube [m].
     pub size: f64,
-    /// Absorption [1/m], >= 0.
-    pub sigma_a: f64,
-    /// Scattering [1/m], >= 0.
-    pub sigma_s: f64,
+    /// What it is, cell by cell; layers in a slab.
+    pub cells: Cells,
     /// How it scatters.
     pub phase: Phase,
     /// Angle between the direction of entry and the normal of the face [rad], in [0, pi/2).
@@ -46,8 +49,9 @@ pub struct Experiment {
 /// How far photons fly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// In steps of this length [m], scattered at the end of a step with probability 1 - exp(-sigma_s step), absorbed
-    /// along the way (CDS; Blasi et al.). What leaves within a step is not scattered in it.
+    /// In steps of this length [m], scattered at the end of a step with probability 1 - exp(-sigma_s step), where sigma_s
+    /// varies 1 - exp of its integral over the step, absorbed along the way (CDS; Blasi et al.). What leaves within a step
+    /// is not scattered in it.
     Constant(f64),
     /// Exponentially by sigma_t; every collision leaves the albedo of the power (RDS_t).
     ByExtinction,
@@ -77,12 +81,21 @@ impl Method {
 /// How much work to do.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Number of photons for each method, at least 2.
-    pub photons: u64,
-    /// Photons of the reference run, at least 2.
-    pub truth_photons: u64,
+    /// Of each method.
+    pub each: Run,
+    /// Of the reference run.
+    pub truth: Run,
     /// Seed of all random numbers.
     pub seed: u64,
+}
+
+/// How many photons one run sends.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    /// Their number, at least 2.
+    pub photons: u64,
+    /// Fewer, if this is reached before.
+    pub stop: Option<Stop>,
 }
 
 /// What one method found.
@@ -92,6 +105,8 @@ pub struct Found {
     pub method: String,
     /// Photons sent in.
     pub photons: u64,
+    /// False if its error was to be reached and was not.
+    pub reached: bool,
     /// Time they took [s].
     pub seconds: f64,
     /// One for each of [`QUANTITIES`], in their order.
@@ -124,9 +139,12 @@ pub struct Study {
     /// One for each of [`QUANTITIES`]: from a closed form (no error) or a long run by sigma_t (1 / photons where no two
     /// photons differ).
     pub truth: Vec<Estimate>,
+    /// Photons of that run.
+    pub truth_photons: u64,
     /// What each method found.
     pub methods: Vec<Found>,
-    /// Mean lengths of flights by constant steps without end of the medium; none where nothing scatters.
+    /// Mean lengths of flights by constant steps without end of the medium; none where nothing scatters, or where it is
+    /// subdivided.
     pub laws: Vec<Law>,
     /// The same of exponential flights by sigma_t and by sigma_s, each where it is above 0.
     pub free_paths: Vec<FreePath>,
@@ -142,25 +160,36 @@ pub fn study(experiment: &Experiment, steps: &[f64], effort: Effort) -> Study {
     let random = [Method::ByExtinction, Method::ByScattering, Method::Forced];
     let constant = steps.iter().map(|step| Method::Constant(*step));
     let methods: Vec<Method> = random.into_iter().chain(constant).collect();
-    let truth = truth(experiment, effort);
+    let (truth, truth_photons) = truth(experiment, effort);
     let most_z = most_z(methods.len() * QUANTITIES.len());
     let found = |(index, method): (usize, &Method)| {
-        let (tally, seconds) = send(experiment, *method, effort.photons, effort.seed, index as u64 + 1);
-        judge(*method, &tally, seconds, &truth, most_z)
+        let (tally, seconds) = send(experiment, *method, effort.each, effort.seed, index as u64 + 1);
+        let reached = effort.each.stop.is_none_or(|stop| stop.is_reached(&tally));
+        Found { reached, ..judge(*method, &tally, seconds, &truth, most_z) }
     };
     let methods = methods.iter().enumerate().map(found).collect();
-    let laws = steps.iter().enumerate().filter_map(|(index, step)| {
-        Law::measure(*step, experiment.sigma_s, effort.photons, effort.seed, index as u64)
-    });
-    Study { truth, methods, laws: laws.collect(), free_paths: free_paths(experiment, effort), most_z }
+    let only = experiment.cells.only();
+    let laws = only.map_or_else(Vec::new, |matter| laws(matter, steps, effort));
+    let free_paths = only.map_or_else(Vec::new, |matter| free_paths(matter, effort));
+    Study { truth, truth_photons, methods, laws, free_paths, most_z }
 }
 
-fn free_paths(experiment: &Experiment, effort: Effort) -> Vec<FreePath> {
-    let Experiment { sigma_a, sigma_s, .. } = *experiment;
-    let by = [("RDS_t", sigma_a + sigma_s), ("RDS_s", sigma_s)];
-    let measure = |(index, (method, sigma))| {
-        FreePath::measure(method, sigma, effort.photons, effort.seed, index as u64)
+/// Flights that one measurement of a mean length takes at most.
+const MOST_FLIGHTS: u64 = 10_000_000;
+
+fn laws(matter: Matter, steps: &[f64], effort: Effort) -> Vec<Law> {
+    let flights = effort.each.photons.min(MOST_FLIGHTS);
+    let measure = |(index, step): (usize, &f64)| {
+        Law::measure(*step, matter.sigma_s, flights, effort.seed, index as u64)
     };
+    steps.iter().enumerate().filter_map(measure).collect()
+}
+
+fn free_paths(matter: Matter, effort: Effort) -> Vec<FreePath> {
+    let flights = effort.each.photons.min(MOST_FLIGHTS);
+    let by = [("RDS_t", matter.sigma_t()), ("RDS_s", matter.sigma_s)];
+    let measure =
+        |(index, (method, sigma))| FreePath::measure(method, sigma, flights, effort.seed, index as u64);
     by.into_iter().enumerate().filter_map(measure).collect()
 }
 
@@ -170,21 +199,24 @@ fn most_z(tests: usize) -> f64 {
     Normal::standard().inverse_cdf(1.0 - 0.5 * each)
 }
 
-/// A long run of flights by sigma_t, and closed forms in place of what has one.
-fn truth(experiment: &Experiment, effort: Effort) -> Vec<Estimate> {
-    let (tally, _) = send(experiment, Method::ByExtinction, effort.truth_photons, effort.seed, 0);
+/// A long run of flights by sigma_t, and closed forms in place of what has one; and its photons.
+fn truth(experiment: &Experiment, effort: Effort) -> (Vec<Estimate>, u64) {
+    let (tally, _) = send(experiment, Method::ByExtinction, effort.truth, effort.seed, 0);
     let known = experiment.closed_forms();
-    let run = tally.estimates().into_iter().map(|run| run.at_best(effort.truth_photons));
-    run.zip(known).map(|(run, known)| known.map_or(run, Estimate::exact)).collect()
+    let run = tally.estimates().into_iter().map(|run| run.at_best(tally.photons));
+    (run.zip(known).map(|(run, known)| known.map_or(run, Estimate::exact)).collect(), tally.photons)
 }
 
 /// Sends photons in; seconds they take.
-fn send(experiment: &Experiment, method: Method, photons: u64, seed: u64, index: u64) -> (Tally, f64) {
+fn send(experiment: &Experiment, method: Method, run: Run, seed: u64, index: u64) -> (Tally, f64) {
     let started = Instant::now();
     let mut tally = Tally::default();
     let walker = walk::Walker::new(experiment, method);
-    for photon in 0..photons {
+    for photon in 0..run.photons {
         tally.add(&walker.walk(seed, index, photon));
+        if run.stop.is_some_and(|stop| stop.ends(&tally)) {
+            break;
+        }
     }
     (tally, started.elapsed().as_secs_f64())
 }
@@ -200,5 +232,5 @@ fn judge(method: Method, tally: &Tally, seconds: f64, truth: &[Estimate], most_z
     let estimates: Vec<Judged> = QUANTITIES.iter().zip(tally.estimates()).zip(truth).map(judged).collect();
     let largest_z = estimates.iter().map(|judged| judged.z.abs()).fold(0.0, f64::max);
     let (method, photons) = (method.name(), tally.photons);
-    Found { method, photons, seconds, estimates, largest_z, agrees: largest_z <= most_z }
+    Found { method, photons, reached: true, seconds, estimates, largest_z, agrees: largest_z <= most_z }
 }

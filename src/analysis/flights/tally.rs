@@ -58,15 +58,17 @@ impl Tally {
 
     /// Means and standard errors.
     pub fn estimates(&self) -> Vec<Estimate> {
+        (0..COUNT).map(|quantity| self.estimate(quantity)).collect()
+    }
+
+    /// The same of one quantity, by its index.
+    pub fn estimate(&self, quantity: usize) -> Estimate {
         let n = self.photons as f64;
-        let estimate = |(sum, square): (&f64, &f64)| {
-            let mean = sum / n;
-            let variance = (square / n - mean * mean).max(0.0);
-            // What is left of equal values is rounding.
-            let variance = if variance < 1e-14 * mean * mean { 0.0 } else { variance };
-            Estimate { mean, standard_error: (variance / (n - 1.0)).sqrt() }
-        };
-        self.sums.iter().zip(&self.squares).map(estimate).collect()
+        let mean = self.sums[quantity] / n;
+        let variance = (self.squares[quantity] / n - mean * mean).max(0.0);
+        // What is left of equal values is rounding.
+        let variance = if variance < 1e-14 * mean * mean { 0.0 } else { variance };
+        Estimate { mean, standard_error: (variance / (n - 1.0)).sqrt() }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{
     Experiment, Method, Shape,
+    cells::{Matter, Section, Way, depth},
     tally::{
         ABSORBED, COUNT, DIRECT, DIRECT_SIDES, REFLECTED, Record, SCATTERED, SCATTERINGS, SIDES, TRANSMITTED,
     },
@@ -35,22 +36,66 @@ const SURVIVAL: f64 = 0.1;
 pub(super) struct Walker<'a> {
     experiment: &'a Experiment,
     method: Method,
-    sigma_t: f64,
-    albedo: f64,
-    /// Of constant steps: the share that one lets pass unabsorbed.
+    /// What a constant step within one cell does, cell by cell.
+    steps: Vec<Step>,
+}
+
+/// What a constant step does.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// The share that it lets pass unabsorbed.
     passing: f64,
-    /// Of constant steps: the probability of being scattered at the end of one.
+    /// The probability of being scattered at its end.
     scattering: f64,
+}
+
+impl Step {
+    /// Of the optical depths of the step.
+    fn of(absorption: f64, scattering: f64) -> Self {
+        Self { passing: (-absorption).exp(), scattering: -(-scattering).exp_m1() }
+    }
 }
 
 impl<'a> Walker<'a> {
     pub(super) fn new(experiment: &'a Experiment, method: Method) -> Self {
-        let Experiment { sigma_a, sigma_s, .. } = *experiment;
-        let sigma_t = sigma_a + sigma_s;
-        let albedo = if sigma_t > 0.0 { sigma_s / sigma_t } else { 0.0 };
-        let step = if let Method::Constant(step) = method { step } else { 0.0 };
-        let (passing, scattering) = ((-sigma_a * step).exp(), -(-sigma_s * step).exp_m1());
-        Self { experiment, method, sigma_t, albedo, passing, scattering }
+        let length = if let Method::Constant(step) = method { step } else { 0.0 };
+        let step = |matter: &Matter| Step::of(matter.sigma_a * length, matter.sigma_s * length);
+        Self { experiment, method, steps: experiment.cells.matter().iter().map(step).collect() }
+    }
+
+    /// Where a photon flies next, as far as `limit`.
+    fn way(&self, photon: &Photon, limit: f64) -> Way {
+        let Experiment { cells, size, .. } = self.experiment;
+        cells.way(*size, photon.position, photon.direction.as_dvec3(), limit)
+    }
+
+    fn matter(&self, section: Section) -> Matter {
+        self.experiment.cells.matter()[section.cell]
+    }
+
+    /// The integral of `sigma` from a photon as far as `limit`.
+    fn depth(&self, photon: &Photon, limit: f64, sigma: fn(Matter) -> f64) -> f64 {
+        let part = |s: Section| depth(sigma(self.matter(s)), s.end - s.start);
+        self.way(photon, limit).map(part).sum()
+    }
+
+    /// How far it is to where the integral of `sigma` is `depth`, and what is there; none if that is not before `limit`.
+    fn reach(
+        &self,
+        photon: &Photon,
+        limit: f64,
+        mut left: f64,
+        sigma: fn(Matter) -> f64,
+    ) -> Option<(f64, Matter)> {
+        for section in self.way(photon, limit) {
+            let matter = self.matter(section);
+            let here = depth(sigma(matter), section.end - section.start);
+            if left < here {
+                return Some((section.start + left / sigma(matter), matter));
+            }
+            left -= here;
+        }
+        None
     }
 
     /// The record of a photon: a pure function of seed, index of the run, and its number.
@@ -97,19 +142,19 @@ impl<'a> Walker<'a> {
         match self.method {
             Method::Constant(step) => self.stride(photon, step, limit, record, stream),
             Method::ByExtinction | Method::Forced => {
-                let length = f64::from(stream.exponential()) / self.sigma_t;
-                let collides = length < limit;
-                if collides {
-                    self.collide(photon, length, record);
+                let collision = self.reach(photon, limit, f64::from(stream.exponential()), Matter::sigma_t);
+                if let Some((length, matter)) = collision {
+                    collide(photon, length, matter, record);
                 }
-                collides
+                collision.is_some()
             }
             Method::ByScattering => {
-                let length = f64::from(stream.exponential()) / self.experiment.sigma_s;
-                let flown = length.min(limit);
-                absorb(photon, (-self.experiment.sigma_a * flown).exp(), record);
+                let depth = f64::from(stream.exponential());
+                let collision = self.reach(photon, limit, depth, |matter| matter.sigma_s);
+                let flown = collision.map_or(limit, |(length, _)| length);
+                absorb(photon, (-self.depth(photon, flown, |matter| matter.sigma_a)).exp(), record);
                 advance(photon, flown);
-                length < limit
+                collision.is_some()
             }
         }
     }
@@ -123,36 +168,57 @@ impl<'a> Walker<'a> {
         record: &mut Record,
         stream: &mut Stream,
     ) -> bool {
-        let mut left = limit;
-        while left >= step {
-            absorb(photon, self.passing, record);
+        let mut way = self.way(photon, limit);
+        let Some(mut here) = way.next() else { return false };
+        let mut flown = 0.0;
+        // A way without end, along a layer, is flown only where something ends it.
+        let has_end = limit.is_finite() || self.matter(here).sigma_s > 0.0;
+        while has_end && limit - flown >= step {
+            let end = flown + step;
+            let Step { passing, scattering } = match end <= here.end {
+                true => self.steps[here.cell],
+                false => self.across(&mut here, &mut way, flown, end),
+            };
+            absorb(photon, passing, record);
             advance(photon, step);
-            if stream.uniform_precisely() < self.scattering {
+            if stream.uniform_precisely() < scattering {
                 return true;
             }
-            left -= step;
+            flown = end;
         }
-        absorb(photon, (-self.experiment.sigma_a * left).exp(), record);
+        absorb(photon, self.across(&mut here, &mut way, flown, limit).passing, record);
         false
     }
 
-    /// Absorption and scattering together at the end of a flight.
-    fn collide(&self, photon: &mut Photon, length: f64, record: &mut Record) {
-        advance(photon, length);
-        absorb(photon, self.albedo, record);
+    /// A step from `from` to `to` along a `way` that may leave the cell it is in.
+    fn across(&self, here: &mut Section, way: &mut Way, mut from: f64, to: f64) -> Step {
+        let (mut absorption, mut scattering) = (0.0, 0.0);
+        loop {
+            let (matter, end) = (self.matter(*here), here.end.min(to));
+            absorption += depth(matter.sigma_a, end - from);
+            scattering += depth(matter.sigma_s, end - from);
+            from = end;
+            let next = if end < to { way.next() } else { None };
+            let Some(next) = next else { return Step::of(absorption, scattering) };
+            *here = next;
+        }
     }
 
     /// Lets leave what does not collide, and makes the rest collide on the way to the border.
     fn force(&self, photon: &mut Photon, record: &mut Record, stream: &mut Stream) {
         let (limit, face) = self.exit(photon);
-        let colliding = -(-self.sigma_t * limit).exp_m1();
+        let colliding = -(-self.depth(photon, limit, Matter::sigma_t)).exp_m1();
         let all = photon.power;
         photon.power = all * (1.0 - colliding);
         leave(photon, face, record);
         photon.power = all * colliding;
-        let length = -(-stream.uniform_precisely() * colliding).ln_1p() / self.sigma_t;
-        self.collide(photon, length.min(limit), record);
-        self.scatter(photon, record, stream);
+        let depth = -(-stream.uniform_precisely() * colliding).ln_1p();
+        // Below the whole depth, up to rounding; where that is 0, no power is left.
+        let last = || self.way(photon, limit).last().map(|section| (limit, self.matter(section)));
+        if let Some((length, matter)) = self.reach(photon, limit, depth, Matter::sigma_t).or_else(last) {
+            collide(photon, length, matter, record);
+            self.scatter(photon, record, stream);
+        }
     }
 
     fn scatter(&self, photon: &mut Photon, record: &mut Record, stream: &mut Stream) {
@@ -169,6 +235,12 @@ impl<'a> Walker<'a> {
 /// Length of flight over `distance` along an axis along which the direction has the component `part`.
 fn way(distance: f64, part: f64) -> f64 {
     if part == 0.0 { f64::INFINITY } else { distance.max(0.0) / part.abs() }
+}
+
+/// Absorption and scattering together at the end of a flight.
+fn collide(photon: &mut Photon, length: f64, matter: Matter, record: &mut Record) {
+    advance(photon, length);
+    absorb(photon, matter.albedo(), record);
 }
 
 fn advance(photon: &mut Photon, length: f64) {
@@ -202,18 +274,20 @@ impl Experiment {
     pub(super) fn closed_forms(&self) -> [Option<f64>; COUNT] {
         let walker = Walker::new(self, Method::ByExtinction);
         let (limit, face) = walker.exit(&walker.enter());
-        let passing = (-walker.sigma_t * limit).exp();
+        let passing = (-walker.depth(&walker.enter(), limit, Matter::sigma_t)).exp();
+        let nowhere =
+            |sigma: fn(&Matter) -> f64| self.cells.matter().iter().all(|matter| sigma(matter) == 0.0);
         let mut known = [None; COUNT];
         known[DIRECT] = Some(if face == Face::Far { passing } else { 0.0 });
         known[DIRECT_SIDES] = Some(if face == Face::Side { passing } else { 0.0 });
         if self.shape == Shape::Slab {
             known[SIDES] = Some(0.0);
         }
-        if self.sigma_a == 0.0 {
+        if nowhere(|matter| matter.sigma_a) {
             known[ABSORBED] = Some(0.0);
             known[SCATTERED] = Some(1.0 - passing);
         }
-        if self.sigma_s == 0.0 {
+        if nowhere(|matter| matter.sigma_s) {
             known[ABSORBED] = Some(1.0 - passing);
             for quantity in [REFLECTED, TRANSMITTED, SIDES, SCATTERED, SCATTERINGS] {
                 known[quantity] = Some(0.0);
