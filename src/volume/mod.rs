@@ -80,6 +80,11 @@ pub trait VolumeModel {
         true
     }
 
+    /// True if it says itself that it is 0 everywhere.
+    fn is_zero(&self) -> bool {
+        false
+    }
+
     /// True if all channels are equal everywhere.
     fn is_grey(&self) -> bool;
 
@@ -128,6 +133,9 @@ macro_rules! volumes {
             #[inline]
             fn contains(&self, position: Vec3) -> bool {
                 match self { $(Self::$model(model) => model.contains(position),)* }
+            }
+            fn is_zero(&self) -> bool {
+                match self { $(Self::$model(model) => model.is_zero(),)* }
             }
             fn is_grey(&self) -> bool {
                 match self { $(Self::$model(model) => model.is_grey(),)* }

@@ -196,6 +196,10 @@ impl<F: Function> VolumeModel for Placed<F> {
         self.domain
     }
 
+    fn is_zero(&self) -> bool {
+        self.value == Spectrum::ZERO
+    }
+
     fn is_grey(&self) -> bool {
         self.value.is_grey()
     }

@@ -16,7 +16,16 @@ impl Sum {
     pub(super) const TABLE: Table = table! { "Nested volumes, added."; ; NESTED };
 
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
-        nested(params, place).map(|terms| Self(terms.into()))
+        nested(params, place).map(Self::of)
+    }
+
+    /// Terms that add nothing cost nothing.
+    fn of(mut terms: Vec<Volume>) -> Self {
+        match terms.iter().any(|term| !term.is_zero()) {
+            true => terms.retain(|term| !term.is_zero()),
+            false => terms.truncate(1),
+        }
+        Self(terms.into())
     }
 
     #[cfg(test)]
@@ -53,6 +62,10 @@ impl VolumeModel for Sum {
         [least - slack, most + slack]
     }
 
+    fn is_zero(&self) -> bool {
+        self.0.iter().all(VolumeModel::is_zero)
+    }
+
     fn domain(&self) -> Option<[Vec3; 2]> {
         let [first, rest @ ..] = &self.0[..] else { return None };
         rest.iter().try_fold(first.domain()?, |[low, high], term| {
@@ -80,5 +93,26 @@ impl VolumeModel for Sum {
 
     fn at_time(&self, time: f64) -> Option<Self> {
         all_at_time(&self.0, time).map(Self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        description::{Library, Value},
+        testing::object,
+    };
+
+    #[test]
+    fn terms_of_nothing_are_left_out() {
+        let place = Place { recentre: DVec3::ZERO, time: 0.0 };
+        let fog = |value: f64| {
+            let wave = object("exponential", &[("height", Value::Float(1.0)), ("value", Value::Float(value))]);
+            super::super::build(&wave, &Library::default(), &place).unwrap()
+        };
+        assert_eq!(Sum::of(vec![fog(0.0), fog(0.5), fog(0.0)]).0.len(), 1);
+        let nothing = Sum::of(vec![fog(0.0), fog(0.0)]);
+        assert!(nothing.is_zero() && nothing.eval::<Spectrum>(Vec3::ONE) == Spectrum::ZERO);
     }
 }
