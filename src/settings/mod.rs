@@ -19,6 +19,8 @@ pub struct Overrides {
     pub tracker: Option<DistanceMethod>,
     /// Also an image of what each group of emitters contributes.
     pub groups: bool,
+    /// Also an image of each component of radiance.
+    pub scattering: bool,
 }
 
 /// A part of an image [pixels].

@@ -19,6 +19,7 @@ mod layers;
 mod modes;
 mod openings;
 mod overlaps;
+mod scattering;
 mod sobol;
 mod starts;
 mod traps;
