@@ -221,6 +221,15 @@ pub struct Render {
     #[arg(long)]
     pub groups: bool,
 
+    /// Also write unscattered, emitted and scattered light (Premoze 2003, eq. 17), as layers of the EXR
+    ///
+    /// By what happens in media between the camera and the first surface: nothing (unscattered.R, ...: light of what is
+    /// behind), light is emitted there (emitted.R, ...), or it is scattered there, of which there is light that was
+    /// scattered in media once on its whole way (scattered.single.R, ...) and more than once (scattered.multiple.R, ...).
+    /// The layers add up to the image. With --groups, those of each group are written (group.NAME.unscattered.R, ...).
+    #[arg(long)]
+    pub components: bool,
+
     /// Continue from the sums of an earlier render: the rest of an interrupted one, or more samples for a finished one
     ///
     /// The image is the same, bit for bit, as if the render had never stopped; --spp is the total. Scene, files and
@@ -303,8 +312,9 @@ pub struct Render {
 impl Render {
     /// What the options override in the scene.
     pub fn overrides(&self) -> Overrides {
+        let Self { crop, groups, components, .. } = *self;
         let fog = self.fog.settings();
-        Overrides { crop: self.crop, groups: self.groups, fog, ..self.estimator.overrides(self.size) }
+        Overrides { crop, groups, components, fog, ..self.estimator.overrides(self.size) }
     }
 
     /// Seed of the random numbers: of parts of an image, no two share one, or the noise of one would be repeated in others.

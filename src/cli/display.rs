@@ -52,7 +52,7 @@ fn exposure(text: &str) -> Result<Exposure, String> {
     if text == "auto" {
         return Ok(Exposure::Auto);
     }
-    let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= MOST_STOPS);
+    let stops = text.parse().ok().filter(|stops: &f64| stops.abs() <= MOST_STOPS);
     stops
         .map(Exposure::Stops)
         .ok_or_else(|| format!("expected a number from -{MOST_STOPS} to {MOST_STOPS}, such as 2.5, or auto"))

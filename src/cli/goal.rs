@@ -37,9 +37,10 @@ impl Goal {
         };
         let has_layers = !setup.integrator.layers.is_empty();
         if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {
-            let layers = match (arguments.groups, has_layers) {
-                (true, _) => "of --groups",
-                (_, true) => "of the scene's aov or moment integrator",
+            let layers = match (arguments.groups, arguments.components, has_layers) {
+                (true, ..) => "of --groups",
+                (_, true, _) => "of --components",
+                (.., true) => "of the scene's aov or moment integrator",
                 _ => "of --batches",
             };
             let expected = format!("an OpenEXR file, to hold the layers {layers}");

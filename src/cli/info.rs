@@ -16,7 +16,11 @@ use crate::{
     medium::{DistanceMethod, Heterogeneous, MediumIndex, distance::DistanceSampler},
     phase::PhaseModel,
     render::{Settings, budget::Budget},
-    scene::{Infinity, Scene, build::Setup, lights::Light},
+    scene::{
+        Infinity, Scene,
+        build::Setup,
+        lights::{Light, Lights},
+    },
     settings::integrator::Restriction,
     shape::ShapeModel,
     transport::{Options, Strategies},
@@ -85,7 +89,10 @@ fn figures(setup: &Setup, plan: &Plan) -> Value {
         "shapes": scene.surfaces.len(),
         "primitives": primitives,
         "emitters": emitters
-            .map(|light| json!({ "type": light.emitter.name, "medium": setup.medium_name(light.medium) }))
+            .map(|light| {
+                let group = Lights::group_of(light);
+                json!({ "type": light.emitter.name, "medium": setup.medium_name(light.medium), "group": group })
+            })
             .collect::<Vec<_>>(),
         "smoke": setup.smoke.iter().map(volumes::taken).collect::<Vec<_>>(),
         "camera": { "medium": setup.medium_name(scene.sensor_medium) },
@@ -185,10 +192,11 @@ fn describe_infinity(setup: &Setup) -> String {
 
 fn describe_emitter(setup: &Setup, light: &Light) -> String {
     let (name, medium) = (light.emitter.name, setup.medium_name(light.medium));
-    let Kind::Medium(glow) = &light.emitter.kind else { return format!("{name} in {medium}") };
+    let group = light.emitter.group.as_ref().map_or(String::new(), |group| format!(", group {group}"));
+    let Kind::Medium(glow) = &light.emitter.kind else { return format!("{name} in {medium}{group}") };
     let [low, high] = glow.emission.bounds().map(|corner| corner.as_dvec3() + setup.scene.recentre);
     let [r, g, b] = glow.power().to_array();
-    format!("{name} {medium} itself, {r:.3} {g:.3} {b:.3} W, from {low:.3} to {high:.3}")
+    format!("{name} {medium} itself, {r:.3} {g:.3} {b:.3} W, from {low:.3} to {high:.3}{group}")
 }
 
 fn describe_medium(setup: &Setup, index: usize) -> String {

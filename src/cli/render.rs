@@ -157,6 +157,7 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
         (arguments.preview, "--preview"),
         (arguments.tev.is_some(), "--tev"),
         (arguments.groups, "--groups"),
+        (arguments.components, "--components"),
     ];
     let given = kept.into_iter().find_map(|(is_given, name)| is_given.then_some(name));
     if let (Some(name), Strategies::NONE) = (given, settings.options.strategies) {

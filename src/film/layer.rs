@@ -83,6 +83,89 @@ impl Quantity {
     }
 }
 
+/// The components that P03 eq. 17 splits radiance into, by what happens in media between the lens and the first vertex
+/// of the path from there. Boundaries at which nothing but the medium changes are no vertices. Scattered light is split
+/// further, by how many vertices of the whole path are in media; surfaces may be among the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Component {
+    /// L_un: that vertex is on a surface, or it is an emitter other than a medium.
+    Unscattered,
+    /// L_e: it is where a medium emits.
+    Emitted,
+    /// Of L_sc, where it is a collision in a medium: there is no other one.
+    Single,
+    /// Of L_sc: there are more.
+    Multiple,
+}
+
+impl Component {
+    /// Every component.
+    pub const ALL: [Self; 4] = [Self::Unscattered, Self::Emitted, Self::Single, Self::Multiple];
+
+    /// That of a path with more than one segment, whose first vertex from the lens is in a medium or not, and which
+    /// collides so many times in all.
+    #[inline]
+    pub fn of(is_first_in_medium: bool, collisions: u32) -> Self {
+        match (is_first_in_medium, collisions) {
+            (false, _) => Self::Unscattered,
+            (true, 0 | 1) => Self::Single,
+            (true, _) => Self::Multiple,
+        }
+    }
+
+    /// That of a path of one segment, from an emitter that is a medium or not.
+    #[inline]
+    pub fn of_emitter(is_medium: bool) -> Self {
+        if is_medium { Self::Emitted } else { Self::Unscattered }
+    }
+
+    /// What its layer is called.
+    pub fn name(self) -> &'static str {
+        ["unscattered", "emitted", "scattered.single", "scattered.multiple"][self as usize]
+    }
+}
+
+/// Some of the light of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// That of a group of emitters: its number, in the order of [`Lights::groups`](crate::scene::lights::Lights::groups).
+    pub group: Option<u32>,
+    /// That of a component.
+    pub component: Option<Component>,
+}
+
+impl Part {
+    /// True of the light of emitters of the group `group` that comes as `component`.
+    pub fn has(&self, group: u32, component: Component) -> bool {
+        self.group.is_none_or(|own| own == group) && self.component.is_none_or(|own| own == component)
+    }
+}
+
+/// A layer for each of the `components` of the light of each of the `groups`; an empty list does not split it.
+pub fn parts(groups: &[&str], components: &[Component]) -> Vec<Layer> {
+    let of_groups = (0..).zip(groups).map(|(group, name)| Layer {
+        name: format!("group.{name}"),
+        content: Content::Part(Part { group: Some(group), component: None }),
+    });
+    if components.is_empty() {
+        return of_groups.collect();
+    }
+    let of_group = |(group, before): (Option<u32>, String)| {
+        components.iter().map(move |component| Layer {
+            name: format!("{before}{}", component.name()),
+            content: Content::Part(Part { group, component: Some(*component) }),
+        })
+    };
+    match groups {
+        [] => of_group((None, String::new())).collect(),
+        _ => (0..)
+            .zip(of_groups)
+            .map(|(group, layer)| (Some(group), layer.name + "."))
+            .flat_map(of_group)
+            .collect(),
+    }
+}
+
 /// What a layer holds.
 ///
 /// Moments are those of one pass over the image, which for the path tracer is one sample per pixel. With box,
@@ -100,9 +183,8 @@ pub enum Content {
     Mean,
     /// Mean squares of X, Y, Z over the passes.
     SecondMoment,
-    /// What a group of emitters contributes to the image's R, G, B: the number of the group, in the order of
-    /// [`Lights::groups`](crate::scene::lights::Lights::groups).
-    Group(u32),
+    /// What some of the light contributes to the image's R, G, B.
+    Part(Part),
     /// Variances of the image's R, G, B: how far its mean over all passes may be off, squared.
     Variance,
 }
@@ -123,7 +205,7 @@ impl Layer {
             Content::Surface(quantity) => quantity.channels(),
             Content::Image => &["R", "G", "B", "A"],
             Content::Mean | Content::SecondMoment => &["X", "Y", "Z"],
-            Content::Group(_) | Content::Variance => &["R", "G", "B"],
+            Content::Part(_) | Content::Variance => &["R", "G", "B"],
         }
     }
 
@@ -134,7 +216,7 @@ impl Layer {
 
     /// True if it holds a part of the image's contributions, which are sorted as they are made.
     pub fn is_sorted(&self) -> bool {
-        matches!(self.content, Content::Group(_))
+        matches!(self.content, Content::Part(_))
     }
 
     /// True if it needs the squares of passes.

@@ -46,14 +46,14 @@ pub struct Display {
     /// The view transform.
     pub view: View,
     /// Radiance is multiplied by 2 to the power of this first: from -[`MOST_STOPS`] to [`MOST_STOPS`].
-    pub stops: f32,
+    pub stops: f64,
 }
 
 impl Display {
     /// `pixels` (linear sRGB) as 8-bit sRGB, three bytes each. NaN and negative channels are shown black, infinite ones
     /// white.
     pub fn bytes(self, pixels: &[Spectrum]) -> Vec<u8> {
-        let scale = self.stops.exp2();
+        let scale = self.stops.exp2() as f32;
         let exposed: Vec<Spectrum> = pixels.iter().map(|pixel| shown(*pixel * scale)).collect();
         match self.view {
             View::Standard => {

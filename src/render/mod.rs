@@ -377,7 +377,7 @@ impl Known<'_> {
             Content::SecondMoment => XYZ_ROWS.iter().map(|row| passes.second_moment(*row)).collect(),
             Content::Variance => Vec3::AXES.iter().filter_map(|row| passes.variance(*row)).collect(),
             // Sorted, not developed.
-            Content::Group(_) => Vec::new(),
+            Content::Part(_) => Vec::new(),
         }
     }
 }

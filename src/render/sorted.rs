@@ -1,8 +1,9 @@
 //! Layers that contributions are sorted into, beside the image that has all of them: what every group of emitters
-//! contributes. An observer that is chosen only where such layers are requested sees where each contribution comes from.
+//! contributes, and as which component of radiance. An observer that is chosen only where such layers are requested sees
+//! where each contribution comes from.
 //!
 //! An image and such layers of it are planes of one array, the image first: what adds up, keeps and merges passes treats
-//! them as an image of that many more pixels. To sort by something else is another [`Sorter`].
+//! them as an image of that many more pixels.
 
 use super::{
     block::Outcome,
@@ -12,56 +13,86 @@ use super::{
 use crate::{
     film::{
         Film,
-        layer::{Content, Layer},
+        layer::{Component, Content, Layer, Part},
     },
     math::{Channels, Spectrum, Vec2},
     scene::{
         Scene,
-        lights::{EmissionSample, Light, Lights},
+        lights::{EmissionSample, EmitterSample, Lights},
     },
     transport::{
-        Contribution, MisSums,
+        Contribution, Interaction, MisSums, Vertex,
         observer::{Meeting, Observer},
         profile::Profile,
     },
 };
 use std::cell::Cell;
 
-/// Where a contribution comes from.
-#[derive(Clone, Copy, Debug)]
-pub struct Origin {
-    /// The emitter.
-    pub light: u32,
-}
-
 /// Which plane contributions belong to, besides the image.
 #[derive(Clone, Debug)]
 pub struct Sorter {
-    /// That of each emitter; none where no layer has it.
-    of_emitters: Vec<Option<usize>>,
+    /// That of each component of each emitter's light; none where no layer has it.
+    of_emitters: Vec<[Option<usize>; Component::ALL.len()]>,
     /// How many there are, the image among them.
     planes: usize,
 }
 
 impl Sorter {
-    /// What `layers` of `scene` request; none where that is nothing.
+    /// What `layers` of `scene` request; none where that is nothing. No two of them have the same light.
     pub fn new(scene: &Scene, layers: &[Layer]) -> Option<Self> {
-        let contents: Vec<Content> =
-            layers.iter().filter(|layer| layer.is_sorted()).map(|layer| layer.content).collect();
+        let part = |layer: &Layer| if let Content::Part(part) = layer.content { Some(part) } else { None };
+        let parts: Vec<Part> = layers.iter().filter_map(part).collect();
         let names = scene.lights.groups();
-        let plane = |light: &Light| {
-            let group = names.iter().position(|name| *name == Lights::group_of(light))?;
-            contents.iter().position(|content| *content == Content::Group(group as u32))
+        let plane = |group: usize, component| {
+            let at = parts.iter().position(|part| part.has(group as u32, component));
+            at.map(|at| at + 1)
         };
-        let of_emitters = scene.lights.all.iter().map(|light| plane(light).map(|at| at + 1)).collect();
-        (!contents.is_empty()).then_some(Self { of_emitters, planes: 1 + contents.len() })
+        let groups = scene.lights.all.iter().map(|light| {
+            let group = Lights::group_of(light);
+            names.iter().position(|name| *name == group).unwrap_or(names.len())
+        });
+        let of_emitters =
+            groups.map(|group| Component::ALL.map(|component| plane(group, component))).collect();
+        (!parts.is_empty()).then_some(Self { of_emitters, planes: 1 + parts.len() })
     }
 
-    /// The plane of a contribution that comes from `origin`; none where no layer has it.
+    /// The plane of light that comes from an emitter as a component; none where no layer has it.
     #[inline]
-    fn plane(&self, origin: Origin) -> Option<usize> {
-        self.of_emitters[origin.light as usize]
+    fn plane(&self, light: u32, component: Component) -> Option<usize> {
+        self.of_emitters[light as usize][component as usize]
     }
+}
+
+/// The walk so far, of a camera or light subpath.
+#[derive(Clone, Copy, Debug, Default)]
+struct Trail {
+    /// Vertices in media, the last one included.
+    collisions: u32,
+    /// The first vertex is in a medium, and the last one.
+    is_first_in_medium: bool,
+    is_last_in_medium: bool,
+}
+
+impl Trail {
+    /// The same with `vertex` at its end.
+    #[inline]
+    fn with<S: MisSums>(self, vertex: &Vertex<S>) -> Self {
+        let is_in_medium = matches!(vertex.interaction, Interaction::Medium(..));
+        // Where an interaction is forced, a second walk of the same observer begins.
+        let is_first = vertex.subpath.edges == 1;
+        Self {
+            collisions: if is_first { 0 } else { self.collisions } + u32::from(is_in_medium),
+            is_first_in_medium: if is_first { is_in_medium } else { self.is_first_in_medium },
+            is_last_in_medium: is_in_medium,
+        }
+    }
+}
+
+/// A vertex of a light subpath in the cache: its emitter, and how many vertices up to there are in media.
+#[derive(Clone, Copy, Debug)]
+struct Kept {
+    light: u32,
+    collisions: u32,
 }
 
 /// How many layers of an image contributions are sorted into.
@@ -91,8 +122,14 @@ pub(super) fn block<P: Profile>(
         let mut sums = vec![Spectrum::ZERO; sorter.planes];
         let place =
             Fault { cause: Cause::NotFinite { s: 0, t: 0 }, sample: pass as u64, pixel: Some(pixel as u32) };
-        let mut observer =
-            CameraPathObserver { sorter, kept, sums: &mut sums, place: &place, faults: &mut faults };
+        let mut observer = CameraPathObserver {
+            sorter,
+            trail: Trail::default(),
+            kept,
+            sums: &mut sums,
+            place: &place,
+            faults: &mut faults,
+        };
         start.trace(estimator, &cache, &mut observer as &mut dyn Observer<P::MisSums>);
         let planes = sums.iter().enumerate();
         camera.extend(planes.map(|(plane, sum)| ((plane * film.len() + pixel) as u32, *sum * weight)));
@@ -100,16 +137,18 @@ pub(super) fn block<P: Profile>(
     Outcome::of_parts(camera, values, faults)
 }
 
-/// What light subpaths contribute to the film, and which emitters they come from.
+/// What light subpaths contribute to the film, and where they come from.
 struct LightPathObserver<'a> {
     film: &'a Film,
     sorter: &'a Sorter,
     sample: u64,
     /// Of the light subpath at hand.
-    origin: Origin,
+    light: u32,
+    is_from_medium: bool,
+    trail: Trail,
     hero: usize,
-    /// Of every vertex in the cache, per hero channel in the cache's order.
-    kept: Vec<Vec<Origin>>,
+    /// Every vertex in the cache, per hero channel in the cache's order.
+    kept: Vec<Vec<Kept>>,
     values: Vec<(u32, Spectrum)>,
     faults: Vec<Fault>,
 }
@@ -120,7 +159,9 @@ impl<'a> LightPathObserver<'a> {
             film,
             sorter,
             sample: pass as u64,
-            origin: Origin { light: 0 },
+            light: 0,
+            is_from_medium: false,
+            trail: Trail::default(),
             hero: 0,
             kept: vec![Vec::new(); heroes],
             values: Vec::new(),
@@ -135,11 +176,15 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
     }
 
     fn emit(&mut self, start: &EmissionSample, hero: usize) {
-        (self.origin, self.hero) = (Origin { light: start.light }, hero);
+        (self.light, self.is_from_medium, self.hero) = (start.light, start.point.is_volume(), hero);
+    }
+
+    fn arrive(&mut self, vertex: &Vertex<S>) {
+        self.trail = self.trail.with(vertex);
     }
 
     fn keep(&mut self) {
-        self.kept[self.hero].push(self.origin);
+        self.kept[self.hero].push(Kept { light: self.light, collisions: self.trail.collisions });
     }
 
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
@@ -148,7 +193,11 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
             let cause = Cause::NotFinite { s, t };
             return self.faults.push(Fault { cause, sample: self.sample, pixel: None });
         }
-        let first = self.sorter.plane(self.origin).map(|plane| plane * self.film.len());
+        let component = match s {
+            1 => Component::of_emitter(self.is_from_medium),
+            _ => Component::of(self.trail.is_last_in_medium, self.trail.collisions),
+        };
+        let first = self.sorter.plane(self.light, component).map(|plane| plane * self.film.len());
         let values = &mut self.values;
         self.film.spread(film, *value, |pixel, value| {
             values.push((pixel as u32, value));
@@ -160,31 +209,48 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
 /// What one camera subpath contributes to each plane.
 struct CameraPathObserver<'a> {
     sorter: &'a Sorter,
-    /// Where the vertices in the cache come from.
-    kept: &'a [Origin],
+    trail: Trail,
+    /// The vertices in the cache.
+    kept: &'a [Kept],
     sums: &'a mut [Spectrum],
     /// Where faults are, but for their cause.
     place: &'a Fault,
     faults: &'a mut Vec<Fault>,
 }
 
+impl CameraPathObserver<'_> {
+    /// The emitter of what the strategy of `t` camera vertices contributes, and its component; none of light subpaths.
+    fn origin<S: MisSums>(&self, t: u32, meeting: &Meeting<'_, S>) -> Option<(u32, Component)> {
+        let Trail { is_first_in_medium, collisions, .. } = self.trail;
+        let by_trail = |more| Component::of(is_first_in_medium, collisions + more);
+        let of = |sample: &EmitterSample, component| Some((sample.light, component));
+        match meeting {
+            Meeting::Met(_, sample) if t == 2 => of(sample, Component::of_emitter(sample.point.is_volume())),
+            Meeting::Met(_, sample) | Meeting::Emitter(sample) => of(sample, by_trail(0)),
+            Meeting::Pivot(_, _, sample) => of(sample, Component::Single),
+            Meeting::Light(index, _) => {
+                let Kept { light, collisions } = self.kept[*index];
+                Some((light, by_trail(collisions)))
+            }
+            Meeting::Lens(_) => None,
+        }
+    }
+}
+
 impl<S: MisSums> Observer<S> for CameraPathObserver<'_> {
+    fn arrive(&mut self, vertex: &Vertex<S>) {
+        self.trail = self.trail.with(vertex);
+    }
+
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
         let Some(Contribution { value, .. }) = contribution else { return };
         if !value.is_finite() {
             let cause = Cause::NotFinite { s, t };
             return self.faults.push(Fault { cause, ..self.place.clone() });
         }
-        let origin = match meeting {
-            Meeting::Met(_, sample) | Meeting::Emitter(sample) | Meeting::Pivot(_, _, sample) => {
-                Origin { light: sample.light }
-            }
-            Meeting::Light(index, _) => self.kept[index],
-            // Of light subpaths.
-            Meeting::Lens(_) => return,
-        };
+        let Some((light, component)) = self.origin(t, &meeting) else { return };
         self.sums[0] += *value;
-        if let Some(plane) = self.sorter.plane(origin) {
+        if let Some(plane) = self.sorter.plane(light, component) {
             self.sums[plane] += *value;
         }
     }

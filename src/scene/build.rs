@@ -24,7 +24,10 @@ use crate::{
     description::{Library, Location, Object, Params, Position, Property, Value, params::Child},
     emitter::{self, Emitter, Kind},
     error::{Error, Result},
-    film::Film,
+    film::{
+        Film,
+        layer::{self, Component},
+    },
     format::plugins,
     math::{DVec3, Vec2, Vec3},
     medium::{self, Medium, MediumDescription, MediumIndex, MediumOverrides},
@@ -123,10 +126,9 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
     let parts = std::mem::take(&mut builder.parts);
     let (scene, shape_names, bsdf_names) = builder.finish(view.camera, &medium_overrides)?;
     unseen::warn_of_darkness(&scene.lights, &integrator, &root.location, &library);
-    let integrator = match overrides.groups {
-        true => integrator.with_groups(&scene.lights.groups(), &root.location)?,
-        false => integrator,
-    };
+    let groups = if overrides.groups { scene.lights.groups() } else { Vec::new() };
+    let components = if overrides.components { &Component::ALL[..] } else { &[] };
+    let integrator = integrator.with_layers(layer::parts(&groups, components), &root.location)?;
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
     }

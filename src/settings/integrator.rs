@@ -149,13 +149,9 @@ impl Integrator {
         }
     }
 
-    /// The same with a layer for each of the `groups` of emitters of a scene, which is at `location`.
-    pub fn with_groups(mut self, groups: &[&str], location: &Location) -> Result<Self> {
-        let layer = |(group, name): (u32, &&str)| Layer {
-            name: format!("group.{name}"),
-            content: Content::Group(group),
-        };
-        self.layers.extend((0..).zip(groups).map(layer));
+    /// The same with more layers of a scene that is at `location`.
+    pub fn with_layers(mut self, layers: Vec<Layer>, location: &Location) -> Result<Self> {
+        self.layers.extend(layers);
         check_names(location, &self.layers)?;
         Ok(self)
     }

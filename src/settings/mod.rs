@@ -30,6 +30,8 @@ pub struct Overrides {
     pub fog: FogSettings,
     /// Also an image of what each group of emitters contributes.
     pub groups: bool,
+    /// Also an image of each component of radiance.
+    pub components: bool,
 }
 
 impl Overrides {

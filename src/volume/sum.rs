@@ -108,7 +108,8 @@ mod tests {
     fn terms_of_nothing_are_left_out() {
         let place = Place { recentre: DVec3::ZERO, time: 0.0 };
         let fog = |value: f64| {
-            let wave = object("exponential", &[("height", Value::Float(1.0)), ("value", Value::Float(value))]);
+            let wave =
+                object("exponential", &[("height", Value::Float(1.0)), ("value", Value::Float(value))]);
             super::super::build(&wave, &Library::default(), &place).unwrap()
         };
         assert_eq!(Sum::of(vec![fog(0.0), fog(0.5), fog(0.0)]).0.len(), 1);

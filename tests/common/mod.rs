@@ -40,6 +40,17 @@ impl Stage {
         Self::overridden(scene, &[], Overrides { groups: true, ..Overrides::default() })
     }
 
+    /// The same, with layers of the components of radiance.
+    pub fn with_components(scene: &Value) -> Self {
+        Self::overridden(scene, &[], Overrides { components: true, ..Overrides::default() })
+    }
+
+    /// The same, with those of each group of emitters.
+    pub fn with_groups_and_components(scene: &Value) -> Self {
+        let overrides = Overrides { groups: true, components: true, ..Overrides::default() };
+        Self::overridden(scene, &[], overrides)
+    }
+
     /// Loads a scene given as JSON, with the files it names beside it.
     pub fn with_files(scene: &Value, files: &[(&str, &str)]) -> Self {
         Self::overridden(scene, files, Overrides::default())

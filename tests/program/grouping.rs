@@ -1,4 +1,5 @@
-//! `render --groups`: layers of what each group of emitters contributes, however a render is cut up.
+//! `render --groups` and `--components`: layers of what each group of emitters contributes, and as which component of
+//! radiance, however a render is cut up.
 
 use crate::sandbox::Sandbox;
 use serde_json::{Value, json};
@@ -26,9 +27,13 @@ const GROUPS: [&str; 4] = ["a", "b.left", "glow", "rest"];
 
 /// The layers of the image `name` add up to it.
 fn assert_whole(sandbox: &Sandbox, name: &str) {
+    assert_whole_of(sandbox, name, &GROUPS.map(|group| format!("group.{group}")));
+}
+
+fn assert_whole_of(sandbox: &Sandbox, name: &str, layers: &[String]) {
     let channels = sandbox.channels(name);
     for end in ["R", "G", "B"] {
-        let layers = GROUPS.map(|group| &channels[&format!("group.{group}.{end}")]);
+        let layers: Vec<_> = layers.iter().map(|layer| &channels[&format!("{layer}.{end}")]).collect();
         for (pixel, value) in channels[end].iter().enumerate() {
             let sum: f32 = layers.iter().map(|layer| layer[pixel]).sum();
             assert!((sum - value).abs() <= 1e-5 * value + 1e-6, "{name}, pixel {pixel}: {sum} not {value}");
@@ -79,6 +84,20 @@ fn groups_stop_with_their_pixels() {
     assert!(sandbox.channels("plain.exr").iter().all(|(name, values)| all[name] == *values));
 }
 
+#[test]
+fn info_names_the_groups() {
+    let sandbox = Sandbox::with_scene(&lamps());
+    let said = sandbox.run("info scene.json").ends(0).out();
+    for group in ["area in fog, group a", "collimated in fog, group b.left", ", group glow", "point in fog\n"]
+    {
+        assert!(said.contains(group), "{group}: {said}");
+    }
+    let told: Value = serde_json::from_str(&sandbox.run("info scene.json --json").ends(0).out()).unwrap();
+    let groups: Vec<&str> =
+        told["emitters"].as_array().unwrap().iter().map(|light| light["group"].as_str().unwrap()).collect();
+    assert!(GROUPS.iter().all(|group| groups.contains(group)), "{groups:?}");
+}
+
 /// What a pilot chooses does not depend on them, and so the image does not.
 #[test]
 fn groups_leave_the_image_as_it_is() {
@@ -94,10 +113,38 @@ fn groups_leave_the_image_as_it_is() {
 }
 
 #[test]
+fn components_are_layers_whatever_a_render_is_cut_into() {
+    let sandbox = Sandbox::with_scene(&lamps());
+    let render = |words: &str| {
+        sandbox.run(&format!("render scene.json --size 24x20 --components {words}")).ends(0);
+    };
+    let components = ["unscattered", "emitted", "scattered.single", "scattered.multiple"].map(str::to_owned);
+    render("--spp 6 -o all.exr");
+    assert_whole_of(&sandbox, "all.exr", &components);
+    assert_eq!(sandbox.channels("all.exr").len(), 15);
+    let same = |name: &str| assert!(sandbox.channels("all.exr") == sandbox.channels(name), "{name}");
+    render("--samples 0..2 --sums a.sums");
+    render("--samples 2..6 --sums b.sums");
+    sandbox.run("merge b.sums a.sums -o merged.exr").ends(0);
+    same("merged.exr");
+    render("--spp 2 -o resumed.exr --sums c.sums");
+    render("--spp 6 -o resumed.exr --sums c.sums --resume");
+    same("resumed.exr");
+    render("--error 0.5 --spp 60 -o error.exr");
+    assert_whole_of(&sandbox, "error.exr", &components);
+    render("--groups --spp 2 -o both.exr");
+    let of = |group: &str| components.each_ref().map(|component| format!("group.{group}.{component}"));
+    assert_whole_of(&sandbox, "both.exr", &GROUPS.map(of).concat());
+    assert_eq!(sandbox.channels("both.exr").len(), 3 + 3 * 16);
+}
+
+#[test]
 fn groups_that_cannot_be_are_refused() {
     let sandbox = Sandbox::with_scene(&lamps());
     sandbox.run("render scene.json --groups -o a.pfm").refuses(&["a.pfm", "--groups", ".exr"]);
     sandbox.run("render scene.json --groups --integrator fog -o a.exr").refuses(&["--groups", "fog"]);
+    sandbox.run("render scene.json --components -o a.pfm").refuses(&["a.pfm", "--components", ".exr"]);
+    sandbox.run("render scene.json --components --integrator fog -o a.exr").refuses(&["--components", "fog"]);
     sandbox.run("render scene.json --spp 1 --groups --sums a.sums -o a.exr").ends(0);
     sandbox.run("render scene.json --spp 2 --sums a.sums --resume -o a.exr").refuses(&["layers", "group.a"]);
 }

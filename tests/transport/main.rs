@@ -6,6 +6,7 @@ mod common;
 mod adaptive;
 mod agreement;
 mod beams;
+mod components;
 mod determinism;
 mod efforts;
 mod equiangular;

@@ -1,6 +1,7 @@
 """Pictures: arrays that show themselves and know how they were made."""
 
 import pickle
+import re
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -30,16 +31,26 @@ def shown(png: bytes | None, folder: Path) -> np.ndarray:
 def test_it_is_shown_as_the_programs_png_shows_it(scene: Path, tmp_path: Path) -> None:
     subprocess.run([str(program.binary()), "--quiet", "render", str(scene), "-o", "image.exr", "--spp", "4", "--size", "64x48"], cwd=tmp_path, check=True)
     image = tyndall.read(tmp_path / "image.exr")
-    expected = shown((tmp_path / "image.png").read_bytes(), tmp_path).astype(int)
-    found = shown(image._repr_png_(), tmp_path)
-    assert np.abs(found - expected).max() <= 1 and (found != expected).mean() < 0.002  # single precision there, double here
+    expected = shown((tmp_path / "image.png").read_bytes(), tmp_path)
+    assert (shown(image._repr_png_(), tmp_path) == expected).all()
 
 
-def test_broken_and_bright_pixels_are_shown() -> None:
+def test_broken_and_bright_pixels_are_shown(tmp_path: Path) -> None:
     row = np.array([[[0.5] * 3] * 996 + [[np.nan] * 3, [np.inf] * 3, [-1.0] * 3, [0, 0, 1e30]]])
-    pixels = display.tone_mapped(row)
+    pixels = shown(tyndall.Picture(row)._repr_png_(), tmp_path)
     assert (pixels[0, 0] == 188).all() and (pixels[0, 996:] == [[0] * 3, [255] * 3, [0] * 3, [255] * 3]).all()
-    assert (display.tone_mapped(np.zeros((2, 2, 3))) == 0).all()
+    assert (shown(tyndall.Picture(np.zeros((2, 2, 3)))._repr_png_(), tmp_path) == 0).all()
+
+
+def test_it_is_shown_by_the_view_and_exposure_it_was_rendered_with(tmp_path: Path) -> None:
+    image = tyndall.render(SCENE, spp=1, size=(16, 16), view="agx", exposure="auto")
+    assert image.display == display.Display("agx", image.report["exposure"]) and image.report["exposure"] != 0
+    png = shown((image * 1)._repr_png_(), tmp_path)
+    assert (png == shown(image.shown("agx", "auto").save(tmp_path / "image.png").read_bytes(), tmp_path)).all()
+    assert (png != shown(image.shown("standard", 0)._repr_png_(), tmp_path)).any()
+    assert re.search(r"^view +agx$", tyndall.info(tmp_path / "image.png"), re.MULTILINE)
+    with pytest.raises(Failure, match="agz"):
+        image.shown("agz")._repr_png_()
 
 
 def test_only_what_is_an_image_shows_itself() -> None:

@@ -6,7 +6,7 @@ use crate::math::{
 };
 
 /// More stops than this nobody needs.
-pub const MOST_STOPS: f32 = 60.0;
+pub const MOST_STOPS: f64 = 60.0;
 /// What the average is shown as: middle grey.
 const GREY: f64 = 0.18;
 /// The share of pixels that are not brighter than the highlights: lamps and their noise decide about nothing.
@@ -18,7 +18,7 @@ const STOPS_BELOW: f32 = 7.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Exposure {
     /// Radiance times 2 to the power of this.
-    Stops(f32),
+    Stops(f64),
     /// The log-average luminance (Reinhard et al. 2002, eq. 1) becomes middle grey, 0.18: that of the pixels from
     /// 7 stops below the 99th percentile to there. Whole hundredths of a stop, to be written down and given again.
     Auto,
@@ -26,11 +26,11 @@ pub enum Exposure {
 
 impl Exposure {
     /// Stops for `pixels` (linear sRGB); 0 for black ones.
-    pub fn stops(self, pixels: &[Spectrum]) -> f32 {
+    pub fn stops(self, pixels: &[Spectrum]) -> f64 {
         match self {
             Self::Stops(stops) => stops,
             Self::Auto => {
-                let stops = average(pixels).map_or(0.0, |average| (GREY.log2() - average) as f32);
+                let stops = average(pixels).map_or(0.0, |average| GREY.log2() - average);
                 // No -0, which would be printed.
                 ((stops.clamp(-MOST_STOPS, MOST_STOPS) * 100.0).round() / 100.0) + 0.0
             }

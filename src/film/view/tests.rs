@@ -1,7 +1,7 @@
 use super::*;
 use crate::math::{SpectrumExt, vec3};
 
-fn shown_as(view: View, stops: f32, pixel: Spectrum) -> [u8; 3] {
+fn shown_as(view: View, stops: f64, pixel: Spectrum) -> [u8; 3] {
     Display { view, stops }.bytes(&[pixel]).try_into().unwrap()
 }
 

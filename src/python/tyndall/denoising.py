@@ -30,7 +30,7 @@ def denoised(picture: Picture) -> Picture:
     layers = picture.layers
     features: dict[str, Any] = {name: single(layers[name]) for name in (ALBEDO, NORMAL) if name in layers}
     found = pyoidn.denoise(single(picture), hdr=True, **features)
-    return Picture(found, {}, picture.metadata | {"denoised": "Open Image Denoise"}, picture.report, is_denoised=True)
+    return Picture(found, {}, picture.metadata | {"denoised": "Open Image Denoise"}, picture.report, is_denoised=True, display=picture.display)
 
 
 def single(image: np.ndarray) -> np.ndarray:

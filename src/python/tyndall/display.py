@@ -1,38 +1,41 @@
-"""Pictures for a screen: the program's tone curve (Reinhard et al. 2002, eq. 4; src/film/png.rs), and PNG files."""
+"""Pictures for a screen: PNG files as the program writes them (its views and exposures: `tyndall convert -h`), and the sRGB
+transfer function."""
 
 import struct
+import tempfile
 import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
-"""Of linear sRGB."""
-BELOW_WHITE = 0.995
-"""The share of pixels that are not brighter than the white point."""
+from tyndall import exr, program
+
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
-def tone_mapped(image: np.ndarray) -> np.ndarray:
-    """Linear RGB (height, width, 3) as 8-bit sRGB, as the program's PNG files show it."""
-    pixels = shown(image)
-    luminance = pixels @ LUMINANCE
-    white = max(1.0, float(np.sort(luminance, axis=None)[int(np.ceil(luminance.size * BELOW_WHITE)) - 1]))
-    mapped = np.minimum(luminance * (1 + luminance / white**2) / (1 + luminance), 1)
-    scaled = pixels * np.divide(mapped, luminance, out=np.zeros_like(mapped), where=luminance > 0)[..., None]
-    return encoded(in_range(scaled, mapped))
+@dataclass(frozen=True)
+class Display:
+    """How a picture is shown: `view` and `exposure` are those of `tyndall render`."""
+
+    view: str = "standard"
+    exposure: float | str = 0.0
+
+    def png(self, image: np.ndarray, metadata: Mapping[str, Any]) -> bytes:
+        """The PNG file of linear RGB, (height, width, 3)."""
+        with tempfile.TemporaryDirectory(prefix="tyndall-") as name:
+            source, goal = Path(name, "image.exr"), Path(name, "image.png")
+            exr.write(source, {exr.ROOT: {channel: np.asarray(image[..., i]) for i, channel in enumerate("RGB")}}, metadata)
+            options = program.flags({"view": self.view, "exposure": self.exposure})
+            program.call([str(program.binary()), "--quiet", "convert", str(source), str(goal), *options])
+            return goal.read_bytes()
 
 
 def shown(image: np.ndarray) -> np.ndarray:
     """The pixels as if nothing had gone wrong with them: NaN and negative values are black."""
     return np.minimum(np.where(np.asarray(image) > 0, image, 0), 1e18)
-
-
-def in_range(scaled: np.ndarray, luminance: np.ndarray) -> np.ndarray:
-    """Colours mixed with grey of the same luminance until no channel exceeds 1."""
-    most = scaled.max(axis=-1)
-    room = np.divide(1 - luminance, most - luminance, out=np.ones_like(most), where=most > 1)
-    grey = luminance[..., None]
-    return np.where(grey >= 1, 1, grey + (scaled - grey) * room[..., None])
 
 
 def encoded(linear: np.ndarray) -> np.ndarray:

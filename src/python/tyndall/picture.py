@@ -6,13 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from tyndall import display, exr
+from tyndall import exr
+from tyndall.display import Display
 from tyndall.failure import Failure
+
+STANDARD = Display()
+"""How the program shows images unless it is told otherwise."""
 
 
 class Picture(np.ndarray):
-    """An image in linear RGB, (height, width, 3), float64: a numpy array. Notebooks show it tone-mapped as the program's
-    PNG files are. What is computed from it is an array that shows itself too, without what is said of the image as it was
+    """An image in linear RGB, (height, width, 3), float64: a numpy array. Notebooks show it as the program's PNG files
+    show it, by the view and exposure that it was rendered with. What is computed from it is an array that shows itself too, without what is said of the image as it was
     rendered."""
 
     channels: exr.Layers
@@ -22,6 +26,8 @@ class Picture(np.ndarray):
     report: dict[str, Any]
     """The figures of `tyndall render --report`; of files that were read, none."""
     is_denoised: bool
+    display: Display
+    """How it is shown; what is computed from it is shown in the same way."""
 
     def __new__(
         cls,
@@ -30,22 +36,24 @@ class Picture(np.ndarray):
         metadata: Mapping[str, Any] | None = None,
         report: Mapping[str, Any] | None = None,
         is_denoised: bool = False,
+        display: Display = STANDARD,
     ) -> "Picture":
         made = np.asarray(image, dtype=np.float64).view(cls)
         made.channels, made.metadata, made.report = channels or {}, dict(metadata or {}), dict(report or {})
-        made.is_denoised = is_denoised
+        made.is_denoised, made.display = is_denoised, display
         return made
 
     def __array_finalize__(self, other: object) -> None:
         self.channels, self.metadata, self.report, self.is_denoised = {}, {}, {}, False
+        self.display = getattr(other, "display", STANDARD)
 
     def __array_wrap__(self, array: np.ndarray, context: Any = None, return_scalar: bool = False) -> Any:
         """What is computed and no image is an ordinary array, or a number."""
         is_image = array.ndim == 3 and array.shape[2] == 3
-        return array.view(Picture) if is_image else np.asarray(array)[()]
+        return Picture(array, display=self.display) if is_image else np.asarray(array)[()]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Picture, (np.asarray(self), self.channels, self.metadata, self.report, self.is_denoised)
+        return Picture, (np.asarray(self), self.channels, self.metadata, self.report, self.is_denoised, self.display)
 
     @property
     def layers(self) -> dict[str, np.ndarray]:
@@ -76,8 +84,14 @@ class Picture(np.ndarray):
 
         return denoising.denoised(self)
 
+    def shown(self, view: str | None = None, exposure: float | str | None = None) -> "Picture":
+        """The same picture, shown otherwise by notebooks and in .png files: `view` and `exposure` are those of `tyndall render`,
+        such as `image.shown("agx", "auto").save("fog.png")`."""
+        display = Display(self.display.view if view is None else view, self.display.exposure if exposure is None else exposure)
+        return Picture(np.asarray(self), self.channels, self.metadata, self.report, self.is_denoised, display)
+
     def save(self, path: str | Path) -> Path:
-        """Writes the image: .exr with all layers and how it was made, or .png, tone-mapped. A denoised image gets a name that
+        """Writes the image: .exr with all layers and how it was made, or .png, as it is shown. A denoised image gets a name that
         says so, `fog.denoised.exr`. The path that was written."""
         path = Path(path).expanduser()
         if self.is_denoised and not path.stem.endswith(".denoised"):
@@ -101,13 +115,13 @@ class Picture(np.ndarray):
 
     def write_png(self, path: Path) -> None:
         """8-bit sRGB."""
-        exr.whole(path, lambda partial: Path(partial).write_bytes(display.png(display.tone_mapped(self))))
+        exr.whole(path, lambda partial: Path(partial).write_bytes(self.display.png(self, self.metadata)))
 
     def _repr_png_(self) -> bytes | None:
         """What a notebook shows; None of arrays that are no picture."""
         if self.ndim != 3 or self.shape[2] != 3 or self.size == 0:
             return None
-        return display.png(display.tone_mapped(self))
+        return self.display.png(self, self.metadata)
 
 
 def read(path: str | Path) -> Picture:

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from tyndall import arguments, denoising, exr, program, watching
+from tyndall.display import Display
 from tyndall.failure import Failure, TyndallWarning
-from tyndall.picture import Picture
+from tyndall.picture import STANDARD, Picture
 from tyndall.scene import AnyScene, as_scene, scene_file
 
 ALL_STRATEGIES = "hit,next-event,join,lens"
@@ -109,15 +110,15 @@ def run(
         own: dict[str, program.Option] = {"output": folder / "image.exr", "report": folder / "report.json", "progress": "json"}
         command = [str(program.binary()), "--quiet", "render", str(source), *program.flags(own), *settings, *program.definitions(scene.parameters)]
         outcome = watching.run(command, watching.shown(progress), patience)
-        found = rendering(folder, outcome, command)
+        found = rendering(folder, outcome, command, given.get("view") or STANDARD.view)
     if must_be_finite:
         finite(found.image if found.batches is None else found.batches)
         sound(found)
     return found
 
 
-def rendering(folder: Path, outcome: watching.Outcome, command: list[str]) -> Rendering:
-    """What was written; why nothing was, in words that name no file of a folder that is gone."""
+def rendering(folder: Path, outcome: watching.Outcome, command: list[str], view: str) -> Rendering:
+    """What was written, to be shown by that view; why nothing was, in words that name no file of a folder that is gone."""
     images, report = sorted(folder.glob("image*.exr")), folder / "report.json"
     said = lasting(outcome.messages, folder)
     if len(images) != 1 or not report.is_file():
@@ -128,7 +129,9 @@ def rendering(folder: Path, outcome: watching.Outcome, command: list[str]) -> Re
     told, channels = json.loads(report.read_text()), exr.read(images[0])
     figures = told | told["frames"][0] if "frames" in told else told
     made = json.loads(lasting(json.dumps(exr.made(images[0])), folder))
-    picture = Picture(exr.colours(channels[exr.ROOT]), channels, made, {k: v for k, v in figures.items() if k not in ("image", "frames")})
+    said_of_it = {name: figure for name, figure in figures.items() if name not in ("image", "frames")}
+    display = Display(view, figures.get("exposure", STANDARD.exposure))
+    picture = Picture(exr.colours(channels[exr.ROOT]), channels, made, said_of_it, display=display)
     return Rendering(picture, warnings_in(said), outcome.was_interrupted)
 
 
