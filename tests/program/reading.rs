@@ -674,9 +674,9 @@ fn a_power_of_the_wavelength_is_a_coefficient_in_both_spellings() {
         "type": "scene",
         "integrator": {"type": "non_scattering"},
         "air": air,
-        "camera": {"type": "perspective", "fov": 1, "medium": around, "to_world": look(0, 1),
+        "camera": {"type": "perspective", "fov": 1, "near_clip": 1e-4, "medium": around, "to_world": look(0, 1),
                    "film": {"type": "hdrfilm", "width": 2, "height": 2},
-                   "sampler": {"type": "independent", "sample_count": 1}},
+                   "sampler": {"type": "independent", "sample_count": 65536}},
         "lamp": {"type": "rectangle", "to_world": look(5, 0), "exterior": around,
                  "emitter": {"type": "area", "radiance": 1}},
     }));
