@@ -15,6 +15,12 @@ def animation(frames: Sequence[bytes], fps: float) -> bytes:
     return b"".join([*parts, chunk(b"IEND", b"")])
 
 
+def still(frame: bytes) -> bytes:
+    """A PNG file without what it says of itself: where it was made is nobody's business."""
+    kept = [chunk(kind, data) for kind, data in chunks(frame) if kind not in (b"tEXt", b"zTXt", b"iTXt")]
+    return b"".join([SIGNATURE, *kept])
+
+
 def control(sequence: int, header: bytes, fps: float) -> bytes:
     """Where a frame is, all over the picture, and for how long: in place of the one before."""
     milliseconds = round(1000 / fps)

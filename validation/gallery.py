@@ -19,7 +19,7 @@ import tyndall
 from tyndall import exr, program
 from tyndall.failure import Failure
 from validation import mitsuba
-from validation.animation import animation
+from validation.animation import animation, still
 from validation.files import write_text
 from validation.places import OUTPUT, ROOT, SCENES
 
@@ -28,12 +28,20 @@ ENTRIES = FOLDER / "gallery.json"
 MEASURED = FOLDER / "measured.json"
 README = SCENES / "README.md"
 TABLE = re.compile(r"(?<=<!-- gallery -->\n).*?(?=<!-- end -->)", re.DOTALL)
-PILOT = 4
-"""Samples per pixel by which Mitsuba's time is known."""
+PILOT = 16
+"""Samples per pixel by which Mitsuba's time is first known,"""
+FASTER = 16
+"""more of them at most at a time, as the first ones take longer,"""
+CLOSE = 0.75
+"""until it takes so much of the time of ours,"""
+TRIALS = 5
+"""or has been tried so often."""
 VIEW = {"--exposure", "--view"}
 """Options that Mitsuba's picture is shown by too."""
 OTHER_SEED = 1
 """Of the second render: the difference of both is their error."""
+FEWER = 1 / 8
+"""Its samples over those of the first."""
 
 
 def add_options(command: argparse.ArgumentParser) -> None:
@@ -136,28 +144,36 @@ def renew(entry: Entry, threads: int) -> None:
 
 
 def measured(entry: Entry, threads: int, folder: Path) -> Measured:
-    """A picture: rendered twice, the second time by another seed."""
-    seconds = rendered(entry, threads, folder / "image.exr")
-    rendered(entry, threads, folder / "other.exr", OTHER_SEED)
+    """A picture: rendered, and again by another seed with fewer samples."""
+    first = rendered(entry.options, entry.scene, threads, folder / "image.exr")
+    few = max(1, round(first["samples_per_pixel"] * FEWER))
+    rendered(without_samples(entry.options), entry.scene, threads, folder / "other.exr", seed=OTHER_SEED, spp=few)
     image, other = (exr.read_image(folder / name) for name in ("image.exr", "other.exr"))
-    mean = (image + other) / 2
-    shutil.copy(folder / "image.png", entry.pictures[0])
-    relmse = 2 * relmse_of(image, mean)
+    share = first["samples_per_pixel"] / (first["samples_per_pixel"] + few)
+    mean = share * image + (1 - share) * other
+    entry.pictures[0].write_bytes(still((folder / "image.png").read_bytes()))
+    seconds, relmse = first["render_seconds"], relmse_of(image, mean) / (1 - share)
     if not entry.mitsuba:
         return Measured(seconds, threads, relmse)
     kind = "volpathmis" if is_chromatic(entry) else "volpath"
     file, took = by_mitsuba(entry, kind, seconds, threads, folder, image.shape[1::-1])
     shown_as(entry, file, entry.pictures[1])
-    return Measured(seconds, threads, relmse, took, max(0, relmse_of(exr.read_image(file), mean) - relmse / 2), kind)
+    return Measured(seconds, threads, relmse, took, max(0, relmse_of(exr.read_image(file), mean) - share * relmse), kind)
 
 
-def rendered(entry: Entry, threads: int, output: Path, seed: int = 0) -> float:
-    """Runs the command; seconds of rendering, of all frames."""
+def without_samples(options: list[str]) -> list[str]:
+    """The options of a render but --spp."""
+    return [word for before, word in zip(["", *options], options) if "--spp" not in (before, word)]
+
+
+def rendered(options: list[str], scene: Path, threads: int, output: Path, **more: int) -> dict[str, Any]:
+    """Runs the command; what it reports: of all frames together, the seconds of rendering."""
     report = output.with_suffix(".json")
-    more = program.flags({"output": output, "report": report, "threads": threads, "seed": seed})
-    program.call([str(program.binary()), "render", str(entry.scene), *entry.options, *more])
+    words = program.flags({"output": output, "report": report, "threads": threads, **more})
+    program.call([str(program.binary()), "render", str(scene), *options, *words])
     written = json.loads(report.read_text())
-    return sum(float(image["render_seconds"]) for image in written.get("frames", [written]))
+    frames = written.get("frames", [written])
+    return {**frames[0], "render_seconds": sum(float(frame["render_seconds"]) for frame in frames)}
 
 
 def relmse_of(image: np.ndarray, reference: np.ndarray) -> float:
@@ -172,19 +188,22 @@ def is_chromatic(entry: Entry) -> bool:
 
 
 def by_mitsuba(entry: Entry, kind: str, seconds: float, threads: int, folder: Path, size: tuple[int, ...]) -> tuple[Path, float]:
-    """The file of Mitsuba's image after as many seconds, and the seconds it took: few samples tell how many fit."""
+    """The file of Mitsuba's image after about as many seconds, and the seconds it took: fewer samples tell how many fit."""
     variant = "llvm_ad_rgb" if mitsuba.libllvm() else "scalar_rgb"
     command = [sys.executable, "-m", "validation.contender", str(entry.scene), *entry.parameters, "--integrator", kind, "--variant", variant]
     command += ["--seed", "0", "--size", f"{size[0]}x{size[1]}", "--threads", str(threads), "--folder", str(folder)]
-    pilot = json.loads(program.call([*command, "--spp", str(PILOT)]).stdout)
-    spp = max(1, round(PILOT * seconds / pilot["seconds"]))
-    took = json.loads(program.call([*command, "--spp", str(spp)]).stdout)["seconds"]
-    return folder / f"{spp}.exr", float(took)
+    spp = PILOT
+    for trial in range(TRIALS):
+        took = float(json.loads(program.call([*command, "--spp", str(spp)]).stdout)["seconds"])
+        if took > CLOSE * seconds or trial == TRIALS - 1:
+            break
+        spp = max(spp + 1, round(spp * min(seconds / took, FASTER)))
+    return folder / f"{spp}.exr", took
 
 
 def animated(entry: Entry, threads: int, folder: Path) -> Measured:
     """A moving picture: its frames are measured by nobody."""
-    seconds = rendered(entry, threads, folder / "frame.exr")
+    seconds = rendered(entry.options, entry.scene, threads, folder / "frame.exr")["render_seconds"]
     fps = dict(zip(entry.options, entry.options[1:])).get("--fps", "24")
     entry.pictures[0].write_bytes(animation([path.read_bytes() for path in sorted(folder.glob("frame.*.png"))], float(fps)))
     return Measured(seconds, threads)
@@ -195,6 +214,7 @@ def shown_as(entry: Entry, image: Path, png: Path) -> None:
     words = entry.options
     view = [word for at, word in enumerate(words) if VIEW & {word.partition("=")[0], *words[at - 1 : at]}]
     program.call([str(program.binary()), "convert", str(image), str(png), *view])
+    png.write_bytes(still(png.read_bytes()))
 
 
 def holds(entry: Entry) -> bool:

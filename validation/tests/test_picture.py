@@ -45,7 +45,8 @@ def test_broken_and_bright_pixels_are_shown(tmp_path: Path) -> None:
 def test_it_is_shown_by_the_view_and_exposure_it_was_rendered_with(tmp_path: Path) -> None:
     image = tyndall.render(SCENE, spp=1, size=(16, 16), view="agx", exposure="auto")
     assert image.display == display.Display("agx", image.report["exposure"]) and image.report["exposure"] != 0
-    png = shown((image * 1)._repr_png_(), tmp_path)
+    computed: Any = image * 1
+    png = shown(computed._repr_png_(), tmp_path)
     assert (png == shown(image.shown("agx", "auto").save(tmp_path / "image.png").read_bytes(), tmp_path)).all()
     assert (png != shown(image.shown("standard", 0)._repr_png_(), tmp_path)).any()
     assert re.search(r"^view +agx$", tyndall.info(tmp_path / "image.png"), re.MULTILINE)
