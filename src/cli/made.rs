@@ -113,8 +113,7 @@ pub fn metadata(made: &Value, image: &Image) -> String {
 pub fn shown(metadata: &str, display: Display) -> String {
     let mut all: Value = serde_json::from_str(metadata).unwrap_or_else(|_| json!({}));
     all["view"] = display.view.name().into();
-    // As it is written, not as f64 shows an f32.
-    all["exposure"] = json!(display.stops.to_string().parse::<f64>().unwrap_or_default());
+    all["exposure"] = display.stops.into();
     ascii(&all)
 }
 

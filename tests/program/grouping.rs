@@ -41,6 +41,18 @@ fn assert_whole_of(sandbox: &Sandbox, name: &str, layers: &[String]) {
     }
 }
 
+/// Samples that are merged, and those that a render goes on with, make the image all.exr of six samples.
+fn assert_same_in_parts(sandbox: &Sandbox, render: impl Fn(&str)) {
+    let same = |name: &str| assert!(sandbox.channels("all.exr") == sandbox.channels(name), "{name}");
+    render("--samples 0..2 --sums a.sums");
+    render("--samples 2..6 --sums b.sums");
+    sandbox.run("merge b.sums a.sums -o merged.exr").ends(0);
+    same("merged.exr");
+    render("--spp 2 -o resumed.exr --sums c.sums");
+    render("--spp 6 -o resumed.exr --sums c.sums --resume");
+    same("resumed.exr");
+}
+
 #[test]
 fn groups_are_layers_whatever_a_render_is_cut_into() {
     let sandbox = Sandbox::with_scene(&lamps());
@@ -49,16 +61,9 @@ fn groups_are_layers_whatever_a_render_is_cut_into() {
     };
     render("--spp 6 --threads 2 -o all.exr");
     assert_whole(&sandbox, "all.exr");
-    let same = |name: &str| assert!(sandbox.channels("all.exr") == sandbox.channels(name), "{name}");
     render("--spp 6 --threads 1 -o single.exr");
-    same("single.exr");
-    render("--samples 0..2 --sums a.sums");
-    render("--samples 2..6 --sums b.sums");
-    sandbox.run("merge b.sums a.sums -o merged.exr").ends(0);
-    same("merged.exr");
-    render("--spp 2 -o resumed.exr --sums c.sums");
-    render("--spp 6 -o resumed.exr --sums c.sums --resume");
-    same("resumed.exr");
+    assert!(sandbox.channels("all.exr") == sandbox.channels("single.exr"));
+    assert_same_in_parts(&sandbox, render);
     for (name, part) in [("left", "24x40+0+0"), ("right", "24x40+24+0")] {
         render(&format!("--spp 3 --crop {part} --sums {name}.sums"));
     }
@@ -122,14 +127,7 @@ fn components_are_layers_whatever_a_render_is_cut_into() {
     render("--spp 6 -o all.exr");
     assert_whole_of(&sandbox, "all.exr", &components);
     assert_eq!(sandbox.channels("all.exr").len(), 15);
-    let same = |name: &str| assert!(sandbox.channels("all.exr") == sandbox.channels(name), "{name}");
-    render("--samples 0..2 --sums a.sums");
-    render("--samples 2..6 --sums b.sums");
-    sandbox.run("merge b.sums a.sums -o merged.exr").ends(0);
-    same("merged.exr");
-    render("--spp 2 -o resumed.exr --sums c.sums");
-    render("--spp 6 -o resumed.exr --sums c.sums --resume");
-    same("resumed.exr");
+    assert_same_in_parts(&sandbox, render);
     render("--error 0.5 --spp 60 -o error.exr");
     assert_whole_of(&sandbox, "error.exr", &components);
     render("--groups --spp 2 -o both.exr");
