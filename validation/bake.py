@@ -5,6 +5,7 @@ below what a comparison resolves."""
 import hashlib
 import json
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -107,16 +108,24 @@ def box_of(tree: dict, medium: dict) -> np.ndarray:
 def grid(function: dict, box: np.ndarray, time: float) -> dict:
     """The function as a gridvolume on the box; its file is kept."""
     FOLDER.mkdir(parents=True, exist_ok=True)
-    counts = voxels(function, box, time)
-    key = json.dumps([function, box.tolist(), time, counts], sort_keys=True)
+    key = json.dumps([function, box.tolist(), time, FEWEST, MOST, ERROR], sort_keys=True)
     path = FOLDER / f"{hashlib.sha256(key.encode()).hexdigest()[:20]}.vol"
+    if not path.is_file():
+        partial = path.with_suffix(f".{os.getpid()}")
+        partial.write_bytes(vol(sampled(function, box, time)))
+        partial.replace(path)
+    to_world = [{"type": "scale", "value": (box[1] - box[0]).tolist()}, {"type": "translate", "value": box[0].tolist()}]
+    return {"type": "gridvolume", "filename": str(path), "to_world": to_world}
+
+
+def sampled(function: dict, box: np.ndarray, time: float) -> np.ndarray:
+    """The function at the middles of voxels, (z, y, x) or (z, y, x, 3)."""
+    counts = voxels(function, box, time)
     x, y, z = (corner + (np.arange(n) + 0.5) / n * side for n, corner, side in zip(counts, box[0], box[1] - box[0]))
     values = densities.value(function, np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).transpose(2, 1, 0, 3), time)
     if values.min() < 0:
         raise Failure(f"the density {function['type']} is negative at some places", "raise its constant")
-    path.write_bytes(vol(values))
-    to_world = [{"type": "scale", "value": (box[1] - box[0]).tolist()}, {"type": "translate", "value": box[0].tolist()}]
-    return {"type": "gridvolume", "filename": str(path), "to_world": to_world}
+    return values
 
 
 def voxels(function: dict, box: np.ndarray, time: float) -> list[int]:
