@@ -1,25 +1,64 @@
-"""Density functions as grids: what Mitsuba gets in their place. A grid covers the box of the shape that holds the medium,
-fine enough that what it smooths away is far below what a comparison resolves."""
+"""What Mitsuba gets in place of what it has not: density functions as grids, OpenVDB's grids as its own files, phase functions as
+tables. The grid of a function covers the box of the shape that holds the medium, fine enough that what it smooths away is far
+below what a comparison resolves."""
 
 import hashlib
 import json
+import math
+import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from tyndall import program
 from tyndall.failure import Failure
 from tyndall.load_dict import translated
 from tyndall.scene import changed
 from tyndall.volume_file import vol
-from validation import densities
+from validation import densities, phases
 from validation.places import TARGET
 
 FOLDER = TARGET / "validation-baked"
-RESOLUTION = 64
-"""Voxels a side."""
+FEWEST, MOST = 16, 2**22
+"""Voxels along a side, and of a whole grid."""
+ERROR = 1e-3
+"""What lines between voxels may be off on average, over the mean; with MOST, where the function jumps, they are more."""
+PLACES = 4096
+"""Where that is looked at."""
+SPARSE = (".vdb", ".nvdb")
+"""Files of volumes that Mitsuba does not read."""
 
 
-def baked(tree: dict) -> dict:
+def baked(tree: dict, folder: Path) -> dict:
+    """The scene as Mitsuba knows all of it; names of files in it start at `folder`."""
+    return with_grids(changed(tree, lambda o: known(o, folder)))
+
+
+def known(o: dict, folder: Path) -> dict:
+    """An object by itself."""
+    if phases.is_function(o):
+        return phases.tabulated(o)
+    is_sparse = o["type"] == "gridvolume" and Path(o.get("filename", "")).suffix.lower() in SPARSE
+    return {**without(o, "grid"), "filename": str(dense(folder / o["filename"], o.get("grid")))} if is_sparse else o
+
+
+def without(o: dict, key: str) -> dict:
+    """All but one parameter."""
+    return {name: value for name, value in o.items() if name != key}
+
+
+def dense(path: Path, name: str | None) -> Path:
+    """Mitsuba's file of a grid of an OpenVDB or NanoVDB file, the grid of that name; it is kept."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    key = hashlib.sha256(path.read_bytes() + repr(name).encode()).hexdigest()
+    kept = FOLDER / f"{key[:20]}.vol"
+    if not kept.is_file():
+        program.call([str(program.binary()), "convert", *program.flags({"grid": name}), str(path), str(kept)])
+    return kept
+
+
+def with_grids(tree: dict) -> dict:
     """The scene with every density function in a medium baked to a grid."""
     media = {id(medium): medium for medium in (*tree.values(), *map(interior, tree.values())) if varies(medium)}
     grids = {key: grids_of(tree, medium) for key, medium in media.items()}
@@ -69,13 +108,41 @@ def box_of(tree: dict, medium: dict) -> np.ndarray:
 def grid(function: dict, box: np.ndarray, time: float) -> dict:
     """The function as a gridvolume on the box; its file is kept."""
     FOLDER.mkdir(parents=True, exist_ok=True)
-    key = json.dumps([function, box.tolist(), time, RESOLUTION], sort_keys=True)
+    key = json.dumps([function, box.tolist(), time, FEWEST, MOST, ERROR], sort_keys=True)
     path = FOLDER / f"{hashlib.sha256(key.encode()).hexdigest()[:20]}.vol"
-    steps = (np.arange(RESOLUTION) + 0.5) / RESOLUTION
-    z, y, x = np.meshgrid(steps, steps, steps, indexing="ij")
-    values = densities.value(function, box[0] + np.stack([x, y, z], axis=-1) * (box[1] - box[0]), time)
-    if values.min() < 0:
-        raise Failure(f"the density {function['type']} is negative at some places", "raise its constant")
-    path.write_bytes(vol(values))
+    if not path.is_file():
+        partial = path.with_suffix(f".{os.getpid()}")
+        partial.write_bytes(vol(sampled(function, box, time)))
+        partial.replace(path)
     to_world = [{"type": "scale", "value": (box[1] - box[0]).tolist()}, {"type": "translate", "value": box[0].tolist()}]
     return {"type": "gridvolume", "filename": str(path), "to_world": to_world}
+
+
+def sampled(function: dict, box: np.ndarray, time: float) -> np.ndarray:
+    """The function at the middles of voxels, (z, y, x) or (z, y, x, 3)."""
+    counts = voxels(function, box, time)
+    x, y, z = (corner + (np.arange(n) + 0.5) / n * side for n, corner, side in zip(counts, box[0], box[1] - box[0]))
+    values = densities.value(function, np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).transpose(2, 1, 0, 3), time)
+    if values.min() < 0:
+        raise Failure(f"the density {function['type']} is negative at some places", "raise its constant")
+    return values
+
+
+def voxels(function: dict, box: np.ndarray, time: float) -> list[int]:
+    """How many along x, y and z."""
+    counts = [FEWEST] * 3
+    while math.prod(counts) < MOST:
+        errors = [smoothed(function, box, time, axis, counts[axis]) for axis in range(3)]
+        worst = int(np.argmax(errors))
+        if errors[worst] <= ERROR:
+            break
+        counts[worst] *= 2
+    return counts
+
+
+def smoothed(function: dict, box: np.ndarray, time: float, axis: int, count: int) -> float:
+    """What lines between so many voxels along an axis are off, over the mean of the function: both at random places."""
+    half = np.eye(3)[axis] * (box[1] - box[0]) / (2 * count)
+    at = np.random.default_rng(0).uniform(box[0] + half, box[1] - half, (PLACES, 3))
+    below, here, above = (densities.value(function, at + step, time) for step in (-half, 0, half))
+    return float(np.abs((below + above) / 2 - here).mean() / max(here.mean(), np.finfo(float).tiny))

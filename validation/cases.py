@@ -202,6 +202,7 @@ CASES = (
     *grids(),
     *functions(),
     Case("phase_functions.json", effort=2),
+    Case("phase_functions_tabulated.json", effort=2),
     Case("spectra.json"),
     Case("spectra_blackbody.json", variant="scalar_spectral"),
     Case("integrator_path.json"),

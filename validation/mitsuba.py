@@ -62,7 +62,7 @@ def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None
         if scene.is_xml:
             loaded = load_file(scene)
             return loaded if size is None else with_size(loaded, size)
-        tree = to_mitsuba(Scene(bake.baked(scene.dictionary()), scene.name, {}, scene.folder))
+        tree = to_mitsuba(Scene(bake.baked(scene.dictionary(), scene.folder), scene.name, {}, scene.folder))
         return package().load_dict(changed(tree, lambda o: sized(o, size)))
     except (RuntimeError, TypeError, ValueError) as error:
         problem = f"Mitsuba cannot load {scene.name} ({variant}): {error}"

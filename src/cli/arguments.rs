@@ -83,10 +83,13 @@ pub enum Command {
     /// Of an image or sums, print how they were made; of a volume file (.vdb, .nvdb, .vol), the grids in it, and which
     /// of them the plugin smoke takes by itself.
     Info(Info),
-    /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML; or an image to a PNG
+    /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML; an image to a PNG; a volume file to .vol
     ///
     /// An image (.exr, .pfm, .rgbe, .hdr) becomes the PNG that render would write beside it, with another --exposure or
     /// --view: tyndall convert fog.exr fog.png --exposure auto --view agx
+    ///
+    /// A grid of an OpenVDB or NanoVDB file (.vdb, .nvdb) becomes Mitsuba's .vol, of all voxels in the box around the
+    /// active ones and one more on every side; a gridvolume with use_grid_bbox shows the same of both files.
     ///
     /// Plugins, names, ids, references, order, the exact value of every number, colours, spectra, the steps of
     /// transforms, and parameters with their defaults are preserved (<default> in XML is "$defaults" in JSON).
@@ -375,14 +378,14 @@ pub struct Manual {
     pub folder: Option<PathBuf>,
 }
 
-/// Convert a scene.
+/// Convert a scene, an image or a volume file.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Convert {
-    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input; or an image
+    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input; or an image; or a volume file
     #[arg(value_name = "IN", value_parser = scene_file())]
     pub input: PathBuf,
 
-    /// Scene file to write: .xml or .json; of an image: .png
+    /// Scene file to write: .xml or .json; of an image: .png; of a volume file: .vol
     #[arg(value_name = "OUT")]
     pub output: PathBuf,
 
@@ -393,6 +396,10 @@ pub struct Convert {
     /// Write the values of parameters instead of their names (mitsuba.load_dict does not support parameters)
     #[arg(long)]
     pub fill: bool,
+
+    /// The grid that is meant in a file of several [default: the one named "density", else the only one]
+    #[arg(long, value_name = "NAME")]
+    pub grid: Option<String>,
 
     /// How the PNG of an image shows it.
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! `tyndall convert`: converts a scene between XML and JSON, or an image to a PNG.
+//! `tyndall convert`: converts a scene between XML and JSON, an image to a PNG, or a volume file to Mitsuba's.
 
 use super::{arguments, complain, display::Display, made, outputs::check_short};
 use crate::{
@@ -6,30 +6,41 @@ use crate::{
     error::{Error, Result},
     film,
     format::{self, Naming},
+    volume::grid,
 };
 use std::path::Path;
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Convert) -> Result<()> {
-    let arguments::Convert { definitions, fill, display, output, .. } = arguments;
+    let arguments::Convert { definitions, fill, grid, display, input, output } = arguments;
     let of_scenes = [(!definitions.is_empty(), "-D"), (*fill, "--fill")];
     let of_images = [(display.exposure.is_some(), "--exposure"), (display.view.is_some(), "--view")];
-    if output.extension().is_some_and(|end| end.eq_ignore_ascii_case("png")) {
-        refuse(of_scenes, "a scene file to write", output)?;
-        show(&arguments.input, output, *display)
-    } else {
-        refuse(of_images, "a PNG to write", output)?;
-        scene(arguments)
+    let of_volumes = [(grid.is_some(), "--grid")];
+    let is = |kind| output.extension().is_some_and(|end| end.eq_ignore_ascii_case(kind));
+    let (to_png, to_vol) = (is("png"), is("vol"));
+    if to_png || to_vol {
+        refuse(&of_scenes, "a scene file to write", output)?;
+    }
+    if !to_png {
+        refuse(&of_images, "a PNG to write", output)?;
+    }
+    if !to_vol {
+        refuse(&of_volumes, "a .vol file to write", output)?;
+    }
+    match (to_png, to_vol) {
+        (true, _) => show(input, output, *display),
+        (_, true) => voxels(input, grid.as_deref(), output),
+        _ => scene(arguments),
     }
 }
 
 /// Refuses options that do not go with this output.
-fn refuse(options: [(bool, &str); 2], expected: &str, output: &Path) -> Result<()> {
-    match options.into_iter().find(|(is_given, _)| *is_given) {
+fn refuse(options: &[(bool, &str)], expected: &str, output: &Path) -> Result<()> {
+    match options.iter().find(|(is_given, _)| *is_given) {
         None => Ok(()),
         Some((_, name)) => {
             let remedy = format!("remove {name}, or name another file to write");
-            Err(Error::new(name, expected, output.display().to_string(), remedy))
+            Err(Error::new(*name, expected, output.display().to_string(), remedy))
         }
     }
 }
@@ -43,6 +54,15 @@ fn scene(arguments: &arguments::Convert) -> Result<()> {
     for note in &conversion.notes {
         complain(&format!("note: {note}"));
     }
+    super::say(&output.display().to_string());
+    Ok(())
+}
+
+/// The `.vol` file `output` of the volume file `input`.
+fn voxels(input: &Path, grid: Option<&str>, output: &Path) -> Result<()> {
+    check_short([&output.to_owned()], &[input])?;
+    let voxels = grid::to_vol(input, grid)?;
+    film::output::write(output, |file| voxels.write(file))?;
     super::say(&output.display().to_string());
     Ok(())
 }

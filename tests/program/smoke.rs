@@ -152,3 +152,26 @@ fn a_frame_without_a_file_is_told_of_before_anything_is_rendered() {
     let none = Sandbox::with_scene(&scene("b_####.vdb")).run("info scene.json").ends(2).err();
     assert!(none.contains("found none for \"b_####.vdb\""), "{none}");
 }
+
+/// Mitsuba's file of one grid among several holds the same smoke, where the OpenVDB file says that it lies.
+#[test]
+fn a_grid_becomes_mitsubas_file() {
+    let mut grid = json!({"type": "gridvolume", "filename": "a.vdb", "grid": "burn", "use_grid_bbox": true});
+    let room = |grid: &Value| {
+        let medium = json!({"type": "heterogeneous", "sigma_t": grid, "scale": 3});
+        let size = json!([{"type": "scale", "value": 9}]);
+        let smoke = json!({"type": "cube", "to_world": size, "bsdf": {"type": "null"}, "interior": medium});
+        json!({"type": "scene", "smoke": smoke, "sky": {"type": "constant"}, "camera": camera()})
+    };
+    let sandbox = Sandbox::with_scene(&room(&grid)).with_sample("houdini.vdb", "a.vdb");
+    sandbox.run("convert a.vdb a.vol --grid burn").ends(0);
+    grid = json!({"type": "gridvolume", "filename": "a.vol", "use_grid_bbox": true});
+    fs::write(sandbox.path("b.json"), room(&grid).to_string()).unwrap();
+    sandbox.run("render scene.json --spp 1 -o a.exr").ends(0);
+    sandbox.run("render b.json --spp 1 -o b.exr").ends(0);
+    assert_eq!(sandbox.channels("a.exr"), sandbox.channels("b.exr"));
+    sandbox.run("convert a.vdb c.vol --grid fire").refuses(&["a.vdb", "fire"]);
+    sandbox.run("convert a.vdb c.json --grid burn").refuses(&["--grid", "a .vol file to write"]);
+    sandbox.run("convert a.vdb c.vol --fill").refuses(&["--fill", "a scene file to write"]);
+    sandbox.run("convert a.vdb a.vdb.vol --view agx").refuses(&["--view", "a PNG to write"]);
+}

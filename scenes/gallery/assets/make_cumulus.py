@@ -1,11 +1,10 @@
-"""Writes a cumulus (cumulus.vdb; with --vol also cumulus.vol, for Mitsuba) and two skies (cumulus_day.hdr, cumulus_sunset.hdr).
+"""Writes a cumulus (cumulus.vdb) and two skies (cumulus_day.hdr, cumulus_sunset.hdr).
 
     python3 scenes/gallery/assets/make_cumulus.py
 
 The cloud is a heap of spheres on spheres on spheres, roughened by noise, over a flat base (x to the right, y up; 100 m are 1).
 """
 
-import argparse
 import struct
 import zlib
 from pathlib import Path
@@ -121,12 +120,6 @@ def packed(values: np.ndarray) -> bytes:
     return b"\0" + (struct.pack("<q", len(short)) + short if len(short) < len(plain) else struct.pack("<q", -len(plain)) + plain)
 
 
-def vol(samples: np.ndarray) -> bytes:
-    """The same as Mitsuba's grid file."""
-    high = LOW + SIDE * np.array(samples.shape)
-    return b"VOL" + struct.pack("<B5i6f", 3, 1, *samples.shape, 1, *LOW, *high) + samples.transpose(2, 1, 0).astype("<f4").tobytes()
-
-
 def sky(height: int, gradient: list, glow: tuple, ground: tuple) -> bytes:
     """A Radiance picture in latitude and longitude: colours by elevation [degrees], and a glow (colour, azimuth, elevation, width)."""
     elevation = 90 - 180 * (np.arange(height) + 0.5) / height
@@ -151,12 +144,8 @@ SUNSET = [(0, (0.85, 0.42, 0.2)), (5, (0.72, 0.38, 0.24)), (14, (0.4, 0.3, 0.34)
 
 def main() -> None:
     """Writes the files."""
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--vol", action="store_true", help="write cumulus.vol too")
     cloud = np.round(cumulus() * 16) / 16
     files = {"cumulus.vdb": vdb(cloud)}
-    if arguments.parse_args().vol:
-        files["cumulus.vol"] = vol(cloud)
     files["cumulus_day.hdr"] = sky(64, DAY, ((0.5, 0.5, 0.45), 140, 42, 18), (0.11, 0.12, 0.08))
     files["cumulus_sunset.hdr"] = sky(64, SUNSET, ((1.3, 0.62, 0.2), 44, 5, 22), (0.05, 0.04, 0.05))
     for name, content in files.items():

@@ -1,6 +1,10 @@
 //! Grid files of all formats, seen alike.
 
-use super::{super::Samples, convert::Convert, vol};
+use super::{
+    super::Samples,
+    convert::Convert,
+    vol::{self, Vol},
+};
 use crate::{
     error::Result,
     math::{DAffine3, DMat3, DVec3, Spectrum},
@@ -41,6 +45,11 @@ pub fn open(path: &Path, grid: Option<&str>, convert: Convert) -> Result<Source>
     let source = files::open(path, grid).map_err(explain)?;
     let to_file = source.to_world * cube_to(source.voxels());
     Ok(Source { values: convert.of_source(source).map_err(explain)?, to_file })
+}
+
+/// A grid of the file at `path` as Mitsuba's `.vol` holds it: where it lies and as it is.
+pub fn to_vol(path: &Path, grid: Option<&str>) -> Result<Vol> {
+    Vol::new(path, open(path, grid, Convert::No)?)
 }
 
 /// From the unit cube to a box.

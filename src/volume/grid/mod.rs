@@ -36,7 +36,7 @@ use walk::{Line, Target, Walk};
 
 pub use crate::math::Wrap;
 pub use catalogue::{Catalogue, Contents};
-pub use file::{Source, Values};
+pub use file::{Source, Values, to_vol};
 pub use lattice::Filter;
 
 /// Where an optical depth, summed along a segment, reaches a given value.

@@ -8,7 +8,7 @@ use crate::{
 };
 use std::{
     fs::File,
-    io::{BufReader, Read},
+    io::{self, BufReader, Read, Write},
     path::Path,
 };
 
@@ -63,7 +63,72 @@ pub fn read(path: &Path) -> Result<Source> {
     Ok(Source { values, to_file })
 }
 
+/// A grid as a file of this format is to hold it.
+pub struct Vol {
+    header: Vec<u8>,
+    values: Values,
+}
+
+impl Vol {
+    /// The grid that the file at `path` holds, all of its voxels: those that a sparse file leaves out are among them.
+    pub fn new(path: &Path, Source { values, to_file }: Source) -> Result<Self> {
+        let (size, channels) = match &values {
+            Values::Grey(samples) => (samples.size(), 1),
+            Values::Chromatic(samples) => (samples.size(), 3),
+        };
+        let bytes = size.iter().try_fold(4 * channels as u64, |product, n| product.checked_mul(*n as u64));
+        check_memory(path, size, bytes)?;
+        Ok(Self { header: Header { size, channels, bounds: box_of(path, to_file)? }.bytes(), values })
+    }
+
+    /// Writes the file.
+    pub fn write(&self, file: &mut dyn Write) -> io::Result<()> {
+        file.write_all(&self.header)?;
+        match &self.values {
+            Values::Grey(samples) => write_rows(file, &**samples, |value| [value]),
+            Values::Chromatic(samples) => write_rows(file, &**samples, |value| value.to_array()),
+        }
+    }
+}
+
+fn write_rows<V, const N: usize>(
+    file: &mut dyn Write,
+    samples: &dyn Samples<V>,
+    numbers: impl Fn(V) -> [f32; N],
+) -> io::Result<()> {
+    let size = samples.size();
+    let mut rows = (0..size[2]).flat_map(|z| (0..size[1]).map(move |y| [y, z]));
+    rows.try_for_each(|[y, z]| {
+        let row = (0..size[0]).flat_map(|x| numbers(samples.at([x, y, z])));
+        file.write_all(&row.flat_map(f32::to_le_bytes).collect::<Vec<_>>())
+    })
+}
+
+/// The corners of a grid along the axes, the only ones that a file can name.
+fn box_of(path: &Path, to_file: DAffine3) -> Result<[DVec3; 2]> {
+    let (axes, low) = (to_file.matrix3, to_file.translation);
+    let sides = DVec3::new(axes.x_axis.x, axes.y_axis.y, axes.z_axis.z);
+    if axes == DMat3::from_diagonal(sides) && sides.min_element() > 0.0 {
+        return Ok([low, low + sides]);
+    }
+    let remedy = "export the grid without a rotation, and turn the gridvolume by its to_world";
+    Err(Error::new(
+        path.display(),
+        "a grid along the axes",
+        "one that is turned, sheared or mirrored",
+        remedy,
+    ))
+}
+
 impl Header {
+    fn bytes(&self) -> Vec<u8> {
+        let integers = [1, self.size[0], self.size[1], self.size[2], self.channels].map(|n| n as i32);
+        let corners = self.bounds.map(|corner| corner.as_vec3().to_array());
+        let numbers = integers.into_iter().flat_map(i32::to_le_bytes);
+        let places = corners.into_iter().flatten().flat_map(f32::to_le_bytes);
+        b"VOL\x03".iter().copied().chain(numbers).chain(places).collect()
+    }
+
     /// Reads it and compares it with the length of its file.
     fn read(path: &Path, file: &mut impl Read, length: u64) -> Result<Self> {
         let mut bytes = [0; HEADER];
