@@ -60,7 +60,9 @@ impl Coarse {
         lattice.fill(|index| {
             let [least, most] =
                 range(lattice.position(index, Vec3::ZERO), lattice.position(index, Vec3::ONE));
-            Summary { least, most, mean: mean_of(|u| value(lattice.position(index, u))) }
+            let mean = || mean_of(|u| value(lattice.position(index, u)));
+            let is_empty = least == 0.0 && most == 0.0;
+            Summary { least, most, mean: if is_empty { Spectrum::ZERO } else { mean() } }
         })
     }
 }

@@ -90,7 +90,11 @@ impl VolumeModel for Product {
             let [least, most] = albedo.range(low, high);
             [Spectrum::ONE - most, Spectrum::ONE - least]
         });
-        let [least, most] = ranges.chain(rest).fold([self.constant; 2], times);
+        // Once it is 0, what else it is made of need not be known.
+        let product = ranges.chain(rest).try_fold([self.constant; 2], |product, range| {
+            if product == [Spectrum::ZERO; 2] { Err(product) } else { Ok(times(product, range)) }
+        });
+        let (Ok([least, most]) | Err([least, most])) = product;
         let slack = least.abs().max(most.abs()) * (f32::EPSILON * (2 + self.factors.len()) as f32);
         [least - slack, most + slack]
     }
