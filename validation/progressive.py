@@ -14,8 +14,10 @@ from validation.files import write_text
 from validation.made_by import made_by_command
 from validation.places import REPORTS, SCENES
 
-PT, JOINED = "hit,next-event", "hit,next-event,join"
-"""Strategies that shade single pixels, named: all contenders use the same, and no pilot chooses."""
+PT: dict[str, Any] = {"strategies": "hit,next-event"}
+JOINED: dict[str, Any] = {"strategies": "hit,next-event,join", "connections": "all"}
+"""Strategies that shade single pixels, named: all contenders use the same, and no pilot chooses. A pixel that is shaded is the same in
+all of them; with light subpaths that pixels share it would not be."""
 CASES = {
     SCENES / "gallery" / "cornell_d.json": PT,
     SCENES / "gallery" / "floating_cubes.json": PT,
@@ -61,9 +63,9 @@ def run(options: argparse.Namespace) -> bool:
     return all(row.is_better for row in rows)
 
 
-def rows_of(scene: Path, strategies: str, options: argparse.Namespace) -> list[Row]:
+def rows_of(scene: Path, strategies: dict[str, Any], options: argparse.Namespace) -> list[Row]:
     """Those of one scene."""
-    given: dict[str, Any] = {"strategies": strategies, "integrator": "bdpt", "spp": options.spp, "size": options.size, "threads": options.threads}
+    given: dict[str, Any] = {**strategies, "integrator": "bdpt", "spp": options.spp, "size": options.size, "threads": options.threads}
     whole = render(scene, **given)
     found = []
     for part in PARTS:

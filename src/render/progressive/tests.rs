@@ -143,7 +143,10 @@ fn outlines_follow_regions() {
         assert!(corners.contains(&corner), "{corner}: {corners:?}");
     }
     for [a, b] in &pieces {
-        assert!(maps.along(*a as usize, *b as usize) > 0.99, "{a} {b}");
+        let region = |pixel: usize| (place(pixel % 20, pixel / 20), dot(pixel % 20, pixel / 20));
+        maps.walk(*a as usize, *b as usize, |pixel, _| {
+            assert_eq!(region(pixel), region(*a as usize), "{a} {b}")
+        });
         let ends = |at: u32| pieces.iter().flatten().filter(|end| **end == at).count();
         assert!(ends(*a).is_multiple_of(2), "{a} is where an outline ends");
     }
