@@ -22,6 +22,7 @@ from validation import (
     matrix,
     package_tests,
     page,
+    progressive,
     rays,
     reach,
     references,
@@ -56,6 +57,7 @@ def parser() -> argparse.ArgumentParser:
     add_instructions(commands)
     add_growth(commands)
     add_bias(commands)
+    add_progressive(commands)
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
@@ -218,6 +220,11 @@ def add_growth(commands: Commands) -> None:
 def add_bias(commands: Commands) -> None:
     command = add(commands, "bias", bias.run, "Bias of ray marching against its step, in a cosine cloud and a noise cloud.")
     bias.add_options(command)
+
+
+def add_progressive(commands: Commands) -> None:
+    command = add(commands, "progressive", progressive.run, "Progressive pictures against as many pixels on a regular grid, on four scenes.")
+    progressive.add_options(command)
 
 
 def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:

@@ -4,6 +4,7 @@ use super::{
     display::Display,
     estimator::Estimator,
     preview::Preview,
+    progressive::Progressive,
     study::Study,
     viewer,
     voice::{Answer, ProgressForm},
@@ -207,6 +208,10 @@ pub struct Render {
     /// Probability that a pixel is within --error [default: 0.95]
     #[arg(long, value_name = "C", value_parser = confidence, requires = "error", allow_negative_numbers = true)]
     pub confidence: Option<f64>,
+
+    /// Which pixels are shaded.
+    #[command(flatten)]
+    pub pixels: Progressive,
 
     /// Render N images with the seeds --seed, --seed + 1, ... and write their mean
     ///

@@ -8,7 +8,7 @@ use crate::{
         format::{FileKind, Format},
     },
     math::Spectrum,
-    render::{Image, any_sums::Kept},
+    render::{Image, any_sums::Picture},
     scene::build::Setup,
 };
 use serde_json::Value;
@@ -102,9 +102,9 @@ impl Goal {
     }
 
     /// Writes the image so far: without alpha and layers, which are rendered at the end.
-    pub fn draw(&self, film: &Film, sums: &dyn Kept, made: &Value) -> Result<()> {
+    pub fn draw(&self, film: &Film, picture: &dyn Picture, made: &Value) -> Result<()> {
         let format = Format { alpha: false, ..self.format };
         let goal = Self { path: self.path.clone(), format, display: self.display };
-        goal.write(film, &mut sums.image(), made)
+        goal.write(film, &mut picture.image(), made)
     }
 }

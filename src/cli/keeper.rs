@@ -5,7 +5,7 @@ use crate::{
     error::{Error, Result},
     render::{
         Progress,
-        any_sums::{AnySums, Kept},
+        any_sums::{AnySums, Kept, Picture},
         sums_file::{read, write},
     },
 };
@@ -48,16 +48,47 @@ impl Turn {
     }
 }
 
+/// What cannot be written is no reason to stop rendering.
+fn warn(what: &str, done: Option<Result<()>>) {
+    if let Some(Err(error)) = done {
+        complain(&format!("warning: {what} is not written: {error}"));
+    }
+}
+
+/// Shows what there is while a render goes on.
+pub struct Shown<'a> {
+    task: &'a Task<'a>,
+    picture: Option<Turn>,
+    /// Writes the picture so far.
+    draw: &'a dyn Fn(&dyn Picture) -> Result<()>,
+    view: Turn,
+}
+
+impl<'a> Shown<'a> {
+    /// With --preview, has the picture so far drawn; with --tev, shows it.
+    pub fn new(task: &'a Task<'a>, draw: &'a dyn Fn(&dyn Picture) -> Result<()>) -> Self {
+        let picture = task.arguments.preview.then(|| Turn::new(PICTURE_EVERY));
+        Self { task, picture, draw, view: Turn::new(VIEW_EVERY) }
+    }
+
+    /// Called now and then while rendering, and at the end of it.
+    pub fn watch(&mut self, progress: &Progress, picture: &dyn Picture) {
+        if progress.is_last {
+            return self.task.show(picture);
+        }
+        let draw = self.draw;
+        warn("the picture so far", self.picture.as_mut().and_then(|turn| turn.take(|| draw(picture))));
+        self.view.take(|| self.task.show(picture));
+    }
+}
+
 /// Writes what there is while a render goes on.
 pub struct Keeper<'a> {
     /// Where the sums go; none where a render cannot go on from them.
     file: Option<SumsFile>,
     task: &'a Task<'a>,
     sums: Turn,
-    picture: Option<Turn>,
-    /// Writes the picture so far.
-    draw: &'a dyn Fn(&dyn Kept) -> Result<()>,
-    view: Turn,
+    shown: Shown<'a>,
     /// The file is to be there at the end.
     is_wanted: bool,
     /// The last sums are written, or cannot be.
@@ -69,16 +100,14 @@ impl<'a> Keeper<'a> {
     pub fn new(
         file: Option<SumsFile>,
         task: &'a Task<'a>,
-        draw: &'a dyn Fn(&dyn Kept) -> Result<()>,
+        draw: &'a dyn Fn(&dyn Picture) -> Result<()>,
     ) -> Self {
         let arguments = task.arguments;
         Self {
             file,
             task,
             sums: Turn::new(arguments.sums_every.unwrap_or(PATIENCE)),
-            picture: arguments.preview.then(|| Turn::new(PICTURE_EVERY)),
-            draw,
-            view: Turn::new(VIEW_EVERY),
+            shown: Shown::new(task, draw),
             is_wanted: arguments.sums.is_some() || arguments.resume,
             last: None,
         }
@@ -87,23 +116,17 @@ impl<'a> Keeper<'a> {
     /// Called now and then while rendering, and at the end of it: what is rendered of alpha and layers after that can be
     /// rendered again, samples cannot.
     pub fn watch(&mut self, progress: &Progress, sums: &dyn Kept) {
-        let Self { file, draw, task, .. } = self;
+        let Self { file, task, .. } = self;
         let mut replace = || file.as_mut().map(|file| file.replace(sums, &task.made));
         if progress.is_last {
-            task.show(sums);
+            self.shown.watch(progress, sums);
             self.last = if self.is_wanted || interrupt::came() { replace() } else { None };
             return;
         }
         let kept = self.sums.take(replace).flatten();
         self.is_wanted |= matches!(kept, Some(Ok(())));
-        let drawn = self.picture.as_mut().and_then(|turn| turn.take(|| draw(sums)));
-        for (what, done) in [("the checkpoint", kept), ("the picture so far", drawn)] {
-            // No reason to stop rendering.
-            if let Some(Err(error)) = done {
-                complain(&format!("warning: {what} is not written: {error}"));
-            }
-        }
-        self.view.take(|| task.show(sums));
+        warn("the checkpoint", kept);
+        self.shown.watch(progress, sums);
     }
 
     /// Where the sums are, if they are kept.

@@ -25,6 +25,7 @@ mod plan;
 mod precision;
 mod preview;
 mod progress;
+mod progressive;
 mod render;
 mod report;
 mod strategies;

@@ -1,11 +1,11 @@
 //! What a render will do, in one line, and what light it does not reach.
 
-use super::{estimator::Estimator, voice};
+use super::{estimator::Estimator, progress::percent, voice};
 use crate::{
     analysis::coverage::{self, Share, Unreached, list},
     math::Spectrum,
     medium::{DistanceMethod, Medium},
-    render::{Settings, budget::Budget, pilot::Choice},
+    render::{Settings, budget::Budget, pilot::Choice, progressive::Progressive},
     scene::build::Setup,
     transport::{Connections, Effort, Options, Strategies, Survival},
 };
@@ -24,6 +24,8 @@ pub struct Plan {
     size: [u32; 2],
     /// Relative error at which the render stops.
     error: Option<f64>,
+    /// Not all pixels are shaded.
+    progressive: Option<Progressive>,
     unreached: Vec<Unreached>,
 }
 
@@ -48,7 +50,13 @@ impl Plan {
             chosen,
             settings,
             error,
+            progressive: None,
         }
+    }
+
+    /// The same of a progressive picture.
+    pub fn of_pixels(self, progressive: Option<Progressive>) -> Self {
+        Self { progressive, ..self }
     }
 
     /// In one line: integrator and strategies, sampler, free flights, size, limits, profile.
@@ -63,6 +71,9 @@ impl Plan {
             parts.push(list(&self.flights.iter().map(|method| in_words(*method)).collect::<Vec<_>>()));
         }
         parts.extend([format!("{width}x{height}"), self.limits()]);
+        parts.extend(self.progressive.map(|Progressive { method, fraction }| {
+            format!("a biased preview by {} of the pixels ({})", percent(fraction), method.name())
+        }));
         parts.push(format!("profile {}", self.settings.profile.name()));
         parts.join(", ")
     }
@@ -152,6 +163,8 @@ impl Plan {
             "samples_per_pixel": budget.samples_per_pixel,
             "time_limit_seconds": budget.time.map(|time| time.as_secs_f64()),
             "error": self.error,
+            "progressive": self.progressive.map(|wanted| wanted.method.name()),
+            "fraction": self.progressive.map(|wanted| wanted.fraction),
             "seed": seed,
             "profile": profile.name(),
             "heuristic": heuristic.to_string(),

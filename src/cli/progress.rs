@@ -39,6 +39,16 @@ impl Bar {
             (None, Some(noise)) => format!("noise {}", percent(noise)),
             (None, None) => "noise not known yet".to_owned(),
         };
+        self.tell(progress, &state);
+    }
+
+    /// The same of a progressive picture of so many `pixels`.
+    pub fn show_pixels(&self, progress: &Progress, pixels: usize) {
+        let shaded = progress.samples as f64 / (progress.passes.max(1) as f64 * pixels as f64);
+        self.tell(progress, &format!("{:.1} % of the pixels", 100.0 * shaded));
+    }
+
+    fn tell(&self, progress: &Progress, state: &str) {
         self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
         self.bar.set_position((STEPS * self.done(progress)) as u64);
         voice::update(progress.is_last, || self.line(progress));

@@ -5,12 +5,12 @@ use super::{
     clip::Clip,
     goal::Goal,
     interrupt,
-    keeper::{Keeper, SumsFile},
+    keeper::{Keeper, Shown, SumsFile},
     made,
     plan::Plan,
     precision::precision,
     progress::{Bar, percent, samples_text},
-    threads,
+    progressive, threads,
     viewer::Viewer,
 };
 use crate::{
@@ -19,10 +19,11 @@ use crate::{
     render::{
         self, Image, Settings,
         adaptive::Precision,
-        any_sums::{AnySums, Kept},
+        any_sums::{AnySums, Picture},
         budget::Budget,
         faults::Faults,
         pilot::Choice,
+        progressive::Shaded,
         samples::Samples,
     },
     scene::build::Setup,
@@ -41,6 +42,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     let clip = Clip::read(arguments)?;
     let mut setup = clip.first()?;
     let mut goal = Goal::new(arguments, &setup)?;
+    arguments.pixels.progressive.map_or(Ok(()), |_| progressive::check(&setup))?;
     super::outputs::check_render(arguments, &setup, &goal)?;
     let pool = threads(arguments.threads)?;
     let viewer = Mutex::new(None);
@@ -50,6 +52,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
         *viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
     }
     let plan = Plan::new(&setup, &arguments.estimator, task.settings, chosen, arguments.error);
+    let plan = plan.of_pixels(arguments.progressive());
     // Before this there is nothing that a signal should save.
     interrupt::listen();
     plan.announce();
@@ -139,9 +142,9 @@ impl<'a> Task<'a> {
     }
 
     /// Shows what there is in the viewer, if there is one; it goes when it fails.
-    pub fn show(&self, sums: &dyn Kept) {
+    pub fn show(&self, picture: &dyn Picture) {
         let Ok(mut viewer) = self.viewer.lock() else { return };
-        if let Some(Err(error)) = viewer.as_mut().map(|viewer| viewer.show(sums)) {
+        if let Some(Err(error)) = viewer.as_mut().map(|viewer| viewer.show(picture)) {
             super::complain(&format!("warning: no more is shown: {error}"));
             *viewer = None;
         }
@@ -190,24 +193,75 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
 
 /// Renders one image and writes it; its figures.
 fn shoot(setup: &Setup, task: &Task<'_>, goal: &mut Goal, label: Option<&str>) -> Result<Value> {
-    let (mut image, written) = match task.arguments.batches {
+    if let Some(wanted) = task.arguments.progressive() {
+        let (image, shaded) = few_pixels(setup, task, goal, wanted, label);
+        let is_without_lens = progressive::is_without_lens(&task.arguments.estimator, setup);
+        let text = progressive::text(&shaded, is_without_lens);
+        let mut made = task.made.clone();
+        made["progressive"] = text.as_str().into();
+        let task = Task { made, ..*task };
+        let mut figures = deliver(setup, &task, goal, image, Some(&text), label)?;
+        figures["progressive"] = progressive::json(&shaded);
+        return Ok(figures);
+    }
+    let (image, written) = match task.arguments.batches {
         None => watched(setup, task, goal, label)?,
         Some(count) => (batches(setup, task, goal, count, label)?, Ok(None)),
     };
+    let samples = image.samples();
+    let figures = deliver(setup, task, goal, image, None, label)?;
+    // The image is not lost where the sums are.
+    if let Some((file, kept)) = written? {
+        print_kept(&file, &kept, samples, task);
+    }
+    Ok(figures)
+}
+
+/// Writes an image and says what became of it; its figures.
+fn deliver(
+    setup: &Setup,
+    task: &Task<'_>,
+    goal: &mut Goal,
+    mut image: Image,
+    shaded: Option<&str>,
+    label: Option<&str>,
+) -> Result<Value> {
     report_faults(&image, setup);
     let mut figures = figures(&image, task);
     if !task.arguments.is_part() {
         let exposure = goal.expose(&image.pixels).unwrap_or_default();
         goal.write(&setup.film, &mut image, &task.made)?;
-        print_summary(&image, task, goal, &exposure, label);
+        print_summary(&image, task, goal, &exposure, shaded, label);
         figures["exposure"] = goal.display.of(&image.pixels).stops.into();
         figures["image"] = goal.path.display().to_string().into();
     }
-    // The image is not lost where the sums are.
-    if let Some((file, samples)) = written? {
-        print_kept(&file, &samples, &image, task);
-    }
     Ok(figures)
+}
+
+/// Makes a progressive picture under a progress bar.
+fn few_pixels(
+    setup: &Setup,
+    task: &Task<'_>,
+    goal: &Goal,
+    wanted: render::progressive::Progressive,
+    label: Option<&str>,
+) -> (Image, Shaded) {
+    let Setup { scene, film, integrator, .. } = setup;
+    let settings = &task.settings;
+    let bar = Bar::new(*settings, None, wanted.pixels(film.len()), label);
+    let mut made = task.made.clone();
+    made["progressive"] = progressive::begun(wanted.method);
+    let draw = |picture: &dyn Picture| goal.draw(film, picture, &made);
+    let mut shown = Shown::new(task, &draw);
+    let fog = (settings.options.strategies == Strategies::NONE).then_some(&integrator.fog);
+    let layers = &integrator.layers;
+    let done =
+        render::progressive::run(scene, film, settings, fog, layers, wanted, &mut |progress, picture| {
+            bar.show_pixels(&progress, film.len());
+            shown.watch(&progress, picture);
+        });
+    bar.finish();
+    done
 }
 
 /// A file of sums, and the samples in it.
@@ -237,7 +291,7 @@ fn keeping(setup: &Setup, task: &Task<'_>, goal: &Goal, bar: &Bar) -> Result<(Im
         Some(file) if arguments.resume => file.resume(&task.made)?,
         _ => AnySums::new(film, layers, task.precision),
     };
-    let draw = |sums: &dyn Kept| goal.draw(film, sums, &task.made);
+    let draw = |picture: &dyn Picture| goal.draw(film, picture, &task.made);
     let mut keeper = Keeper::new(file, task, &draw);
     let image = render::go_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
         bar.show(&progress);
@@ -256,10 +310,10 @@ fn sums_file(arguments: &arguments::Render, goal: &Goal) -> Option<SumsFile> {
     arguments.sums.clone().or_else(beside).map(|path| SumsFile::new(&path))
 }
 
-fn print_kept(file: &Path, samples: &Samples, image: &Image, task: &Task<'_>) {
+fn print_kept(file: &Path, samples: &Samples, taken: f64, task: &Task<'_>) {
     let file = file.display();
     if let Some((name, _)) = interrupt::signal() {
-        let count = samples_text(image.samples());
+        let count = samples_text(taken);
         let text = format!("{name} after {count} samples/pixel: continue with the same command and --resume");
         return super::complain(&format!("{text} ({file} has the sums)"));
     }
@@ -341,7 +395,11 @@ fn figures(image: &Image, task: &Task<'_>) -> Value {
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<(Settings, Option<Choice>)> {
     let endless = Budget::ENDLESS;
-    let (settings, chosen) = arguments.estimator.chosen(setup, arguments.seed, endless)?;
+    let estimator = match arguments.pixels.progressive {
+        None => arguments.estimator.clone(),
+        Some(_) => progressive::estimator(&arguments.estimator, setup)?,
+    };
+    let (settings, chosen) = estimator.chosen(setup, arguments.seed, endless)?;
     arguments.fog.warn_of_idle(settings.options.strategies);
     let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
     Ok((Settings { budget, ..settings }, chosen))
@@ -353,10 +411,10 @@ const PREVIEW_SAMPLES: u64 = 4;
 fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Budget {
     let samples_per_pixel = match (arguments.spp, arguments.time_limit) {
         (Some(spp), _) => Some(u64::from(spp)),
-        (None, Some(_)) => None,
+        (None, Some(_)) if arguments.pixels.progressive.is_none() => None,
         (None, None) if arguments.error.is_some() => None,
-        (None, None) if is_preview => Some(setup.samples_per_pixel.min(PREVIEW_SAMPLES)),
-        (None, None) => Some(setup.samples_per_pixel),
+        (None, _) if is_preview => Some(setup.samples_per_pixel.min(PREVIEW_SAMPLES)),
+        (None, _) => Some(setup.samples_per_pixel),
     };
     let all = Budget {
         samples_per_pixel,
@@ -372,7 +430,14 @@ fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Bud
     }
 }
 
-fn print_summary(image: &Image, task: &Task<'_>, goal: &Goal, exposure: &str, label: Option<&str>) {
+fn print_summary(
+    image: &Image,
+    task: &Task<'_>,
+    goal: &Goal,
+    exposure: &str,
+    shaded: Option<&str>,
+    label: Option<&str>,
+) {
     let noise = image.noise.map_or(String::new(), |noise| format!(", noise {}", percent(noise)));
     let noise = match (&image.reached, task.precision) {
         (Some(reached), Some(Precision { error, .. })) => {
@@ -381,6 +446,7 @@ fn print_summary(image: &Image, task: &Task<'_>, goal: &Goal, exposure: &str, la
         }
         _ => noise,
     };
+    let noise = shaded.map_or(noise, |shaded| format!(", {shaded}"));
     let label = label.map_or(String::new(), |label| format!("{label}: "));
     let preview = goal.preview().map_or(String::new(), |preview| format!(" and {}", preview.display()));
     super::say(&format!(

@@ -2,7 +2,7 @@
 
 use crate::{
     error::{Error, Result},
-    render::any_sums::Kept,
+    render::any_sums::Picture,
 };
 use std::{
     io,
@@ -35,14 +35,14 @@ impl Viewer {
         Ok(Self { client: TevClient::wrap(socket), address: address.to_owned(), is_new: true })
     }
 
-    /// Shows the picture that `sums` hold.
-    pub fn show(&mut self, sums: &dyn Kept) -> Result<()> {
-        self.send(sums).map_err(|error| explain(&self.address, &error))
+    /// Shows a picture.
+    pub fn show(&mut self, picture: &dyn Picture) -> Result<()> {
+        self.send(picture).map_err(|error| explain(&self.address, &error))
     }
 
-    fn send(&mut self, sums: &dyn Kept) -> io::Result<()> {
+    fn send(&mut self, picture: &dyn Picture) -> io::Result<()> {
         let size = |pixels: usize| u32::try_from(pixels).map_err(io::Error::other);
-        let (width, height) = sums.size();
+        let (width, height) = picture.size();
         let (width, height) = (size(width)?, size(height)?);
         let (image_name, channel_names) = (NAME, &CHANNELS[..]);
         if std::mem::take(&mut self.is_new) {
@@ -54,7 +54,7 @@ impl Viewer {
                 channel_names,
             })?;
         }
-        let data: Vec<f32> = sums.image().pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+        let data: Vec<f32> = picture.image().pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
         self.client.send(PacketUpdateImage {
             image_name,
             grab_focus: false,

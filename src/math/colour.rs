@@ -1,8 +1,9 @@
 //! Colour spaces, and spectra as colours.
 
 use super::{
-    DVec3,
+    DVec3, Vec3,
     cie::{D65, FIRST, LAST, OBSERVER, STEP},
+    vec3,
 };
 
 /// CIE XYZ to linear sRGB (ITU-R BT.709 primaries, white D65), rounded as Mitsuba rounds it: pictures agree.
@@ -12,6 +13,13 @@ pub fn xyz_to_rgb(xyz: DVec3) -> DVec3 {
         xyz.dot(DVec3::new(-0.969_256, 1.875_991, 0.041_556)),
         xyz.dot(DVec3::new(0.055_648, -0.204_043, 1.057_311)),
     )
+}
+
+/// CIELAB (CIE 015:2018) of a colour whose CIE XYZ, each over that of white, are given; 100 is the lightness of white.
+pub fn lab(over_white: Vec3) -> Vec3 {
+    let root = |t: f32| if t > (6.0f32 / 29.0).powi(3) { t.cbrt() } else { t * 841.0 / 108.0 + 4.0 / 29.0 };
+    let [x, y, z] = over_white.to_array().map(root);
+    vec3(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
 }
 
 /// What a spectrum is multiplied by before an eye sees it.

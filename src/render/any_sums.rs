@@ -10,14 +10,18 @@ use super::{
 };
 use crate::film::{Film, layer::Layer};
 
-/// What a render knows, from which it can go on.
-pub trait Kept {
+/// What a render can show before it ends.
+pub trait Picture {
     /// The image so far, without alpha and layers.
     fn image(&self) -> Image;
-    /// Samples of pixels; where some pixels need fewer, not all have all of them.
-    fn samples(&self) -> Samples;
     /// Pixels across and down.
     fn size(&self) -> (usize, usize);
+}
+
+/// What a render knows, from which it can go on.
+pub trait Kept: Picture {
+    /// Samples of pixels; where some pixels need fewer, not all have all of them.
+    fn samples(&self) -> Samples;
     /// What a file of it holds.
     fn store(&self) -> Stored;
 }

@@ -23,7 +23,7 @@ use std::{cell::Cell, ops::Range};
 
 /// Pixels (and light subpaths) of a block: a cache of this many walks still fits the processor's caches, and
 /// its noise is shared by few enough pixels.
-const PIXELS_PER_BLOCK: usize = 1024;
+pub const PIXELS_PER_BLOCK: usize = 1024;
 
 /// How an image's pixels are divided among blocks.
 pub struct Blocks {
@@ -55,6 +55,13 @@ pub struct CameraStart {
     pub walk: usize,
 }
 
+/// The camera subpath of a pixel, and the block whose light subpaths it is connected to.
+struct Sight {
+    pixel: usize,
+    block: usize,
+    start: CameraStart,
+}
+
 /// What a block adds to its pass.
 #[derive(Default)]
 pub struct Outcome {
@@ -65,6 +72,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// What camera subpaths contributed to pixels.
+    pub fn camera(&self) -> &[(u32, Spectrum)] {
+        &self.camera
+    }
+
     /// What camera and light subpaths contributed to pixels of any plane, and what went wrong.
     pub fn of_parts(camera: Vec<(u32, Spectrum)>, light: Vec<(u32, Spectrum)>, faults: Vec<Fault>) -> Self {
         Self { camera, light, faults }
@@ -143,7 +155,12 @@ impl Blocks {
     /// Divides `pixels`, each of which has `light_walks` light subpaths in a pass, for estimators of so many hero channels,
     /// whose walks draw from streams of `sampler`.
     pub fn new(pixels: usize, heroes: usize, sampler: Sampler, light_walks: f32) -> Self {
-        let count = pixels.div_ceil(PIXELS_PER_BLOCK).max(1);
+        Self::of_size(PIXELS_PER_BLOCK, pixels, heroes, sampler, light_walks)
+    }
+
+    /// The same with blocks of so many pixels.
+    pub fn of_size(size: usize, pixels: usize, heroes: usize, sampler: Sampler, light_walks: f32) -> Self {
+        let count = pixels.div_ceil(size).max(1);
         let golden = (pixels as f64 * 0.618_033_988_75) as usize;
         let stride = (golden.max(1)..).find(|s| gcd(*s, pixels) == 1).unwrap_or(1);
         let heroes = heroes as u64;
@@ -189,11 +206,15 @@ impl Blocks {
 
     /// Which of its block's light subpaths `pixel` has for itself; 0 where none has.
     fn walk_of(&self, pixel: usize) -> usize {
-        let Some(inverse) = self.inverse else { return 0 };
-        let place = (pixel as u128 * inverse as u128 % self.pixels as u128) as usize;
+        self.home(pixel).map_or(0, |(_, number)| number)
+    }
+
+    /// The block of `pixel` and its number there, where that is the number of its light subpath too.
+    fn home(&self, pixel: usize) -> Option<(usize, usize)> {
+        let place = (pixel as u128 * self.inverse? as u128 % self.pixels as u128) as usize;
         // The last block that begins there or before.
         let block = ((place + 1) * self.count - 1) / self.pixels;
-        place - self.places(block).start
+        Some((block, place - self.places(block).start))
     }
 
     /// Where the camera subpath of `pixel` in `pass` starts.
@@ -241,13 +262,54 @@ impl Blocks {
         wants: &dyn Fn(usize) -> bool,
         at: &Cell<Option<u32>>,
     ) -> Outcome {
-        let Ready { estimator, scene, film, seed, .. } = ready;
-        let mut light = Splatted { film, values: Vec::new(), sample: pass as u64, faults: Vec::new() };
-        let cache = self.trace_light(estimator, *seed, pass, block, &mut light);
-        let mut faults = light.faults;
-        let camera = self.pixels(block).filter(|pixel| wants(*pixel)).map(|pixel| {
+        let Ready { scene, film, seed, .. } = ready;
+        let mut starts = self.pixels(block).filter(|pixel| wants(*pixel)).map(|pixel| {
             at.set(Some(pixel as u32));
-            let start = self.camera_start(scene, film, *seed, pass, pixel);
+            Sight { pixel, block, start: self.camera_start(scene, film, *seed, pass, pixel) }
+        });
+        self.sample(ready, pass, &mut self.light_paths(block), &mut starts)
+    }
+
+    /// Renders one sample of each of `pixels`, connected to the light subpaths of a block of that number, which need not
+    /// be theirs; where every pixel has one for itself, to that.
+    pub fn shade<P: Profile>(
+        &self,
+        ready: &Ready<'_, P>,
+        pass: usize,
+        block: usize,
+        pixels: &[u32],
+        at: &Cell<Option<u32>>,
+    ) -> Outcome {
+        let Ready { scene, film, seed, .. } = ready;
+        let mut starts = pixels.iter().enumerate().map(|(walk, pixel)| {
+            at.set(Some(*pixel));
+            let pixel = *pixel as usize;
+            let start = CameraStart { walk, ..self.camera_start(scene, film, *seed, pass, pixel) };
+            Sight { pixel, block: self.home(pixel).map_or(block, |(own, _)| own), start }
+        });
+        let own = |(home, number): (usize, usize)| self.light_paths(home).start + number as u64;
+        match self.inverse {
+            None => self.sample(ready, pass, &mut self.light_paths(block), &mut starts),
+            Some(_) => {
+                let homes = pixels.iter().filter_map(|pixel| self.home(*pixel as usize));
+                self.sample(ready, pass, &mut homes.map(own), &mut starts)
+            }
+        }
+    }
+
+    /// Renders samples that are connected to light subpaths of these numbers.
+    fn sample<P: Profile>(
+        &self,
+        ready: &Ready<'_, P>,
+        pass: usize,
+        walks: &mut dyn Iterator<Item = u64>,
+        starts: &mut dyn Iterator<Item = Sight>,
+    ) -> Outcome {
+        let Ready { estimator, film, seed, .. } = ready;
+        let mut light = Splatted { film, values: Vec::new(), sample: pass as u64, faults: Vec::new() };
+        let cache = self.trace_walks(estimator, *seed, pass, walks, &mut light);
+        let mut faults = light.faults;
+        let camera = starts.map(|Sight { pixel, block, start }| {
             let (weight, mut sum) = (start.weight, start.trace(estimator, &cache, Sum::default()));
             if !sum.radiance.is_finite() {
                 sum.radiance = finite_part(ready, pass, block, pixel, &mut faults);
@@ -267,9 +329,21 @@ impl Blocks {
         block: usize,
         observer: &mut impl Observer<P::MisSums>,
     ) -> LightCache<P::MisSums> {
+        self.trace_walks(estimator, seed, pass, &mut self.light_paths(block), observer)
+    }
+
+    /// The same of light subpaths of these numbers.
+    fn trace_walks<P: Profile>(
+        &self,
+        estimator: &Estimator<'_, P>,
+        seed: u64,
+        pass: usize,
+        walks: &mut dyn Iterator<Item = u64>,
+        observer: &mut impl Observer<P::MisSums>,
+    ) -> LightCache<P::MisSums> {
         let mut cache = LightCache::new(P::Channels::COUNT);
         if estimator.needs_light_walks() {
-            for walk in self.light_paths(block) {
+            for walk in walks {
                 let mut stream = self.light_stream(seed, pass, walk);
                 estimator.trace_light(&mut cache, observer, self.hero(seed, pass, walk), &mut stream);
             }
@@ -312,12 +386,23 @@ impl CameraStart {
 impl Blocks {
     /// Shows one sample of every pixel of `block` as a preview.
     pub fn show(&self, preview: &Preview<'_>, film: &Film, seed: u64, pass: usize, block: usize) -> Outcome {
-        let camera = self.pixels(block).map(|pixel| {
-            let mut start = self.camera_start(preview.scene, film, seed, pass, pixel);
-            let ray = preview.scene.sensor.ray(start.position, start.aperture).ray;
-            (pixel as u32, preview.radiance(ray, &mut start.stream) * start.weight)
-        });
+        let camera =
+            self.pixels(block).map(|pixel| (pixel as u32, self.show_pixel(preview, film, seed, pass, pixel)));
         Outcome { camera: camera.collect(), light: Vec::new(), faults: Vec::new() }
+    }
+
+    /// Shows one sample of `pixel` as a preview.
+    pub fn show_pixel(
+        &self,
+        preview: &Preview<'_>,
+        film: &Film,
+        seed: u64,
+        pass: usize,
+        pixel: usize,
+    ) -> Spectrum {
+        let mut start = self.camera_start(preview.scene, film, seed, pass, pixel);
+        let ray = preview.scene.sensor.ray(start.position, start.aperture).ray;
+        preview.radiance(ray, &mut start.stream) * start.weight
     }
 
     /// Rays through pixels all over the film, with random numbers of their own.

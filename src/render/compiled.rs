@@ -3,7 +3,7 @@
 
 use super::{
     Settings,
-    block::{Blocks, Outcome},
+    block::{Blocks, Outcome, PIXELS_PER_BLOCK},
     faults::guarded,
     pilot::Pilot,
     pixel_sample::{self, EyeSample, Splat, Walk},
@@ -40,6 +40,8 @@ pub(super) trait Compiled: Sync {
         block: usize,
         wants: &dyn Fn(usize) -> bool,
     ) -> Outcome;
+    /// See [`Blocks::shade`].
+    fn shade(&self, pass: usize, block: usize, pixels: &[u32]) -> Outcome;
     /// See [`Estimator::transmittance`].
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum;
     /// See [`Estimator::first_interaction`].
@@ -66,10 +68,11 @@ pub(super) struct Ready<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Ready<'a, P> {
-    fn new(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
+    /// With blocks of so many pixels.
+    fn new(scene: &'a Scene, film: &'a Film, settings: &Settings, per_block: usize) -> Self {
         let learnt = settings.options.effort.learnt_starts;
         let starts = if learnt { training::starts(scene, film, &settings.options) } else { None };
-        Self::starting(scene, film, settings, starts)
+        Self::starting(scene, film, settings, starts, per_block)
     }
 
     /// The same with light subpaths that begin at learnt `starts`, if there are any.
@@ -78,12 +81,14 @@ impl<'a, P: Profile> Ready<'a, P> {
         film: &'a Film,
         settings: &Settings,
         starts: Option<Arc<Starts>>,
+        per_block: usize,
     ) -> Self {
         let Options { effort, connections, .. } = settings.options;
-        let blocks = |light_walks| Blocks::new(film.len(), P::Channels::COUNT, settings.sampler, light_walks);
+        let (pixels, heroes, sampler) = (film.len(), P::Channels::COUNT, settings.sampler);
         let blocks = match connections {
-            Connections::Cached => blocks(effort.light_walks),
-            Connections::All => blocks(1.0).paired(),
+            Connections::Cached => Blocks::of_size(per_block, pixels, heroes, sampler, effort.light_walks),
+            // Which light subpath a pixel has does not depend on what it is rendered with.
+            Connections::All => Blocks::new(pixels, heroes, sampler, 1.0).paired(),
         };
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let Settings { options, seed, .. } = *settings;
@@ -91,8 +96,13 @@ impl<'a, P: Profile> Ready<'a, P> {
         Self { estimator, blocks, scene, film, seed: settings.seed }
     }
 
-    fn prepare(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
-        Box::new(Self::new(scene, film, settings))
+    fn prepare(
+        scene: &'a Scene,
+        film: &'a Film,
+        settings: &Settings,
+        per_block: usize,
+    ) -> Box<dyn Compiled + 'a> {
+        Box::new(Self::new(scene, film, settings, per_block))
     }
 }
 
@@ -113,6 +123,12 @@ impl<P: Profile> Compiled for Ready<'_, P> {
                 None => self.blocks.render(self, pass, block, &wants, at),
                 Some(sorter) => sorted::block(self, sorter, [pass, block], &wants, at),
             }
+        })
+    }
+    fn shade(&self, pass: usize, block: usize, pixels: &[u32]) -> Outcome {
+        guarded(pass, |failed, at| {
+            let whole: Vec<u32> = pixels.iter().copied().filter(|pixel| !failed.contains(pixel)).collect();
+            self.blocks.shade(self, pass, block, &whole, at)
         })
     }
     fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
@@ -138,8 +154,14 @@ impl<P: Profile> Compiled for Ready<'_, P> {
     }
 }
 
-/// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for.
-pub(super) fn choose<'a>(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Box<dyn Compiled + 'a> {
+/// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for, with blocks of so
+/// many pixels.
+pub(super) fn choose<'a>(
+    scene: &'a Scene,
+    film: &'a Film,
+    settings: &Settings,
+    per_block: usize,
+) -> Box<dyn Compiled + 'a> {
     let prepare = match (settings.options.heuristic, settings.profile) {
         (Heuristic::Power | Heuristic::Maximum | Heuristic::Uniform, _) => Ready::<ByCompared>::prepare,
         (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
@@ -151,12 +173,12 @@ pub(super) fn choose<'a>(scene: &'a Scene, film: &'a Film, settings: &Settings) 
         (Heuristic::Balance, ProfileName::ChromaticFog) => Ready::<ChromaticFog>::prepare,
         (Heuristic::Balance, ProfileName::Everything) => Ready::<Everything>::prepare,
     };
-    prepare(scene, film, settings)
+    prepare(scene, film, settings, per_block)
 }
 
 /// What a pilot by `settings` says.
 pub(super) fn pilot(scene: &Scene, film: &Film, settings: &Settings) -> Pilot {
-    Pilot::fly(&Ready::<ByKind>::new(scene, film, settings))
+    Pilot::fly(&Ready::<ByKind>::new(scene, film, settings, PIXELS_PER_BLOCK))
 }
 
 /// What `tasks` by `settings` say of light subpaths that begin at `starts`, if any were learnt before.
@@ -167,5 +189,5 @@ pub(super) fn trial(
     starts: Option<Arc<Starts>>,
     tasks: Range<usize>,
 ) -> Trial {
-    Trial::run(&Ready::<ByKind>::starting(scene, film, settings, starts), tasks)
+    Trial::run(&Ready::<ByKind>::starting(scene, film, settings, starts, PIXELS_PER_BLOCK), tasks)
 }

@@ -151,32 +151,11 @@ impl<'a> Preview<'a> {
                 Some(passed / probability)
             }
             NullCrossing::Stopped(probability) => {
-                let (beyond, weight) = self.deflect(segment, point, stream)?;
+                let (beyond, weight) = deflect(self.scene, segment, point, stream)?;
                 *segment = beyond;
                 Some(weight / probability)
             }
         }
-    }
-
-    /// The segment beyond a smooth surface, and its factor; none where the ray ends.
-    fn deflect(
-        &self,
-        segment: &Segment<'a>,
-        point: &SurfacePoint,
-        stream: &mut Stream,
-    ) -> Option<(Segment<'a>, Spectrum)> {
-        let (scene, surface) = (self.scene, self.scene.surface(point.shape));
-        if surface.connectible || surface.emitter.is_some() {
-            return None;
-        }
-        let wi = point.shading.to_local(-segment.ray().direction);
-        let Some(sample) = scene.bsdf(point.shape).sample(point.uv, wi, Transport::Radiance, stream) else {
-            return Some((*segment, Spectrum::ZERO));
-        };
-        let direction = point.shading.to_world(sample.wo).normalize();
-        let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
-        let ray = Ray { origin, direction, t_max: f32::INFINITY };
-        Some((segment.deflected(point, ray), sample.weight))
     }
 
     /// Radiance that the surface itself emits along the ray.
@@ -228,6 +207,27 @@ impl<'a> Preview<'a> {
         let sample = self.scene.bsdf(point.shape).sample(point.uv, wi, Transport::Radiance, stream);
         sample.map_or(Spectrum::ZERO, |sample| sample.weight) * self.ambient
     }
+}
+
+/// The segment beyond a smooth surface, and its factor; none where the ray ends.
+pub(super) fn deflect<'a>(
+    scene: &'a Scene,
+    segment: &Segment<'a>,
+    point: &SurfacePoint,
+    stream: &mut Stream,
+) -> Option<(Segment<'a>, Spectrum)> {
+    let surface = scene.surface(point.shape);
+    if surface.connectible || surface.emitter.is_some() {
+        return None;
+    }
+    let wi = point.shading.to_local(-segment.ray().direction);
+    let Some(sample) = scene.bsdf(point.shape).sample(point.uv, wi, Transport::Radiance, stream) else {
+        return Some((*segment, Spectrum::ZERO));
+    };
+    let direction = point.shading.to_world(sample.wo).normalize();
+    let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+    let ray = Ray { origin, direction, t_max: f32::INFINITY };
+    Some((segment.deflected(point, ray), sample.weight))
 }
 
 /// Mean radiance of what surrounds the scene, if anything does.

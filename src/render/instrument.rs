@@ -3,7 +3,7 @@
 
 use super::{
     Settings,
-    block::{Outcome, Pass},
+    block::{Outcome, PIXELS_PER_BLOCK, Pass},
     compiled::{self, Compiled},
     sorted::Sorter,
 };
@@ -35,11 +35,16 @@ pub struct Instrument<'a> {
 impl<'a> Instrument<'a> {
     /// Prepares to render `scene` onto `film`. The budget of `settings` does not count.
     pub fn new(scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
+        Self::of_blocks(PIXELS_PER_BLOCK, scene, film, settings)
+    }
+
+    /// The same with blocks of so many pixels.
+    pub(super) fn of_blocks(per_block: usize, scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
         Self {
             scene,
             film,
             settings: *settings,
-            compiled: compiled::choose(scene, film, settings),
+            compiled: compiled::choose(scene, film, settings, per_block),
             sorter: None,
         }
     }

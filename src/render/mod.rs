@@ -19,6 +19,7 @@ mod observer;
 pub mod pilot;
 pub mod pixel_sample;
 mod primary;
+pub mod progressive;
 pub mod samples;
 mod sorted;
 pub mod strategy_images;

@@ -22,6 +22,7 @@ mod outputs;
 mod page;
 mod phase;
 mod pixel;
+mod progressive;
 mod reading;
 mod saying;
 mod smoke;

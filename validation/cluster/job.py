@@ -12,7 +12,7 @@ from validation.cluster.parts import Range
 
 OURS = {"--samples", "--crop", "--sums", "--checkpoint", "--resume"}
 """Options that say what a part is."""
-NOT_CUT = {"--time-limit", "--batches", "--frames", "--fps", "--preview", "--json", "--report"}
+NOT_CUT = {"--time-limit", "--batches", "--frames", "--fps", "--preview", "--progressive", "--fraction", "--json", "--report"}
 """Options of renders that are no sum of parts, or that every part would write to one file."""
 
 

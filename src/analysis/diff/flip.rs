@@ -6,7 +6,7 @@ use crate::{
     film::format::{XYZ_ROWS, to_xyz},
     math::{
         Spectrum, Vec3,
-        colour::xyz_to_rgb,
+        colour::{lab, xyz_to_rgb},
         srgb::{Srgb as _, byte},
         vec3,
     },
@@ -186,10 +186,8 @@ fn linear(opponent: Vec3) -> Vec3 {
 
 /// CIELAB of linear sRGB, chroma scaled by lightness for the Hunt effect (sec. 4.1.3).
 fn hunt(linear: Vec3) -> Vec3 {
-    let root = |t: f32| if t > (6.0f32 / 29.0).powi(3) { t.cbrt() } else { t * 841.0 / 108.0 + 4.0 / 29.0 };
-    let [x, y, z] = (to_xyz(linear) / white()).to_array().map(root);
-    let lightness = 116.0 * y - 16.0;
-    vec3(lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z))
+    let Vec3 { x: lightness, y: a, z: b } = lab(to_xyz(linear) / white());
+    vec3(lightness, 0.01 * lightness * a, 0.01 * lightness * b)
 }
 
 /// Distance of colours (sec. 4.1.3).

@@ -21,7 +21,7 @@ use crate::{
     render::{
         Image,
         adaptive::{Halves, Precision},
-        any_sums::Kept,
+        any_sums::{Kept, Picture},
         faults::Faults,
         half::Half,
         samples::Samples,
@@ -56,17 +56,19 @@ struct State {
     faults: Faults,
 }
 
-impl Kept for Halves {
+impl Picture for Halves {
     fn image(&self) -> Image {
         self.image()
     }
 
-    fn samples(&self) -> Samples {
-        Samples::from(0..self.passes())
-    }
-
     fn size(&self) -> (usize, usize) {
         self.size()
+    }
+}
+
+impl Kept for Halves {
+    fn samples(&self) -> Samples {
+        Samples::from(0..self.passes())
     }
 
     fn store(&self) -> Stored {

@@ -11,7 +11,13 @@ use super::{
 };
 use crate::{
     film::accumulator::Accumulator,
-    render::{Image, any_sums::Kept, faults::Faults, samples::Samples, sums::Sums},
+    render::{
+        Image,
+        any_sums::{Kept, Picture},
+        faults::Faults,
+        samples::Samples,
+        sums::Sums,
+    },
 };
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -38,17 +44,19 @@ struct State {
     faults: Faults,
 }
 
-impl Kept for Sums {
+impl Picture for Sums {
     fn image(&self) -> Image {
         self.image()
     }
 
-    fn samples(&self) -> Samples {
-        self.samples.clone()
-    }
-
     fn size(&self) -> (usize, usize) {
         self.size()
+    }
+}
+
+impl Kept for Sums {
+    fn samples(&self) -> Samples {
+        self.samples.clone()
     }
 
     fn store(&self) -> Stored {

@@ -1,0 +1,138 @@
+//! Progressive pictures: a preview by few pixels (P03T ch. 6).
+
+use super::{
+    arguments::{Render, one_of},
+    estimator::Estimator,
+    progress::percent,
+};
+use crate::{
+    error::{Error, Result},
+    film::layer::Layer,
+    render::progressive::{self, Method, Shaded},
+    scene::build::Setup,
+    transport::{Strategies, observer::StrategyKind},
+};
+use clap::Args;
+use serde_json::{Value, json};
+
+/// The part of the pixels to shade, unless the user wants another.
+const FRACTION: f64 = 0.1;
+
+/// Which pixels are shaded, where not all are.
+#[derive(Args, Clone, Copy, Debug, PartialEq)]
+pub struct Progressive {
+    /// A biased preview: shade few pixels, those that what the camera sees says most about, and interpolate the others
+    ///
+    /// One ray a pixel finds where normals, depth, albedo and media change. straight: triangles between shaded pixels are
+    /// divided where that is, or where colours differ; regions: the outlines of what looks alike are shaded first. Each of the
+    /// shaded pixels takes --spp samples. The strategy lens, whose light subpaths reach pixels by chance, is left out. The
+    /// channel samples.N of EXR files shows which pixels are shaded; files and the report say that it is a preview.
+    #[arg(long, value_name = "METHOD", value_parser = one_of(&Method::NAMES), conflicts_with_all =
+        ["error", "batches", "samples", "sums", "resume", "groups", "components"])]
+    pub progressive: Option<Method>,
+
+    /// Part of the pixels to shade, above 0 to 1 [default: 0.1, or as many as --time-limit allows]
+    #[arg(long, value_name = "PART", value_parser = fraction, requires = "progressive", allow_negative_numbers = true)]
+    pub fraction: Option<f64>,
+}
+
+fn fraction(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|part: &f64| *part > 0.0 && *part <= 1.0);
+    number.ok_or_else(|| "expected a part of the pixels above 0, at most 1, such as 0.1".to_owned())
+}
+
+impl Render {
+    /// The progressive picture that is wanted, if one is.
+    pub fn progressive(&self) -> Option<progressive::Progressive> {
+        let all = if self.time_limit.is_some() { 1.0 } else { FRACTION };
+        let fraction = self.pixels.fraction.unwrap_or(all);
+        self.pixels.progressive.map(|method| progressive::Progressive { method, fraction })
+    }
+}
+
+/// The estimator that makes progressive pictures of `setup`: `given` without the strategy lens.
+pub fn estimator(given: &Estimator, setup: &Setup) -> Result<Estimator> {
+    if given.strategies.contains(&StrategyKind::Lens) {
+        let expected =
+            "strategies that shade single pixels, for --progressive: hit, next-event, join, equiangular";
+        let remedy = "leave out lens, or leave out --progressive";
+        return Err(Error::new(
+            "--strategies",
+            expected,
+            "lens, whose light subpaths reach any pixel",
+            remedy,
+        ));
+    }
+    let wanted = given.integrator.unwrap_or(setup.integrator.options.strategies);
+    let kept = wanted.without(StrategyKind::Lens);
+    if kept == Strategies::NONE && wanted != kept {
+        let place = if given.integrator.is_some() { "--integrator" } else { "the scene's integrator" };
+        let expected = "one that can shade single pixels, for --progressive";
+        let found = "lt, whose light subpaths reach any pixel";
+        return Err(Error::new(
+            place,
+            expected,
+            found,
+            "use --integrator bdpt or pt, or leave out --progressive",
+        ));
+    }
+    Ok(Estimator { integrator: Some(kept), ..given.clone() })
+}
+
+/// An error where the image cannot be interpolated, or layers are of all of its samples.
+pub fn check(setup: &Setup) -> Result<()> {
+    let (width, height) = (setup.film.width, setup.film.height);
+    if width.min(height) < 2 {
+        let found = format!("{width} x {height} pixels");
+        let expected = "an image of 2 x 2 pixels or more, for --progressive";
+        return Err(Error::new(
+            "the film",
+            expected,
+            found,
+            "choose a larger --size, or leave out --progressive",
+        ));
+    }
+    match setup.integrator.layers.iter().find(|layer| layer.needs_squares()) {
+        None => Ok(()),
+        Some(Layer { name, .. }) => {
+            let expected = "layers of what primary rays see, for --progressive";
+            let remedy = "leave out the scene's moment integrator, or leave out --progressive";
+            Err(Error::new(
+                "the scene's layers",
+                expected,
+                format!("{name}, the moments of all pixels"),
+                remedy,
+            ))
+        }
+    }
+}
+
+/// What files say of a picture that is not finished.
+pub fn begun(method: Method) -> Value {
+    format!("{}, a biased preview that is not finished", method.name()).into()
+}
+
+/// True if the picture lacks what light subpaths that the lens sees would bring.
+pub fn is_without_lens(given: &Estimator, setup: &Setup) -> bool {
+    given.strategies.is_empty() && given.integrator.unwrap_or(setup.integrator.options.strategies).lens
+}
+
+/// The same of one that is finished, with or without the strategy lens.
+pub fn text(shaded: &Shaded, is_without_lens: bool) -> String {
+    let share = percent(shaded.pixels as f64 / shaded.of as f64);
+    let lens = if is_without_lens { "; without the strategy lens" } else { "" };
+    let method = shaded.method.name();
+    format!("{method}, {share} of pixels shaded: a biased preview, the others are interpolated{lens}")
+}
+
+/// The same for scripts.
+pub fn json(shaded: &Shaded) -> Value {
+    json!({
+        "method": shaded.method.name(),
+        "pixels_shaded": shaded.pixels,
+        "pixels": shaded.of,
+        "is_biased": shaded.pixels < shaded.of,
+        "seconds_of_maps": shaded.maps.as_secs_f64(),
+        "seconds_of_shading": shaded.shading.as_secs_f64(),
+    })
+}

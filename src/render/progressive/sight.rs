@@ -1,0 +1,154 @@
+//! What one ray through the middle of a pixel sees of the scene, light aside: the false colours of P03T sec. 6.3
+//! (orientation, depth, material), and how much of a medium lies before them.
+
+use crate::{
+    bsdf::BsdfModel,
+    math::{RaySegment, Spectrum, Vec2, Vec3, vec3},
+    medium::Medium,
+    render::fog,
+    sampling::{Stream, stream::Purpose},
+    scene::Scene,
+    shape::SurfacePoint,
+    transport::{NullCrossing, Segment, profile::Everything},
+};
+
+/// Surfaces that a ray passes, or is mirrored or refracted by, before it gives up.
+const MOST_LEGS: u32 = 64;
+/// Halvings that find a mean free path: to a thousandth of the stretch that it ends in.
+const HALVINGS: u32 = 10;
+
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// The first surface, smooth ones included; none where there is none.
+    pub first: Option<FirstSurface>,
+    /// Shading normal of the surface that the ray ends at, behind mirrors and panes; 0 where there is none.
+    pub last_normal: Vec3,
+    /// What that surface reflects, through what the ray has passed.
+    pub albedo: Spectrum,
+    /// The emitter that it is.
+    pub emitter: Option<u32>,
+    /// 1 - exp(-optical depth), the mean of the channels.
+    pub opacity: f32,
+    /// 1 over the distance at which the optical depth is 1, or where the last medium ends if it never is [1/m]; 0 without
+    /// media.
+    pub nearness: f32,
+}
+
+/// A surface as a ray from the lens meets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstSurface {
+    /// Where.
+    pub position: Vec3,
+    /// Shading normal.
+    pub normal: Vec3,
+    /// From the near clip plane, along the ray [m].
+    pub distance: f32,
+}
+
+impl Sight {
+    /// Nothing at all.
+    pub const NOTHING: Self = Self {
+        first: None,
+        last_normal: Vec3::ZERO,
+        albedo: Spectrum::ZERO,
+        emitter: None,
+        opacity: 0.0,
+        nearness: 0.0,
+    };
+
+    /// What `scene` shows at a film position [pixels], through the middle of the lens. Where surfaces or the program choose
+    /// at random, all pixels choose by the same numbers.
+    pub fn of(scene: &Scene, film: Vec2, hide_emitters: bool) -> Self {
+        let ray = scene.sensor.ray(film, Vec2::ZERO).ray;
+        let mut stream = Stream::new(0, 0, 0, Purpose::Pilot);
+        let mut segment = Segment::along(scene, ray, scene.sensor_medium, hide_emitters);
+        let (mut seen, mut veil) = (Self::NOTHING, Veil::default());
+        let mut through = Spectrum::ONE;
+        for _ in 0..MOST_LEGS {
+            let (interval, hit) = segment.next::<Everything>(f32::INFINITY);
+            veil.add(segment.medium(), &interval.segment);
+            let Some(hit) = hit else { break };
+            let point = segment.surface(&hit);
+            if let NullCrossing::Passed(passed, probability) = segment.sample_crossing(&point, &mut stream) {
+                through *= passed / probability;
+                segment.cross(&point);
+                continue;
+            }
+            let FirstSurface { position, normal, distance } = FirstSurface {
+                position: point.position,
+                normal: point.shading.normal,
+                distance: veil.length,
+            };
+            seen.first = seen.first.or(Some(FirstSurface { position, normal, distance }));
+            match fog::deflect(scene, &segment, &point, &mut stream) {
+                Some((beyond, weight)) => (segment, through) = (beyond, through * weight),
+                None => {
+                    seen.end(scene, &point, -segment.ray().direction, through);
+                    break;
+                }
+            }
+        }
+        Self { opacity: 1.0 - (-veil.depth).exp(), nearness: veil.nearness(), ..seen }
+    }
+
+    /// Ends at `point`, seen from direction `incoming`.
+    fn end(&mut self, scene: &Scene, point: &SurfacePoint, incoming: Vec3, through: Spectrum) {
+        let wi = point.shading.to_local(incoming);
+        let bsdf = scene.bsdf(point.shape);
+        // Where the side that is seen is black, that of the other, as in the layer albedo.
+        let faced = bsdf.albedo(point.uv, wi);
+        let albedo =
+            if faced == Spectrum::ZERO { bsdf.albedo(point.uv, vec3(wi.x, wi.y, -wi.z)) } else { faced };
+        self.last_normal = point.shading.normal;
+        self.albedo = through * albedo;
+        self.emitter = scene.surface(point.shape).emitter;
+    }
+}
+
+/// The media that a ray has passed.
+#[derive(Default)]
+struct Veil {
+    /// How far it came [m].
+    length: f32,
+    /// Optical depth, the mean of the channels.
+    depth: f32,
+    /// How far the last medium reached, or the depth 1 in it [m].
+    reach: f32,
+}
+
+impl Veil {
+    fn add(&mut self, medium: &Medium, stretch: &RaySegment) {
+        let depth = depth(medium, stretch, stretch.length);
+        if depth > 0.0 && self.depth < 1.0 {
+            let missing = 1.0 - self.depth;
+            let within = if depth < missing { stretch.length } else { reach(medium, stretch, missing) };
+            self.reach = self.length + within;
+        }
+        (self.depth, self.length) = (self.depth + depth, self.length + stretch.length);
+    }
+
+    fn nearness(&self) -> f32 {
+        if self.depth > 0.0 { 1.0 / self.reach.max(f32::MIN_POSITIVE) } else { 0.0 }
+    }
+}
+
+/// Optical depth of the first `length` metres of a stretch.
+fn depth(medium: &Medium, stretch: &RaySegment, length: f32) -> f32 {
+    let depth = medium.quick_depth(&RaySegment { length, ..*stretch });
+    // Where nothing goes on for ever, its depth is no number.
+    ((depth.x + depth.y + depth.z) / 3.0).max(0.0)
+}
+
+/// Where on a stretch the depth is `wanted`, less than that of all of it.
+fn reach(medium: &Medium, stretch: &RaySegment, wanted: f32) -> f32 {
+    let (mut low, mut high) = (0.0, stretch.length.min(1.0));
+    while high < stretch.length && depth(medium, stretch, high) < wanted {
+        (low, high) = (high, stretch.length.min(2.0 * high));
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if depth(medium, stretch, middle) < wanted { low = middle } else { high = middle }
+    }
+    high
+}

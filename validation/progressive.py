@@ -1,0 +1,121 @@
+"""Progressive pictures (P03T ch. 6) against as many pixels on a regular grid: how far `tyndall render --progressive` is from all pixels
+shaded, by the same samples of each, and how long it takes."""
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tyndall.commands import diff
+from tyndall.rendering import run as render
+from validation.files import write_text
+from validation.made_by import made_by_command
+from validation.places import REPORTS, SCENES
+
+PT: dict[str, Any] = {"strategies": "hit,next-event"}
+JOINED: dict[str, Any] = {"strategies": "hit,next-event,join", "connections": "all"}
+"""Strategies that shade single pixels, named: all contenders use the same, and no pilot chooses. A pixel that is shaded is the same in
+all of them; with light subpaths that pixels share it would not be."""
+CASES = {
+    SCENES / "gallery" / "cornell_d.json": PT,
+    SCENES / "gallery" / "floating_cubes.json": PT,
+    SCENES / "gallery" / "reflector.json": JOINED,
+    SCENES / "foggy_room.json": PT,
+}
+PARTS = (0.05, 0.1, 0.2)
+METHODS = ("straight", "regions")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A scene, and a part of its pixels."""
+
+    scene: str
+    part: float
+    relmse: dict[str, float]
+    """Of the grid and of both methods."""
+    flip: dict[str, float]
+    seconds: dict[str, float]
+    """Of both methods, and of all pixels."""
+
+    @property
+    def is_better(self) -> bool:
+        """Both methods are nearer to all pixels than the grid is."""
+        return all(self.relmse[method] < self.relmse["grid"] for method in METHODS)
+
+
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Those of the command line."""
+    command.add_argument("--spp", type=int, default=64, help="samples of each pixel that is shaded (default %(default)s)")
+    command.add_argument("--size", default="256x192", help="(default %(default)s)")
+    command.add_argument("--threads", type=int, default=2, help="(default %(default)s)")
+    command.add_argument("--output", type=Path, default=REPORTS, help="folder for progressive.md (default %(default)s)")
+
+
+def run(options: argparse.Namespace) -> bool:
+    """Measures and writes the table; true if both methods are better than the grid everywhere."""
+    rows = [row for scene, strategies in CASES.items() for row in rows_of(scene, strategies, options)]
+    text = page(rows, options)
+    write_text(options.output / "progressive.md", text)
+    print(text)
+    return all(row.is_better for row in rows)
+
+
+def rows_of(scene: Path, strategies: dict[str, Any], options: argparse.Namespace) -> list[Row]:
+    """Those of one scene."""
+    given: dict[str, Any] = {**strategies, "integrator": "bdpt", "spp": options.spp, "size": options.size, "threads": options.threads}
+    whole = render(scene, **given)
+    found = []
+    for part in PARTS:
+        few = {method: render(scene, progressive=method, fraction=part, **given) for method in METHODS}
+        images = {"grid": gridded(whole.image, part), **{method: one.image for method, one in few.items()}}
+        measures = {name: diff(image, whole.image) for name, image in images.items()}
+        found.append(
+            Row(
+                scene.stem,
+                part,
+                {name: measure["radiance"]["relmse"] for name, measure in measures.items()},
+                {name: measure["flip"] for name, measure in measures.items()},
+                {**{method: one.render_seconds for method, one in few.items()}, "all": whole.render_seconds},
+            )
+        )
+    return found
+
+
+def gridded(image: np.ndarray, part: float) -> np.ndarray:
+    """The image from this part of its pixels, on a regular grid with the corners in it, the others interpolated bilinearly."""
+    height, width, _ = image.shape
+    across = max(2, round((part * width * width) ** 0.5))
+    down = max(2, int(part * height * width) // across)
+    columns, rows = (np.round(np.linspace(0, size - 1, count)).astype(int) for size, count in ((width, across), (height, down)))
+    wide = interpolated(image[rows][:, columns], columns, width, axis=1)
+    return interpolated(wide, rows, height, axis=0)
+
+
+def interpolated(values: np.ndarray, places: np.ndarray, size: int, axis: int) -> np.ndarray:
+    """Values at `places` along an axis, at all of its `size` places."""
+    return np.apply_along_axis(lambda line: np.interp(np.arange(size), places, line), axis, values)
+
+
+def page(rows: list[Row], options: argparse.Namespace) -> str:
+    """The report."""
+    command = made_by_command()
+    return (
+        f"# Progressive pictures\n\n    {command}\n\n"
+        "`--progressive` (P03T ch. 6) shades a part of the pixels and interpolates the others. Below, how far that is from all pixels shaded, with "
+        f"{options.spp} samples of each pixel in both, {options.size} pixels, {options.threads} threads: relMSE and FLIP, beside as many pixels on a regular grid, "
+        "interpolated bilinearly. The noise of the pixels that are not shaded counts as error for all. Seconds are of the render alone; "
+        "the machine may have been busy with other work.\n\n"
+        "| scene | pixels | relMSE: grid | straight | regions | FLIP: grid | straight | regions | seconds: straight | regions | all pixels |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
+    )
+
+
+def line(row: Row) -> str:
+    """Of the table."""
+    names = ("grid", *METHODS)
+    errors = [f"{measure[name]:.3f}" for measure in (row.relmse, row.flip) for name in names]
+    seconds = [f"{row.seconds[name]:.1f}" for name in (*METHODS, "all")]
+    return f"| {' | '.join([f'`{row.scene}`', f'{100 * row.part:.0f} %', *errors, *seconds])} |\n"
