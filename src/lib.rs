@@ -27,6 +27,8 @@ pub mod format;
 
 pub mod scene;
 
+pub mod guide;
+
 pub mod transport;
 
 pub mod render;

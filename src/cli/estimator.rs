@@ -17,7 +17,7 @@ use crate::{
     scene::build::Setup,
     settings::{Overrides, integrator::Restriction},
     transport::{
-        Connections, Heuristic, Options, Strategies, equiangular_applies,
+        Connections, Effort, Heuristic, Options, Strategies, equiangular_applies,
         observer::StrategyKind,
         profile::{Needs, ProfileName},
     },
@@ -68,6 +68,18 @@ pub struct Estimator {
     /// judges, each strategy takes one sample, whatever it is worth.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Connections::NAMES))]
     pub connections: Option<Connections>,
+
+    /// Let walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
+    /// begun [default: the scene's guide]
+    ///
+    /// The expected image is the same. It takes a second or so, and pays where pt has to find light that comes round corners; bdpt
+    /// finds it anyway. Needs the heuristic balance.
+    #[arg(long, overrides_with = "no_guide")]
+    pub guide: bool,
+
+    /// Let walks follow no guide, whatever the scene says
+    #[arg(long, overrides_with = "guide")]
+    pub no_guide: bool,
 
     /// Maximum number of segments of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 means no limit
     /// [default: the scene's]
@@ -160,7 +172,9 @@ impl Estimator {
         }
         let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);
         let choice = pilot::choose(&setup.scene, &setup.film, &settings, is_complete);
-        (settings.options.strategies, settings.options.effort) = (choice.strategies, choice.effort);
+        let guided = settings.options.effort.guided;
+        settings.options.strategies = choice.strategies;
+        settings.options.effort = Effort { guided, ..choice.effort };
         Ok((settings, Some(choice)))
     }
 
@@ -193,14 +207,15 @@ impl Estimator {
         let forced_interaction = self.forced_interaction(setup, strategies);
         let connections = self.connections(scene, strategies);
         let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
+        let effort = Effort { guided: self.guided(scene, strategies, heuristic)?, ..scene.effort };
         Ok(Options {
             strategies,
+            effort,
             heuristic,
             max_depth,
             forced_interaction,
             hide_emitters,
             connections,
-            ..scene
         })
     }
 
@@ -213,6 +228,16 @@ impl Estimator {
         if strategies.connection { wanted } else { Connections::default() }
     }
 
+    fn guided(&self, scene: Options, strategies: Strategies, heuristic: Heuristic) -> Result<bool> {
+        let guided = (self.guide || scene.effort.guided) && !self.no_guide && strategies != Strategies::NONE;
+        if guided && heuristic != Heuristic::Balance {
+            let found = format!("the heuristic {heuristic}");
+            let remedy = "choose --heuristic balance, or give --no-guide";
+            return Err(Error::new("--guide", "the heuristic balance", found, remedy));
+        }
+        Ok(guided)
+    }
+
     fn sampler(&self, setup: &Setup) -> Sampler {
         let has_variances = setup.integrator.layers.iter().any(|layer| layer.content == Content::Variance);
         let default = if has_variances { Sampler::Independent } else { Sampler::default() };
@@ -220,9 +245,11 @@ impl Estimator {
     }
 
     fn warn_of_preview(&self) {
-        for (is_given, flag) in
-            [(self.max_depth.is_some(), "--max-depth"), (self.heuristic.is_some(), "--heuristic")]
-        {
+        for (is_given, flag) in [
+            (self.max_depth.is_some(), "--max-depth"),
+            (self.heuristic.is_some(), "--heuristic"),
+            (self.guide, "--guide"),
+        ] {
             if is_given {
                 let text = "has no effect: the integrator fog does not sample paths";
                 super::complain(&format!("warning: {flag} {text}"));

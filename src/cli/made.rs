@@ -8,7 +8,7 @@ use crate::{
     format,
     render::{Image, Settings, adaptive::Precision, pilot::Choice},
     scene::build::Setup,
-    transport::Connections,
+    transport::{Connections, Options},
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -58,18 +58,21 @@ pub fn settings(
         "error": precision.map(|precision| precision.error),
         "confidence": precision.map(|precision| precision.confidence),
     });
-    extend(&mut all, setup, options.connections);
+    extend(&mut all, setup, options);
     Ok(all)
 }
 
 /// Adds what else decides, only where there is something: earlier sums, which know of none of it, can go on.
-fn extend(settings: &mut Value, setup: &Setup, connections: Connections) {
+fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
     let overridden = setup.overrides.json();
     if !overridden.is_empty() {
         settings["overridden"] = Value::Object(overridden);
     }
-    if connections == Connections::All {
+    if options.connections == Connections::All {
         settings["connections"] = "all".into();
+    }
+    if options.effort.guided {
+        settings["guide"] = true.into();
     }
 }
 

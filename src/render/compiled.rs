@@ -14,19 +14,20 @@ use super::{
 };
 use crate::{
     film::Film,
+    guide::Learnt,
     math::{Channels, Spectrum},
     sampling::Stream,
-    scene::{Scene, lights::Starts},
+    scene::Scene,
     shape::Ray,
     transport::{
-        Connections, Estimator, Heuristic, Interaction, Options,
+        Connections, Effort, Estimator, Heuristic, Interaction, Options,
         profile::{
-            Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Profile, ProfileName,
-            Smoke, Vacuum,
+            Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, Profile,
+            ProfileName, Smoke, Vacuum,
         },
     },
 };
-use std::{ops::Range, sync::Arc};
+use std::ops::Range;
 
 /// What every estimator can do, whatever its profile: whole blocks and walks, so that the call costs nothing.
 pub(super) trait Compiled: Sync {
@@ -70,17 +71,19 @@ pub(super) struct Ready<'a, P: Profile> {
 impl<'a, P: Profile> Ready<'a, P> {
     /// With blocks of so many pixels.
     fn new(scene: &'a Scene, film: &'a Film, settings: &Settings, per_block: usize) -> Self {
-        let learnt = settings.options.effort.learnt_starts;
-        let starts = if learnt { training::starts(scene, film, &settings.options) } else { None };
-        Self::starting(scene, film, settings, starts, per_block)
+        let Effort { learnt_starts, guided, .. } = settings.options.effort;
+        let learns = learnt_starts || guided;
+        let learnt =
+            if learns { training::learnt(scene, film, &settings.options) } else { Learnt::default() };
+        Self::with(scene, film, settings, learnt, per_block)
     }
 
-    /// The same with light subpaths that begin at learnt `starts`, if there are any.
-    pub fn starting(
+    /// The same by what was `learnt`.
+    pub fn with(
         scene: &'a Scene,
         film: &'a Film,
         settings: &Settings,
-        starts: Option<Arc<Starts>>,
+        learnt: Learnt,
         per_block: usize,
     ) -> Self {
         let Options { effort, connections, .. } = settings.options;
@@ -92,7 +95,7 @@ impl<'a, P: Profile> Ready<'a, P> {
         };
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let Settings { options, seed, .. } = *settings;
-        let estimator = Estimator::<P>::new(scene, options, starts, seed, per_pass, per_block);
+        let estimator = Estimator::<P>::new(scene, options, learnt, seed, per_pass, per_block);
         Self { estimator, blocks, scene, film, seed: settings.seed }
     }
 
@@ -165,6 +168,12 @@ pub(super) fn choose<'a>(
     let prepare = match (settings.options.heuristic, settings.profile) {
         (Heuristic::Power | Heuristic::Maximum | Heuristic::Uniform, _) => Ready::<ByCompared>::prepare,
         (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
+        (Heuristic::Balance, profile) if settings.options.effort.guided => match profile {
+            ProfileName::Vacuum => Ready::<Guided<Vacuum>>::prepare,
+            ProfileName::Fog => Ready::<Guided<Fog>>::prepare,
+            ProfileName::Bounded | ProfileName::Smoke => Ready::<Guided<Smoke>>::prepare,
+            _ => Ready::<Guided<Everything>>::prepare,
+        },
         (Heuristic::Balance, ProfileName::Vacuum) => Ready::<Vacuum>::prepare,
         (Heuristic::Balance, ProfileName::Fog) => Ready::<Fog>::prepare,
         (Heuristic::Balance, ProfileName::Bounded) => Ready::<Bounded>::prepare,
@@ -181,13 +190,13 @@ pub(super) fn pilot(scene: &Scene, film: &Film, settings: &Settings) -> Pilot {
     Pilot::fly(&Ready::<ByKind>::new(scene, film, settings, PIXELS_PER_BLOCK))
 }
 
-/// What `tasks` by `settings` say of light subpaths that begin at `starts`, if any were learnt before.
+/// What `tasks` by `settings` say of walks that begin and go on by what was `learnt` before.
 pub(super) fn trial(
     scene: &Scene,
     film: &Film,
     settings: &Settings,
-    starts: Option<Arc<Starts>>,
+    learnt: Learnt,
     tasks: Range<usize>,
 ) -> Trial {
-    Trial::run(&Ready::<ByKind>::starting(scene, film, settings, starts, PIXELS_PER_BLOCK), tasks)
+    Trial::run(&Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK), tasks)
 }

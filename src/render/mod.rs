@@ -27,6 +27,7 @@ pub mod sums;
 pub mod sums_file;
 pub mod tiles;
 pub mod timing;
+mod tracks;
 mod training;
 
 pub use monitor::Snapshot;

@@ -156,6 +156,7 @@ fn candidates(all: Strategies, survival: Survival, learnt: bool) -> impl Iterato
                 light_walks,
                 connections: *connections,
                 learnt_starts,
+                guided: false,
             };
             connections.iter().map(effort)
         });

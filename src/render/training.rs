@@ -1,18 +1,21 @@
-//! Training of the starts of light subpaths: a few samples by all strategies, round after round, each of which begins its
-//! light subpaths where those before it found that light reaches the image.
+//! Training of the starts of light subpaths, and of the guide: a few samples by all strategies, round after round, each of
+//! which begins its light subpaths, and follows walks, where those before it found that light reaches the image.
 //!
 //! A path that any strategy found counts for as much of its pixel as strategies that begin at an emitter are to make of it:
 //! its contribution over the pixel's mean, times their share in the weights. In balance, starts are then as dense, together
 //! with all other strategies, as their light is in the image. Next-event estimation finds openings long before light subpaths
-//! do.
+//! do. Directions of walks count likewise, for what those strategies are to make that have to find them.
 
 use super::{
     Settings,
     budget::Budget,
     compiled::{self, Ready},
+    tracks::{Shares, Track, Tracks},
 };
 use crate::{
+    bsdf::Transport,
     film::Film,
+    guide::{Guide, Learnt, Lesson},
     math::{Channels, SpectrumExt, Vec2, Vec3},
     sampling::Sampler,
     scene::{
@@ -37,17 +40,23 @@ const FIRST: usize = 2048;
 const ROUNDS: u32 = 4;
 /// Segments after which no further round begins.
 const SEGMENTS: f64 = 1e6;
+/// Rounds for a guide, of which the last two teach.
+const GUIDE_ROUNDS: u32 = 6;
+/// Segments for a guide.
+const GUIDE_SEGMENTS: f64 = 4e6;
 /// Longest path: later vertices tell little of where light starts.
 const DEEPEST: u32 = 32;
 /// The image is divided into so many tiles across and down, at most, whose pixels count as one.
 const TILES: u32 = 8;
+/// Lessons of a round for the guide, at most.
+const LESSONS: f64 = 2e5;
 /// Of the image's mean, added to that of each tile.
 const FLOOR: f64 = 0.1;
 
-/// Where light subpaths by `options` start that reach the image; none where nothing was learnt of that.
-pub(super) fn starts(scene: &Scene, film: &Film, options: &Options) -> Option<Arc<Starts>> {
-    // Camera subpaths that never hit an emitter share nothing with light subpaths.
-    let compete = options.strategies.emitter_hit;
+/// Where light subpaths by `options` start that reach the image, and where walks go.
+pub(super) fn learnt(scene: &Scene, film: &Film, options: &Options) -> Learnt {
+    let strategies = options.strategies;
+    let (starting, guided) = (options.effort.learnt_starts, options.effort.guided);
     let options = Options {
         strategies: Strategies::BDPT,
         effort: Effort::default(),
@@ -56,12 +65,24 @@ pub(super) fn starts(scene: &Scene, film: &Film, options: &Options) -> Option<Ar
         max_depth: Some(options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST))),
         ..*options
     };
-    let key = format!("{:?} {compete} {options:?}", (film.window, film.border, film.filter));
-    scene.lights.learnt.recall(key, || learn(scene, film, options, compete))
+    // Camera subpaths that never hit an emitter share nothing with light subpaths.
+    let wanted =
+        Wanted { starts: starting.then_some(strategies.emitter_hit), guide: guided.then_some(strategies) };
+    let key = format!("{:?} {wanted:?} {options:?}", (film.window, film.border, film.filter));
+    scene.lights.learnt.recall(key, || learn(scene, film, options, wanted))
 }
 
-/// By all strategies, with which light subpaths `compete` or not.
-fn learn(scene: &Scene, film: &Film, options: Options, compete: bool) -> Option<Arc<Starts>> {
+/// What is to be learnt.
+#[derive(Clone, Copy, Debug)]
+struct Wanted {
+    /// Starts of light subpaths, which compete with other strategies or do not.
+    starts: Option<bool>,
+    /// A guide, for these strategies.
+    guide: Option<Strategies>,
+}
+
+/// By all strategies.
+fn learn(scene: &Scene, film: &Film, options: Options, wanted: Wanted) -> Learnt {
     let settings = Settings {
         options,
         seed: SEED,
@@ -70,18 +91,28 @@ fn learn(scene: &Scene, film: &Film, options: Options, compete: bool) -> Option<
         profile: ProfileName::Everything,
     };
     let per_block = film.len().min(FIRST / 2);
-    let (mut starts, mut done, mut segments) = (None, 0, 0.0);
-    for round in 0..ROUNDS {
+    let (rounds, most) =
+        if wanted.guide.is_some() { (GUIDE_ROUNDS, GUIDE_SEGMENTS) } else { (ROUNDS, SEGMENTS) };
+    let (mut learnt, mut done, mut segments) = (Learnt::default(), 0, 0.0);
+    let mut before = Vec::new();
+    for round in 0..rounds {
         let tasks = done..done + (FIRST << round).div_ceil(per_block);
         done = tasks.end;
-        let trial = compiled::trial(scene, film, &settings, starts.clone(), tasks);
+        let trial = compiled::trial(scene, film, &settings, learnt.clone(), tasks);
         segments += trial.segments;
-        starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
-        if segments > SEGMENTS {
+        if let Some(compete) = wanted.starts {
+            learnt.starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
+        }
+        if let Some(strategies) = wanted.guide {
+            let lessons = trial.lessons(strategies, (FIRST << round) as f32);
+            learnt.guide = Guide::learn([&before[..], &lessons].concat()).map(Arc::new);
+            before = lessons;
+        }
+        if segments > most {
             break;
         }
     }
-    starts
+    learnt
 }
 
 /// Follows walks, to tell where the light of each contribution starts.
@@ -192,18 +223,28 @@ fn ratio(unlearnt: Densities, learnt: Densities) -> f32 {
 struct Found {
     tile: usize,
     start: Option<Followed>,
+    track: Option<Track>,
     /// The number of the block that it was found in.
     part: usize,
     /// Luminance; first of a sample, then as part of the mean over the tile.
     value: f64,
+    /// Of each kind of strategy, in the weights.
+    shares: [f32; StrategyKind::ALL.len()],
+}
+
+impl Found {
     /// Of strategies that begin at an emitter, in the weights.
-    share: f32,
+    fn by_light(&self) -> f32 {
+        self.shares[StrategyKind::Connection as usize] + self.shares[StrategyKind::Lens as usize]
+    }
 }
 
 /// What a round of samples found.
 #[derive(Default)]
 pub(super) struct Trial {
     found: Vec<Found>,
+    /// Of each block.
+    tracks: Vec<Tracks>,
     /// Of each tile.
     pixels: Vec<f64>,
     segments: f64,
@@ -234,21 +275,24 @@ impl Trial {
                 .map(|found| Found { value: found.value * per_pass / trial.pixels[found.tile], ..found });
             trial.found.extend(camera);
             trial.found.extend(light);
+            trial.tracks.push(part.tracks);
         }
         trial
     }
 
-    /// What starts count for; shares in the weights do where they `compete` with other strategies.
-    fn weights(&self, compete: bool) -> Vec<(Start, f32)> {
+    /// What contributions count for: their parts of the means of their tiles.
+    fn values(&self) -> impl Fn(&Found) -> f32 {
         let mut means = vec![0.0; self.pixels.len()];
         self.found.iter().for_each(|found| means[found.tile] += found.value);
         let pixels: f64 = self.pixels.iter().sum();
         let mean = means.iter().zip(&self.pixels).map(|(mean, pixels)| mean * pixels).sum::<f64>() / pixels;
-        let weight = |found: &Found| {
-            let share = if compete { f64::from(found.share) } else { 1.0 };
-            let whole = means[found.tile] + FLOOR * mean;
-            (found.value * share * self.pixels[found.tile] / whole) as f32
-        };
+        move |found| (found.value * self.pixels[found.tile] / (means[found.tile] + FLOOR * mean)) as f32
+    }
+
+    /// What starts count for; shares in the weights do where they `compete` with other strategies.
+    fn weights(&self, compete: bool) -> Vec<(Start, f32)> {
+        let value = self.values();
+        let weight = |found: &Found| value(found) * if compete { found.by_light() } else { 1.0 };
         let mut all: Vec<(Start, f32)> = Vec::new();
         // What one light subpath contributed tells of one start.
         let mut of_walks = HashMap::new();
@@ -263,12 +307,41 @@ impl Trial {
         all.retain(|(_, weight)| weight.is_finite() && *weight > 0.0);
         all
     }
+
+    /// Where walks by `strategies` should go, from so many `samples`; if there are too many lessons, some of those with little
+    /// weight stand for others.
+    fn lessons(&self, strategies: Strategies, samples: f32) -> Vec<Lesson> {
+        let value = self.values();
+        let each = |take: &mut dyn FnMut(Lesson)| {
+            for found in &self.found {
+                let Some((track, shares)) = found.track.zip(Shares::of(&found.shares, strategies)) else {
+                    continue;
+                };
+                let weight = value(found);
+                if weight.is_finite() && weight > 0.0 {
+                    self.tracks[found.part].lessons(&track, &shares, (weight, found.part % 2), &mut *take);
+                }
+            }
+        };
+        let mut total = 0.0;
+        each(&mut |lesson| total += f64::from(lesson.weight));
+        let (step, mut sum, mut lessons) = ((total / LESSONS) as f32, 0.5, Vec::new());
+        each(&mut |lesson| {
+            sum += f64::from(lesson.weight / step);
+            if sum >= 1.0 {
+                sum = sum.fract();
+                lessons.push(Lesson { weight: samples * lesson.weight.max(step), ..lesson });
+            }
+        });
+        lessons
+    }
 }
 
 /// What one block of one pass finds.
 struct Part {
     camera: Vec<(u32, Found)>,
     light: Vec<(u32, Found)>,
+    tracks: Tracks,
     /// Those that camera subpaths went through.
     pixels: Vec<u32>,
     segments: f64,
@@ -277,8 +350,11 @@ struct Part {
 fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
     let Ready { estimator, blocks, scene, film, seed } = ready;
     let mut gather = Gather {
+        scene,
         film,
         follower: Follower::new(&scene.lights, estimator.starts(), P::Channels::COUNT),
+        tracks: Tracks::new(P::Channels::COUNT),
+        transport: Transport::Importance,
         pixel: 0,
         weight: 1.0,
         found: Vec::new(),
@@ -287,6 +363,7 @@ fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
     let mut observer: &mut dyn Observer<P::MisSums> = &mut gather;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
     let light = std::mem::take(&mut gather.found);
+    gather.transport = Transport::Radiance;
     let pixels: Vec<u32> = blocks.pixels(block).map(|pixel| pixel as u32).collect();
     for pixel in &pixels {
         let start = blocks.camera_start(scene, film, *seed, pass, *pixel as usize);
@@ -295,13 +372,17 @@ fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
         let observer: &mut dyn Observer<P::MisSums> = &mut gather;
         start.trace(estimator, &cache, observer);
     }
-    Part { camera: gather.found, light, pixels, segments: gather.segments }
+    Part { camera: gather.found, light, tracks: gather.tracks, pixels, segments: gather.segments }
 }
 
 /// Sees walks and what they contribute; those of the camera to one pixel.
 struct Gather<'a> {
+    scene: &'a Scene,
     film: &'a Film,
     follower: Follower<'a>,
+    tracks: Tracks,
+    /// Of the walks at hand.
+    transport: Transport,
     pixel: u32,
     weight: f32,
     found: Vec<(u32, Found)>,
@@ -320,14 +401,19 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
     fn depart(&mut self, departure: &Departure<S>) {
         self.follower.depart(departure);
         self.segments += 1.0;
+        if departure.edges == 0 {
+            self.tracks.begin();
+        }
     }
 
     fn arrive(&mut self, vertex: &Vertex<S>) {
         self.follower.arrive(vertex);
+        self.tracks.arrive(self.scene, self.transport, vertex);
     }
 
     fn keep(&mut self) {
         self.follower.keep();
+        self.tracks.keep(self.follower.hero);
     }
 
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
@@ -335,13 +421,15 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
             return;
         };
         let start = self.follower.start(s, t, &meeting);
-        let share = shares[StrategyKind::Connection as usize] + shares[StrategyKind::Lens as usize];
-        let found = |value: f32| Found { tile: 0, part: 0, start, value: f64::from(value.max(0.0)), share };
+        let track = self.tracks.track(self.scene, &meeting, self.follower.hero);
+        let (value, shares) = (*value, *shares);
+        let found =
+            |value: f32| Found { tile: 0, part: 0, start, track, value: f64::from(value.max(0.0)), shares };
         if let Meeting::Lens(film) = meeting {
             let all = &mut self.found;
             return self
                 .film
-                .spread(film, *value, |pixel, value| all.push((pixel as u32, found(value.luminance()))));
+                .spread(film, value, |pixel, value| all.push((pixel as u32, found(value.luminance()))));
         }
         self.found.push((self.pixel, found(value.luminance() * self.weight)));
     }

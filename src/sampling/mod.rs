@@ -1,5 +1,6 @@
 //! Random streams and tabulated distributions.
 
+pub mod cells;
 pub mod discrete;
 pub mod grid;
 mod inverse;
@@ -8,6 +9,7 @@ pub mod quadtree;
 pub mod sampler;
 pub mod stream;
 
+pub use cells::Cells;
 pub use discrete::Discrete;
 pub use grid::{Cell, Grid};
 pub use quadtree::Quadtree;

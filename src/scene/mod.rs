@@ -8,6 +8,7 @@ mod extents;
 pub mod keyframes;
 pub mod lights;
 mod locate;
+mod memo;
 mod overlap;
 mod placement;
 mod range;
@@ -28,6 +29,7 @@ use boundary::Boundary;
 use lights::{EmitterSample, Light, Lights};
 pub use locate::Infinity;
 use locate::{Known, Locator};
+pub use memo::Memo;
 pub use overlap::Overlaps;
 pub(crate) use sections::TABLE;
 

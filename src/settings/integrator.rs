@@ -14,7 +14,7 @@ use crate::{
     settings::{
         Overrides,
         heuristic::HEURISTIC,
-        options::{CONNECTIONS, Connections, FORCED, MAX_DEPTH, Options, PATHS, Strategies},
+        options::{CONNECTIONS, Connections, FORCED, GUIDE, MAX_DEPTH, Options, PATHS, Strategies},
     },
 };
 
@@ -170,7 +170,7 @@ const COMMON: &[Parameter] = rows! {
 
 const BDPT: Table = table! {
     "Bidirectional path tracing, of whose strategies a pilot chooses: the integrator of a scene without one."; ;
-    MAX_DEPTH, PATHS, HEURISTIC, CONNECTIONS, FORCED, COMMON
+    MAX_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
 };
 
 const SAME: Table = Table { about: "The same as `bdpt`; `--integrator pt` is path tracing.", ..BDPT };
@@ -178,7 +178,7 @@ const SAME: Table = Table { about: "The same as `bdpt`; `--integrator pt` is pat
 const PTRACER: Table = table! {
     "Light tracing: light subpaths connect to the camera; `--integrator lt`.";
     ignored("forced_interaction", "light subpaths have no primary rays");
-    MAX_DEPTH, PATHS, HEURISTIC, COMMON
+    MAX_DEPTH, PATHS, HEURISTIC, GUIDE, COMMON
 };
 
 const FOG: Table = table! {
@@ -196,12 +196,12 @@ const SINGLE_SCATTERING: Table = table! {
     integer("max_depth", within(0.0, Restriction::SINGLE as f64), Is(2.0), "Most segments of a path."),
     number("step", "m", above(0.0, f64::MAX), Said("that of each medium"), "The interval of the march."),
     number("march_error", "", within(1e-7, 1.0), Said("that of each medium"), "Greatest error of transmittance.");
-    PATHS, HEURISTIC, FORCED, COMMON
+    PATHS, HEURISTIC, GUIDE, FORCED, COMMON
 };
 
 const NON_SCATTERING: Table = table! {
     "Media absorb and emit, but do not scatter; surfaces are unchanged (P03T eq. 2.9)."; ;
-    MAX_DEPTH, PATHS, HEURISTIC, FORCED, COMMON
+    MAX_DEPTH, PATHS, HEURISTIC, GUIDE, FORCED, COMMON
 };
 
 /// What integrators have that hold another.

@@ -111,11 +111,19 @@ pub struct Effort {
     pub connections: u32,
     /// Light subpaths start where, as a pilot learns, light reaches the image.
     pub learnt_starts: bool,
+    /// Walks follow a guide, learnt beforehand.
+    pub guided: bool,
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { survival: Survival::Albedo, light_walks: 1.0, connections: 1, learnt_starts: false }
+        Self {
+            survival: Survival::Albedo,
+            light_walks: 1.0,
+            connections: 1,
+            learnt_starts: false,
+            guided: false,
+        }
     }
 }
 
@@ -161,6 +169,11 @@ pub(super) const PATHS: &[Parameter] = rows! {
     silent("rr_depth", "paths end by absorption, at any depth"),
 };
 
+/// What those have that sample paths.
+pub(super) const GUIDE: &[Parameter] = rows! {
+    boolean("guide", false, "Walks follow a guide, learnt beforehand: where light comes from, and where it is seen from.").ours(),
+};
+
 /// The limit of paths.
 pub(super) const MAX_DEPTH: &[Parameter] = rows! {
     integer("max_depth", within(-1.0, MAX), Is(-1.0), "Most segments of a path; -1 for no limit."),
@@ -183,7 +196,10 @@ impl Options {
     pub(super) fn read(params: &Params<'_>, strategies: Strategies) -> Result<Self> {
         Ok(Self {
             strategies,
-            effort: Effort::default(),
+            effort: Effort {
+                guided: strategies != Strategies::NONE && params.boolean("guide")?,
+                ..Effort::default()
+            },
             connections: Connections::default(),
             // Limits that u32 does not hold are none.
             max_depth: u32::try_from(params.integer("max_depth")?).ok(),

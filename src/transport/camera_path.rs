@@ -52,6 +52,7 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
         hero,
         max_edges: estimator.max_edges,
         survival: estimator.survival,
+        guide: estimator.guide.as_deref(),
     };
     let departure = depart(estimator, film, aperture);
     let mut camera = CameraPath::new(estimator, light, hero, observer);
@@ -336,7 +337,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
     ) -> Option<Contribution> {
         let scene = self.estimator.scene;
         let (direction, distance_squared) = sample.point.seen_from(vertex.position())?;
-        let mut camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
+        let mut camera = connect::vertex_end(self.estimator, vertex, direction, Transport::Radiance)?;
         if P::MEDIA
             && vertex.subpath.edges == 1
             && let Some(first) = &self.first
@@ -383,8 +384,8 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
     ) -> Option<Contribution> {
         let scene = self.estimator.scene;
         let (direction, _, distance_squared) = measure::between(vertex.position(), other.position())?;
-        let camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
-        let light = connect::vertex_end(scene, other, -direction, Transport::Importance)?;
+        let camera = connect::vertex_end(self.estimator, vertex, direction, Transport::Radiance)?;
+        let light = connect::vertex_end(self.estimator, other, -direction, Transport::Importance)?;
         let strategy = self.estimator.strategy(StrategyKind::Connection);
         connect::connect::<P>(scene, &camera, &light, distance_squared, strategy, false, stream)
     }

@@ -24,13 +24,14 @@ use std::ops::{Div, Mul};
 
 /// The end of a walk at `vertex`, looking in unit direction `towards`; none where nothing scatters that way.
 #[inline]
-pub fn vertex_end<S: MisSums>(
-    scene: &Scene,
-    vertex: &Vertex<S>,
+pub fn vertex_end<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    vertex: &Vertex<P::MisSums>,
     towards: Vec3,
     transport: Transport,
-) -> Option<End<S>> {
-    let scattering = vertex.scatter_towards(scene, towards, transport);
+) -> Option<End<P::MisSums>> {
+    let scene = estimator.scene;
+    let scattering = vertex.scatter_towards::<P>(scene, estimator.guide.as_deref(), towards, transport);
     let value = vertex.subpath.throughput * scattering.value;
     if value.max_element() <= 0.0 {
         return None;

@@ -48,6 +48,7 @@ use super::{
 };
 use crate::{
     bsdf::Transport,
+    guide::Guidance,
     math::{Channels, Spectrum, Vec3},
     sampling::Stream,
     scene::{
@@ -195,7 +196,11 @@ impl<P: Profile, R: Observer<P::MisSums>> CameraPath<'_, P, R> {
         };
         let survival = estimator.survival.of(properties.survival());
         let (interaction, connections) = (Interaction::Medium(position, properties), estimator.counts.lens);
-        Some(Vertex { interaction, survival, connections, kind: StrategyKind::Lens, subpath })
+        let guidance = match &estimator.guide {
+            Some(guide) if P::GUIDED => guide.guidance(position, None, subpath.incoming, Transport::Radiance),
+            _ => Guidance::NONE,
+        };
+        Some(Vertex { interaction, survival, connections, kind: StrategyKind::Lens, guidance, subpath })
     }
 
     /// The connection of `vertex` with the emitter point picked for it.
@@ -207,7 +212,7 @@ impl<P: Profile, R: Observer<P::MisSums>> CameraPath<'_, P, R> {
     ) -> Option<Contribution> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let (direction, distance_squared) = sample.point.seen_from(vertex.position())?;
-        let mut camera = connect::vertex_end(scene, vertex, direction, Transport::Radiance)?;
+        let mut camera = connect::vertex_end(self.estimator, vertex, direction, Transport::Radiance)?;
         let (_, over_connect) = scene.lights.pivot(sample.light, vertex.position())?;
         let next_event = camera.pdf_over_hero.scaled(counts.next_event / over_connect);
         camera.beside = Some(P::MisSums::of(StrategyKind::NextEvent, next_event));

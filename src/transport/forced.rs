@@ -35,7 +35,8 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
     stream: &mut Stream,
 ) -> R {
     let (scene, max_edges) = (estimator.scene, estimator.max_edges);
-    let kind = Kind { transport: Transport::Radiance, hero, max_edges, survival: estimator.survival };
+    let guide = estimator.guide.as_deref();
+    let kind = Kind { transport: Transport::Radiance, hero, max_edges, survival: estimator.survival, guide };
     let departure = depart(estimator, film, aperture);
     let mut camera = CameraPath::new(estimator, light, hero, observer);
     if max_edges == 0 {

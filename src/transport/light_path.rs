@@ -49,6 +49,7 @@ pub fn trace<P: Profile>(
         hero,
         max_edges: estimator.max_edges.saturating_sub(1),
         survival: estimator.survival,
+        guide: estimator.guide.as_deref(),
     };
     let mut light = LightPath::new(estimator, cache, observer, start, hero);
     if estimator.starts_seen() {
@@ -179,7 +180,8 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
         if hidden || !self.observer.covers(seen.film) {
             return None;
         }
-        let mut end = connect::vertex_end(scene, vertex, -seen.ray.direction, Transport::Importance)?;
+        let mut end =
+            connect::vertex_end(self.estimator, vertex, -seen.ray.direction, Transport::Importance)?;
         if P::MEDIA
             && self.estimator.forced_interaction
             && matches!(vertex.interaction, Interaction::Medium(..))

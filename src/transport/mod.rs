@@ -82,7 +82,7 @@ pub use connect::Contribution;
 pub use equiangular::applies as equiangular_applies;
 pub use mis::MisSums;
 pub use segment::{Interaction, NullCrossing, Segment};
-pub use vertex::{Subpath, Vertex};
+pub use vertex::{Scattering, Subpath, Vertex};
 pub use walk::Departure;
 
 pub use crate::{
@@ -91,6 +91,7 @@ pub use crate::{
 };
 
 use crate::{
+    guide::{Guide, Learnt},
     math::{Channels, Spectrum, Vec2, Vec3},
     sampling::{Stream, stream::Purpose},
     scene::{
@@ -134,17 +135,18 @@ pub struct Estimator<'a, P: Profile> {
     forced_interaction: bool,
     /// Which starts of light subpaths reach the image; none if they start as their emitters would have it.
     starts: Option<Arc<Starts>>,
+    /// What walks follow.
+    guide: Option<Arc<Guide>>,
     profile: std::marker::PhantomData<P>,
 }
 
 impl<'a, P: Profile> Estimator<'a, P> {
     /// Prepares to render `scene` with `walks_per_pass` light subpaths for each sample of all pixels together and
-    /// `walks_per_block` of them behind one cache, which begin at learnt `starts` if there are any; `seed` is that of its
-    /// pilot walks.
+    /// `walks_per_block` of them behind one cache, which begin and go on by what was `learnt`; `seed` is that of its pilot walks.
     pub fn new(
         scene: &'a Scene,
         options: Options,
-        starts: Option<Arc<Starts>>,
+        learnt: Learnt,
         seed: u64,
         walks_per_pass: u64,
         walks_per_block: u64,
@@ -170,7 +172,8 @@ impl<'a, P: Profile> Estimator<'a, P> {
             max_edges: max_depth.unwrap_or(u32::MAX).min(P::MisSums::MOST_EDGES),
             hide_emitters,
             forced_interaction: P::MEDIA && forced_interaction,
-            starts,
+            starts: learnt.starts,
+            guide: learnt.guide.filter(|_| P::GUIDED),
             profile: std::marker::PhantomData,
         };
         match connections {

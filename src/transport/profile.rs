@@ -25,6 +25,8 @@ pub trait Profile: MediaProfile {
     const INFINITE: bool;
     /// Some medium emits light.
     const EMISSIVE: bool;
+    /// Walks follow a guide.
+    const GUIDED: bool = false;
     /// Name in scene files and on the command line.
     const NAME: &'static str;
 }
@@ -99,13 +101,32 @@ impl<S: MisSums<Channels = Spectrum>> Profile for Everything<S> {
     const NAME: &'static str = "everything";
 }
 
+/// A profile with a guide besides.
+#[derive(Clone, Copy, Debug)]
+pub struct Guided<P>(PhantomData<P>);
+
+impl<P: Profile> MediaProfile for Guided<P> {
+    type Channels = P::Channels;
+    const HETEROGENEOUS: bool = P::HETEROGENEOUS;
+}
+
+impl<P: Profile> Profile for Guided<P> {
+    type MisSums = P::MisSums;
+    const MEDIA: bool = P::MEDIA;
+    const NULLS: bool = P::NULLS;
+    const INFINITE: bool = P::INFINITE;
+    const EMISSIVE: bool = P::EMISSIVE;
+    const GUIDED: bool = true;
+    const NAME: &'static str = P::NAME;
+}
+
 /// [`Everything`] by the power, the maximum or the uniform heuristic.
 pub type ByCompared = Everything<Compared<Spectrum>>;
 /// [`Everything`] by the cutoff heuristic, which keeps more.
 pub type ByCutoff = Everything<Cutoff<Spectrum>>;
 
-/// [`Everything`] by the balance heuristic, with sums by kind of strategies.
-pub type ByKind = Everything<mis::ByKind<Spectrum>>;
+/// [`Everything`] by the balance heuristic, with sums by kind of strategies, and with a guide once there is one.
+pub type ByKind = Guided<Everything<mis::ByKind<Spectrum>>>;
 
 /// What a scene needs of its profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

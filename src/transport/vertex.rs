@@ -1,11 +1,11 @@
 //! A path vertex: where it is, how it scatters, and what the balance heuristic needs of the walk behind it.
 
-use super::{mis::MisSums, observer::StrategyKind, segment::Interaction};
+use super::{mis::MisSums, observer::StrategyKind, profile::Profile, segment::Interaction};
 use crate::{
-    bsdf::{BsdfModel, Transport},
+    bsdf::Transport,
+    guide::{Guidance, Guide},
     math::{Channels, Spectrum, Vec3, offset},
     medium::MediumIndex,
-    phase::{Deflection, PhaseModel},
     scene::Scene,
     shape::SurfacePoint,
 };
@@ -67,6 +67,8 @@ pub struct Vertex<S: MisSums> {
     pub connections: f32,
     /// Of which kind that strategy is.
     pub kind: StrategyKind,
+    /// What the guide says here, if there is one.
+    pub guidance: Guidance,
     /// How the walk came here.
     pub subpath: Subpath<S>,
 }
@@ -128,46 +130,24 @@ impl<S: MisSums> Vertex<S> {
     /// True if something of its scattering is not Dirac.
     #[inline]
     pub fn is_connectible(&self, scene: &Scene) -> bool {
-        match &self.interaction {
-            Interaction::Surface(point) => scene.surface(point.shape).connectible,
-            Interaction::Medium(..) => true,
-        }
+        self.interaction.is_connectible(scene)
     }
 
-    /// Scattering between the vertex before and unit `outgoing`.
-    ///
-    /// LW96 eq. 10: g, without the cosine that the density of the vertex contains.
+    /// Scattering between the vertex before and unit `outgoing`, see [`Interaction::scatter`].
     #[inline]
-    pub fn scatter_towards(&self, scene: &Scene, outgoing: Vec3, transport: Transport) -> Scattering {
-        match &self.interaction {
-            Interaction::Medium(_, properties) => {
-                let medium = &scene.media[properties.medium.0 as usize];
-                let phase = medium.phase.pdf_sr(Deflection::between(-self.subpath.incoming, outgoing));
-                let pdf = phase * self.survival;
-                Scattering { value: properties.albedo * phase, pdf_fwd: pdf, pdf_rev: pdf }
-            }
-            Interaction::Surface(point) => self.reflect_towards(scene, point, outgoing, transport),
-        }
-    }
-
-    #[inline]
-    fn reflect_towards(
+    pub fn scatter_towards<P: Profile<MisSums = S>>(
         &self,
         scene: &Scene,
-        point: &SurfacePoint,
+        guide: Option<&Guide>,
         outgoing: Vec3,
         transport: Transport,
     ) -> Scattering {
-        let bsdf = scene.bsdf(point.shape);
-        let (wi, wo) = (point.shading.to_local(self.subpath.incoming), point.shading.to_local(outgoing));
-        let f = bsdf.evaluate(point.uv, wi, wo, transport);
-        let cosine =
-            wo.z.abs() * shading_correction(point, self.subpath.incoming, outgoing, wi, wo, transport);
-        Scattering {
-            value: f.value * cosine,
-            pdf_fwd: f.pdf_fwd * self.survival,
-            pdf_rev: f.pdf_rev * self.survival,
+        let Scattering { value, mut pdf_fwd, mut pdf_rev } =
+            self.interaction.scatter(scene, self.subpath.incoming, outgoing, transport);
+        if let (true, Some(guide)) = (P::GUIDED, guide) {
+            [pdf_fwd, pdf_rev] = guide.pdfs(self.guidance, transport, outgoing, [pdf_fwd, pdf_rev]);
         }
+        Scattering { value, pdf_fwd: pdf_fwd * self.survival, pdf_rev: pdf_rev * self.survival }
     }
 }
 

@@ -6,10 +6,11 @@ use super::{
     observer::StrategyKind,
     profile::Profile,
     segment::{EmitterCrossing, FlightState, FreeFlight, Interaction, Passed, Segment, sample_free_flight},
-    vertex::{Subpath, Vertex, shading_correction},
+    vertex::{Scattering, Subpath, Vertex, shading_correction},
 };
 use crate::{
     bsdf::{BsdfModel, Transport},
+    guide::{Guidance, Guide},
     math::{Channels, Spectrum, Vec3, measure, offset},
     medium::{MediumIndex, MediumProperties},
     phase::{Deflection, PhaseModel},
@@ -86,7 +87,7 @@ pub trait Visitor<P: Profile> {
 
 /// Which walk this is and how far it may go.
 #[derive(Clone, Copy, Debug)]
-pub struct Kind {
+pub struct Kind<'a> {
     /// Camera or light.
     pub transport: Transport,
     /// The channel that samples distances.
@@ -95,6 +96,8 @@ pub struct Kind {
     pub max_edges: u32,
     /// When it ends before.
     pub survival: Survival,
+    /// What it follows.
+    pub guide: Option<&'a Guide>,
 }
 
 /// Walks from `departure` until absorption, escape or the depth limit, showing every vertex to `visitor`.
@@ -103,7 +106,7 @@ pub struct Kind {
 #[inline(always)]
 pub fn walk<P: Profile>(
     scene: &Scene,
-    kind: Kind,
+    kind: Kind<'_>,
     mut departure: Departure<P::MisSums>,
     visitor: &mut impl Visitor<P>,
     stream: &mut Stream,
@@ -122,7 +125,7 @@ pub fn walk<P: Profile>(
 #[inline(always)]
 pub fn go_on<P: Profile>(
     scene: &Scene,
-    kind: Kind,
+    kind: Kind<'_>,
     departure: &Departure<P::MisSums>,
     flight: &FreeFlight<P::Channels>,
     visitor: &mut impl Visitor<P>,
@@ -144,7 +147,7 @@ pub fn go_on<P: Profile>(
     if vertex.subpath.edges == kind.max_edges {
         return None;
     }
-    let next = scatter(scene, &vertex, kind.transport, stream)?;
+    let next = scatter::<P>(scene, kind, &vertex, stream)?;
     if vertex.subpath.edges < LONG { Some(next) } else { thinned(next, stream) }
 }
 
@@ -183,7 +186,7 @@ impl<L: Channels> Arrival<L> {
 #[inline(always)]
 pub fn land<P: Profile, V: Visitor<P>>(
     scene: &Scene,
-    kind: Kind,
+    kind: Kind<'_>,
     departure: &Departure<P::MisSums>,
     flight: &FreeFlight<P::Channels>,
     interaction: Interaction,
@@ -198,7 +201,13 @@ pub fn land<P: Profile, V: Visitor<P>>(
     let subpath = arrive::<P>(departure, &flight.state, flight.medium, &at, kind.hero)?;
     let connections = if departure.dirac { 0.0 } else { visitor.connections(subpath.edges, position) };
     let survival = kind.survival.of(interaction.albedo_bound(scene, subpath.incoming));
-    Some(Vertex { interaction, survival, connections, kind: V::kind(subpath.edges), subpath })
+    let guidance = match kind.guide {
+        Some(guide) if P::GUIDED && interaction.is_connectible(scene) => {
+            guide.guidance(position, interaction.normal(), subpath.incoming, kind.transport)
+        }
+        _ => Guidance::NONE,
+    };
+    Some(Vertex { interaction, survival, connections, kind: V::kind(subpath.edges), guidance, subpath })
 }
 
 /// The subpath that a flight extends to `at`; none if its density is not finite and positive.
@@ -302,17 +311,67 @@ pub struct ScatterSample {
 
 /// Scatters at `vertex`; none if the walk is absorbed there (LW96 eq. 8 and 9 are subcritical).
 #[inline]
-fn scatter<S: MisSums>(
+fn scatter<P: Profile>(
+    scene: &Scene,
+    kind: Kind<'_>,
+    vertex: &Vertex<P::MisSums>,
+    stream: &mut Stream,
+) -> Option<Departure<P::MisSums>> {
+    if stream.uniform() >= vertex.survival {
+        return None;
+    }
+    let scattered = match kind.guide {
+        Some(guide) if P::GUIDED => guided::<P>(scene, guide, vertex, kind.transport, stream)?,
+        _ => unguided(scene, vertex, kind.transport, stream)?,
+    };
+    Some(set_out(scene, vertex, &scattered))
+}
+
+/// By the BSDF or the phase function.
+#[inline]
+fn unguided<S: MisSums>(
     scene: &Scene,
     vertex: &Vertex<S>,
     transport: Transport,
     stream: &mut Stream,
-) -> Option<Departure<S>> {
-    let scattered = match &vertex.interaction {
-        Interaction::Medium(_, properties) => collide(scene, vertex, properties, stream)?,
-        Interaction::Surface(point) => reflect(scene, vertex, point, transport, stream)?,
+) -> Option<ScatterSample> {
+    match &vertex.interaction {
+        Interaction::Medium(_, properties) => Some(collide(scene, vertex, properties, stream)),
+        Interaction::Surface(point) => reflect(scene, vertex, point, transport, stream),
+    }
+}
+
+/// By them or by the guide: what a Dirac lobe reflects is as likely as the guide leaves it, all else as the mixture has it.
+fn guided<P: Profile>(
+    scene: &Scene,
+    guide: &Guide,
+    vertex: &Vertex<P::MisSums>,
+    transport: Transport,
+    stream: &mut Stream,
+) -> Option<ScatterSample> {
+    let direction = match guide.sample(vertex.guidance, transport, stream) {
+        Some(direction) => direction,
+        None => {
+            let sample = unguided(scene, vertex, transport, stream)?;
+            if sample.dirac {
+                let pdfs = [sample.pdf_fwd, sample.pdf_rev];
+                let [pdf_fwd, pdf_rev] = guide.unguided(vertex.guidance, transport, pdfs);
+                let weight = sample.weight * (sample.pdf_fwd / pdf_fwd);
+                return Some(ScatterSample { weight, pdf_fwd, pdf_rev, ..sample });
+            }
+            sample.direction
+        }
     };
-    Some(set_out(scene, vertex, &scattered))
+    let Scattering { value, pdf_fwd, pdf_rev } =
+        vertex.scatter_towards::<P>(scene, Some(guide), direction, transport);
+    let weight = value / pdf_fwd;
+    (weight.max_element() > 0.0).then_some(ScatterSample {
+        direction,
+        weight,
+        pdf_fwd,
+        pdf_rev,
+        dirac: false,
+    })
 }
 
 /// Leaves `vertex` in the direction of `scattered`.
@@ -351,16 +410,13 @@ fn collide<S: MisSums>(
     vertex: &Vertex<S>,
     properties: &MediumProperties,
     stream: &mut Stream,
-) -> Option<ScatterSample> {
+) -> ScatterSample {
     let medium = &scene.media[properties.medium.0 as usize];
     let survival = vertex.survival;
-    if stream.uniform() >= survival {
-        return None;
-    }
     let direction = medium.phase.sample(-vertex.subpath.incoming, stream);
     let pdf = medium.phase.pdf_sr(Deflection::between(-vertex.subpath.incoming, direction)) * survival;
     let weight = properties.albedo / survival;
-    Some(ScatterSample { direction, weight, pdf_fwd: pdf, pdf_rev: pdf, dirac: false })
+    ScatterSample { direction, weight, pdf_fwd: pdf, pdf_rev: pdf, dirac: false }
 }
 
 /// LW96 eq. 9: p_reflection, or the density that the BSDF samples by.
@@ -375,9 +431,6 @@ fn reflect<S: MisSums>(
     let bsdf = scene.bsdf(point.shape);
     let wi = point.shading.to_local(vertex.subpath.incoming);
     let survival = vertex.survival;
-    if stream.uniform() >= survival {
-        return None;
-    }
     let sample = bsdf.sample(point.uv, wi, transport, stream)?;
     let direction = point.shading.to_world(sample.wo).normalize();
     let correction = shading_correction(point, vertex.subpath.incoming, direction, wi, sample.wo, transport);

@@ -16,6 +16,7 @@ const LAYERS: &[&[&str]] = &[
     &["settings"],
     &["format"],
     &["scene"],
+    &["guide"],
     &["transport"],
     &["render"],
     &["analysis"],

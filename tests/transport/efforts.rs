@@ -34,10 +34,34 @@ fn cloud_under_sky() -> Value {
 }
 
 const EFFORTS: [Effort; 4] = [
-    Effort { survival: Survival::FourthRoot, light_walks: 1.0, connections: 1, learnt_starts: false },
-    Effort { survival: Survival::Albedo, light_walks: 0.5, connections: 4, learnt_starts: false },
-    Effort { survival: Survival::Albedo, light_walks: 2.0, connections: 2, learnt_starts: false },
-    Effort { survival: Survival::FourthRoot, light_walks: 0.3, connections: 3, learnt_starts: false },
+    Effort {
+        survival: Survival::FourthRoot,
+        light_walks: 1.0,
+        connections: 1,
+        learnt_starts: false,
+        guided: false,
+    },
+    Effort {
+        survival: Survival::Albedo,
+        light_walks: 0.5,
+        connections: 4,
+        learnt_starts: false,
+        guided: false,
+    },
+    Effort {
+        survival: Survival::Albedo,
+        light_walks: 2.0,
+        connections: 2,
+        learnt_starts: false,
+        guided: false,
+    },
+    Effort {
+        survival: Survival::FourthRoot,
+        light_walks: 0.3,
+        connections: 3,
+        learnt_starts: false,
+        guided: false,
+    },
 ];
 
 #[test]

@@ -15,6 +15,7 @@ mod faults;
 mod forced;
 mod glowing;
 mod groups;
+mod guide;
 mod heuristics;
 mod layers;
 mod modes;

@@ -114,6 +114,11 @@ fn media_that_overlap_both_glow() {
     ]);
     let mut claims = Claims::new();
     same(&mut claims, "glowing", &overlapping, &apart);
+    // Behind walls no ray finds out what surrounds the media: light that starts in one of them must know all the same.
+    let walls =
+        json!({"type": "cube", "flip_normals": true, "to_world": place([6.0, 6.0, 6.0], [0.0; 3]), "bsdf": diffuse(0.4)});
+    let [overlapping, apart] = [overlapping, apart].map(|scene| with(scene, &[("walls", walls.clone())]));
+    same(&mut claims, "glowing in a room", &overlapping, &apart);
     claims.settle();
 }
 

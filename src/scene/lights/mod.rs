@@ -25,10 +25,10 @@ pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
 pub use pivot::{Pivot, Place};
 pub use point::EmitterPoint;
-pub use starts::{Densities, Memo, Start, Starts};
+pub use starts::{Densities, Start, Starts};
 pub(super) use volume::emissive;
 
-use super::accel::Geometry;
+use super::{Memo, accel::Geometry};
 use crate::{
     emitter::{Emitter, Kind},
     math::{Spectrum, Vec3},
@@ -78,7 +78,7 @@ pub struct Lights {
     radius: f32,
     /// What remains of light from infinity where it enters the scene: 1, or 0 in fog without end.
     from_infinity: Spectrum,
-    /// Which starts of light subpaths reach an image.
+    /// What was learnt of paths that reach an image.
     pub learnt: Memo,
 }
 

@@ -15,45 +15,11 @@ use super::{EmitterPoint, Lights};
 use crate::{
     math::{Vec2, Vec3, warp},
     sampling::{
-        Discrete, Quadtree, Stream,
+        Cells, Discrete, Quadtree, Stream,
+        cells::Keyed,
         quadtree::{Deposit, effective},
     },
 };
-use std::sync::{Arc, Mutex, PoisonError};
-
-/// The starts learnt last, and for what: a render begins with those that its pilot chose.
-#[derive(Debug, Default)]
-pub struct Memo(Mutex<Option<Lesson>>);
-
-#[derive(Debug)]
-struct Lesson {
-    key: String,
-    starts: Option<Arc<Starts>>,
-}
-
-impl Clone for Memo {
-    /// Forgets: the lights may be changed.
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
-
-impl Memo {
-    /// What `learn` says, once for each `key`.
-    pub fn recall(&self, key: String, learn: impl FnOnce() -> Option<Arc<Starts>>) -> Option<Arc<Starts>> {
-        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(lesson) = &*lock()
-            && lesson.key == key
-        {
-            return lesson.starts.clone();
-        }
-        // Not while locked: threads that learn may take up other work, which asks for the same.
-        let starts = learn();
-        *lock() = Some(Lesson { key, starts: starts.clone() });
-        starts
-    }
-}
-
 /// a: the part of the starts that are not learnt.
 const UNLEARNT: f32 = 0.25;
 /// Starts, as [`effective`] counts them, that a cell of positions has at least.
@@ -114,7 +80,7 @@ pub(super) struct Learnt {
     over_unlearnt: f32,
     /// Of directions to where light comes from: emitters that surround the scene only.
     towards: Option<Quadtree>,
-    cells: Cells,
+    cells: Cells<3, Option<Quadtree>>,
 }
 
 impl Starts {
@@ -162,7 +128,7 @@ impl Starts {
         let (is_parallel, even) = lights.measure(start);
         let ratio = learnt.over_unlearnt;
         let key = if is_parallel { -start.direction } else { start.position };
-        let by_table = match learnt.cells.at(key) {
+        let by_table = match learnt.cells.at(key.to_array()).and_then(Option::as_ref) {
             Some(table) => table.density(lights.to_square(start)) * even,
             None => unlearnt.direction,
         };
@@ -198,15 +164,19 @@ impl Learnt {
             weight: *weight,
         };
         let towards = emitter.environment().map(|_| Quadtree::learn(starts.iter().map(of_sphere).collect()));
-        let keyed = |(start, weight): &(Start, f32)| Keyed {
+        let known = |(start, weight): &(Start, f32)| Known {
             key: if is_parallel { -start.direction } else { start.position },
             deposit: Deposit { at: lights.to_square(start), weight: *weight },
         };
-        let mut cells = Cells { all: Vec::new() };
         // The one direction of a Dirac emitter is no density.
-        if emitter.is_connectible() {
-            cells.grow(starts.iter().map(keyed).collect(), LEVELS);
-        }
+        let cells = if emitter.is_connectible() {
+            Cells::learn(starts.iter().map(known).collect(), PER_CELL, LEVELS, |known: Vec<Known>| {
+                let enough = effective(known.iter().map(Known::weight)) >= ENOUGH;
+                enough.then(|| Quadtree::learn(known.into_iter().map(|known| known.deposit).collect()))
+            })
+        } else {
+            Cells::default()
+        };
         Self { over_unlearnt, towards, cells }
     }
 
@@ -219,13 +189,13 @@ impl Learnt {
     /// For a start that is not at infinity, at `position`; none where nothing is known of such.
     #[inline]
     pub(super) fn sample_direction(&self, position: Vec3, stream: &mut Stream) -> Option<Vec3> {
-        Some(warp::to_sphere(self.cells.at(position)?.sample(stream.square())))
+        Some(warp::to_sphere(self.cells.at(position.to_array())?.as_ref()?.sample(stream.square())))
     }
 
     /// A point on the unit disk that faces `towards`; none where nothing is known of that direction.
     #[inline]
     pub(super) fn sample_disk(&self, towards: Vec3, stream: &mut Stream) -> Option<Vec2> {
-        Some(warp::to_disk(self.cells.at(towards)?.sample(stream.square())))
+        Some(warp::to_disk(self.cells.at(towards.to_array())?.as_ref()?.sample(stream.square())))
     }
 }
 
@@ -259,78 +229,17 @@ fn limit(starts: &mut [(Start, f32)]) -> f64 {
     effective(starts.iter().map(|(_, weight)| *weight))
 }
 
-/// A deposit and what its cell is looked up by.
-struct Keyed {
+/// A start by what it is looked up, a position or a direction.
+struct Known {
     key: Vec3,
     deposit: Deposit,
 }
 
-/// Cells of space, or of directions, each with a density of its own: a kd-tree.
-#[derive(Clone, Debug)]
-struct Cells {
-    all: Vec<Cell>,
-}
-
-#[derive(Clone, Debug)]
-enum Cell {
-    /// Keys of less than `at` along `axis` are found in the next cell, others in the cell of this index.
-    Split { axis: usize, at: f32, beyond: u32 },
-    /// Too little is known where there is none.
-    Leaf(Option<Quadtree>),
-}
-
-impl Cells {
-    fn grow(&mut self, mut keyed: Vec<Keyed>, levels: u32) {
-        let count = effective(keyed.iter().map(|one| one.deposit.weight));
-        let index = self.all.len();
-        match split(&mut keyed) {
-            Some((axis, middle)) if levels > 0 && count >= 2.0 * PER_CELL => {
-                let far = keyed.split_off(middle);
-                let at = far[0].key[axis];
-                self.all.push(Cell::Leaf(None));
-                self.grow(keyed, levels - 1);
-                let beyond = self.all.len() as u32;
-                self.all[index] = Cell::Split { axis, at, beyond };
-                self.grow(far, levels - 1);
-            }
-            _ => {
-                let deposits = keyed.into_iter().map(|one| one.deposit).collect();
-                self.all.push(Cell::Leaf((count >= ENOUGH).then(|| Quadtree::learn(deposits))));
-            }
-        }
+impl Keyed<3> for Known {
+    fn key(&self) -> [f32; 3] {
+        self.key.to_array()
     }
-
-    #[inline]
-    fn at(&self, key: Vec3) -> Option<&Quadtree> {
-        let mut index = 0;
-        loop {
-            match self.all.get(index)? {
-                Cell::Split { axis, at, beyond } => {
-                    index = if key[*axis] < *at { index + 1 } else { *beyond as usize };
-                }
-                Cell::Leaf(table) => return table.as_ref(),
-            }
-        }
+    fn weight(&self) -> f32 {
+        self.deposit.weight
     }
-}
-
-/// Sorts `keyed` along the axis on which the keys lie furthest apart. The axis and where the upper half of the weight begins;
-/// none where both halves would not have something.
-fn split(keyed: &mut [Keyed]) -> Option<(usize, usize)> {
-    let bounds = keyed
-        .iter()
-        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), one| (low.min(one.key), high.max(one.key)));
-    let extent = (bounds.1 - bounds.0).to_array();
-    let axis = (0..3).max_by(|a, b| extent[*a].total_cmp(&extent[*b]))?;
-    keyed.sort_by(|a, b| a.key[axis].total_cmp(&b.key[axis]));
-    let half = 0.5 * keyed.iter().map(|one| f64::from(one.deposit.weight)).sum::<f64>();
-    let mut sum = 0.0;
-    let middle = keyed.iter().position(|one| {
-        sum += f64::from(one.deposit.weight);
-        sum >= half
-    })?;
-    // The first of equal keys, so that all of them lie on one side.
-    let at = keyed[middle].key[axis];
-    let first = keyed.partition_point(|one| one.key[axis] < at);
-    (first > 0).then_some((axis, first))
 }

@@ -2,13 +2,15 @@
 
 use super::{NullCrossing, Segment};
 use crate::{
-    bsdf::BsdfModel,
+    bsdf::{BsdfModel, Transport},
     math::{Channels, RaySegment, Spectrum, Vec3},
     medium::{Medium, MediumIndex, MediumInterval, MediumProperties, distance::collision_ratio},
+    phase::{Deflection, PhaseModel},
     sampling::Stream,
     scene::Scene,
     shape::SurfacePoint,
     transport::profile::Profile,
+    transport::{Scattering, vertex::shading_correction},
 };
 
 /// What scatters, or absorbs, at the end of a free flight.
@@ -47,6 +49,46 @@ impl Interaction {
                 scene.bsdf(point.shape).survival(point.uv, point.shading.to_local(incoming))
             }
             Self::Medium(_, properties) => properties.survival(),
+        }
+    }
+
+    /// Scattering between unit `incoming`, where a walk by `transport` came from, and unit `outgoing`; densities without survival
+    /// and without a guide.
+    ///
+    /// LW96 eq. 10: g, without the cosine that the density of the vertex contains.
+    #[inline]
+    pub fn scatter(&self, scene: &Scene, incoming: Vec3, outgoing: Vec3, transport: Transport) -> Scattering {
+        match self {
+            Self::Medium(_, properties) => {
+                let medium = &scene.media[properties.medium.0 as usize];
+                let phase = medium.phase.pdf_sr(Deflection::between(-incoming, outgoing));
+                Scattering { value: properties.albedo * phase, pdf_fwd: phase, pdf_rev: phase }
+            }
+            Self::Surface(point) => {
+                let bsdf = scene.bsdf(point.shape);
+                let (wi, wo) = (point.shading.to_local(incoming), point.shading.to_local(outgoing));
+                let f = bsdf.evaluate(point.uv, wi, wo, transport);
+                let cosine = wo.z.abs() * shading_correction(point, incoming, outgoing, wi, wo, transport);
+                Scattering { value: f.value * cosine, pdf_fwd: f.pdf_fwd, pdf_rev: f.pdf_rev }
+            }
+        }
+    }
+
+    /// Unit geometric normal of a surface.
+    #[inline]
+    pub fn normal(&self) -> Option<Vec3> {
+        match self {
+            Self::Surface(point) => Some(point.normal),
+            Self::Medium(..) => None,
+        }
+    }
+
+    /// True if something of its scattering is not Dirac.
+    #[inline]
+    pub fn is_connectible(&self, scene: &Scene) -> bool {
+        match self {
+            Self::Surface(point) => scene.surface(point.shape).connectible,
+            Self::Medium(..) => true,
         }
     }
 

@@ -89,6 +89,7 @@ pub fn camera_walk<'a, P: Profile>(
         hero,
         max_edges: estimator.max_edges,
         survival: estimator.survival,
+        guide: estimator.guide.as_deref(),
     };
     let departure = camera_path::depart(estimator, film, APERTURE);
     let mut trail = Trail::new(CameraPath::new(estimator, Partners::NONE, hero, Sum::default()));
@@ -108,7 +109,14 @@ fn light_walk<'a, P: Profile>(
     stream: &mut Stream,
 ) -> Trail<LightPath<'a, P, WideFilm>, P::MisSums> {
     let max_edges = estimator.max_edges.saturating_sub(1);
-    let kind = Kind { transport: Transport::Importance, hero, max_edges, survival: estimator.survival };
+    let Estimator { survival, guide, .. } = estimator;
+    let kind = Kind {
+        transport: Transport::Importance,
+        hero,
+        max_edges,
+        survival: *survival,
+        guide: guide.as_deref(),
+    };
     let mut trail = Trail::new(visitor);
     walk::<P>(estimator.scene, kind, light_path::depart(estimator, start), &mut trail, stream);
     trail

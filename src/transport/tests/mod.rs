@@ -6,6 +6,7 @@
 //! so that it weighs all strategies of one path. All three must agree, and each set of weights must sum to one.
 
 mod cases;
+mod guide;
 mod heuristics;
 mod next_event;
 mod path;
@@ -18,10 +19,12 @@ mod starts;
 use super::{
     Connections, Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
     profile::{
-        Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Profile, Smoke, Vacuum,
+        Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, Profile, Smoke,
+        Vacuum,
     },
 };
 use crate::{
+    guide::Learnt,
     math::{Channels, vec2, vec3},
     sampling::{Stream, stream::Purpose},
     scene::build::Setup,
@@ -30,10 +33,17 @@ use path::{Node, Path, Place};
 use reference::Reference;
 use report::Report;
 use scenes::*;
+use std::sync::Arc;
 
 const ALL: Options = Options {
     strategies: Strategies::BDPT,
-    effort: Effort { survival: Survival::Albedo, light_walks: 1.0, connections: 1, learnt_starts: false },
+    effort: Effort {
+        survival: Survival::Albedo,
+        light_walks: 1.0,
+        connections: 1,
+        learnt_starts: false,
+        guided: false,
+    },
     connections: Connections::Cached,
     heuristic: Heuristic::Balance,
     max_depth: None,
@@ -46,7 +56,8 @@ const SEED: u64 = 1;
 /// Compares all paths that `pairs` camera and light subpaths make.
 fn examine<P: Profile>(name: &'static str, setup: &Setup, options: Options, pairs: u64) -> Report {
     let starts = options.effort.learnt_starts.then(|| starts::lessons(setup));
-    let estimator = Estimator::<P>::new(&setup.scene, options, starts, SEED, PIXELS, PIXELS);
+    let learnt = Learnt { starts, guide: options.effort.guided.then(guide::arbitrary) };
+    let estimator = Estimator::<P>::new(&setup.scene, options, learnt, SEED, PIXELS, PIXELS);
     let reference = Reference::new(&estimator);
     let mut report = Report::new(name);
     for pair in 0..pairs {
@@ -106,8 +117,13 @@ fn equiangular_sampling() {
 
 #[test]
 fn other_efforts() {
-    let effort =
-        Effort { survival: Survival::FourthRoot, light_walks: 1.0, connections: 4, learnt_starts: false };
+    let effort = Effort {
+        survival: Survival::FourthRoot,
+        light_walks: 1.0,
+        connections: 4,
+        learnt_starts: false,
+        guided: false,
+    };
     let options = Options { effort, ..ALL };
     for (name, parts) in [
         ("long walks", &[FOG, INSIDE, ROOM, LAMP, GLASS_BALL][..]),
@@ -127,7 +143,10 @@ fn all_vertices_of_a_pair_of_walks() {
         assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
     };
     let room = build(&[FOG, INSIDE, ROOM, LAMP, POINT, BALL]);
-    assert_eq!(Estimator::<Fog>::new(&room.scene, options, None, SEED, 64, 64).counts.connection, 1.0);
+    assert_eq!(
+        Estimator::<Fog>::new(&room.scene, options, Learnt::default(), SEED, 64, 64).counts.connection,
+        1.0
+    );
     all("room", examine::<Fog>("pairs, in a room", &room, options, 500));
     let glass = build(&[FOG, INSIDE, ROOM, LAMP, GLASS_BALL, MIRROR]);
     all("glass", examine::<Fog>("pairs, with glass", &glass, options, 400));
@@ -435,7 +454,7 @@ fn joins_across_a_hundred_mean_free_paths() {
 #[test]
 fn paths_through_the_dark() {
     let setup = build(&[TUNNEL]);
-    let estimator = Estimator::<Fog>::new(&setup.scene, ALL, None, SEED, PIXELS, PIXELS);
+    let estimator = Estimator::<Fog>::new(&setup.scene, ALL, Learnt::default(), SEED, PIXELS, PIXELS);
     let (reference, mut report) = (Reference::new(&estimator), Report::new("dark"));
     for index in 0..300 {
         let mut stream = Stream::new(5, index, 0, Purpose::Study);
@@ -460,7 +479,7 @@ fn paths_through_the_dark() {
 fn walks_of_ten_thousand_vertices() {
     let setup = build(&[FURNACE, INSIDE, POINT]);
     let options = Options { max_depth: Some(10_001), ..ALL };
-    let estimator = Estimator::<Fog>::new(&setup.scene, options, None, SEED, PIXELS, PIXELS);
+    let estimator = Estimator::<Fog>::new(&setup.scene, options, Learnt::default(), SEED, PIXELS, PIXELS);
     let reference = Reference::new(&estimator);
     let mut stream = Stream::new(5, 0, 0, Purpose::Study);
     let mut weighed = 0;
@@ -483,7 +502,7 @@ fn joins_are_counted_as_often_as_they_come() {
         [(build(&[FOG, INSIDE, ROOM, LAMP]), false), (build(&[FURNACE, INSIDE, LAMP]), true)]
     {
         let options = Options { max_depth: Some(200), ..ALL };
-        let estimator = Estimator::<Fog>::new(&setup.scene, options, None, SEED, 1024, 1024);
+        let estimator = Estimator::<Fog>::new(&setup.scene, options, Learnt::default(), SEED, 1024, 1024);
         assert_eq!(estimator.keep < 1.0, thinned);
         let mut cache = LightCache::new(1);
         for walk in 0..20_000 {

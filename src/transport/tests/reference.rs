@@ -8,7 +8,8 @@ use super::{
 use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{BeamModel, Emitter, Kind, PointModel, SurfaceModel},
-    math::{Channels, DVec3, offset},
+    guide::Guide,
+    math::{Channels, DVec3, Vec3, offset},
     phase::{Deflection, PhaseModel},
     sampling::{Stream, stream::Purpose},
     scene::{
@@ -16,7 +17,7 @@ use crate::{
         lights::{self, Densities, EmissionSample, EmitterPoint, EmitterSample, Light, Pivot, Start, Starts},
     },
     shape::SurfacePoint,
-    transport::{Counts, Estimator, Heuristic, Survival, profile::Profile},
+    transport::{Counts, Estimator, Heuristic, Interaction, Survival, profile::Profile},
 };
 use std::sync::Arc;
 
@@ -34,6 +35,7 @@ pub struct Reference<'a> {
     /// and media.
     pub starts: Vec<Option<EmissionSample>>,
     pub learnt: Option<Arc<Starts>>,
+    pub guide: Option<Arc<Guide>>,
 }
 
 /// ln p>_i and ln p<_i of every vertex of a path, per channel.
@@ -53,8 +55,8 @@ impl<'a> Reference<'a> {
                 starts[start.light as usize].get_or_insert(start);
             }
         }
-        let (channels, learnt) = (P::Channels::COUNT, estimator.starts.clone());
-        Self { scene, counts, heuristic, survival, channels, starts, learnt }
+        let (learnt, guide) = (estimator.starts.clone(), estimator.guide.clone());
+        Self { scene, counts, heuristic, survival, channels: P::Channels::COUNT, starts, learnt, guide }
     }
 
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
@@ -233,12 +235,27 @@ impl<'a> Reference<'a> {
         match &here.place {
             Place::Volume(position) => {
                 let medium = &self.scene.media[here.medium.0 as usize];
-                f64::from(medium.phase.pdf_sr(Deflection::between(-back.as_vec3(), on.as_vec3())))
-                    * f64::from(self.survival.of(properties(self.scene, here.medium, *position).survival()))
+                let properties = properties(self.scene, here.medium, *position);
+                let phase = medium.phase.pdf_sr(Deflection::between(-back.as_vec3(), on.as_vec3()));
+                let survival = f64::from(self.survival.of(properties.survival()));
+                survival
+                    * self.guided(Interaction::Medium(*position, properties), on, phase, false, transport)
             }
             Place::Surface(point) => reflect(self, point, back, on, here.dirac, transport),
             _ => 0.0,
         }
+    }
+
+    /// Density of the direction `on`, or the probability of a Dirac lobe, that is `unguided` without the guide.
+    fn guided(&self, here: Interaction, on: DVec3, unguided: f32, dirac: bool, transport: Transport) -> f64 {
+        let guide = self.guide.as_deref().filter(|_| here.is_connectible(self.scene));
+        let Some(guide) = guide else { return f64::from(unguided) };
+        let guidance = guide.guidance(here.position(), here.normal(), Vec3::Z, transport);
+        let [pdf, _] = match dirac {
+            true => guide.unguided(guidance, transport, [unguided, 0.0]),
+            false => guide.pdfs(guidance, transport, on.as_vec3(), [unguided, 0.0]),
+        };
+        f64::from(pdf)
     }
 
     /// The emitter's vertex as next-event estimation finds it from the next vertex.
@@ -320,13 +337,14 @@ pub fn reflect(
     let bsdf = reference.scene.bsdf(point.shape);
     let (wi, wo) = (point.shading.to_local(back.as_vec3()), point.shading.to_local(on.as_vec3()));
     let survival = f64::from(reference.survival.of(bsdf.survival(point.uv, wi)));
+    let guided = |pdf| survival * reference.guided(Interaction::Surface(*point), on, pdf, dirac, transport);
     if !dirac {
-        return survival * f64::from(bsdf.evaluate(point.uv, wi, wo, transport).pdf_fwd);
+        return guided(bsdf.evaluate(point.uv, wi, wo, transport).pdf_fwd);
     }
     // A surface has one Dirac lobe on each side at most; sample until it is the one on this side.
     let mut stream = Stream::new(13, 0, 0, Purpose::Study);
     let lobe = (0..4_096)
         .filter_map(|_| bsdf.sample(point.uv, wi, transport, &mut stream))
         .find(|sample| sample.dirac && sample.wo.z * wo.z > 0.0);
-    survival * lobe.map_or(0.0, |sample| f64::from(sample.pdf_fwd))
+    guided(lobe.map_or(0.0, |sample| sample.pdf_fwd))
 }

@@ -195,8 +195,9 @@ impl Lead<'_> {
         visitor: &impl Visitor<P>,
     ) -> Led<P::MisSums> {
         let scene = self.reference.scene;
-        let survival = self.reference.survival;
-        let kind = Kind { transport: self.transport, hero: self.hero, max_edges: u32::MAX, survival };
+        let Reference { survival, guide, .. } = &self.reference;
+        let (survival, guide) = (*survival, guide.as_deref());
+        let kind = Kind { transport: self.transport, hero: self.hero, max_edges: u32::MAX, survival, guide };
         let mut led = Led { vertices: Vec::new(), end: None };
         if let [first, second, ..] = self.nodes.as_slice() {
             departure.ray.direction = first.towards(second).as_vec3();
@@ -221,7 +222,7 @@ impl Lead<'_> {
             if is_last {
                 led.end = Some(vertex.subpath);
             } else {
-                departure = set_out(scene, &vertex, &self.scattered(i, &vertex));
+                departure = set_out(scene, &vertex, &self.scattered::<P>(i, &vertex));
             }
             led.vertices.push(vertex);
         }
@@ -245,7 +246,7 @@ impl Lead<'_> {
         Arrival { position, cosine: 1.0, sigma_t }
     }
 
-    fn scattered<S: MisSums>(&self, i: usize, vertex: &Vertex<S>) -> ScatterSample {
+    fn scattered<P: Profile>(&self, i: usize, vertex: &Vertex<P::MisSums>) -> ScatterSample {
         let (scene, here) = (self.reference.scene, &self.nodes[i]);
         let (back, on) = (here.towards(&self.nodes[i - 1]), here.towards(&self.nodes[i + 1]));
         let (direction, weight, dirac) = (on.as_vec3(), Spectrum::ONE, here.dirac);
@@ -254,7 +255,8 @@ impl Lead<'_> {
             let pdf_rev = reflect(self.reference, point, on, back, true, self.transport) as f32;
             return ScatterSample { direction, weight, pdf_fwd, pdf_rev, dirac };
         }
-        let scattering = vertex.scatter_towards(scene, direction, self.transport);
+        let scattering =
+            vertex.scatter_towards::<P>(scene, self.reference.guide.as_deref(), direction, self.transport);
         ScatterSample { direction, weight, pdf_fwd: scattering.pdf_fwd, pdf_rev: scattering.pdf_rev, dirac }
     }
 }

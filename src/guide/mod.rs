@@ -1,0 +1,293 @@
+//! The guide: from where light comes to a place, and from where it is seen, as was learnt from paths that reach the image.
+//! Walks follow it at some of their vertices, and only where it was found to lower the variance, so that no density is 0 that
+//! was not (after P03T sec. 5.2 and Mueller et al. 2017, Practical Path Guiding; both kinds of walks are guided, hence two
+//! distributions at every place).
+//!
+//! With p the density of the BSDF or the phase function, a walk leaves a vertex in direction w with the density
+//! ```text
+//! a p(w) + (1 - a) G(w)
+//! ```
+//! and the walk from the other end leaves the same vertex towards the one before, w', with a p'(w') + (1 - a) G'(w'). G' does
+//! not depend on w: it is looked up once, on arrival, and kept.
+
+use crate::{
+    bsdf::Transport,
+    math::{Vec3, warp},
+    sampling::{
+        Cells, Quadtree, Stream,
+        cells::Keyed,
+        quadtree::{Deposit, effective},
+    },
+    scene::lights::Starts,
+};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// What was learnt of the paths that reach the image.
+#[derive(Clone, Debug, Default)]
+pub struct Learnt {
+    /// Where light subpaths start.
+    pub starts: Option<Arc<Starts>>,
+    /// Where walks go on to.
+    pub guide: Option<Arc<Guide>>,
+}
+
+/// What a may be: the part of the directions that are not guided.
+const UNGUIDED: [f32; 6] = [0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
+/// Directions, as [`effective`] counts them, that a cell has at least.
+const PER_CELL: f64 = 256.0;
+/// Levels of cells below the root: there are 4,096 of surfaces, and as many of media.
+const LEVELS: u32 = 12;
+/// Directions that tell nothing if there are fewer.
+const ENOUGH: f64 = 32.0;
+/// Of the weight of all directions, the most that one may have: it may be an outlier.
+const MOST: f64 = 1.0 / 1024.0;
+/// How far apart opposite normals are taken to be, over the extent of the scene: cells hold surfaces that face one way before they
+/// hold such that lie close together.
+const NORMALS: f32 = 0.5;
+
+/// A direction in which a walk should leave a vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Lesson {
+    /// World position.
+    pub position: Vec3,
+    /// Unit geometric normal; none in a medium.
+    pub normal: Option<Vec3>,
+    /// Which walk.
+    pub transport: Transport,
+    /// Unit.
+    pub direction: Vec3,
+    /// How much it counts, at least 0, finite.
+    pub weight: f32,
+    /// Density of the direction by the BSDF or the phase function [1/sr].
+    pub unguided: f32,
+    /// To which of two independent parts of all lessons it belongs.
+    pub fold: usize,
+}
+
+/// What walks follow.
+#[derive(Clone, Debug, Default)]
+pub struct Guide {
+    /// Where the places lie that it was learnt from.
+    centre: Vec3,
+    /// 1 over how far [1/m].
+    scale: f32,
+    surfaces: Cells<6, u32>,
+    media: Cells<3, u32>,
+    cells: Vec<Cell>,
+}
+
+/// Directions of the camera's walks and of light's.
+#[derive(Clone, Debug)]
+struct Cell([Option<Directions>; 2]);
+
+#[derive(Clone, Debug)]
+struct Directions {
+    /// a.
+    unguided: f32,
+    table: Quadtree,
+}
+
+/// What a walk knows of the guide at a vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Guidance {
+    /// [`NOWHERE`] if it knows nothing.
+    cell: u32,
+    /// (1 - a) G' of the direction to the vertex before [1/sr].
+    reverse: f32,
+}
+
+const NOWHERE: u32 = u32::MAX;
+
+impl Guidance {
+    /// There is no guide here.
+    pub const NONE: Self = Self { cell: NOWHERE, reverse: 0.0 };
+}
+
+/// A lesson, by its index, and by what its cell is looked up.
+struct Known<const D: usize> {
+    key: [f32; D],
+    weight: f32,
+    index: u32,
+}
+
+impl<const D: usize> Keyed<D> for Known<D> {
+    fn key(&self) -> [f32; D] {
+        self.key
+    }
+    fn weight(&self) -> f32 {
+        self.weight
+    }
+}
+
+impl Guide {
+    /// What `lessons` tell; none where that is nothing.
+    pub fn learn(mut lessons: Vec<Lesson>) -> Option<Self> {
+        let total: f64 = lessons.iter().map(|lesson| f64::from(lesson.weight)).sum();
+        let most = (MOST * total) as f32;
+        lessons.iter_mut().for_each(|lesson| lesson.weight = lesson.weight.min(most));
+        if effective(lessons.iter().map(|lesson| lesson.weight)) < ENOUGH {
+            return None;
+        }
+        let (low, high) = lessons.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), lesson| {
+            (low.min(lesson.position), high.max(lesson.position))
+        });
+        let centre = 0.5 * (low + high);
+        let scale = 1.0 / (high - low).max_element().max(f32::MIN_POSITIVE);
+        let mut guide = Self { centre, scale, ..Self::default() };
+        let known = || lessons.iter().enumerate().map(|(index, lesson)| (index as u32, lesson));
+        let of_surfaces = known().filter_map(|(index, lesson)| {
+            let key = guide.surface_key(lesson.position, lesson.normal?);
+            Some(Known { key, weight: lesson.weight, index })
+        });
+        let of_media = known().filter(|(_, lesson)| lesson.normal.is_none()).map(|(index, lesson)| Known {
+            key: guide.key(lesson.position).to_array(),
+            weight: lesson.weight,
+            index,
+        });
+        let (of_surfaces, of_media): (Vec<_>, Vec<_>) = (of_surfaces.collect(), of_media.collect());
+        let mut leaves = Vec::new();
+        guide.surfaces = Cells::learn(of_surfaces, PER_CELL, LEVELS, |known| add(&mut leaves, known));
+        guide.media = Cells::learn(of_media, PER_CELL, LEVELS, |known| add(&mut leaves, known));
+        guide.cells = leaves.into_par_iter().map(|leaf| Cell::learn(&lessons, &leaf)).collect();
+        Some(guide)
+    }
+
+    #[inline]
+    fn key(&self, position: Vec3) -> Vec3 {
+        (position - self.centre) * self.scale
+    }
+
+    #[inline]
+    fn surface_key(&self, position: Vec3, normal: Vec3) -> [f32; 6] {
+        let ([x, y, z], [i, j, k]) = (self.key(position).to_array(), (0.5 * NORMALS * normal).to_array());
+        [x, y, z, i, j, k]
+    }
+
+    /// What the walk by `transport` knows where it arrives from unit `incoming`; `normal` is that of a surface, of the point
+    /// alone: walks from both ends, perhaps on both sides, find the same cell.
+    #[inline]
+    pub fn guidance(
+        &self,
+        position: Vec3,
+        normal: Option<Vec3>,
+        incoming: Vec3,
+        transport: Transport,
+    ) -> Guidance {
+        let cell = match normal {
+            None => self.media.at(self.key(position).to_array()),
+            Some(normal) => self.surfaces.at(self.surface_key(position, normal)),
+        };
+        let Some(cell) = cell.copied() else { return Guidance::NONE };
+        let reverse = self.directions(cell, opposite(transport)).map_or(0.0, |known| known.pdf(incoming));
+        Guidance { cell, reverse }
+    }
+
+    #[inline]
+    fn directions(&self, cell: u32, transport: Transport) -> Option<&Directions> {
+        self.cells.get(cell as usize)?.0[index(transport)].as_ref()
+    }
+
+    /// Densities of `outgoing`, and of the way back, which are `unguided` without the guide [1/sr].
+    #[inline]
+    pub fn pdfs(
+        &self,
+        guidance: Guidance,
+        transport: Transport,
+        outgoing: Vec3,
+        unguided: [f32; 2],
+    ) -> [f32; 2] {
+        let [mut fwd, mut rev] = self.unguided(guidance, transport, unguided);
+        if let Some(known) = self.directions(guidance.cell, transport) {
+            fwd += known.pdf(outgoing);
+        }
+        rev += guidance.reverse;
+        [fwd, rev]
+    }
+
+    /// The parts of densities, or probabilities, that the guide leaves.
+    #[inline]
+    pub fn unguided(&self, guidance: Guidance, transport: Transport, unguided: [f32; 2]) -> [f32; 2] {
+        let part = |transport| self.directions(guidance.cell, transport).map_or(1.0, |known| known.unguided);
+        [part(transport) * unguided[0], part(opposite(transport)) * unguided[1]]
+    }
+
+    /// A direction by the guide; none where this vertex is left without it.
+    #[inline]
+    pub fn sample(&self, guidance: Guidance, transport: Transport, stream: &mut Stream) -> Option<Vec3> {
+        let Directions { unguided, table } = self.directions(guidance.cell, transport)?;
+        (stream.uniform() >= *unguided).then(|| warp::to_sphere(table.sample(stream.square())))
+    }
+}
+
+/// Adds a leaf of what is `known`; its index.
+fn add<const D: usize>(leaves: &mut Vec<Vec<u32>>, known: Vec<Known<D>>) -> u32 {
+    leaves.push(known.into_iter().map(|known| known.index).collect());
+    leaves.len() as u32 - 1
+}
+
+impl Cell {
+    fn learn(lessons: &[Lesson], leaf: &[u32]) -> Self {
+        let of = |transport| {
+            let own = leaf.iter().map(|index| &lessons[*index as usize]);
+            Directions::learn(&own.filter(|lesson| lesson.transport == transport).collect::<Vec<_>>())
+        };
+        Self([of(Transport::Radiance), of(Transport::Importance)])
+    }
+}
+
+impl Directions {
+    /// None where directions are better left to the BSDF or the phase function.
+    fn learn(lessons: &[&Lesson]) -> Option<Self> {
+        if effective(lessons.iter().map(|lesson| lesson.weight)) < ENOUGH {
+            return None;
+        }
+        let unguided = part_unguided(lessons);
+        (unguided < 1.0).then(|| Self { unguided, table: table(lessons.iter().copied()) })
+    }
+
+    /// (1 - a) G [1/sr].
+    #[inline]
+    fn pdf(&self, direction: Vec3) -> f32 {
+        (1.0 - self.unguided) * pdf(&self.table, direction)
+    }
+}
+/// a, by the second moment that what one half of the `lessons` tells has where the other half guides.
+fn part_unguided(lessons: &[&Lesson]) -> f32 {
+    let half = |fold| lessons.iter().copied().filter(move |lesson| lesson.fold == fold);
+    let tables = [1, 0].map(|other| table(half(other)));
+    let known = lessons.iter().filter(|lesson| lesson.unguided > 0.0);
+    let ratios: Vec<_> = known
+        .map(|lesson| (lesson.weight, pdf(&tables[lesson.fold], lesson.direction) / lesson.unguided))
+        .collect();
+    let moment = |a: f32| -> f64 {
+        let of = |(weight, ratio): &(f32, f32)| f64::from(weight * weight / (a + (1.0 - a) * ratio));
+        ratios.iter().map(of).sum()
+    };
+    UNGUIDED.into_iter().min_by(|a, b| moment(*a).total_cmp(&moment(*b))).unwrap_or(1.0)
+}
+
+fn table<'a>(lessons: impl Iterator<Item = &'a Lesson>) -> Quadtree {
+    let deposit =
+        |lesson: &Lesson| Deposit { at: warp::from_sphere(lesson.direction), weight: lesson.weight };
+    Quadtree::learn(lessons.map(deposit).collect())
+}
+
+fn index(transport: Transport) -> usize {
+    match transport {
+        Transport::Radiance => 0,
+        Transport::Importance => 1,
+    }
+}
+
+fn opposite(transport: Transport) -> Transport {
+    match transport {
+        Transport::Radiance => Transport::Importance,
+        Transport::Importance => Transport::Radiance,
+    }
+}
+
+#[inline]
+fn pdf(table: &Quadtree, direction: Vec3) -> f32 {
+    table.density(warp::from_sphere(direction)) * warp::SPHERE_PDF
+}

@@ -1,0 +1,34 @@
+//! What was worked out for a scene, and is kept for the next render of it.
+
+use std::{
+    any::Any,
+    sync::{Arc, Mutex, PoisonError},
+};
+
+/// What was worked out last, and for what: a render begins with what its pilot chose.
+#[derive(Debug, Default)]
+pub struct Memo(Mutex<Option<(String, Arc<dyn Any + Send + Sync>)>>);
+
+impl Clone for Memo {
+    /// Forgets: the scene may be changed.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Memo {
+    /// What `learn` says, once for each `key`.
+    pub fn recall<T: Clone + Send + Sync + 'static>(&self, key: String, learn: impl FnOnce() -> T) -> T {
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((known, learnt)) = &*lock()
+            && *known == key
+            && let Some(learnt) = learnt.downcast_ref::<T>()
+        {
+            return learnt.clone();
+        }
+        // Not while locked: threads that learn may take up other work, which asks for the same.
+        let learnt = learn();
+        *lock() = Some((key, Arc::new(learnt.clone())));
+        learnt
+    }
+}
