@@ -19,6 +19,7 @@ mod unseen;
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},
+    emitter::Kind,
     math::{DVec3, Spectrum, Vec3},
     medium::{Medium, MediumIndex},
     sensor::Sensor,
@@ -179,6 +180,10 @@ impl Scene {
     #[inline]
     pub fn emission_medium(&self, light: u32, origin: Vec3, direction: Vec3) -> MediumIndex {
         let light = &self.lights.all[light as usize];
+        // Where media overlap, what shines is there besides what a walk carries.
+        if self.overlaps.is_some() && matches!(light.emitter.kind, Kind::Medium(_)) {
+            return self.locator().along(origin, direction).unwrap_or(self.outside);
+        }
         if !light.straddles {
             return light.medium;
         }

@@ -232,7 +232,11 @@ fn sums_know_the_step_that_was_marched_by() {
     let pairs = format!("render scene.json --spp 2 {all} --resume --connections all");
     sandbox.run(&pairs).refuses(&["connections = \"all\""]);
     sandbox.run(&format!("render scene.json --spp 2 {all} --resume --guide")).refuses(&["guide = true"]);
-    sandbox.run("render scene.json --spp 2 --guide --heuristic power").refuses(&["--guide", "power", "--no-guide"]);
+    sandbox.run("render scene.json --spp 2 --guide --heuristic power").refuses(&[
+        "--guide",
+        "power",
+        "--no-guide",
+    ]);
     let guided = sandbox.run("render scene.json --spp 2 --guide").ends(0).err();
     assert!(guided.contains("guided walks"), "{guided}");
 }
