@@ -117,8 +117,8 @@ fn media_that_overlap_both_glow() {
     // Without other light, which would hide what is wrong; and behind walls, where no ray finds out what surrounds the media.
     for (what, parts) in [("glowing", &[][..]), ("glowing in a room", &[("walls", walls)])] {
         let eye = ("sensor", camera([0.3, 0.5, 5.0], [0.0, 0.0, 0.0], 8));
-        let [overlapping, apart] =
-            [&overlapping[..], &apart].map(|media| scene(&[&[eye.clone()], media, parts].concat()));
+        let [overlapping, apart] = [&overlapping[..], &apart]
+            .map(|media| scene(&[std::slice::from_ref(&eye), media, parts].concat()));
         same(&mut claims, what, &overlapping, &apart);
     }
     claims.settle();
