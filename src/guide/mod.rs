@@ -252,6 +252,7 @@ impl Directions {
         (1.0 - self.unguided) * pdf(&self.table, direction)
     }
 }
+
 /// a, by the second moment that what one half of the `lessons` tells has where the other half guides.
 fn part_unguided(lessons: &[&Lesson]) -> f32 {
     let half = |fold| lessons.iter().copied().filter(move |lesson| lesson.fold == fold);

@@ -197,6 +197,7 @@ pub(super) fn trial(
     settings: &Settings,
     learnt: Learnt,
     tasks: Range<usize>,
+    for_guide: bool,
 ) -> Trial {
-    Trial::run(&Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK), tasks)
+    Trial::run(&Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK), tasks, for_guide)
 }

@@ -98,7 +98,7 @@ fn learn(scene: &Scene, film: &Film, options: Options, wanted: Wanted) -> Learnt
     for round in 0..rounds {
         let tasks = done..done + (FIRST << round).div_ceil(per_block);
         done = tasks.end;
-        let trial = compiled::trial(scene, film, &settings, learnt.clone(), tasks);
+        let trial = compiled::trial(scene, film, &settings, learnt.clone(), tasks, wanted.guide.is_some());
         segments += trial.segments;
         if let Some(compete) = wanted.starts {
             learnt.starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
@@ -243,7 +243,7 @@ impl Found {
 #[derive(Default)]
 pub(super) struct Trial {
     found: Vec<Found>,
-    /// Of each block.
+    /// Of each block, for a guide.
     tracks: Vec<Tracks>,
     /// Of each tile.
     pixels: Vec<f64>,
@@ -251,13 +251,15 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// Some blocks of some passes, numbered over all of them.
-    pub fn run<P: Profile>(ready: &Ready<'_, P>, tasks: Range<usize>) -> Self {
+    /// Some blocks of some passes, numbered over all of them; what it finds is for a guide too or is not.
+    pub fn run<P: Profile>(ready: &Ready<'_, P>, tasks: Range<usize>, for_guide: bool) -> Self {
         let blocks = ready.blocks.count();
         let tiles = Tiles::of(ready.film, TILES);
         let count = tasks.len() as f64;
-        let parts: Vec<_> =
-            tasks.into_par_iter().map(|task| part(ready, task / blocks, task % blocks)).collect();
+        let parts: Vec<_> = tasks
+            .into_par_iter()
+            .map(|task| part(ready, [task / blocks, task % blocks], for_guide))
+            .collect();
         let pixels = tiles.pixels();
         let mut samples = vec![0.0; pixels.len()];
         parts.iter().flat_map(|part| &part.pixels).for_each(|pixel| samples[tiles.at(*pixel)] += 1.0);
@@ -275,7 +277,7 @@ impl Trial {
                 .map(|found| Found { value: found.value * per_pass / trial.pixels[found.tile], ..found });
             trial.found.extend(camera);
             trial.found.extend(light);
-            trial.tracks.push(part.tracks);
+            trial.tracks.extend(part.tracks);
         }
         trial
     }
@@ -341,19 +343,19 @@ impl Trial {
 struct Part {
     camera: Vec<(u32, Found)>,
     light: Vec<(u32, Found)>,
-    tracks: Tracks,
+    tracks: Option<Tracks>,
     /// Those that camera subpaths went through.
     pixels: Vec<u32>,
     segments: f64,
 }
 
-fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
+fn part<P: Profile>(ready: &Ready<'_, P>, [pass, block]: [usize; 2], for_guide: bool) -> Part {
     let Ready { estimator, blocks, scene, film, seed } = ready;
     let mut gather = Gather {
         scene,
         film,
         follower: Follower::new(&scene.lights, estimator.starts(), P::Channels::COUNT),
-        tracks: Tracks::new(P::Channels::COUNT),
+        tracks: for_guide.then(|| Tracks::new(P::Channels::COUNT)),
         transport: Transport::Importance,
         pixel: 0,
         weight: 1.0,
@@ -380,7 +382,7 @@ struct Gather<'a> {
     scene: &'a Scene,
     film: &'a Film,
     follower: Follower<'a>,
-    tracks: Tracks,
+    tracks: Option<Tracks>,
     /// Of the walks at hand.
     transport: Transport,
     pixel: u32,
@@ -401,19 +403,23 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
     fn depart(&mut self, departure: &Departure<S>) {
         self.follower.depart(departure);
         self.segments += 1.0;
-        if departure.edges == 0 {
-            self.tracks.begin();
+        if let (0, Some(tracks)) = (departure.edges, &mut self.tracks) {
+            tracks.begin();
         }
     }
 
     fn arrive(&mut self, vertex: &Vertex<S>) {
         self.follower.arrive(vertex);
-        self.tracks.arrive(self.scene, self.transport, vertex);
+        if let Some(tracks) = &mut self.tracks {
+            tracks.arrive(self.scene, self.transport, vertex);
+        }
     }
 
     fn keep(&mut self) {
         self.follower.keep();
-        self.tracks.keep(self.follower.hero);
+        if let Some(tracks) = &mut self.tracks {
+            tracks.keep(self.follower.hero);
+        }
     }
 
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
@@ -421,7 +427,8 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
             return;
         };
         let start = self.follower.start(s, t, &meeting);
-        let track = self.tracks.track(self.scene, &meeting, self.follower.hero);
+        let hero = self.follower.hero;
+        let track = self.tracks.as_ref().and_then(|tracks| tracks.track(self.scene, &meeting, hero));
         let (value, shares) = (*value, *shares);
         let found =
             |value: f32| Found { tile: 0, part: 0, start, track, value: f64::from(value.max(0.0)), shares };
