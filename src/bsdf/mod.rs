@@ -56,6 +56,17 @@ pub enum Transport {
     Importance,
 }
 
+impl Transport {
+    /// Of the same path, walked from its other end.
+    #[inline]
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Radiance => Self::Importance,
+            Self::Importance => Self::Radiance,
+        }
+    }
+}
+
 /// The non-Dirac part of a BSDF for one pair of directions.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfValue {

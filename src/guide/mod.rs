@@ -179,7 +179,7 @@ impl Guide {
             Some(normal) => self.surfaces.at(self.surface_key(position, normal)),
         };
         let Some(cell) = cell.copied() else { return Guidance::NONE };
-        let reverse = self.directions(cell, opposite(transport)).map_or(0.0, |known| known.pdf(incoming));
+        let reverse = self.directions(cell, transport.reversed()).map_or(0.0, |known| known.pdf(incoming));
         Guidance { cell, reverse }
     }
 
@@ -209,7 +209,7 @@ impl Guide {
     #[inline]
     pub fn unguided(&self, guidance: Guidance, transport: Transport, unguided: [f32; 2]) -> [f32; 2] {
         let part = |transport| self.directions(guidance.cell, transport).map_or(1.0, |known| known.unguided);
-        [part(transport) * unguided[0], part(opposite(transport)) * unguided[1]]
+        [part(transport) * unguided[0], part(transport.reversed()) * unguided[1]]
     }
 
     /// A direction by the guide; none where this vertex is left without it.
@@ -278,13 +278,6 @@ fn index(transport: Transport) -> usize {
     match transport {
         Transport::Radiance => 0,
         Transport::Importance => 1,
-    }
-}
-
-fn opposite(transport: Transport) -> Transport {
-    match transport {
-        Transport::Radiance => Transport::Importance,
-        Transport::Importance => Transport::Radiance,
     }
 }
 

@@ -180,7 +180,7 @@ impl Scene {
     #[inline]
     pub fn emission_medium(&self, light: u32, origin: Vec3, direction: Vec3) -> MediumIndex {
         let light = &self.lights.all[light as usize];
-        // Where media overlap, what shines is there besides what a walk carries.
+        // Where media overlap, a walk carries what lies beneath them.
         if self.overlaps.is_some() && matches!(light.emitter.kind, Kind::Medium(_)) {
             return self.locator().along(origin, direction).unwrap_or(self.outside);
         }

@@ -115,15 +115,20 @@ pub struct Effort {
     pub guided: bool,
 }
 
+impl Effort {
+    /// One sample of each, nothing learnt.
+    pub const EQUAL: Self = Self {
+        survival: Survival::Albedo,
+        light_walks: 1.0,
+        connections: 1,
+        learnt_starts: false,
+        guided: false,
+    };
+}
+
 impl Default for Effort {
     fn default() -> Self {
-        Self {
-            survival: Survival::Albedo,
-            light_walks: 1.0,
-            connections: 1,
-            learnt_starts: false,
-            guided: false,
-        }
+        Self::EQUAL
     }
 }
 

@@ -349,18 +349,17 @@ fn guided<P: Profile>(
     transport: Transport,
     stream: &mut Stream,
 ) -> Option<ScatterSample> {
-    let direction = match guide.sample(vertex.guidance, transport, stream) {
-        Some(direction) => direction,
-        None => {
-            let sample = unguided(scene, vertex, transport, stream)?;
-            if sample.dirac {
-                let pdfs = [sample.pdf_fwd, sample.pdf_rev];
-                let [pdf_fwd, pdf_rev] = guide.unguided(vertex.guidance, transport, pdfs);
-                let weight = sample.weight * (sample.pdf_fwd / pdf_fwd);
-                return Some(ScatterSample { weight, pdf_fwd, pdf_rev, ..sample });
-            }
-            sample.direction
-        }
+    let Some(direction) = guide.sample(vertex.guidance, transport, stream) else {
+        let sample = unguided(scene, vertex, transport, stream)?;
+        let pdfs = [sample.pdf_fwd, sample.pdf_rev];
+        let [pdf_fwd, pdf_rev] = if sample.dirac {
+            guide.unguided(vertex.guidance, transport, pdfs)
+        } else {
+            let pdfs = pdfs.map(|pdf| pdf / vertex.survival);
+            guide.pdfs(vertex.guidance, transport, sample.direction, pdfs).map(|pdf| pdf * vertex.survival)
+        };
+        let weight = sample.weight * (sample.pdf_fwd / pdf_fwd);
+        return Some(ScatterSample { weight, pdf_fwd, pdf_rev, ..sample });
     };
     let Scattering { value, pdf_fwd, pdf_rev } =
         vertex.scatter_towards::<P>(scene, Some(guide), direction, transport);

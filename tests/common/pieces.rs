@@ -144,3 +144,16 @@ pub fn beam(at: [f64; 3], direction: [f64; 3], radius: f64, irradiance: impl Int
 pub fn sky(radiance: impl Into<Value>) -> Value {
     json!({"type": "constant", "radiance": radiance.into()})
 }
+
+/// A floor, and above it a cloud that thins out upwards, with `more` said of it, under sky and sun.
+pub fn cloud_under_sky(more: &[(&str, Value)]) -> Value {
+    let smoke = json!({"type": "heterogeneous", "tracker": "null_collision", "scale": 2, "albedo": 0.8,
+        "sigma_t": {"type": "exponential", "height": -0.8, "scale_height": 0.8}});
+    scene(&[
+        ("sensor", camera([0.0, 0.6, 3.2], [0.0, 0.2, 0.0], 8)),
+        ("floor", floor(-0.6, 2.0, 0.5)),
+        ("cloud", null_box([-0.8, -0.4, -0.8], [0.8, 0.8, 0.8], Some(with(smoke, more)))),
+        ("sky", sky(0.5)),
+        ("sun", sun([0.3, -1.0, -0.2], 1.0)),
+    ])
+}

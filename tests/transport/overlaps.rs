@@ -114,7 +114,7 @@ fn media_that_overlap_both_glow() {
     ];
     let walls = json!({"type": "cube", "flip_normals": true, "to_world": place([6.0, 6.0, 6.0], [0.0; 3]), "bsdf": diffuse(0.4)});
     let mut claims = Claims::new();
-    // Without other light, which would hide what is wrong; and behind walls, where no ray finds out what surrounds the media.
+    // Without other light, which would hide what is wrong; also behind walls, where no ray finds what surrounds the media.
     for (what, parts) in [("glowing", &[][..]), ("glowing in a room", &[("walls", walls)])] {
         let eye = ("sensor", camera([0.3, 0.5, 5.0], [0.0, 0.0, 0.0], 8));
         let [overlapping, apart] = [&overlapping[..], &apart]

@@ -46,7 +46,7 @@ fn weights_of_guided_paths() {
     let all = |name: &'static str, report: Report| {
         assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
     };
-    let room = build(&[FOG, INSIDE, ROOM, LAMP, POINT, GLASS_BALL]);
+    let room = build(&[FOG, INSIDE, ROOM, LAMP, POINT, PLASTIC_BALL]);
     all("room", examine::<Guided<Fog>>("guided, in a room", &room, options, 600));
     let vacuum = build(&[CLEAR, INSIDE, ROOM, LAMP, BALL]);
     all("vacuum", examine::<Guided<Vacuum>>("guided, in a vacuum", &vacuum, options, 600));
@@ -110,6 +110,6 @@ fn a_guide_of_another_scene_shows_the_same() {
         }
     }
     compare::<Fog, Guided<Fog>>("fog", &[FOG, INSIDE, ROOM, LAMP, BALL]);
-    compare::<Vacuum, Guided<Vacuum>>("vacuum", &[CLEAR, INSIDE, ROOM, LAMP, GLASS_BALL]);
+    compare::<Vacuum, Guided<Vacuum>>("vacuum", &[CLEAR, INSIDE, ROOM, LAMP, PLASTIC_BALL]);
     compare::<Everything, Guided<Everything>>("open", &[OUTSIDE, CHROMATIC_SMOKE, GROUND, SKY, LAMP]);
 }

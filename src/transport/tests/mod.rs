@@ -37,13 +37,7 @@ use std::sync::Arc;
 
 const ALL: Options = Options {
     strategies: Strategies::BDPT,
-    effort: Effort {
-        survival: Survival::Albedo,
-        light_walks: 1.0,
-        connections: 1,
-        learnt_starts: false,
-        guided: false,
-    },
+    effort: Effort::EQUAL,
     connections: Connections::Cached,
     heuristic: Heuristic::Balance,
     max_depth: None,
@@ -117,13 +111,7 @@ fn equiangular_sampling() {
 
 #[test]
 fn other_efforts() {
-    let effort = Effort {
-        survival: Survival::FourthRoot,
-        light_walks: 1.0,
-        connections: 4,
-        learnt_starts: false,
-        guided: false,
-    };
+    let effort = Effort { survival: Survival::FourthRoot, connections: 4, ..Effort::EQUAL };
     let options = Options { effort, ..ALL };
     for (name, parts) in [
         ("long walks", &[FOG, INSIDE, ROOM, LAMP, GLASS_BALL][..]),

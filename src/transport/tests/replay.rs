@@ -251,8 +251,9 @@ impl Lead<'_> {
         let (back, on) = (here.towards(&self.nodes[i - 1]), here.towards(&self.nodes[i + 1]));
         let (direction, weight, dirac) = (on.as_vec3(), Spectrum::ONE, here.dirac);
         if let (true, Place::Surface(point)) = (dirac, &here.place) {
-            let pdf_fwd = reflect(self.reference, point, back, on, true, self.transport) as f32;
-            let pdf_rev = reflect(self.reference, point, on, back, true, self.transport) as f32;
+            let pdf = |back, on, transport| reflect(self.reference, point, back, on, true, transport) as f32;
+            let (pdf_fwd, pdf_rev) =
+                (pdf(back, on, self.transport), pdf(on, back, self.transport.reversed()));
             return ScatterSample { direction, weight, pdf_fwd, pdf_rev, dirac };
         }
         let scattering =
