@@ -18,6 +18,7 @@ from validation import (
     full,
     gallery,
     growth,
+    guide,
     instructions,
     matrix,
     package_tests,
@@ -58,6 +59,7 @@ def parser() -> argparse.ArgumentParser:
     add_growth(commands)
     add_bias(commands)
     add_progressive(commands)
+    add_guide(commands)
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
@@ -225,6 +227,11 @@ def add_bias(commands: Commands) -> None:
 def add_progressive(commands: Commands) -> None:
     command = add(commands, "progressive", progressive.run, "Progressive pictures against as many pixels on a regular grid, on four scenes.")
     progressive.add_options(command)
+
+
+def add_guide(commands: Commands) -> None:
+    command = add(commands, "guide", guide.run, "What --guide gives: error after the same time with it and without, in eleven scenes.")
+    guide.add_options(command)
 
 
 def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:

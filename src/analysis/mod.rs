@@ -68,6 +68,7 @@ pub mod chi_square;
 pub mod coverage;
 pub mod diff;
 pub mod flights;
+pub mod guide;
 pub mod interval;
 pub mod metrics;
 pub mod phase;

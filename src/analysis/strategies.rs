@@ -3,7 +3,7 @@
 
 mod lettering;
 pub mod pilot;
-mod sheet;
+pub(super) mod sheet;
 mod table;
 
 pub use table::table;

@@ -67,6 +67,14 @@ pub enum Command {
     /// JSON and CSV. Short renders with different sets of strategies then show which kinds of strategies the
     /// scene does not need.
     Strategies(super::strategies::Arguments),
+    /// Show what a guide learns of a scene: what render --guide follows
+    ///
+    /// Writes to a folder guide.json, with the number of cells, their memory and the time that learning took, how often light
+    /// subpaths start at each emitter, and the cells that most pixels see; cells.png: the cells as the camera sees them, and the
+    /// part of the directions of both kinds of walks that is guided there; directions.png: where walks go from the cells
+    /// that most pixels see (azimuth to the right, +z downwards; equal areas are equal solid angles; yellow is a
+    /// thousand times as likely as evenly spread directions, black a hundredth).
+    Guide(super::guide::Arguments),
     /// Write the paths of one pixel's samples as JSON, for debugging
     ///
     /// The samples are those of a render with the same seed, size and options: the same camera subpaths and the
@@ -141,6 +149,7 @@ impl Command {
         match self {
             Self::Render(render) => Some(&render.answer),
             Self::Strategies(strategies) => Some(&strategies.answer),
+            Self::Guide(guide) => Some(&guide.answer),
             Self::Info(info) => Some(&info.answer),
             Self::Study(study) => Some(&study.answer),
             Self::Diff(diff) => Some(&diff.answer),

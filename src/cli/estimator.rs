@@ -189,6 +189,12 @@ impl Estimator {
         Ok(Settings { options, sampler, budget, seed, profile })
     }
 
+    /// The same with a guide, whatever the scene says.
+    pub fn guided_settings(&self, setup: &Setup, budget: Budget) -> Result<Settings> {
+        let guided = Self { guide: true, no_guide: false, ..self.clone() };
+        guided.requested(setup, 0, budget)
+    }
+
     fn options(&self, setup: &Setup) -> Result<Options> {
         let scene = setup.integrator.options;
         let strategies = self.strategies(scene.strategies)?;

@@ -10,6 +10,7 @@ mod estimator;
 mod explain;
 pub mod flights;
 mod goal;
+mod guide;
 mod info;
 mod interrupt;
 mod keeper;
@@ -70,6 +71,7 @@ fn obey(command: &Command) -> Result<bool> {
         Command::Render(render) => render::run(render),
         Command::Merge(merge) => merge::run(merge),
         Command::Strategies(strategies) => strategies::run(strategies),
+        Command::Guide(guide) => guide::run(guide),
         Command::Pixel(pixel) => pixel::run(pixel),
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),

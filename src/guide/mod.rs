@@ -74,7 +74,9 @@ pub struct Guide {
     scale: f32,
     surfaces: Cells<6, u32>,
     media: Cells<3, u32>,
+    /// Those of surfaces come first.
     cells: Vec<Cell>,
+    of_surfaces: usize,
 }
 
 /// Directions of the camera's walks and of light's.
@@ -121,7 +123,7 @@ impl<const D: usize> Keyed<D> for Known<D> {
 }
 
 impl Guide {
-    /// What `lessons` tell; none where that is nothing.
+    /// What `lessons` tell; none where that is nothing, or nothing better than what BSDFs and phase functions do.
     pub fn learn(mut lessons: Vec<Lesson>) -> Option<Self> {
         let total: f64 = lessons.iter().map(|lesson| f64::from(lesson.weight)).sum();
         let most = (MOST * total) as f32;
@@ -148,9 +150,11 @@ impl Guide {
         let (of_surfaces, of_media): (Vec<_>, Vec<_>) = (of_surfaces.collect(), of_media.collect());
         let mut leaves = Vec::new();
         guide.surfaces = Cells::learn(of_surfaces, PER_CELL, LEVELS, |known| add(&mut leaves, known));
+        guide.of_surfaces = leaves.len();
         guide.media = Cells::learn(of_media, PER_CELL, LEVELS, |known| add(&mut leaves, known));
         guide.cells = leaves.into_par_iter().map(|leaf| Cell::learn(&lessons, &leaf)).collect();
-        Some(guide)
+        // What guides nothing need not be looked up.
+        guide.cells.iter().any(Cell::guides).then_some(guide)
     }
 
     #[inline]
@@ -174,13 +178,46 @@ impl Guide {
         incoming: Vec3,
         transport: Transport,
     ) -> Guidance {
+        let cell = self.cell(position, normal);
+        let reverse = self.directions(cell, transport.reversed()).map_or(0.0, |known| known.pdf(incoming));
+        Guidance { cell, reverse }
+    }
+
+    /// The cell of a place, with a normal as for [`Self::guidance`]; one of none where nothing is known of any.
+    #[inline]
+    pub fn cell(&self, position: Vec3, normal: Option<Vec3>) -> u32 {
         let cell = match normal {
             None => self.media.at(self.key(position).to_array()),
             Some(normal) => self.surfaces.at(self.surface_key(position, normal)),
         };
-        let Some(cell) = cell.copied() else { return Guidance::NONE };
-        let reverse = self.directions(cell, transport.reversed()).map_or(0.0, |known| known.pdf(incoming));
-        Guidance { cell, reverse }
+        cell.copied().unwrap_or(NOWHERE)
+    }
+
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// How many of them, the first ones, are of surfaces.
+    pub fn cells_of_surfaces(&self) -> usize {
+        self.of_surfaces
+    }
+
+    /// 1 - a: the part of the directions that walks by `transport` take from the guide in `cell`.
+    pub fn guided(&self, cell: u32, transport: Transport) -> f32 {
+        self.directions(cell, transport).map_or(0.0, |known| 1.0 - known.unguided)
+    }
+
+    /// G: the density of those of unit `direction` [1/sr]; none where there is none.
+    pub fn density(&self, cell: u32, transport: Transport, direction: Vec3) -> Option<f32> {
+        self.directions(cell, transport).map(|known| pdf(&known.table, direction))
+    }
+
+    /// Memory that it takes [bytes].
+    pub fn bytes(&self) -> usize {
+        let tables = self.cells.iter().flat_map(|cell| cell.0.iter().flatten());
+        let tables: usize = tables.map(|known| known.table.bytes()).sum();
+        size_of_val(&self.cells[..]) + tables + self.surfaces.bytes() + self.media.bytes()
     }
 
     #[inline]
@@ -227,6 +264,10 @@ fn add<const D: usize>(leaves: &mut Vec<Vec<u32>>, known: Vec<Known<D>>) -> u32 
 }
 
 impl Cell {
+    fn guides(&self) -> bool {
+        self.0.iter().any(Option::is_some)
+    }
+
     fn learn(lessons: &[Lesson], leaf: &[u32]) -> Self {
         let of = |transport| {
             let own = leaf.iter().map(|index| &lessons[*index as usize]);

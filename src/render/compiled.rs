@@ -20,7 +20,7 @@ use crate::{
     scene::Scene,
     shape::Ray,
     transport::{
-        Connections, Effort, Estimator, Heuristic, Interaction, Options,
+        Connections, Estimator, Heuristic, Interaction, Options,
         profile::{
             Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, Profile,
             ProfileName, Smoke, Vacuum,
@@ -71,10 +71,7 @@ pub(super) struct Ready<'a, P: Profile> {
 impl<'a, P: Profile> Ready<'a, P> {
     /// With blocks of so many pixels.
     fn new(scene: &'a Scene, film: &'a Film, settings: &Settings, per_block: usize) -> Self {
-        let Effort { learnt_starts, guided, .. } = settings.options.effort;
-        let learns = learnt_starts || guided;
-        let learnt =
-            if learns { training::learnt(scene, film, &settings.options) } else { Learnt::default() };
+        let learnt = training::learn_for(scene, film, settings);
         Self::with(scene, film, settings, learnt, per_block)
     }
 

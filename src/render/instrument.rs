@@ -11,7 +11,9 @@ use crate::{
     film::{Film, layer::Layer},
     math::Spectrum,
     scene::Scene,
+    transport::Interaction,
 };
+use rayon::prelude::*;
 use std::{
     ops::Range,
     sync::atomic::{AtomicUsize, Ordering},
@@ -52,6 +54,19 @@ impl<'a> Instrument<'a> {
     /// The same whose blocks have the layers among `layers` that contributions are sorted into.
     pub(super) fn sorting(self, layers: &[Layer]) -> Self {
         Self { sorter: Sorter::new(self.scene, layers), ..self }
+    }
+
+    /// Where a camera subpath through each pixel interacts first, see [`Estimator::first_interaction`].
+    ///
+    /// [`Estimator::first_interaction`]: crate::transport::Estimator::first_interaction
+    pub fn first_interactions(&self) -> Vec<Option<Interaction>> {
+        let Self { scene, film, settings, compiled, .. } = self;
+        let first = |pixel: usize| {
+            let mut start = compiled.blocks().camera_start(scene, film, settings.seed, 0, pixel);
+            let ray = scene.sensor.ray(start.position, start.aperture).ray;
+            compiled.first_interaction(ray, &mut start.stream)
+        };
+        (0..film.len()).into_par_iter().map(first).collect()
     }
 
     /// One sample of every pixel of `block` that `wants` one.

@@ -28,7 +28,7 @@ pub mod sums_file;
 pub mod tiles;
 pub mod timing;
 mod tracks;
-mod training;
+pub mod training;
 
 pub use monitor::Snapshot;
 

@@ -16,7 +16,7 @@ use crate::{
     bsdf::Transport,
     film::Film,
     guide::{Guide, Learnt, Lesson},
-    math::{Channels, SpectrumExt, Vec2, Vec3},
+    math::{Channels, Spectrum, SpectrumExt, Vec2, Vec3},
     sampling::Sampler,
     scene::{
         Scene,
@@ -48,15 +48,20 @@ const GUIDE_SEGMENTS: f64 = 4e6;
 const DEEPEST: u32 = 32;
 /// The image is divided into so many tiles across and down, at most, whose pixels count as one.
 const TILES: u32 = 8;
-/// Lessons of a round for the guide, at most.
-const LESSONS: f64 = 2e5;
+/// Lessons for the guide from each camera subpath of a round, at most on average.
+const LESSONS: f64 = 3.0;
 /// Of the image's mean, added to that of each tile.
 const FLOOR: f64 = 0.1;
 
-/// Where light subpaths by `options` start that reach the image, and where walks go.
-pub(super) fn learnt(scene: &Scene, film: &Film, options: &Options) -> Learnt {
+/// What renders by `settings` learn beforehand: where light subpaths start that reach the image, and where walks go, as far as they
+/// ask for it. Kept with the scene.
+pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
+    let options = &settings.options;
     let strategies = options.strategies;
     let (starting, guided) = (options.effort.learnt_starts, options.effort.guided);
+    if !starting && !guided {
+        return Learnt::default();
+    }
     let options = Options {
         strategies: Strategies::BDPT,
         effort: Effort::default(),
@@ -104,7 +109,7 @@ fn learn(scene: &Scene, film: &Film, options: Options, wanted: Wanted) -> Learnt
             learnt.starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
         }
         if let Some(strategies) = wanted.guide {
-            let lessons = trial.lessons(strategies, (FIRST << round) as f32);
+            let lessons = trial.lessons(strategies, (FIRST << round) as f64);
             learnt.guide = Guide::learn([&before[..], &lessons].concat()).map(Arc::new);
             before = lessons;
         }
@@ -224,8 +229,6 @@ struct Found {
     tile: usize,
     start: Option<Followed>,
     track: Option<Track>,
-    /// The number of the block that it was found in.
-    part: usize,
     /// Luminance; first of a sample, then as part of the mean over the tile.
     value: f64,
     /// Of each kind of strategy, in the weights.
@@ -242,7 +245,8 @@ impl Found {
 /// What a round of samples found.
 #[derive(Default)]
 pub(super) struct Trial {
-    found: Vec<Found>,
+    /// Of each block.
+    found: Vec<Vec<Found>>,
     /// Of each block, for a guide.
     tracks: Vec<Tracks>,
     /// Of each tile.
@@ -266,26 +270,24 @@ impl Trial {
         let mut trial = Self { pixels, ..Self::default() };
         // Light subpaths traced stand for those of a pass.
         let per_pass = blocks as f64 / count;
-        for (index, part) in parts.into_iter().enumerate() {
+        for part in parts {
             trial.segments += part.segments;
-            let of_tile =
-                |(pixel, found): (u32, Found)| Found { tile: tiles.at(pixel), part: index, ..found };
+            let of_tile = |(pixel, found): (u32, Found)| Found { tile: tiles.at(pixel), ..found };
             let camera = part.camera.into_iter().map(of_tile);
             let camera = camera.map(|found| Found { value: found.value / samples[found.tile], ..found });
             let light = part.light.into_iter().map(of_tile);
             let light = light
                 .map(|found| Found { value: found.value * per_pass / trial.pixels[found.tile], ..found });
-            trial.found.extend(camera);
-            trial.found.extend(light);
+            trial.found.push(camera.chain(light).collect());
             trial.tracks.extend(part.tracks);
         }
         trial
     }
 
     /// What contributions count for: their parts of the means of their tiles.
-    fn values(&self) -> impl Fn(&Found) -> f32 {
+    fn values(&self) -> impl Fn(&Found) -> f32 + Sync {
         let mut means = vec![0.0; self.pixels.len()];
-        self.found.iter().for_each(|found| means[found.tile] += found.value);
+        self.found.iter().flatten().for_each(|found| means[found.tile] += found.value);
         let pixels: f64 = self.pixels.iter().sum();
         let mean = means.iter().zip(&self.pixels).map(|(mean, pixels)| mean * pixels).sum::<f64>() / pixels;
         move |found| (found.value * self.pixels[found.tile] / (means[found.tile] + FLOOR * mean)) as f32
@@ -296,14 +298,16 @@ impl Trial {
         let value = self.values();
         let weight = |found: &Found| value(found) * if compete { found.by_light() } else { 1.0 };
         let mut all: Vec<(Start, f32)> = Vec::new();
-        // What one light subpath contributed tells of one start.
-        let mut of_walks = HashMap::new();
         for found in &self.found {
-            let (Some(followed), weight) = (found.start, weight(found)) else { continue };
-            let known = followed.walk.map(|walk| *of_walks.entry((found.part, walk)).or_insert(all.len()));
-            match known.and_then(|index| all.get_mut(index)) {
-                Some((_, sum)) => *sum += weight,
-                None => all.push((followed.start, weight)),
+            // What one light subpath contributed tells of one start.
+            let mut of_walks = HashMap::new();
+            for found in found {
+                let (Some(followed), weight) = (found.start, weight(found)) else { continue };
+                let known = followed.walk.map(|walk| *of_walks.entry(walk).or_insert(all.len()));
+                match known.and_then(|index| all.get_mut(index)) {
+                    Some((_, sum)) => *sum += weight,
+                    None => all.push((followed.start, weight)),
+                }
             }
         }
         all.retain(|(_, weight)| weight.is_finite() && *weight > 0.0);
@@ -312,30 +316,39 @@ impl Trial {
 
     /// Where walks by `strategies` should go, from so many `samples`; if there are too many lessons, some of those with little
     /// weight stand for others.
-    fn lessons(&self, strategies: Strategies, samples: f32) -> Vec<Lesson> {
+    fn lessons(&self, strategies: Strategies, samples: f64) -> Vec<Lesson> {
         let value = self.values();
-        let each = |take: &mut dyn FnMut(Lesson)| {
-            for found in &self.found {
+        let each = |part: usize, take: &mut dyn FnMut(Lesson)| {
+            for found in &self.found[part] {
                 let Some((track, shares)) = found.track.zip(Shares::of(&found.shares, strategies)) else {
                     continue;
                 };
                 let weight = value(found);
                 if weight.is_finite() && weight > 0.0 {
-                    self.tracks[found.part].lessons(&track, &shares, (weight, found.part % 2), &mut *take);
+                    self.tracks[part].lessons(&track, &shares, (weight, part % 2), &mut *take);
                 }
             }
         };
-        let mut total = 0.0;
-        each(&mut |lesson| total += f64::from(lesson.weight));
-        let (step, mut sum, mut lessons) = ((total / LESSONS) as f32, 0.5, Vec::new());
-        each(&mut |lesson| {
-            sum += f64::from(lesson.weight / step);
-            if sum >= 1.0 {
-                sum = sum.fract();
-                lessons.push(Lesson { weight: samples * lesson.weight.max(step), ..lesson });
-            }
-        });
-        lessons
+        let parts = || (0..self.found.len()).into_par_iter();
+        let total = |part| {
+            let mut total = 0.0;
+            each(part, &mut |lesson| total += f64::from(lesson.weight));
+            total
+        };
+        let step =
+            (parts().map(total).collect::<Vec<f64>>().iter().sum::<f64>() / (LESSONS * samples)) as f32;
+        let lessons = |part| {
+            let (mut sum, mut lessons) = (0.5, Vec::new());
+            each(part, &mut |lesson| {
+                sum += f64::from(lesson.weight / step);
+                if sum >= 1.0 {
+                    sum = sum.fract();
+                    lessons.push(Lesson { weight: samples as f32 * lesson.weight.max(step), ..lesson });
+                }
+            });
+            lessons
+        };
+        parts().flat_map_iter(lessons).collect()
     }
 }
 
@@ -374,7 +387,8 @@ fn part<P: Profile>(ready: &Ready<'_, P>, [pass, block]: [usize; 2], for_guide: 
         let observer: &mut dyn Observer<P::MisSums> = &mut gather;
         start.trace(estimator, &cache, observer);
     }
-    Part { camera: gather.found, light, tracks: gather.tracks, pixels, segments: gather.segments }
+    let Gather { found: camera, tracks, segments, .. } = gather;
+    Part { camera, light, tracks, pixels, segments }
 }
 
 /// Sees walks and what they contribute; those of the camera to one pixel.
@@ -389,6 +403,21 @@ struct Gather<'a> {
     weight: f32,
     found: Vec<(u32, Found)>,
     segments: f64,
+}
+
+impl Gather<'_> {
+    /// The luminance that the image gains where a light subpath is seen through `film`, and the pixel that gains most.
+    fn splat(&self, film: Vec2, value: Spectrum) -> (u32, f32) {
+        let (mut brightest, mut most, mut sum) = (0, 0.0, 0.0);
+        self.film.spread(film, value, |pixel, value| {
+            let value = value.luminance();
+            sum += value;
+            if value > most {
+                (brightest, most) = (pixel as u32, value);
+            }
+        });
+        (brightest, sum)
+    }
 }
 
 impl<S: MisSums> Observer<S> for Gather<'_> {
@@ -430,15 +459,12 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
         let hero = self.follower.hero;
         let track = self.tracks.as_ref().and_then(|tracks| tracks.track(self.scene, &meeting, hero));
         let (value, shares) = (*value, *shares);
-        let found =
-            |value: f32| Found { tile: 0, part: 0, start, track, value: f64::from(value.max(0.0)), shares };
-        if let Meeting::Lens(film) = meeting {
-            let all = &mut self.found;
-            return self
-                .film
-                .spread(film, value, |pixel, value| all.push((pixel as u32, found(value.luminance()))));
-        }
-        self.found.push((self.pixel, found(value.luminance() * self.weight)));
+        let found = |value: f32| Found { tile: 0, start, track, value: f64::from(value.max(0.0)), shares };
+        let (pixel, value) = match meeting {
+            Meeting::Lens(film) => self.splat(film, value),
+            _ => (self.pixel, value.luminance() * self.weight),
+        };
+        self.found.push((pixel, found(value)));
     }
 }
 

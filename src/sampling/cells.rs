@@ -28,39 +28,40 @@ enum Cell<T> {
 }
 
 impl<const D: usize, T> Cells<D, T> {
-    /// No more than 2^`levels` cells, each with at least so many `points`, as [`effective`] counts them, in which `leaf` finds
+    /// No more than 2^`levels` cells, none where nothing is `keyed`, each with at least so many `points`, as [`effective`] counts them, in which `leaf` finds
     /// what it holds.
-    pub fn learn<K: Keyed<D>>(
+    pub fn learn<K: Keyed<D> + Send>(
         keyed: Vec<K>,
         points: f64,
         levels: u32,
         mut leaf: impl FnMut(Vec<K>) -> T,
     ) -> Self {
         let mut cells = Self { all: Vec::new() };
-        cells.grow(keyed, 2.0 * points, levels, &mut leaf);
+        if keyed.is_empty() {
+            return cells;
+        }
+        cells.grow(divide(keyed, 2.0 * points, levels), &mut leaf);
         cells
     }
 
-    fn grow<K: Keyed<D>>(
-        &mut self,
-        mut keyed: Vec<K>,
-        points: f64,
-        levels: u32,
-        leaf: &mut impl FnMut(Vec<K>) -> T,
-    ) {
-        let divides = levels > 0 && effective(keyed.iter().map(K::weight)) >= points;
-        let Some((axis, middle)) = divides.then(|| split(&mut keyed)).flatten() else {
-            return self.all.push(Cell::Leaf(leaf(keyed)));
+    fn grow<K>(&mut self, parts: Parts<K>, leaf: &mut impl FnMut(Vec<K>) -> T) {
+        let (axis, at, [near, far]) = match parts {
+            Parts::Whole(keyed) => return self.all.push(Cell::Leaf(leaf(keyed))),
+            Parts::Split { axis, at, parts } => (axis, at, *parts),
         };
         let index = self.all.len();
-        let far = keyed.split_off(middle);
-        self.all.push(Cell::Split { axis, at: far[0].key()[axis], beyond: 0 });
-        self.grow(keyed, points, levels - 1, leaf);
+        self.all.push(Cell::Split { axis, at, beyond: 0 });
+        self.grow(near, leaf);
         let next = self.all.len() as u32;
         if let Cell::Split { beyond, .. } = &mut self.all[index] {
             *beyond = next;
         }
-        self.grow(far, points, levels - 1, leaf);
+        self.grow(far, leaf);
+    }
+
+    /// Memory that the cells take [bytes], without what else their contents point at.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.all[..])
     }
 
     /// What holds `key`.
@@ -83,6 +84,23 @@ impl<const D: usize, T> Default for Cells<D, T> {
     fn default() -> Self {
         Self { all: Vec::new() }
     }
+}
+
+/// What the cells below one hold.
+enum Parts<K> {
+    Whole(Vec<K>),
+    Split { axis: usize, at: f32, parts: Box<[Self; 2]> },
+}
+
+fn divide<const D: usize, K: Keyed<D> + Send>(mut keyed: Vec<K>, points: f64, levels: u32) -> Parts<K> {
+    let divides = levels > 0 && effective(keyed.iter().map(K::weight)) >= points;
+    let Some((axis, middle)) = divides.then(|| split(&mut keyed)).flatten() else {
+        return Parts::Whole(keyed);
+    };
+    let far = keyed.split_off(middle);
+    let at = far[0].key()[axis];
+    let (near, far) = rayon::join(|| divide(keyed, points, levels - 1), || divide(far, points, levels - 1));
+    Parts::Split { axis, at, parts: Box::new([near, far]) }
 }
 
 /// Sorts `keyed` along the axis on which the keys lie furthest apart. The axis and where the upper half of the weight begins;

@@ -78,6 +78,11 @@ impl Quadtree {
         Some(index as u32)
     }
 
+    /// Memory that it takes [bytes].
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..])
+    }
+
     /// A point distributed by the density, from one of the unit square: near ones stay near.
     #[inline]
     pub fn sample(&self, mut u: Vec2) -> Vec2 {

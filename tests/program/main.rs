@@ -15,6 +15,7 @@ mod errors;
 mod explain;
 mod flights;
 mod grouping;
+mod guide;
 mod html;
 mod keeping;
 mod layering;

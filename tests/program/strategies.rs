@@ -206,7 +206,7 @@ fn the_program_writes_tables_layers_and_sheets() {
         // Captions are wider than images of 8 x 8 pixels: "> 3 segments" beside four rows, "next-event" above a cell.
         assert_eq!(
             size,
-            (71 + 8 + 4 * (59 + 4) + 4, 4 * (8 + 7 + 8) + 4),
+            (96 + 8 + 4 * (80 + 4) + 4, 4 * (8 + 8 + 8) + 4),
             "four rows, four cells in the longest"
         );
     }

@@ -189,17 +189,17 @@ mod tests {
         };
         write(&path, 300, 2, &[row(2), row(3)]).unwrap();
         let sheet = image::open(&path).unwrap().to_rgb8();
-        // Captions are twice as large as the font: 14 high, 10 across for the 1.
-        assert_eq!(sheet.dimensions(), (18 + 3 * 154 + 4, 2 * (1 + 14 + 8) + 4));
+        // Captions are twice as large as the font: 16 high and wide.
+        assert_eq!(sheet.dimensions(), (24 + 3 * 154 + 4, 2 * (1 + 16 + 8) + 4));
         let is = |x: u32, y: u32, value: u8| sheet.get_pixel(x, y).0 == [value; 3];
-        let top = 14 + 4 + 2;
-        assert!(is(18 + 77 + 2, top, 255) && !is(18 + 77 + 1, top, 255) && !is(18 + 77 + 2, top - 1, 255));
+        let top = 16 + 4 + 2;
+        assert!(is(24 + 77 + 2, top, 255) && !is(24 + 77 + 1, top, 255) && !is(24 + 77 + 2, top - 1, 255));
         let ink = |x: std::ops::Range<u32>, y: std::ops::Range<u32>| {
             let darkest = sheet.get_pixel(0, 0).0;
             x.flat_map(|x| y.clone().map(move |y| (x, y))).any(|(x, y)| sheet.get_pixel(x, y).0 != darkest)
         };
-        assert!(ink(4..14, 10..30), "the caption of the row");
-        assert!(ink(18 + 77..18 + 77 + 150, 0..18), "the caption of an image");
+        assert!(ink(4..20, 10..34), "the caption of the row");
+        assert!(ink(24 + 77..24 + 77 + 150, 0..20), "the caption of an image");
     }
 
     /// Images narrower than their captions stand apart.
@@ -210,7 +210,7 @@ mod tests {
         let image = ("equiangular".to_owned(), vec![Spectrum::ONE; 4]);
         let row = Row { caption: "> 6".to_owned(), exposure: 1.0, images: vec![image; 2] };
         write(&path, 2, 2, &[row]).unwrap();
-        assert_eq!(image::image_dimensions(&path).unwrap(), (17 + 8 + 2 * (65 + 4) + 4, 2 + 7 + 8 + 4));
+        assert_eq!(image::image_dimensions(&path).unwrap(), (24 + 8 + 2 * (88 + 4) + 4, 2 + 8 + 8 + 4));
         write(&path, 2, 2, &[]).unwrap();
     }
 }

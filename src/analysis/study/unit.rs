@@ -13,7 +13,7 @@ use crate::{
     error::Result,
     film::{Film, format::Format},
     math::Spectrum,
-    render::{self, Image, Settings, Snapshot, budget::Budget},
+    render::{self, Image, Settings, Snapshot, budget::Budget, training},
 };
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -142,6 +142,8 @@ pub fn shoot(
 pub fn pilot(entry: &Entry, seed: u64, budget: Budget) -> Option<Image> {
     let Renderer::Own { settings, .. } = &entry.renderer else { return None };
     let settings = settled(settings, seed, budget);
+    // Learnt once for all renders of the scene: no sample takes a part of that time.
+    training::learn_for(&entry.setup.scene, &plain_film(entry), &settings);
     Some(render::render(&entry.setup.scene, &plain_film(entry), &settings, &mut |_| {}))
 }
 

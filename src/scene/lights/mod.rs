@@ -112,6 +112,11 @@ impl Lights {
         }
     }
 
+    /// The probability that a light subpath starts at an emitter, without what was learnt.
+    pub fn start_probability(&self, light: usize) -> f32 {
+        self.starts.probability(light)
+    }
+
     /// True where nothing emits.
     pub fn is_empty(&self) -> bool {
         self.starts.is_empty()

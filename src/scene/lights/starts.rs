@@ -107,6 +107,11 @@ impl Starts {
         Some(Self { emitters, learnt })
     }
 
+    /// The probability that a light subpath starts at an emitter.
+    pub fn probability(&self, lights: &Lights, light: usize) -> f32 {
+        UNLEARNT * lights.start_probability(light) + (1.0 - UNLEARNT) * self.emitters.probability(light)
+    }
+
     /// An emitter, its probability without what was learnt, and what was if the start is to be by that.
     #[inline]
     pub(super) fn choose(&self, lights: &Lights, stream: &mut Stream) -> (usize, f64, Option<&Learnt>) {

@@ -1,0 +1,88 @@
+//! `tyndall guide`: what is learnt of a scene before it is rendered with a guide.
+
+use super::{
+    arguments::{Scene, Size, size, threads},
+    estimator::Estimator,
+    load, say,
+    voice::Answer,
+};
+use crate::{
+    analysis::guide::{self, Cells, FILES, Report},
+    error::{Error, Result},
+    film::output,
+    render::budget::Budget,
+    transport::Strategies,
+};
+use clap::Args;
+use std::{num::NonZeroUsize, path::PathBuf};
+
+/// Show what a guide learns.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Arguments {
+    /// Which scene.
+    #[command(flatten)]
+    pub scene: Scene,
+
+    /// Folder to write to, created if missing [default: the name of the scene followed by -guide, in the current folder]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+
+    /// Threads to learn with [default: one per processor]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true)]
+    pub size: Option<Size>,
+
+    /// How paths are sampled.
+    #[command(flatten)]
+    pub estimator: Estimator,
+
+    /// How the numbers are given.
+    #[command(flatten)]
+    pub answer: Answer,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<()> {
+    arguments.answer.check(&[&arguments.scene.file])?;
+    let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
+    let mut settings = arguments.estimator.guided_settings(&setup, Budget::ENDLESS)?;
+    if settings.options.strategies == Strategies::NONE {
+        let remedy = "choose --integrator bdpt, pt or lt";
+        return Err(Error::new("--integrator", "an integrator whose walks a guide can lead", "fog", remedy));
+    }
+    settings.options.effort.learnt_starts = settings.options.strategies.need_light_walks();
+    let named = || PathBuf::from(format!("{}-guide", arguments.scene.name().to_string_lossy()));
+    let folder = arguments.output.clone().unwrap_or_else(named);
+    output::create_folder(&folder)?;
+    let files = FILES.map(|name| (folder.join(name), 0));
+    output::check(&files.each_ref().map(|(file, bytes)| (file.as_path(), *bytes)), &[])?;
+    let findings = super::threads(arguments.threads)?.install(|| guide::examine(&setup, &settings));
+    let files = findings.write(&folder)?;
+    say(&described(&findings.report));
+    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
+    say(&format!("in {}: {}", folder.display(), names.collect::<Vec<_>>().join(", ")));
+    arguments.answer.give(&serde_json::json!(findings.report))
+}
+
+/// A few lines.
+fn described(report: &Report) -> String {
+    let Report { seconds, bytes, surfaces, media, .. } = report;
+    if surfaces.cells + media.cells == 0 {
+        return format!("learnt in {seconds:.1} s: nothing that walks could follow");
+    }
+    let kind = |name: &str, Cells { cells, guided: [camera, light] }: &Cells| {
+        let [camera, light] = [camera, light].map(|part| format!("{:.0} %", 100.0 * part));
+        format!(
+            "{name:10} {cells} cells; of the directions, {camera} of the camera's walks and {light} of light's are guided"
+        )
+    };
+    let lines = [
+        format!("learnt     in {seconds:.1} s, {:.1} MiB", *bytes as f64 / f64::from(1 << 20)),
+        kind("surfaces", surfaces),
+        kind("media", media),
+    ];
+    lines.join("\n")
+}

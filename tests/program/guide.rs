@@ -1,0 +1,92 @@
+//! `tyndall guide`: what is learnt is shown, whatever the scene, and the same by any number of threads.
+
+use crate::{common::pieces::*, sandbox::Sandbox};
+use serde_json::{Value, json};
+
+/// Light comes round a wall, in fog; `size` over a metre.
+fn divided(size: f64) -> Value {
+    let place = |at: [f64; 3]| at.map(|x| size * x);
+    let mut fog = medium(0.7 / size, 0.8, 0.3);
+    fog["id"] = json!("fog");
+    let sphere =
+        |at: [f64; 3], radius: f64| json!({"type": "sphere", "center": place(at), "radius": size * radius});
+    let mut room = sphere([0.0; 3], 1.0);
+    room["flip_normals"] = json!(true);
+    room["bsdf"] = json!({"type": "diffuse", "reflectance": {"type": "rgb", "value": 0.6}});
+    room["exterior"] = json!({"type": "ref", "id": "fog"});
+    let mut lamp = sphere([0.2, 0.7, -0.3], 0.15);
+    lamp["emitter"] = json!({"type": "area", "radiance": {"type": "rgb", "value": [2, 3, 1]}});
+    lamp["exterior"] = json!({"type": "ref", "id": "fog"});
+    let mut sensor = camera(place([0.0, 0.0, 0.9]), place([0.0, 0.0, -1.0]), 32);
+    sensor["medium"] = json!({"type": "ref", "id": "fog"});
+    let wall = json!({"type": "cube", "exterior": {"type": "ref", "id": "fog"}, "to_world": [
+        {"type": "scale", "value": place([0.5, 0.02, 0.5])}, {"type": "translate", "value": place([0.0, 0.3, 0.0])}]});
+    scene(&[("fog", fog), ("sensor", sensor), ("room", room), ("lamp", lamp), ("wall", wall)])
+}
+
+/// The numbers, but how long it took.
+fn numbers(sandbox: &Sandbox, file: &str) -> Value {
+    let mut numbers = sandbox.json(file);
+    assert!(numbers["seconds"].as_f64().unwrap() > 0.0);
+    numbers["seconds"] = Value::Null;
+    numbers
+}
+
+#[test]
+fn what_is_learnt_is_shown_alike_by_any_threads() {
+    let sandbox = Sandbox::with_scene(&divided(1.0));
+    let run = sandbox.run("guide scene.json --threads 1").ends(0);
+    assert!(run.out().contains("surfaces") && run.out().contains("MiB"), "{}", run.out());
+    let first = numbers(&sandbox, "scene-guide/guide.json");
+    for kind in ["surfaces", "media"] {
+        assert!(first[kind]["cells"].as_u64().unwrap() > 4, "{first}");
+    }
+    let seen: f64 =
+        first["seen"].as_array().unwrap().iter().map(|cell| cell["pixels"].as_f64().unwrap()).sum();
+    assert!(seen > 0.0 && seen <= 1.0, "{first}");
+    // One emitter has all starts, learnt or not.
+    assert_eq!(first["starts"], json!([{"emitter": 0, "unlearnt": 1.0, "learnt": 1.0}]));
+    for threads in [2, 7] {
+        sandbox.run(&format!("guide scene.json --threads {threads} -o other")).ends(0);
+        assert_eq!(numbers(&sandbox, "other/guide.json"), first, "{threads} threads");
+        for picture in ["cells.png", "directions.png"] {
+            let [a, b] = ["scene-guide", "other"].map(|folder| sandbox.bytes(&format!("{folder}/{picture}")));
+            assert!(a.starts_with(b"\x89PNG") && a == b, "{picture}, {threads} threads");
+        }
+    }
+}
+
+/// As large as a hand and as large as a planet; memory stays small.
+#[test]
+fn scenes_of_any_size_are_learnt() {
+    for size in [1e-3, 1e6] {
+        let sandbox = Sandbox::with_scene(&divided(size));
+        let run = sandbox.run("guide scene.json --json").ends(0);
+        let numbers: Value = serde_json::from_str(&run.out()).unwrap();
+        for kind in ["surfaces", "media"] {
+            assert!(numbers[kind]["cells"].as_u64().unwrap() > 4, "{size}: {numbers}");
+        }
+        assert!(numbers["bytes"].as_u64().unwrap() < 64 << 20, "{size}: {numbers}");
+    }
+}
+
+/// Nothing to learn is no error, and no picture.
+#[test]
+fn of_a_black_scene_nothing_is_learnt() {
+    let mut dark = divided(1.0);
+    dark.as_object_mut().unwrap().remove("lamp");
+    let sandbox = Sandbox::with_scene(&dark);
+    let run = sandbox.run("guide scene.json").ends(0);
+    assert!(run.out().contains("nothing"), "{}", run.out());
+    assert!(sandbox.path("scene-guide/guide.json").is_file());
+    assert!(!sandbox.path("scene-guide/cells.png").exists());
+    sandbox.run("render scene.json --guide --spp 1").ends(0);
+}
+
+#[test]
+fn what_cannot_be_guided_is_refused() {
+    let sandbox = Sandbox::with_scene(&divided(1.0));
+    sandbox.run("guide scene.json --integrator fog").refuses(&["--integrator", "bdpt, pt or lt"]);
+    sandbox.run("guide scene.json --heuristic power").refuses(&["--guide", "balance"]);
+    sandbox.run("guide missing.json").refuses(&["missing.json"]);
+}
