@@ -117,7 +117,8 @@ fn report(scene: &Scene, learnt: &Learnt, cells: &[Option<u32>], seconds: f64) -
     let kind = |from: usize, to: usize| {
         let guided = |(transport, _)| {
             let of = |cell: usize| guide.map_or(0.0, |guide| guide.guided(cell as u32, transport));
-            (from..to).map(of).sum::<f32>() / (to - from).max(1) as f32
+            // The sum of nothing is -0.
+            (0.0 + (from..to).map(of).sum::<f32>()) / (to - from).max(1) as f32
         };
         Cells { cells: to - from, guided: WALKS.map(guided) }
     };

@@ -90,3 +90,24 @@ fn what_cannot_be_guided_is_refused() {
     sandbox.run("guide scene.json --heuristic power").refuses(&["--guide", "balance"]);
     sandbox.run("guide missing.json").refuses(&["missing.json"]);
 }
+
+/// A guide is learnt anew from the scene by every part of an image, and is the same each time.
+#[test]
+fn parts_of_a_guided_image_make_the_whole() {
+    let sandbox = Sandbox::with_scene(&divided(1.0));
+    for strategies in ["hit,next-event", "hit,next-event,join,lens"] {
+        let render = |words: &str| {
+            sandbox.run(&format!("render scene.json --guide --strategies {strategies} {words}")).ends(0)
+        };
+        render("--spp 4 -o whole.exr");
+        render("--samples 0..2 -o a.exr --sums a.sums");
+        render("--samples 2..4 -o b.exr --sums b.sums");
+        sandbox.run("merge a.sums b.sums -o merged.exr").ends(0);
+        let [whole, merged] = ["whole.exr", "merged.exr"].map(|name| sandbox.channels(name));
+        assert_eq!(whole["G"], merged["G"], "{strategies}");
+        sandbox
+            .run(&format!("render scene.json --no-guide --strategies {strategies} --spp 4 -o plain.exr"))
+            .ends(0);
+        assert_ne!(whole["G"], sandbox.channels("plain.exr")["G"], "{strategies}");
+    }
+}
