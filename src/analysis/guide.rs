@@ -3,7 +3,7 @@
 
 use super::{
     picture::false_colour,
-    strategies::sheet::{self, Row},
+    sheet::{self, Row},
 };
 use crate::{
     bsdf::Transport,

@@ -1,14 +1,15 @@
 //! What every strategy of the estimator is worth in a scene (LW96 sec. 4; Veach 1997, sec. 10.3): its image weighted
 //! and alone, its share of energy, variance and time; and which kinds of strategies the scene could do without.
 
-mod lettering;
 pub mod pilot;
-pub(super) mod sheet;
 mod table;
 
 pub use table::table;
 
-use super::coverage::Traits;
+use super::{
+    coverage::Traits,
+    sheet::{self, Row},
+};
 use crate::{
     analysis::study::outcome::Interval,
     error::{Error, Result},
@@ -25,7 +26,6 @@ use crate::{
     transport::{Options, Strategies, observer::StrategyKind},
 };
 use serde::Serialize;
-use sheet::Row;
 use std::path::{Path, PathBuf};
 
 /// How much is done.

@@ -3,13 +3,12 @@
 use super::{
     arguments::{Scene, Size, size, threads},
     estimator::Estimator,
-    load, say,
+    load, outputs, say,
     voice::Answer,
 };
 use crate::{
     analysis::guide::{self, Cells, FILES, Report},
     error::{Error, Result},
-    film::output,
     render::budget::Budget,
     transport::Strategies,
 };
@@ -54,16 +53,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         return Err(Error::new("--integrator", "an integrator whose walks a guide can lead", "fog", remedy));
     }
     settings.options.effort.learnt_starts = settings.options.strategies.need_light_walks();
-    let named = || PathBuf::from(format!("{}-guide", arguments.scene.name().to_string_lossy()));
-    let folder = arguments.output.clone().unwrap_or_else(named);
-    output::create_folder(&folder)?;
-    let files = FILES.map(|name| (folder.join(name), 0));
-    output::check(&files.each_ref().map(|(file, bytes)| (file.as_path(), *bytes)), &[])?;
+    let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
+    outputs::check_short(&FILES.map(|name| folder.join(name)), &[])?;
     let findings = super::threads(arguments.threads)?.install(|| guide::examine(&setup, &settings));
     let files = findings.write(&folder)?;
     say(&described(&findings.report));
-    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
-    say(&format!("in {}: {}", folder.display(), names.collect::<Vec<_>>().join(", ")));
+    say(&outputs::listed(&folder, &files));
     arguments.answer.give(&serde_json::json!(findings.report))
 }
 

@@ -1,6 +1,9 @@
 //! What is known to fail is said before any work is done.
 
-use super::{arguments::Render, goal::Goal};
+use super::{
+    arguments::{Render, Scene},
+    goal::Goal,
+};
 use crate::{
     error::Result,
     film::{Film, layer::Layer, output},
@@ -35,6 +38,20 @@ pub fn check(outputs: &[(&Path, u64)], read: &[&Path]) -> Result<()> {
         super::voice::take_stdout();
     }
     Ok(())
+}
+
+/// The folder that a command writes to, which then exists: the one that was asked for, or one named after `scene` and what it is `of`.
+pub fn folder(wanted: Option<&PathBuf>, scene: &Scene, of: &str) -> Result<PathBuf> {
+    let named = || PathBuf::from(format!("{}-{of}", scene.name().to_string_lossy()));
+    let folder = wanted.cloned().unwrap_or_else(named);
+    output::create_folder(&folder)?;
+    Ok(folder)
+}
+
+/// What was written, in a line.
+pub fn listed(folder: &Path, files: &[PathBuf]) -> String {
+    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
+    format!("in {}: {}", folder.display(), names.collect::<Vec<_>>().join(", "))
 }
 
 /// The same for files of which there may be none, all of them short.

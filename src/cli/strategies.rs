@@ -3,13 +3,12 @@
 use super::{
     arguments::{Scene, Size, positive_u32, size, threads},
     estimator::Estimator,
-    load, say, voice,
+    load, outputs, say, voice,
     voice::Answer,
 };
 use crate::{
     analysis::strategies::{self, Plan},
     error::Result,
-    film::output::create_folder,
     render::budget::Budget,
 };
 use clap::Args;
@@ -72,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let pilots = arguments.pilots.map_or(passes, |pilots| pilots as usize);
     let plan = Plan { depth: arguments.depth, passes, pilots };
     strategies::check(&setup.film, &plan, &settings.options)?;
-    let folder = folder(arguments)?;
+    let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "strategies")?;
     strategies::check_files(&folder, &setup.film, &plan, &settings.options)?;
     let bar = voice::bar(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left") {
@@ -89,15 +88,6 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     bar.finish_and_clear();
     let files = findings.write(&folder)?;
     say(&strategies::table(&findings.report));
-    let names = files.iter().filter_map(|file| file.file_name()).map(|name| name.to_string_lossy());
-    say(&format!("in {}: {}", folder.display(), names.collect::<Vec<_>>().join(", ")));
+    say(&outputs::listed(&folder, &files));
     arguments.answer.give(&serde_json::json!(findings.report))
-}
-
-/// The folder, which then exists.
-fn folder(arguments: &Arguments) -> Result<PathBuf> {
-    let named = || PathBuf::from(format!("{}-strategies", arguments.scene.name().to_string_lossy()));
-    let folder = arguments.output.clone().unwrap_or_else(named);
-    create_folder(&folder)?;
-    Ok(folder)
 }

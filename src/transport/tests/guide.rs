@@ -48,6 +48,8 @@ fn weights_of_guided_paths() {
     };
     let room = build(&[FOG, INSIDE, ROOM, LAMP, POINT, PLASTIC_BALL]);
     all("room", examine::<Guided<Fog>>("guided, in a room", &room, options, 600));
+    let glass = build(&[FOG, INSIDE, ROOM, LAMP, POINT, GLASS_BALL]);
+    all("glass", examine::<Guided<Fog>>("guided, beside glass", &glass, options, 600));
     let vacuum = build(&[CLEAR, INSIDE, ROOM, LAMP, BALL]);
     all("vacuum", examine::<Guided<Vacuum>>("guided, in a vacuum", &vacuum, options, 600));
     let open = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY, LAMP]);

@@ -31,6 +31,16 @@ fn glyph(letter: char) -> [u8; HEIGHT] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transport::observer::StrategyKind;
+
+    #[test]
+    fn all_that_captions_are_made_of_has_letters() {
+        let names = StrategyKind::ALL.map(StrategyKind::name).concat();
+        let used = format!("{names} (0123456789,) segments > cells guided, camera light: 1.5 %");
+        for letter in used.chars() {
+            assert_ne!(glyph(letter), [0xff; HEIGHT], "{letter}");
+        }
+    }
 
     #[test]
     fn letters_stand_side_by_side() {

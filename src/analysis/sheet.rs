@@ -1,5 +1,5 @@
-//! Pyramids of images on one sheet: a row a length of paths, in it the strategies by their light vertices, as in Veach
-//! 1997, fig. 10.2 and 10.3. Captions tell the length of a row and (s, t) of an image.
+//! Images with captions on one sheet, row by row: those of strategies, a row a length of paths, as in Veach 1997, fig. 10.2 and
+//! 10.3; and what a guide knows.
 
 use super::lettering;
 use crate::{
