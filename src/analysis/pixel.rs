@@ -15,7 +15,7 @@ use crate::{
         lights::{EmitterPoint, EmitterSample},
     },
     shape::SurfacePoint,
-    transport::{Interaction, Strategies},
+    transport::Interaction,
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -260,9 +260,10 @@ pub fn examine(
             return Err(Error::new(name, expected, at.to_string(), remedy));
         }
     }
-    if settings.options.strategies == Strategies::NONE {
+    if let Some(name) = settings.options.strategies.preview() {
         let remedy = "choose --integrator bdpt, pt or lt";
-        return Err(Error::new("the scene's integrator", "one that makes paths", "fog, a preview", remedy));
+        let found = format!("{name}, a preview");
+        return Err(Error::new("the scene's integrator", "one that makes whole paths", found, remedy));
     }
     let instrument = Instrument::new(&setup.scene, film, settings);
     let pixel = y as usize * film.width as usize + x as usize;

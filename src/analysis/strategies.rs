@@ -183,9 +183,10 @@ pub fn examine(
 /// An error where there is nothing to examine, or memory does not hold the images.
 pub fn check(film: &Film, plan: &Plan, options: &Options) -> Result<()> {
     let cells = table_of(plan, options);
-    if options.strategies == Strategies::NONE {
+    if let Some(name) = options.strategies.preview() {
         let remedy = "choose --integrator bdpt, pt or lt";
-        return Err(Error::new("the scene's integrator", "one that makes paths", "fog, a preview", remedy));
+        let found = format!("{name}, a preview");
+        return Err(Error::new("the scene's integrator", "one that makes whole paths", found, remedy));
     }
     let bytes = film.len().checked_mul(StrategyImages::bytes_per_pixel(cells)).map(|bytes| bytes as u64);
     let size = format!("{} strategies on {} x {} pixels", cells.count(), film.width, film.height);

@@ -167,7 +167,7 @@ impl Estimator {
         let mut settings = self.requested(setup, seed, budget)?;
         let Options { strategies, heuristic, connections, .. } = settings.options;
         let is_judged = heuristic == Heuristic::Balance && connections == Connections::Cached;
-        if !self.strategies.is_empty() || strategies == Strategies::NONE || !is_judged {
+        if !self.strategies.is_empty() || strategies.preview().is_some() || !is_judged {
             return Ok((settings, None));
         }
         let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);
@@ -235,7 +235,17 @@ impl Estimator {
     }
 
     fn guided(&self, scene: Options, strategies: Strategies, heuristic: Heuristic) -> Result<bool> {
-        let guided = (self.guide || scene.effort.guided) && !self.no_guide && strategies != Strategies::NONE;
+        let asked = self.guide || scene.effort.guided || strategies.gather;
+        let guided = asked && !self.no_guide && strategies != Strategies::NONE;
+        if strategies.gather && heuristic != Heuristic::Balance {
+            let found = format!("the heuristic {heuristic}");
+            return Err(Error::new(
+                "--integrator gather",
+                "the heuristic balance",
+                found,
+                "remove --heuristic",
+            ));
+        }
         if guided && heuristic != Heuristic::Balance {
             let found = format!("the heuristic {heuristic}");
             let remedy = "choose --heuristic balance, or give --no-guide";
@@ -313,7 +323,7 @@ impl Estimator {
         if self.strategies.is_empty() {
             return Ok(all);
         }
-        let all = Strategies { equiangular: all.next_event, ..all };
+        let all = Strategies { equiangular: all.next_event, gather: false, ..all };
         if !self.strategies.iter().all(|kind| all.has(*kind)) {
             return Err(Error::new(
                 "--strategies",

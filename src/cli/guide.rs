@@ -10,7 +10,6 @@ use crate::{
     analysis::guide::{self, Cells, FILES, Report},
     error::{Error, Result},
     render::budget::Budget,
-    transport::Strategies,
 };
 use clap::Args;
 use std::{num::NonZeroUsize, path::PathBuf};
@@ -48,9 +47,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     arguments.answer.check(&[&arguments.scene.file])?;
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
     let mut settings = arguments.estimator.guided_settings(&setup, Budget::ENDLESS)?;
-    if settings.options.strategies == Strategies::NONE {
+    if let Some(preview) = settings.options.strategies.preview() {
         let remedy = "choose --integrator bdpt, pt or lt";
-        return Err(Error::new("--integrator", "an integrator whose walks a guide can lead", "fog", remedy));
+        return Err(Error::new("--integrator", "an integrator that is no preview", preview, remedy));
     }
     settings.options.effort.learnt_starts = settings.options.strategies.need_light_walks();
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;

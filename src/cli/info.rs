@@ -159,6 +159,9 @@ fn describe_integrator(name: &str, options: &Options, restriction: Restriction) 
     if strategies == Strategies::NONE {
         return "fog, a preview of first surfaces".to_owned();
     }
+    if strategies.gather {
+        return "gather, a preview by paths that end in radiance learnt beforehand".to_owned();
+    }
     let media = match restriction {
         Restriction::None => "",
         Restriction::SingleScattering { .. } => ", single scattering",

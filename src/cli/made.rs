@@ -71,6 +71,9 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
     if options.connections == Connections::All {
         settings["connections"] = "all".into();
     }
+    if options.strategies.gather {
+        settings["preview"] = "gather".into();
+    }
     if options.effort.guided {
         settings["guide"] = true.into();
     }

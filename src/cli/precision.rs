@@ -6,7 +6,6 @@ use crate::{
     film::layer::Content,
     render::{Settings, adaptive::Precision},
     scene::build::Setup,
-    transport::Strategies,
 };
 
 /// What every pixel is to be known with.
@@ -20,8 +19,9 @@ pub fn precision(
         let expected = "an image without layers of moments";
         Err(Error::new("--error", expected, found, remedy))
     };
-    if settings.options.strategies == Strategies::NONE {
-        return refuse("the preview fog", "remove --error, or choose another --integrator");
+    if let Some(name) = settings.options.strategies.preview() {
+        let found = format!("the preview {name}");
+        return refuse(&found, "remove --error, or choose another --integrator");
     }
     if setup.integrator.layers.iter().any(|layer| layer.needs_squares() || layer.content == Content::Mean) {
         return refuse(

@@ -162,15 +162,13 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
         (arguments.groups, "--groups"),
         (arguments.components, "--components"),
     ];
-    let given = kept.into_iter().find_map(|(is_given, name)| is_given.then_some(name));
-    if let (Some(name), Strategies::NONE) = (given, settings.options.strategies) {
-        let expected = "an integrator that samples paths";
-        return Err(Error::new(
-            name,
-            expected,
-            "the preview fog",
-            format!("remove {name}; fog takes seconds"),
-        ));
+    let mut given = kept.into_iter().filter_map(|(is_given, name)| is_given.then_some(name));
+    if let Some(preview) = settings.options.strategies.preview()
+        && let Some(name) = given.find(|name| preview == "fog" || ["--groups", "--components"].contains(name))
+    {
+        let expected = "an integrator that samples whole paths";
+        let remedy = format!("remove {name}; {preview} takes seconds");
+        return Err(Error::new(name, expected, format!("the preview {preview}"), remedy));
     }
     let is_part = arguments.is_part();
     if arguments.preview && (is_part || output::is_stream(&goal.path)) {

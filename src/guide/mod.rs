@@ -10,6 +10,9 @@
 //! and the walk from the other end leaves the same vertex towards the one before, w', with a p'(w') + (1 - a) G'(w'). G' does
 //! not depend on w: it is looked up once, on arrival, and kept.
 
+mod places;
+mod radiance;
+
 use crate::{
     bsdf::Transport,
     math::{Vec3, warp},
@@ -20,6 +23,8 @@ use crate::{
     },
     scene::lights::Starts,
 };
+use places::Places;
+pub use radiance::{Radiance, Seen};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -30,6 +35,8 @@ pub struct Learnt {
     pub starts: Option<Arc<Starts>>,
     /// Where walks go on to.
     pub guide: Option<Arc<Guide>>,
+    /// What camera subpaths end in.
+    pub radiance: Option<Arc<Radiance>>,
 }
 
 /// What a may be: the part of the directions that are not guided.
@@ -42,9 +49,6 @@ const LEVELS: u32 = 12;
 const ENOUGH: f64 = 32.0;
 /// Of the weight of all directions, the most that one may have: it may be an outlier.
 const MOST: f64 = 1.0 / 1024.0;
-/// How far apart opposite normals are taken to be, over the extent of the scene: cells hold surfaces that face one way before they
-/// hold such that lie close together.
-const NORMALS: f32 = 0.5;
 
 /// A direction in which a walk should leave a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -68,10 +72,7 @@ pub struct Lesson {
 /// What walks follow.
 #[derive(Clone, Debug, Default)]
 pub struct Guide {
-    /// Where the places lie that it was learnt from.
-    centre: Vec3,
-    /// 1 over how far [1/m].
-    scale: f32,
+    places: Places,
     surfaces: Cells<6, u32>,
     media: Cells<3, u32>,
     /// Those of surfaces come first.
@@ -131,19 +132,15 @@ impl Guide {
         if effective(lessons.iter().map(|lesson| lesson.weight)) < ENOUGH {
             return None;
         }
-        let (low, high) = lessons.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), lesson| {
-            (low.min(lesson.position), high.max(lesson.position))
-        });
-        let centre = 0.5 * (low + high);
-        let scale = 1.0 / (high - low).max_element().max(f32::MIN_POSITIVE);
-        let mut guide = Self { centre, scale, ..Self::default() };
+        let places = Places::around(lessons.iter().map(|lesson| lesson.position));
+        let mut guide = Self { places, ..Self::default() };
         let known = || lessons.iter().enumerate().map(|(index, lesson)| (index as u32, lesson));
         let of_surfaces = known().filter_map(|(index, lesson)| {
-            let key = guide.surface_key(lesson.position, lesson.normal?);
+            let key = places.facing(lesson.position, lesson.normal?);
             Some(Known { key, weight: lesson.weight, index })
         });
         let of_media = known().filter(|(_, lesson)| lesson.normal.is_none()).map(|(index, lesson)| Known {
-            key: guide.key(lesson.position).to_array(),
+            key: places.at(lesson.position),
             weight: lesson.weight,
             index,
         });
@@ -155,17 +152,6 @@ impl Guide {
         guide.cells = leaves.into_par_iter().map(|leaf| Cell::learn(&lessons, &leaf)).collect();
         // What guides nothing need not be looked up.
         guide.cells.iter().any(Cell::guides).then_some(guide)
-    }
-
-    #[inline]
-    fn key(&self, position: Vec3) -> Vec3 {
-        (position - self.centre) * self.scale
-    }
-
-    #[inline]
-    fn surface_key(&self, position: Vec3, normal: Vec3) -> [f32; 6] {
-        let ([x, y, z], [i, j, k]) = (self.key(position).to_array(), (0.5 * NORMALS * normal).to_array());
-        [x, y, z, i, j, k]
     }
 
     /// What the walk by `transport` knows where it arrives from unit `incoming`; `normal` is that of a surface, of the point
@@ -187,8 +173,8 @@ impl Guide {
     #[inline]
     pub fn cell(&self, position: Vec3, normal: Option<Vec3>) -> u32 {
         let cell = match normal {
-            None => self.media.at(self.key(position).to_array()),
-            Some(normal) => self.surfaces.at(self.surface_key(position, normal)),
+            None => self.media.at(self.places.at(position)),
+            Some(normal) => self.surfaces.at(self.places.facing(position, normal)),
         };
         cell.copied().unwrap_or(NOWHERE)
     }

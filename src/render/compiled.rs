@@ -7,6 +7,7 @@ use super::{
     faults::guarded,
     pilot::Pilot,
     pixel_sample::{self, EyeSample, Splat, Walk},
+    radiance::{self, Looks},
     sorted::{self, Sorter},
     strategy_images::{self, CellContribution, StrategyTable},
     timing::{self, Times},
@@ -162,10 +163,11 @@ pub(super) fn choose<'a>(
     settings: &Settings,
     per_block: usize,
 ) -> Box<dyn Compiled + 'a> {
-    let prepare = match (settings.options.heuristic, settings.profile) {
+    let Options { heuristic, effort, strategies, .. } = settings.options;
+    let prepare = match (heuristic, settings.profile) {
         (Heuristic::Power | Heuristic::Maximum | Heuristic::Uniform, _) => Ready::<ByCompared>::prepare,
         (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
-        (Heuristic::Balance, profile) if settings.options.effort.guided => match profile {
+        (Heuristic::Balance, profile) if effort.guided || strategies.gather => match profile {
             ProfileName::Vacuum => Ready::<Guided<Vacuum>>::prepare,
             ProfileName::Fog => Ready::<Guided<Fog>>::prepare,
             ProfileName::Bounded | ProfileName::Smoke => Ready::<Guided<Smoke>>::prepare,
@@ -197,4 +199,18 @@ pub(super) fn trial(
     for_guide: bool,
 ) -> Trial {
     Trial::run(&Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK), tasks, for_guide)
+}
+
+/// What camera subpaths of `tasks` by `settings` see of places that they come to, to which light comes by no more than so
+/// many segments.
+pub(super) fn look(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    learnt: Learnt,
+    tasks: Range<usize>,
+    most_edges: u32,
+) -> Looks {
+    let ready = Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK);
+    radiance::look(&ready, tasks, most_edges)
 }

@@ -20,6 +20,7 @@ pub mod pilot;
 pub mod pixel_sample;
 mod primary;
 pub mod progressive;
+mod radiance;
 pub mod samples;
 mod sorted;
 pub mod strategy_images;

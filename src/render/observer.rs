@@ -1,7 +1,7 @@
 //! Recorders that are chosen at run time: instruments need not be fast, and share one compiled estimator.
 
 use crate::{
-    math::Vec2,
+    math::{Spectrum, Vec2},
     scene::lights::EmissionSample,
     transport::{
         Contribution, Departure, MisSums, Subpath, Vertex,
@@ -15,6 +15,9 @@ impl<S: MisSums> Observer<S> for &mut (dyn Observer<S> + '_) {
     }
     fn covers(&self, film: Vec2) -> bool {
         (**self).covers(film)
+    }
+    fn gather(&mut self, value: Spectrum) {
+        (**self).gather(value);
     }
     fn start(&mut self) {
         (**self).start();

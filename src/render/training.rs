@@ -10,6 +10,7 @@ use super::{
     Settings,
     budget::Budget,
     compiled::{self, Ready},
+    radiance,
     tracks::{Shares, Track, Tracks},
 };
 use crate::{
@@ -58,10 +59,13 @@ const FLOOR: f64 = 0.1;
 pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
     let options = &settings.options;
     let strategies = options.strategies;
-    let (starting, guided) = (options.effort.learnt_starts, options.effort.guided);
+    // Camera subpaths that end before they gather need nothing to end in.
+    let gathers = strategies.gather && options.max_depth.is_none_or(|depth| depth > 2);
+    let (starting, guided) = (options.effort.learnt_starts || gathers, options.effort.guided);
     if !starting && !guided {
         return Learnt::default();
     }
+    let radiance = gathers.then_some(radiance::deepest(options.max_depth));
     let options = Options {
         strategies: Strategies::BDPT,
         effort: Effort::default(),
@@ -71,8 +75,8 @@ pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
         ..*options
     };
     // Camera subpaths that never hit an emitter share nothing with light subpaths.
-    let wanted =
-        Wanted { starts: starting.then_some(strategies.emitter_hit), guide: guided.then_some(strategies) };
+    let starts = starting.then_some(strategies.emitter_hit);
+    let wanted = Wanted { starts, guide: guided.then_some(strategies), radiance };
     let key = format!("{:?} {wanted:?} {options:?}", (film.window, film.border, film.filter));
     scene.lights.learnt.recall(key, || learn(scene, film, options, wanted))
 }
@@ -84,6 +88,8 @@ struct Wanted {
     starts: Option<bool>,
     /// A guide, for these strategies.
     guide: Option<Strategies>,
+    /// What `gather` ends in, by paths of no more than so many segments.
+    radiance: Option<u32>,
 }
 
 /// By all strategies.
@@ -116,6 +122,11 @@ fn learn(scene: &Scene, film: &Film, options: Options, wanted: Wanted) -> Learnt
         if segments > most {
             break;
         }
+    }
+    if let Some(max_depth) = wanted.radiance {
+        let options = Options { max_depth: Some(max_depth), ..options };
+        let radiance = radiance::learn(scene, film, &Settings { options, ..settings }, &learnt);
+        learnt = Learnt { starts: None, radiance: Some(Arc::new(radiance)), ..learnt };
     }
     learnt
 }

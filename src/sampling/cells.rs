@@ -1,4 +1,4 @@
-//! Cells of space, or of directions: a kd-tree that is divided where many weighted points fall.
+//! Cells of space, or of directions: a kd-tree that is divided where many weighted points fall, and between those whose values differ.
 
 use super::quadtree::effective;
 
@@ -8,7 +8,16 @@ pub trait Keyed<const D: usize> {
     fn key(&self) -> [f32; D];
     /// At least 0, finite.
     fn weight(&self) -> f32;
+    /// What lies on both sides of a division should differ in, if in anything.
+    fn value(&self) -> f32 {
+        0.0
+    }
 }
+
+/// Parts of an extent between which cells may be divided where values differ.
+const PARTS: usize = 32;
+/// Of the variance of values, what a division must explain that is not made in the middle: values are noisy.
+const EXPLAINED: f64 = 0.05;
 
 /// A kd-tree with something in every leaf.
 #[derive(Clone, Debug)]
@@ -92,20 +101,66 @@ enum Parts<K> {
     Split { axis: usize, at: f32, parts: Box<[Self; 2]> },
 }
 
-fn divide<const D: usize, K: Keyed<D> + Send>(mut keyed: Vec<K>, points: f64, levels: u32) -> Parts<K> {
+fn divide<const D: usize, K: Keyed<D> + Send>(keyed: Vec<K>, points: f64, levels: u32) -> Parts<K> {
     let divides = levels > 0 && effective(keyed.iter().map(K::weight)) >= points;
-    let Some((axis, middle)) = divides.then(|| split(&mut keyed)).flatten() else {
+    let split = || by_value(&keyed, 0.5 * points).or_else(|| in_the_middle(&keyed));
+    let Some((axis, at)) = divides.then(split).flatten() else {
         return Parts::Whole(keyed);
     };
-    let far = keyed.split_off(middle);
-    let at = far[0].key()[axis];
-    let (near, far) = rayon::join(|| divide(keyed, points, levels - 1), || divide(far, points, levels - 1));
+    let (near, far): (Vec<K>, Vec<K>) = keyed.into_iter().partition(|one| one.key()[axis] < at);
+    let (near, far) = rayon::join(|| divide(near, points, levels - 1), || divide(far, points, levels - 1));
     Parts::Split { axis, at, parts: Box::new([near, far]) }
 }
 
-/// Sorts `keyed` along the axis on which the keys lie furthest apart. The axis and where the upper half of the weight begins;
-/// none where both halves would not have something.
-fn split<const D: usize, K: Keyed<D>>(keyed: &mut [K]) -> Option<(usize, usize)> {
+/// The axis on which the keys lie furthest apart, and where the upper half of the weight begins; none where both halves would not
+/// have something.
+fn in_the_middle<const D: usize, K: Keyed<D>>(keyed: &[K]) -> Option<(usize, f32)> {
+    let [low, high] = bounds(keyed);
+    let extent = |axis: &usize| high[*axis] - low[*axis];
+    let axis = (0..D).max_by(|a, b| extent(a).total_cmp(&extent(b)))?;
+    let mut along: Vec<(f32, f32)> = keyed.iter().map(|one| (one.key()[axis], one.weight())).collect();
+    along.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * along.iter().map(|(_, weight)| f64::from(*weight)).sum::<f64>();
+    let mut sum = 0.0;
+    let (at, _) = *along.iter().find(|(_, weight)| {
+        sum += f64::from(*weight);
+        sum >= half
+    })?;
+    // Equal keys lie on one side, all of them.
+    (along[0].0 < at).then_some((axis, at))
+}
+
+/// The axis and the place where `keyed`, divided there, differ most in their values, each half with so many `points` at least;
+/// none where values hardly differ.
+fn by_value<const D: usize, K: Keyed<D>>(keyed: &[K], points: f64) -> Option<(usize, f32)> {
+    let [low, high] = bounds(keyed);
+    let size: [f32; D] = std::array::from_fn(|axis| (high[axis] - low[axis]) / PARTS as f32);
+    let mut parts = [[Moments::default(); PARTS]; D];
+    for one in keyed {
+        let (key, value) = (one.key(), f64::from(one.value()));
+        for (axis, parts) in parts.iter_mut().enumerate() {
+            let part = (((key[axis] - low[axis]) / size[axis]) as usize).min(PARTS - 1);
+            parts[part] = parts[part].and(Moments([1.0, value, value * value]));
+        }
+    }
+    let all = parts[0].into_iter().fold(Moments::default(), Moments::and);
+    let mut best = (all.scatter() * (1.0 - EXPLAINED), None);
+    for (axis, parts) in parts.iter().enumerate() {
+        let mut near = Moments::default();
+        for (index, part) in parts.iter().enumerate().take(PARTS - 1) {
+            near = near.and(*part);
+            let far = all.without(near);
+            let remains = near.scatter() + far.scatter();
+            if near.0[0].min(far.0[0]) >= points && remains < best.0 {
+                best = (remains, Some((axis, low[axis] + size[axis] * (index + 1) as f32)));
+            }
+        }
+    }
+    best.1
+}
+
+/// The least and the greatest coordinates.
+fn bounds<const D: usize, K: Keyed<D>>(keyed: &[K]) -> [[f32; D]; 2] {
     let (mut low, mut high) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);
     for key in keyed.iter().map(K::key) {
         for axis in 0..D {
@@ -113,17 +168,25 @@ fn split<const D: usize, K: Keyed<D>>(keyed: &mut [K]) -> Option<(usize, usize)>
             high[axis] = high[axis].max(key[axis]);
         }
     }
-    let extent = |axis: &usize| high[*axis] - low[*axis];
-    let axis = (0..D).max_by(|a, b| extent(a).total_cmp(&extent(b)))?;
-    keyed.sort_by(|a, b| a.key()[axis].total_cmp(&b.key()[axis]));
-    let half = 0.5 * keyed.iter().map(|one| f64::from(one.weight())).sum::<f64>();
-    let mut sum = 0.0;
-    let middle = keyed.iter().position(|one| {
-        sum += f64::from(one.weight());
-        sum >= half
-    })?;
-    // The first of equal keys, so that all of them lie on one side.
-    let at = keyed[middle].key()[axis];
-    let first = keyed.partition_point(|one| one.key()[axis] < at);
-    (first > 0).then_some((axis, first))
+    [low, high]
+}
+
+/// Of values: their number, their sum and that of their squares.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments([f64; 3]);
+
+impl Moments {
+    fn and(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+
+    fn without(self, part: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] - part.0[i]))
+    }
+
+    /// Squared differences from their mean, summed.
+    fn scatter(self) -> f64 {
+        let [count, sum, squares] = self.0;
+        if count > 0.0 { squares - sum * sum / count } else { 0.0 }
+    }
 }

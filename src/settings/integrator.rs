@@ -105,6 +105,7 @@ pub const ROWS: Registry<Plugin<Build<Integrator>>> = Registry::new(
         ("volpath", plugin(SAME, build_bdpt)),
         ("volpathmis", plugin(SAME, build_bdpt)),
         ("ptracer", plugin(PTRACER, |p| build_as(p, Strategies::LT))),
+        ("gather", plugin(GATHER, build_gather)),
         ("fog", plugin(FOG, build_fog)),
         ("single_scattering", plugin(SINGLE_SCATTERING, build_single_scattering)),
         ("non_scattering", plugin(NON_SCATTERING, build_non_scattering)),
@@ -179,6 +180,11 @@ const PTRACER: Table = table! {
     "Light tracing: light subpaths connect to the camera; `--integrator lt`.";
     ignored("forced_interaction", "light subpaths have no primary rays");
     MAX_DEPTH, PATHS, HEURISTIC, GUIDE, COMMON
+};
+
+const GATHER: Table = table! {
+    "A preview: path tracing that ends where it scatters twice, in radiance learnt beforehand. Biased (P03T sec. 5.3)."; ;
+    MAX_DEPTH, PATHS, COMMON
 };
 
 const FOG: Table = table! {
@@ -256,6 +262,14 @@ fn build_bdpt(params: &Params<'_>) -> Result<Integrator> {
     let connections = params.choice("connections", &Connections::NAMES)?;
     let integrator = build_as(params, Strategies::BDPT)?;
     Ok(Integrator { options: Options { connections, ..integrator.options }, ..integrator })
+}
+
+/// `gather`, which follows a guide unless it shall not.
+fn build_gather(params: &Params<'_>) -> Result<Integrator> {
+    let hide_emitters = params.boolean("hide_emitters")?;
+    let max_depth = u32::try_from(params.integer("max_depth")?).ok();
+    let options = Options { strategies: Strategies::GATHER, hide_emitters, max_depth, ..Options::default() };
+    Ok(Integrator { options, ..Integrator::default() })
 }
 
 /// `fog` (BMA02 sec. 3.1 and 4.2).

@@ -19,12 +19,20 @@ pub struct Strategies {
     pub lens: bool,
     /// s = 1, t = 2 in media: next-event estimation where the primary ray is near an emitter.
     pub equiangular: bool,
+    /// Camera subpaths end where they scatter for the second time, in radiance learnt beforehand: the preview `gather`.
+    pub gather: bool,
 }
 
 impl Strategies {
     /// None at all: the preview `fog`, which makes no paths.
-    pub const NONE: Self =
-        Self { emitter_hit: false, next_event: false, connection: false, lens: false, equiangular: false };
+    pub const NONE: Self = Self {
+        emitter_hit: false,
+        next_event: false,
+        connection: false,
+        lens: false,
+        equiangular: false,
+        gather: false,
+    };
     /// Bidirectional path tracing.
     pub const BDPT: Self = Self { connection: true, lens: true, ..Self::PT };
     /// Path tracing with next-event estimation.
@@ -32,9 +40,26 @@ impl Strategies {
     /// Light tracing.
     pub const LT: Self = Self { lens: true, ..Self::NONE };
 
+    /// Path tracing that ends in what was learnt: a preview.
+    pub const GATHER: Self = Self { gather: true, ..Self::PT };
+
     /// The integrators, as printed and as typed.
-    pub const INTEGRATORS: [(&'static str, Self); 4] =
-        [("bdpt", Self::BDPT), ("pt", Self::PT), ("lt", Self::LT), ("fog", Self::NONE)];
+    pub const INTEGRATORS: [(&'static str, Self); 5] = [
+        ("bdpt", Self::BDPT),
+        ("pt", Self::PT),
+        ("lt", Self::LT),
+        ("gather", Self::GATHER),
+        ("fog", Self::NONE),
+    ];
+
+    /// The name of the integrator if it is a preview, whose image is not what it should be on average.
+    pub fn preview(self) -> Option<&'static str> {
+        match self {
+            Self::NONE => Some("fog"),
+            _ if self.gather => Some("gather"),
+            _ => None,
+        }
+    }
 }
 
 /// The probability that a walk goes on from a vertex (LW96 eq. 8 and 9), as a function of its albedo: a function of the vertex

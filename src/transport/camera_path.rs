@@ -104,14 +104,7 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
 
     #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
-        self.observer.arrive(vertex);
-        // Where nulls exist, flights have already reported the emitters that they reached, passed or not.
-        if !P::NULLS
-            && let Interaction::Surface(point) = &vertex.interaction
-            && let Some(light) = self.estimator.scene.surface(point.shape).emitter
-        {
-            self.surface_emission(&vertex.subpath, light, point, self.previous);
-        }
+        self.reach(vertex);
         if P::MEDIA && self.estimator.counts.equiangular > 0.0 && vertex.subpath.edges == 1 {
             self.first = FirstCollision::of(vertex, self.previous, self.pdf_fwd);
         }
@@ -154,6 +147,19 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
         observer: R,
     ) -> Self {
         Self { estimator, light, hero, previous: Vec3::ZERO, pdf_fwd: 0.0, first: None, observer }
+    }
+
+    /// Shows `vertex`, and what is emitted there, whether the walk goes on from there or not.
+    #[inline]
+    pub fn reach(&mut self, vertex: &Vertex<P::MisSums>) {
+        self.observer.arrive(vertex);
+        // Where nulls exist, flights have already reported the emitters that they reached, passed or not.
+        if !P::NULLS
+            && let Interaction::Surface(point) = &vertex.interaction
+            && let Some(light) = self.estimator.scene.surface(point.shape).emitter
+        {
+            self.surface_emission(&vertex.subpath, light, point, self.previous);
+        }
     }
 
     /// What else there is along the primary ray, once the walk is done: it comes to the evenly spread numbers first.

@@ -58,6 +58,7 @@
 //! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], sampled in [`camera_path::Eye::meet`] |
 //! | P03T eq. 2.9, media that only absorb | [`crate::medium::MediumOverrides`] |
 //! | P03T sec. A.2.2, forced interactions | [`forced::sample`], [`segment::force`] |
+//! | P03T sec. 5.3, the local gather | [`gather::sample`] |
 //! | BMA02 eq. 5 and 6, the fog blend | `render::fog` |
 //! | BMA02 eq. 7, extinction as a sum | `pdf::sum` |
 
@@ -66,6 +67,7 @@ mod camera_path;
 mod connect;
 mod equiangular;
 mod forced;
+mod gather;
 mod light_path;
 mod mis;
 pub mod observer;
@@ -91,7 +93,7 @@ pub use crate::{
 };
 
 use crate::{
-    guide::{Guide, Learnt},
+    guide::{Guide, Learnt, Radiance},
     math::{Channels, Spectrum, Vec2, Vec3},
     sampling::{Stream, stream::Purpose},
     scene::{
@@ -137,6 +139,8 @@ pub struct Estimator<'a, P: Profile> {
     starts: Option<Arc<Starts>>,
     /// What walks follow.
     guide: Option<Arc<Guide>>,
+    /// What camera subpaths end in.
+    radiance: Option<Arc<Radiance>>,
     profile: std::marker::PhantomData<P>,
 }
 
@@ -174,6 +178,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             forced_interaction: P::MEDIA && forced_interaction,
             starts: learnt.starts,
             guide: learnt.guide.filter(|_| P::GUIDED),
+            radiance: learnt.radiance.filter(|_| P::GUIDED),
             profile: std::marker::PhantomData,
         };
         match connections {
@@ -305,6 +310,11 @@ impl<'a, P: Profile> Estimator<'a, P> {
         observer: R,
         stream: &mut Stream,
     ) -> R {
+        if P::GUIDED
+            && let Some(radiance) = &self.radiance
+        {
+            return gather::sample(self, radiance, [film, aperture], hero, observer, stream);
+        }
         let light = self.partners(cache, hero, walk);
         if P::MEDIA && self.forced_interaction {
             return forced::sample(self, light, film, aperture, hero, observer, stream);

@@ -146,6 +146,10 @@ pub trait Observer<S: MisSums> {
         true
     }
 
+    /// The preview `gather` adds what was learnt.
+    #[inline]
+    fn gather(&mut self, _value: Spectrum) {}
+
     /// A strategy is tried from here...
     #[inline]
     fn start(&mut self) {}
@@ -186,6 +190,11 @@ impl<S: MisSums> Observer<S> for Sum {
     #[inline]
     fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, contribution: Option<&Contribution>) {
         self.radiance += contribution.map_or(Spectrum::ZERO, |contribution| contribution.value);
+    }
+
+    #[inline]
+    fn gather(&mut self, value: Spectrum) {
+        self.radiance += value;
     }
 }
 

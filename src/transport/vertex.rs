@@ -3,9 +3,10 @@
 use super::{mis::MisSums, observer::StrategyKind, profile::Profile, segment::Interaction};
 use crate::{
     bsdf::Transport,
-    guide::{Guidance, Guide},
+    guide::{Guidance, Guide, Seen},
     math::{Channels, Spectrum, Vec3, offset},
     medium::MediumIndex,
+    phase::PhaseModel,
     scene::Scene,
     shape::SurfacePoint,
 };
@@ -119,6 +120,19 @@ impl<S: MisSums> Vertex<S> {
     pub fn others_before(&self, pdf_rev: f32) -> S {
         S::of(self.kind, self.subpath.pdf_over_hero_before.scaled(self.connections))
             .and(self.subpath.others_over_pdf_rev.scaled(pdf_rev))
+    }
+
+    /// What the vertex before sees of it, nothing yet.
+    #[inline]
+    pub fn seen(&self, scene: &Scene) -> Seen {
+        let (position, incoming) = (self.position(), self.subpath.incoming);
+        match &self.interaction {
+            Interaction::Surface(point) => Seen::surface(position, point.normal, incoming),
+            Interaction::Medium(_, properties) => {
+                let phase = &scene.media[properties.medium.0 as usize].phase;
+                Seen::medium(position, phase.mean_cosine(), incoming)
+            }
+        }
     }
 
     /// True on a shape that emits.

@@ -14,6 +14,7 @@ mod display;
 mod errors;
 mod explain;
 mod flights;
+mod gather;
 mod grouping;
 mod guide;
 mod html;

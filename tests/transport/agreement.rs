@@ -33,7 +33,7 @@ fn covering(kind: Kind) -> Vec<Strategies> {
         next_event: bit(set, 1),
         connection: bit(set, 2),
         lens: bit(set, 3),
-        equiangular: false,
+        ..Strategies::NONE
     });
     sets.filter(|s| covers(*s, kind)).collect()
 }
@@ -554,7 +554,7 @@ fn paths_out_of_reach_are_told_of_every_set_that_does_not_cover() {
         };
         for set in (1..16).map(|set: u32| [1, 2, 4, 8].map(|bit| set & bit > 0)) {
             let [emitter_hit, next_event, connection, lens] = set;
-            let set = Strategies { emitter_hit, next_event, connection, lens, equiangular: false };
+            let set = Strategies { emitter_hit, next_event, connection, lens, ..Strategies::NONE };
             let missing = reach(set);
             assert_eq!(missing.is_empty(), covers(set, kind), "{}: {missing:?} {scene}", name_of(set));
         }

@@ -13,6 +13,7 @@ mod equiangular;
 mod extremes;
 mod faults;
 mod forced;
+mod gather;
 mod glowing;
 mod groups;
 mod guide;

@@ -1,0 +1,96 @@
+//! The preview `gather` (P03T sec. 5.3): camera subpaths as of path tracing, which end where they scatter for the second time, in
+//! the radiance that was learnt of that place. Mirrors and glass scatter in one direction alone, and do not count. What is
+//! lit directly, and what the first vertex sees, is as it should be; all that lies behind is blurred over cells.
+
+use super::{
+    Estimator,
+    cache::Partners,
+    camera_path::{CameraPath, depart},
+    mis,
+    observer::{Observer, StrategyKind},
+    profile::Profile,
+    segment::{Passed, sample_free_flight},
+    vertex::{Subpath, Vertex},
+    walk::{Departure, Kind, Visitor, go_on},
+};
+use crate::{
+    bsdf::Transport,
+    guide::Radiance,
+    math::{Vec2, Vec3},
+    sampling::Stream,
+};
+
+/// One camera subpath; the rest as in [`super::camera_path::sample`].
+pub fn sample<P: Profile, R: Observer<P::MisSums>>(
+    estimator: &Estimator<'_, P>,
+    radiance: &Radiance,
+    [film, aperture]: [Vec2; 2],
+    hero: usize,
+    observer: R,
+    stream: &mut Stream,
+) -> R {
+    let (scene, max_edges, guide) = (estimator.scene, estimator.max_edges, estimator.guide.as_deref());
+    let kind = Kind { transport: Transport::Radiance, hero, max_edges, survival: estimator.survival, guide };
+    let path = CameraPath::new(estimator, Partners::NONE, hero, observer);
+    let mut gather = Gather { path, radiance, has_scattered: false, is_done: false };
+    let mut next = Some(depart(estimator, film, aperture)).filter(|_| max_edges > 0);
+    while let Some(departure) = next.filter(|_| !gather.is_done) {
+        gather.depart(&departure);
+        let mut along =
+            |passed: &Passed<P::Channels>, stream: &mut Stream| gather.pass(&departure, passed, stream);
+        let flight = sample_free_flight::<P>(departure.segment(scene), hero, stream, &mut along);
+        next = go_on(scene, kind, &departure, &flight, &mut gather, stream, |_| ());
+    }
+    gather.path.into_observer()
+}
+
+/// A camera subpath on its way to the place where it ends.
+struct Gather<'a, P: Profile, R> {
+    path: CameraPath<'a, P, R>,
+    radiance: &'a Radiance,
+    has_scattered: bool,
+    is_done: bool,
+}
+
+impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for Gather<'_, P, R> {
+    #[inline]
+    fn kind(edges: u32) -> StrategyKind {
+        <CameraPath<'_, P, R> as Visitor<P>>::kind(edges)
+    }
+
+    #[inline]
+    fn connections(&self, edges: u32, position: Vec3) -> f32 {
+        self.path.connections(edges, position)
+    }
+
+    #[inline]
+    fn depart(&mut self, departure: &Departure<P::MisSums>) {
+        self.path.depart(departure);
+    }
+
+    #[inline]
+    fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
+        let Estimator { scene, max_edges, .. } = *self.path.estimator;
+        let scatters = vertex.is_connectible(scene);
+        if !(scatters && self.has_scattered) {
+            self.has_scattered |= scatters;
+            return self.path.arrive(vertex, stream);
+        }
+        self.path.reach(vertex);
+        if vertex.subpath.edges < max_edges {
+            let Subpath { throughput, pdf_over_hero, .. } = vertex.subpath;
+            let radiance = self.radiance.at(&vertex.seen(scene));
+            self.path.observer.gather(throughput * radiance * mis::weight_alone(pdf_over_hero));
+        }
+        self.is_done = true;
+    }
+
+    #[inline]
+    fn pass(&mut self, departure: &Departure<P::MisSums>, passed: &Passed<P::Channels>, stream: &mut Stream) {
+        self.path.pass(departure, passed, stream);
+    }
+
+    fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
+        self.path.escape(subpath);
+    }
+}

@@ -1,0 +1,85 @@
+//! The preview `gather`: blurred, but of the right energy.
+
+use crate::common::{Stage, pieces::*};
+use serde_json::{Value, json};
+use tyndall::{math::SpectrumExt, transport::Strategies};
+
+/// A hollow ball around the camera whose wall reflects a half and shines, and a thing in it.
+fn furnace(fog: Option<Value>, thing: Option<Value>) -> Stage {
+    let shell = json!({
+        "type": "sphere", "radius": 1, "flip_normals": true, "bsdf": diffuse(0.5),
+        "emitter": {"type": "area", "radiance": 1.5},
+    });
+    let view = camera([0.0, 0.0, 0.2], [0.0, 0.0, -1.0], 8);
+    let mut parts = match fog {
+        None => vec![("sensor", view), ("shell", shell)],
+        Some(fog) => vec![
+            ("fog", fog),
+            ("sensor", with(view, &[("medium", named("fog"))])),
+            ("shell", with(shell, &[("exterior", named("fog"))])),
+        ],
+    };
+    parts.extend(thing.map(|thing| ("thing", thing)));
+    Stage::new(&scene(&parts))
+}
+
+/// The mean radiance of some images, one half with a guide and one half without.
+fn mean(stage: &mut Stage, strategies: Strategies) -> f64 {
+    let mut all = Vec::new();
+    for guided in [false, true] {
+        stage.setup.integrator.options.effort.guided = guided;
+        all.extend(stage.renders(strategies, 64, 0..4).concat());
+    }
+    all.iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / all.len() as f64
+}
+
+fn assert_close(what: &str, found: f64, expected: f64, within: f64) {
+    assert!((found / expected - 1.0).abs() < within, "{what}: {found} instead of {expected}");
+}
+
+/// What is learnt is uniform, and so no worse for being blurred.
+#[test]
+fn furnaces_are_in_balance() {
+    let ball = |bsdf: Value| {
+        Some(json!({"type": "sphere", "center": [0.2, 0.1, -0.5], "radius": 0.3, "bsdf": bsdf}))
+    };
+    for (name, mut stage) in [
+        ("empty", furnace(None, None)),
+        ("mirror", furnace(None, ball(json!({"type": "conductor", "material": "none"})))),
+        ("glass", furnace(None, ball(json!({"type": "dielectric"})))),
+        ("fog", furnace(Some(medium(0.7, 1.0, 0.4)), None)),
+        ("coloured fog", furnace(Some(medium(rgb(0.3, 0.6, 1.2), 1.0, 0.0)), None)),
+    ] {
+        assert_close(name, mean(&mut stage, Strategies::GATHER), 3.0, 0.01);
+    }
+}
+
+/// Light of so many segments and no more, a part of it learnt.
+#[test]
+fn depth_counts_what_was_learnt() {
+    let mut stage = furnace(None, None);
+    let mut expected = 0.0;
+    for depth in 1..=5 {
+        expected += 1.5 * 0.5f64.powi(depth - 1);
+        stage.setup.integrator.options.max_depth = Some(depth as u32);
+        assert_close(&format!("depth {depth}"), mean(&mut stage, Strategies::GATHER), expected, 0.01);
+    }
+}
+
+/// Light that comes round a wall, to fog and to a mirror, ends at the wall in the preview too.
+#[test]
+fn light_behind_a_wall_stays_there() {
+    let parts = |fog| {
+        scene(&[
+            ("sensor", camera([0.0, -0.5, 0.8], [0.0, -0.6, -1.0], 8)),
+            ("room", room(0.6, fog)),
+            ("wall", floor(0.0, 0.85, 0.5)),
+            ("lamp", lamp_ball([0.2, 0.6, -0.3], 0.15, rgb(2.0, 3.0, 1.0))),
+        ])
+    };
+    for (name, fog) in [("vacuum", None), ("fog", Some(medium(0.7, 0.8, 0.3)))] {
+        let mut stage = Stage::new(&parts(fog));
+        let expected = mean(&mut stage, Strategies::BDPT);
+        assert_close(name, mean(&mut stage, Strategies::GATHER), expected, 0.1);
+    }
+}
