@@ -148,6 +148,7 @@ def add_matrix(commands: Commands) -> None:
     depth.add_argument("--full", dest="depth", action="store_const", const="full", help="all generated scenes, and Mitsuba renders everything now; hours")
     depth.add_argument("--record", dest="depth", action="store_const", const="record", help="render Mitsuba's images in the repository again")
     command.add_argument("--only", default="", help="only scenes whose name contains this")
+    command.add_argument("--guide", action="store_true", help="quick: let all walks follow a guide")
     command.add_argument("--matrix-seed", type=int, default=cells.SEED, metavar="N", help="quick: another sample of the generated scenes, which Mitsuba renders (default %(default)s)")
     add(commands, "coverage", lambda _: coverage.run(), "Which shared plugins no cross-check scene has.")
     add(commands, "assets", lambda _: assets.run(), "Makes the cross-check scenes' images and meshes anew.")
@@ -155,7 +156,7 @@ def add_matrix(commands: Commands) -> None:
 
 def run_matrix(options: argparse.Namespace) -> bool:
     if options.depth == "quick":
-        return matrix.quick(options.only, options.matrix_seed)
+        return matrix.quick(options.only, options.matrix_seed, guide=options.guide)
     return matrix.live(options.only) if options.depth == "full" else matrix.record(options.only)
 
 

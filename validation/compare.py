@@ -147,13 +147,15 @@ def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size: Size = Non
 
 
 def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int | None = None) -> Renderer:
-    """Tyndall on this scene. The method is an integrator and, after a colon, a tracker that all media shall use."""
-    integrator, _, tracker = method.partition(":")
+    """Tyndall on this scene. The method is an integrator, with `+guide` if walks shall follow one, and, after a colon, a tracker
+    that all media shall use."""
+    walks, _, tracker = method.partition(":")
+    integrator, _, guide = walks.partition("+")
     # Samples that are spread evenly leave so little noise that the test would be one of Mitsuba's own approximations,
     # such as filters in tables, and of how independent the batches of its even samplers are.
     # All strategies, whether or not a pilot finds them worth their time.
     strategies = tyndall.ALL_STRATEGIES if integrator == "bdpt" else None
-    options = {"integrator": integrator, "strategies": strategies, "tracker": tracker or None, "size": size, "sampler": "independent"}
+    options = {"integrator": integrator, "strategies": strategies, "tracker": tracker or None, "guide": bool(guide), "size": size, "sampler": "independent"}
     render = lambda effort: tyndall.render_batches(scene, effort.batches, spp=effort.spp, seed=effort.seed, threads=threads, **options)
     return lambda effort: Measured.of(render(effort))
 

@@ -5,7 +5,7 @@ import argparse
 import json
 import math
 import statistics
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -14,22 +14,68 @@ import numpy as np
 from tyndall import program
 from tyndall.commands import diff
 from tyndall.rendering import run as render
+from tyndall.scene import Scene
 from validation import efficiency
 from validation.files import write_text
 from validation.made_by import made_by_command
 from validation.places import OUTPUT, REPORTS, SCENES
 
 GALLERY = SCENES / "gallery"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, as it is named in the table."""
+
+    name: str
+    scene: Path
+    parameters: dict[str, str] = field(default_factory=dict)
+
+
+def cases(*scenes: Path) -> list[Case]:
+    """Scenes as they are."""
+    return [Case(scene.stem, scene) for scene in scenes]
+
+
 CASES = {
-    "lit through an opening": [efficiency.FOLDER / "small_opening.xml", efficiency.FOLDER / "door_ajar.xml", efficiency.FOLDER / "dusty_window.xml", GALLERY / "attic.json"],
-    "lit indirectly": [GALLERY / "indirect_room.json", GALLERY / "three_lights.json", SCENES / "lampbox_up.xml"],
-    "P03T's boxes": [GALLERY / "cornell_d.json", GALLERY / "cornell_e.json", GALLERY / "cornell_f.json"],
-    "dense cloud": [GALLERY / "cumulus.json"],
+    "lit through an opening": cases(
+        efficiency.FOLDER / "small_opening.xml", efficiency.FOLDER / "door_ajar.xml", efficiency.FOLDER / "dusty_window.xml", GALLERY / "attic.json"
+    ),
+    "lit indirectly": [
+        Case("indirect_room (fig. 5.15)", GALLERY / "indirect_room.json"),
+        Case("reflector (fig. 5.14)", GALLERY / "reflector.json"),
+        *cases(GALLERY / "three_lights.json", SCENES / "lampbox_up.xml"),
+    ],
+    "P03T's boxes": [
+        Case("A: empty", GALLERY / "cornell_d.json", {"medium": "0"}),
+        Case("B: blocks", GALLERY / "cornell_e.json", {"medium": "0"}),
+        Case("C: a glossy block", GALLERY / "cornell_e.json", {"medium": "0", "glossy": "1"}),
+        Case("D: fog in a half", GALLERY / "cornell_d.json"),
+        Case("E: blocks in fog", GALLERY / "cornell_e.json"),
+        Case("F: fog that scatters forwards", GALLERY / "cornell_f.json"),
+    ],
+    "dense cloud": cases(GALLERY / "cumulus.json"),
 }
 WANTED = {"lit through an opening": 5.0, "lit indirectly": 2.0, "P03T's boxes": 0.9, "dense cloud": 1.5}
 """How much less error a guide shall leave by bdpt; by pt it is WANTED_PT in the boxes."""
 WANTED_PT = 2.0
-INTEGRATORS = ("bdpt", "pt")
+WAYS: dict[str, dict[str, Any]] = {
+    "bdpt": {"integrator": "bdpt", "starts": "emitted"},
+    "bdpt, starts": {"integrator": "bdpt"},
+    "bdpt, guide": {"integrator": "bdpt", "guide": True},
+    "pt": {"integrator": "pt"},
+    "pt, guide": {"integrator": "pt", "guide": True},
+    "gather": {"integrator": "gather"},
+}
+"""What is rendered, by the same time."""
+GAINS = {
+    "starts": ("bdpt", "bdpt, starts"),
+    "bdpt": ("bdpt", "bdpt, guide"),
+    "pt": ("pt", "pt, guide"),
+    "gather over pt": ("pt", "gather"),
+    "gather over bdpt": ("bdpt, starts", "gather"),
+}
+"""What is compared: relMSE of the one over that of the other."""
 OTHER_SEED = 10_000
 """That of references."""
 
@@ -56,9 +102,9 @@ class Row:
     """What was found in a scene."""
 
     kind: str
-    scene: str
+    name: str
     gains: dict[str, Gain]
-    """By integrator."""
+    """By the names of GAINS."""
     learnt: dict[str, Any]
     """What `tyndall guide --json` says."""
 
@@ -76,36 +122,35 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> bool:
     """Measures and writes the table; true if a guide gives what it shall everywhere."""
     efficiency.volumes()
-    rows = [row_of(kind, scene, options) for kind, scenes in CASES.items() for scene in scenes]
+    rows = [row_of(kind, case, options) for kind, cases in CASES.items() for case in cases]
     text = page(rows, options)
     write_text(options.output / "guide.md", text)
     print(text)
     return all(row.gains["bdpt"].ratio >= WANTED[row.kind] for row in rows)
 
 
-def row_of(kind: str, scene: Path, options: argparse.Namespace) -> Row:
-    """Renders a scene with a guide and without."""
+def row_of(kind: str, case: Case, options: argparse.Namespace) -> Row:
+    """Renders a scene with a guide and without, and as the preview `gather`."""
     given: dict[str, Any] = {"size": options.size, "threads": options.threads}
+    scene = Scene(case.scene, case.name, case.parameters)
     reference = render(scene, integrator="bdpt", time_limit=options.reference_seconds, seed=OTHER_SEED, **given).image
 
-    def error(integrator: str, seed: int, *, guide: bool) -> float:
-        image = render(scene, integrator=integrator, guide=guide, time_limit=options.seconds, seed=seed, **given).image
-        return relmse(image, reference)
+    def error(seed: int, way: dict[str, Any]) -> float:
+        image = render(scene, time_limit=options.seconds, seed=seed, **way, **given).image
+        return float(diff(image, reference)["radiance"]["relmse"])
 
-    seeds = range(options.seeds)
-    errors = {name: [[error(name, seed, guide=guide) for guide in (False, True)] for seed in seeds] for name in INTEGRATORS}
-    gains = {name: Gain.of(*map(list, zip(*pairs))) for name, pairs in errors.items()}
-    folder = OUTPUT / "guide" / scene.stem
+    errors: dict[str, list[float]] = {name: [] for name in WAYS}
+    for seed in range(options.seeds):
+        for name, way in WAYS.items():
+            errors[name].append(error(seed, way))
+    gains = {name: Gain.of(errors[plain], errors[other]) for name, (plain, other) in GAINS.items()}
+    folder = OUTPUT / "guide" / case.name.split()[0].strip(":")
     folder.parent.mkdir(parents=True, exist_ok=True)
     words = program.flags({"output": folder, "json": True, **given})
-    row = Row(kind, scene.stem, gains, json.loads(program.call([str(program.binary()), "--quiet", "guide", str(scene), *words]).stdout))
-    print(f"{row.scene}: {', '.join(f'{name} {gain}' for name, gain in gains.items())}", flush=True)
+    learn = [str(program.binary()), "--quiet", "guide", str(case.scene), *words, *program.definitions(case.parameters)]
+    row = Row(kind, case.name, gains, json.loads(program.call(learn).stdout))
+    print(f"{row.name}: {', '.join(f'{name} {gain}' for name, gain in gains.items())}", flush=True)
     return row
-
-
-def relmse(image: np.ndarray, reference: np.ndarray) -> float:
-    """As `tyndall diff` measures it."""
-    return float(diff(image, reference)["radiance"]["relmse"])
 
 
 def page(rows: list[Row], options: argparse.Namespace) -> str:
@@ -113,11 +158,11 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
     command = made_by_command()
     return (
         f"# What a guide gives\n\n    {command}\n\n"
-        f"relMSE without `--guide` over relMSE with it, after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
-        f"{options.seeds} seeds; ± one standard error. References: `bdpt`, {options.reference_seconds:g} s, unguided. Without `--guide`, `bdpt` has what its pilot chooses, learnt starts of light subpaths "
-        "among it.\n\n"
-        "| scene | by bdpt | wanted | by pt | wanted | learning | memory | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
-        "|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
+        f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it, after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
+        f"{options.seeds} seeds; ± one standard error. References: `bdpt`, {options.reference_seconds:g} s, unguided. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
+        "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its.\n\n"
+        "| scene | starts | guide, by bdpt | wanted | guide, by pt | wanted | gather over pt | over bdpt | learning | memory | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
     )
 
 
@@ -128,6 +173,6 @@ def line(row: Row) -> str:
     guided = ", ".join(f"{100 * kind['guided'][0]:.0f} %" for kind in kinds)
     over_pt = f"{WANTED_PT:g}" if row.kind == "P03T's boxes" else ""
     return (
-        f"| {row.scene} ({row.kind}) | {row.gains['bdpt']} | {WANTED[row.kind]:g} | {row.gains['pt']} | {over_pt} | {row.learnt['seconds']:.1f} s | "
+        f"| {row.name} ({row.kind}) | {row.gains['starts']} | {row.gains['bdpt']} | {WANTED[row.kind]:g} | {row.gains['pt']} | {over_pt} | {row.gains['gather over pt']} | {row.gains['gather over bdpt']} | {row.learnt['seconds']:.1f} s | "
         f"{row.learnt['bytes'] / 2**20:.1f} MiB | {cells} | {guided} |\n"
     )

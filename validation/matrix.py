@@ -1,7 +1,7 @@
 """Every cross-check scene through Mitsuba and through each of Tyndall's integrators that can render it."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from tyndall.failure import Failure
@@ -60,11 +60,15 @@ def fixed(seed: int = cells.SEED) -> list[Job]:
     return [*map(of_case, CASES), *map(of_cell, cells.sample(seed=seed))]
 
 
-def quick(only: str = "", seed: int = cells.SEED) -> bool:
-    """The fixed sample against Mitsuba's images in the repository; no shared plugin may be in none of its scenes."""
+def quick(only: str = "", seed: int = cells.SEED, *, guide: bool = False) -> bool:
+    """The fixed sample against Mitsuba's images in the repository, or the same by guided walks; no shared plugin may be in none of
+    its scenes."""
     recorded = seed == cells.SEED
     effort = quick_effort if recorded else lambda _: DEEP
-    return run(fixed(seed), effort, only, recorded) and (bool(only) or coverage.run())
+    jobs = fixed(seed)
+    if guide:
+        jobs = [replace(job, methods=tuple(f"{method}+guide" for method in job.methods if ":" not in method)) for job in jobs]
+    return run(jobs, effort, only, recorded) and (bool(only) or coverage.run())
 
 
 def live(only: str = "", count: int | None = None) -> bool:

@@ -42,6 +42,9 @@ pub struct Report {
     pub seconds: f64,
     /// Memory that what was learnt takes [bytes].
     pub bytes: usize,
+    /// What the guide leaves of the second moment of what the camera's walks and light's bring, as one half of what was learnt judges
+    /// the other: the less, the better.
+    pub second_moment: [f64; 2],
     /// Of surfaces.
     pub surfaces: Cells,
     /// Of media.
@@ -125,6 +128,7 @@ fn report(scene: &Scene, learnt: &Learnt, cells: &[Option<u32>], seconds: f64) -
     Report {
         seconds,
         bytes: guide.map_or(0, Guide::bytes),
+        second_moment: WALKS.map(|(transport, _)| guide.map_or(1.0, |guide| guide.remains(transport))),
         surfaces: kind(0, of_surfaces),
         media: kind(of_surfaces, all),
         starts: learnt.starts.as_deref().map_or(Vec::new(), |starts| most_started(scene, starts)),

@@ -13,7 +13,7 @@ use crate::{
         budget::Budget,
         pilot::{self, Choice},
     },
-    sampling::Sampler,
+    sampling::{Basis, Sampler},
     scene::build::Setup,
     settings::{Overrides, integrator::Restriction},
     transport::{
@@ -69,6 +69,13 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&Connections::NAMES))]
     pub connections: Option<Connections>,
 
+    /// Where light subpaths start [default: a pilot decides where emitters are far from view; emitted with --strategies]
+    ///
+    /// emitted: as emitters emit; learnt: where light was found, by a second's samples, to reach the image, as through a small
+    /// opening. The expected image is the same.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS))]
+    pub starts: Option<bool>,
+
     /// Let walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
     /// begun [default: the scene's guide]
     ///
@@ -80,6 +87,12 @@ pub struct Estimator {
     /// Let walks follow no guide, whatever the scene says
     #[arg(long, overrides_with = "guide")]
     pub no_guide: bool,
+
+    /// How a guide keeps directions, for comparison [default: the scene's, or quadtree]
+    ///
+    /// quadtree: finer where much light comes from; bins: 16 x 16 everywhere; haar: by wavelets. The expected image is the same.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Basis::NAMES))]
+    pub basis: Option<Basis>,
 
     /// Maximum number of segments of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 means no limit
     /// [default: the scene's]
@@ -147,6 +160,9 @@ fn max_depth(text: &str) -> std::result::Result<MaxDepth, String> {
     }
 }
 
+/// Where light subpaths start: true where that is learnt.
+const STARTS: [(&str, bool); 2] = [("emitted", false), ("learnt", true)];
+
 fn heuristic(text: &str) -> std::result::Result<Heuristic, String> {
     Heuristic::parse(text).map_err(|expected| format!("expected {expected}"))
 }
@@ -171,7 +187,7 @@ impl Estimator {
             return Ok((settings, None));
         }
         let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);
-        let choice = pilot::choose(&setup.scene, &setup.film, &settings, is_complete);
+        let choice = pilot::choose(&setup.scene, &setup.film, &settings, self.starts, is_complete);
         let guided = settings.options.effort.guided;
         settings.options.strategies = choice.strategies;
         settings.options.effort = Effort { guided, ..choice.effort };
@@ -213,10 +229,12 @@ impl Estimator {
         let forced_interaction = self.forced_interaction(setup, strategies);
         let connections = self.connections(scene, strategies);
         let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
-        let effort = Effort { guided: self.guided(scene, strategies, heuristic)?, ..scene.effort };
+        let guided = self.guided(scene, strategies, heuristic)?;
+        let effort = Effort { guided, learnt_starts: self.learnt_starts(strategies), ..scene.effort };
         Ok(Options {
             strategies,
             effort,
+            basis: self.basis(scene, guided),
             heuristic,
             max_depth,
             forced_interaction,
@@ -232,6 +250,20 @@ impl Estimator {
         }
         let wanted = self.connections.unwrap_or(scene.connections);
         if strategies.connection { wanted } else { Connections::default() }
+    }
+
+    fn learnt_starts(&self, strategies: Strategies) -> bool {
+        if self.starts.is_some() && !strategies.need_light_walks() {
+            super::complain("warning: --starts has no effect: no strategy in use traces light subpaths");
+        }
+        self.starts == Some(true) && strategies.need_light_walks()
+    }
+
+    fn basis(&self, scene: Options, guided: bool) -> Basis {
+        if self.basis.is_some() && !guided {
+            super::complain("warning: --basis has no effect: walks follow no guide");
+        }
+        self.basis.unwrap_or(scene.basis)
     }
 
     fn guided(&self, scene: Options, strategies: Strategies, heuristic: Heuristic) -> Result<bool> {

@@ -51,7 +51,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         let remedy = "choose --integrator bdpt, pt or lt";
         return Err(Error::new("--integrator", "an integrator that is no preview", preview, remedy));
     }
-    settings.options.effort.learnt_starts = settings.options.strategies.need_light_walks();
+    let starts = arguments.estimator.starts.unwrap_or(true);
+    settings.options.effort.learnt_starts = starts && settings.options.strategies.need_light_walks();
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
     outputs::check_short(&FILES.map(|name| folder.join(name)), &[])?;
     let findings = super::threads(arguments.threads)?.install(|| guide::examine(&setup, &settings));
@@ -63,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
 /// A few lines.
 fn described(report: &Report) -> String {
-    let Report { seconds, bytes, surfaces, media, .. } = report;
+    let Report { seconds, bytes, surfaces, media, second_moment, .. } = report;
     if surfaces.cells + media.cells == 0 {
         return format!("learnt in {seconds:.1} s: nothing that walks could follow");
     }
@@ -73,10 +74,12 @@ fn described(report: &Report) -> String {
             "{name:10} {cells} cells; of the directions, {camera} of the camera's walks and {light} of light's are guided"
         )
     };
+    let [camera, light] = second_moment.map(|part| format!("{part:.2}"));
     let lines = [
         format!("learnt     in {seconds:.1} s, {:.1} MiB", *bytes as f64 / f64::from(1 << 20)),
         kind("surfaces", surfaces),
         kind("media", media),
+        format!("moments    {camera} of the second moment is left to the camera's walks, {light} to light's"),
     ];
     lines.join("\n")
 }

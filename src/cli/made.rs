@@ -7,6 +7,7 @@ use crate::{
     film::view::Display,
     format,
     render::{Image, Settings, adaptive::Precision, pilot::Choice},
+    sampling::Basis,
     scene::build::Setup,
     transport::{Connections, Options},
 };
@@ -74,8 +75,14 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
     if options.strategies.gather {
         settings["preview"] = "gather".into();
     }
+    if options.effort.learnt_starts && settings["chosen_by_pilot"].is_null() {
+        settings["learnt_starts"] = true.into();
+    }
     if options.effort.guided {
         settings["guide"] = true.into();
+        if options.basis != Basis::default() {
+            settings["basis"] = options.basis.name().into();
+        }
     }
 }
 

@@ -17,7 +17,7 @@ use crate::{
     bsdf::Transport,
     math::{Vec3, warp},
     sampling::{
-        Cells, Quadtree, Stream,
+        Basis, Cells, Quadtree, Stream,
         cells::Keyed,
         quadtree::{Deposit, effective},
     },
@@ -78,11 +78,20 @@ pub struct Guide {
     /// Those of surfaces come first.
     cells: Vec<Cell>,
     of_surfaces: usize,
+    /// Of the camera's walks and of light's.
+    moments: [Moments; 2],
 }
 
 /// Directions of the camera's walks and of light's.
 #[derive(Clone, Debug)]
 struct Cell([Option<Directions>; 2]);
+
+/// Second moments of what is learnt.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    unguided: f64,
+    guided: f64,
+}
 
 #[derive(Clone, Debug)]
 struct Directions {
@@ -124,8 +133,8 @@ impl<const D: usize> Keyed<D> for Known<D> {
 }
 
 impl Guide {
-    /// What `lessons` tell; none where that is nothing, or nothing better than what BSDFs and phase functions do.
-    pub fn learn(mut lessons: Vec<Lesson>) -> Option<Self> {
+    /// What `lessons` tell, in some `basis`; none where that is nothing, or nothing better than what BSDFs and phase functions do.
+    pub fn learn(mut lessons: Vec<Lesson>, basis: Basis) -> Option<Self> {
         let total: f64 = lessons.iter().map(|lesson| f64::from(lesson.weight)).sum();
         let most = (MOST * total) as f32;
         lessons.iter_mut().for_each(|lesson| lesson.weight = lesson.weight.min(most));
@@ -149,7 +158,11 @@ impl Guide {
         guide.surfaces = Cells::learn(of_surfaces, PER_CELL, LEVELS, |known| add(&mut leaves, known));
         guide.of_surfaces = leaves.len();
         guide.media = Cells::learn(of_media, PER_CELL, LEVELS, |known| add(&mut leaves, known));
-        guide.cells = leaves.into_par_iter().map(|leaf| Cell::learn(&lessons, &leaf)).collect();
+        let learnt: Vec<_> = leaves.into_par_iter().map(|leaf| Cell::learn(&lessons, &leaf, basis)).collect();
+        for (cell, moments) in learnt {
+            guide.cells.push(cell);
+            guide.moments.iter_mut().zip(moments).for_each(|(sum, moments)| sum.add(moments));
+        }
         // What guides nothing need not be looked up.
         guide.cells.iter().any(Cell::guides).then_some(guide)
     }
@@ -197,6 +210,13 @@ impl Guide {
     /// G: the density of those of unit `direction` [1/sr]; none where there is none.
     pub fn density(&self, cell: u32, transport: Transport, direction: Vec3) -> Option<f32> {
         self.directions(cell, transport).map(|known| pdf(&known.table, direction))
+    }
+
+    /// What the guide leaves of the second moment of what walks by `transport` bring, as one half of what was learnt judges the
+    /// other; 1 if nothing.
+    pub fn remains(&self, transport: Transport) -> f64 {
+        let Moments { unguided, guided } = self.moments[index(transport)];
+        if unguided > 0.0 { guided / unguided } else { 1.0 }
     }
 
     /// Memory that it takes [bytes].
@@ -249,28 +269,38 @@ fn add<const D: usize>(leaves: &mut Vec<Vec<u32>>, known: Vec<Known<D>>) -> u32 
     leaves.len() as u32 - 1
 }
 
+impl Moments {
+    fn add(&mut self, other: Self) {
+        self.unguided += other.unguided;
+        self.guided += other.guided;
+    }
+}
+
 impl Cell {
     fn guides(&self) -> bool {
         self.0.iter().any(Option::is_some)
     }
 
-    fn learn(lessons: &[Lesson], leaf: &[u32]) -> Self {
+    fn learn(lessons: &[Lesson], leaf: &[u32], basis: Basis) -> (Self, [Moments; 2]) {
         let of = |transport| {
             let own = leaf.iter().map(|index| &lessons[*index as usize]);
-            Directions::learn(&own.filter(|lesson| lesson.transport == transport).collect::<Vec<_>>())
+            let own: Vec<_> = own.filter(|lesson| lesson.transport == transport).collect();
+            Directions::learn(&own, basis)
         };
-        Self([of(Transport::Radiance), of(Transport::Importance)])
+        let [(camera, by_camera), (light, by_light)] = [Transport::Radiance, Transport::Importance].map(of);
+        (Self([camera, light]), [by_camera, by_light])
     }
 }
 
 impl Directions {
     /// None where directions are better left to the BSDF or the phase function.
-    fn learn(lessons: &[&Lesson]) -> Option<Self> {
+    fn learn(lessons: &[&Lesson], basis: Basis) -> (Option<Self>, Moments) {
         if effective(lessons.iter().map(|lesson| lesson.weight)) < ENOUGH {
-            return None;
+            return (None, Moments::default());
         }
-        let unguided = part_unguided(lessons);
-        (unguided < 1.0).then(|| Self { unguided, table: table(lessons.iter().copied()) })
+        let (unguided, moments) = part_unguided(lessons, basis);
+        let guides = unguided < 1.0;
+        (guides.then(|| Self { unguided, table: table(lessons.iter().copied(), basis) }), moments)
     }
 
     /// (1 - a) G [1/sr].
@@ -281,9 +311,9 @@ impl Directions {
 }
 
 /// a, by the second moment that what one half of the `lessons` tells has where the other half guides.
-fn part_unguided(lessons: &[&Lesson]) -> f32 {
+fn part_unguided(lessons: &[&Lesson], basis: Basis) -> (f32, Moments) {
     let half = |fold| lessons.iter().copied().filter(move |lesson| lesson.fold == fold);
-    let tables = [1, 0].map(|other| table(half(other)));
+    let tables = [1, 0].map(|other| table(half(other), basis));
     let known = lessons.iter().filter(|lesson| lesson.unguided > 0.0);
     let ratios: Vec<_> = known
         .map(|lesson| (lesson.weight, pdf(&tables[lesson.fold], lesson.direction) / lesson.unguided))
@@ -292,13 +322,16 @@ fn part_unguided(lessons: &[&Lesson]) -> f32 {
         let of = |(weight, ratio): &(f32, f32)| f64::from(weight * weight / (a + (1.0 - a) * ratio));
         ratios.iter().map(of).sum()
     };
-    UNGUIDED.into_iter().min_by(|a, b| moment(*a).total_cmp(&moment(*b))).unwrap_or(1.0)
+    let unguided = moment(1.0);
+    let best = UNGUIDED.into_iter().map(|a| (a, moment(a))).min_by(|a, b| a.1.total_cmp(&b.1));
+    let (a, guided) = best.unwrap_or((1.0, unguided));
+    (a, Moments { unguided, guided })
 }
 
-fn table<'a>(lessons: impl Iterator<Item = &'a Lesson>) -> Quadtree {
+fn table<'a>(lessons: impl Iterator<Item = &'a Lesson>, basis: Basis) -> Quadtree {
     let deposit =
         |lesson: &Lesson| Deposit { at: warp::from_sphere(lesson.direction), weight: lesson.weight };
-    Quadtree::learn(lessons.map(deposit).collect())
+    Quadtree::by(basis, lessons.map(deposit).collect())
 }
 
 fn index(transport: Transport) -> usize {

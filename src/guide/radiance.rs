@@ -55,8 +55,8 @@ impl Keyed<6> for Known {
         1.0
     }
     /// Where light ends at a wall, so do cells.
-    fn value(&self) -> f32 {
-        self.radiance.luminance().max(0.0).sqrt()
+    fn value(&self) -> Option<f32> {
+        Some(self.radiance.luminance().max(0.0).sqrt())
     }
 }
 

@@ -83,16 +83,19 @@ pub struct Choice {
     pub gain: f64,
 }
 
-/// The strategies among those of `settings` that are worth their time on `film`, how often, and when walks end; `is_complete`
-/// says which sets of strategies leave no light out.
+/// The strategies among those of `settings` that are worth their time on `film`, how often, and when walks end; whether light
+/// subpaths begin at learnt `starts` may be decided already; `is_complete` says which sets of strategies leave no light out.
 pub fn choose(
     scene: &Scene,
     film: &Film,
     settings: &Settings,
+    starts: Option<bool>,
     is_complete: impl Fn(Strategies) -> bool,
 ) -> Choice {
     let all = settings.options.strategies;
-    let base = Choice { among: all, strategies: all, effort: Effort::default(), gain: 1.0 };
+    let effort =
+        Effort { learnt_starts: starts == Some(true) && all.need_light_walks(), ..Effort::default() };
+    let base = Choice { among: all, strategies: all, effort, gain: 1.0 };
     if scene.lights.is_empty() {
         return base;
     }
@@ -102,8 +105,11 @@ pub fn choose(
     let with_all = Settings { options, ..*settings };
     let by = |learnt: bool| survivals.map(|(survival, _)| pilot(scene, film, &with_all, survival, learnt));
     let fly = || {
+        if base.effort.learnt_starts {
+            return by(true);
+        }
         let pilots = by(false);
-        if pilots[0].is_remote() { by(true) } else { pilots }
+        if starts.is_none() && pilots[0].is_remote() { by(true) } else { pilots }
     };
     // Renders survive a panic and say where it was.
     let Ok(pilots) = catch_unwind(AssertUnwindSafe(fly)) else { return base };
@@ -113,7 +119,11 @@ pub fn choose(
     let choices = known.flat_map(|(survival, pilot)| {
         let complete = candidates(options.strategies, survival, pilot.is_learnt);
         let complete = complete.filter(|choice| is_complete(choice.strategies));
-        complete.map(move |choice| Choice {
+        let decided = move |choice: &Choice| {
+            let may = |learnt| !choice.strategies.need_light_walks() || choice.effort.learnt_starts == learnt;
+            starts.is_none_or(may)
+        };
+        complete.filter(decided).map(move |choice| Choice {
             among: all,
             gain: reference / (pilot.error(&choice) * pilot.time(&choice)),
             ..choice

@@ -116,7 +116,7 @@ fn learn(scene: &Scene, film: &Film, options: Options, wanted: Wanted) -> Learnt
         }
         if let Some(strategies) = wanted.guide {
             let lessons = trial.lessons(strategies, (FIRST << round) as f64);
-            learnt.guide = Guide::learn([&before[..], &lessons].concat()).map(Arc::new);
+            learnt.guide = Guide::learn([&before[..], &lessons].concat(), options.basis).map(Arc::new);
             before = lessons;
         }
         if segments > most {

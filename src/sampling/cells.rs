@@ -8,9 +8,9 @@ pub trait Keyed<const D: usize> {
     fn key(&self) -> [f32; D];
     /// At least 0, finite.
     fn weight(&self) -> f32;
-    /// What lies on both sides of a division should differ in, if in anything.
-    fn value(&self) -> f32 {
-        0.0
+    /// What both sides of a division should differ in, if in anything.
+    fn value(&self) -> Option<f32> {
+        None
     }
 }
 
@@ -131,13 +131,14 @@ fn in_the_middle<const D: usize, K: Keyed<D>>(keyed: &[K]) -> Option<(usize, f32
 }
 
 /// The axis and the place where `keyed`, divided there, differ most in their values, each half with so many `points` at least;
-/// none where values hardly differ.
+/// none where there are none or they hardly differ.
 fn by_value<const D: usize, K: Keyed<D>>(keyed: &[K], points: f64) -> Option<(usize, f32)> {
+    keyed.first()?.value()?;
     let [low, high] = bounds(keyed);
     let size: [f32; D] = std::array::from_fn(|axis| (high[axis] - low[axis]) / PARTS as f32);
     let mut parts = [[Moments::default(); PARTS]; D];
     for one in keyed {
-        let (key, value) = (one.key(), f64::from(one.value()));
+        let (key, value) = (one.key(), f64::from(one.value()?));
         for (axis, parts) in parts.iter_mut().enumerate() {
             let part = (((key[axis] - low[axis]) / size[axis]) as usize).min(PARTS - 1);
             parts[part] = parts[part].and(Moments([1.0, value, value * value]));

@@ -12,6 +12,6 @@ pub mod stream;
 pub use cells::Cells;
 pub use discrete::Discrete;
 pub use grid::{Cell, Grid};
-pub use quadtree::Quadtree;
+pub use quadtree::{Basis, Quadtree};
 pub use sampler::Sampler;
 pub use stream::Stream;

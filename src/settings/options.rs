@@ -4,6 +4,7 @@ use super::heuristic::Heuristic;
 use crate::{
     description::{Params, parameter::Parameter, rows},
     error::Result,
+    sampling::Basis,
 };
 
 /// Which strategies run. Their weights sum to one over those that do.
@@ -165,6 +166,8 @@ pub struct Options {
     pub strategies: Strategies,
     /// How often.
     pub effort: Effort,
+    /// How a guide keeps directions.
+    pub basis: Basis,
     /// With [`Connections::All`] there is one light subpath a pixel sample, whatever `effort` says.
     pub connections: Connections,
     /// By which they share the paths that several of them can make. All but [`Heuristic::Balance`] run on the profile
@@ -184,6 +187,7 @@ impl Default for Options {
         Self {
             strategies: Strategies::BDPT,
             effort: Effort::default(),
+            basis: Basis::default(),
             connections: Connections::default(),
             heuristic: Heuristic::default(),
             max_depth: None,
@@ -202,6 +206,8 @@ pub(super) const PATHS: &[Parameter] = rows! {
 /// What those have that sample paths.
 pub(super) const GUIDE: &[Parameter] = rows! {
     boolean("guide", false, "Walks follow a guide, learnt beforehand: where light comes from, and where it is seen from.").ours(),
+    choice("guide_basis", &words::<3, _>(&Basis::NAMES), "quadtree",
+        "How a guide keeps directions: adaptive `quadtree`, equal `bins`, `haar` wavelets (P03T sec. 5.2.1, A.1).").ours(),
 };
 
 /// The limit of paths.
@@ -224,12 +230,11 @@ pub(super) const FORCED: &[Parameter] = rows! {
 impl Options {
     /// Reads the parameters of integrators that make paths.
     pub(super) fn read(params: &Params<'_>, strategies: Strategies) -> Result<Self> {
+        let samples = strategies != Strategies::NONE;
         Ok(Self {
             strategies,
-            effort: Effort {
-                guided: strategies != Strategies::NONE && params.boolean("guide")?,
-                ..Effort::default()
-            },
+            effort: Effort { guided: samples && params.boolean("guide")?, ..Effort::default() },
+            basis: if samples { params.choice("guide_basis", &Basis::NAMES)? } else { Basis::default() },
             connections: Connections::default(),
             // Limits that u32 does not hold are none.
             max_depth: u32::try_from(params.integer("max_depth")?).ok(),

@@ -239,6 +239,21 @@ fn sums_know_the_step_that_was_marched_by() {
     ]);
     let guided = sandbox.run("render scene.json --spp 2 --guide").ends(0).err();
     assert!(guided.contains("guided walks"), "{guided}");
+    sandbox
+        .run(&format!("render scene.json --spp 2 {all} --resume --starts learnt"))
+        .refuses(&["learnt_starts = true"]);
+    let kept =
+        format!("render scene.json --strategies hit,next-event,join,lens --spp 1 --guide --sums c.sums");
+    sandbox.run(&kept).ends(0);
+    sandbox.run(&format!("{kept} --resume --basis haar")).refuses(&["basis = \"haar\""]);
+    for (words, flag) in [("--starts learnt --integrator pt", "--starts"), ("--basis bins", "--basis")] {
+        let said = sandbox.run(&format!("render scene.json --spp 1 {words}")).ends(0).err();
+        assert!(said.contains(&format!("{flag} has no effect")), "{said}");
+    }
+    for (starts, is_learnt) in [("learnt", true), ("emitted", false)] {
+        let said = sandbox.run(&format!("render scene.json --spp 1 --starts {starts} {all}2")).ends(0).err();
+        assert_eq!(said.contains("learnt starts"), is_learnt, "{said}");
+    }
 }
 
 #[test]

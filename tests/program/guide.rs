@@ -70,6 +70,24 @@ fn scenes_of_any_size_are_learnt() {
     }
 }
 
+/// Whatever keeps them, directions are learnt that lower the variance, and in bins alone they are as coarse everywhere.
+#[test]
+fn directions_are_kept_in_any_basis() {
+    let sandbox = Sandbox::with_scene(&divided(1.0));
+    let numbers = ["quadtree", "bins", "haar"].map(|basis| {
+        let run = sandbox.run(&format!("guide scene.json --integrator pt --basis {basis} --json")).ends(0);
+        serde_json::from_str::<Value>(&run.out()).unwrap()
+    });
+    for numbers in &numbers {
+        let [camera, light] = [0, 1].map(|walk| numbers["second_moment"][walk].as_f64().unwrap());
+        assert!(camera > 0.0 && camera < 1.0, "{numbers}");
+        // There are no light subpaths.
+        assert_eq!(light, 1.0);
+    }
+    assert!(numbers[0]["bytes"] != numbers[1]["bytes"] && numbers[1]["bytes"] != numbers[2]["bytes"]);
+    assert_ne!(numbers[0]["second_moment"], numbers[2]["second_moment"]);
+}
+
 /// Nothing to learn is no error, and no picture.
 #[test]
 fn of_a_black_scene_nothing_is_learnt() {

@@ -68,6 +68,14 @@ fn all_agree(name: &str, scene: &Value, kind: Kind, samples_per_pixel: u64) {
         paired.width(),
     );
     claims.equal(&format!("{name}: pairs of walks against all strategies"), &pairs, all);
+    let mut guided = paired;
+    guided.setup.integrator.options.connections = Connections::Cached;
+    guided.setup.integrator.options.effort.guided = true;
+    let led = Sample::of(
+        &guided.renders(Strategies::BDPT, samples_per_pixel, 60_000..60_000 + SEEDS),
+        guided.width(),
+    );
+    claims.equal(&format!("{name}: guided walks against others"), &led, all);
     for (set, sample) in sets.iter().filter(|(set, _)| *set != Strategies::BDPT) {
         claims.equal(&format!("{name}: {} against all strategies", name_of(*set)), sample, all);
     }

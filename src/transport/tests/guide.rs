@@ -5,6 +5,7 @@ use crate::{
     bsdf::Transport,
     guide::{Guide, Lesson},
     math::{SpectrumExt, Vec3, vec3, warp},
+    sampling::Basis,
     testing,
     transport::observer::Sum,
 };
@@ -37,7 +38,7 @@ pub fn arbitrary() -> Arc<Guide> {
             fold: index / 7 % 2,
         }
     });
-    Arc::new(Guide::learn(lessons.collect()).unwrap())
+    Arc::new(Guide::learn(lessons.collect(), Basis::default()).unwrap())
 }
 
 #[test]

@@ -38,6 +38,7 @@ use std::sync::Arc;
 const ALL: Options = Options {
     strategies: Strategies::BDPT,
     effort: Effort::EQUAL,
+    basis: crate::sampling::Basis::Quadtree,
     connections: Connections::Cached,
     heuristic: Heuristic::Balance,
     max_depth: None,
