@@ -34,8 +34,9 @@ pub struct Estimator {
     /// Light transport algorithm [default: the scene's integrator]
     ///
     /// bdpt: bidirectional path tracing; pt: path tracing from the camera; lt: light tracing (particle tracing)
-    /// from the emitters; fog: a preview of the first visible surfaces without shadows, behind fog of constant
-    /// radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
+    /// from the emitters; gather: a preview by path tracing that ends where it scatters for the second time, in radiance that is
+    /// learnt in seconds: biased, and far less noisy where light is indirect; fog: a preview of the first visible surfaces without
+    /// shadows, behind fog of constant radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
     /// non_scattering its restriction of media still applies, unless --scattering says otherwise.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Strategies::INTEGRATORS))]
     pub integrator: Option<Strategies>,
@@ -44,7 +45,7 @@ pub struct Estimator {
     ///
     /// Without this option, a short pilot finds out which strategies of bdpt lower the error most for their time in this
     /// scene, how many samples each should have, and whether light subpaths should start where it saw that light reaches the
-    /// image; strategies that are named all have as many, and learn nothing. Equiangular sampling runs only if the pilot of
+    /// image; strategies that are named all have as many, and learn nothing but what --starts and --guide say. Equiangular sampling runs only if the pilot of
     /// bdpt finds it worth its time, or if it is named.
     ///
     /// hit: the camera subpath hits an emitter; next-event: it connects to a point sampled on an emitter; join: one of its

@@ -88,7 +88,6 @@ fn part<P: Profile>(ready: &Ready<'_, P>, [pass, block]: [usize; 2], most_edges:
     let mut eye = Eye { scene, most_edges, walk: Vec::new(), looks: Looks::default() };
     let mut observer: &mut dyn Observer<P::MisSums> = &mut eye;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
-    eye.walk.clear();
     for pixel in blocks.pixels(block) {
         let start = blocks.camera_start(scene, film, *seed, pass, pixel);
         let observer: &mut dyn Observer<P::MisSums> = &mut eye;
@@ -104,6 +103,8 @@ struct Reached {
     /// Of the subpath up to it.
     throughput: Spectrum,
     is_connectible: bool,
+    /// Walks may end in it.
+    is_dull: bool,
 }
 
 /// Follows camera subpaths.
@@ -119,7 +120,7 @@ impl Eye<'_> {
     fn close(&mut self) {
         // Where the walk has to end, not all light comes.
         let whole = self.walk.drain(..).take((longest(self.most_edges) - self.most_edges) as usize);
-        let ends = whole.filter(|reached| reached.is_connectible);
+        let ends = whole.filter(|reached| reached.is_dull);
         self.looks.seen.extend(ends.map(|reached| reached.seen));
     }
 
@@ -146,14 +147,17 @@ impl<S: MisSums> Observer<S> for Eye<'_> {
         false
     }
 
-    fn depart(&mut self, _: &Departure<S>) {
+    fn depart(&mut self, departure: &Departure<S>) {
         self.looks.segments += 1.0;
+        if departure.edges == 0 {
+            self.walk.clear();
+        }
     }
 
     fn arrive(&mut self, vertex: &Vertex<S>) {
         let seen = vertex.seen(self.scene);
-        let is_connectible = vertex.is_connectible(self.scene);
-        self.walk.push(Reached { seen, throughput: vertex.subpath.throughput, is_connectible });
+        let (is_connectible, is_dull) = (vertex.is_connectible(self.scene), vertex.is_dull(self.scene));
+        self.walk.push(Reached { seen, throughput: vertex.subpath.throughput, is_connectible, is_dull });
     }
 
     fn contribute(&mut self, s: u32, t: u32, _: Meeting<'_, S>, contribution: Option<&Contribution>) {

@@ -191,3 +191,42 @@ impl Moments {
         if count > 0.0 { squares - sum * sum / count } else { 0.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::{Stream, stream::Purpose};
+
+    /// A point of a room, and how bright it is there.
+    struct Lit([f32; 3], f32);
+
+    impl Keyed<3> for Lit {
+        fn key(&self) -> [f32; 3] {
+            self.0
+        }
+        fn weight(&self) -> f32 {
+            1.0
+        }
+        fn value(&self) -> Option<f32> {
+            Some(self.1)
+        }
+    }
+
+    /// A wall stands between two rooms, one of which is dark.
+    #[test]
+    fn cells_end_where_values_change() {
+        const WALL: f32 = 0.37;
+        let mut stream = Stream::new(6, 0, 0, Purpose::Study);
+        let mut point = || {
+            let (at, z) = (stream.square(), stream.uniform());
+            Lit([at.x, at.y, z], if at.x < WALL { 1.0 } else { 100.0 })
+        };
+        let known = (0..20_000).map(|_| point()).collect();
+        let mean = |lit: Vec<Lit>| lit.iter().map(|lit| lit.1).sum::<f32>() / lit.len() as f32;
+        let cells = Cells::learn(known, 64.0, 15, mean);
+        for Lit(at, value) in (0..2000).map(|_| point()).filter(|lit| (lit.0[0] - WALL).abs() > 0.01) {
+            assert_eq!(cells.at(at), Some(&value), "{at:?}");
+        }
+        assert!(Cells::<3, f32>::learn(Vec::<Lit>::new(), 64.0, 15, mean).at([0.5; 3]).is_none());
+    }
+}

@@ -12,6 +12,13 @@ const LEVELS: u32 = 10;
 const UNSEEN: f64 = 2.0;
 /// Nodes with less of all the weight are not divided.
 const LEAST_SHARE: f64 = 1e-3;
+/// Levels of bins: there are 16 x 16.
+const BINS: u32 = 4;
+/// Points that divide a node of [`Basis::Quadtree`]. With bins at least, and by half the points, path tracing in rooms lit indirectly
+/// and in an attic has 0.8 of the error that it has by [`TO_DIVIDE`] alone.
+const TO_DIVIDE_BINS: f64 = 24.0;
+/// Of all the weight, the coefficients of wavelets that are kept are more than this.
+const DETAIL: f64 = 0.01;
 
 /// A point of the unit square, and how much it counts.
 #[derive(Clone, Copy, Debug)]
@@ -30,14 +37,6 @@ pub fn effective(weights: impl Iterator<Item = f32>) -> f64 {
     });
     if squares > 0.0 { sum * sum / squares } else { 0.0 }
 }
-
-/// Levels of bins: there are 16 x 16.
-const BINS: u32 = 4;
-/// Points that divide a node of [`Basis::Quadtree`]. With bins at least, and by half the points, path tracing in rooms lit indirectly
-/// and in an attic has 0.8 of the error that it has by [`TO_DIVIDE`] alone.
-const TO_DIVIDE_BINS: f64 = 24.0;
-/// Of all the weight, the coefficients of wavelets that are kept are more than this.
-const DETAIL: f64 = 0.01;
 
 /// How the square is divided: bases for what is known of a density.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

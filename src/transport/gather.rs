@@ -1,5 +1,6 @@
 //! The preview `gather` (P03T sec. 5.3): camera subpaths as of path tracing, which end where they scatter for the second time, in
-//! the radiance that was learnt of that place. Mirrors and glass scatter in one direction alone, and do not count. What is
+//! the radiance that was learnt of that place. Mirrors and glass scatter in one direction alone, and do not count; at glossy
+//! surfaces they go on. What is
 //! lit directly, and what the first vertex sees, is as it should be; all that lies behind is blurred over cells.
 
 use super::{
@@ -71,9 +72,8 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for Gather<'_, P, R> {
     #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
         let Estimator { scene, max_edges, .. } = *self.path.estimator;
-        let scatters = vertex.is_connectible(scene);
-        if !(scatters && self.has_scattered) {
-            self.has_scattered |= scatters;
+        if !(self.has_scattered && vertex.is_dull(scene)) {
+            self.has_scattered |= vertex.is_connectible(scene);
             return self.path.arrive(vertex, stream);
         }
         self.path.reach(vertex);

@@ -10,6 +10,10 @@ use crate::{
     scene::Scene,
     shape::SurfacePoint,
 };
+use std::f32::consts::FRAC_1_PI;
+
+/// The density of a dull BSDF in the direction of a mirror, or straight on, is less than so many times that of one that is even.
+const GLOSSY: f32 = 4.0;
 
 /// Scattering at a vertex between two given directions.
 #[derive(Clone, Copy, Debug)]
@@ -120,6 +124,17 @@ impl<S: MisSums> Vertex<S> {
     pub fn others_before(&self, pdf_rev: f32) -> S {
         S::of(self.kind, self.subpath.pdf_over_hero_before.scaled(self.connections))
             .and(self.subpath.others_over_pdf_rev.scaled(pdf_rev))
+    }
+
+    /// True in media, and on surfaces that look about the same from everywhere: their mean tells something.
+    pub fn is_dull(&self, scene: &Scene) -> bool {
+        let Interaction::Surface(point) = &self.interaction else { return true };
+        let (incoming, normal) = (self.subpath.incoming, point.shading.normal);
+        let most = GLOSSY * FRAC_1_PI;
+        let pdf =
+            |outgoing: Vec3| self.interaction.scatter(scene, incoming, outgoing, Transport::Radiance).pdf_fwd;
+        let mirrored = 2.0 * normal.dot(incoming) * normal - incoming;
+        self.is_connectible(scene) && pdf(mirrored) < most && pdf(-incoming) < most
     }
 
     /// What the vertex before sees of it, nothing yet.
