@@ -242,9 +242,8 @@ fn sums_know_the_step_that_was_marched_by() {
     sandbox
         .run(&format!("render scene.json --spp 2 {all} --resume --starts learnt"))
         .refuses(&["learnt_starts = true"]);
-    let kept =
-        format!("render scene.json --strategies hit,next-event,join,lens --spp 1 --guide --sums c.sums");
-    sandbox.run(&kept).ends(0);
+    let kept = "render scene.json --strategies hit,next-event,join,lens --spp 1 --guide --sums c.sums";
+    sandbox.run(kept).ends(0);
     sandbox.run(&format!("{kept} --resume --basis haar")).refuses(&["basis = \"haar\""]);
     for (words, flag) in [("--starts learnt --integrator pt", "--starts"), ("--basis bins", "--basis")] {
         let said = sandbox.run(&format!("render scene.json --spp 1 {words}")).ends(0).err();
