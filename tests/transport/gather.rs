@@ -83,3 +83,24 @@ fn light_behind_a_wall_stays_there() {
         assert_close(name, mean(&mut stage, Strategies::GATHER), expected, 0.1);
     }
 }
+
+/// What a glossy surface shows depends on where it is seen from: walks go on there, and cells of what lies beside it do not hold it.
+#[test]
+fn glossy_surfaces_are_no_places_to_end() {
+    let text = include_str!("../../scenes/gallery/reflector.json");
+    let mut reflector: Value = serde_json::from_str(text).unwrap();
+    for (side, pixels) in [("width", 48), ("height", 36)] {
+        reflector["camera"]["film"][side] = json!(pixels);
+    }
+    let mut stage = Stage::new(&reflector);
+    // Of the dim parts: few paths make the bright ones.
+    let mut median = |strategies: Strategies, guided: bool| {
+        stage.setup.integrator.options.effort.guided = guided;
+        let image = stage.render(strategies, 256, 0);
+        let mut all: Vec<f64> = image.iter().map(|pixel| f64::from(pixel.luminance())).collect();
+        all.sort_by(f64::total_cmp);
+        all[all.len() / 2]
+    };
+    let expected = median(Strategies::BDPT, false);
+    assert_close("reflector", median(Strategies::GATHER, true), expected, 0.5);
+}
