@@ -155,7 +155,7 @@ def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int 
     # such as filters in tables, and of how independent the batches of its even samplers are.
     # All strategies, whether or not a pilot finds them worth their time.
     strategies = tyndall.ALL_STRATEGIES if integrator == "bdpt" else None
-    options = {"integrator": integrator, "strategies": strategies, "tracker": tracker or None, "guide": bool(guide), "size": size, "sampler": "independent"}
+    options = {"integrator": integrator, "strategies": strategies, "tracker": tracker or None, "guide": "always" if guide else None, "size": size, "sampler": "independent"}
     render = lambda effort: tyndall.render_batches(scene, effort.batches, spp=effort.spp, seed=effort.seed, threads=threads, **options)
     return lambda effort: Measured.of(render(effort))
 

@@ -62,9 +62,9 @@ WANTED_PT = 2.0
 WAYS: dict[str, dict[str, Any]] = {
     "bdpt": {"integrator": "bdpt", "starts": "emitted"},
     "bdpt, starts": {"integrator": "bdpt"},
-    "bdpt, guide": {"integrator": "bdpt", "guide": True},
+    "bdpt, guide": {"integrator": "bdpt", "guide": "always"},
     "pt": {"integrator": "pt"},
-    "pt, guide": {"integrator": "pt", "guide": True},
+    "pt, guide": {"integrator": "pt", "guide": "auto"},
     "gather": {"integrator": "gather"},
 }
 """What is rendered, by the same time."""

@@ -12,12 +12,13 @@ use crate::{
         Settings,
         budget::Budget,
         pilot::{self, Choice},
+        training,
     },
     sampling::{Basis, Sampler},
     scene::build::Setup,
     settings::{Overrides, integrator::Restriction},
     transport::{
-        Connections, Effort, Heuristic, Options, Strategies, equiangular_applies,
+        Connections, Effort, Guiding, Heuristic, Options, Strategies, equiangular_applies,
         observer::StrategyKind,
         profile::{Needs, ProfileName},
     },
@@ -77,17 +78,14 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS))]
     pub starts: Option<bool>,
 
-    /// Let walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
-    /// begun [default: the scene's guide]
+    /// When walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
+    /// begun [default: the scene's, or never, but auto with gather]
     ///
-    /// The expected image is the same. It takes a second or so, and pays where pt has to find light that comes round corners; bdpt
-    /// finds it anyway. Needs the heuristic balance.
-    #[arg(long, overrides_with = "no_guide")]
-    pub guide: bool,
-
-    /// Let walks follow no guide, whatever the scene says
-    #[arg(long, overrides_with = "guide")]
-    pub no_guide: bool,
+    /// auto: where it pays, as a tenth of a second's samples foresee: where pt has to find light that comes round corners. bdpt, if it
+    /// traces light subpaths, finds it anyway. always: also where it does not pay. Learning takes a second or so; the expected image is
+    /// the same. Needs the heuristic balance.
+    #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
+    pub guide: Option<Guiding>,
 
     /// How a guide keeps directions, for comparison [default: the scene's, or quadtree]
     ///
@@ -182,17 +180,28 @@ impl Estimator {
     /// The same, and what the pilot chose, if there was one.
     pub fn chosen(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<(Settings, Option<Choice>)> {
         let mut settings = self.requested(setup, seed, budget)?;
+        let choice = self.choice(setup, &settings);
+        let Options { strategies, effort, .. } = &mut settings.options;
+        let guide = effort.guide;
+        if let Some(choice) = choice {
+            (*strategies, *effort) = (choice.strategies, Effort { guide, ..choice.effort });
+        }
+        if guide == Guiding::Auto {
+            let pays = training::guide_pays(&setup.scene, &setup.film, &settings);
+            settings.options.effort.guide = if pays { Guiding::Always } else { Guiding::Never };
+        }
+        Ok((settings, choice))
+    }
+
+    /// What a pilot chooses, if it may.
+    fn choice(&self, setup: &Setup, settings: &Settings) -> Option<Choice> {
         let Options { strategies, heuristic, connections, .. } = settings.options;
         let is_judged = heuristic == Heuristic::Balance && connections == Connections::Cached;
         if !self.strategies.is_empty() || strategies.preview().is_some() || !is_judged {
-            return Ok((settings, None));
+            return None;
         }
         let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);
-        let choice = pilot::choose(&setup.scene, &setup.film, &settings, self.starts, is_complete);
-        let guided = settings.options.effort.guided;
-        settings.options.strategies = choice.strategies;
-        settings.options.effort = Effort { guided, ..choice.effort };
-        Ok((settings, Some(choice)))
+        Some(pilot::choose(&setup.scene, &setup.film, settings, self.starts, is_complete))
     }
 
     /// The same without a pilot: all strategies that are not left out.
@@ -208,7 +217,7 @@ impl Estimator {
 
     /// The same with a guide, whatever the scene says.
     pub fn guided_settings(&self, setup: &Setup, budget: Budget) -> Result<Settings> {
-        let guided = Self { guide: true, no_guide: false, ..self.clone() };
+        let guided = Self { guide: Some(Guiding::Always), ..self.clone() };
         guided.requested(setup, 0, budget)
     }
 
@@ -230,12 +239,12 @@ impl Estimator {
         let forced_interaction = self.forced_interaction(setup, strategies);
         let connections = self.connections(scene, strategies);
         let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
-        let guided = self.guided(scene, strategies, heuristic)?;
-        let effort = Effort { guided, learnt_starts: self.learnt_starts(strategies), ..scene.effort };
+        let guide = self.guiding(scene, strategies, heuristic)?;
+        let effort = Effort { guide, learnt_starts: self.learnt_starts(strategies), ..scene.effort };
         Ok(Options {
             strategies,
             effort,
-            basis: self.basis(scene, guided),
+            basis: self.basis(scene, guide),
             heuristic,
             max_depth,
             forced_interaction,
@@ -260,16 +269,19 @@ impl Estimator {
         self.starts == Some(true) && strategies.need_light_walks()
     }
 
-    fn basis(&self, scene: Options, guided: bool) -> Basis {
-        if self.basis.is_some() && !guided {
+    fn basis(&self, scene: Options, guide: Guiding) -> Basis {
+        if self.basis.is_some() && guide == Guiding::Never {
             super::complain("warning: --basis has no effect: walks follow no guide");
         }
         self.basis.unwrap_or(scene.basis)
     }
 
-    fn guided(&self, scene: Options, strategies: Strategies, heuristic: Heuristic) -> Result<bool> {
-        let asked = self.guide || scene.effort.guided || strategies.gather;
-        let guided = asked && !self.no_guide && strategies != Strategies::NONE;
+    fn guiding(&self, scene: Options, strategies: Strategies, heuristic: Heuristic) -> Result<Guiding> {
+        let usual = if strategies.gather { Guiding::Auto } else { scene.effort.guide };
+        let guide = match strategies {
+            Strategies::NONE => Guiding::Never,
+            _ => self.guide.unwrap_or(usual),
+        };
         if strategies.gather && heuristic != Heuristic::Balance {
             let found = format!("the heuristic {heuristic}");
             return Err(Error::new(
@@ -279,12 +291,12 @@ impl Estimator {
                 "remove --heuristic",
             ));
         }
-        if guided && heuristic != Heuristic::Balance {
+        if guide != Guiding::Never && heuristic != Heuristic::Balance {
             let found = format!("the heuristic {heuristic}");
-            let remedy = "choose --heuristic balance, or give --no-guide";
+            let remedy = "choose --heuristic balance, or give --guide never";
             return Err(Error::new("--guide", "the heuristic balance", found, remedy));
         }
-        Ok(guided)
+        Ok(guide)
     }
 
     fn sampler(&self, setup: &Setup) -> Sampler {
@@ -297,7 +309,7 @@ impl Estimator {
         for (is_given, flag) in [
             (self.max_depth.is_some(), "--max-depth"),
             (self.heuristic.is_some(), "--heuristic"),
-            (self.guide, "--guide"),
+            (self.guide.is_some(), "--guide"),
         ] {
             if is_given {
                 let text = "has no effect: the integrator fog does not sample paths";

@@ -15,7 +15,7 @@ use crate::{
     },
     medium::{DistanceMethod, Heterogeneous, MediumIndex, distance::DistanceSampler},
     phase::PhaseModel,
-    render::{Settings, budget::Budget},
+    render::{Settings, budget::Budget, training},
     scene::{
         Infinity, Scene,
         build::Setup,
@@ -41,8 +41,12 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     let budget = Budget::samples(setup.samples_per_pixel);
     let (settings, chosen) = arguments.estimator.chosen(&setup, 0, budget)?;
     let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, None);
+    let learnt = training::learn_for(&setup.scene, &setup.film, &settings).bytes();
     say(&describe(&setup, &settings, &plan));
-    arguments.answer.give(&figures(&setup, &plan))
+    if learnt > 0 {
+        say(&format!("learnt      {:.1} MiB, before the image is begun", learnt as f64 / f64::from(1 << 20)));
+    }
+    arguments.answer.give(&figures(&setup, &plan, learnt))
 }
 
 fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
@@ -76,7 +80,7 @@ fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
 }
 
 /// The same for scripts.
-fn figures(setup: &Setup, plan: &Plan) -> Value {
+fn figures(setup: &Setup, plan: &Plan, learnt: usize) -> Value {
     let Setup { scene, film, .. } = setup;
     let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
     let emitters = scene.lights.all.iter();
@@ -99,6 +103,7 @@ fn figures(setup: &Setup, plan: &Plan) -> Value {
         "media": (1..=setup.medium_names.len()).map(|index| medium_figures(setup, index)).collect::<Vec<_>>(),
         "overlaps": overlapping(setup).collect::<Vec<_>>(),
         "plan": plan.json(),
+        "learnt_bytes": learnt,
         "warnings": setup.warnings,
     })
 }

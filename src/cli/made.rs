@@ -78,7 +78,7 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
     if options.effort.learnt_starts && settings["chosen_by_pilot"].is_null() {
         settings["learnt_starts"] = true.into();
     }
-    if options.effort.guided {
+    if options.effort.is_guided() {
         settings["guide"] = true.into();
         if options.basis != Basis::default() {
             settings["basis"] = options.basis.name().into();

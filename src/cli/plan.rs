@@ -81,7 +81,7 @@ impl Plan {
     /// How often strategies run that do not all run equally often.
     fn effort(&self) -> String {
         let Options { strategies, effort, .. } = self.settings.options;
-        let Effort { survival, light_walks, connections, learnt_starts, guided } = effort;
+        let Effort { survival, light_walks, connections, learnt_starts, .. } = effort;
         let mut text = String::new();
         if self.settings.options.connections == Connections::All {
             text += "; every vertex joins all of a light subpath";
@@ -95,7 +95,7 @@ impl Plan {
         if learnt_starts {
             text += "; learnt starts";
         }
-        if guided {
+        if effort.is_guided() {
             text += "; guided walks";
         }
         text += match survival {
@@ -158,7 +158,7 @@ impl Plan {
                 Connections::All => "all".into(),
             },
             "learnt_starts": effort.learnt_starts,
-            "guided": effort.guided,
+            "guided": effort.is_guided(),
             "time_of_all_strategies": self.chosen.map(|choice| choice.gain),
             "sampler": points.name(),
             "free_flights": self.flights.iter().map(|method| method.name()).collect::<Vec<_>>(),

@@ -39,8 +39,16 @@ pub struct Learnt {
     pub radiance: Option<Arc<Radiance>>,
 }
 
-/// What a may be: the part of the directions that are not guided.
-const UNGUIDED: [f32; 6] = [0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
+impl Learnt {
+    /// Memory that the guide and the radiance take [bytes].
+    pub fn bytes(&self) -> usize {
+        self.guide.as_deref().map_or(0, Guide::bytes) + self.radiance.as_deref().map_or(0, Radiance::bytes)
+    }
+}
+
+/// What a may be: the part of the directions that are not guided. It multiplies what a path weighs by 1 / a at a vertex, at most, and
+/// the choice looks at one vertex at a time.
+const UNGUIDED: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
 /// Directions, as [`effective`] counts them, that a cell has at least.
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root: there are 4,096 of surfaces, and as many of media.

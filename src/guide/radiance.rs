@@ -83,6 +83,11 @@ impl Radiance {
         Self { places, surfaces: cells(true), media: cells(false) }
     }
 
+    /// Memory that it takes [bytes].
+    pub fn bytes(&self) -> usize {
+        self.surfaces.bytes() + self.media.bytes()
+    }
+
     /// At a place [W/(m^2 sr)]; 0 where nothing was seen of its kind.
     #[inline]
     pub fn at(&self, place: &Seen) -> Spectrum {

@@ -167,7 +167,7 @@ pub(super) fn choose<'a>(
     let prepare = match (heuristic, settings.profile) {
         (Heuristic::Power | Heuristic::Maximum | Heuristic::Uniform, _) => Ready::<ByCompared>::prepare,
         (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
-        (Heuristic::Balance, profile) if effort.guided || strategies.gather => match profile {
+        (Heuristic::Balance, profile) if effort.is_guided() || strategies.gather => match profile {
             ProfileName::Vacuum => Ready::<Guided<Vacuum>>::prepare,
             ProfileName::Fog => Ready::<Guided<Fog>>::prepare,
             ProfileName::Bounded | ProfileName::Smoke => Ready::<Guided<Smoke>>::prepare,

@@ -18,7 +18,7 @@ use crate::{
     math::{Channels, Spectrum, SpectrumExt, Vec2},
     sampling::Sampler,
     scene::{Scene, lights::EmissionSample},
-    settings::options::{Effort, Survival},
+    settings::options::{Effort, Guiding, Survival},
     transport::{
         Contribution, Departure, MisSums, Options, Strategies, Vertex, equiangular_applies,
         observer::{Meeting, Observer, StrategyKind},
@@ -166,7 +166,7 @@ fn candidates(all: Strategies, survival: Survival, learnt: bool) -> impl Iterato
                 light_walks,
                 connections: *connections,
                 learnt_starts,
-                guided: false,
+                guide: Guiding::Never,
             };
             connections.iter().map(effort)
         });

@@ -126,6 +126,24 @@ impl Connections {
     pub const NAMES: [(&'static str, Self); 2] = [("cached", Self::Cached), ("all", Self::All)];
 }
 
+/// When walks follow a guide.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Guiding {
+    /// Never.
+    #[default]
+    Never,
+    /// Where it lowers the error by more than it takes, as a few samples foresee.
+    Auto,
+    /// Always.
+    Always,
+}
+
+impl Guiding {
+    /// Each as typed.
+    pub const NAMES: [(&'static str, Self); 3] =
+        [("never", Self::Never), ("auto", Self::Auto), ("always", Self::Always)];
+}
+
 /// How many samples the strategies take, for each pixel sample, and how long walks are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
@@ -138,7 +156,7 @@ pub struct Effort {
     /// Light subpaths start where, as a pilot learns, light reaches the image.
     pub learnt_starts: bool,
     /// Walks follow a guide, learnt beforehand.
-    pub guided: bool,
+    pub guide: Guiding,
 }
 
 impl Effort {
@@ -148,8 +166,15 @@ impl Effort {
         light_walks: 1.0,
         connections: 1,
         learnt_starts: false,
-        guided: false,
+        guide: Guiding::Never,
     };
+}
+
+impl Effort {
+    /// True where a guide is followed, or may be.
+    pub fn is_guided(&self) -> bool {
+        self.guide != Guiding::Never
+    }
 }
 
 impl Default for Effort {
@@ -205,7 +230,8 @@ pub(super) const PATHS: &[Parameter] = rows! {
 
 /// What those have that sample paths.
 pub(super) const GUIDE: &[Parameter] = rows! {
-    boolean("guide", false, "Walks follow a guide, learnt beforehand: where light comes from, and where it is seen from.").ours(),
+    choice("guide", &words::<3, _>(&Guiding::NAMES), "never",
+        "When walks follow a guide, learnt beforehand: where light comes from, and where it is seen from.").ours(),
     choice("guide_basis", &words::<3, _>(&Basis::NAMES), "quadtree",
         "How a guide keeps directions: adaptive `quadtree`, equal `bins`, `haar` wavelets (P03T sec. 5.2.1, A.1).").ours(),
 };
@@ -233,7 +259,10 @@ impl Options {
         let samples = strategies != Strategies::NONE;
         Ok(Self {
             strategies,
-            effort: Effort { guided: samples && params.boolean("guide")?, ..Effort::default() },
+            effort: Effort {
+                guide: if samples { params.choice("guide", &Guiding::NAMES)? } else { Guiding::Never },
+                ..Effort::default()
+            },
             basis: if samples { params.choice("guide_basis", &Basis::NAMES)? } else { Basis::default() },
             connections: Connections::default(),
             // Limits that u32 does not hold are none.

@@ -89,7 +89,7 @@ pub use walk::Departure;
 
 pub use crate::{
     settings::heuristic::Heuristic,
-    settings::options::{Connections, Effort, Options, Strategies, Survival},
+    settings::options::{Connections, Effort, Guiding, Options, Strategies, Survival},
 };
 
 use crate::{

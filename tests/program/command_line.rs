@@ -231,18 +231,20 @@ fn sums_know_the_step_that_was_marched_by() {
     sandbox.run(&format!("render scene.json --spp 1 {all}")).ends(0);
     let pairs = format!("render scene.json --spp 2 {all} --resume --connections all");
     sandbox.run(&pairs).refuses(&["connections = \"all\""]);
-    sandbox.run(&format!("render scene.json --spp 2 {all} --resume --guide")).refuses(&["guide = true"]);
-    sandbox.run("render scene.json --spp 2 --guide --heuristic power").refuses(&[
+    sandbox
+        .run(&format!("render scene.json --spp 2 {all} --resume --guide always"))
+        .refuses(&["guide = true"]);
+    sandbox.run("render scene.json --spp 2 --guide auto --heuristic power").refuses(&[
         "--guide",
         "power",
-        "--no-guide",
+        "--guide never",
     ]);
-    let guided = sandbox.run("render scene.json --spp 2 --guide").ends(0).err();
+    let guided = sandbox.run("render scene.json --spp 2 --guide always").ends(0).err();
     assert!(guided.contains("guided walks"), "{guided}");
     sandbox
         .run(&format!("render scene.json --spp 2 {all} --resume --starts learnt"))
         .refuses(&["learnt_starts = true"]);
-    let kept = "render scene.json --strategies hit,next-event,join,lens --spp 1 --guide --sums c.sums";
+    let kept = "render scene.json --strategies hit,next-event,join,lens --spp 1 --guide always --sums c.sums";
     sandbox.run(kept).ends(0);
     sandbox.run(&format!("{kept} --resume --basis haar")).refuses(&["basis = \"haar\""]);
     for (words, flag) in [("--starts learnt --integrator pt", "--starts"), ("--basis bins", "--basis")] {

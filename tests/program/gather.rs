@@ -45,7 +45,7 @@ fn scenes_with_little_to_show_are_shown() {
     assert!(sandbox.channels("dark.exr")["G"].iter().all(|value| *value == 0.0));
     let sandbox = divided();
     sandbox
-        .run("render scene.json --integrator gather --no-guide --max-depth 2 --spp 4 -o direct.exr")
+        .run("render scene.json --integrator gather --guide never --max-depth 2 --spp 4 -o direct.exr")
         .ends(0);
     sandbox
         .run("render scene.json --integrator pt --strategies hit,next-event --max-depth 2 --spp 4 -o pt.exr")

@@ -46,6 +46,11 @@ fn what_is_learnt_is_shown_alike_by_any_threads() {
     assert!(seen > 0.0 && seen <= 1.0, "{first}");
     // One emitter has all starts, learnt or not.
     assert_eq!(first["starts"], json!([{"emitter": 0, "unlearnt": 1.0, "learnt": 1.0}]));
+    for (guide, learns) in [("always", true), ("never", false)] {
+        let run = sandbox.run(&format!("info scene.json --guide {guide} --json")).ends(0);
+        let bytes = serde_json::from_str::<Value>(&run.out()).unwrap()["learnt_bytes"].as_u64().unwrap();
+        assert_eq!((bytes > 1000, bytes < 1), (learns, !learns), "{guide}: {bytes}");
+    }
     for threads in [2, 7] {
         sandbox.run(&format!("guide scene.json --threads {threads} -o other")).ends(0);
         assert_eq!(numbers(&sandbox, "other/guide.json"), first, "{threads} threads");
@@ -98,7 +103,7 @@ fn of_a_black_scene_nothing_is_learnt() {
     assert!(run.out().contains("nothing"), "{}", run.out());
     assert!(sandbox.path("scene-guide/guide.json").is_file());
     assert!(!sandbox.path("scene-guide/cells.png").exists());
-    sandbox.run("render scene.json --guide --spp 1").ends(0);
+    sandbox.run("render scene.json --guide always --spp 1").ends(0);
 }
 
 #[test]
@@ -109,13 +114,38 @@ fn what_cannot_be_guided_is_refused() {
     sandbox.run("guide missing.json").refuses(&["missing.json"]);
 }
 
+/// Path tracing alone has a use for a guide, where light comes round corners.
+#[test]
+fn walks_follow_a_guide_where_it_pays() {
+    let scene = |name| format!("{}/scenes/gallery/{name}", env!("CARGO_MANIFEST_DIR"));
+    let [indirect, open] = ["indirect_room.json", "cornell_d.json -D medium=0"].map(scene);
+    let sandbox = Sandbox::new();
+    for (scene, words, follows) in [
+        (&indirect, "--integrator pt --guide auto", true),
+        (&indirect, "--strategies hit,next-event --guide auto", true),
+        (&indirect, "--integrator bdpt --guide auto", false),
+        (&indirect, "--integrator pt", false),
+        (&open, "--integrator pt --guide auto", false),
+        (&open, "--integrator pt --guide always", true),
+    ] {
+        let render = format!("render {scene} {words} --size 32x24 -o a.exr --sums a.sums --json");
+        let plan: Value =
+            serde_json::from_str(&sandbox.run(&format!("{render} --spp 1")).ends(0).out()).unwrap();
+        assert_eq!(plan["plan"]["guided"], json!(follows), "{words}: {plan}");
+        sandbox.run(&format!("{render} --spp 2 --resume")).ends(0);
+        std::fs::remove_file(sandbox.path("a.sums")).unwrap();
+    }
+}
+
 /// A guide is learnt anew from the scene by every part of an image, and is the same each time.
 #[test]
 fn parts_of_a_guided_image_make_the_whole() {
     let sandbox = Sandbox::with_scene(&divided(1.0));
     for strategies in ["hit,next-event", "hit,next-event,join,lens"] {
         let render = |words: &str| {
-            sandbox.run(&format!("render scene.json --guide --strategies {strategies} {words}")).ends(0)
+            sandbox
+                .run(&format!("render scene.json --guide always --strategies {strategies} {words}"))
+                .ends(0)
         };
         render("--spp 4 -o whole.exr");
         render("--samples 0..2 -o a.exr --sums a.sums");
@@ -124,7 +154,7 @@ fn parts_of_a_guided_image_make_the_whole() {
         let [whole, merged] = ["whole.exr", "merged.exr"].map(|name| sandbox.channels(name));
         assert_eq!(whole["G"], merged["G"], "{strategies}");
         sandbox
-            .run(&format!("render scene.json --no-guide --strategies {strategies} --spp 4 -o plain.exr"))
+            .run(&format!("render scene.json --guide never --strategies {strategies} --spp 4 -o plain.exr"))
             .ends(0);
         assert_ne!(whole["G"], sandbox.channels("plain.exr")["G"], "{strategies}");
     }

@@ -11,7 +11,7 @@ use crate::common::{
 use serde_json::{Value, json};
 use tyndall::{
     analysis::coverage,
-    transport::{Connections, Options, Strategies},
+    transport::{Connections, Guiding, Options, Strategies},
 };
 
 /// What decides which strategies can make all paths of a scene.
@@ -70,7 +70,7 @@ fn all_agree(name: &str, scene: &Value, kind: Kind, samples_per_pixel: u64) {
     claims.equal(&format!("{name}: pairs of walks against all strategies"), &pairs, all);
     let mut guided = paired;
     guided.setup.integrator.options.connections = Connections::Cached;
-    guided.setup.integrator.options.effort.guided = true;
+    guided.setup.integrator.options.effort.guide = Guiding::Always;
     let led = Sample::of(
         &guided.renders(Strategies::BDPT, samples_per_pixel, 60_000..60_000 + SEEDS),
         guided.width(),

@@ -2,7 +2,10 @@
 
 use crate::common::{Stage, pieces::*};
 use serde_json::{Value, json};
-use tyndall::{math::SpectrumExt, transport::Strategies};
+use tyndall::{
+    math::SpectrumExt,
+    transport::{Guiding, Strategies},
+};
 
 /// A hollow ball around the camera whose wall reflects a half and shines, and a thing in it.
 fn furnace(fog: Option<Value>, thing: Option<Value>) -> Stage {
@@ -26,8 +29,8 @@ fn furnace(fog: Option<Value>, thing: Option<Value>) -> Stage {
 /// The mean radiance of some images, one half with a guide and one half without.
 fn mean(stage: &mut Stage, strategies: Strategies) -> f64 {
     let mut all = Vec::new();
-    for guided in [false, true] {
-        stage.setup.integrator.options.effort.guided = guided;
+    for guide in [Guiding::Never, Guiding::Always] {
+        stage.setup.integrator.options.effort.guide = guide;
         all.extend(stage.renders(strategies, 64, 0..4).concat());
     }
     all.iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / all.len() as f64
@@ -94,13 +97,13 @@ fn glossy_surfaces_are_no_places_to_end() {
     }
     let mut stage = Stage::new(&reflector);
     // Of the dim parts: few paths make the bright ones.
-    let mut median = |strategies: Strategies, guided: bool| {
-        stage.setup.integrator.options.effort.guided = guided;
+    let mut median = |strategies: Strategies, guide: Guiding| {
+        stage.setup.integrator.options.effort.guide = guide;
         let image = stage.render(strategies, 256, 0);
         let mut all: Vec<f64> = image.iter().map(|pixel| f64::from(pixel.luminance())).collect();
         all.sort_by(f64::total_cmp);
         all[all.len() / 2]
     };
-    let expected = median(Strategies::BDPT, false);
-    assert_close("reflector", median(Strategies::GATHER, true), expected, 0.5);
+    let expected = median(Strategies::BDPT, Guiding::Never);
+    assert_close("reflector", median(Strategies::GATHER, Guiding::Always), expected, 0.5);
 }

@@ -6,7 +6,7 @@ use crate::common::{
     pieces::*,
 };
 use serde_json::{Value, json};
-use tyndall::transport::{Effort, Strategies};
+use tyndall::transport::{Effort, Guiding, Strategies};
 
 /// Light comes round a wall, to plastic and fog.
 fn divided_room(fog: Option<Value>) -> Value {
@@ -30,7 +30,7 @@ fn guided_walks_show_the_same() {
     let mut claims = Claims::new();
     let forward =
         [("scale", json!(4)), ("albedo", rgb(0.95, 0.9, 0.8)), ("phase", json!({"type": "hg", "g": 0.7}))];
-    let guided = Effort { guided: true, ..Effort::default() };
+    let guided = Effort { guide: Guiding::Always, ..Effort::default() };
     for (name, scene) in [
         ("vacuum", divided_room(None)),
         ("fog", divided_room(Some(medium(0.7, 0.8, 0.3)))),

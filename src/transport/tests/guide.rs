@@ -6,6 +6,7 @@ use crate::{
     guide::{Guide, Lesson},
     math::{SpectrumExt, Vec3, vec3, warp},
     sampling::Basis,
+    settings::options::Guiding,
     testing,
     transport::observer::Sum,
 };
@@ -43,7 +44,7 @@ pub fn arbitrary() -> Arc<Guide> {
 
 #[test]
 fn weights_of_guided_paths() {
-    let options = Options { effort: Effort { guided: true, ..ALL.effort }, ..ALL };
+    let options = Options { effort: Effort { guide: Guiding::Always, ..ALL.effort }, ..ALL };
     let all = |name: &'static str, report: Report| {
         assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
     };
@@ -68,7 +69,7 @@ fn weights_of_guided_paths() {
 
 /// Mean luminance of the film and its variance, without what light subpaths show the lens.
 fn mean<P: Profile>(setup: &Setup, options: Options, seed: u64) -> (f64, f64) {
-    let learnt = Learnt { guide: options.effort.guided.then(arbitrary), ..Learnt::default() };
+    let learnt = Learnt { guide: options.effort.is_guided().then(arbitrary), ..Learnt::default() };
     let estimator = Estimator::<P>::new(&setup.scene, options, learnt, SEED, PIXELS, PIXELS);
     let batches = 400;
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -105,7 +106,7 @@ fn a_guide_of_another_scene_shows_the_same() {
             ("join", Strategies { lens: false, ..Strategies::BDPT }),
         ] {
             let options = Options { strategies, max_depth: Some(5), ..ALL };
-            let guided = Options { effort: Effort { guided: true, ..ALL.effort }, ..options };
+            let guided = Options { effort: Effort { guide: Guiding::Always, ..ALL.effort }, ..options };
             let ((usual, a), (other, b)) = (mean::<P>(&setup, options, 1), mean::<G>(&setup, guided, 2));
             let z = (usual - other).abs() / (a + b).sqrt();
             let most = -Normal::standard().inverse_cdf(testing::significance(9) / 2.0);

@@ -51,7 +51,8 @@ const SEED: u64 = 1;
 /// Compares all paths that `pairs` camera and light subpaths make.
 fn examine<P: Profile>(name: &'static str, setup: &Setup, options: Options, pairs: u64) -> Report {
     let starts = options.effort.learnt_starts.then(|| starts::lessons(setup));
-    let learnt = Learnt { starts, guide: options.effort.guided.then(guide::arbitrary), ..Learnt::default() };
+    let learnt =
+        Learnt { starts, guide: options.effort.is_guided().then(guide::arbitrary), ..Learnt::default() };
     let estimator = Estimator::<P>::new(&setup.scene, options, learnt, SEED, PIXELS, PIXELS);
     let reference = Reference::new(&estimator);
     let mut report = Report::new(name);
