@@ -36,7 +36,7 @@ pub struct Estimator {
     ///
     /// bdpt: bidirectional path tracing; pt: path tracing from the camera; lt: light tracing (particle tracing)
     /// from the emitters; gather: a preview by path tracing that ends where it scatters for the second time, in radiance that is
-    /// learnt in seconds: biased, blotchy in dense clouds, and far less noisy than pt where surfaces or thin fog light a room; fog: a preview of the first visible surfaces without
+    /// learnt in seconds: biased, by blur, and far less noisy than pt in clouds and where surfaces light each other; fog: a preview of the first visible surfaces without
     /// shadows, behind fog of constant radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
     /// non_scattering its restriction of media still applies, unless --scattering says otherwise.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Strategies::INTEGRATORS))]

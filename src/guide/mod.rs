@@ -24,7 +24,7 @@ use crate::{
     scene::lights::Starts,
 };
 use places::Places;
-pub use radiance::{Radiance, Seen};
+pub use radiance::{Look, Radiance, Seen};
 use rayon::prelude::*;
 use std::sync::Arc;
 

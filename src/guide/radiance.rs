@@ -7,11 +7,14 @@ use crate::{
     math::{Spectrum, SpectrumExt, Vec3},
     sampling::{Cells, cells::Keyed},
 };
+use rayon::prelude::*;
 
 /// Looks at each cell, at least half of it: a cell's noise is blurred again by those who look at many.
 const PER_CELL: f64 = 64.0;
 /// Levels of cells below the root: there are 32,768 of surfaces, and as many of media.
 const LEVELS: u32 = 15;
+/// Change of all radiance by one more bounce, below which no more is to come.
+const SETTLED: f32 = 1e-6;
 
 /// What is seen of a place, on average.
 #[derive(Clone, Copy, Debug)]
@@ -39,12 +42,40 @@ impl Seen {
         let facing = incoming * mean_cosine.abs();
         Self { position, facing, is_surface: false, radiance: Spectrum::ZERO }
     }
+
+    /// What its cell is found by.
+    #[inline]
+    fn key(&self, places: &Places) -> [f32; 6] {
+        places.facing(self.position, self.facing)
+    }
+}
+
+/// A place that a walk came to.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    /// The place, and what it scatters by itself [W/(m^2 sr)].
+    pub seen: Seen,
+    /// A later look that the walk came to next, and the part of its radiance that this place scatters as well.
+    pub onward: Option<(u32, Spectrum)>,
+    /// Of each channel, 1 if the walk sampled distances by it, else 0.
+    pub channels: Spectrum,
+    /// The walk was followed far enough to say what it scatters.
+    pub is_whole: bool,
+}
+
+impl Look {
+    /// What the place scatters, where others have the radiance `at` their indices.
+    fn lit_by(&self, at: impl Fn(usize) -> Spectrum) -> Spectrum {
+        let onward = self.onward.map_or(Spectrum::ZERO, |(next, part)| part * at(next as usize));
+        self.seen.radiance + onward
+    }
 }
 
 /// A look with what its cell is found by.
 struct Known {
     key: [f32; 6],
-    radiance: Spectrum,
+    value: f32,
+    index: u32,
 }
 
 impl Keyed<6> for Known {
@@ -56,7 +87,7 @@ impl Keyed<6> for Known {
     }
     /// Where light ends at a wall, so do cells.
     fn value(&self) -> Option<f32> {
-        Some(self.radiance.luminance().max(0.0).sqrt())
+        Some(self.value)
     }
 }
 
@@ -64,39 +95,125 @@ impl Keyed<6> for Known {
 #[derive(Clone, Debug)]
 pub struct Radiance {
     places: Places,
-    surfaces: Cells<6, Spectrum>,
-    media: Cells<6, Spectrum>,
+    surfaces: Cells<6, u32>,
+    media: Cells<6, u32>,
+    /// That of each cell.
+    values: Vec<Spectrum>,
 }
 
 impl Radiance {
-    /// As `seen` somewhere.
-    pub fn learn(seen: &[Seen]) -> Self {
-        let places = Places::around(seen.iter().map(|seen| seen.position));
-        let cells = |is_surface| {
-            let own = seen.iter().filter(|seen| seen.is_surface == is_surface);
-            let known = own.map(|seen| Known {
-                key: places.facing(seen.position, seen.facing),
-                radiance: seen.radiance,
+    /// As `looks` say of light that is scattered so many times on its way from one place to another, at most.
+    ///
+    /// Where cells should end is seen from how bright places are: first as each walk alone found them, then as the first cells are
+    /// lit by each other.
+    pub fn learn(looks: &[Look], most_bounces: u32) -> Self {
+        let first = Self::between(looks, &walked(looks), most_bounces);
+        let lit = |look: &Look| look.lit_by(|next| first.at(&looks[next].seen));
+        Self::between(looks, &looks.par_iter().map(lit).collect::<Vec<_>>(), most_bounces)
+    }
+
+    /// In cells that end where the radiance of places differs that is `shown`.
+    fn between(looks: &[Look], shown: &[Spectrum], most_bounces: u32) -> Self {
+        let places = Places::around(looks.iter().map(|look| look.seen.position));
+        let mut leaves: Vec<Vec<u32>> = Vec::new();
+        let mut cells = |is_surface| {
+            let own = looks.iter().zip(shown).enumerate();
+            let own = own.filter(|(_, (look, _))| look.is_whole && look.seen.is_surface == is_surface);
+            let known = own.map(|(index, (look, shown))| Known {
+                key: look.seen.key(&places),
+                value: shown.luminance().max(0.0).sqrt(),
+                index: index as u32,
             });
-            Cells::learn(known.collect(), PER_CELL, LEVELS, mean)
+            Cells::learn(known.collect(), PER_CELL, LEVELS, |known| {
+                leaves.push(known.into_iter().map(|known| known.index).collect());
+                leaves.len() as u32 - 1
+            })
         };
-        Self { places, surfaces: cells(true), media: cells(false) }
+        let (surfaces, media) = (cells(true), cells(false));
+        let mut radiance = Self { places, surfaces, media, values: vec![Spectrum::ZERO; leaves.len()] };
+        let cells: Vec<_> = looks.par_iter().map(|look| radiance.cell(&look.seen)).collect();
+        let balances = leaves.par_iter().map(|leaf| Balance::of(looks, leaf, &cells)).collect::<Vec<_>>();
+        radiance.values = solve(&balances, most_bounces);
+        radiance
     }
 
     /// Memory that it takes [bytes].
     pub fn bytes(&self) -> usize {
-        self.surfaces.bytes() + self.media.bytes()
+        self.surfaces.bytes() + self.media.bytes() + size_of_val(&self.values[..])
     }
 
     /// At a place [W/(m^2 sr)]; 0 where nothing was seen of its kind.
     #[inline]
     pub fn at(&self, place: &Seen) -> Spectrum {
-        let key = self.places.facing(place.position, place.facing);
+        self.cell(place).map_or(Spectrum::ZERO, |cell| self.values[cell as usize])
+    }
+
+    #[inline]
+    fn cell(&self, place: &Seen) -> Option<u32> {
         let cells = if place.is_surface { &self.surfaces } else { &self.media };
-        cells.at(key).copied().unwrap_or(Spectrum::ZERO)
+        cells.at(place.key(&self.places)).copied()
     }
 }
 
-fn mean(known: Vec<Known>) -> Spectrum {
-    known.iter().map(|known| known.radiance).sum::<Spectrum>() / known.len() as f32
+/// The radiance of places as the walks that came there found it.
+fn walked(looks: &[Look]) -> Vec<Spectrum> {
+    let mut all = vec![Spectrum::ZERO; looks.len()];
+    // Walks go on to later looks.
+    for (index, look) in looks.iter().enumerate().rev() {
+        all[index] = look.lit_by(|next| all[next]);
+    }
+    all
+}
+
+/// What a cell scatters.
+struct Balance {
+    /// By itself.
+    source: Spectrum,
+    /// The parts of other cells' radiance that it scatters as well.
+    transfers: Vec<(u32, Spectrum)>,
+}
+
+impl Balance {
+    /// Of the looks of a cell, as their means, where `cells` has those of all looks.
+    fn of(looks: &[Look], leaf: &[u32], cells: &[Option<u32>]) -> Self {
+        let own = || leaf.iter().map(|index| &looks[*index as usize]);
+        // Each channel by walks that sampled by it: by others, it is as noisy as their densities differ.
+        let each = own().map(|look| look.channels).sum::<Spectrum>().max(Spectrum::ONE).recip();
+        let source = own().map(|look| look.channels * look.seen.radiance).sum::<Spectrum>() * each;
+        let onward = |look: &Look| {
+            let (to, part) = look.onward?;
+            Some((cells[to as usize]?, look.channels * part * each))
+        };
+        let mut transfers: Vec<_> = own().filter_map(onward).collect();
+        transfers.sort_by_key(|(to, _)| *to);
+        transfers.dedup_by(|(to, part), (before, sum)| {
+            let is_same = to == before;
+            *sum += if is_same { *part } else { Spectrum::ZERO };
+            is_same
+        });
+        // By chance alone cells scatter more than all there is.
+        let most = transfers.iter().map(|(_, part)| *part).sum::<Spectrum>().max(Spectrum::ONE);
+        transfers.iter_mut().for_each(|(_, part)| *part /= most);
+        Self { source, transfers }
+    }
+
+    fn radiance(&self, values: &[Spectrum]) -> Spectrum {
+        let scattered = self.transfers.iter().map(|(from, part)| *part * values[*from as usize]);
+        self.source + scattered.sum::<Spectrum>()
+    }
+}
+
+/// The radiance of all cells, after so many bounces at most.
+fn solve(balances: &[Balance], most_bounces: u32) -> Vec<Spectrum> {
+    let mut values: Vec<Spectrum> = balances.iter().map(|balance| balance.source).collect();
+    for _ in 0..most_bounces {
+        let next: Vec<_> = balances.par_iter().map(|balance| balance.radiance(&values)).collect();
+        let change: f32 = next.iter().zip(&values).map(|(a, b)| (*a - *b).abs().element_sum()).sum();
+        let all: f32 = next.iter().map(|value| value.element_sum()).sum();
+        values = next;
+        if change <= SETTLED * all {
+            break;
+        }
+    }
+    values
 }

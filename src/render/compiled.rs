@@ -201,16 +201,14 @@ pub(super) fn trial(
     Trial::run(&Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK), tasks, for_guide)
 }
 
-/// What camera subpaths of `tasks` by `settings` see of places that they come to, to which light comes by no more than so
-/// many segments.
+/// What camera subpaths of `tasks` by `settings` see of places that they come to.
 pub(super) fn look(
     scene: &Scene,
     film: &Film,
     settings: &Settings,
     learnt: Learnt,
     tasks: Range<usize>,
-    most_edges: u32,
 ) -> Looks {
     let ready = Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK);
-    radiance::look(&ready, tasks, most_edges)
+    radiance::look(&ready, tasks)
 }

@@ -1,7 +1,7 @@
-//! Radiance, learnt for the preview `gather`: places that camera subpaths come to are lit by the light subpaths of their block.
+//! Radiance, learnt for the preview `gather`: path tracing finds what lights places directly, and which places light each other.
 //!
-//! What a vertex scatters to the one before is what next-event estimation and connections at it bring, each as if it ran alone,
-//! and emitters that the walk hits next: neither takes the noise of a longer walk. Mirrors and glass cannot be connected to:
+//! What a vertex scatters to the one before is what next-event estimation brings there, and emitters that the walk hits next;
+//! and, of what the next vertex scatters, the part that the walk carries on. Mirrors and glass, and glossy surfaces, are no places:
 //! what is seen in them belongs to the vertex before.
 
 use super::{
@@ -11,13 +11,13 @@ use super::{
 };
 use crate::{
     film::Film,
-    guide::{Learnt, Radiance, Seen},
+    guide::{Learnt, Look, Radiance, Seen},
     math::{Spectrum, Vec2},
     scene::Scene,
     transport::{
-        Contribution, Departure, MisSums, Options, Strategies, Vertex,
+        Contribution, Departure, MisSums, Options, Strategies, Subpath, Vertex,
         observer::{Meeting, Observer, StrategyKind},
-        profile::Profile,
+        profile::{Needs, Profile},
     },
 };
 use rayon::prelude::*;
@@ -30,66 +30,78 @@ const LOOKS: usize = 1 << 20;
 /// Segments that are.
 const SEGMENTS: f64 = 3e6;
 /// Camera subpaths that are: many may see nothing.
-const SUBPATHS: usize = 1 << 18;
-/// Segments of a path, at most: what comes later would be most of the time and little of the light.
-const DEEPEST: u32 = 256;
-/// Segments of a path that is looked at, at least: most places should be come to by several segments.
-const LEAST: u32 = 32;
+const SUBPATHS: usize = 1 << 20;
+/// Segments of a path that light takes, at most, where images have no limit: later ones bring little.
+const DEEPEST: u32 = 1024;
+/// Segments of a walk.
+const LONGEST: u32 = 32;
+/// Segments to the last vertex of which a walk is sure to say what it scatters: beyond, not all of them go on to another place.
+const WHOLE: u32 = 24;
 
-/// Most segments of the paths that are looked at, where images have such of `max_depth`.
-pub(super) fn deepest(max_depth: Option<u32>) -> u32 {
-    max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST))
+/// How often light is scattered on its way from one place to another, at most, where images have paths of `max_depth`: of those, a
+/// segment leads to the camera's first vertex, one to the second and one from the emitter, at least.
+pub(super) fn most_bounces(max_depth: Option<u32>) -> u32 {
+    max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST)).saturating_sub(3)
 }
 
-/// What is seen of `scene`, by light subpaths that begin as was `learnt`.
-pub(super) fn learn(scene: &Scene, film: &Film, settings: &Settings, learnt: &Learnt) -> Radiance {
-    // Of a path, a segment leads to the camera's first vertex and one to the second, at least.
-    let most_edges = deepest(settings.options.max_depth).saturating_sub(2);
-    let strategies = Strategies { lens: false, ..Strategies::BDPT };
-    let options = Options { strategies, max_depth: Some(longest(most_edges)), ..settings.options };
+/// What is seen of `scene` after so many bounces, by walks that follow what was `learnt`.
+pub(super) fn learn(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    learnt: &Learnt,
+    most_bounces: u32,
+) -> Radiance {
+    let options = Options { strategies: Strategies::PT, max_depth: Some(LONGEST), ..settings.options };
     let settings = Settings { options, ..*settings };
     let (mut all, mut done, mut subpaths) = (Looks::default(), 0, 0);
-    while all.seen.len() < LOOKS && all.segments < SEGMENTS && subpaths < SUBPATHS {
+    while all.looks.len() < LOOKS && all.segments < SEGMENTS && subpaths < SUBPATHS {
         let tasks = done..done + STEP.div_ceil(film.len().min(PIXELS_PER_BLOCK));
         done = tasks.end;
         subpaths += STEP;
-        let more = compiled::look(scene, film, &settings, learnt.clone(), tasks, most_edges);
-        all.seen.extend(more.seen);
-        all.segments += more.segments;
+        all.add(compiled::look(scene, film, &settings, learnt.clone(), tasks));
     }
-    Radiance::learn(&all.seen)
-}
-
-/// Most segments of the paths that are looked at, where light comes to places by so many: half of them, at least, lead to places.
-fn longest(most_edges: u32) -> u32 {
-    (2 * most_edges).max(LEAST)
+    Radiance::learn(&all.looks, most_bounces)
 }
 
 /// What was seen, and what it took.
 #[derive(Default)]
 pub(super) struct Looks {
-    seen: Vec<Seen>,
+    looks: Vec<Look>,
     segments: f64,
 }
 
+impl Looks {
+    fn add(&mut self, more: Self) {
+        let first = self.looks.len() as u32;
+        let after = |look: Look| Look { onward: look.onward.map(|(to, part)| (first + to, part)), ..look };
+        self.looks.extend(more.looks.into_iter().map(after));
+        self.segments += more.segments;
+    }
+}
+
 /// Blocks of passes, numbered over all of them.
-pub(super) fn look<P: Profile>(ready: &Ready<'_, P>, tasks: Range<usize>, most_edges: u32) -> Looks {
+pub(super) fn look<P: Profile>(ready: &Ready<'_, P>, tasks: Range<usize>) -> Looks {
     let blocks = ready.blocks.count();
-    let part = |task| part(ready, [task / blocks, task % blocks], most_edges);
-    let parts: Vec<Looks> = tasks.into_par_iter().map(part).collect();
+    let parts: Vec<Looks> =
+        tasks.into_par_iter().map(|task| part(ready, [task / blocks, task % blocks])).collect();
     parts.into_iter().fold(Looks::default(), |mut all, part| {
-        all.seen.extend(part.seen);
-        Looks { segments: all.segments + part.segments, ..all }
+        all.add(part);
+        all
     })
 }
 
-fn part<P: Profile>(ready: &Ready<'_, P>, [pass, block]: [usize; 2], most_edges: u32) -> Looks {
+fn part<P: Profile>(ready: &Ready<'_, P>, [pass, block]: [usize; 2]) -> Looks {
     let Ready { estimator, blocks, scene, film, seed } = ready;
-    let mut eye = Eye { scene, most_edges, walk: Vec::new(), looks: Looks::default() };
+    let chromatic = Needs::of(scene, false).chromatic;
+    let mut eye = Eye { scene, channels: Spectrum::ONE, walk: Vec::new(), looks: Looks::default() };
     let mut observer: &mut dyn Observer<P::MisSums> = &mut eye;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
     for pixel in blocks.pixels(block) {
         let start = blocks.camera_start(scene, film, *seed, pass, pixel);
+        if chromatic {
+            eye.channels = Spectrum::AXES[start.hero];
+        }
         let observer: &mut dyn Observer<P::MisSums> = &mut eye;
         start.trace(estimator, &cache, observer);
         eye.close();
@@ -102,15 +114,16 @@ struct Reached {
     seen: Seen,
     /// Of the subpath up to it.
     throughput: Spectrum,
-    is_connectible: bool,
-    /// Walks may end in it.
+    edges: u32,
+    /// It is a place: walks may end in it.
     is_dull: bool,
 }
 
 /// Follows camera subpaths.
 struct Eye<'a> {
     scene: &'a Scene,
-    most_edges: u32,
+    /// See [`Look::channels`].
+    channels: Spectrum,
     walk: Vec<Reached>,
     looks: Looks,
 }
@@ -118,28 +131,31 @@ struct Eye<'a> {
 impl Eye<'_> {
     /// The camera subpath at hand has ended.
     fn close(&mut self) {
-        // Where the walk has to end, not all light comes.
-        let whole = self.walk.drain(..).take((longest(self.most_edges) - self.most_edges) as usize);
-        let ends = whole.filter(|reached| reached.is_dull);
-        self.looks.seen.extend(ends.map(|reached| reached.seen));
-    }
-
-    /// Light comes to the last of so many `vertices` of the walk, and from there to those before that it could not be connected
-    /// to, `edges` segments from its emitter.
-    fn light(&mut self, vertices: usize, mut edges: u32, value: Spectrum) {
-        let mut follows_connectible = false;
-        for reached in self.walk[..vertices].iter_mut().rev() {
-            if (reached.is_connectible && follows_connectible) || edges > self.most_edges {
-                return;
+        let mut places = self.walk.drain(..).filter(|reached| reached.is_dull).peekable();
+        while let Some(Reached { seen, throughput, edges, .. }) = places.next() {
+            let next = self.looks.looks.len() as u32 + 1;
+            let is_whole = edges <= WHOLE;
+            let after = places.peek().filter(|_| is_whole);
+            let onward = after.map(|place| (next, ratio(place.throughput, throughput)));
+            self.looks.looks.push(Look { seen, onward, channels: self.channels, is_whole });
+            if !is_whole {
+                break;
             }
-            if reached.is_connectible {
-                let part = value / reached.throughput;
-                reached.seen.radiance += Spectrum::select(part.is_finite_mask(), part, Spectrum::ZERO);
-            }
-            follows_connectible = reached.is_connectible;
-            edges += 1;
         }
     }
+
+    /// Light comes to the last of so many `vertices` of the walk, and from there to the place that it is seen from.
+    fn light(&mut self, vertices: usize, value: Spectrum) {
+        if let Some(place) = self.walk[..vertices].iter_mut().rev().find(|reached| reached.is_dull) {
+            place.seen.radiance += ratio(value, place.throughput);
+        }
+    }
+}
+
+/// The quotient, 0 where there is none.
+fn ratio(value: Spectrum, throughput: Spectrum) -> Spectrum {
+    let ratio = value / throughput;
+    Spectrum::select(ratio.is_finite_mask(), ratio, Spectrum::ZERO)
 }
 
 impl<S: MisSums> Observer<S> for Eye<'_> {
@@ -155,9 +171,9 @@ impl<S: MisSums> Observer<S> for Eye<'_> {
     }
 
     fn arrive(&mut self, vertex: &Vertex<S>) {
-        let seen = vertex.seen(self.scene);
-        let (is_connectible, is_dull) = (vertex.is_connectible(self.scene), vertex.is_dull(self.scene));
-        self.walk.push(Reached { seen, throughput: vertex.subpath.throughput, is_connectible, is_dull });
+        let (seen, is_dull) = (vertex.seen(self.scene), vertex.is_dull(self.scene));
+        let Subpath { throughput, edges, .. } = vertex.subpath;
+        self.walk.push(Reached { seen, throughput, edges, is_dull });
     }
 
     fn contribute(&mut self, s: u32, t: u32, _: Meeting<'_, S>, contribution: Option<&Contribution>) {
@@ -167,10 +183,9 @@ impl<S: MisSums> Observer<S> for Eye<'_> {
         // Emitters that a walk hits are those that the vertex before may have picked.
         let (vertices, part) = match s {
             0 => (t.saturating_sub(2), hit / (hit + next_event)),
-            1 => (t - 1, next_event / (hit + next_event)),
-            _ => (t - 1, 1.0),
+            _ => (t - 1, next_event / (hit + next_event)),
         };
         // By the hero channel alone: how the others share a path is known of whole ones only.
-        self.light(vertices as usize, s.max(1), *alone * (part / weight_alone));
+        self.light(vertices as usize, *alone * (part / weight_alone));
     }
 }

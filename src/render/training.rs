@@ -70,7 +70,7 @@ pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
     if !starting && !guided {
         return Learnt::default();
     }
-    let radiance = gathers.then_some(radiance::deepest(options.max_depth));
+    let radiance = gathers.then_some(radiance::most_bounces(options.max_depth));
     let options = by_all(options);
     // Camera subpaths that never hit an emitter share nothing with light subpaths.
     let starts = starting.then_some(strategies.emitter_hit);
@@ -111,7 +111,7 @@ struct Wanted {
     starts: Option<bool>,
     /// A guide, for these strategies.
     guide: Option<Strategies>,
-    /// What `gather` ends in, by paths of no more than so many segments.
+    /// What `gather` ends in, after so many bounces at most.
     radiance: Option<u32>,
 }
 
@@ -145,9 +145,8 @@ fn learn(scene: &Scene, film: &Film, options: Options, wanted: Wanted, rounds: u
             break;
         }
     }
-    if let Some(max_depth) = wanted.radiance {
-        let options = Options { max_depth: Some(max_depth), ..options };
-        let radiance = radiance::learn(scene, film, &Settings { options, ..settings }, &learnt);
+    if let Some(most_bounces) = wanted.radiance {
+        let radiance = radiance::learn(scene, film, &settings, &learnt, most_bounces);
         learnt = Learnt { starts: None, radiance: Some(Arc::new(radiance)), ..learnt };
     }
     learnt

@@ -112,8 +112,8 @@ fn divide<const D: usize, K: Keyed<D> + Send>(keyed: Vec<K>, points: f64, levels
     Parts::Split { axis, at, parts: Box::new([near, far]) }
 }
 
-/// The axis on which the keys lie furthest apart, and where the upper half of the weight begins; none where both halves would not
-/// have something.
+/// The axis on which the keys lie furthest apart, and where the upper half of the weight begins, or beyond the lowest key if that
+/// has more than half; none where all keys are equal.
 fn in_the_middle<const D: usize, K: Keyed<D>>(keyed: &[K]) -> Option<(usize, f32)> {
     let [low, high] = bounds(keyed);
     let extent = |axis: &usize| high[*axis] - low[*axis];
@@ -122,12 +122,14 @@ fn in_the_middle<const D: usize, K: Keyed<D>>(keyed: &[K]) -> Option<(usize, f32
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = 0.5 * along.iter().map(|(_, weight)| f64::from(*weight)).sum::<f64>();
     let mut sum = 0.0;
-    let (at, _) = *along.iter().find(|(_, weight)| {
+    let (middle, _) = *along.iter().find(|(_, weight)| {
         sum += f64::from(*weight);
         sum >= half
     })?;
     // Equal keys lie on one side, all of them.
-    (along[0].0 < at).then_some((axis, at))
+    let lowest = along[0].0;
+    let (at, _) = *along.iter().find(|(key, _)| *key > lowest && *key >= middle)?;
+    Some((axis, at))
 }
 
 /// The axis and the place where `keyed`, divided there, differ most in their values, each half with so many `points` at least;
@@ -210,6 +212,29 @@ mod tests {
         fn value(&self) -> Option<f32> {
             Some(self.1)
         }
+    }
+
+    /// Nine in ten lie on one plane, which is the lowest there is along the longest way.
+    #[test]
+    fn where_most_lie_on_a_plane_cells_end_beside_it() {
+        struct Point([f32; 3]);
+        impl Keyed<3> for Point {
+            fn key(&self) -> [f32; 3] {
+                self.0
+            }
+            fn weight(&self) -> f32 {
+                1.0
+            }
+        }
+        let mut stream = Stream::new(7, 0, 0, Purpose::Study);
+        let mut point = |index: u32| {
+            let at = stream.square();
+            Point([at.x, at.y, if index % 10 == 0 { 1.0 + 9.0 * stream.uniform() } else { 0.0 }])
+        };
+        let known = (0..10_000).map(&mut point).collect();
+        let mut counts = Vec::new();
+        Cells::learn(known, 64.0, 15, |points: Vec<Point>| counts.push(points.len()));
+        assert!(counts.iter().all(|count| *count < 200), "{counts:?}");
     }
 
     /// A wall stands between two rooms, one of which is dark.
