@@ -229,7 +229,7 @@ mod tests {
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
         let mut point = |index: u32| {
             let at = stream.square();
-            Point([at.x, at.y, if index % 10 == 0 { 1.0 + 9.0 * stream.uniform() } else { 0.0 }])
+            Point([at.x, at.y, if index.is_multiple_of(10) { 1.0 + 9.0 * stream.uniform() } else { 0.0 }])
         };
         let known = (0..10_000).map(&mut point).collect();
         let mut counts = Vec::new();
