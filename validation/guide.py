@@ -55,8 +55,9 @@ CASES = {
         Case("F: fog that scatters forwards", GALLERY / "cornell_f.json"),
     ],
     "dense cloud": cases(GALLERY / "cumulus.json"),
+    "lit openly": [Case("floating_cubes (fig. 5.23)", GALLERY / "floating_cubes.json")],
 }
-WANTED = {"lit through an opening": 5.0, "lit indirectly": 2.0, "P03T's boxes": 0.9, "dense cloud": 1.5}
+WANTED = {"lit through an opening": 5.0, "lit indirectly": 2.0, "P03T's boxes": 0.9, "dense cloud": 1.5, "lit openly": 0.9}
 """How much less error a guide shall leave by bdpt; by pt it is WANTED_PT in the boxes."""
 WANTED_PT = 2.0
 WAYS: dict[str, dict[str, Any]] = {
@@ -107,6 +108,8 @@ class Row:
     """By the names of GAINS."""
     learnt: dict[str, Any]
     """What `tyndall guide --json` says."""
+    follows: bool
+    """Whether path tracing by `--guide auto` follows the guide."""
 
 
 def add_options(command: argparse.ArgumentParser) -> None:
@@ -148,8 +151,9 @@ def row_of(kind: str, case: Case, options: argparse.Namespace) -> Row:
     folder.parent.mkdir(parents=True, exist_ok=True)
     words = program.flags({"output": folder, "json": True, **given})
     learn = [str(program.binary()), "--quiet", "guide", str(case.scene), *words, *program.definitions(case.parameters)]
-    row = Row(kind, case.name, gains, json.loads(program.call(learn).stdout))
-    print(f"{row.name}: {', '.join(f'{name} {gain}' for name, gain in gains.items())}", flush=True)
+    follows = render(scene, spp=1, **WAYS["pt, guide"], **given).report["plan"]["guided"]
+    row = Row(kind, case.name, gains, json.loads(program.call(learn).stdout), follows)
+    print(line(row), end="", flush=True)
     return row
 
 
@@ -158,11 +162,11 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
     command = made_by_command()
     return (
         f"# What a guide gives\n\n    {command}\n\n"
-        f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it, after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
+        f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it (by bdpt `--guide always`, by pt `auto`: *followed* or not), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
         f"{options.seeds} seeds; ± one standard error. References: `bdpt`, {options.reference_seconds:g} s, unguided. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
         "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its.\n\n"
-        "| scene | starts | guide, by bdpt | wanted | guide, by pt | wanted | gather over pt | over bdpt | learning | memory | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
-        "|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
+        "| scene | starts | guide, by bdpt | wanted | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
     )
 
 
@@ -173,6 +177,6 @@ def line(row: Row) -> str:
     guided = ", ".join(f"{100 * kind['guided'][0]:.0f} %" for kind in kinds)
     over_pt = f"{WANTED_PT:g}" if row.kind == "P03T's boxes" else ""
     return (
-        f"| {row.name} ({row.kind}) | {row.gains['starts']} | {row.gains['bdpt']} | {WANTED[row.kind]:g} | {row.gains['pt']} | {over_pt} | {row.gains['gather over pt']} | {row.gains['gather over bdpt']} | {row.learnt['seconds']:.1f} s | "
+        f"| {row.name} ({row.kind}) | {row.gains['starts']} | {row.gains['bdpt']} | {WANTED[row.kind]:g} | {row.gains['pt']} | {over_pt} | {'yes' if row.follows else 'no'} | {row.gains['gather over pt']} | {row.gains['gather over bdpt']} | {row.learnt['seconds']:.1f} s | "
         f"{row.learnt['bytes'] / 2**20:.1f} MiB | {cells} | {guided} |\n"
     )

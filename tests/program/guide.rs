@@ -75,6 +75,27 @@ fn scenes_of_any_size_are_learnt() {
     }
 }
 
+/// Memory stays as small, and all light subpaths start somewhere.
+#[test]
+fn a_hundred_thousand_emitters_are_learnt() {
+    let lamp = |index: u32| {
+        let [x, z] = [index % 400, index / 400].map(|step| f64::from(step) * 2e-3 - 0.4);
+        let lamp =
+            json!({"type": "point", "position": [x, 0.5, z], "intensity": {"type": "rgb", "value": 1e-5}});
+        (format!("lamp {index}"), lamp)
+    };
+    let mut lit = divided(1.0);
+    lit.as_object_mut().unwrap().extend((0..100_000).map(lamp));
+    let sandbox = Sandbox::with_scene(&lit);
+    for integrator in ["bdpt", "pt"] {
+        let run = sandbox.run(&format!("guide scene.json --integrator {integrator} --json")).ends(0);
+        let numbers: Value = serde_json::from_str(&run.out()).unwrap();
+        assert!(numbers["surfaces"]["cells"].as_u64().unwrap() > 4, "{numbers}");
+        assert!(numbers["bytes"].as_u64().unwrap() < 64 << 20, "{numbers}");
+    }
+    sandbox.run("render scene.json --guide always --strategies hit,next-event,join,lens --spp 1").ends(0);
+}
+
 /// Whatever keeps them, directions are learnt that lower the variance, and in bins alone they are as coarse everywhere.
 #[test]
 fn directions_are_kept_in_any_basis() {
