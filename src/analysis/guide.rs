@@ -127,7 +127,7 @@ fn report(scene: &Scene, learnt: &Learnt, cells: &[Option<u32>], seconds: f64) -
     };
     Report {
         seconds,
-        bytes: guide.map_or(0, Guide::bytes),
+        bytes: learnt.bytes(),
         second_moment: WALKS.map(|(transport, _)| guide.map_or(1.0, |guide| guide.remains(transport))),
         surfaces: kind(0, of_surfaces),
         media: kind(of_surfaces, all),

@@ -81,7 +81,7 @@ pub struct Estimator {
     /// When walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
     /// begun [default: the scene's, or never, but auto with gather]
     ///
-    /// auto: where it pays, as a tenth of a second's samples foresee: where pt has to find light that comes round corners. bdpt, if it
+    /// auto: where it pays, as the first quarter of learning foresees: where pt has to find light that comes round corners. bdpt, if it
     /// traces light subpaths, finds it anyway. always: also where it does not pay. Learning takes a second or so; the expected image is
     /// the same. Needs the heuristic balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
@@ -182,14 +182,11 @@ impl Estimator {
         let mut settings = self.requested(setup, seed, budget)?;
         let choice = self.choice(setup, &settings);
         let Options { strategies, effort, .. } = &mut settings.options;
-        let guide = effort.guide;
         if let Some(choice) = choice {
-            (*strategies, *effort) = (choice.strategies, Effort { guide, ..choice.effort });
+            (*strategies, *effort) = (choice.strategies, Effort { guide: effort.guide, ..choice.effort });
         }
-        if guide == Guiding::Auto {
-            let pays = training::guide_pays(&setup.scene, &setup.film, &settings);
-            settings.options.effort.guide = if pays { Guiding::Always } else { Guiding::Never };
-        }
+        let guided = training::follows_guide(&setup.scene, &setup.film, &settings);
+        settings.options.effort.guide = if guided { Guiding::Always } else { Guiding::Never };
         Ok((settings, choice))
     }
 
@@ -282,19 +279,13 @@ impl Estimator {
             Strategies::NONE => Guiding::Never,
             _ => self.guide.unwrap_or(usual),
         };
-        if strategies.gather && heuristic != Heuristic::Balance {
+        let (place, remedy) = match strategies.gather {
+            true => ("--integrator gather", "choose --heuristic balance"),
+            false => ("--guide", "choose --heuristic balance, or give --guide never"),
+        };
+        if heuristic != Heuristic::Balance && (strategies.gather || guide != Guiding::Never) {
             let found = format!("the heuristic {heuristic}");
-            return Err(Error::new(
-                "--integrator gather",
-                "the heuristic balance",
-                found,
-                "remove --heuristic",
-            ));
-        }
-        if guide != Guiding::Never && heuristic != Heuristic::Balance {
-            let found = format!("the heuristic {heuristic}");
-            let remedy = "choose --heuristic balance, or give --guide never";
-            return Err(Error::new("--guide", "the heuristic balance", found, remedy));
+            return Err(Error::new(place, "the heuristic balance", found, remedy));
         }
         Ok(guide)
     }
@@ -335,13 +326,16 @@ impl Estimator {
 
     fn forced_interaction(&self, setup: &Setup, strategies: Strategies) -> bool {
         let by_eye = strategies.emitter_hit || strategies.next_event || strategies.connection;
-        if self.forced_interaction && !(by_eye && Needs::of(&setup.scene, false).media) {
-            let why =
-                if by_eye { "the scene has no media" } else { "no strategy in use traces camera subpaths" };
+        let why_not = match by_eye {
+            _ if strategies.gather => Some("the integrator gather forces none"),
+            false => Some("no strategy in use traces camera subpaths"),
+            true => (!Needs::of(&setup.scene, false).media).then_some("the scene has no media"),
+        };
+        if let (true, Some(why)) = (self.forced_interaction, why_not) {
             super::complain(&format!("warning: --forced-interaction has no effect: {why}"));
         }
         let forced = self.forced_interaction || setup.integrator.options.forced_interaction;
-        by_eye && forced && !self.no_forced_interaction
+        by_eye && !strategies.gather && forced && !self.no_forced_interaction
     }
 
     fn max_depth(&self, setup: &Setup) -> Result<Option<u32>> {
@@ -368,7 +362,16 @@ impl Estimator {
         if self.strategies.is_empty() {
             return Ok(all);
         }
-        let all = Strategies { equiangular: all.next_event, gather: false, ..all };
+        if all.gather {
+            let found = "the integrator gather, which leaves none out";
+            return Err(Error::new(
+                "--strategies",
+                "an integrator whose strategies may be chosen",
+                found,
+                "give --integrator pt or bdpt",
+            ));
+        }
+        let all = Strategies { equiangular: all.next_event, ..all };
         if !self.strategies.iter().all(|kind| all.has(*kind)) {
             return Err(Error::new(
                 "--strategies",

@@ -145,12 +145,14 @@ fn machine() -> String {
     format!("{name} ({} {}, {threads} threads)", std::env::consts::OS, std::env::consts::ARCH)
 }
 
-/// The same of any part of the image, each of which a pilot may have chosen other strategies for.
+/// The same of any part of the image, for each of which other strategies may have been chosen, and a guide or none.
 pub fn without_window(made: &Value) -> Value {
     let mut made = made.clone();
     let settings = &mut made["settings"];
     settings["film"]["window"].take();
-    settings["chosen_by_pilot"].take();
+    for chosen in ["chosen_by_pilot", "guide", "basis"] {
+        settings[chosen].take();
+    }
     made
 }
 

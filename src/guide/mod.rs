@@ -19,7 +19,7 @@ use crate::{
     sampling::{
         Basis, Cells, Quadtree, Stream,
         cells::Keyed,
-        quadtree::{Deposit, effective},
+        quadtree::{Deposit, effective, limit},
     },
     scene::lights::Starts,
 };
@@ -40,16 +40,18 @@ pub struct Learnt {
 }
 
 impl Learnt {
-    /// Memory that the guide and the radiance take [bytes].
+    /// Memory that all of it takes [bytes].
     pub fn bytes(&self) -> usize {
-        self.guide.as_deref().map_or(0, Guide::bytes) + self.radiance.as_deref().map_or(0, Radiance::bytes)
+        let starts = self.starts.as_deref().map_or(0, Starts::bytes);
+        let guide = self.guide.as_deref().map_or(0, Guide::bytes);
+        starts + guide + self.radiance.as_deref().map_or(0, Radiance::bytes)
     }
 }
 
 /// What a may be: the part of the directions that are not guided. It multiplies what a path weighs by 1 / a at a vertex, at most, and
 /// the choice looks at one vertex at a time.
 const UNGUIDED: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
-/// Directions, as [`effective`] counts them, that a cell has at least.
+/// Half of the directions, as [`effective`] counts them, from which on a cell is divided.
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root: there are 4,096 of surfaces, and as many of media.
 const LEVELS: u32 = 12;
@@ -143,10 +145,7 @@ impl<const D: usize> Keyed<D> for Known<D> {
 impl Guide {
     /// What `lessons` tell, in some `basis`; none where that is nothing, or nothing better than what BSDFs and phase functions do.
     pub fn learn(mut lessons: Vec<Lesson>, basis: Basis) -> Option<Self> {
-        let total: f64 = lessons.iter().map(|lesson| f64::from(lesson.weight)).sum();
-        let most = (MOST * total) as f32;
-        lessons.iter_mut().for_each(|lesson| lesson.weight = lesson.weight.min(most));
-        if effective(lessons.iter().map(|lesson| lesson.weight)) < ENOUGH {
+        if limit(&mut lessons, MOST, |lesson| &mut lesson.weight) < ENOUGH {
             return None;
         }
         let places = Places::around(lessons.iter().map(|lesson| lesson.position));

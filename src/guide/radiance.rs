@@ -9,12 +9,12 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// Looks at each cell, at least half of it: a cell's noise is blurred again by those who look at many.
+/// Half of the looks from which on a cell is divided: its noise is blurred again by those who look at many.
 const PER_CELL: f64 = 64.0;
 /// Levels of cells below the root: there are 32,768 of surfaces, and as many of media.
 const LEVELS: u32 = 15;
 /// Change of all radiance by one more bounce, below which no more is to come.
-const SETTLED: f32 = 1e-6;
+const SETTLED: f64 = 1e-6;
 
 /// What is seen of a place, on average.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +57,9 @@ pub struct Look {
     pub seen: Seen,
     /// A later look that the walk came to next, and the part of its radiance that this place scatters as well.
     pub onward: Option<(u32, Spectrum)>,
-    /// Of each channel, 1 if the walk sampled distances by it, else 0.
-    pub channels: Spectrum,
+    /// Of each channel, 0 if the walk sampled distances by another, else the part of this place's radiance that the place before
+    /// scatters: walks that follow a guide come here the more often, the less they bring.
+    pub weights: Spectrum,
     /// The walk was followed far enough to say what it scatters.
     pub is_whole: bool,
 }
@@ -178,11 +179,12 @@ impl Balance {
     fn of(looks: &[Look], leaf: &[u32], cells: &[Option<u32>]) -> Self {
         let own = || leaf.iter().map(|index| &looks[*index as usize]);
         // Each channel by walks that sampled by it: by others, it is as noisy as their densities differ.
-        let each = own().map(|look| look.channels).sum::<Spectrum>().max(Spectrum::ONE).recip();
-        let source = own().map(|look| look.channels * look.seen.radiance).sum::<Spectrum>() * each;
+        let all = own().map(|look| look.weights).sum::<Spectrum>();
+        let each = Spectrum::select(all.cmpgt(Spectrum::ZERO), all.recip(), Spectrum::ZERO);
+        let source = own().map(|look| look.weights * look.seen.radiance).sum::<Spectrum>() * each;
         let onward = |look: &Look| {
             let (to, part) = look.onward?;
-            Some((cells[to as usize]?, look.channels * part * each))
+            Some((cells[to as usize]?, look.weights * part * each))
         };
         let mut transfers: Vec<_> = own().filter_map(onward).collect();
         transfers.sort_by_key(|(to, _)| *to);
@@ -208,8 +210,9 @@ fn solve(balances: &[Balance], most_bounces: u32) -> Vec<Spectrum> {
     let mut values: Vec<Spectrum> = balances.iter().map(|balance| balance.source).collect();
     for _ in 0..most_bounces {
         let next: Vec<_> = balances.par_iter().map(|balance| balance.radiance(&values)).collect();
-        let change: f32 = next.iter().zip(&values).map(|(a, b)| (*a - *b).abs().element_sum()).sum();
-        let all: f32 = next.iter().map(|value| value.element_sum()).sum();
+        let sum = |value: Spectrum| f64::from(value.element_sum());
+        let change: f64 = next.iter().zip(&values).map(|(a, b)| sum((*a - *b).abs())).sum();
+        let all: f64 = next.iter().map(|value| sum(*value)).sum();
         values = next;
         if change <= SETTLED * all {
             break;

@@ -151,6 +151,11 @@ impl Pass {
     }
 }
 
+/// Blocks that so many camera `subpaths` are, at least.
+pub fn blocks_for(pixels: usize, subpaths: usize) -> usize {
+    (subpaths * pixels.div_ceil(PIXELS_PER_BLOCK)).div_ceil(pixels.max(1))
+}
+
 impl Blocks {
     /// Divides `pixels`, each of which has `light_walks` light subpaths in a pass, for estimators of so many hero channels,
     /// whose walks draw from streams of `sampler`.

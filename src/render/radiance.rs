@@ -6,16 +6,16 @@
 
 use super::{
     Settings,
-    block::PIXELS_PER_BLOCK,
+    block::blocks_for,
     compiled::{self, Ready},
 };
 use crate::{
     film::Film,
     guide::{Learnt, Look, Radiance, Seen},
-    math::{Spectrum, Vec2},
+    math::{Channels, Spectrum},
     scene::Scene,
     transport::{
-        Contribution, Departure, MisSums, Options, Strategies, Subpath, Vertex,
+        Contribution, Departure, LightCache, MisSums, Options, Strategies, Subpath, Vertex,
         observer::{Meeting, Observer, StrategyKind},
         profile::{Needs, Profile},
     },
@@ -56,7 +56,7 @@ pub(super) fn learn(
     let settings = Settings { options, ..*settings };
     let (mut all, mut done, mut subpaths) = (Looks::default(), 0, 0);
     while all.looks.len() < LOOKS && all.segments < SEGMENTS && subpaths < SUBPATHS {
-        let tasks = done..done + STEP.div_ceil(film.len().min(PIXELS_PER_BLOCK));
+        let tasks = done..done + blocks_for(film.len(), STEP);
         done = tasks.end;
         subpaths += STEP;
         all.add(compiled::look(scene, film, &settings, learnt.clone(), tasks));
@@ -95,15 +95,14 @@ fn part<P: Profile>(ready: &Ready<'_, P>, [pass, block]: [usize; 2]) -> Looks {
     let Ready { estimator, blocks, scene, film, seed } = ready;
     let chromatic = Needs::of(scene, false).chromatic;
     let mut eye = Eye { scene, channels: Spectrum::ONE, walk: Vec::new(), looks: Looks::default() };
-    let mut observer: &mut dyn Observer<P::MisSums> = &mut eye;
-    let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
+    let no_light = LightCache::new(P::Channels::COUNT);
     for pixel in blocks.pixels(block) {
         let start = blocks.camera_start(scene, film, *seed, pass, pixel);
         if chromatic {
             eye.channels = Spectrum::AXES[start.hero];
         }
         let observer: &mut dyn Observer<P::MisSums> = &mut eye;
-        start.trace(estimator, &cache, observer);
+        start.trace(estimator, &no_light, observer);
         eye.close();
     }
     eye.looks
@@ -122,7 +121,7 @@ struct Reached {
 /// Follows camera subpaths.
 struct Eye<'a> {
     scene: &'a Scene,
-    /// See [`Look::channels`].
+    /// 1 for those that the camera subpath at hand samples distances by, else 0.
     channels: Spectrum,
     walk: Vec<Reached>,
     looks: Looks,
@@ -131,13 +130,15 @@ struct Eye<'a> {
 impl Eye<'_> {
     /// The camera subpath at hand has ended.
     fn close(&mut self) {
+        let mut weights = self.channels;
         let mut places = self.walk.drain(..).filter(|reached| reached.is_dull).peekable();
         while let Some(Reached { seen, throughput, edges, .. }) = places.next() {
             let next = self.looks.looks.len() as u32 + 1;
             let is_whole = edges <= WHOLE;
             let after = places.peek().filter(|_| is_whole);
             let onward = after.map(|place| (next, ratio(place.throughput, throughput)));
-            self.looks.looks.push(Look { seen, onward, channels: self.channels, is_whole });
+            self.looks.looks.push(Look { seen, onward, weights, is_whole });
+            weights = self.channels * onward.map_or(0.0, |(_, part)| (self.channels * part).max_element());
             if !is_whole {
                 break;
             }
@@ -159,10 +160,6 @@ fn ratio(value: Spectrum, throughput: Spectrum) -> Spectrum {
 }
 
 impl<S: MisSums> Observer<S> for Eye<'_> {
-    fn covers(&self, _: Vec2) -> bool {
-        false
-    }
-
     fn depart(&mut self, departure: &Departure<S>) {
         self.looks.segments += 1.0;
         if departure.edges == 0 {

@@ -8,6 +8,7 @@
 
 use super::{
     Settings,
+    block::blocks_for,
     budget::Budget,
     compiled::{self, Ready},
     radiance,
@@ -23,7 +24,7 @@ use crate::{
         Scene,
         lights::{Densities, EmissionSample, EmitterSample, Lights, Start, Starts},
     },
-    settings::options::Effort,
+    settings::options::{Effort, Guiding},
     transport::{
         Connections, Contribution, Departure, Heuristic, MisSums, Options, Strategies, Vertex,
         observer::{Meeting, Observer, StrategyKind},
@@ -43,7 +44,7 @@ const ROUNDS: u32 = 4;
 const SEGMENTS: f64 = 1e6;
 /// Rounds for a guide, of which the last two teach.
 const GUIDE_ROUNDS: u32 = 6;
-/// Those that tell whether it pays.
+/// The first of them, which tell whether it pays.
 const JUDGING_ROUNDS: u32 = 4;
 /// What a guide that pays leaves of the second moment at each vertex, at most, after those rounds: such that left 0.93 and less
 /// lowered the error of as many samples of path tracing by 1.6 to 13, such that left 0.95 by 1.1 to 1.3, which looking up takes.
@@ -59,48 +60,39 @@ const LESSONS: f64 = 3.0;
 /// Of the image's mean, added to that of each tile.
 const FLOOR: f64 = 0.1;
 
-/// What renders by `settings` learn beforehand: where light subpaths start that reach the image, and where walks go, as far as they
-/// ask for it. Kept with the scene.
+/// What renders by `settings` learn beforehand: where light subpaths start that reach the image, where walks go, and what camera
+/// subpaths end in, as far as they ask for it. Kept with the scene.
 pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
-    let options = &settings.options;
-    let strategies = options.strategies;
+    let Options { strategies, max_depth, .. } = settings.options;
+    let guided = follows_guide(scene, film, settings);
+    let wanted = Wanted::by(settings.options, guided);
+    let key = wanted.key(film);
+    let learnt = scene.lights.learnt.recall(key.clone(), || learn(scene, film, wanted, false));
     // Camera subpaths that end before they gather need nothing to end in.
-    let gathers = strategies.gather && options.max_depth.is_none_or(|depth| depth > 2);
-    let (starting, guided) = (options.effort.learnt_starts || gathers, options.effort.is_guided());
-    if !starting && !guided {
-        return Learnt::default();
+    if !strategies.gather || max_depth.is_some_and(|depth| depth <= 2) {
+        return learnt;
     }
-    let radiance = gathers.then_some(radiance::most_bounces(options.max_depth));
-    let options = by_all(options);
-    // Camera subpaths that never hit an emitter share nothing with light subpaths.
-    let starts = starting.then_some(strategies.emitter_hit);
-    let wanted = Wanted { starts, guide: guided.then_some(strategies), radiance };
-    let key = format!("{:?} {wanted:?} {options:?}", (film.window, film.border, film.filter));
-    let rounds = if guided { GUIDE_ROUNDS } else { ROUNDS };
-    scene.lights.learnt.recall(key, || learn(scene, film, options, wanted, rounds))
+    let most_bounces = radiance::most_bounces(max_depth);
+    let settings = of_learning(wanted.options);
+    let radiance = || Arc::new(radiance::learn(scene, film, &settings, &learnt, most_bounces));
+    let radiance = scene.lights.radiance.recall(format!("{key} {most_bounces}"), radiance);
+    Learnt { radiance: Some(radiance), ..learnt }
 }
 
-/// True if walks by `settings` should follow a guide, as the first rounds of learning it foresee. Where light subpaths run, measured
-/// errors of as many samples were lower by 1.3 at most, and mostly by nothing.
-pub fn guide_pays(scene: &Scene, film: &Film, settings: &Settings) -> bool {
-    let Options { strategies, .. } = settings.options;
-    if strategies.need_light_walks() {
-        return false;
-    }
-    let wanted = Wanted { starts: None, guide: Some(strategies), radiance: None };
-    let learnt = learn(scene, film, by_all(&settings.options), wanted, JUDGING_ROUNDS);
-    learnt.guide.is_some_and(|guide| guide.remains(Transport::Radiance) < PAYS)
-}
-
-/// What is learnt by, where paths are made by `options`.
-fn by_all(options: &Options) -> Options {
-    Options {
-        strategies: Strategies::BDPT,
-        effort: Effort::default(),
-        connections: Connections::default(),
-        heuristic: Heuristic::Balance,
-        max_depth: Some(options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST))),
-        ..*options
+/// True if walks by `settings` follow a guide: where they do so if it pays, as the first rounds of learning it foresee. Where light
+/// subpaths run, measured errors of as many samples were lower by 1.3 at most, and mostly by nothing.
+pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
+    let options = settings.options;
+    match options.effort.guide {
+        Guiding::Never => false,
+        Guiding::Always => true,
+        Guiding::Auto if options.strategies.need_light_walks() => false,
+        Guiding::Auto => {
+            let learnt = learn(scene, film, Wanted::by(options, true), true);
+            let pays = learnt.guide.is_some();
+            scene.lights.learnt.keep(Wanted::by(options, pays).key(film), learnt);
+            pays
+        }
     }
 }
 
@@ -111,25 +103,59 @@ struct Wanted {
     starts: Option<bool>,
     /// A guide, for these strategies.
     guide: Option<Strategies>,
-    /// What `gather` ends in, after so many bounces at most.
-    radiance: Option<u32>,
+    /// What it is learnt by.
+    options: Options,
 }
 
-/// In so many `rounds` at most.
-fn learn(scene: &Scene, film: &Film, options: Options, wanted: Wanted, rounds: u32) -> Learnt {
-    let settings = Settings {
+impl Wanted {
+    /// For renders by `options`, which follow a guide or do not.
+    fn by(options: Options, guided: bool) -> Self {
+        let Options { strategies, effort, max_depth, .. } = options;
+        Self {
+            // Camera subpaths that never hit an emitter share nothing with light subpaths.
+            starts: effort.learnt_starts.then_some(strategies.emitter_hit),
+            guide: guided.then_some(strategies),
+            options: Options {
+                strategies: Strategies::BDPT,
+                effort: Effort::default(),
+                connections: Connections::default(),
+                heuristic: Heuristic::Balance,
+                max_depth: Some(max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST))),
+                forced_interaction: false,
+                ..options
+            },
+        }
+    }
+
+    /// Equal where the same is learnt.
+    fn key(&self, film: &Film) -> String {
+        format!("{:?} {self:?}", (film.window, film.border, film.filter))
+    }
+}
+
+/// Samples of `options` that teach.
+fn of_learning(options: Options) -> Settings {
+    Settings {
         options,
         seed: SEED,
         sampler: Sampler::Independent,
         budget: Budget::ENDLESS,
         profile: ProfileName::Everything,
+    }
+}
+
+/// A guide only where it pays, if that `is_judged`.
+fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt {
+    let settings = of_learning(wanted.options);
+    let (rounds, most) = match (wanted.starts, wanted.guide) {
+        (_, Some(_)) => (GUIDE_ROUNDS, GUIDE_SEGMENTS),
+        (Some(_), None) => (ROUNDS, SEGMENTS),
+        (None, None) => (0, 0.0),
     };
-    let per_block = film.len().min(FIRST / 2);
-    let most = if wanted.guide.is_some() { GUIDE_SEGMENTS } else { SEGMENTS };
     let (mut learnt, mut done, mut segments) = (Learnt::default(), 0, 0.0);
     let mut before = Vec::new();
     for round in 0..rounds {
-        let tasks = done..done + (FIRST << round).div_ceil(per_block);
+        let tasks = done..done + blocks_for(film.len(), FIRST << round);
         done = tasks.end;
         let trial = compiled::trial(scene, film, &settings, learnt.clone(), tasks, wanted.guide.is_some());
         segments += trial.segments;
@@ -138,16 +164,17 @@ fn learn(scene: &Scene, film: &Film, options: Options, wanted: Wanted, rounds: u
         }
         if let Some(strategies) = wanted.guide {
             let lessons = trial.lessons(strategies, (FIRST << round) as f64);
-            learnt.guide = Guide::learn([&before[..], &lessons].concat(), options.basis).map(Arc::new);
+            learnt.guide =
+                Guide::learn([&before[..], &lessons].concat(), settings.options.basis).map(Arc::new);
             before = lessons;
         }
-        if segments > most {
+        let is_last = segments > most;
+        if is_judged && (is_last || round + 1 == JUDGING_ROUNDS) {
+            learnt.guide = learnt.guide.filter(|guide| guide.remains(Transport::Radiance) < PAYS);
+        }
+        if is_last || (is_judged && round + 1 >= JUDGING_ROUNDS && learnt.guide.is_none()) {
             break;
         }
-    }
-    if let Some(most_bounces) = wanted.radiance {
-        let radiance = radiance::learn(scene, film, &settings, &learnt, most_bounces);
-        learnt = Learnt { starts: None, radiance: Some(Arc::new(radiance)), ..learnt };
     }
     learnt
 }
@@ -496,7 +523,9 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
             Meeting::Lens(film) => self.splat(film, value),
             _ => (self.pixel, value.luminance() * self.weight),
         };
-        self.found.push((pixel, found(value)));
+        if value > 0.0 {
+            self.found.push((pixel, found(value)));
+        }
     }
 }
 

@@ -37,7 +37,7 @@ enum Cell<T> {
 }
 
 impl<const D: usize, T> Cells<D, T> {
-    /// No more than 2^`levels` cells, none where nothing is `keyed`, each with at least so many `points`, as [`effective`] counts them, in which `leaf` finds
+    /// No more than 2^`levels` cells, none where nothing is `keyed`, of which only such are divided that have twice so many `points`, as [`effective`] counts them, and in which `leaf` finds
     /// what it holds.
     pub fn learn<K: Keyed<D> + Send>(
         keyed: Vec<K>,
@@ -66,6 +66,14 @@ impl<const D: usize, T> Cells<D, T> {
             *beyond = next;
         }
         self.grow(far, leaf);
+    }
+
+    /// What all of them hold.
+    pub fn leaves(&self) -> impl Iterator<Item = &T> {
+        self.all.iter().filter_map(|cell| match cell {
+            Cell::Leaf(leaf) => Some(leaf),
+            Cell::Split { .. } => None,
+        })
     }
 
     /// Memory that the cells take [bytes], without what else their contents point at.

@@ -9,6 +9,11 @@ pub struct Discrete {
 }
 
 impl Discrete {
+    /// Memory that it takes [bytes].
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.cumulative[..])
+    }
+
     /// Weights must be finite and >= 0. A distribution whose weights sum to 0 has nothing to sample.
     pub fn new(weights: impl IntoIterator<Item = f64>) -> Self {
         let mut total = 0.0;

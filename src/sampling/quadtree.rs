@@ -38,6 +38,17 @@ pub fn effective(weights: impl Iterator<Item = f32>) -> f64 {
     if squares > 0.0 { sum * sum / squares } else { 0.0 }
 }
 
+/// Limits the weights of `all` to a part of their sum; how many equal ones would say as much as those that remain.
+pub fn limit<T>(all: &mut [T], part: f64, weight: impl Fn(&mut T) -> &mut f32) -> f64 {
+    // What is taken away lowers the sum.
+    for _ in 0..4 {
+        let sum: f64 = all.iter_mut().map(|one| f64::from(*weight(one))).sum();
+        let most = (part * sum) as f32;
+        all.iter_mut().map(&weight).for_each(|weight| *weight = weight.min(most));
+    }
+    effective(all.iter_mut().map(|one| *weight(one)))
+}
+
 /// How the square is divided: bases for what is known of a density.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Basis {

@@ -2,12 +2,14 @@
 
 use std::{
     any::Any,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
 /// What was worked out last, and for what: a render begins with what its pilot chose.
 #[derive(Debug, Default)]
-pub struct Memo(Mutex<Option<(String, Arc<dyn Any + Send + Sync>)>>);
+pub struct Memo(Mutex<Known>);
+
+type Known = Option<(String, Arc<dyn Any + Send + Sync>)>;
 
 impl Clone for Memo {
     /// Forgets: the scene may be changed.
@@ -19,8 +21,7 @@ impl Clone for Memo {
 impl Memo {
     /// What `learn` says, once for each `key`.
     pub fn recall<T: Clone + Send + Sync + 'static>(&self, key: String, learn: impl FnOnce() -> T) -> T {
-        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((known, learnt)) = &*lock()
+        if let Some((known, learnt)) = &*self.lock()
             && *known == key
             && let Some(learnt) = learnt.downcast_ref::<T>()
         {
@@ -28,7 +29,16 @@ impl Memo {
         }
         // Not while locked: threads that learn may take up other work, which asks for the same.
         let learnt = learn();
-        *lock() = Some((key, Arc::new(learnt.clone())));
+        self.keep(key, learnt.clone());
         learnt
+    }
+
+    /// From now on, `learnt` is what there is for `key`.
+    pub fn keep<T: Send + Sync + 'static>(&self, key: String, learnt: T) {
+        *self.lock() = Some((key, Arc::new(learnt)));
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Known> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -155,7 +155,7 @@ pub struct Effort {
     pub connections: u32,
     /// Light subpaths start where, as a pilot learns, light reaches the image.
     pub learnt_starts: bool,
-    /// Walks follow a guide, learnt beforehand.
+    /// When walks follow a guide, learnt beforehand.
     pub guide: Guiding,
 }
 
@@ -168,9 +168,7 @@ impl Effort {
         learnt_starts: false,
         guide: Guiding::Never,
     };
-}
 
-impl Effort {
     /// True where a guide is followed, or may be.
     pub fn is_guided(&self) -> bool {
         self.guide != Guiding::Never

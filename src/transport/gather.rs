@@ -1,7 +1,7 @@
 //! The preview `gather` (P03T sec. 5.3): camera subpaths as of path tracing, which end where they scatter for the second time, in
 //! the radiance that was learnt of that place. Mirrors and glass scatter in one direction alone, and do not count; at glossy
-//! surfaces they go on. What is
-//! lit directly, and what the first vertex sees, is as it should be; all that lies behind is blurred over cells.
+//! surfaces they go on. What is lit directly, and what the first vertex sees, is as it should be; all that lies behind is blurred
+//! over cells.
 
 use super::{
     Estimator,

@@ -31,10 +31,10 @@
 //! ```
 //! | s, t | what happens | where |
 //! |---|---|---|
-//! | s = 0 | the camera subpath hits an emitter | [`camera_path::Eye::emitter_hit`] |
-//! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`camera_path::Eye::join_emitter`] |
-//! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache, or with all of one walk ([`Connections`]) | [`camera_path::Eye::connect_with`] |
-//! | s >= 1, t = 1 | the light subpath is seen by the lens, through any pixel | [`light_path::Light::connect_to_lens`] |
+//! | s = 0 | the camera subpath hits an emitter | [`camera_path::CameraPath::emitter_hit`] |
+//! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`camera_path::CameraPath::join_emitter`] |
+//! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache, or with all of one walk ([`Connections`]) | [`camera_path::CameraPath::connect_with`] |
+//! | s >= 1, t = 1 | the light subpath is seen by the lens, through any pixel | [`light_path::LightPath::connect_to_lens`] |
 //! | s = 1, t = 2 in media | a distance along the primary ray, likely near an emitter, then as s = 1 | [`equiangular`] |
 //!
 //! A pixel sample is one camera subpath; the light subpaths of a block of pixels fill the cache, or each belongs to one pixel. `pt` and
@@ -44,7 +44,7 @@
 //! # From equation to function
 //! | equation | function |
 //! |---|---|
-//! | LW96 eq. 3, L_e at the end of a camera subpath | [`camera_path::Eye::emitter_hit`] |
+//! | LW96 eq. 3, L_e at the end of a camera subpath | [`camera_path::CameraPath::emitter_hit`] |
 //! | LW96 eq. 4, one random walk through media and surfaces | [`walk::walk`], [`segment::sample_free_flight`] |
 //! | LW96 eq. 5 and 8, scattering in a medium | [`walk::collide`] |
 //! | LW96 eq. 6, p_medium | [`Medium::sample_distance`](crate::medium::Medium::sample_distance) |
@@ -55,7 +55,7 @@
 //! | LW96 eq. 13, density of a vertex | [`walk::arrive`] |
 //! | LW96 eq. 14, the weight | [`mis::connection_weight`], [`mis::Strategy::weight`], [`mis::Balance`] |
 //! | LW96 sec. 5, media that vary | [`crate::medium::distance`] |
-//! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], sampled in [`camera_path::Eye::meet`] |
+//! | P03 eq. 11, emission of a medium | [`crate::medium::Emission`], sampled in [`camera_path::CameraPath::meet`] |
 //! | P03T eq. 2.9, media that only absorb | [`crate::medium::MediumOverrides`] |
 //! | P03T sec. A.2.2, forced interactions | [`forced::sample`], [`segment::force`] |
 //! | P03T sec. 5.3, the local gather | [`gather::sample`] |

@@ -34,6 +34,18 @@ fn images_say_that_they_are_previews_and_are_the_same_by_any_threads() {
     assert!(sandbox.channels("fast.exr")["G"].iter().any(|value| *value > 0.0));
 }
 
+/// It has no use for a second walk from each primary ray, and says so.
+#[test]
+fn no_interaction_is_forced() {
+    let sandbox = divided();
+    sandbox.run("render scene.json --integrator gather --spp 2 -o plain.exr").ends(0);
+    let run = sandbox
+        .run("render scene.json --integrator gather --spp 2 --forced-interaction -o forced.exr")
+        .ends(0);
+    assert!(run.err().contains("--forced-interaction has no effect"), "{}", run.err());
+    assert_eq!(sandbox.channels("forced.exr")["G"], sandbox.channels("plain.exr")["G"]);
+}
+
 /// In the dark there is nothing to learn; directly lit, nothing to gather.
 #[test]
 fn scenes_with_little_to_show_are_shown() {
@@ -62,6 +74,10 @@ fn what_needs_whole_paths_is_refused() {
         ("render scene.json --integrator gather --components", ["--components", "gather"]),
         ("render scene.json --integrator gather --error 0.1", ["--error", "gather"]),
         ("render scene.json --integrator gather --heuristic power", ["--integrator gather", "balance"]),
+        (
+            "render scene.json --integrator gather --strategies hit,next-event",
+            ["--strategies", "--integrator pt"],
+        ),
         ("strategies scene.json --integrator gather", ["paths", "--integrator bdpt"]),
         ("pixel scene.json 4 4 --integrator gather", ["paths", "--integrator bdpt"]),
         ("guide scene.json --integrator gather", ["--integrator", "bdpt, pt or lt"]),

@@ -114,6 +114,17 @@ fn directions_are_kept_in_any_basis() {
     assert_ne!(numbers[0]["second_moment"], numbers[2]["second_moment"]);
 }
 
+/// Primary rays that are followed twice teach no more than others.
+#[test]
+fn forced_interactions_change_nothing_of_what_is_learnt() {
+    let sandbox = Sandbox::with_scene(&divided(1.0));
+    sandbox.run("guide scene.json --forced-interaction -o forced").ends(0);
+    sandbox.run("guide scene.json -o plain").ends(0);
+    let [forced, plain] =
+        ["forced", "plain"].map(|folder| numbers(&sandbox, &format!("{folder}/guide.json")));
+    assert_eq!(forced, plain);
+}
+
 /// Nothing to learn is no error, and no picture.
 #[test]
 fn of_a_black_scene_nothing_is_learnt() {
@@ -179,4 +190,18 @@ fn parts_of_a_guided_image_make_the_whole() {
             .ends(0);
         assert_ne!(whole["G"], sandbox.channels("plain.exr")["G"], "{strategies}");
     }
+}
+
+/// Whether it pays is decided for each part by itself.
+#[test]
+fn parts_with_a_guide_and_without_are_put_together() {
+    let sandbox = Sandbox::with_scene(&divided(1.0));
+    for (guide, crop, part) in [("always", "32x16+0+0", "a"), ("never", "32x16+0+16", "b")] {
+        let words =
+            format!("--integrator pt --guide {guide} --crop {crop} --spp 2 -o {part}.exr --sums {part}.sums");
+        sandbox.run(&format!("render scene.json {words}")).ends(0);
+    }
+    sandbox.run("merge a.sums b.sums -o merged.exr").ends(0);
+    let [a, b, merged] = ["a.exr", "b.exr", "merged.exr"].map(|name| sandbox.channels(name));
+    assert_eq!([&a["G"][..], &b["G"][..]].concat(), merged["G"]);
 }

@@ -80,6 +80,8 @@ pub struct Lights {
     from_infinity: Spectrum,
     /// What was learnt of paths that reach an image.
     pub learnt: Memo,
+    /// What was learnt of the radiance of places.
+    pub radiance: Memo,
 }
 
 impl Lights {
@@ -109,6 +111,7 @@ impl Lights {
             radius,
             from_infinity,
             learnt: Memo::default(),
+            radiance: Memo::default(),
         }
     }
 

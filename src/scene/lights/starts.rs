@@ -17,7 +17,7 @@ use crate::{
     sampling::{
         Cells, Discrete, Quadtree, Stream,
         cells::Keyed,
-        quadtree::{Deposit, effective},
+        quadtree::{Deposit, effective, limit},
     },
 };
 /// a: the part of the starts that are not learnt.
@@ -88,7 +88,7 @@ impl Starts {
     pub fn learn(lights: &Lights, mut starts: Vec<(Start, f32)>) -> Option<Self> {
         // Emitters without power are never chosen: they have no density that could be mixed with another.
         starts.retain(|(start, _)| lights.starts.probability(start.light as usize) > 0.0);
-        if limit(&mut starts) < ENOUGH {
+        if limit(&mut starts, MOST, |(_, weight)| weight) < ENOUGH {
             return None;
         }
         let mut of_emitters = vec![Vec::new(); lights.all.len()];
@@ -151,6 +151,12 @@ impl Starts {
         Densities { point, direction }
     }
 
+    /// Memory that they take [bytes].
+    pub fn bytes(&self) -> usize {
+        let learnt: usize = self.learnt.iter().flatten().map(Learnt::bytes).sum();
+        self.emitters.bytes() + size_of_val(&self.learnt[..]) + learnt
+    }
+
     /// Density of `point` of the emitter `light`, which is `unlearnt` without what was learnt.
     pub fn pdf_point(&self, lights: &Lights, light: u32, point: &EmitterPoint, unlearnt: f32) -> f32 {
         // At infinity the point is a direction; elsewhere it is as dense whichever way light leaves it.
@@ -161,6 +167,11 @@ impl Starts {
 }
 
 impl Learnt {
+    fn bytes(&self) -> usize {
+        let trees = self.cells.leaves().flatten().chain(&self.towards);
+        self.cells.bytes() + trees.map(Quadtree::bytes).sum::<usize>()
+    }
+
     fn of(lights: &Lights, index: usize, over_unlearnt: f32, starts: &[(Start, f32)]) -> Self {
         let emitter = &lights.all[index].emitter;
         let is_parallel = emitter.is_parallel();
@@ -222,16 +233,6 @@ impl Lights {
             None => warp::from_sphere(start.direction),
         }
     }
-}
-
-/// Limits weights to a part of all; how many equal ones would say as much as those that remain.
-fn limit(starts: &mut [(Start, f32)]) -> f64 {
-    for _ in 0..4 {
-        let total: f64 = starts.iter().map(|(_, weight)| f64::from(*weight)).sum();
-        let most = (MOST * total) as f32;
-        starts.iter_mut().for_each(|(_, weight)| *weight = weight.min(most));
-    }
-    effective(starts.iter().map(|(_, weight)| *weight))
 }
 
 /// A start by what it is looked up, a position or a direction.
