@@ -7,8 +7,8 @@
 //! ```text
 //! a p(w) + (1 - a) G(w)
 //! ```
-//! and the walk from the other end leaves the same vertex towards the one before, w', with a p'(w') + (1 - a) G'(w'). G' does
-//! not depend on w: it is looked up once, on arrival, and kept.
+//! (a is the BSDF sampling fraction of Mueller et al.), and the walk from the other end leaves the same vertex towards the one
+//! before, w', with a p'(w') + (1 - a) G'(w'). G' does not depend on w: it is looked up once, on arrival, and kept.
 
 mod places;
 mod radiance;
@@ -48,9 +48,9 @@ impl Learnt {
     }
 }
 
-/// What a may be: the part of the directions that are not guided. It multiplies what a path weighs by 1 / a at a vertex, at most, and
+/// What a, the BSDF sampling fraction, may be. It multiplies what a path weighs by 1 / a at a vertex, at most, and
 /// the choice looks at one vertex at a time.
-const UNGUIDED: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
+const BSDF_FRACTIONS: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
 /// Half of the directions, as [`effective`] counts them, from which on a cell is divided.
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root: there are 4,096 of surfaces, and as many of media.
@@ -330,7 +330,7 @@ fn part_unguided(lessons: &[&Lesson], basis: Basis) -> (f32, Moments) {
         ratios.iter().map(of).sum()
     };
     let unguided = moment(1.0);
-    let best = UNGUIDED.into_iter().map(|a| (a, moment(a))).min_by(|a, b| a.1.total_cmp(&b.1));
+    let best = BSDF_FRACTIONS.into_iter().map(|a| (a, moment(a))).min_by(|a, b| a.1.total_cmp(&b.1));
     let (a, guided) = best.unwrap_or((1.0, unguided));
     (a, Moments { unguided, guided })
 }

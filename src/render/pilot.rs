@@ -214,7 +214,7 @@ impl Work {
 
 /// What the samples of one kind of walk bring.
 #[derive(Default)]
-struct Gathered {
+struct Recorded {
     found: Vec<Found>,
     /// By each of [`OF_ALBEDO`], in place of the survival that there was as the albedo's.
     work: Works,
@@ -225,7 +225,7 @@ struct Gathered {
 type Works = [Work; OF_ALBEDO.len()];
 
 /// Sees walks and what they contribute; those of the camera to one pixel.
-struct Gather<'a> {
+struct Recorder<'a> {
     film: &'a Film,
     follower: Follower<'a>,
     pixel: u32,
@@ -235,10 +235,10 @@ struct Gather<'a> {
     is_seen: bool,
     /// How often the walk at hand would have gone on so far, by each of [`OF_ALBEDO`].
     reached: [f64; OF_ALBEDO.len()],
-    gathered: Gathered,
+    recorded: Recorded,
 }
 
-impl<'a> Gather<'a> {
+impl<'a> Recorder<'a> {
     fn new(film: &'a Film, follower: Follower<'a>) -> Self {
         Self {
             film,
@@ -248,7 +248,7 @@ impl<'a> Gather<'a> {
             sum: 0.0,
             is_seen: false,
             reached: [1.0; OF_ALBEDO.len()],
-            gathered: Gathered::default(),
+            recorded: Recorded::default(),
         }
     }
 
@@ -256,13 +256,13 @@ impl<'a> Gather<'a> {
     fn begin(&mut self, pixel: usize, hero: usize, weight: f32) {
         self.follower.begin(hero);
         (self.pixel, self.weight, self.sum) = (pixel as u32, weight, 0.0);
-        self.gathered.work.iter_mut().for_each(|work| work.walks += 1.0);
+        self.recorded.work.iter_mut().for_each(|work| work.walks += 1.0);
     }
 
     /// Counts some work of the walk at hand.
     fn count(&mut self, counter: impl Fn(&mut Work) -> &mut f64) {
         let unlearnt = f64::from(self.follower.unlearnt());
-        let Gathered { work, unlearnt: works, .. } = &mut self.gathered;
+        let Recorded { work, unlearnt: works, .. } = &mut self.recorded;
         for ((reached, work), works) in self.reached.iter().zip(work).zip(works) {
             *counter(work) += reached;
             *counter(works) += reached * unlearnt;
@@ -270,7 +270,7 @@ impl<'a> Gather<'a> {
     }
 }
 
-impl<S: MisSums> Observer<S> for Gather<'_> {
+impl<S: MisSums> Observer<S> for Recorder<'_> {
     fn covers(&self, film: Vec2) -> bool {
         self.film.covers(film)
     }
@@ -307,7 +307,7 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
             return;
         };
         let unlearnt = self.follower.start(s, t, &meeting).map_or(1.0, |followed| followed.unlearnt);
-        let found = &mut self.gathered.found;
+        let found = &mut self.recorded.found;
         let mut add = |pixel: u32, value: Spectrum| {
             let luminance = f64::from(value.luminance());
             let square = luminance * luminance;
@@ -315,7 +315,7 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
         };
         if let Meeting::Lens(film) = meeting {
             if !self.is_seen {
-                self.gathered.work.iter_mut().for_each(|work| work.reaching += 1.0);
+                self.recorded.work.iter_mut().for_each(|work| work.reaching += 1.0);
                 self.is_seen = true;
             }
             return self.film.spread(film, *value, |pixel, value| add(pixel as u32, value));
@@ -328,8 +328,8 @@ impl<S: MisSums> Observer<S> for Gather<'_> {
 
 /// What one block of one pass brings.
 pub(super) struct Part {
-    camera: Gathered,
-    light: Gathered,
+    camera: Recorded,
+    light: Recorded,
     /// Pixels with what camera subpaths contribute to them.
     sums: Vec<(u32, f64)>,
 }
@@ -344,13 +344,13 @@ impl Part {
 pub(super) fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) -> Part {
     let Ready { estimator, blocks, scene, film, seed } = ready;
     let follower = Follower::new(&scene.lights, estimator.starts(), P::Channels::COUNT);
-    let mut light = Gather::new(film, follower);
+    let mut light = Recorder::new(film, follower);
     let mut observer: &mut dyn Observer<P::MisSums> = &mut light;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
     let walks = if estimator.needs_light_walks() { blocks.walks_per_block() as f64 } else { 0.0 };
-    let Gathered { work, unlearnt, .. } = &mut light.gathered;
+    let Recorded { work, unlearnt, .. } = &mut light.recorded;
     work.iter_mut().chain(unlearnt).for_each(|work| work.walks = walks);
-    let mut camera = Gather::new(film, light.follower.of_cache());
+    let mut camera = Recorder::new(film, light.follower.of_cache());
     let sums = blocks.pixels(block).map(|pixel| {
         let start = blocks.camera_start(scene, film, *seed, pass, pixel);
         camera.begin(pixel, start.hero, start.weight);
@@ -359,7 +359,7 @@ pub(super) fn part<P: Profile>(ready: &Ready<'_, P>, pass: usize, block: usize) 
         (pixel as u32, camera.sum)
     });
     let sums = sums.collect();
-    Part { camera: camera.gathered, light: light.gathered, sums }
+    Part { camera: camera.recorded, light: light.recorded, sums }
 }
 
 /// A set of pixels that lie together.

@@ -67,7 +67,10 @@ pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
     let guided = follows_guide(scene, film, settings);
     let wanted = Wanted::by(settings.options, guided);
     let key = wanted.key(film);
-    let learnt = scene.lights.learnt.recall(key.clone(), || learn(scene, film, wanted, false));
+    let learnt = match wanted {
+        Wanted { starts: None, guide: None, .. } => Learnt::default(),
+        _ => scene.lights.learnt.recall(key.clone(), || learn(scene, film, wanted, false)),
+    };
     // Camera subpaths that end before they gather need nothing to end in.
     if !strategies.gather || max_depth.is_some_and(|depth| depth <= 2) {
         return learnt;
@@ -147,11 +150,8 @@ fn of_learning(options: Options) -> Settings {
 /// A guide only where it pays, if that `is_judged`.
 fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt {
     let settings = of_learning(wanted.options);
-    let (rounds, most) = match (wanted.starts, wanted.guide) {
-        (_, Some(_)) => (GUIDE_ROUNDS, GUIDE_SEGMENTS),
-        (Some(_), None) => (ROUNDS, SEGMENTS),
-        (None, None) => (0, 0.0),
-    };
+    let (rounds, most) =
+        if wanted.guide.is_some() { (GUIDE_ROUNDS, GUIDE_SEGMENTS) } else { (ROUNDS, SEGMENTS) };
     let (mut learnt, mut done, mut segments) = (Learnt::default(), 0, 0.0);
     let mut before = Vec::new();
     for round in 0..rounds {
@@ -169,14 +169,19 @@ fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt 
             before = lessons;
         }
         let is_last = segments > most;
-        if is_judged && (is_last || round + 1 == JUDGING_ROUNDS) {
-            learnt.guide = learnt.guide.filter(|guide| guide.remains(Transport::Radiance) < PAYS);
+        if is_judged && (is_last || round + 1 == JUDGING_ROUNDS) && !learnt.guide.as_deref().is_some_and(pays)
+        {
+            return Learnt { guide: None, ..learnt };
         }
-        if is_last || (is_judged && round + 1 >= JUDGING_ROUNDS && learnt.guide.is_none()) {
+        if is_last {
             break;
         }
     }
     learnt
+}
+
+fn pays(guide: &Guide) -> bool {
+    guide.remains(Transport::Radiance) < PAYS
 }
 
 /// Follows walks, to tell where the light of each contribution starts.
@@ -423,7 +428,7 @@ struct Part {
 
 fn part<P: Profile>(ready: &Ready<'_, P>, [pass, block]: [usize; 2], for_guide: bool) -> Part {
     let Ready { estimator, blocks, scene, film, seed } = ready;
-    let mut gather = Gather {
+    let mut recorder = Recorder {
         scene,
         film,
         follower: Follower::new(&scene.lights, estimator.starts(), P::Channels::COUNT),
@@ -434,24 +439,24 @@ fn part<P: Profile>(ready: &Ready<'_, P>, [pass, block]: [usize; 2], for_guide: 
         found: Vec::new(),
         segments: 0.0,
     };
-    let mut observer: &mut dyn Observer<P::MisSums> = &mut gather;
+    let mut observer: &mut dyn Observer<P::MisSums> = &mut recorder;
     let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
-    let light = std::mem::take(&mut gather.found);
-    gather.transport = Transport::Radiance;
+    let light = std::mem::take(&mut recorder.found);
+    recorder.transport = Transport::Radiance;
     let pixels: Vec<u32> = blocks.pixels(block).map(|pixel| pixel as u32).collect();
     for pixel in &pixels {
         let start = blocks.camera_start(scene, film, *seed, pass, *pixel as usize);
-        gather.follower.begin(start.hero);
-        (gather.pixel, gather.weight) = (*pixel, start.weight);
-        let observer: &mut dyn Observer<P::MisSums> = &mut gather;
+        recorder.follower.begin(start.hero);
+        (recorder.pixel, recorder.weight) = (*pixel, start.weight);
+        let observer: &mut dyn Observer<P::MisSums> = &mut recorder;
         start.trace(estimator, &cache, observer);
     }
-    let Gather { found: camera, tracks, segments, .. } = gather;
+    let Recorder { found: camera, tracks, segments, .. } = recorder;
     Part { camera, light, tracks, pixels, segments }
 }
 
 /// Sees walks and what they contribute; those of the camera to one pixel.
-struct Gather<'a> {
+struct Recorder<'a> {
     scene: &'a Scene,
     film: &'a Film,
     follower: Follower<'a>,
@@ -464,7 +469,7 @@ struct Gather<'a> {
     segments: f64,
 }
 
-impl Gather<'_> {
+impl Recorder<'_> {
     /// The luminance that the image gains where a light subpath is seen through `film`, and the pixel that gains most.
     fn splat(&self, film: Vec2, value: Spectrum) -> (u32, f32) {
         let (mut brightest, mut most, mut sum) = (0, 0.0, 0.0);
@@ -479,7 +484,7 @@ impl Gather<'_> {
     }
 }
 
-impl<S: MisSums> Observer<S> for Gather<'_> {
+impl<S: MisSums> Observer<S> for Recorder<'_> {
     fn covers(&self, film: Vec2) -> bool {
         self.film.covers(film)
     }
