@@ -97,11 +97,14 @@ impl Profile {
     pub fn sample_from_surface(&self, stream: &mut Stream) -> Vec3 {
         let (low, high) = self.surface.sample(stream);
         let u = stream.square();
-        let (low, high) = (low.sin().powi(2), high.sin().powi(2));
-        let sine_squared = (low + f64::from(u.x) * (high - low)) as f32;
         let (s, c) = (std::f32::consts::TAU * u.y).sin_cos();
-        let sine = sine_squared.sqrt();
-        Vec3::new(sine * c, sine * s, (1.0 - sine_squared).max(0.0).sqrt())
+        // Either by itself: as the complement of the other, cosines of grazing directions would be 0.
+        let between = |low: f64, high: f64| {
+            let share = f64::from(u.x);
+            (low.powi(2) * (1.0 - share) + high.powi(2) * share).sqrt() as f32
+        };
+        let sine = between(low.sin(), high.sin());
+        Vec3::new(sine * c, sine * s, between(low.cos(), high.cos()))
     }
 
     /// Density of `sample_from_surface` [1/sr].

@@ -127,10 +127,10 @@ impl Stream {
 /// Steps of 24 bits.
 const SCALE: f32 = 1.0 / (1u64 << 24) as f32;
 
-/// One number of many.
+/// One number of many. The turn of `seed` is for the first part: without it the two could change places.
 #[inline]
 fn key<const N: usize>(seed: u64, parts: [u64; N]) -> u64 {
-    parts.iter().fold(mix(seed), |key, part| mix(key ^ mix(*part)))
+    parts.iter().fold(mix(seed.rotate_left(32)), |key, part| mix(key ^ mix(*part)))
 }
 
 /// Stafford's variant 13 of the murmur finaliser (Steele et al. 2014, SplitMix).
@@ -146,6 +146,7 @@ pub(super) fn mix(x: u64) -> u64 {
 mod tests {
     use super::*;
     use crate::{sampling::points::DIMENSIONS, testing};
+    use std::collections::HashSet;
 
     #[test]
     fn equal_keys_give_equal_numbers_and_any_other_key_others() {
@@ -156,6 +157,14 @@ mod tests {
             [draw(2, 2, 3, Purpose::Camera), draw(1, 3, 2, Purpose::Camera), draw(1, 2, 3, Purpose::Light)]
         {
             assert_ne!(base, other);
+        }
+    }
+
+    #[test]
+    fn no_two_of_small_seeds_indices_and_samples_give_the_same_numbers() {
+        let mut seen = HashSet::new();
+        for (i, j, k) in (0..16).flat_map(|i| (0..16).flat_map(move |j| (0..16).map(move |k| (i, j, k)))) {
+            assert!(seen.insert(key(i, [j, k])), "{i} {j} {k}");
         }
     }
 

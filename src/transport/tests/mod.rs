@@ -141,7 +141,7 @@ fn all_vertices_of_a_pair_of_walks() {
     let glass = build(&[FOG, INSIDE, ROOM, LAMP, GLASS_BALL, MIRROR]);
     all("glass", examine::<Fog>("pairs, with glass", &glass, options, 400));
     let open = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY]);
-    all("open", examine::<ByKind>("pairs, in the open", &open, options, 500));
+    all("open", examine::<ByKind>("pairs, in the open", &open, options, 600));
     let waves = build(&[OUTSIDE, WAVES, GROUND, LAMP, BULB]);
     all("waves", examine::<Smoke>("pairs, in waves", &waves, options, 500));
     let vacuum = build(&[OUTSIDE, GROUND, LAMP, BALL]);

@@ -2,8 +2,9 @@
 
 use crate::{
     emitter::Kind,
-    math::{DVec3, RaySegment, Spectrum, Vec2, Vec3, offset, vec2},
+    math::{DVec3, RaySegment, Spectrum, Vec2, Vec3, offset, vec2, vec3},
     medium::{DistanceMethod, Heterogeneous, MediumIndex, MediumProperties},
+    sampling::Stream,
     scene::{Scene, lights::EmitterPoint},
     shape::{Ray, SurfacePoint},
     transport::profile::Everything,
@@ -154,6 +155,9 @@ pub struct Path {
     pub rounding: f64,
 }
 
+/// How far off f32 may leave a position, relative [ulp].
+const SHAKEN: f32 = 4.0;
+
 /// What lies between two vertices.
 struct Way {
     depth: [f64; 3],
@@ -168,6 +172,21 @@ impl Path {
         let ways = nodes.windows(2).map(way).collect::<Option<Vec<Way>>>()?;
         let rounding = ways.iter().map(|way| way.rounding).sum();
         Some(Self { light, nodes, depths: ways.iter().map(|way| way.depth).collect(), rounding })
+    }
+
+    /// The same but for positions on surfaces and in media, each coordinate of which is off by up to some ulp of the largest.
+    pub fn shaken(&self, stream: &mut Stream) -> Self {
+        let mut path = self.clone();
+        for node in &mut path.nodes {
+            let (Place::Surface(SurfacePoint { position, .. }) | Place::Volume(position)) = &mut node.place
+            else {
+                continue;
+            };
+            let reach = SHAKEN * f32::EPSILON * position.abs().max_element();
+            let [a, b] = [stream.square(), stream.square()].map(|u| u * 2.0 - 1.0);
+            *position += vec3(a.x, a.y, b.x) * reach;
+        }
+        path
     }
 }
 

@@ -24,6 +24,9 @@ use std::sync::Arc;
 /// Expected samples, over those of the likeliest strategy, that never come.
 const NEVER: f64 = 1e-30;
 
+/// Paths that are like one path within what f32 holds.
+const SHAKES: u32 = 16;
+
 /// What the reference knows of an estimator.
 pub struct Reference<'a> {
     pub scene: &'a Scene,
@@ -50,9 +53,13 @@ impl<'a> Reference<'a> {
         let Estimator { scene, counts, heuristic, survival, .. } = *estimator;
         let mut starts = vec![None; scene.lights.all.len()];
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
-        for _ in 0..10_000 {
+        // The faintest of the lamps of the scenes comes once in some 10 000.
+        for _ in 0..1_000_000 {
             if let Some(start) = scene.lights.sample_emission(&scene.geometry, None, &mut stream) {
                 starts[start.light as usize].get_or_insert(start);
+            }
+            if starts.iter().all(Option::is_some) {
+                break;
             }
         }
         let (learnt, guide) = (estimator.starts.clone(), estimator.guide.clone());
@@ -62,6 +69,12 @@ impl<'a> Reference<'a> {
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
     pub fn weights(&self, path: &Path) -> Vec<Vec<f64>> {
         heuristics::weights(self.heuristic, &self.counted(path))
+    }
+
+    /// The weights of paths with vertices like those of `path`, but for what f32 may leave uncertain of where they are.
+    pub fn shaken(&self, path: &Path) -> impl Iterator<Item = Vec<Vec<f64>>> {
+        let mut stream = Stream::new(19, 0, 0, Purpose::Study);
+        (0..SHAKES).map(move |_| self.weights(&path.shaken(&mut stream)))
     }
 
     /// True by strategy and hero where walks come along the path so rarely, beside other strategies, that f32 need not
