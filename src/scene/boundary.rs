@@ -140,6 +140,24 @@ pub fn touching(geometry: &Geometry, surfaces: &[Surface]) -> Vec<bool> {
     touching
 }
 
+/// Another shape that has a face at `point` too.
+pub fn sharing(geometry: &Geometry, point: &SurfacePoint) -> Option<u32> {
+    let reach = 4.0 * offset::gamma(32) * point.position.abs().max_element() + point.error.max_element();
+    let [above, below] = [reach, -reach].map(|by| point.position + point.normal * by);
+    let mut ray = Ray { origin: above, direction: -point.normal, t_max: above.distance(below) };
+    for _ in 0..4 {
+        let hit = geometry.closest(&ray)?;
+        let shape = geometry.shape_of(&hit);
+        if shape != point.shape {
+            return Some(shape);
+        }
+        let met = geometry.surface(&ray, &hit);
+        let origin = offset::leave_surface(met.position, met.error, met.normal, ray.direction);
+        ray = Ray { origin, t_max: (below - origin).dot(ray.direction), ..ray };
+    }
+    None
+}
+
 /// True if the surfaces of two boxes, given by least and greatest corner, have points in common up to rounding.
 fn meet(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
     let reach = a.0.abs().max(a.1.abs()).max(b.0.abs()).max(b.1.abs());

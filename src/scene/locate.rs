@@ -295,7 +295,7 @@ impl Locator<'_> {
     fn survey_sides(&self, shape: u32, survey: &mut Survey, stream: &mut Stream) {
         let point = self.geometry.sample_area(shape, stream);
         let Surface { boundary, touching, .. } = self.surfaces[shape as usize];
-        if touching && self.is_shared(&point) {
+        if touching && boundary::sharing(self.geometry, &point).is_some() {
             return;
         }
         for normal in [point.normal, -point.normal] {
@@ -377,23 +377,6 @@ impl Locator<'_> {
         let slack = offset::gamma(32) * a_low.abs().max(a_high.abs()).max_element();
         let near = |x: Vec3, y: Vec3| (x - y).abs().cmple(Vec3::splat(slack)).any();
         a != b && (near(a_low, b_low) || near(a_high, b_high) || near(a_low, b_high) || near(a_high, b_low))
-    }
-
-    /// True if another boundary has a face at `point` too.
-    fn is_shared(&self, point: &SurfacePoint) -> bool {
-        let reach = 4.0 * offset::gamma(32) * point.position.abs().max_element() + point.error.max_element();
-        let [above, below] = [reach, -reach].map(|by| point.position + point.normal * by);
-        let mut ray = Ray { origin: above, direction: -point.normal, t_max: above.distance(below) };
-        for _ in 0..4 {
-            let Some(hit) = self.geometry.closest(&ray) else { return false };
-            if self.geometry.shape_of(&hit) != point.shape {
-                return true;
-            }
-            let met = self.geometry.surface(&ray, &hit);
-            let origin = offset::leave_surface(met.position, met.error, met.normal, ray.direction);
-            ray = Ray { origin, t_max: (below - origin).dot(ray.direction), ..ray };
-        }
-        false
     }
 
     /// The medium around `point`, which lies on no surface.

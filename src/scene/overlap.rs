@@ -9,14 +9,19 @@
 //! indices of media: what would be there without these boundaries (their base, which walks find as in other scenes),
 //! and the boundaries that hold the part of the ray at hand.
 
-use super::{Surface, accel::Geometry, boundary::MOST_SURFACES, locate::Survey};
+use super::{
+    Surface,
+    accel::Geometry,
+    boundary::{MOST_SURFACES, sharing},
+    locate::Survey,
+};
 use crate::{
     math::{RaySegment, Vec3, offset, vec3, warp},
     medium::{Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
     shape::{Ray, Shape, ShapeModel as _},
 };
-use std::collections::{BTreeMap, BTreeSet, HashMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
 
 /// Points at which each pair of boundaries is examined, and how many tests of all of these may take.
 const POINTS: u64 = 64;
@@ -81,6 +86,7 @@ impl Overlaps {
         let small = |shape: &u32| geometry.shapes()[*shape as usize].primitive_count() <= MOST_PRIMITIVES;
         let examined: Vec<_> = near.shapes().into_iter().filter(small).map(new).collect();
         chosen.extend(near.contradictory(&examined));
+        chosen.extend(near.sharing_faces(geometry));
         near.spread(&mut chosen);
         Self { boundaries: chosen.into_iter().map(new).collect(), ..Self::default() }
     }
@@ -292,6 +298,19 @@ impl Near {
             }
         }
         found
+    }
+
+    /// Those of which one holds a part of the other behind a face of both: of the two faces a ray hits one by chance, and in
+    /// both directions perhaps another.
+    fn sharing_faces(&self, geometry: &Geometry) -> BTreeSet<u32> {
+        let pairs: HashSet<[u32; 2]> = self.pairs.iter().map(|pair| pair.shapes).collect();
+        let is_near = |a: u32, b: u32| pairs.contains(&[a.min(b), a.max(b)]);
+        let shares = |shape: u32| {
+            let mut stream = Stream::new(9, u64::from(shape), 0, Purpose::Pilot);
+            let mut points = (0..POINTS).map(|_| geometry.sample_area(shape, &mut stream));
+            points.find_map(|point| sharing(geometry, &point).filter(|other| is_near(shape, *other)))
+        };
+        self.shapes().into_iter().filter_map(|shape| Some([shape, shares(shape)?])).flatten().collect()
     }
 
     /// Adds to `chosen` whatever is near it.

@@ -116,7 +116,7 @@ fn a_sample_made_again_is_what_its_pass_adds() {
         for set in [Strategies::BDPT, Strategies::PT, Strategies::LT, strategies("hit+join")] {
             let bench = Instrument::new(&stage.setup.scene, &stage.setup.film, &stage.settings(set, 1, 3));
             let mut passes = Vec::new();
-            bench.passes(0..3, &mut |image| passes.push(image.to_vec()));
+            bench.passes(0..4, &mut |image| passes.push(image.to_vec()));
             let rendered = stage.render(set, 1, 3);
             for (number, pass) in passes.iter().enumerate() {
                 for pixel in pixels {

@@ -38,8 +38,8 @@ fn a_render_says_in_one_line_what_it_will_do() {
             "bdpt (hit, next-event, join, lens), sobol samples, closed-form flights, 8x8, 4 samples/pixel, profile fog\n",
         ),
         (
-            "--integrator pt --sampler sobol --time-limit 0.1s",
-            "pt (hit, next-event), sobol samples, closed-form flights, 8x8, 0.1 s, profile fog\n",
+            "--strategies hit,next-event --sampler sobol --time-limit 0.1s",
+            "bdpt (hit, next-event), sobol samples, closed-form flights, 8x8, 0.1 s, profile fog\n",
         ),
         (
             "--strategies hit,join --spp 2 --error 0.5 --profile everything",

@@ -53,7 +53,7 @@ fn ball() -> (&'static str, Value) {
 
 #[test]
 fn in_fog_of_one_and_three_extinctions() {
-    for (sigma_t, sets) in [(0.02, &SHAPES[..]), (1.0, &SHAPES[..]), (10.0, &SHAPES[..5])] {
+    for (sigma_t, sets) in [(0.02, &SHAPES[..]), (1.0, &SHAPES[..5]), (10.0, &SHAPES[..5])] {
         let parts = in_room(medium(sigma_t, 0.8, 0.3), &[ball()]);
         agrees(&format!("fog of {sigma_t}"), &Stage::new(&scene(&parts)), sets, 64);
     }
