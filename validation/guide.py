@@ -39,7 +39,7 @@ def cases(*scenes: Path) -> list[Case]:
 
 CASES = {
     "lit through an opening": cases(
-        efficiency.FOLDER / "small_opening.xml", efficiency.FOLDER / "door_ajar.xml", efficiency.FOLDER / "dusty_window.xml", GALLERY / "attic.json"
+        *(efficiency.FOLDER / f"{name}.xml" for name in ("small_opening", "keyhole", "door_ajar", "skylight", "dusty_window")), GALLERY / "attic.json"
     ),
     "lit indirectly": [
         Case("indirect_room (fig. 5.15)", GALLERY / "indirect_room.json"),
