@@ -9,6 +9,9 @@ use std::f64::consts::TAU;
 const ROWS_OF_CELLS: usize = 24;
 const COLUMNS: usize = 48;
 
+/// Points of the quadratures across a cell, either way.
+const STEPS: [usize; 4] = [8, 12, 48, 128];
+
 /// The probability that `sample` gives a direction in `cell`, by quadrature of the forward density over
 /// `steps` by `steps` points.
 fn expected_share(bsdf: &Bsdf, wi: Vec3, cell: usize, steps: usize) -> f64 {
@@ -26,20 +29,31 @@ fn expected_share(bsdf: &Bsdf, wi: Vec3, cell: usize, steps: usize) -> f64 {
 }
 
 /// Counts expected of `samples` samples in each cell, by quadratures that are finer until that makes next to no
-/// difference beside the noise.
+/// difference beside the noise; a cell that a lobe may only touch, as it lies beside one with some of it, has the finest.
 fn expected_counts(bsdf: &Bsdf, wi: Vec3, samples: f64) -> Vec<f64> {
-    let count = |cell| {
-        let by = |steps| samples * expected_share(bsdf, wi, cell, steps);
-        let mut count = by(8);
-        for steps in [12, 48, 128] {
-            let coarse = std::mem::replace(&mut count, by(steps));
+    let by = |steps, cell| samples * expected_share(bsdf, wi, cell, steps);
+    let first: Vec<f64> = (0..ROWS_OF_CELLS * COLUMNS).map(|cell| by(STEPS[0], cell)).collect();
+    let count = |cell: usize| {
+        let mut count = first[cell];
+        if count == 0.0 && beside(cell).any(|other| first[other] > 0.0) {
+            return by(STEPS[3], cell);
+        }
+        for steps in &STEPS[1..] {
+            let coarse = std::mem::replace(&mut count, by(*steps, cell));
             if (count - coarse).abs() < 0.02 * count.max(1.0).sqrt() {
                 break;
             }
         }
         count
     };
-    (0..ROWS_OF_CELLS * COLUMNS).map(count).collect()
+    (0..first.len()).map(count).collect()
+}
+
+/// The cells around one, itself included.
+fn beside(cell: usize) -> impl Iterator<Item = usize> {
+    let (row, column) = (cell / COLUMNS, cell % COLUMNS);
+    let rows = row.saturating_sub(1)..=(row + 1).min(ROWS_OF_CELLS - 1);
+    rows.flat_map(move |row| (0..3).map(move |side| row * COLUMNS + (column + COLUMNS + side - 1) % COLUMNS))
 }
 
 fn cell_of(w: Vec3) -> usize {
