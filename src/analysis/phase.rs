@@ -39,7 +39,8 @@ pub struct Check {
     pub stated_mean_cosine: f64,
     /// Mean cosine of the samples.
     pub sampled_mean_cosine: f64,
-    /// Its standard error; 0 where all samples have one cosine.
+    /// Its standard error if the samples follow the density: where few of them are far from a sharp peak, they do not
+    /// know their own.
     pub standard_error: f64,
     /// How well the samples fit the density, cell by cell.
     pub fit: ChiSquare,
@@ -92,14 +93,13 @@ pub fn check(sampled: &Phase, pdf: &Phase, division: Division, samples: u64, see
     let expected: Vec<f64> = (0..drawn.cells.len())
         .map(|cell| n * slices.shares[cell / division.meridians] / division.meridians as f64)
         .collect();
-    let mean = drawn.sum / n;
-    let variance = (drawn.squares / n - mean * mean).max(0.0);
+    let variance = (slices.square - slices.moment * slices.moment).max(0.0);
     Check {
         normalisation: slices.total(),
         mean_cosine: slices.moment,
         stated_mean_cosine: f64::from(pdf.mean_cosine()),
-        sampled_mean_cosine: mean,
-        standard_error: (variance / (n - 1.0)).sqrt(),
+        sampled_mean_cosine: drawn.sum / n,
+        standard_error: (variance / n).sqrt(),
         fit: chi_square(&drawn.cells, &expected),
         cells: drawn.cells,
         histogram: drawn.histogram,
@@ -112,7 +112,6 @@ struct Drawn {
     cells: Vec<u64>,
     histogram: Vec<u64>,
     sum: f64,
-    squares: f64,
 }
 
 impl Drawn {
@@ -122,12 +121,7 @@ impl Drawn {
         let before = BEFORE.normalize();
         let frame = Frame::around(before);
         let mut stream = Stream::new(seed, 0, 0, Purpose::Study);
-        let mut drawn = Self {
-            cells: vec![0; slices * meridians],
-            histogram: vec![0; HISTOGRAM],
-            sum: 0.0,
-            squares: 0.0,
-        };
+        let mut drawn = Self { cells: vec![0; slices * meridians], histogram: vec![0; HISTOGRAM], sum: 0.0 };
         for _ in 0..samples {
             let after = phase.sample(before, &mut stream);
             let turn = quadrature::Turn::between(before, after);
@@ -137,7 +131,6 @@ impl Drawn {
             drawn.cells[slice * meridians + ((around * meridians as f64) as usize).min(meridians - 1)] += 1;
             drawn.histogram[((turn.angle / PI * HISTOGRAM as f64) as usize).min(HISTOGRAM - 1)] += 1;
             drawn.sum += turn.cosine;
-            drawn.squares += turn.cosine * turn.cosine;
         }
         drawn
     }

@@ -84,8 +84,10 @@ fn all_agree(name: &str, scene: &Value, kind: Kind, samples_per_pixel: u64) {
 
 /// Fog in a room whose camera looks past a lamp.
 fn foggy_room(fog: Value) -> Vec<(&'static str, Value)> {
+    // What is scattered next to the lens would give light subpaths an infinite variance.
+    let near_clip = [("near_clip", json!(0.3))];
     vec![
-        ("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)),
+        ("sensor", with(camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8), &near_clip)),
         ("fog", fog),
         ("room", room(0.6, Some(named("fog")))),
         ("lamp", lamp_ball([0.2, 0.3, -0.3], 0.3, rgb(2.0, 3.0, 1.0))),
@@ -511,8 +513,6 @@ fn around_a_glass_ball_that_glows() {
 #[test]
 fn under_a_beam() {
     let mut parts = foggy_room(medium(1.0, 0.8, 0.3));
-    // What is scattered next to the lens would give light subpaths an infinite variance.
-    parts[0].1 = with(parts[0].1.clone(), &[("near_clip", json!(0.3))]);
     parts[3] = (
         "lamp",
         with(

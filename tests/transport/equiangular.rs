@@ -171,7 +171,7 @@ fn noise(stage: &Stage, set: Strategies) -> f64 {
 fn glows_in_thin_media_are_less_noisy() {
     let parts = in_room(medium(0.01, 0.9, 0.3), &[("point", point([0.1, 0.1, -0.3], 1.0))]);
     let stage = Stage::new(&scene(&[&dark(parts)[..], &[("integrator", depth(2))]].concat()));
-    for (set, factor) in [(Strategies::PT, 30.0), (Strategies::BDPT, 10.0)] {
+    for (set, factor) in [(Strategies::PT, 20.0), (Strategies::BDPT, 10.0)] {
         let (without, along) = (noise(&stage, set), noise(&stage, and_along(set)));
         assert!(factor * along < without, "{}: {without} {along}", name_of(set));
     }

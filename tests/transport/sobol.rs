@@ -132,7 +132,7 @@ fn one_reflection() -> Value {
 #[test]
 fn images_are_less_noisy() {
     let scene = one_reflection();
-    for (set, factor) in [(strategies("next-event"), 8.0), (Strategies::PT, 1.5), (Strategies::BDPT, 1.2)] {
+    for (set, factor) in [(strategies("next-event"), 8.0), (Strategies::PT, 1.3), (Strategies::BDPT, 1.2)] {
         let (plain, even) = (variance(&Stage::new(&scene), set, 64), variance(&even(&scene), set, 64));
         assert!(factor * even < plain, "{}: {plain} {even}", common::name_of(set));
     }

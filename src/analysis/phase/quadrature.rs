@@ -65,6 +65,8 @@ pub struct Slices {
     pub shares: Vec<f64>,
     /// Mean cosine.
     pub moment: f64,
+    /// Mean of its square.
+    pub square: f64,
 }
 
 /// Midpoints of all slices together.
@@ -75,20 +77,22 @@ impl Slices {
     pub fn new(phase: &Phase, count: usize) -> Self {
         let per_slice = (POINTS / count).max(8);
         let step = 1.0 / (count * per_slice) as f64;
-        let mut moment = 0.0;
+        let (mut moment, mut square) = (0.0, 0.0);
         let mut share = |slice: usize| -> f64 {
             let point = |i: usize| {
                 let place = (i as f64 + 0.5) * step;
                 let (from_pole, sign) = if place < 0.5 { (place, 1.0) } else { (1.0 - place, -1.0) };
                 let solid_angle = TAU * 8.0 * (2.0 * from_pole).powi(3) * step;
                 let share = solid_angle * pdf_at(phase, place);
-                moment += share * sign * (1.0 - one_minus_cos(from_pole));
+                let cosine = sign * (1.0 - one_minus_cos(from_pole));
+                moment += share * cosine;
+                square += share * cosine * cosine;
                 share
             };
             (slice * per_slice..(slice + 1) * per_slice).map(point).sum()
         };
         let shares = (0..count).map(&mut share).collect();
-        Self { shares, moment }
+        Self { shares, moment, square }
     }
 
     /// Integral over the sphere.
