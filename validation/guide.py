@@ -63,7 +63,8 @@ WANTED_PT = 2.0
 WAYS: dict[str, dict[str, Any]] = {
     "bdpt": {"integrator": "bdpt", "starts": "emitted"},
     "bdpt, starts": {"integrator": "bdpt"},
-    "bdpt, guide": {"integrator": "bdpt", "guide": "always"},
+    "bdpt, guide": {"integrator": "bdpt", "guide": "auto"},
+    "bdpt, always": {"integrator": "bdpt", "guide": "always"},
     "pt": {"integrator": "pt"},
     "pt, guide": {"integrator": "pt", "guide": "auto"},
     "gather": {"integrator": "gather"},
@@ -72,6 +73,7 @@ WAYS: dict[str, dict[str, Any]] = {
 GAINS = {
     "starts": ("bdpt", "bdpt, starts"),
     "bdpt": ("bdpt", "bdpt, guide"),
+    "always": ("bdpt", "bdpt, always"),
     "pt": ("pt", "pt, guide"),
     "gather over pt": ("pt", "gather"),
     "gather over bdpt": ("bdpt, starts", "gather"),
@@ -108,8 +110,8 @@ class Row:
     """By the names of GAINS."""
     learnt: dict[str, Any]
     """What `tyndall guide --json` says."""
-    follows: bool
-    """Whether path tracing by `--guide auto` follows the guide."""
+    follows: dict[str, bool]
+    """Whether `bdpt` and `pt` by `--guide auto` follow the guide."""
 
 
 def add_options(command: argparse.ArgumentParser) -> None:
@@ -136,7 +138,7 @@ def row_of(kind: str, case: Case, options: argparse.Namespace) -> Row:
     """Renders a scene with a guide and without, and as the preview `gather`."""
     given: dict[str, Any] = {"size": options.size, "threads": options.threads}
     scene = Scene(case.scene, case.name, case.parameters)
-    reference = render(scene, integrator="bdpt", time_limit=options.reference_seconds, seed=OTHER_SEED, **given).image
+    reference = render(scene, integrator="bdpt", guide="auto", time_limit=options.reference_seconds, seed=OTHER_SEED, **given).image
 
     def error(seed: int, way: dict[str, Any]) -> float:
         image = render(scene, time_limit=options.seconds, seed=seed, **way, **given).image
@@ -151,7 +153,7 @@ def row_of(kind: str, case: Case, options: argparse.Namespace) -> Row:
     folder.parent.mkdir(parents=True, exist_ok=True)
     words = program.flags({"output": folder, "json": True, **given})
     learn = [str(program.binary()), "--quiet", "guide", str(case.scene), *words, *program.definitions(case.parameters)]
-    follows = render(scene, spp=1, **WAYS["pt, guide"], **given).report["plan"]["guided"]
+    follows = {by: bool(render(scene, spp=1, **WAYS[f"{by}, guide"], **given).report["plan"]["guided"]) for by in ("bdpt", "pt")}
     row = Row(kind, case.name, gains, json.loads(program.call(learn).stdout), follows)
     print(line(row), end="", flush=True)
     return row
@@ -162,11 +164,11 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
     command = made_by_command()
     return (
         f"# What a guide gives\n\n    {command}\n\n"
-        f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it (by bdpt `--guide always`, by pt `auto`: *followed* or not), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
-        f"{options.seeds} seeds; ± one standard error. References: `bdpt`, {options.reference_seconds:g} s, unguided. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
+        f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it (`--guide auto`, *followed* or not, and by bdpt `always`), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
+        f"{options.seeds} seeds; ± one standard error. References: `bdpt`, {options.reference_seconds:g} s, by `--guide auto`. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
         "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its.\n\n"
-        "| scene | starts | guide, by bdpt | wanted | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
-        "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
+        "| scene | starts | guide, by bdpt | wanted | followed | always | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | portals | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
     )
 
 
@@ -176,7 +178,8 @@ def line(row: Row) -> str:
     cells = ", ".join(str(kind["cells"]) for kind in kinds)
     guided = ", ".join(f"{100 * kind['guided'][0]:.0f} %" for kind in kinds)
     over_pt = f"{WANTED_PT:g}" if row.kind == "P03T's boxes" else ""
+    bdpt, pt = ("yes" if row.follows[by] else "no" for by in ("bdpt", "pt"))
     return (
-        f"| {row.name} ({row.kind}) | {row.gains['starts']} | {row.gains['bdpt']} | {WANTED[row.kind]:g} | {row.gains['pt']} | {over_pt} | {'yes' if row.follows else 'no'} | {row.gains['gather over pt']} | {row.gains['gather over bdpt']} | {row.learnt['seconds']:.1f} s | "
-        f"{row.learnt['bytes'] / 2**20:.1f} MiB | {cells} | {guided} |\n"
+        f"| {row.name} ({row.kind}) | {row.gains['starts']} | {row.gains['bdpt']} | {WANTED[row.kind]:g} | {bdpt} | {row.gains['always']} | {row.gains['pt']} | {over_pt} | {pt} | {row.gains['gather over pt']} | {row.gains['gather over bdpt']} | {row.learnt['seconds']:.1f} s | "
+        f"{row.learnt['bytes'] / 2**20:.1f} MiB | {len(row.learnt['portals'])} | {cells} | {guided} |\n"
     )

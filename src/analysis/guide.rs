@@ -9,7 +9,7 @@ use crate::{
     bsdf::Transport,
     error::Result,
     film,
-    guide::{Guide, Learnt},
+    guide::{self, Guide, Learnt},
     math::{Spectrum, Vec3, srgb::Srgb, vec2, vec3, warp},
     render::{Settings, instrument::Instrument, training},
     scene::{Scene, build::Setup, lights::Starts},
@@ -49,6 +49,8 @@ pub struct Report {
     pub surfaces: Cells,
     /// Of media.
     pub media: Cells,
+    /// What much of the light goes through, the most telling first.
+    pub portals: Vec<Portal>,
     /// Emitters at which most light subpaths start, once that is learnt, the first of them first.
     pub starts: Vec<Start>,
     /// Those that most pixels see, the most seen first.
@@ -62,6 +64,15 @@ pub struct Cells {
     pub cells: usize,
     /// The part of the directions of the camera's walks and of light's that is guided in them, on average.
     pub guided: [f32; 2],
+}
+
+/// A sphere that much of the light goes through.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Portal {
+    /// In the scene's coordinates.
+    pub centre: [f64; 3],
+    /// Above 0 [m].
+    pub radius: f32,
 }
 
 /// How often light subpaths start at an emitter.
@@ -80,6 +91,9 @@ pub struct Start {
 pub struct Seen {
     /// Its number.
     pub cell: u32,
+    /// Where one of the pixels sees it, from where its directions are shown.
+    #[serde(skip)]
+    place: Vec3,
     /// The part of the image that sees it.
     pub pixels: f64,
     /// The part of the directions of the camera's walks and of light's that is guided.
@@ -93,8 +107,8 @@ pub struct Findings {
     /// The numbers.
     pub report: Report,
     guide: Option<Arc<Guide>>,
-    /// The cell of what each pixel sees, if it sees any.
-    cells: Vec<Option<u32>>,
+    /// The cell of what each pixel sees, if it sees any, and where that is.
+    cells: Vec<Option<(u32, Vec3)>>,
     size: [usize; 2],
 }
 
@@ -106,15 +120,15 @@ pub fn examine(setup: &Setup, settings: &Settings) -> Findings {
     let seen = Instrument::new(&setup.scene, &setup.film, settings).first_interactions();
     let cell = |seen: &Option<Interaction>| {
         let seen = seen.as_ref().filter(|seen| seen.is_connectible(&setup.scene))?;
-        Some(learnt.guide.as_deref()?.cell(seen.position(), seen.normal()))
+        Some((learnt.guide.as_deref()?.cell(seen.position(), seen.normal()), seen.position()))
     };
-    let cells: Vec<Option<u32>> = seen.iter().map(cell).collect();
+    let cells: Vec<Option<(u32, Vec3)>> = seen.iter().map(cell).collect();
     let report = report(&setup.scene, &learnt, &cells, seconds);
     let size = [setup.film.width as usize, setup.film.height as usize];
     Findings { report, guide: learnt.guide, cells, size }
 }
 
-fn report(scene: &Scene, learnt: &Learnt, cells: &[Option<u32>], seconds: f64) -> Report {
+fn report(scene: &Scene, learnt: &Learnt, cells: &[Option<(u32, Vec3)>], seconds: f64) -> Report {
     let guide = learnt.guide.as_deref();
     let (all, of_surfaces) = guide.map_or((0, 0), |guide| (guide.cells(), guide.cells_of_surfaces()));
     let kind = |from: usize, to: usize| {
@@ -131,9 +145,18 @@ fn report(scene: &Scene, learnt: &Learnt, cells: &[Option<u32>], seconds: f64) -
         second_moment: WALKS.map(|(transport, _)| guide.map_or(1.0, |guide| guide.remains(transport))),
         surfaces: kind(0, of_surfaces),
         media: kind(of_surfaces, all),
+        portals: guide.map_or(Vec::new(), |guide| portals(scene, guide)),
         starts: learnt.starts.as_deref().map_or(Vec::new(), |starts| most_started(scene, starts)),
         seen: guide.map_or(Vec::new(), |guide| seen(guide, cells)),
     }
+}
+
+fn portals(scene: &Scene, guide: &Guide) -> Vec<Portal> {
+    let placed = |portal: &guide::Portal| Portal {
+        centre: (portal.centre.as_dvec3() + scene.recentre).to_array(),
+        radius: portal.radius,
+    };
+    guide.portals().iter().map(placed).collect()
 }
 
 fn most_started(scene: &Scene, starts: &Starts) -> Vec<Start> {
@@ -149,27 +172,31 @@ fn most_started(scene: &Scene, starts: &Starts) -> Vec<Start> {
 }
 
 /// The cells that most of the pixels see.
-fn seen(guide: &Guide, cells: &[Option<u32>]) -> Vec<Seen> {
-    let mut counts = vec![0usize; guide.cells()];
-    cells.iter().flatten().for_each(|cell| {
-        if let Some(count) = counts.get_mut(*cell as usize) {
-            *count += 1;
+fn seen(guide: &Guide, cells: &[Option<(u32, Vec3)>]) -> Vec<Seen> {
+    let mut places = vec![Vec::new(); guide.cells()];
+    cells.iter().flatten().for_each(|(cell, position)| {
+        if let Some(places) = places.get_mut(*cell as usize) {
+            places.push(*position);
         }
     });
-    let mut order: Vec<usize> = (0..counts.len()).filter(|cell| counts[*cell] > 0).collect();
-    order.sort_by_key(|cell| std::cmp::Reverse(counts[*cell]));
-    let seen = |cell: usize| Seen {
-        cell: cell as u32,
-        pixels: counts[cell] as f64 / cells.len() as f64,
-        guided: WALKS.map(|(transport, _)| guide.guided(cell as u32, transport)),
-        towards: WALKS.map(|(transport, _)| towards(guide, cell as u32, transport)),
+    let mut order: Vec<usize> = (0..places.len()).filter(|cell| !places[*cell].is_empty()).collect();
+    order.sort_by_key(|cell| std::cmp::Reverse(places[*cell].len()));
+    let seen = |cell: usize| {
+        let place = places[cell][places[cell].len() / 2];
+        Seen {
+            cell: cell as u32,
+            place,
+            pixels: places[cell].len() as f64 / cells.len() as f64,
+            guided: WALKS.map(|(transport, _)| guide.guided(cell as u32, transport)),
+            towards: WALKS.map(|(transport, _)| towards(guide, (cell as u32, place), transport)),
+        }
     };
     order.into_iter().take(SHOWN).map(seen).collect()
 }
 
 /// Unit direction of the highest density.
-fn towards(guide: &Guide, cell: u32, transport: Transport) -> Option<[f32; 3]> {
-    let density = |at: &usize| guide.density(cell, transport, direction(*at));
+fn towards(guide: &Guide, (cell, place): (u32, Vec3), transport: Transport) -> Option<[f32; 3]> {
+    let density = |at: &usize| guide.density(cell, transport, place, direction(*at));
     density(&0)?;
     let best = (0..SIDE * SIDE).max_by(|a, b| density(a).partial_cmp(&density(b)).unwrap_or(a.cmp(b)))?;
     Some(direction(best).to_array())
@@ -196,9 +223,10 @@ impl Findings {
 
     /// The cells, each by a colour of its own, and the parts of directions that are guided in them.
     fn seen(&self, guide: &Guide) -> Row {
-        let colour = |cell: &Option<u32>| cell.map_or(Spectrum::ZERO, colour_of);
+        type Cell = Option<(u32, Vec3)>;
+        let colour = |cell: &Cell| cell.map_or(Spectrum::ZERO, |(cell, _)| colour_of(cell));
         let guided = |(transport, walk): (Transport, &str)| {
-            let part = |cell: &Option<u32>| cell.map_or(0.0, |cell| guide.guided(cell, transport));
+            let part = |cell: &Cell| cell.map_or(0.0, |(cell, _)| guide.guided(cell, transport));
             let parts: Vec<f32> = self.cells.iter().map(part).collect();
             (format!("guided, {walk}"), linear(&false_colour(&parts, (0.0, 1.0))))
         };
@@ -211,7 +239,7 @@ impl Findings {
     fn directions(&self, guide: &Guide) -> Vec<Row> {
         let row = |seen: &Seen| {
             let image = |(index, (transport, walk)): (usize, (Transport, &str))| {
-                let density = |pixel| guide.density(seen.cell, transport, direction(pixel));
+                let density = |pixel| guide.density(seen.cell, transport, seen.place, direction(pixel));
                 let power =
                     |pixel| density(pixel).map_or(0.0, |density| (density / warp::SPHERE_PDF).log10());
                 let powers: Vec<f32> = (0..SIDE * SIDE).map(|pixel| power(pixel) - LEAST).collect();

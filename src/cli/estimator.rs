@@ -81,8 +81,8 @@ pub struct Estimator {
     /// When walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
     /// begun [default: the scene's, or never, but auto with gather]
     ///
-    /// auto: where it pays, as the first quarter of learning foresees: where pt has to find light that comes round corners. bdpt, if it
-    /// traces light subpaths, finds it anyway. always: also where it does not pay. Learning takes a second or so; the expected image is
+    /// auto: where it pays, as the first quarter of learning foresees: where light comes through portals, such as a keyhole, and where
+    /// pt has to find light that comes round corners, which light subpaths find anyway. always: also where it does not pay. Learning takes a second or so; the expected image is
     /// the same. Needs the heuristic balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
     pub guide: Option<Guiding>,
@@ -180,13 +180,13 @@ impl Estimator {
     /// The same, and what the pilot chose, if there was one.
     pub fn chosen(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<(Settings, Option<Choice>)> {
         let mut settings = self.requested(setup, seed, budget)?;
+        let guided = training::follows_guide(&setup.scene, &setup.film, &settings);
+        settings.options.effort.guide = if guided { Guiding::Always } else { Guiding::Never };
         let choice = self.choice(setup, &settings);
         let Options { strategies, effort, .. } = &mut settings.options;
         if let Some(choice) = choice {
             (*strategies, *effort) = (choice.strategies, Effort { guide: effort.guide, ..choice.effort });
         }
-        let guided = training::follows_guide(&setup.scene, &setup.film, &settings);
-        settings.options.effort.guide = if guided { Guiding::Always } else { Guiding::Never };
         Ok((settings, choice))
     }
 

@@ -7,7 +7,7 @@ use super::{
     voice::Answer,
 };
 use crate::{
-    analysis::guide::{self, Cells, FILES, Report},
+    analysis::guide::{self, Cells, FILES, Portal, Report},
     error::{Error, Result},
     render::budget::Budget,
 };
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
 /// A few lines.
 fn described(report: &Report) -> String {
-    let Report { seconds, bytes, surfaces, media, second_moment, .. } = report;
+    let Report { seconds, bytes, surfaces, media, second_moment, portals, .. } = report;
     if surfaces.cells + media.cells == 0 {
         return format!("learnt in {seconds:.1} s: nothing that walks could follow");
     }
@@ -75,11 +75,14 @@ fn described(report: &Report) -> String {
         )
     };
     let [camera, light] = second_moment.map(|part| format!("{part:.2}"));
+    let portal = |Portal { centre: [x, y, z], radius }: &Portal| {
+        format!("portal     of radius {radius:.3} around {x:.3}, {y:.3}, {z:.3}")
+    };
     let lines = [
         format!("learnt     in {seconds:.1} s, {:.1} MiB", *bytes as f64 / f64::from(1 << 20)),
         kind("surfaces", surfaces),
         kind("media", media),
         format!("moments    {camera} of the second moment is left to the camera's walks, {light} to light's"),
     ];
-    lines.join("\n")
+    lines.into_iter().chain(portals.iter().map(portal)).collect::<Vec<_>>().join("\n")
 }

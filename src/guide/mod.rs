@@ -8,22 +8,24 @@
 //! a p(w) + (1 - a) G(w)
 //! ```
 //! (a is the BSDF sampling fraction of Mueller et al.), and the walk from the other end leaves the same vertex towards the one
-//! before, w', with a p'(w') + (1 - a) G'(w'). G' does not depend on w: it is looked up once, on arrival, and kept.
+//! before, w', with a p'(w') + (1 - a) G'(w'). G' does not depend on w: it is looked up once, on arrival, and kept. A part of G
+//! aims at portals, the rest is a table of the directions from a cell of places.
 
+mod crossings;
+mod directions;
 mod places;
+mod portal;
 mod radiance;
 
 use crate::{
     bsdf::Transport,
-    math::{Vec3, warp},
-    sampling::{
-        Basis, Cells, Quadtree, Stream,
-        cells::Keyed,
-        quadtree::{Deposit, effective, limit},
-    },
+    math::Vec3,
+    sampling::{Basis, Cells, Stream, cells::Keyed, quadtree::limit},
     scene::lights::Starts,
 };
+use directions::{Directions, ENOUGH, Moments};
 use places::Places;
+pub use portal::Portal;
 pub use radiance::{Look, Radiance, Seen};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -48,15 +50,10 @@ impl Learnt {
     }
 }
 
-/// What a, the BSDF sampling fraction, may be. It multiplies what a path weighs by 1 / a at a vertex, at most, and
-/// the choice looks at one vertex at a time.
-const BSDF_FRACTIONS: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
 /// Half of the directions, as [`effective`] counts them, from which on a cell is divided.
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root: there are 4,096 of surfaces, and as many of media.
 const LEVELS: u32 = 12;
-/// Directions that tell nothing if there are fewer.
-const ENOUGH: f64 = 32.0;
 /// Of the weight of all directions, the most that one may have: it may be an outlier.
 const MOST: f64 = 1.0 / 1024.0;
 
@@ -83,6 +80,7 @@ pub struct Lesson {
 #[derive(Clone, Debug, Default)]
 pub struct Guide {
     places: Places,
+    portals: Vec<Portal>,
     surfaces: Cells<6, u32>,
     media: Cells<3, u32>,
     /// Those of surfaces come first.
@@ -95,20 +93,6 @@ pub struct Guide {
 /// Directions of the camera's walks and of light's.
 #[derive(Clone, Debug)]
 struct Cell([Option<Directions>; 2]);
-
-/// Second moments of what is learnt.
-#[derive(Clone, Copy, Debug, Default)]
-struct Moments {
-    unguided: f64,
-    guided: f64,
-}
-
-#[derive(Clone, Debug)]
-struct Directions {
-    /// a.
-    unguided: f32,
-    table: Quadtree,
-}
 
 /// What a walk knows of the guide at a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -149,7 +133,7 @@ impl Guide {
             return None;
         }
         let places = Places::around(lessons.iter().map(|lesson| lesson.position));
-        let mut guide = Self { places, ..Self::default() };
+        let mut guide = Self { places, portals: crossings::find(&lessons), ..Self::default() };
         let known = || lessons.iter().enumerate().map(|(index, lesson)| (index as u32, lesson));
         let of_surfaces = known().filter_map(|(index, lesson)| {
             let key = places.facing(lesson.position, lesson.normal?);
@@ -165,7 +149,9 @@ impl Guide {
         guide.surfaces = Cells::learn(of_surfaces, PER_CELL, LEVELS, |known| add(&mut leaves, known));
         guide.of_surfaces = leaves.len();
         guide.media = Cells::learn(of_media, PER_CELL, LEVELS, |known| add(&mut leaves, known));
-        let learnt: Vec<_> = leaves.into_par_iter().map(|leaf| Cell::learn(&lessons, &leaf, basis)).collect();
+        let portals = &guide.portals[..];
+        let learn = |leaf: Vec<u32>| Cell::learn(&lessons, &leaf, portals, basis);
+        let learnt: Vec<_> = leaves.into_par_iter().map(learn).collect();
         for (cell, moments) in learnt {
             guide.cells.push(cell);
             guide.moments.iter_mut().zip(moments).for_each(|(sum, moments)| sum.add(moments));
@@ -185,7 +171,8 @@ impl Guide {
         transport: Transport,
     ) -> Guidance {
         let cell = self.cell(position, normal);
-        let reverse = self.directions(cell, transport.reversed()).map_or(0.0, |known| known.pdf(incoming));
+        let reverse =
+            self.directions(cell, transport.reversed()).map_or(0.0, |known| known.pdf(position, incoming));
         Guidance { cell, reverse }
     }
 
@@ -214,9 +201,14 @@ impl Guide {
         self.directions(cell, transport).map_or(0.0, |known| 1.0 - known.unguided)
     }
 
-    /// G: the density of those of unit `direction` [1/sr]; none where there is none.
-    pub fn density(&self, cell: u32, transport: Transport, direction: Vec3) -> Option<f32> {
-        self.directions(cell, transport).map(|known| pdf(&known.table, direction))
+    /// G: the density of unit `direction` among those from `position`, which lies in `cell` [1/sr]; none where there is none.
+    pub fn density(&self, cell: u32, transport: Transport, position: Vec3, direction: Vec3) -> Option<f32> {
+        self.directions(cell, transport).map(|known| known.mixture.pdf(position, direction))
+    }
+
+    /// What much of the light goes through, the most telling first.
+    pub fn portals(&self) -> &[Portal] {
+        &self.portals
     }
 
     /// What the guide leaves of the second moment of what walks by `transport` bring, as one half of what was learnt judges the
@@ -229,7 +221,7 @@ impl Guide {
     /// Memory that it takes [bytes].
     pub fn bytes(&self) -> usize {
         let tables = self.cells.iter().flat_map(|cell| cell.0.iter().flatten());
-        let tables: usize = tables.map(|known| known.table.bytes()).sum();
+        let tables: usize = tables.map(|known| known.mixture.bytes()).sum();
         size_of_val(&self.cells[..]) + tables + self.surfaces.bytes() + self.media.bytes()
     }
 
@@ -238,18 +230,19 @@ impl Guide {
         self.cells.get(cell as usize)?.0[index(transport)].as_ref()
     }
 
-    /// Densities of `outgoing`, and of the way back, which are `unguided` without the guide [1/sr].
+    /// Densities of `outgoing` from `position`, and of the way back, which are `unguided` without the guide [1/sr].
     #[inline]
     pub fn pdfs(
         &self,
         guidance: Guidance,
         transport: Transport,
+        position: Vec3,
         outgoing: Vec3,
         unguided: [f32; 2],
     ) -> [f32; 2] {
         let [mut fwd, mut rev] = self.unguided(guidance, transport, unguided);
         if let Some(known) = self.directions(guidance.cell, transport) {
-            fwd += known.pdf(outgoing);
+            fwd += known.pdf(position, outgoing);
         }
         rev += guidance.reverse;
         [fwd, rev]
@@ -264,9 +257,15 @@ impl Guide {
 
     /// A direction by the guide; none where this vertex is left without it.
     #[inline]
-    pub fn sample(&self, guidance: Guidance, transport: Transport, stream: &mut Stream) -> Option<Vec3> {
-        let Directions { unguided, table } = self.directions(guidance.cell, transport)?;
-        (stream.uniform() >= *unguided).then(|| warp::to_sphere(table.sample(stream.square())))
+    pub fn sample(
+        &self,
+        guidance: Guidance,
+        transport: Transport,
+        position: Vec3,
+        stream: &mut Stream,
+    ) -> Option<Vec3> {
+        let Directions { unguided, mixture } = self.directions(guidance.cell, transport)?;
+        (stream.uniform() >= *unguided).then(|| mixture.sample(position, stream))
     }
 }
 
@@ -276,69 +275,20 @@ fn add<const D: usize>(leaves: &mut Vec<Vec<u32>>, known: Vec<Known<D>>) -> u32 
     leaves.len() as u32 - 1
 }
 
-impl Moments {
-    fn add(&mut self, other: Self) {
-        self.unguided += other.unguided;
-        self.guided += other.guided;
-    }
-}
-
 impl Cell {
     fn guides(&self) -> bool {
         self.0.iter().any(Option::is_some)
     }
 
-    fn learn(lessons: &[Lesson], leaf: &[u32], basis: Basis) -> (Self, [Moments; 2]) {
+    fn learn(lessons: &[Lesson], leaf: &[u32], portals: &[Portal], basis: Basis) -> (Self, [Moments; 2]) {
         let of = |transport| {
             let own = leaf.iter().map(|index| &lessons[*index as usize]);
             let own: Vec<_> = own.filter(|lesson| lesson.transport == transport).collect();
-            Directions::learn(&own, basis)
+            Directions::learn(&own, portals, basis)
         };
         let [(camera, by_camera), (light, by_light)] = [Transport::Radiance, Transport::Importance].map(of);
         (Self([camera, light]), [by_camera, by_light])
     }
-}
-
-impl Directions {
-    /// None where directions are better left to the BSDF or the phase function.
-    fn learn(lessons: &[&Lesson], basis: Basis) -> (Option<Self>, Moments) {
-        if effective(lessons.iter().map(|lesson| lesson.weight)) < ENOUGH {
-            return (None, Moments::default());
-        }
-        let (unguided, moments) = part_unguided(lessons, basis);
-        let guides = unguided < 1.0;
-        (guides.then(|| Self { unguided, table: table(lessons.iter().copied(), basis) }), moments)
-    }
-
-    /// (1 - a) G [1/sr].
-    #[inline]
-    fn pdf(&self, direction: Vec3) -> f32 {
-        (1.0 - self.unguided) * pdf(&self.table, direction)
-    }
-}
-
-/// a, by the second moment that what one half of the `lessons` tells has where the other half guides.
-fn part_unguided(lessons: &[&Lesson], basis: Basis) -> (f32, Moments) {
-    let half = |fold| lessons.iter().copied().filter(move |lesson| lesson.fold == fold);
-    let tables = [1, 0].map(|other| table(half(other), basis));
-    let known = lessons.iter().filter(|lesson| lesson.unguided > 0.0);
-    let ratios: Vec<_> = known
-        .map(|lesson| (lesson.weight, pdf(&tables[lesson.fold], lesson.direction) / lesson.unguided))
-        .collect();
-    let moment = |a: f32| -> f64 {
-        let of = |(weight, ratio): &(f32, f32)| f64::from(weight * weight / (a + (1.0 - a) * ratio));
-        ratios.iter().map(of).sum()
-    };
-    let unguided = moment(1.0);
-    let best = BSDF_FRACTIONS.into_iter().map(|a| (a, moment(a))).min_by(|a, b| a.1.total_cmp(&b.1));
-    let (a, guided) = best.unwrap_or((1.0, unguided));
-    (a, Moments { unguided, guided })
-}
-
-fn table<'a>(lessons: impl Iterator<Item = &'a Lesson>, basis: Basis) -> Quadtree {
-    let deposit =
-        |lesson: &Lesson| Deposit { at: warp::from_sphere(lesson.direction), weight: lesson.weight };
-    Quadtree::by(basis, lessons.map(deposit).collect())
 }
 
 fn index(transport: Transport) -> usize {
@@ -346,9 +296,4 @@ fn index(transport: Transport) -> usize {
         Transport::Radiance => 0,
         Transport::Importance => 1,
     }
-}
-
-#[inline]
-fn pdf(table: &Quadtree, direction: Vec3) -> f32 {
-    table.density(warp::from_sphere(direction)) * warp::SPHERE_PDF
 }

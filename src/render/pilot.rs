@@ -135,7 +135,8 @@ pub fn choose(
 
 /// A few samples of all strategies of `settings` at equal effort, by learnt starts or not.
 fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival, learnt_starts: bool) -> Pilot {
-    let effort = Effort { survival, learnt_starts, ..Effort::default() };
+    let guide = settings.options.effort.guide;
+    let effort = Effort { survival, learnt_starts, guide, ..Effort::default() };
     let max_depth = Some(settings.options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST)));
     let options = Options { effort, max_depth, ..settings.options };
     let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*settings };

@@ -82,14 +82,12 @@ pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
     Learnt { radiance: Some(radiance), ..learnt }
 }
 
-/// True if walks by `settings` follow a guide: where they do so if it pays, as the first rounds of learning it foresee. Where light
-/// subpaths run, measured errors of as many samples were lower by 1.3 at most, and mostly by nothing.
+/// True if walks by `settings` follow a guide: where they do so if it pays, as the first rounds of learning it foresee.
 pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
     let options = settings.options;
     match options.effort.guide {
         Guiding::Never => false,
         Guiding::Always => true,
-        Guiding::Auto if options.strategies.need_light_walks() => false,
         Guiding::Auto => {
             let learnt = learn(scene, film, Wanted::by(options, true), true);
             let pays = learnt.guide.is_some();
@@ -117,7 +115,12 @@ impl Wanted {
         Self {
             // Camera subpaths that never hit an emitter share nothing with light subpaths.
             starts: effort.learnt_starts.then_some(strategies.emitter_hit),
-            guide: guided.then_some(strategies),
+            // What a pilot leaves out later changes nothing.
+            guide: guided.then_some(if strategies.need_light_walks() {
+                Strategies::BDPT
+            } else {
+                strategies
+            }),
             options: Options {
                 strategies: Strategies::BDPT,
                 effort: Effort::default(),
@@ -169,8 +172,8 @@ fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt 
             before = lessons;
         }
         let is_last = segments > most;
-        if is_judged && (is_last || round + 1 == JUDGING_ROUNDS) && !learnt.guide.as_deref().is_some_and(pays)
-        {
+        let pays = || learnt.guide.as_deref().is_some_and(|guide| pays(guide, wanted.guide));
+        if is_judged && (is_last || round + 1 == JUDGING_ROUNDS) && !pays() {
             return Learnt { guide: None, ..learnt };
         }
         if is_last {
@@ -180,8 +183,11 @@ fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt 
     learnt
 }
 
-fn pays(guide: &Guide) -> bool {
-    guide.remains(Transport::Radiance) < PAYS
+/// Where light comes through portals it does, by any strategies. Elsewhere, as light subpaths find what a guide knows, measured
+/// errors of as many samples with them were lower by 1.3 at most, and mostly by nothing.
+fn pays(guide: &Guide, strategies: Option<Strategies>) -> bool {
+    let by_camera = strategies.is_some_and(|strategies| !strategies.need_light_walks());
+    !guide.portals().is_empty() || by_camera && guide.remains(Transport::Radiance) < PAYS
 }
 
 /// Follows walks, to tell where the light of each contribution starts.

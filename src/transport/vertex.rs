@@ -174,7 +174,8 @@ impl<S: MisSums> Vertex<S> {
         let Scattering { value, mut pdf_fwd, mut pdf_rev } =
             self.interaction.scatter(scene, self.subpath.incoming, outgoing, transport);
         if let (true, Some(guide)) = (P::GUIDED, guide) {
-            [pdf_fwd, pdf_rev] = guide.pdfs(self.guidance, transport, outgoing, [pdf_fwd, pdf_rev]);
+            [pdf_fwd, pdf_rev] =
+                guide.pdfs(self.guidance, transport, self.position(), outgoing, [pdf_fwd, pdf_rev]);
         }
         Scattering { value, pdf_fwd: pdf_fwd * self.survival, pdf_rev: pdf_rev * self.survival }
     }

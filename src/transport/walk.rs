@@ -349,14 +349,16 @@ fn guided<P: Profile>(
     transport: Transport,
     stream: &mut Stream,
 ) -> Option<ScatterSample> {
-    let Some(direction) = guide.sample(vertex.guidance, transport, stream) else {
+    let Some(direction) = guide.sample(vertex.guidance, transport, vertex.position(), stream) else {
         let sample = unguided(scene, vertex, transport, stream)?;
         let pdfs = [sample.pdf_fwd, sample.pdf_rev];
         let [pdf_fwd, pdf_rev] = if sample.dirac {
             guide.unguided(vertex.guidance, transport, pdfs)
         } else {
             let pdfs = pdfs.map(|pdf| pdf / vertex.survival);
-            guide.pdfs(vertex.guidance, transport, sample.direction, pdfs).map(|pdf| pdf * vertex.survival)
+            guide
+                .pdfs(vertex.guidance, transport, vertex.position(), sample.direction, pdfs)
+                .map(|pdf| pdf * vertex.survival)
         };
         let weight = sample.weight * (sample.pdf_fwd / pdf_fwd);
         return Some(ScatterSample { weight, pdf_fwd, pdf_rev, ..sample });

@@ -146,16 +146,37 @@ fn what_cannot_be_guided_is_refused() {
     sandbox.run("guide missing.json").refuses(&["missing.json"]);
 }
 
-/// Path tracing alone has a use for a guide, where light comes round corners.
+/// A keyhole is found, by the camera's walks and by light's.
+#[test]
+fn portals_are_shown() {
+    let sandbox = Sandbox::new();
+    let keyhole = format!("{}/scenes/efficiency/keyhole.xml", env!("CARGO_MANIFEST_DIR"));
+    for integrator in ["bdpt", "pt"] {
+        let words = format!("guide {keyhole} --integrator {integrator} -o found");
+        let run = sandbox.run(&words).ends(0);
+        assert!(run.out().contains("portal "), "{}", run.out());
+        let numbers = sandbox.json("found/guide.json");
+        let centre: Vec<f64> = serde_json::from_value(numbers["portals"][0]["centre"].clone()).unwrap();
+        let away = centre.iter().zip([0.0, 1.05, -0.3]).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+        let radius = numbers["portals"][0]["radius"].as_f64().unwrap();
+        assert!(away < 0.06 && radius > 0.02 && radius < 0.12, "{integrator}: {numbers}");
+    }
+}
+
+/// Path tracing alone has a use for a guide where light comes round corners, all integrators where it comes through a portal.
 #[test]
 fn walks_follow_a_guide_where_it_pays() {
-    let scene = |name| format!("{}/scenes/gallery/{name}", env!("CARGO_MANIFEST_DIR"));
-    let [indirect, open] = ["indirect_room.json", "cornell_d.json -D medium=0"].map(scene);
+    let scene = |name| format!("{}/scenes/{name}", env!("CARGO_MANIFEST_DIR"));
+    let [indirect, open] = ["gallery/indirect_room.json", "gallery/cornell_d.json -D medium=0"].map(scene);
+    let [keyhole, ajar] = ["efficiency/keyhole.xml", "efficiency/door_ajar.xml"].map(scene);
     let sandbox = Sandbox::new();
     for (scene, words, follows) in [
         (&indirect, "--integrator pt --guide auto", true),
         (&indirect, "--strategies hit,next-event --guide auto", true),
         (&indirect, "--integrator bdpt --guide auto", false),
+        (&ajar, "--integrator bdpt --guide auto", false),
+        (&keyhole, "--integrator bdpt --guide auto", true),
+        (&keyhole, "--integrator pt --guide auto", true),
         (&indirect, "--integrator pt", false),
         (&open, "--integrator pt --guide auto", false),
         (&open, "--integrator pt --guide always", true),

@@ -13,14 +13,16 @@ use crate::{
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// A guide that has little to do with what reaches the image: directions that depend on the place, some of them a hundred
-/// times as likely as others, and places of which only one kind of walk knows.
+/// times as likely as others, a portal that many of them aim at, and places of which only one kind of walk knows.
 pub fn arbitrary() -> Arc<Guide> {
     let mut stream = Stream::new(23, 0, 0, Purpose::Study);
     let lessons = (0..60_000).map(|index| {
         let [a, b, c] = [stream.square(), stream.square(), stream.square()];
         let position = 4.0 * vec3(a.x - 0.5, a.y - 0.5, b.x - 0.5);
-        let direction = warp::to_sphere(c);
-        let towards = direction.dot(vec3(position.y, 1.0, -position.x)) > 0.9;
+        let aim = vec3(0.3, 0.2, -0.3) + 0.1 * warp::to_sphere(c);
+        let is_aimed = index % 5 == 0;
+        let direction = if is_aimed { (aim - position).normalize() } else { warp::to_sphere(c) };
+        let towards = is_aimed || direction.dot(vec3(position.y, 1.0, -position.x)) > 0.9;
         let transport = match index % 2 {
             0 if position.x < 0.5 => Transport::Radiance,
             1 if position.x > -0.5 => Transport::Importance,
@@ -39,7 +41,9 @@ pub fn arbitrary() -> Arc<Guide> {
             fold: index / 7 % 2,
         }
     });
-    Arc::new(Guide::learn(lessons.collect(), Basis::default()).unwrap())
+    let guide = Guide::learn(lessons.collect(), Basis::default()).unwrap();
+    assert!(!guide.portals().is_empty());
+    Arc::new(guide)
 }
 
 #[test]

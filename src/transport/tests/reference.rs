@@ -266,7 +266,7 @@ impl<'a> Reference<'a> {
         let guidance = guide.guidance(here.position(), here.normal(), Vec3::Z, transport);
         let [pdf, _] = match dirac {
             true => guide.unguided(guidance, transport, [unguided, 0.0]),
-            false => guide.pdfs(guidance, transport, on.as_vec3(), [unguided, 0.0]),
+            false => guide.pdfs(guidance, transport, here.position(), on.as_vec3(), [unguided, 0.0]),
         };
         f64::from(pdf)
     }

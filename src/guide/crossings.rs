@@ -1,0 +1,197 @@
+//! Where the ways of walks cross that reach the image, wherever they come from: at its portals. A few dozen walks tell, long
+//! before any table of directions knows anything.
+
+use super::{Lesson, portal::Portal};
+use crate::math::Vec3;
+use rayon::prelude::*;
+
+/// Portals, at most.
+const MOST: usize = 4;
+/// Lessons of each fold whose crossings are looked at, each with each.
+const CROSSED: usize = 32;
+/// Lessons of each fold that judge.
+const JUDGES: usize = 1024;
+/// Radii, from this power of a half of the extent of all lessons on, each half of the one before.
+const LARGEST: i32 = 3;
+const RADII: usize = 6;
+/// Gain of a lesson's log likelihood below which a portal is none. Measured: keyhole 0.5 to 1.3, skylight 0.15 to 0.7, a lamp in
+/// front of a headlight's glass 0.03, a door ajar 0.02.
+const LEAST: f64 = 0.1;
+/// A portal that fewer lessons of a fold go through is one by chance.
+const FEWEST: u32 = 5;
+/// Rays whose squared sine is less cross anywhere.
+const PARALLEL: f32 = 1e-3;
+
+/// The portals of `lessons`, the most telling first. Each of their folds has to show it.
+pub fn find(lessons: &[Lesson]) -> Vec<Portal> {
+    let (low, high) = lessons.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), lesson| {
+        (low.min(lesson.position), high.max(lesson.position))
+    });
+    let radii: [f32; RADII] =
+        std::array::from_fn(|index| (high - low).max_element() * 0.5f32.powi(LARGEST + index as i32));
+    let mut folds = [0, 1].map(|fold| Fold::of(lessons, fold));
+    let centres: Vec<Vec3> = folds.iter().flat_map(|fold| crossings(&fold.judges)).collect();
+    let mut found = Vec::new();
+    while found.len() < MOST {
+        let best = |centre: &Vec3| {
+            let [a, b] = folds.each_ref().map(|fold| fold.gains(*centre, &radii));
+            let gains = a.into_iter().zip(b).map(|(a, b)| a.min(b));
+            let portals = radii.map(|radius| Portal { centre: *centre, radius });
+            gains.zip(portals).max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let of_centres: Vec<Option<(f64, Portal)>> = centres.par_iter().map(best).collect();
+        let best = of_centres.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, portal)) = best.filter(|(gain, _)| *gain > LEAST) else { break };
+        found.push(portal);
+        folds.iter_mut().for_each(|fold| fold.judges.retain(|judge| !portal.is_crossed(&judge.lesson)));
+    }
+    found
+}
+
+/// A lesson, and how much it counts.
+struct Judge {
+    lesson: Lesson,
+    weight: f64,
+}
+
+/// One of two independent parts of all lessons.
+struct Fold {
+    judges: Vec<Judge>,
+    /// Of all that there were.
+    weight: f64,
+}
+
+impl Fold {
+    /// Every so many of its lessons, by weight.
+    fn of(lessons: &[Lesson], fold: usize) -> Self {
+        let own: Vec<Lesson> =
+            lessons.iter().copied().filter(|lesson| lesson.fold == fold && lesson.unguided > 0.0).collect();
+        let judges = spread(&own, JUDGES);
+        Self { weight: judges.iter().map(|judge| judge.weight).sum(), judges }
+    }
+
+    /// What portals of these `radii` around `centre` add to the log likelihood of a lesson if each gets as many directions as go
+    /// through, and the others remain as they are.
+    fn gains(&self, centre: Vec3, radii: &[f32; RADII]) -> [f64; RADII] {
+        let (mut count, mut through, mut gains) = ([0; RADII], [0.0; RADII], [0.0; RADII]);
+        for Judge { lesson, weight } in &self.judges {
+            let Some(miss) = Portal::passes(centre, lesson.position, lesson.direction) else { continue };
+            for (index, radius) in
+                radii.iter().enumerate().take_while(|(_, radius)| miss <= *radius * *radius)
+            {
+                let portal = Portal { centre, radius: *radius };
+                if portal.is_crossed(lesson) {
+                    let ratio = portal.pdf(lesson.position, lesson.direction) / lesson.unguided;
+                    count[index] += 1;
+                    through[index] += weight;
+                    gains[index] += weight * f64::from(ratio).ln();
+                }
+            }
+        }
+        std::array::from_fn(|index| {
+            let share = through[index] / self.weight;
+            let of = |share: f64| if share > 0.0 { share * share.ln() } else { 0.0 };
+            if count[index] >= FEWEST {
+                gains[index] / self.weight + of(share) + of(1.0 - share)
+            } else {
+                0.0
+            }
+        })
+    }
+}
+
+/// About `count` of them, in proportion to their weights.
+fn spread(lessons: &[Lesson], count: usize) -> Vec<Judge> {
+    let step = lessons.iter().map(|lesson| f64::from(lesson.weight)).sum::<f64>() / count as f64;
+    let mut sum = 0.5;
+    let mut judges = Vec::new();
+    for lesson in lessons {
+        let weight = f64::from(lesson.weight);
+        sum += weight / step;
+        if sum >= 1.0 {
+            sum = sum.fract();
+            judges.push(Judge { lesson: *lesson, weight: weight.max(step) });
+        }
+    }
+    judges
+}
+
+/// Where some of the judges cross each other.
+fn crossings(judges: &[Judge]) -> Vec<Vec3> {
+    let every = judges.len().div_ceil(CROSSED).max(1);
+    let some: Vec<&Lesson> = judges.iter().step_by(every).map(|judge| &judge.lesson).collect();
+    let pairs = some.iter().enumerate().flat_map(|(index, a)| some[..index].iter().map(move |b| (a, b)));
+    pairs.filter_map(|(a, b)| crossing(a, b)).collect()
+}
+
+/// The middle between the points of two rays that are nearest to each other; none if one is an origin, or where they are parallel.
+fn crossing(a: &Lesson, b: &Lesson) -> Option<Vec3> {
+    let (u, v, between) = (a.direction, b.direction, b.position - a.position);
+    let cosine = u.dot(v);
+    let sine_squared = u.cross(v).length_squared();
+    let (s, t) = (between.dot(u - cosine * v), between.dot(cosine * u - v));
+    let (s, t) = (s / sine_squared, t / sine_squared);
+    (sine_squared > PARALLEL && s > 0.0 && t > 0.0)
+        .then(|| 0.5 * ((a.position + s * u) + (b.position + t * v)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        bsdf::Transport,
+        math::{vec3, warp},
+        sampling::{Stream, stream::Purpose},
+    };
+
+    const HOLE: Vec3 = vec3(0.4, -0.7, 0.2);
+    const SIZE: f32 = 0.05;
+
+    /// Of walks in a room 4 m wide, of which `through` go through the hole, and the others anywhere.
+    fn lessons(count: usize, through: f32, seed: u64) -> Vec<Lesson> {
+        let mut stream = Stream::new(seed, 0, 0, Purpose::Study);
+        let lesson = |index: usize| {
+            let [a, b, c] = [stream.square(), stream.square(), stream.square()];
+            let position = 4.0 * vec3(a.x - 0.5, a.y - 0.5, b.x - 0.5);
+            let aim = HOLE + SIZE * warp::to_sphere(c);
+            let is_through = stream.uniform() < through;
+            let direction = if is_through { (aim - position).normalize() } else { warp::to_sphere(c) };
+            let (transport, weight) = (Transport::Radiance, 0.5 + b.y);
+            let (normal, unguided) = (None, warp::SPHERE_PDF);
+            Lesson { position, normal, transport, direction, weight, unguided, fold: index % 2 }
+        };
+        (0..count).map(lesson).collect()
+    }
+
+    /// Two hundred walks are enough to tell, and a few large ones do not drown it.
+    #[test]
+    fn a_hole_is_found_by_few_of_the_walks() {
+        for (count, through) in [(200, 0.25), (400, 0.12), (5000, 0.12), (5000, 1.0)] {
+            for seed in 0..4 {
+                let found = find(&lessons(count, through, seed));
+                let first = found.first().unwrap_or_else(|| panic!("{count}, {through}, {seed}: none"));
+                let Portal { centre, radius } = *first;
+                assert!(centre.distance(HOLE) < radius, "{count}, {through}, {seed}: {found:?}");
+                assert!((0.5 * SIZE..3.0 * SIZE).contains(&radius), "{count}, {through}, {seed}: {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn where_walks_go_anywhere_there_is_none() {
+        for (count, seed) in [(0, 0), (1, 1), (2, 2), (40, 3), (200, 4), (200, 5), (200, 6), (20_000, 7)] {
+            assert_eq!(find(&lessons(count, 0.0, seed)), [], "{count}, {seed}");
+        }
+        // All in one place, in one direction, or of no weight.
+        let all = lessons(200, 0.3, 8);
+        let same = |change: &dyn Fn(&mut Lesson)| {
+            let mut all = all.clone();
+            all.iter_mut().for_each(change);
+            find(&all)
+        };
+        assert_eq!(same(&|lesson| lesson.position = Vec3::ONE), []);
+        assert_eq!(same(&|lesson| lesson.direction = Vec3::X), []);
+        assert_eq!(same(&|lesson| lesson.weight = 0.0), []);
+        assert_eq!(same(&|lesson| lesson.unguided = 0.0), []);
+    }
+}
