@@ -64,7 +64,6 @@ WAYS: dict[str, dict[str, Any]] = {
     "bdpt": {"integrator": "bdpt", "starts": "emitted"},
     "bdpt, starts": {"integrator": "bdpt"},
     "bdpt, guide": {"integrator": "bdpt", "guide": "auto"},
-    "bdpt, always": {"integrator": "bdpt", "guide": "always"},
     "pt": {"integrator": "pt"},
     "pt, guide": {"integrator": "pt", "guide": "auto"},
     "gather": {"integrator": "gather"},
@@ -73,7 +72,6 @@ WAYS: dict[str, dict[str, Any]] = {
 GAINS = {
     "starts": ("bdpt", "bdpt, starts"),
     "bdpt": ("bdpt", "bdpt, guide"),
-    "always": ("bdpt", "bdpt, always"),
     "pt": ("pt", "pt, guide"),
     "gather over pt": ("pt", "gather"),
     "gather over bdpt": ("bdpt, starts", "gather"),
@@ -164,11 +162,11 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
     command = made_by_command()
     return (
         f"# What a guide gives\n\n    {command}\n\n"
-        f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it (`--guide auto`, *followed* or not, and by bdpt `always`), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
+        f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it (`--guide auto`, *followed* or not), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
         f"{options.seeds} seeds; ± one standard error. References: `bdpt`, {options.reference_seconds:g} s, by `--guide auto`. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
         "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its.\n\n"
-        "| scene | starts | guide, by bdpt | wanted | followed | always | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | portals | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
-        "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
+        "| scene | starts | guide, by bdpt | wanted | followed | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | portals | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
     )
 
 
@@ -180,6 +178,6 @@ def line(row: Row) -> str:
     over_pt = f"{WANTED_PT:g}" if row.kind == "P03T's boxes" else ""
     bdpt, pt = ("yes" if row.follows[by] else "no" for by in ("bdpt", "pt"))
     return (
-        f"| {row.name} ({row.kind}) | {row.gains['starts']} | {row.gains['bdpt']} | {WANTED[row.kind]:g} | {bdpt} | {row.gains['always']} | {row.gains['pt']} | {over_pt} | {pt} | {row.gains['gather over pt']} | {row.gains['gather over bdpt']} | {row.learnt['seconds']:.1f} s | "
+        f"| {row.name} ({row.kind}) | {row.gains['starts']} | {row.gains['bdpt']} | {WANTED[row.kind]:g} | {bdpt} | {row.gains['pt']} | {over_pt} | {pt} | {row.gains['gather over pt']} | {row.gains['gather over bdpt']} | {row.learnt['seconds']:.1f} s | "
         f"{row.learnt['bytes'] / 2**20:.1f} MiB | {len(row.learnt['portals'])} | {cells} | {guided} |\n"
     )

@@ -71,7 +71,7 @@ impl Bar {
         let budget = &self.settings.budget;
         let samples =
             budget.samples_per_pixel.map(|spp| progress.samples as f64 / (spp as f64 * self.pixels as f64));
-        let time = budget.time.map(|limit| progress.elapsed.as_secs_f64() / limit.as_secs_f64());
+        let time = budget.time_used(progress.elapsed);
         let within = self.precision.and(progress.within);
         [samples, time, within].into_iter().flatten().fold(0.0, f64::max).min(1.0)
     }

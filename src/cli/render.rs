@@ -33,7 +33,7 @@ use serde_json::Value;
 use std::{
     path::{Path, PathBuf},
     sync::Mutex,
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 /// Runs the command.
@@ -74,7 +74,7 @@ fn animate(
 ) -> Result<Vec<Value>> {
     let arguments::Frames { first, last } = frames;
     let digits = frames.digits();
-    let mut figures = Vec::new();
+    let (mut figures, mut spent) = (Vec::new(), task.settings.budget.spent);
     for frame in first..=last {
         let time = clip.time(frame);
         if !clip.rebuilds {
@@ -88,8 +88,10 @@ fn animate(
         } else if frame > first {
             *setup = clip.frame(frame, setup)?;
             task = Task::new(task.arguments, setup, task.viewer)?.0;
+            spent = task.settings.budget.spent;
         }
-        let settings = Settings { seed: seed_of(task.settings.seed, frame), ..task.settings };
+        let budget = Budget { spent, ..task.settings.budget };
+        let settings = Settings { seed: seed_of(task.settings.seed, frame), budget, ..task.settings };
         let mut made = task.made.clone();
         made["settings"]["seed"] = settings.seed.into();
         made["settings"]["time"] = time.into();
@@ -99,6 +101,7 @@ fn animate(
         let mut figure = shoot(setup, &task, &mut numbered, Some(&label))?;
         // What was chosen for the first frame holds for all.
         goal.display = numbered.display;
+        spent = Duration::ZERO;
         figure["frame"] = frame.into();
         figure["time"] = time.into();
         figures.push(figure);
@@ -337,6 +340,7 @@ fn batches(setup: &Setup, task: &Task<'_>, goal: &Goal, count: u32, label: Optio
     for k in 0..count {
         let mut settings = task.settings;
         settings.seed = settings.seed.wrapping_add(k.into());
+        settings.budget.spent = if k == 0 { settings.budget.spent } else { Duration::ZERO };
         let label =
             format!("{}batch {} of {count}", label.map_or(String::new(), |l| format!("{l}, ")), k + 1);
         let task = Task { settings, made: Value::Null, ..*task };
@@ -397,10 +401,12 @@ fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<(Settings, O
         None => arguments.estimator.clone(),
         Some(_) => progressive::estimator(&arguments.estimator, setup)?,
     };
+    let started = Instant::now();
     let (settings, chosen) = estimator.chosen(setup, arguments.seed, endless)?;
+    let spent = started.elapsed();
     arguments.fog.warn_of_idle(settings.options.strategies);
     let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
-    Ok((Settings { budget, ..settings }, chosen))
+    Ok((Settings { budget: Budget { spent, ..budget }, ..settings }, chosen))
 }
 
 /// Maximum number of samples per pixel of a preview, unless --spp is given.

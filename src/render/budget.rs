@@ -12,14 +12,21 @@ pub struct Budget {
     pub samples_per_pixel: Option<u64>,
     /// Most time; none for no limit.
     pub time: Option<Duration>,
+    /// Time that pilots and learning took beforehand. Half of the limit is left to the image, however long they took.
+    pub spent: Duration,
     /// True once the user wants the render to end.
     pub interrupted: fn() -> bool,
 }
 
 impl Budget {
     /// No limit.
-    pub const ENDLESS: Self =
-        Self { first_sample: 0, samples_per_pixel: None, time: None, interrupted: || false };
+    pub const ENDLESS: Self = Self {
+        first_sample: 0,
+        samples_per_pixel: None,
+        time: None,
+        spent: Duration::ZERO,
+        interrupted: || false,
+    };
 
     /// So many samples of every pixel.
     pub fn samples(samples_per_pixel: u64) -> Self {
@@ -32,9 +39,16 @@ impl Budget {
         self.first_sample..self.first_sample.saturating_add(count)
     }
 
+    /// The part of the time that is used, `elapsed` after the image was begun; none without a limit.
+    pub fn time_used(&self, elapsed: Duration) -> Option<f64> {
+        let used =
+            |limit: Duration| (elapsed + self.spent.min(limit / 2)).as_secs_f64() / limit.as_secs_f64();
+        self.time.map(used)
+    }
+
     /// True if no further block should start after this time.
     pub(super) fn is_over(&self, elapsed: Duration) -> bool {
-        self.time.is_some_and(|limit| elapsed >= limit) || (self.interrupted)()
+        self.time_used(elapsed).is_some_and(|used| used >= 1.0) || (self.interrupted)()
     }
 }
 
@@ -50,6 +64,9 @@ mod tests {
         assert!(!samples.is_over(1000 * second));
         let time = Budget { time: Some(2 * second), ..Budget::ENDLESS };
         assert!(time.is_over(2 * second) && !time.is_over(Duration::from_millis(1999)));
+        let spent = |spent| Budget { spent, ..time };
+        assert!(spent(second / 2).is_over(3 * second / 2) && !spent(second / 2).is_over(second));
+        assert!(spent(9 * second).is_over(second) && !spent(9 * second).is_over(second / 2));
         assert!(Budget { interrupted: || true, ..samples }.is_over(Duration::ZERO));
     }
 }
