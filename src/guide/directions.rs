@@ -147,3 +147,57 @@ impl Mixture {
         size_of_val(&self.aimed[..]) + self.table.bytes()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{bsdf::Transport, math::vec3, sampling::stream::Purpose, testing};
+    use statrs::distribution::{ContinuousCDF, Normal};
+    use std::f64::consts::PI;
+
+    /// Half of the lessons aim at a portal, some of the others at a patch of sky. Over the density of directions, the solid angles
+    /// of both and of all directions come out, wherever one looks from.
+    #[test]
+    fn solid_angles_are_what_samples_over_their_density_say() {
+        let portal = Portal { centre: vec3(0.4, -0.7, 0.2), radius: 0.2 };
+        let up = |direction: Vec3| direction.z > 0.9;
+        let mut stream = Stream::new(41, 0, 0, Purpose::Study);
+        let lessons: Vec<Lesson> = (0..4000)
+            .map(|index| {
+                let position = portal.centre + vec3(2.0, 1.0, 0.5) - warp::to_sphere(stream.square());
+                let anywhere = warp::to_sphere(stream.square());
+                let direction =
+                    if index % 2 == 0 { portal.sample(position, stream.square()) } else { anywhere };
+                let (transport, unguided) = (Transport::Radiance, warp::SPHERE_PDF);
+                let weight = if up(direction) { 5.0 } else { 1.0 };
+                Lesson { position, normal: None, transport, direction, weight, unguided, fold: index / 2 % 2 }
+            })
+            .collect();
+        let mixture = Mixture::learn(lessons.iter(), &[portal], Basis::default());
+        assert!(mixture.aimed.len() == 1 && mixture.aimed[0].0 > 0.3, "{:?}", mixture.aimed);
+        let most = -Normal::standard().inverse_cdf(testing::significance(9) / 2.0);
+        for distance in [0.1, 0.5, 3.0] {
+            let position = portal.centre + distance * vec3(0.6, 0.48, 0.64);
+            let within = |direction: Vec3| portal.pdf(position, direction) > 0.0;
+            let sine = f64::from(portal.radius / distance).min(1.0);
+            let cosine = if sine < 1.0 { (1.0 - sine * sine).sqrt() } else { -1.0 };
+            let angles: [(f64, &dyn Fn(Vec3) -> bool); 3] =
+                [(4.0 * PI, &|_| true), (0.2 * PI, &up), (2.0 * PI * (1.0 - cosine), &within)];
+            let mut sums = [[0.0; 2]; 3];
+            let n = 100_000.0;
+            for _ in 0..100_000 {
+                let direction = mixture.sample(position, &mut stream);
+                let value = 1.0 / f64::from(mixture.pdf(position, direction));
+                for ((_, holds), sums) in angles.iter().zip(&mut sums) {
+                    let value = if holds(direction) { value } else { 0.0 };
+                    sums[0] += value / n;
+                    sums[1] += value * value / n;
+                }
+            }
+            for ((angle, _), [mean, square]) in angles.iter().zip(sums) {
+                let z = (mean - angle) / ((square - mean * mean) / n).sqrt();
+                assert!(z.abs() < most, "{distance}: {mean} of {angle}, {z} standard errors");
+            }
+        }
+    }
+}

@@ -1,5 +1,5 @@
 //! The guide: from where light comes to a place, and from where it is seen, as was learnt from paths that reach the image.
-//! Walks follow it at some of their vertices, and only where it was found to lower the variance, so that no density is 0 that
+//! Walks follow it at some of their vertices, and only where this makes likelier what was learnt, so that no density is 0 that
 //! was not (after P03T sec. 5.2 and Mueller et al. 2017, Practical Path Guiding; both kinds of walks are guided, hence two
 //! distributions at every place).
 //!
