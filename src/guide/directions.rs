@@ -1,5 +1,5 @@
-//! Directions that walks should take from the places of a cell: how many of them aim at each portal, a table of all others, and
-//! how many are left to the BSDF or the phase function.
+//! Directions that walks should take from the places of a cell: how many of them aim at each portal, a table of others, and how
+//! many are left to the BSDF or the phase function.
 
 use super::{Lesson, Portal};
 use crate::{
@@ -10,14 +10,16 @@ use crate::{
     },
 };
 
-/// What a, the BSDF sampling fraction, may be. It multiplies what a path weighs by 1 / a at a vertex, at most.
-const BSDF_FRACTIONS: [f32; 6] = [0.5, 0.65, 0.8, 0.9, 0.95, 1.0];
+/// What a, the BSDF sampling fraction among directions that aim at no portal, may be. It multiplies what a path weighs by 1 / a at
+/// a vertex, at most, and the choice looks at one vertex at a time.
+const BSDF_FRACTIONS: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
 /// Directions, as [`effective`] counts them, that tell nothing if there are fewer.
 pub const ENOUGH: f64 = 32.0;
-/// Portals that fewer of the directions go through are not aimed at.
+/// The part of the directions of any cell that aims at each portal, at least: where few have been seen to go through it, those few
+/// would weigh as much as without a guide.
 const LEAST_AIMED: f32 = 0.02;
 /// The most that aim at portals.
-const MOST_AIMED: f32 = 0.95;
+const MOST_AIMED: f32 = 0.5;
 
 /// Second moments of what is learnt.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,119 +35,119 @@ impl Moments {
     }
 }
 
-/// a p + (1 - a) G.
+/// The directions of a cell, in which the BSDF or the phase function has a part.
 #[derive(Clone, Debug)]
 pub struct Directions {
-    /// a.
+    /// That part.
     pub unguided: f32,
-    /// G.
-    pub mixture: Mixture,
+    /// How many aim at each portal.
+    aimed: Vec<(f32, Portal)>,
+    /// How many are of the table, which all of those here are together with the ones before: 1 - `unguided` in all.
+    tabled: f32,
+    table: Quadtree,
 }
 
 impl Directions {
     /// None where directions are better left to the BSDF or the phase function.
     pub fn learn(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> (Option<Self>, Moments) {
-        if effective(lessons.iter().map(|lesson| lesson.weight)) < ENOUGH {
-            return (None, Moments::default());
-        }
-        let (unguided, moments) = part_unguided(lessons, portals, basis);
-        let guided = || Self { unguided, mixture: Mixture::learn(lessons.iter().copied(), portals, basis) };
-        ((unguided < 1.0).then(guided), moments)
-    }
-
-    /// (1 - a) G [1/sr].
-    #[inline]
-    pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
-        (1.0 - self.unguided) * self.mixture.pdf(position, direction)
-    }
-}
-
-/// a, and the second moments at it that matter: as each half of the `lessons` finds what the other half guides.
-///
-/// That which makes the lessons likeliest (Mueller 2019, Path Guiding in Production): the likelihood of a path is a product
-/// over its vertices, so that one at which the guide finds a keyhole makes up for many at which it is of no use. The second
-/// moment, which is not, tells only what a guide is worth at one vertex, by the best a for it.
-fn part_unguided(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> (f32, Moments) {
-    let half = |fold| lessons.iter().copied().filter(move |lesson| lesson.fold == fold);
-    let guides = [1, 0].map(|other| Mixture::learn(half(other), portals, basis));
-    let known = lessons.iter().filter(|lesson| lesson.unguided > 0.0);
-    let ratios: Vec<_> = known
-        .map(|lesson| {
-            let guided = guides[lesson.fold].pdf(lesson.position, lesson.direction);
-            (f64::from(lesson.weight), f64::from(guided / lesson.unguided))
-        })
-        .collect();
-    let sum = |a: f32, of: fn(f64, f64) -> f64| -> f64 {
-        let a = f64::from(a);
-        ratios.iter().map(|(weight, ratio)| of(*weight, a + (1.0 - a) * ratio)).sum()
-    };
-    let likelihood = |a| sum(a, |weight, ratio| weight * ratio.ln());
-    let moment = |a| sum(a, |weight, ratio| weight * weight / ratio);
-    let best = BSDF_FRACTIONS.map(|a| (a, likelihood(a))).into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    let guided = BSDF_FRACTIONS.map(moment).into_iter().fold(f64::INFINITY, f64::min);
-    (best.map_or(1.0, |best| best.0), Moments { unguided: moment(1.0), guided })
-}
-
-/// Some directions that aim at portals, and others.
-#[derive(Clone, Debug)]
-pub struct Mixture {
-    /// How many aim at each.
-    aimed: Vec<(f32, Portal)>,
-    /// How many the others are.
-    rest: f32,
-    table: Quadtree,
-}
-
-impl Mixture {
-    fn learn<'a>(
-        lessons: impl Iterator<Item = &'a Lesson> + Clone,
-        portals: &[Portal],
-        basis: Basis,
-    ) -> Self {
-        let mut aimed: Vec<(f32, Portal)> = portals.iter().map(|portal| (0.0, *portal)).collect();
-        let mut total = 0.0;
-        for lesson in lessons.clone() {
-            total += lesson.weight;
-            if let Some((sum, _)) = aimed.iter_mut().find(|(_, portal)| portal.is_crossed(lesson)) {
-                *sum += lesson.weight;
+        let aimed = aimed(lessons, portals);
+        let others: Vec<&Lesson> =
+            lessons.iter().copied().filter(|lesson| !portals.iter().any(|p| p.is_crossed(lesson))).collect();
+        let is_known = effective(others.iter().map(|lesson| lesson.weight)) >= ENOUGH;
+        let (a, mut moments) =
+            if is_known { part_unguided(&others, basis) } else { (1.0, Moments::default()) };
+        let rest = 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>();
+        let guides = a < 1.0 || !aimed.is_empty();
+        let known = Self {
+            unguided: rest * a,
+            tabled: rest * (1.0 - a),
+            table: if a < 1.0 { table(others.into_iter(), basis) } else { table([].into_iter(), basis) },
+            aimed,
+        };
+        for lesson in lessons.iter().filter(|lesson| portals.iter().any(|portal| portal.is_crossed(lesson))) {
+            if lesson.unguided > 0.0 {
+                let square = f64::from(lesson.weight).powi(2);
+                let guided = known.unguided * lesson.unguided + known.pdf(lesson.position, lesson.direction);
+                moments
+                    .add(Moments { unguided: square, guided: square * f64::from(lesson.unguided / guided) });
             }
         }
-        aimed.iter_mut().for_each(|(sum, _)| *sum *= MOST_AIMED / total);
-        aimed.retain(|(share, _)| *share > LEAST_AIMED);
-        let others = lessons.filter(|lesson| !aimed.iter().any(|(_, portal)| portal.is_crossed(lesson)));
-        let deposit =
-            |lesson: &Lesson| Deposit { at: warp::from_sphere(lesson.direction), weight: lesson.weight };
-        let table = Quadtree::by(basis, others.map(deposit).collect());
-        Self { rest: 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>(), aimed, table }
+        (guides.then_some(known), moments)
     }
 
-    /// Density of unit `direction` from `position` [1/sr].
+    /// Density of unit `direction` from `position` among the guided ones, times their part [1/sr].
     #[inline]
     pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         let aimed = self.aimed.iter().map(|(share, portal)| share * portal.pdf(position, direction));
-        let others = self.table.density(warp::from_sphere(direction)) * warp::SPHERE_PDF;
-        self.rest * others + aimed.sum::<f32>()
+        self.tabled * pdf(&self.table, direction) + aimed.sum::<f32>()
     }
 
-    /// A unit direction from `position`.
+    /// A unit direction from `position`; none where it is left to the BSDF or the phase function.
     #[inline]
-    pub fn sample(&self, position: Vec3, stream: &mut Stream) -> Vec3 {
-        if !self.aimed.is_empty() {
-            let mut u = stream.uniform();
-            for (share, portal) in &self.aimed {
-                if u < *share {
-                    return portal.sample(position, stream.square());
-                }
-                u -= share;
-            }
+    pub fn sample(&self, position: Vec3, stream: &mut Stream) -> Option<Vec3> {
+        let mut u = stream.uniform();
+        if u < self.unguided {
+            return None;
         }
-        warp::to_sphere(self.table.sample(stream.square()))
+        u -= self.unguided;
+        for (share, portal) in &self.aimed {
+            if u < *share {
+                return Some(portal.sample(position, stream.square()));
+            }
+            u -= share;
+        }
+        Some(warp::to_sphere(self.table.sample(stream.square())))
     }
 
     /// Memory that it takes [bytes].
     pub fn bytes(&self) -> usize {
         size_of_val(&self.aimed[..]) + self.table.bytes()
     }
+}
+
+/// How many directions aim at each of `portals`: as many as `lessons` go through it, which are then in balance with the others.
+fn aimed(lessons: &[&Lesson], portals: &[Portal]) -> Vec<(f32, Portal)> {
+    let mut aimed: Vec<(f32, Portal)> = portals.iter().map(|portal| (0.0, *portal)).collect();
+    for lesson in lessons {
+        if let Some((sum, _)) = aimed.iter_mut().find(|(_, portal)| portal.is_crossed(lesson)) {
+            *sum += lesson.weight;
+        }
+    }
+    let total: f32 = lessons.iter().map(|lesson| lesson.weight).sum();
+    let share = |sum: f32| if total > 0.0 { sum / total } else { 0.0 };
+    aimed.iter_mut().for_each(|(sum, _)| *sum = share(*sum).max(LEAST_AIMED));
+    let all: f32 = aimed.iter().map(|(share, _)| share).sum();
+    aimed.iter_mut().for_each(|(share, _)| *share *= (MOST_AIMED / all).min(1.0));
+    aimed
+}
+
+/// a, by the second moment that what one half of the `lessons` tells has where the other half guides.
+fn part_unguided(lessons: &[&Lesson], basis: Basis) -> (f32, Moments) {
+    let half = |fold| lessons.iter().copied().filter(move |lesson| lesson.fold == fold);
+    let tables = [1, 0].map(|other| table(half(other), basis));
+    let known = lessons.iter().filter(|lesson| lesson.unguided > 0.0);
+    let ratios: Vec<_> = known
+        .map(|lesson| (lesson.weight, pdf(&tables[lesson.fold], lesson.direction) / lesson.unguided))
+        .collect();
+    let moment = |a: f32| -> f64 {
+        let of = |(weight, ratio): &(f32, f32)| f64::from(weight * weight / (a + (1.0 - a) * ratio));
+        ratios.iter().map(of).sum()
+    };
+    let unguided = moment(1.0);
+    let best = BSDF_FRACTIONS.into_iter().map(|a| (a, moment(a))).min_by(|a, b| a.1.total_cmp(&b.1));
+    let (a, guided) = best.unwrap_or((1.0, unguided));
+    (a, Moments { unguided, guided })
+}
+
+fn table<'a>(lessons: impl Iterator<Item = &'a Lesson>, basis: Basis) -> Quadtree {
+    let deposit =
+        |lesson: &Lesson| Deposit { at: warp::from_sphere(lesson.direction), weight: lesson.weight };
+    Quadtree::by(basis, lessons.map(deposit).collect())
+}
+
+#[inline]
+fn pdf(table: &Quadtree, direction: Vec3) -> f32 {
+    table.density(warp::from_sphere(direction)) * warp::SPHERE_PDF
 }
 
 #[cfg(test)]
@@ -173,8 +175,9 @@ mod tests {
                 Lesson { position, normal: None, transport, direction, weight, unguided, fold: index / 2 % 2 }
             })
             .collect();
-        let mixture = Mixture::learn(lessons.iter(), &[portal], Basis::default());
-        assert!(mixture.aimed.len() == 1 && mixture.aimed[0].0 > 0.3, "{:?}", mixture.aimed);
+        let all: Vec<&Lesson> = lessons.iter().collect();
+        let known = Directions::learn(&all, &[portal], Basis::default()).0.unwrap();
+        assert!(known.aimed.len() == 1 && known.aimed[0].0 > 0.3 && known.tabled > 0.1, "{:?}", known.aimed);
         let most = -Normal::standard().inverse_cdf(testing::significance(9) / 2.0);
         for distance in [0.1, 0.5, 3.0] {
             let position = portal.centre + distance * vec3(0.6, 0.48, 0.64);
@@ -186,8 +189,10 @@ mod tests {
             let mut sums = [[0.0; 2]; 3];
             let n = 100_000.0;
             for _ in 0..100_000 {
-                let direction = mixture.sample(position, &mut stream);
-                let value = 1.0 / f64::from(mixture.pdf(position, direction));
+                let guided = known.sample(position, &mut stream);
+                let direction = guided.unwrap_or_else(|| warp::to_sphere(stream.square()));
+                let pdf = known.unguided * warp::SPHERE_PDF + known.pdf(position, direction);
+                let value = 1.0 / f64::from(pdf);
                 for ((_, holds), sums) in angles.iter().zip(&mut sums) {
                     let value = if holds(direction) { value } else { 0.0 };
                     sums[0] += value / n;

@@ -1,5 +1,5 @@
 //! The guide: from where light comes to a place, and from where it is seen, as was learnt from paths that reach the image.
-//! Walks follow it at some of their vertices, and only where this makes likelier what was learnt, so that no density is 0 that
+//! Walks follow it at some of their vertices, and only where it was found to lower the variance, so that no density is 0 that
 //! was not (after P03T sec. 5.2 and Mueller et al. 2017, Practical Path Guiding; both kinds of walks are guided, hence two
 //! distributions at every place).
 //!
@@ -9,7 +9,8 @@
 //! ```
 //! (a is the BSDF sampling fraction of Mueller et al.), and the walk from the other end leaves the same vertex towards the one
 //! before, w', with a p'(w') + (1 - a) G'(w'). G' does not depend on w: it is looked up once, on arrival, and kept. A part of G
-//! aims at portals, the rest is a table of the directions from a cell of places.
+//! aims at portals, a little of it even where no walk was seen to go through them; the rest is a table of the directions from a
+//! cell of places.
 
 mod crossings;
 mod directions;
@@ -203,7 +204,8 @@ impl Guide {
 
     /// G: the density of unit `direction` among those from `position`, which lies in `cell` [1/sr]; none where there is none.
     pub fn density(&self, cell: u32, transport: Transport, position: Vec3, direction: Vec3) -> Option<f32> {
-        self.directions(cell, transport).map(|known| known.mixture.pdf(position, direction))
+        let known = self.directions(cell, transport)?;
+        Some(known.pdf(position, direction) / (1.0 - known.unguided))
     }
 
     /// What much of the light goes through, the most telling first.
@@ -221,7 +223,7 @@ impl Guide {
     /// Memory that it takes [bytes].
     pub fn bytes(&self) -> usize {
         let tables = self.cells.iter().flat_map(|cell| cell.0.iter().flatten());
-        let tables: usize = tables.map(|known| known.mixture.bytes()).sum();
+        let tables: usize = tables.map(|known| known.bytes()).sum();
         size_of_val(&self.cells[..]) + tables + self.surfaces.bytes() + self.media.bytes()
     }
 
@@ -264,8 +266,7 @@ impl Guide {
         position: Vec3,
         stream: &mut Stream,
     ) -> Option<Vec3> {
-        let Directions { unguided, mixture } = self.directions(guidance.cell, transport)?;
-        (stream.uniform() >= *unguided).then(|| mixture.sample(position, stream))
+        self.directions(guidance.cell, transport)?.sample(position, stream)
     }
 }
 
