@@ -102,13 +102,16 @@ pub struct Seen {
     pub towards: [Option<[f32; 3]>; 2],
 }
 
+/// The cell of what a pixel sees, if it sees any, and where that is.
+type SeenCell = Option<(u32, Vec3)>;
+
 /// What was learnt, and where the camera sees it.
 pub struct Findings {
     /// The numbers.
     pub report: Report,
     guide: Option<Arc<Guide>>,
-    /// The cell of what each pixel sees, if it sees any, and where that is.
-    cells: Vec<Option<(u32, Vec3)>>,
+    /// Of each pixel.
+    cells: Vec<SeenCell>,
     size: [usize; 2],
 }
 
@@ -122,13 +125,13 @@ pub fn examine(setup: &Setup, settings: &Settings) -> Findings {
         let seen = seen.as_ref().filter(|seen| seen.is_connectible(&setup.scene))?;
         Some((learnt.guide.as_deref()?.cell(seen.position(), seen.normal()), seen.position()))
     };
-    let cells: Vec<Option<(u32, Vec3)>> = seen.iter().map(cell).collect();
+    let cells: Vec<SeenCell> = seen.iter().map(cell).collect();
     let report = report(&setup.scene, &learnt, &cells, seconds);
     let size = [setup.film.width as usize, setup.film.height as usize];
     Findings { report, guide: learnt.guide, cells, size }
 }
 
-fn report(scene: &Scene, learnt: &Learnt, cells: &[Option<(u32, Vec3)>], seconds: f64) -> Report {
+fn report(scene: &Scene, learnt: &Learnt, cells: &[SeenCell], seconds: f64) -> Report {
     let guide = learnt.guide.as_deref();
     let (all, of_surfaces) = guide.map_or((0, 0), |guide| (guide.cells(), guide.cells_of_surfaces()));
     let kind = |from: usize, to: usize| {
@@ -172,7 +175,7 @@ fn most_started(scene: &Scene, starts: &Starts) -> Vec<Start> {
 }
 
 /// The cells that most of the pixels see.
-fn seen(guide: &Guide, cells: &[Option<(u32, Vec3)>]) -> Vec<Seen> {
+fn seen(guide: &Guide, cells: &[SeenCell]) -> Vec<Seen> {
     let mut places = vec![Vec::new(); guide.cells()];
     cells.iter().flatten().for_each(|(cell, position)| {
         if let Some(places) = places.get_mut(*cell as usize) {
@@ -223,10 +226,9 @@ impl Findings {
 
     /// The cells, each by a colour of its own, and the parts of directions that are guided in them.
     fn seen(&self, guide: &Guide) -> Row {
-        type Cell = Option<(u32, Vec3)>;
-        let colour = |cell: &Cell| cell.map_or(Spectrum::ZERO, |(cell, _)| colour_of(cell));
+        let colour = |cell: &SeenCell| cell.map_or(Spectrum::ZERO, |(cell, _)| colour_of(cell));
         let guided = |(transport, walk): (Transport, &str)| {
-            let part = |cell: &Cell| cell.map_or(0.0, |(cell, _)| guide.guided(cell, transport));
+            let part = |cell: &SeenCell| cell.map_or(0.0, |(cell, _)| guide.guided(cell, transport));
             let parts: Vec<f32> = self.cells.iter().map(part).collect();
             (format!("guided, {walk}"), linear(&false_colour(&parts, (0.0, 1.0))))
         };

@@ -81,9 +81,9 @@ pub struct Estimator {
     /// When walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
     /// begun [default: the scene's, or never, but auto with gather]
     ///
-    /// auto: where it pays, as the first quarter of learning foresees: where light comes through portals, such as a keyhole, and where
-    /// pt has to find light that comes round corners, which light subpaths find anyway. always: also where it does not pay. Learning takes a second or so; the expected image is
-    /// the same. Needs the heuristic balance.
+    /// auto: where it pays, as the first quarter of learning foresees: where light comes through portals, such as a keyhole, and
+    /// where pt has to find light that comes round corners, which light subpaths find anyway. always: also where it does not
+    /// pay. Learning takes a second or so; the expected image is the same. Needs the heuristic balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
     pub guide: Option<Guiding>,
 

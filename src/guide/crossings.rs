@@ -2,7 +2,7 @@
 //! before any table of directions knows anything.
 
 use super::{Lesson, portal::Portal};
-use crate::math::Vec3;
+use crate::{math::Vec3, sampling::Thinning};
 use rayon::prelude::*;
 
 /// Portals, at most.
@@ -14,8 +14,8 @@ const JUDGES: usize = 1024;
 /// Radii, from this power of a half of the extent of all lessons on, each half of the one before.
 const LARGEST: i32 = 3;
 const RADII: usize = 6;
-/// Gain of a lesson's log likelihood below which a portal is none. Measured: keyhole 0.5 to 1.3, skylight 0.15 to 0.7, a lamp in
-/// front of a headlight's glass 0.03, a door ajar 0.02.
+/// Gain of a lesson's log likelihood below which a portal is none. Measured in scenes/efficiency: keyhole 0.5 to 1.3, skylight 0.15
+/// to 0.7, headlights and door_ajar up to 0.04, in others nothing.
 const LEAST: f64 = 0.1;
 /// A portal that fewer lessons of a fold go through is one by chance.
 const FEWEST: u32 = 5;
@@ -62,11 +62,16 @@ struct Fold {
 }
 
 impl Fold {
-    /// Every so many of its lessons, by weight.
+    /// About [`JUDGES`] of its lessons, in proportion to their weights.
     fn of(lessons: &[Lesson], fold: usize) -> Self {
-        let own: Vec<Lesson> =
-            lessons.iter().copied().filter(|lesson| lesson.fold == fold && lesson.unguided > 0.0).collect();
-        let judges = spread(&own, JUDGES);
+        let own = || lessons.iter().filter(|lesson| lesson.fold == fold && lesson.unguided > 0.0);
+        let step = own().map(|lesson| f64::from(lesson.weight)).sum::<f64>() / JUDGES as f64;
+        let mut thinning = Thinning::by(step as f32);
+        let judge = |lesson: &Lesson| {
+            let weight = thinning.keeps(lesson.weight)?;
+            Some(Judge { lesson: *lesson, weight: f64::from(weight) })
+        };
+        let judges: Vec<Judge> = own().filter_map(judge).collect();
         Self { weight: judges.iter().map(|judge| judge.weight).sum(), judges }
     }
 
@@ -98,22 +103,6 @@ impl Fold {
             }
         })
     }
-}
-
-/// About `count` of them, in proportion to their weights.
-fn spread(lessons: &[Lesson], count: usize) -> Vec<Judge> {
-    let step = lessons.iter().map(|lesson| f64::from(lesson.weight)).sum::<f64>() / count as f64;
-    let mut sum = 0.5;
-    let mut judges = Vec::new();
-    for lesson in lessons {
-        let weight = f64::from(lesson.weight);
-        sum += weight / step;
-        if sum >= 1.0 {
-            sum = sum.fract();
-            judges.push(Judge { lesson: *lesson, weight: weight.max(step) });
-        }
-    }
-    judges
 }
 
 /// Where some of the judges cross each other.

@@ -35,51 +35,50 @@ impl Moments {
     }
 }
 
-/// The directions of a cell, in which the BSDF or the phase function has a part.
+/// The directions of a cell: shares that are 1 together.
 #[derive(Clone, Debug)]
 pub struct Directions {
-    /// That part.
+    /// That of the BSDF or the phase function.
     pub unguided: f32,
-    /// How many aim at each portal.
+    /// Those that aim at portals.
     aimed: Vec<(f32, Portal)>,
-    /// How many are of the table, which all of those here are together with the ones before: 1 - `unguided` in all.
-    tabled: f32,
-    table: Quadtree,
+    /// That of a table, if there is one.
+    tabled: Option<(f32, Quadtree)>,
 }
 
 impl Directions {
     /// None where directions are better left to the BSDF or the phase function.
     pub fn learn(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> (Option<Self>, Moments) {
         let aimed = aimed(lessons, portals);
-        let others: Vec<&Lesson> =
-            lessons.iter().copied().filter(|lesson| !portals.iter().any(|p| p.is_crossed(lesson))).collect();
+        let rest = 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>();
+        let is_aimed = |lesson: &&&Lesson| portals.iter().any(|portal| portal.is_crossed(lesson));
+        let (through, others): (Vec<&Lesson>, Vec<&Lesson>) = lessons.iter().partition(is_aimed);
         let is_known = effective(others.iter().map(|lesson| lesson.weight)) >= ENOUGH;
         let (a, mut moments) =
             if is_known { part_unguided(&others, basis) } else { (1.0, Moments::default()) };
-        let rest = 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>();
-        let guides = a < 1.0 || !aimed.is_empty();
-        let known = Self {
-            unguided: rest * a,
-            tabled: rest * (1.0 - a),
-            table: if a < 1.0 { table(others.into_iter(), basis) } else { table([].into_iter(), basis) },
-            aimed,
-        };
-        for lesson in lessons.iter().filter(|lesson| portals.iter().any(|portal| portal.is_crossed(lesson))) {
-            if lesson.unguided > 0.0 {
-                let square = f64::from(lesson.weight).powi(2);
-                let guided = known.unguided * lesson.unguided + known.pdf(lesson.position, lesson.direction);
-                moments
-                    .add(Moments { unguided: square, guided: square * f64::from(lesson.unguided / guided) });
-            }
-        }
-        (guides.then_some(known), moments)
+        let tabled = (a < 1.0).then(|| (rest * (1.0 - a), table(others.into_iter(), basis)));
+        let known = Self { unguided: rest * a, aimed, tabled };
+        through.into_iter().for_each(|lesson| moments.add(known.moments(lesson)));
+        ((known.unguided < 1.0).then_some(known), moments)
     }
 
-    /// Density of unit `direction` from `position` among the guided ones, times their part [1/sr].
+    /// What is left of the second moment of one lesson.
+    fn moments(&self, lesson: &Lesson) -> Moments {
+        let Lesson { position, direction, weight, unguided, .. } = *lesson;
+        if unguided <= 0.0 {
+            return Moments::default();
+        }
+        let square = f64::from(weight).powi(2);
+        let pdf = self.unguided * unguided + self.pdf(position, direction);
+        Moments { unguided: square, guided: square * f64::from(unguided / pdf) }
+    }
+
+    /// Density of unit `direction` from `position` among the guided ones, times their share [1/sr].
     #[inline]
     pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         let aimed = self.aimed.iter().map(|(share, portal)| share * portal.pdf(position, direction));
-        self.tabled * pdf(&self.table, direction) + aimed.sum::<f32>()
+        let tabled = self.tabled.as_ref().map_or(0.0, |(share, table)| share * pdf(table, direction));
+        tabled + aimed.sum::<f32>()
     }
 
     /// A unit direction from `position`; none where it is left to the BSDF or the phase function.
@@ -96,12 +95,12 @@ impl Directions {
             }
             u -= share;
         }
-        Some(warp::to_sphere(self.table.sample(stream.square())))
+        self.tabled.as_ref().map(|(_, table)| warp::to_sphere(table.sample(stream.square())))
     }
 
     /// Memory that it takes [bytes].
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.aimed[..]) + self.table.bytes()
+        size_of_val(&self.aimed[..]) + self.tabled.as_ref().map_or(0, |(_, table)| table.bytes())
     }
 }
 
@@ -177,7 +176,11 @@ mod tests {
             .collect();
         let all: Vec<&Lesson> = lessons.iter().collect();
         let known = Directions::learn(&all, &[portal], Basis::default()).0.unwrap();
-        assert!(known.aimed.len() == 1 && known.aimed[0].0 > 0.3 && known.tabled > 0.1, "{:?}", known.aimed);
+        assert!(
+            known.aimed.len() == 1 && known.aimed[0].0 > 0.3 && known.tabled.is_some(),
+            "{:?}",
+            known.aimed
+        );
         let most = -Normal::standard().inverse_cdf(testing::significance(9) / 2.0);
         for distance in [0.1, 0.5, 3.0] {
             let position = portal.centre + distance * vec3(0.6, 0.48, 0.64);

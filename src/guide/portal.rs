@@ -1,5 +1,5 @@
-//! Portals: what light has to go through to reach the image, like the openings between rooms, or a ball of glass. Table after
-//! table of directions would have to learn of each from every place; a portal is known from everywhere.
+//! Portals: what light has to go through to reach the image, like the openings between rooms, or a ball of glass. A table of
+//! directions would have to learn of it in every cell of places anew; a portal is known from everywhere.
 
 use super::Lesson;
 use crate::math::{Frame, Vec2, Vec3, warp};
@@ -21,7 +21,7 @@ impl Portal {
     #[inline]
     fn cone(&self, position: Vec3) -> Option<f32> {
         let sine_squared = self.radius * self.radius / position.distance_squared(self.centre);
-        (sine_squared < WITHIN).then(|| sine_squared / (1.0 + (1.0 - sine_squared).sqrt()))
+        (sine_squared < WITHIN).then(|| warp::one_minus_cos(sine_squared))
     }
 
     /// Squared distance at which the ray in unit `direction` passes the centre [m^2]; none if that is behind it.

@@ -81,6 +81,12 @@ pub fn from_sphere(direction: Vec3) -> Vec2 {
     vec2(0.5 - 0.5 * direction.z, turn).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON))
 }
 
+/// 1 - cos of the half angle whose squared sine is this, in [0, 1].
+#[inline]
+pub fn one_minus_cos(sine_squared: f32) -> f32 {
+    sine_squared / (1.0 + (1.0 - sine_squared).sqrt())
+}
+
 /// Uniform in the cone of half angle acos(1 - `one_minus_cos`) around z; density 1/(2 pi `one_minus_cos`).
 /// The cone is given by 1 - cos so that narrow ones keep their precision.
 #[inline]

@@ -19,7 +19,7 @@ use crate::{
     film::Film,
     guide::{Guide, Learnt, Lesson},
     math::{Channels, Spectrum, SpectrumExt, Vec2, Vec3},
-    sampling::Sampler,
+    sampling::{Sampler, Thinning},
     scene::{
         Scene,
         lights::{Densities, EmissionSample, EmitterSample, Lights, Start, Starts},
@@ -408,13 +408,10 @@ impl Trial {
         let step =
             (parts().map(total).collect::<Vec<f64>>().iter().sum::<f64>() / (LESSONS * samples)) as f32;
         let lessons = |part| {
-            let (mut sum, mut lessons) = (0.5, Vec::new());
+            let (mut thinning, mut lessons) = (Thinning::by(step), Vec::new());
             each(part, &mut |lesson| {
-                sum += f64::from(lesson.weight / step);
-                if sum >= 1.0 {
-                    sum = sum.fract();
-                    lessons.push(Lesson { weight: samples as f32 * lesson.weight.max(step), ..lesson });
-                }
+                let kept = thinning.keeps(lesson.weight);
+                lessons.extend(kept.map(|weight| Lesson { weight: samples as f32 * weight, ..lesson }));
             });
             lessons
         };

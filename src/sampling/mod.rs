@@ -8,6 +8,7 @@ mod points;
 pub mod quadtree;
 pub mod sampler;
 pub mod stream;
+mod thinning;
 
 pub use cells::Cells;
 pub use discrete::Discrete;
@@ -15,3 +16,4 @@ pub use grid::{Cell, Grid};
 pub use quadtree::{Basis, Quadtree};
 pub use sampler::Sampler;
 pub use stream::Stream;
+pub use thinning::Thinning;

@@ -113,7 +113,7 @@ impl Sphere {
     fn cone(&self, reference: Vec3) -> Option<f32> {
         let squared = reference.distance_squared(self.center);
         let sine_squared = self.radius * self.radius / squared;
-        (sine_squared < 1.0 - ON_SPHERE).then(|| sine_squared / (1.0 + (1.0 - sine_squared).sqrt()))
+        (sine_squared < 1.0 - ON_SPHERE).then(|| warp::one_minus_cos(sine_squared))
     }
 
     /// Uniform in the cone, as a density per area [1/m^2]; 0 on the far side.
