@@ -156,8 +156,8 @@ fn report(scene: &Scene, learnt: &Learnt, cells: &[SeenCell], seconds: f64) -> R
 
 fn portals(scene: &Scene, guide: &Guide) -> Vec<Portal> {
     let placed = |portal: &guide::Portal| Portal {
-        centre: (portal.centre.as_dvec3() + scene.recentre).to_array(),
-        radius: portal.radius,
+        centre: (portal.smallest.centre.as_dvec3() + scene.recentre).to_array(),
+        radius: portal.smallest.radius_squared.sqrt(),
     };
     guide.portals().iter().map(placed).collect()
 }

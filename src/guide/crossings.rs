@@ -1,7 +1,10 @@
 //! Where the ways of walks cross that reach the image, wherever they come from: at its portals. A few dozen walks tell, long
 //! before any table of directions knows anything.
 
-use super::{Lesson, portal::Portal};
+use super::{
+    Lesson,
+    portal::{Portal, Sphere},
+};
 use crate::{math::Vec3, sampling::Thinning};
 use rayon::prelude::*;
 
@@ -27,23 +30,26 @@ pub fn find(lessons: &[Lesson]) -> Vec<Portal> {
     let (low, high) = lessons.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), lesson| {
         (low.min(lesson.position), high.max(lesson.position))
     });
-    let radii: [f32; RADII] =
-        std::array::from_fn(|index| (high - low).max_element() * 0.5f32.powi(LARGEST + index as i32));
+    let radius = |index| (high - low).max_element() * 0.5f32.powi(LARGEST + index as i32);
+    let radii_squared: [f32; RADII] = std::array::from_fn(|index| radius(index).powi(2));
     let mut folds = [0, 1].map(|fold| Fold::of(lessons, fold));
     let centres: Vec<Vec3> = folds.iter().flat_map(|fold| crossings(&fold.judges)).collect();
     let mut found = Vec::new();
     while found.len() < MOST {
         let best = |centre: &Vec3| {
-            let [a, b] = folds.each_ref().map(|fold| fold.gains(*centre, &radii));
+            let [a, b] = folds.each_ref().map(|fold| fold.gains(*centre, &radii_squared));
             let gains = a.into_iter().zip(b).map(|(a, b)| a.min(b));
-            let portals = radii.map(|radius| Portal { centre: *centre, radius });
-            gains.zip(portals).max_by(|a, b| a.0.total_cmp(&b.0))
+            let spheres = radii_squared.map(|radius_squared| Sphere { centre: *centre, radius_squared });
+            gains.zip(spheres).max_by(|a, b| a.0.total_cmp(&b.0))
         };
-        let of_centres: Vec<Option<(f64, Portal)>> = centres.par_iter().map(best).collect();
+        let of_centres: Vec<Option<(f64, Sphere)>> = centres.par_iter().map(best).collect();
         let best = of_centres.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, portal)) = best.filter(|(gain, _)| *gain > LEAST) else { break };
+        let Some((_, sphere)) = best.filter(|(gain, _)| *gain > LEAST) else { break };
+        let judges = folds.iter().flat_map(|fold| &fold.judges).map(|judge| &judge.lesson);
+        let portal = Portal::fitted(sphere, judges);
+        let outermost = portal.outermost();
+        folds.iter_mut().for_each(|fold| fold.judges.retain(|judge| !outermost.is_crossed(&judge.lesson)));
         found.push(portal);
-        folds.iter_mut().for_each(|fold| fold.judges.retain(|judge| !portal.is_crossed(&judge.lesson)));
     }
     found
 }
@@ -75,18 +81,17 @@ impl Fold {
         Self { weight: judges.iter().map(|judge| judge.weight).sum(), judges }
     }
 
-    /// What portals of these `radii` around `centre` add to the log likelihood of a lesson if each gets as many directions as go
+    /// What spheres of these `radii_squared` around `centre` add to the log likelihood of a lesson if each gets as many directions as go
     /// through, and the others remain as they are.
-    fn gains(&self, centre: Vec3, radii: &[f32; RADII]) -> [f64; RADII] {
+    fn gains(&self, centre: Vec3, radii_squared: &[f32; RADII]) -> [f64; RADII] {
         let (mut count, mut through, mut gains) = ([0; RADII], [0.0; RADII], [0.0; RADII]);
         for Judge { lesson, weight } in &self.judges {
-            let Some(miss) = Portal::passes(centre, lesson.position, lesson.direction) else { continue };
-            for (index, radius) in
-                radii.iter().enumerate().take_while(|(_, radius)| miss <= *radius * *radius)
-            {
-                let portal = Portal { centre, radius: *radius };
-                if portal.is_crossed(lesson) {
-                    let ratio = portal.pdf(lesson.position, lesson.direction) / lesson.unguided;
+            let Some(miss) = Sphere::passes(centre, lesson.position, lesson.direction) else { continue };
+            let hit = |(_, radius_squared): &(usize, &f32)| miss <= **radius_squared;
+            for (index, radius_squared) in radii_squared.iter().enumerate().take_while(hit) {
+                let sphere = Sphere { centre, radius_squared: *radius_squared };
+                if sphere.is_crossed(lesson) {
+                    let ratio = sphere.pdf(lesson.position, lesson.direction) / lesson.unguided;
                     count[index] += 1;
                     through[index] += weight;
                     gains[index] += weight * f64::from(ratio).ln();
@@ -159,7 +164,8 @@ mod tests {
             for seed in 0..4 {
                 let found = find(&lessons(count, through, seed));
                 let first = found.first().unwrap_or_else(|| panic!("{count}, {through}, {seed}: none"));
-                let Portal { centre, radius } = *first;
+                let Sphere { centre, radius_squared } = first.smallest;
+                let radius = radius_squared.sqrt();
                 assert!(centre.distance(HOLE) < radius, "{count}, {through}, {seed}: {found:?}");
                 assert!((0.5 * SIZE..3.0 * SIZE).contains(&radius), "{count}, {through}, {seed}: {found:?}");
             }

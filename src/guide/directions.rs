@@ -51,7 +51,7 @@ impl Directions {
     pub fn learn(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> (Option<Self>, Moments) {
         let aimed = aimed(lessons, portals);
         let rest = 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>();
-        let is_aimed = |lesson: &&&Lesson| portals.iter().any(|portal| portal.is_crossed(lesson));
+        let is_aimed = |lesson: &&&Lesson| portals.iter().any(|portal| portal.outermost().is_crossed(lesson));
         let (through, others): (Vec<&Lesson>, Vec<&Lesson>) = lessons.iter().partition(is_aimed);
         let is_known = effective(others.iter().map(|lesson| lesson.weight)) >= ENOUGH;
         let (a, mut moments) =
@@ -91,7 +91,7 @@ impl Directions {
         u -= self.unguided;
         for (share, portal) in &self.aimed {
             if u < *share {
-                return Some(portal.sample(position, stream.square()));
+                return Some(portal.sample(position, stream));
             }
             u -= share;
         }
@@ -108,7 +108,7 @@ impl Directions {
 fn aimed(lessons: &[&Lesson], portals: &[Portal]) -> Vec<(f32, Portal)> {
     let mut aimed: Vec<(f32, Portal)> = portals.iter().map(|portal| (0.0, *portal)).collect();
     for lesson in lessons {
-        if let Some((sum, _)) = aimed.iter_mut().find(|(_, portal)| portal.is_crossed(lesson)) {
+        if let Some((sum, _)) = aimed.iter_mut().find(|(_, portal)| portal.outermost().is_crossed(lesson)) {
             *sum += lesson.weight;
         }
     }
@@ -168,7 +168,7 @@ mod tests {
                 let position = portal.centre + vec3(2.0, 1.0, 0.5) - warp::to_sphere(stream.square());
                 let anywhere = warp::to_sphere(stream.square());
                 let direction =
-                    if index % 2 == 0 { portal.sample(position, stream.square()) } else { anywhere };
+                    if index % 2 == 0 { portal.sample(position, stream) } else { anywhere };
                 let (transport, unguided) = (Transport::Radiance, warp::SPHERE_PDF);
                 let weight = if up(direction) { 5.0 } else { 1.0 };
                 Lesson { position, normal: None, transport, direction, weight, unguided, fold: index / 2 % 2 }

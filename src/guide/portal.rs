@@ -2,34 +2,127 @@
 //! directions would have to learn of it in every cell of places anew; a portal is known from everywhere.
 
 use super::Lesson;
-use crate::math::{Frame, Vec2, Vec3, warp};
+use crate::{
+    math::{Frame, Vec2, Vec3, warp},
+    sampling::Stream,
+};
 
-/// Where sine squared is more, at the surface and within, it is around on all sides.
+/// Spheres that directions aim at around one centre, each wider by the square root of 2. An opening may be of any shape: one sphere
+/// of about its size leaves out its corners, and the few paths that find those would weigh as much as without a guide.
+const SPHERES: usize = 4;
+/// The part of the directions that aims at each of them, at least.
+const LEAST: f32 = 0.05;
+/// How often shares are fitted.
+const FITS: usize = 8;
+/// Where sine squared is more, at the surface and within, a sphere is around on all sides.
 const WITHIN: f32 = 0.999;
 
-/// A sphere that walks aim at, evenly by solid angle; from within they go anywhere.
+/// Concentric spheres that walks aim at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Portal {
-    /// World position.
-    pub centre: Vec3,
-    /// Above 0 [m].
-    pub radius: f32,
+    /// The other spheres are around it.
+    pub smallest: Sphere,
+    /// The part of the directions that aims at each sphere, 1 together.
+    shares: [f32; SPHERES],
 }
 
 impl Portal {
+    /// That of spheres from `smallest` on, of which as many directions aim at each as is most likely by the `lessons`
+    /// that cross, by their weights.
+    pub fn fitted<'a>(smallest: Sphere, lessons: impl Iterator<Item = &'a Lesson>) -> Self {
+        let even = Self { smallest, shares: [1.0 / SPHERES as f32; SPHERES] };
+        let known = lessons.map(|lesson| (lesson.weight, even.parts(lesson.position, lesson.direction)));
+        let known: Vec<_> = known.filter(|(_, pdfs)| pdfs.iter().any(|pdf| *pdf > 0.0)).collect();
+        (0..FITS).fold(even, |portal, _| portal.refitted(&known))
+    }
+
+    /// One step of expectation and maximisation.
+    fn refitted(&self, known: &[(f32, [f32; SPHERES])]) -> Self {
+        let mut sums = [f32::MIN_POSITIVE; SPHERES];
+        for (weight, pdfs) in known {
+            let parts: [f32; SPHERES] = std::array::from_fn(|index| self.shares[index] * pdfs[index]);
+            let all: f32 = parts.iter().sum();
+            sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part / all);
+        }
+        let all: f32 = sums.iter().sum();
+        let shares = sums.map(|sum| LEAST + (1.0 - SPHERES as f32 * LEAST) * sum / all);
+        Self { shares, ..*self }
+    }
+
+    /// The greatest of its spheres.
+    pub fn outermost(&self) -> Sphere {
+        let [.., outermost] = self.spheres();
+        outermost
+    }
+
+    #[inline]
+    fn spheres(&self) -> [Sphere; SPHERES] {
+        let Sphere { centre, radius_squared } = self.smallest;
+        std::array::from_fn(|index| Sphere { centre, radius_squared: radius_squared * (1 << index) as f32 })
+    }
+
+    /// Density of unit `direction` from `position` among those that aim at each of its spheres [1/sr].
+    #[inline]
+    fn parts(&self, position: Vec3, direction: Vec3) -> [f32; SPHERES] {
+        let spheres = self.spheres();
+        if !spheres[SPHERES - 1].is_aimed(position, direction) {
+            return [0.0; SPHERES];
+        }
+        spheres.map(|sphere| sphere.pdf(position, direction))
+    }
+
+    /// Density of unit `direction` among those that aim at it from `position` [1/sr].
+    #[inline]
+    pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
+        let parts = self.parts(position, direction);
+        parts.iter().zip(&self.shares).map(|(pdf, share)| share * pdf).sum()
+    }
+
+    /// A unit direction from `position` that aims at it.
+    #[inline]
+    pub fn sample(&self, position: Vec3, stream: &mut Stream) -> Vec3 {
+        let mut u = stream.uniform();
+        let [outer @ .., innermost] = self.spheres();
+        let of = outer.into_iter().zip(self.shares).find(|(_, share)| {
+            u -= share;
+            u < 0.0
+        });
+        of.map_or(innermost, |(sphere, _)| sphere).sample(position, stream.square())
+    }
+}
+
+/// What directions aim at, evenly by solid angle; from within they go anywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// World position.
+    pub centre: Vec3,
+    /// Above 0 [m^2].
+    pub radius_squared: f32,
+}
+
+impl Sphere {
     /// 1 - cos of the half angle in which `position` sees it; none from within.
     #[inline]
     fn cone(&self, position: Vec3) -> Option<f32> {
-        let sine_squared = self.radius * self.radius / position.distance_squared(self.centre);
+        let sine_squared = self.radius_squared / position.distance_squared(self.centre);
         (sine_squared < WITHIN).then(|| warp::one_minus_cos(sine_squared))
     }
 
-    /// Squared distance at which the ray in unit `direction` passes the centre [m^2]; none if that is behind it.
+    /// Squared distance at which the ray in unit `direction` passes `centre` [m^2]; none if that is behind it.
     #[inline]
     pub fn passes(centre: Vec3, position: Vec3, direction: Vec3) -> Option<f32> {
         let to = centre - position;
         let along = to.dot(direction);
         (along > 0.0).then(|| (to - along * direction).length_squared())
+    }
+
+    /// True if directions from `position` that aim at it may be the unit `direction`.
+    #[inline]
+    fn is_aimed(&self, position: Vec3, direction: Vec3) -> bool {
+        let to = self.centre - position;
+        let along = to.dot(direction);
+        to.length_squared() * WITHIN <= self.radius_squared
+            || along > 0.0 && (to - along * direction).length_squared() <= self.radius_squared
     }
 
     /// True if the lesson comes from outside and goes through.
@@ -39,10 +132,10 @@ impl Portal {
 
     #[inline]
     fn is_hit(&self, position: Vec3, direction: Vec3) -> bool {
-        Self::passes(self.centre, position, direction).is_some_and(|miss| miss <= self.radius * self.radius)
+        Self::passes(self.centre, position, direction).is_some_and(|miss| miss <= self.radius_squared)
     }
 
-    /// Density of unit `direction` among those that aim at it from `position` [1/sr].
+    /// Density of unit `direction` among those from `position` [1/sr].
     #[inline]
     pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         match self.cone(position) {
@@ -52,9 +145,8 @@ impl Portal {
         }
     }
 
-    /// A unit direction from `position` that aims at it.
     #[inline]
-    pub fn sample(&self, position: Vec3, u: Vec2) -> Vec3 {
+    fn sample(&self, position: Vec3, u: Vec2) -> Vec3 {
         let Some(one_minus_cos) = self.cone(position) else { return warp::to_sphere(u) };
         let axis = (self.centre - position).normalize();
         Frame::around(axis).to_world(warp::to_cone(u, one_minus_cos)).normalize()
@@ -66,7 +158,7 @@ mod tests {
     use super::*;
     use crate::{
         math::vec3,
-        sampling::{Stream, stream::Purpose},
+        sampling::stream::Purpose,
         testing,
     };
     use std::f64::consts::TAU;
@@ -75,28 +167,28 @@ mod tests {
     /// their solid angle, within it alone.
     #[test]
     fn directions_are_even_and_as_dense_as_they_are_said_to_be() {
-        let portal = Portal { centre: vec3(0.3, -0.2, 0.5), radius: 0.25 };
+        let sphere = Sphere { centre: vec3(0.3, -0.2, 0.5), radius_squared: 0.0625 };
         let mut stream = Stream::new(31, 0, 0, Purpose::Study);
         for distance in [1000.0, 3.0, 0.3, 0.251, 0.25, 0.1, 0.0] {
             let axis = vec3(-0.6, 0.48, 0.64);
-            let position = portal.centre - distance * axis;
-            let axis = (portal.centre - position).as_dvec3().normalize_or(axis.as_dvec3());
-            let sine = f64::from(portal.radius) / position.as_dvec3().distance(portal.centre.as_dvec3());
+            let position = sphere.centre - distance * axis;
+            let axis = (sphere.centre - position).as_dvec3().normalize_or(axis.as_dvec3());
+            let sine = 0.25 / position.as_dvec3().distance(sphere.centre.as_dvec3());
             // 1 - cos, in which even directions are even, where they are not around it.
             let most = if sine < 0.9999 { sine * sine / (1.0 + (1.0 - sine * sine).sqrt()) } else { 2.0 };
             let mut counts = [0; 16];
             for _ in 0..16_000 {
-                let direction = portal.sample(position, stream.square());
+                let direction = sphere.sample(position, stream.square());
                 let across = (direction.as_dvec3() - axis).length_squared() / 2.0 / most;
                 assert!(across < 1.0 + 1e-4, "{distance}: {direction}");
                 counts[(across * 16.0).min(15.0) as usize] += 1;
                 if across < 0.999 {
-                    let pdf = f64::from(portal.pdf(position, direction)) * TAU * most;
+                    let pdf = f64::from(sphere.pdf(position, direction)) * TAU * most;
                     assert!((pdf - 1.0).abs() < 1e-3, "{distance}: {pdf}");
                 }
                 let direction = warp::to_sphere(stream.square());
                 let across = (direction.as_dvec3() - axis).length_squared() / 2.0 / most;
-                assert!(across < 1.001 || portal.pdf(position, direction) == 0.0, "{distance}: {direction}");
+                assert!(across < 1.001 || sphere.pdf(position, direction) == 0.0, "{distance}: {direction}");
             }
             let p = testing::chi_square(&counts, &[1000.0; 16]);
             assert!(p > testing::significance(7), "{distance}: {p}, {counts:?}");
