@@ -17,7 +17,7 @@ const BSDF_FRACTIONS: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
 pub const ENOUGH: f64 = 32.0;
 /// The part of the directions of any cell that aims at each portal, at least: where few have been seen to go through it, those few
 /// would weigh as much as without a guide.
-const LEAST_AIMED: f32 = 0.02;
+const LEAST_AIMED: f32 = 0.05;
 /// The most that aim at portals.
 const MOST_AIMED: f32 = 0.5;
 
@@ -151,7 +151,7 @@ fn pdf(table: &Quadtree, direction: Vec3) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::portal::Sphere, *};
     use crate::{bsdf::Transport, math::vec3, sampling::stream::Purpose, testing};
     use statrs::distribution::{ContinuousCDF, Normal};
     use std::f64::consts::PI;
@@ -160,15 +160,15 @@ mod tests {
     /// of both and of all directions come out, wherever one looks from.
     #[test]
     fn solid_angles_are_what_samples_over_their_density_say() {
-        let portal = Portal { centre: vec3(0.4, -0.7, 0.2), radius: 0.2 };
+        let smallest = Sphere { centre: vec3(0.4, -0.7, 0.2), radius_squared: 0.04 };
+        let portal = Portal::fitted(smallest, [].into_iter());
         let up = |direction: Vec3| direction.z > 0.9;
         let mut stream = Stream::new(41, 0, 0, Purpose::Study);
         let lessons: Vec<Lesson> = (0..4000)
             .map(|index| {
-                let position = portal.centre + vec3(2.0, 1.0, 0.5) - warp::to_sphere(stream.square());
+                let position = smallest.centre + vec3(2.0, 1.0, 0.5) - warp::to_sphere(stream.square());
                 let anywhere = warp::to_sphere(stream.square());
-                let direction =
-                    if index % 2 == 0 { portal.sample(position, stream) } else { anywhere };
+                let direction = if index % 2 == 0 { portal.sample(position, &mut stream) } else { anywhere };
                 let (transport, unguided) = (Transport::Radiance, warp::SPHERE_PDF);
                 let weight = if up(direction) { 5.0 } else { 1.0 };
                 Lesson { position, normal: None, transport, direction, weight, unguided, fold: index / 2 % 2 }
@@ -181,15 +181,23 @@ mod tests {
             "{:?}",
             known.aimed
         );
-        let most = -Normal::standard().inverse_cdf(testing::significance(9) / 2.0);
+        let most = -Normal::standard().inverse_cdf(testing::significance(12) / 2.0);
         for distance in [0.1, 0.5, 3.0] {
-            let position = portal.centre + distance * vec3(0.6, 0.48, 0.64);
-            let within = |direction: Vec3| portal.pdf(position, direction) > 0.0;
-            let sine = f64::from(portal.radius / distance).min(1.0);
-            let cosine = if sine < 1.0 { (1.0 - sine * sine).sqrt() } else { -1.0 };
-            let angles: [(f64, &dyn Fn(Vec3) -> bool); 3] =
-                [(4.0 * PI, &|_| true), (0.2 * PI, &up), (2.0 * PI * (1.0 - cosine), &within)];
-            let mut sums = [[0.0; 2]; 3];
+            let position = smallest.centre + distance * vec3(0.6, 0.48, 0.64);
+            let outermost = portal.outermost();
+            let [within, through] = [smallest, outermost]
+                .map(|sphere| move |direction: Vec3| sphere.pdf(position, direction) > 0.0);
+            let angle = |sphere: Sphere| {
+                let sine_squared = f64::from(sphere.radius_squared / (distance * distance));
+                if sine_squared < 1.0 { 2.0 * PI * (1.0 - (1.0 - sine_squared).sqrt()) } else { 4.0 * PI }
+            };
+            let angles: [(f64, &dyn Fn(Vec3) -> bool); 4] = [
+                (4.0 * PI, &|_| true),
+                (0.2 * PI, &up),
+                (angle(smallest), &within),
+                (angle(outermost), &through),
+            ];
+            let mut sums = [[0.0; 2]; 4];
             let n = 100_000.0;
             for _ in 0..100_000 {
                 let guided = known.sample(position, &mut stream);

@@ -13,7 +13,7 @@ const SPHERES: usize = 4;
 /// The part of the directions that aims at each of them, at least.
 const LEAST: f32 = 0.05;
 /// How often shares are fitted.
-const FITS: usize = 8;
+const FITS: usize = 16;
 /// Where sine squared is more, at the surface and within, a sphere is around on all sides.
 const WITHIN: f32 = 0.999;
 
@@ -33,7 +33,9 @@ impl Portal {
         let even = Self { smallest, shares: [1.0 / SPHERES as f32; SPHERES] };
         let known = lessons.map(|lesson| (lesson.weight, even.parts(lesson.position, lesson.direction)));
         let known: Vec<_> = known.filter(|(_, pdfs)| pdfs.iter().any(|pdf| *pdf > 0.0)).collect();
-        (0..FITS).fold(even, |portal, _| portal.refitted(&known))
+        let fitted = (0..FITS).fold(even, |portal, _| portal.refitted(&known));
+        let rest = 1.0 - SPHERES as f32 * LEAST;
+        Self { smallest, shares: fitted.shares.map(|share| LEAST + rest * share) }
     }
 
     /// One step of expectation and maximisation.
@@ -45,8 +47,7 @@ impl Portal {
             sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part / all);
         }
         let all: f32 = sums.iter().sum();
-        let shares = sums.map(|sum| LEAST + (1.0 - SPHERES as f32 * LEAST) * sum / all);
-        Self { shares, ..*self }
+        Self { shares: sums.map(|sum| sum / all), ..*self }
     }
 
     /// The greatest of its spheres.
@@ -156,11 +157,7 @@ impl Sphere {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        math::vec3,
-        sampling::stream::Purpose,
-        testing,
-    };
+    use crate::{bsdf::Transport, math::vec3, sampling::stream::Purpose, testing};
     use std::f64::consts::TAU;
 
     /// Seen from afar, from close by, from its surface and from within: all directions aim at it, evenly, and the density is 1 over
@@ -192,6 +189,28 @@ mod tests {
             }
             let p = testing::chi_square(&counts, &[1000.0; 16]);
             assert!(p > testing::significance(7), "{distance}: {p}, {counts:?}");
+        }
+    }
+
+    /// Where all lessons go through one of the spheres, evenly, most directions aim at that one, and some at all others.
+    #[test]
+    fn directions_aim_at_what_lessons_go_through() {
+        let smallest = Sphere { centre: vec3(0.3, -0.2, 0.5), radius_squared: 0.01 };
+        let even = Portal::fitted(smallest, [].into_iter());
+        assert!(even.shares.iter().all(|share| (share - 0.25).abs() < 1e-6), "{:?}", even.shares);
+        let mut stream = Stream::new(32, 0, 0, Purpose::Study);
+        for (index, sphere) in even.spheres().into_iter().enumerate() {
+            let lesson = |_| {
+                let position = smallest.centre + 2.0 * warp::to_sphere(stream.square());
+                let direction = sphere.sample(position, stream.square());
+                let (normal, transport, weight) = (None, Transport::Radiance, stream.uniform());
+                Lesson { position, normal, transport, direction, weight, unguided: warp::SPHERE_PDF, fold: 0 }
+            };
+            let lessons: Vec<Lesson> = (0..500).map(lesson).collect();
+            let Portal { shares, .. } = Portal::fitted(smallest, lessons.iter());
+            assert!((shares.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{shares:?}");
+            assert!(shares.iter().all(|share| *share >= LEAST), "{shares:?}");
+            assert!(shares[index] > 0.6, "{index}: {shares:?}");
         }
     }
 }

@@ -63,14 +63,17 @@ const FLOOR: f64 = 0.1;
 /// What renders by `settings` learn beforehand: where light subpaths start that reach the image, where walks go, and what camera
 /// subpaths end in, as far as they ask for it. Kept with the scene.
 pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
-    let Options { strategies, max_depth, .. } = settings.options;
+    let Options { strategies, effort, max_depth, .. } = settings.options;
     let guided = follows_guide(scene, film, settings);
     let wanted = Wanted::by(settings.options, guided);
     let key = wanted.key(film);
-    let learnt = match wanted {
+    let mut learnt = match wanted {
         Wanted { starts: None, guide: None, .. } => Learnt::default(),
         _ => scene.lights.learnt.recall(key.clone(), || learn(scene, film, wanted, false)),
     };
+    if !effort.learnt_starts {
+        learnt.starts = None;
+    }
     // Camera subpaths that end before they gather need nothing to end in.
     if !strategies.gather || max_depth.is_some_and(|depth| depth <= 2) {
         return learnt;
@@ -113,8 +116,9 @@ impl Wanted {
     fn by(options: Options, guided: bool) -> Self {
         let Options { strategies, effort, max_depth, .. } = options;
         Self {
-            // Camera subpaths that never hit an emitter share nothing with light subpaths.
-            starts: effort.learnt_starts.then_some(strategies.emitter_hit),
+            // Camera subpaths that never hit an emitter share nothing with light subpaths. A guide is learnt with starts whether
+            // they are wanted or not, so that a pilot that tries both, and what it chooses, share it.
+            starts: (guided || effort.learnt_starts).then_some(strategies.emitter_hit),
             // What a pilot leaves out later changes nothing.
             guide: guided.then_some(if strategies.need_light_walks() {
                 Strategies::BDPT
