@@ -66,12 +66,12 @@ pub struct Cells {
     pub guided: [f32; 2],
 }
 
-/// A sphere that much of the light goes through.
+/// What much of the light goes through.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Portal {
     /// In the scene's coordinates.
     pub centre: [f64; 3],
-    /// Above 0 [m].
+    /// Of the smallest of the spheres around it that walks aim at; that of the widest is 2.8 times as large. Above 0 [m].
     pub radius: f32,
 }
 

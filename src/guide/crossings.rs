@@ -45,7 +45,8 @@ pub fn find(lessons: &[Lesson]) -> Vec<Portal> {
         let of_centres: Vec<Option<(f64, Sphere)>> = centres.par_iter().map(best).collect();
         let best = of_centres.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((_, sphere)) = best.filter(|(gain, _)| *gain > LEAST) else { break };
-        let judges = folds.iter().flat_map(|fold| &fold.judges).map(|judge| &judge.lesson);
+        let judges =
+            folds.iter().flat_map(|fold| &fold.judges).map(|judge| (judge.weight as f32, &judge.lesson));
         let portal = Portal::fitted(sphere, judges);
         let outermost = portal.outermost();
         folds.iter_mut().for_each(|fold| fold.judges.retain(|judge| !outermost.is_crossed(&judge.lesson)));
@@ -81,8 +82,8 @@ impl Fold {
         Self { weight: judges.iter().map(|judge| judge.weight).sum(), judges }
     }
 
-    /// What spheres of these `radii_squared` around `centre` add to the log likelihood of a lesson if each gets as many directions as go
-    /// through, and the others remain as they are.
+    /// What spheres of these `radii_squared` around `centre` add to the log likelihood of a lesson if each gets as many directions
+    /// as go through, and the others remain as they are.
     fn gains(&self, centre: Vec3, radii_squared: &[f32; RADII]) -> [f64; RADII] {
         let (mut count, mut through, mut gains) = ([0; RADII], [0.0; RADII], [0.0; RADII]);
         for Judge { lesson, weight } in &self.judges {

@@ -58,6 +58,8 @@ impl Directions {
             if is_known { part_unguided(&others, basis) } else { (1.0, Moments::default()) };
         let tabled = (a < 1.0).then(|| (rest * (1.0 - a), table(others.into_iter(), basis)));
         let known = Self { unguided: rest * a, aimed, tabled };
+        // What the table is learnt by goes through no portal, and is the rarer for those directions that do.
+        moments.guided /= f64::from(rest);
         through.into_iter().for_each(|lesson| moments.add(known.moments(lesson)));
         ((known.unguided < 1.0).then_some(known), moments)
     }

@@ -9,8 +9,8 @@
 //! ```
 //! (a is the BSDF sampling fraction of Mueller et al.), and the walk from the other end leaves the same vertex towards the one
 //! before, w', with a p'(w') + (1 - a) G'(w'). G' does not depend on w: it is looked up once, on arrival, and kept. A part of G
-//! aims at portals, a little of it even where no walk was seen to go through them; the rest is a table of the directions from a
-//! cell of places.
+//! aims at portals, each of them a few spheres around one centre, a little of it even where no walk was seen to go through them; the
+//! rest is a table of the directions from a cell of places.
 
 mod crossings;
 mod directions;

@@ -27,12 +27,14 @@ pub struct Portal {
 }
 
 impl Portal {
-    /// That of spheres from `smallest` on, of which as many directions aim at each as is most likely by the `lessons`
-    /// that cross, by their weights.
-    pub fn fitted<'a>(smallest: Sphere, lessons: impl Iterator<Item = &'a Lesson>) -> Self {
+    /// That of spheres from `smallest` on. As many directions aim at each as is most likely by those of the `lessons`, each with
+    /// how much it counts (above 0), that come from outside and go through.
+    pub fn fitted<'a>(smallest: Sphere, lessons: impl Iterator<Item = (f32, &'a Lesson)>) -> Self {
         let even = Self { smallest, shares: [1.0 / SPHERES as f32; SPHERES] };
-        let known = lessons.map(|lesson| (lesson.weight, even.parts(lesson.position, lesson.direction)));
-        let known: Vec<_> = known.filter(|(_, pdfs)| pdfs.iter().any(|pdf| *pdf > 0.0)).collect();
+        let outermost = even.outermost();
+        let through = lessons.filter(|(_, lesson)| outermost.is_crossed(lesson));
+        let known = through.map(|(weight, lesson)| (weight, even.parts(lesson.position, lesson.direction)));
+        let known: Vec<_> = known.collect();
         let fitted = (0..FITS).fold(even, |portal, _| portal.refitted(&known));
         let rest = 1.0 - SPHERES as f32 * LEAST;
         Self { smallest, shares: fitted.shares.map(|share| LEAST + rest * share) }
@@ -83,12 +85,12 @@ impl Portal {
     #[inline]
     pub fn sample(&self, position: Vec3, stream: &mut Stream) -> Vec3 {
         let mut u = stream.uniform();
-        let [outer @ .., innermost] = self.spheres();
-        let of = outer.into_iter().zip(self.shares).find(|(_, share)| {
+        let [inner @ .., outermost] = self.spheres();
+        let of = inner.into_iter().zip(self.shares).find(|(_, share)| {
             u -= share;
             u < 0.0
         });
-        of.map_or(innermost, |(sphere, _)| sphere).sample(position, stream.square())
+        of.map_or(outermost, |(sphere, _)| sphere).sample(position, stream.square())
     }
 }
 
@@ -105,8 +107,8 @@ impl Sphere {
     /// 1 - cos of the half angle in which `position` sees it; none from within.
     #[inline]
     fn cone(&self, position: Vec3) -> Option<f32> {
-        let sine_squared = self.radius_squared / position.distance_squared(self.centre);
-        (sine_squared < WITHIN).then(|| warp::one_minus_cos(sine_squared))
+        let squared = position.distance_squared(self.centre);
+        (self.radius_squared < WITHIN * squared).then(|| warp::one_minus_cos(self.radius_squared / squared))
     }
 
     /// Squared distance at which the ray in unit `direction` passes `centre` [m^2]; none if that is behind it.
@@ -120,10 +122,8 @@ impl Sphere {
     /// True if directions from `position` that aim at it may be the unit `direction`.
     #[inline]
     fn is_aimed(&self, position: Vec3, direction: Vec3) -> bool {
-        let to = self.centre - position;
-        let along = to.dot(direction);
-        to.length_squared() * WITHIN <= self.radius_squared
-            || along > 0.0 && (to - along * direction).length_squared() <= self.radius_squared
+        let is_outside = self.radius_squared < WITHIN * position.distance_squared(self.centre);
+        !is_outside || self.is_hit(position, direction)
     }
 
     /// True if the lesson comes from outside and goes through.
@@ -136,7 +136,7 @@ impl Sphere {
         Self::passes(self.centre, position, direction).is_some_and(|miss| miss <= self.radius_squared)
     }
 
-    /// Density of unit `direction` among those from `position` [1/sr].
+    /// Density of unit `direction` among those that aim at it from `position` [1/sr].
     #[inline]
     pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         match self.cone(position) {
@@ -207,7 +207,8 @@ mod tests {
                 Lesson { position, normal, transport, direction, weight, unguided: warp::SPHERE_PDF, fold: 0 }
             };
             let lessons: Vec<Lesson> = (0..500).map(lesson).collect();
-            let Portal { shares, .. } = Portal::fitted(smallest, lessons.iter());
+            let Portal { shares, .. } =
+                Portal::fitted(smallest, lessons.iter().map(|lesson| (lesson.weight, lesson)));
             assert!((shares.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{shares:?}");
             assert!(shares.iter().all(|share| *share >= LEAST), "{shares:?}");
             assert!(shares[index] > 0.6, "{index}: {shares:?}");

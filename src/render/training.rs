@@ -94,7 +94,9 @@ pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
         Guiding::Auto => {
             let learnt = learn(scene, film, Wanted::by(options, true), true);
             let pays = learnt.guide.is_some();
-            scene.lights.learnt.keep(Wanted::by(options, pays).key(film), learnt);
+            if pays {
+                scene.lights.learnt.keep(Wanted::by(options, true).key(film), learnt);
+            }
             pays
         }
     }
@@ -117,7 +119,7 @@ impl Wanted {
         let Options { strategies, effort, max_depth, .. } = options;
         Self {
             // Camera subpaths that never hit an emitter share nothing with light subpaths. A guide is learnt with starts whether
-            // they are wanted or not, so that a pilot that tries both, and what it chooses, share it.
+            // they are wanted or not, so that a pilot that tries both, and what it chooses if that has light subpaths, share it.
             starts: (guided || effort.learnt_starts).then_some(strategies.emitter_hit),
             // What a pilot leaves out later changes nothing.
             guide: guided.then_some(if strategies.need_light_walks() {
