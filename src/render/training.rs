@@ -118,9 +118,11 @@ impl Wanted {
     fn by(options: Options, guided: bool) -> Self {
         let Options { strategies, effort, max_depth, .. } = options;
         Self {
-            // Camera subpaths that never hit an emitter share nothing with light subpaths. A guide is learnt with starts whether
-            // they are wanted or not, so that a pilot that tries both, and what it chooses if that has light subpaths, share it.
-            starts: (guided || effort.learnt_starts).then_some(strategies.emitter_hit),
+            // Camera subpaths that never hit an emitter share nothing with light subpaths. A guide of both is learnt with starts
+            // whether they are wanted or not, so that a pilot that tries both, and what it chooses, share it; one of camera
+            // subpaths alone is better learnt without.
+            starts: (effort.learnt_starts || guided && strategies.need_light_walks())
+                .then_some(strategies.emitter_hit),
             // What a pilot leaves out later changes nothing.
             guide: guided.then_some(if strategies.need_light_walks() {
                 Strategies::BDPT
