@@ -77,8 +77,8 @@ GAINS = {
     "gather over bdpt": ("bdpt, starts", "gather"),
 }
 """What is compared: relMSE of the one over that of the other."""
-OTHER_SEED = 10_000
-"""That of references."""
+REFERENCE = "bdpt, guide"
+"""What references are made of."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     """Those of the command line."""
     command.add_argument("--seconds", type=float, default=10, help="of each render, learning included (default %(default)s)")
     command.add_argument("--seeds", type=int, default=10, help="independent renders of each kind, at least 2 (default %(default)s)")
-    command.add_argument("--reference-seconds", type=float, default=60, help="of each reference, by bdpt (default %(default)s)")
+    command.add_argument("--preview-seeds", type=int, default=3, help="of those by gather, at least 2 (default %(default)s)")
     command.add_argument("--size", default="96x72", help="of all images (default %(default)s)")
     command.add_argument("--threads", type=int, default=2, help="(default %(default)s)")
     command.add_argument("--output", type=Path, default=REPORTS, help="folder for guide.md (default %(default)s)")
@@ -136,16 +136,12 @@ def row_of(kind: str, case: Case, options: argparse.Namespace) -> Row:
     """Renders a scene with a guide and without, and as the preview `gather`."""
     given: dict[str, Any] = {"size": options.size, "threads": options.threads}
     scene = Scene(case.scene, case.name, case.parameters)
-    reference = render(scene, integrator="bdpt", guide="auto", time_limit=options.reference_seconds, seed=OTHER_SEED, **given).image
-
-    def error(seed: int, way: dict[str, Any]) -> float:
-        image = render(scene, time_limit=options.seconds, seed=seed, **way, **given).image
-        return float(diff(image, reference)["radiance"]["relmse"])
-
-    errors: dict[str, list[float]] = {name: [] for name in WAYS}
+    images: dict[str, list[Any]] = {name: [] for name in WAYS}
     for seed in range(options.seeds):
         for name, way in WAYS.items():
-            errors[name].append(error(seed, way))
+            if name != "gather" or seed < options.preview_seeds:
+                images[name].append(render(scene, time_limit=options.seconds, seed=seed, **way, **given).image)
+    errors = errors_of(images)
     gains = {name: Gain.of(errors[plain], errors[other]) for name, (plain, other) in GAINS.items()}
     folder = OUTPUT / "guide" / case.name.split()[0].strip(":")
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -157,13 +153,23 @@ def row_of(kind: str, case: Case, options: argparse.Namespace) -> Row:
     return row
 
 
+def errors_of(images: dict[str, list[Any]]) -> dict[str, list[float]]:
+    """The relMSE of each image, without the noise of its reference: the mean of what REFERENCE made of the other seeds, whose own relMSE tells how
+    much that is."""
+    seeds = len(images[REFERENCE])
+    references = [np.mean([image for other, image in enumerate(images[REFERENCE]) if other != seed], axis=0) for seed in range(seeds)]
+    errors = {name: [float(diff(image, reference)["radiance"]["relmse"]) for image, reference in zip(made, references)] for name, made in images.items()}
+    noise = statistics.mean(errors[REFERENCE]) / seeds
+    return {name: [error - noise for error in found] for name, found in errors.items()}
+
+
 def page(rows: list[Row], options: argparse.Namespace) -> str:
     """The report."""
     command = made_by_command()
     return (
         f"# What a guide gives\n\n    {command}\n\n"
         f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it (`--guide auto`, *followed* or not), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
-        f"{options.seeds} seeds; ± one standard error. References: `bdpt`, {options.reference_seconds:g} s, by `--guide auto`. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
+        f"{options.seeds} seeds ({options.preview_seeds} by `gather`); ± one standard error. Reference of each seed: the mean of `bdpt` by `--guide auto` of the other seeds, whose own noise is taken off. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
         "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its.\n\n"
         "| scene | starts | guide, by bdpt | wanted | followed | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | portals | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
