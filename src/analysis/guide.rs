@@ -42,9 +42,9 @@ pub struct Report {
     pub seconds: f64,
     /// Memory that what was learnt takes [bytes].
     pub bytes: usize,
-    /// What the guide leaves of the second moment of what the camera's walks and light's bring, as one half of what was learnt judges
-    /// the other: the less, the better.
-    pub second_moment: [f64; 2],
+    /// What the last guide but one, which walks followed to learn the last, left of the second moment of what they bring: the less,
+    /// the better.
+    pub second_moment: f64,
     /// Of surfaces.
     pub surfaces: Cells,
     /// Of media.
@@ -145,7 +145,7 @@ fn report(scene: &Scene, learnt: &Learnt, cells: &[SeenCell], seconds: f64) -> R
     Report {
         seconds,
         bytes: learnt.bytes(),
-        second_moment: WALKS.map(|(transport, _)| guide.map_or(1.0, |guide| guide.remains(transport))),
+        second_moment: guide.map_or(1.0, |guide| guide.second_moment),
         surfaces: kind(0, of_surfaces),
         media: kind(of_surfaces, all),
         portals: guide.map_or(Vec::new(), |guide| portals(scene, guide)),

@@ -74,7 +74,6 @@ fn described(report: &Report) -> String {
             "{name:10} {cells} cells; of the directions, {camera} of the camera's walks and {light} of light's are guided"
         )
     };
-    let [camera, light] = second_moment.map(|part| format!("{part:.2}"));
     let portal = |Portal { centre: [x, y, z], radius }: &Portal| {
         format!("portal     of radius {radius:.3} around {x:.3}, {y:.3}, {z:.3}")
     };
@@ -82,7 +81,7 @@ fn described(report: &Report) -> String {
         format!("learnt     in {seconds:.1} s, {:.1} MiB", *bytes as f64 / f64::from(1 << 20)),
         kind("surfaces", surfaces),
         kind("media", media),
-        format!("moments    {camera} of the second moment is left to the camera's walks, {light} to light's"),
+        format!("moments    {second_moment:.2} of the second moment of what walks bring is left"),
     ];
     lines.into_iter().chain(portals.iter().map(portal)).collect::<Vec<_>>().join("\n")
 }

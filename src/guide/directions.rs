@@ -21,20 +21,6 @@ const LEAST_AIMED: f32 = 0.05;
 /// The most that aim at portals.
 const MOST_AIMED: f32 = 0.5;
 
-/// Second moments of what is learnt.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Moments {
-    pub unguided: f64,
-    pub guided: f64,
-}
-
-impl Moments {
-    pub fn add(&mut self, other: Self) {
-        self.unguided += other.unguided;
-        self.guided += other.guided;
-    }
-}
-
 /// The directions of a cell: shares that are 1 together.
 #[derive(Clone, Debug)]
 pub struct Directions {
@@ -48,31 +34,16 @@ pub struct Directions {
 
 impl Directions {
     /// None where directions are better left to the BSDF or the phase function.
-    pub fn learn(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> (Option<Self>, Moments) {
+    pub fn learn(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> Option<Self> {
         let aimed = aimed(lessons, portals);
         let rest = 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>();
-        let is_aimed = |lesson: &&&Lesson| portals.iter().any(|portal| portal.outermost().is_crossed(lesson));
-        let (through, others): (Vec<&Lesson>, Vec<&Lesson>) = lessons.iter().partition(is_aimed);
+        let is_aimed = |lesson: &&Lesson| portals.iter().any(|portal| portal.outermost().is_crossed(lesson));
+        let others: Vec<&Lesson> = lessons.iter().copied().filter(|lesson| !is_aimed(lesson)).collect();
         let is_known = effective(others.iter().map(|lesson| lesson.weight)) >= ENOUGH;
-        let (a, mut moments) =
-            if is_known { part_unguided(&others, basis) } else { (1.0, Moments::default()) };
+        let a = if is_known { part_unguided(&others, basis) } else { 1.0 };
         let tabled = (a < 1.0).then(|| (rest * (1.0 - a), table(others.into_iter(), basis)));
         let known = Self { unguided: rest * a, aimed, tabled };
-        // What the table is learnt by goes through no portal, and is the rarer for those directions that do.
-        moments.guided /= f64::from(rest);
-        through.into_iter().for_each(|lesson| moments.add(known.moments(lesson)));
-        ((known.unguided < 1.0).then_some(known), moments)
-    }
-
-    /// What is left of the second moment of one lesson.
-    fn moments(&self, lesson: &Lesson) -> Moments {
-        let Lesson { position, direction, weight, unguided, .. } = *lesson;
-        if unguided <= 0.0 {
-            return Moments::default();
-        }
-        let square = f64::from(weight).powi(2);
-        let pdf = self.unguided * unguided + self.pdf(position, direction);
-        Moments { unguided: square, guided: square * f64::from(unguided / pdf) }
+        (known.unguided < 1.0).then_some(known)
     }
 
     /// Density of unit `direction` from `position` among the guided ones, times their share [1/sr].
@@ -123,7 +94,7 @@ fn aimed(lessons: &[&Lesson], portals: &[Portal]) -> Vec<(f32, Portal)> {
 }
 
 /// a, by the second moment that what one half of the `lessons` tells has where the other half guides.
-fn part_unguided(lessons: &[&Lesson], basis: Basis) -> (f32, Moments) {
+fn part_unguided(lessons: &[&Lesson], basis: Basis) -> f32 {
     let half = |fold| lessons.iter().copied().filter(move |lesson| lesson.fold == fold);
     let tables = [1, 0].map(|other| table(half(other), basis));
     let known = lessons.iter().filter(|lesson| lesson.unguided > 0.0);
@@ -134,10 +105,8 @@ fn part_unguided(lessons: &[&Lesson], basis: Basis) -> (f32, Moments) {
         let of = |(weight, ratio): &(f32, f32)| f64::from(weight * weight / (a + (1.0 - a) * ratio));
         ratios.iter().map(of).sum()
     };
-    let unguided = moment(1.0);
     let best = BSDF_FRACTIONS.into_iter().map(|a| (a, moment(a))).min_by(|a, b| a.1.total_cmp(&b.1));
-    let (a, guided) = best.unwrap_or((1.0, unguided));
-    (a, Moments { unguided, guided })
+    best.map_or(1.0, |(a, _)| a)
 }
 
 fn table<'a>(lessons: impl Iterator<Item = &'a Lesson>, basis: Basis) -> Quadtree {
@@ -177,7 +146,7 @@ mod tests {
             })
             .collect();
         let all: Vec<&Lesson> = lessons.iter().collect();
-        let known = Directions::learn(&all, &[portal], Basis::default()).0.unwrap();
+        let known = Directions::learn(&all, &[portal], Basis::default()).unwrap();
         assert!(
             known.aimed.len() == 1 && known.aimed[0].0 > 0.3 && known.tabled.is_some(),
             "{:?}",

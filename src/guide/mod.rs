@@ -24,7 +24,7 @@ use crate::{
     sampling::{Basis, Cells, Stream, cells::Keyed, quadtree::limit},
     scene::lights::Starts,
 };
-use directions::{Directions, ENOUGH, Moments};
+use directions::{Directions, ENOUGH};
 use places::Places;
 pub use portal::Portal;
 pub use radiance::{Look, Radiance, Seen};
@@ -87,8 +87,8 @@ pub struct Guide {
     /// Those of surfaces come first.
     cells: Vec<Cell>,
     of_surfaces: usize,
-    /// Of the camera's walks and of light's.
-    moments: [Moments; 2],
+    /// What the guide before it left of the second moment of what walks bring; 1 if there was none.
+    pub second_moment: f64,
 }
 
 /// Directions of the camera's walks and of light's.
@@ -134,7 +134,8 @@ impl Guide {
             return None;
         }
         let places = Places::around(lessons.iter().map(|lesson| lesson.position));
-        let mut guide = Self { places, portals: crossings::find(&lessons), ..Self::default() };
+        let mut guide =
+            Self { places, portals: crossings::find(&lessons), second_moment: 1.0, ..Self::default() };
         let known = || lessons.iter().enumerate().map(|(index, lesson)| (index as u32, lesson));
         let of_surfaces = known().filter_map(|(index, lesson)| {
             let key = places.facing(lesson.position, lesson.normal?);
@@ -152,13 +153,14 @@ impl Guide {
         guide.media = Cells::learn(of_media, PER_CELL, LEVELS, |known| add(&mut leaves, known));
         let portals = &guide.portals[..];
         let learn = |leaf: Vec<u32>| Cell::learn(&lessons, &leaf, portals, basis);
-        let learnt: Vec<_> = leaves.into_par_iter().map(learn).collect();
-        for (cell, moments) in learnt {
-            guide.cells.push(cell);
-            guide.moments.iter_mut().zip(moments).for_each(|(sum, moments)| sum.add(moments));
-        }
+        guide.cells = leaves.into_par_iter().map(learn).collect();
         // What guides nothing need not be looked up.
         guide.cells.iter().any(Cell::guides).then_some(guide)
+    }
+
+    /// The guide before it, which walks followed to learn this one, left so much of the second moment of what they bring.
+    pub fn judged(self, second_moment: f64) -> Self {
+        Self { second_moment, ..self }
     }
 
     /// What the walk by `transport` knows where it arrives from unit `incoming`; `normal` is that of a surface, of the point
@@ -213,11 +215,18 @@ impl Guide {
         &self.portals
     }
 
-    /// What the guide leaves of the second moment of what walks by `transport` bring, as one half of what was learnt judges the
-    /// other; 1 if nothing.
-    pub fn remains(&self, transport: Transport) -> f64 {
-        let Moments { unguided, guided } = self.moments[index(transport)];
-        if unguided > 0.0 { guided / unguided } else { 1.0 }
+    /// How often walks by `transport` leave `position`, which lies in `cell`, in unit `direction`, over how often they do without
+    /// the guide: with the density `unguided` [1/sr], 0 for mirrors.
+    pub fn ratio(
+        &self,
+        cell: u32,
+        transport: Transport,
+        (position, direction): (Vec3, Vec3),
+        unguided: f32,
+    ) -> f32 {
+        let Some(known) = self.directions(cell, transport) else { return 1.0 };
+        let guided = if unguided > 0.0 { known.pdf(position, direction) / unguided } else { 0.0 };
+        known.unguided + guided
     }
 
     /// Memory that it takes [bytes].
@@ -281,14 +290,13 @@ impl Cell {
         self.0.iter().any(Option::is_some)
     }
 
-    fn learn(lessons: &[Lesson], leaf: &[u32], portals: &[Portal], basis: Basis) -> (Self, [Moments; 2]) {
+    fn learn(lessons: &[Lesson], leaf: &[u32], portals: &[Portal], basis: Basis) -> Self {
         let of = |transport| {
             let own = leaf.iter().map(|index| &lessons[*index as usize]);
             let own: Vec<_> = own.filter(|lesson| lesson.transport == transport).collect();
             Directions::learn(&own, portals, basis)
         };
-        let [(camera, by_camera), (light, by_light)] = [Transport::Radiance, Transport::Importance].map(of);
-        (Self([camera, light]), [by_camera, by_light])
+        Self([Transport::Radiance, Transport::Importance].map(of))
     }
 }
 

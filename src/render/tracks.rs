@@ -2,7 +2,7 @@
 
 use crate::{
     bsdf::Transport,
-    guide::Lesson,
+    guide::{Guide, Lesson},
     math::{Vec2, Vec3},
     scene::Scene,
     transport::{
@@ -10,6 +10,9 @@ use crate::{
         observer::{Meeting, StrategyKind},
     },
 };
+
+/// The camera's, which go towards the light, and the light's.
+const WALKS: [Transport; 2] = [Transport::Radiance, Transport::Importance];
 
 /// A vertex of a walk.
 #[derive(Clone, Copy, Debug)]
@@ -148,7 +151,41 @@ impl Tracks {
         (weight, fold): (f32, usize),
         mut take: impl FnMut(Lesson),
     ) {
-        // From the emitter to the lens, each with the directions to the light and to the camera.
+        let sites = self.sites(track);
+        let count = sites.len();
+        for (index, (site, onward, directions)) in sites.into_iter().enumerate() {
+            let Site { position, normal, .. } = *site;
+            let shares = [shares.camera(index, count), shares.light(index, count)];
+            for (own, transport) in WALKS.into_iter().enumerate() {
+                let (direction, unguided, weight) = (directions[own], onward[own], weight * shares[own]);
+                if site.connectible && weight > 0.0 {
+                    take(Lesson { position, normal, transport, direction, weight, unguided, fold });
+                }
+            }
+        }
+    }
+
+    /// How often strategies make a path without `guide`, over how often they do with it, as `shares` of them say.
+    pub fn unguided(&self, track: &Track, shares: &Shares, guide: &Guide) -> f64 {
+        let sites = self.sites(track);
+        let Shares { hit, next_event, connection, lens, .. } = *shares;
+        let by = [hit + next_event + connection, connection + lens];
+        let [camera, light] = [0, 1].map(|own| {
+            let ratio = |(site, onward, directions): &(&Site, Onward, [Vec3; 2])| {
+                if !site.connectible || by[own] <= 0.0 {
+                    return 1.0;
+                }
+                let cell = guide.cell(site.position, site.normal);
+                let way = (site.position, directions[own]);
+                1.0 / f64::from(guide.ratio(cell, WALKS[own], way, onward[own]))
+            };
+            sites.iter().map(ratio).collect::<Vec<f64>>()
+        });
+        shares.made(&camera, &light)
+    }
+
+    /// From the emitter to the lens, each with the directions to the light and to the camera.
+    fn sites(&self, track: &Track) -> Vec<(&Site, Onward, [Vec3; 2])> {
         let mut sites: Vec<(&Site, Onward, [Vec3; 2])> = Vec::new();
         let [near, far] = track.onward;
         let mut next = (-track.towards_light, Some(far));
@@ -162,17 +199,7 @@ impl Tracks {
             sites.push((site, next.1.unwrap_or(site.onward), [next.0, site.incoming]));
             next = (-site.incoming, None);
         }
-        let count = sites.len();
-        for (index, (site, onward, directions)) in sites.into_iter().enumerate() {
-            let Site { position, normal, .. } = *site;
-            let shares = [shares.camera(index, count), shares.light(index, count)];
-            for (own, transport) in [Transport::Radiance, Transport::Importance].into_iter().enumerate() {
-                let (direction, unguided, weight) = (directions[own], onward[own], weight * shares[own]);
-                if site.connectible && weight > 0.0 {
-                    take(Lesson { position, normal, transport, direction, weight, unguided, fold });
-                }
-            }
-        }
+        sites
     }
 }
 
@@ -183,6 +210,8 @@ pub(super) struct Shares {
     next_event: f32,
     connection: f32,
     lens: f32,
+    /// What they make of it, over what all strategies do.
+    pub of_all: f32,
 }
 
 impl Shares {
@@ -193,7 +222,21 @@ impl Shares {
         let sum = hit + next_event + connection + lens;
         let [hit, next_event, connection, lens] =
             [hit, next_event, connection, lens].map(|share| share / sum);
-        (sum > 0.0).then_some(Self { hit, next_event, connection, lens })
+        (sum > 0.0).then_some(Self { hit, next_event, connection, lens, of_all: sum })
+    }
+
+    /// By how much the strategies together make a path more often if walks leave each of its vertices, from the emitter to the
+    /// lens, so much more often: those of the camera towards the light, and those of the light.
+    fn made(&self, camera: &[f64], light: &[f64]) -> f64 {
+        let count = camera.len();
+        let by_camera = |from: usize| camera[from.min(count)..].iter().product::<f64>();
+        let by_light = |to: usize| light[..to].iter().product::<f64>();
+        let connections: f64 = (1..count).map(|index| by_light(index - 1) * by_camera(index + 1)).sum();
+        let last = count.saturating_sub(1);
+        f64::from(self.hit) * by_camera(0)
+            + f64::from(self.next_event) * by_camera(1)
+            + f64::from(self.connection) * connections / last.max(1) as f64
+            + f64::from(self.lens) * by_light(last)
     }
 
     /// Of the strategies by which a camera subpath goes on from vertex `index` to the one before it, if there are so many

@@ -44,11 +44,12 @@ const ROUNDS: u32 = 4;
 const SEGMENTS: f64 = 1e6;
 /// Rounds for a guide, of which the last two teach.
 const GUIDE_ROUNDS: u32 = 6;
-/// The first of them, which tell whether it pays.
-const JUDGING_ROUNDS: u32 = 4;
-/// What a guide that pays leaves of the second moment at each vertex, at most, after those rounds: such that left 0.93 and less
-/// lowered the error of as many samples of path tracing by 1.6 to 13, such that left 0.95 by 1.1 to 1.3, which looking up takes.
-const PAYS: f64 = 0.94;
+/// From so many on it is given up where it does not seem to pay; where nothing is learnt, after one more.
+const JUDGING_ROUNDS: u32 = 3;
+/// What a guide that pays leaves of the second moment, at most: looking up takes a quarter of the time, and learning some.
+const PAYS: f64 = 0.75;
+/// Tiles with the greatest second moments that are left out of it, as few samples decide there.
+const OUTLIERS: f64 = 0.04;
 /// Segments for a guide.
 const GUIDE_SEGMENTS: f64 = 4e6;
 /// Longest path: later vertices tell little of where light starts.
@@ -170,19 +171,20 @@ fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt 
         done = tasks.end;
         let trial = compiled::trial(scene, film, &settings, learnt.clone(), tasks, wanted.guide.is_some());
         segments += trial.segments;
+        let is_last = segments > most || round + 1 == rounds;
         if let Some(compete) = wanted.starts {
             learnt.starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
         }
         if let Some(strategies) = wanted.guide {
             let lessons = trial.lessons(strategies, (FIRST << round) as f64);
-            learnt.guide =
-                Guide::learn([&before[..], &lessons].concat(), settings.options.basis).map(Arc::new);
+            let second_moment = trial.second_moment(strategies, learnt.guide.as_deref());
+            let guide = Guide::learn([&before[..], &lessons].concat(), settings.options.basis);
+            let followed = learnt.guide.take();
+            learnt.guide = guide.map(|guide| Arc::new(guide.judged(second_moment)));
             before = lessons;
-        }
-        let is_last = segments > most;
-        let pays = || learnt.guide.as_deref().is_some_and(|guide| pays(guide, wanted.guide));
-        if is_judged && (is_last || round + 1 == JUDGING_ROUNDS) && !pays() {
-            return Learnt { guide: None, ..learnt };
+            if is_judged && !may_pay([followed.as_deref(), learnt.guide.as_deref()], round + 1, is_last) {
+                return Learnt { guide: None, ..learnt };
+            }
         }
         if is_last {
             break;
@@ -191,11 +193,13 @@ fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt 
     learnt
 }
 
-/// Where light comes through portals it does, by any strategies. Elsewhere, as light subpaths find what a guide knows, measured
-/// errors of as many samples with them were lower by 1.3 at most, and mostly by nothing.
-fn pays(guide: &Guide, strategies: Option<Strategies>) -> bool {
-    let by_camera = strategies.is_some_and(|strategies| !strategies.need_light_walks());
-    !guide.portals().is_empty() || by_camera && guide.remains(Transport::Radiance) < PAYS
+/// False where after so many rounds a guide does not seem to pay, or in the end was not seen to: the second of these, learnt by
+/// walks that followed the first. What portals give is seen in the round after that in which they are found.
+fn may_pay([followed, learnt]: [Option<&Guide>; 2], rounds: u32, is_last: bool) -> bool {
+    let Some(guide) = learnt else { return rounds <= JUDGING_ROUNDS };
+    let has_portals = |guide: &Guide| !guide.portals().is_empty();
+    let is_new = followed.is_none_or(|followed| has_portals(guide) && !has_portals(followed));
+    guide.second_moment < PAYS || !is_last && (is_new || rounds < JUDGING_ROUNDS)
 }
 
 /// Follows walks, to tell where the light of each contribution starts.
@@ -392,6 +396,37 @@ impl Trial {
         all
     }
 
+    /// What `guide`, which the samples followed, left of the second moment of what `strategies` bring; 1 without any.
+    fn second_moment(&self, strategies: Strategies, guide: Option<&Guide>) -> f64 {
+        let value = self.values();
+        let mut tiles = vec![[0.0; 2]; self.pixels.len()];
+        for (tile, moments) in self.moments(strategies, guide, value).into_iter().flatten() {
+            tiles[tile].iter_mut().zip(moments).for_each(|(sum, moment)| *sum += moment);
+        }
+        tiles.sort_unstable_by(|a, b| b[0].total_cmp(&a[0]));
+        let kept = &tiles[(OUTLIERS * tiles.len() as f64) as usize..];
+        let [guided, unguided] = [0, 1].map(|index| kept.iter().map(|moments| moments[index]).sum::<f64>());
+        if unguided > 0.0 { guided / unguided } else { 1.0 }
+    }
+
+    /// Second moments of what `strategies` bring, with `guide`, which the samples followed, and without it: of what each part found,
+    /// the tiles and their moments.
+    fn moments(
+        &self,
+        strategies: Strategies,
+        guide: Option<&Guide>,
+        value: impl Fn(&Found) -> f32 + Sync,
+    ) -> Vec<Vec<(usize, [f64; 2])>> {
+        let moments = |part: usize, found: &Found| {
+            let (track, shares) = found.track.zip(Shares::of(&found.shares, strategies))?;
+            let guided = f64::from(value(found)).powi(2) / f64::from(shares.of_all);
+            let unguided = guide.map_or(1.0, |guide| self.tracks[part].unguided(&track, &shares, guide));
+            Some((found.tile, [guided, guided / unguided]))
+        };
+        let of = |part: usize| self.found[part].iter().filter_map(|found| moments(part, found)).collect();
+        (0..self.found.len()).into_par_iter().map(of).collect()
+    }
+
     /// Where walks by `strategies` should go, from so many `samples`; if there are too many lessons, some of those with little
     /// weight stand for others.
     fn lessons(&self, strategies: Strategies, samples: f64) -> Vec<Lesson> {
@@ -571,5 +606,54 @@ impl Tiles {
         let mut pixels = vec![0.0; (self.across * self.down) as usize];
         (0..self.width * self.height).for_each(|pixel| pixels[self.at(pixel)] += 1.0);
         pixels
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        format,
+        scene::build::{self, Setup},
+        settings::Overrides,
+        testing,
+    };
+    use statrs::distribution::{ContinuousCDF, Normal};
+    use std::path::Path;
+
+    /// What walks that follow a guide say of walks without it, those say themselves.
+    #[test]
+    fn second_moments_without_a_guide_are_known_with_it() {
+        let most = -Normal::standard().inverse_cdf(testing::significance(6) / 2.0);
+        for fog in ["0", "1"] {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/gallery/cornell_e.json");
+            let read = format::read(&path, &[("medium".to_owned(), fog.to_owned())]).unwrap();
+            let overrides = Overrides { size: Some((16, 16)), ..Overrides::default() };
+            let Setup { scene, film, integrator, .. } = build::build(&read, overrides).unwrap();
+            let options = Options { strategies: Strategies::BDPT, ..integrator.options };
+            let wanted = Wanted::by(options, true);
+            let learnt = learn(&scene, &film, Wanted { starts: None, ..wanted }, false);
+            let tasks = blocks_for(film.len(), 1 << 17);
+            let trial = |learnt: &Learnt, tasks: Range<usize>| {
+                compiled::trial(&scene, &film, &of_learning(wanted.options), learnt.clone(), tasks, true)
+            };
+            let with = trial(&learnt, 1000..1000 + tasks);
+            let without = trial(&Learnt::default(), 5000..5000 + tasks);
+            for strategies in [Strategies::PT, Strategies::LT, Strategies::BDPT] {
+                let moments = |trial: &Trial, guide: Option<&Guide>| {
+                    let parts = trial.moments(strategies, guide, |found| found.value as f32);
+                    let sum =
+                        |part: &Vec<(usize, [f64; 2])>| part.iter().map(|(_, moments)| moments[1]).sum();
+                    let of: Vec<f64> = parts.iter().map(sum).collect();
+                    let n = of.len() as f64;
+                    let mean = of.iter().sum::<f64>() / n;
+                    (mean, of.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (n - 1.0) / n)
+                };
+                let (known, variance) = moments(&with, learnt.guide.as_deref());
+                let (seen, other) = moments(&without, None);
+                let z = (known - seen) / (variance + other).sqrt();
+                assert!(z.abs() < most, "fog {fog}, {strategies:?}: {known} of {seen}, {z} standard errors");
+            }
+        }
     }
 }

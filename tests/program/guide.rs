@@ -105,10 +105,8 @@ fn directions_are_kept_in_any_basis() {
         serde_json::from_str::<Value>(&run.out()).unwrap()
     });
     for numbers in &numbers {
-        let [camera, light] = [0, 1].map(|walk| numbers["second_moment"][walk].as_f64().unwrap());
-        assert!(camera > 0.0 && camera < 1.0, "{numbers}");
-        // There are no light subpaths.
-        assert_eq!(light, 1.0);
+        let left = numbers["second_moment"].as_f64().unwrap();
+        assert!(left > 0.0 && left < 1.0, "{numbers}");
     }
     assert!(numbers[0]["bytes"] != numbers[1]["bytes"] && numbers[1]["bytes"] != numbers[2]["bytes"]);
     assert_ne!(numbers[0]["second_moment"], numbers[2]["second_moment"]);
@@ -163,18 +161,21 @@ fn portals_are_shown() {
     }
 }
 
-/// Path tracing alone has a use for a guide where light comes round corners, all integrators where it comes through a portal.
+/// Path tracing alone has a use for a guide where light comes round corners, all integrators where it comes through a portal. Through
+/// a small opening it finds so few paths that it would weigh those more which it did not foresee.
 #[test]
 fn walks_follow_a_guide_where_it_pays() {
-    let scene = |name| format!("{}/scenes/{name}", env!("CARGO_MANIFEST_DIR"));
+    let scene = |name: &str| format!("{}/scenes/{name}", env!("CARGO_MANIFEST_DIR"));
     let [indirect, open] = ["gallery/indirect_room.json", "gallery/cornell_d.json -D medium=0"].map(scene);
-    let [keyhole, ajar] = ["efficiency/keyhole.xml", "efficiency/door_ajar.xml"].map(scene);
+    let [keyhole, ajar, small_opening] =
+        ["keyhole", "door_ajar", "small_opening"].map(|name| scene(&format!("efficiency/{name}.xml")));
     let sandbox = Sandbox::new();
     for (scene, words, follows) in [
         (&indirect, "--integrator pt --guide auto", true),
         (&indirect, "--strategies hit,next-event --guide auto", true),
         (&indirect, "--integrator bdpt --guide auto", false),
         (&ajar, "--integrator bdpt --guide auto", false),
+        (&small_opening, "--integrator pt --guide auto", false),
         (&keyhole, "--integrator bdpt --guide auto", true),
         (&keyhole, "--integrator pt --guide auto", true),
         (&indirect, "--integrator pt", false),
