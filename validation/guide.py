@@ -116,6 +116,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     """Those of the command line."""
     command.add_argument("--seconds", type=float, default=10, help="of each render, learning included (default %(default)s)")
     command.add_argument("--seeds", type=int, default=10, help="independent renders of each kind, at least 2 (default %(default)s)")
+    command.add_argument("--scenes", nargs="+", metavar="NAME", help="those whose names begin so (default all)")
     command.add_argument("--preview-seeds", type=int, default=3, help="of those by gather, at least 2 (default %(default)s)")
     command.add_argument("--size", default="96x72", help="of all images (default %(default)s)")
     command.add_argument("--threads", type=int, default=2, help="(default %(default)s)")
@@ -125,7 +126,8 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> bool:
     """Measures and writes the table; true if a guide gives what it shall everywhere."""
     efficiency.volumes()
-    rows = [row_of(kind, case, options) for kind, cases in CASES.items() for case in cases]
+    wanted = tuple(options.scenes or [""])
+    rows = [row_of(kind, case, options) for kind, cases in CASES.items() for case in cases if case.name.startswith(wanted)]
     text = page(rows, options)
     write_text(options.output / "guide.md", text)
     print(text)
