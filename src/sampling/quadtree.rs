@@ -14,6 +14,8 @@ const UNSEEN: f64 = 2.0;
 const LEAST_SHARE: f64 = 1e-3;
 /// Levels of bins: there are 16 x 16.
 const BINS: u32 = 4;
+/// How many of them across, and down.
+const SIDE: usize = 1 << BINS;
 /// Points that divide a node of [`Basis::Quadtree`]. With bins at least, and by half the points, path tracing in rooms lit indirectly
 /// and in an attic has 0.8 of the error that it has by [`TO_DIVIDE`] alone.
 const TO_DIVIDE_BINS: f64 = 24.0;
@@ -76,6 +78,17 @@ impl Basis {
 #[derive(Clone, Debug)]
 pub struct Quadtree {
     nodes: Vec<Node>,
+    /// Row by row, so that densities are looked up without the levels above.
+    bins: Vec<Bin>,
+}
+
+/// One of 16 x 16 equal parts of the square.
+#[derive(Clone, Copy, Debug)]
+struct Bin {
+    /// That of the node here, or of the leaf around.
+    density: f32,
+    /// Index of the node here; 0 where a leaf is.
+    node: u32,
 }
 
 /// Four quarters: those of less y first, of them that of less x.
@@ -93,6 +106,11 @@ struct Rule<F> {
     detail: f64,
     /// All of it.
     weight: f64,
+}
+
+impl Bin {
+    /// The whole square.
+    const ALL: Self = Self { density: 1.0, node: 0 };
 }
 
 impl<F> Rule<F> {
@@ -133,9 +151,11 @@ impl Quadtree {
     /// A node `is_leaf` if so many levels are above it, so many points tell of it, and it has this share of the weight; and where
     /// no coefficient is more than the share `detail`.
     fn divided(deposits: Vec<Deposit>, is_leaf: impl Fn(u32, f64, f64) -> bool, detail: f64) -> Self {
-        let mut tree = Self { nodes: Vec::new() };
+        let mut tree = Self { nodes: Vec::new(), bins: Vec::new() };
         let weight = total(&deposits);
         tree.grow(deposits, 0, &Rule { is_leaf, detail, weight });
+        let middle = |index: usize| (vec2((index % SIDE) as f32, (index / SIDE) as f32) + 0.5) / SIDE as f32;
+        tree.bins = (0..SIDE * SIDE).map(|index| tree.descend(middle(index), Bin::ALL, BINS)).collect();
         tree
     }
 
@@ -173,7 +193,7 @@ impl Quadtree {
 
     /// Memory that it takes [bytes].
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..])
+        size_of_val(&self.nodes[..]) + size_of_val(&self.bins[..])
     }
 
     /// A point distributed by the density, from one of the unit square: near ones stay near.
@@ -195,17 +215,32 @@ impl Quadtree {
 
     /// Density at a point of the unit square, relative to an even one; never 0.
     #[inline]
-    pub fn density(&self, mut at: Vec2) -> f32 {
-        let (mut density, mut index) = (1.0, 0);
-        loop {
-            let node = &self.nodes[index];
+    pub fn density(&self, at: Vec2) -> f32 {
+        let scaled = SIDE as f32 * at;
+        let [x, y] = scaled.to_array().map(|x| (x as usize).min(SIDE - 1));
+        let bin = self.bins[SIDE * y + x];
+        if bin.node == 0 {
+            return bin.density;
+        }
+        self.descend(scaled - vec2(x as f32, y as f32), bin, LEVELS).density
+    }
+
+    /// So many levels below `from`, whose coordinates `at` is in.
+    #[inline]
+    fn descend(&self, mut at: Vec2, from: Bin, levels: u32) -> Bin {
+        let mut below = from;
+        for _ in 0..levels {
+            let node = &self.nodes[below.node as usize];
             let quarter = quarter_of(&mut at);
-            density *= 4.0 * node.probabilities[quarter];
-            index = node.children[quarter] as usize;
-            if index == 0 {
-                return density;
+            below = Bin {
+                density: below.density * 4.0 * node.probabilities[quarter],
+                node: node.children[quarter],
+            };
+            if below.node == 0 {
+                break;
             }
         }
+        below
     }
 }
 
