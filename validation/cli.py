@@ -231,7 +231,7 @@ def add_progressive(commands: Commands) -> None:
 
 
 def add_guide(commands: Commands) -> None:
-    command = add(commands, "guide", guide.run, "What --guide gives: error after the same time with it and without, in sixteen scenes.")
+    command = add(commands, "guide", guide.run, "What --guide gives: error after the same time with it and without, in eighteen scenes.")
     guide.add_options(command)
 
 

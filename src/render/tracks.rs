@@ -170,18 +170,17 @@ impl Tracks {
         let sites = self.sites(track);
         let Shares { hit, next_event, connection, lens, .. } = *shares;
         let by = [hit + next_event + connection, connection + lens];
-        let [camera, light] = [0, 1].map(|own| {
-            let ratio = |(site, onward, directions): &(&Site, Onward, [Vec3; 2])| {
-                if !site.connectible || by[own] <= 0.0 {
-                    return 1.0;
-                }
-                let cell = guide.cell(site.position, site.normal);
-                let way = (site.position, directions[own]);
-                1.0 / f64::from(guide.ratio(cell, WALKS[own], way, onward[own]))
-            };
-            sites.iter().map(ratio).collect::<Vec<f64>>()
-        });
-        shares.made(&camera, &light)
+        let ratios = |(site, onward, directions): (&Site, Onward, [Vec3; 2])| {
+            if !site.connectible {
+                return [1.0; 2];
+            }
+            let cell = guide.cell(site.position, site.normal);
+            [0, 1].map(|own| {
+                let ratio = || guide.ratio(cell, WALKS[own], (site.position, directions[own]), onward[own]);
+                if by[own] > 0.0 { 1.0 / f64::from(ratio()) } else { 1.0 }
+            })
+        };
+        shares.made(&sites.into_iter().map(ratios).collect::<Vec<_>>())
     }
 
     /// From the emitter to the lens, each with the directions to the light and to the camera.
@@ -227,10 +226,11 @@ impl Shares {
 
     /// By how much the strategies together make a path more often if walks leave each of its vertices, from the emitter to the
     /// lens, so much more often: those of the camera towards the light, and those of the light.
-    fn made(&self, camera: &[f64], light: &[f64]) -> f64 {
-        let count = camera.len();
-        let by_camera = |from: usize| camera[from.min(count)..].iter().product::<f64>();
-        let by_light = |to: usize| light[..to].iter().product::<f64>();
+    fn made(&self, ratios: &[[f64; 2]]) -> f64 {
+        let count = ratios.len();
+        let by_camera =
+            |from: usize| ratios[from.min(count)..].iter().map(|[camera, _]| camera).product::<f64>();
+        let by_light = |to: usize| ratios[..to].iter().map(|[_, light]| light).product::<f64>();
         let connections: f64 = (1..count).map(|index| by_light(index - 1) * by_camera(index + 1)).sum();
         let last = count.saturating_sub(1);
         f64::from(self.hit) * by_camera(0)

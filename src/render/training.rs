@@ -180,9 +180,10 @@ fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt 
         }
         if let Some(strategies) = wanted.guide {
             let lessons = trial.lessons(strategies, (FIRST << round) as f64);
-            let second_moment = trial.second_moment(strategies, learnt.guide.as_deref());
-            let guide = Guide::learn([&before[..], &lessons].concat(), settings.options.basis);
             let followed = learnt.guide.take();
+            let left = |guide: &Arc<Guide>| trial.second_moment(strategies, guide);
+            let second_moment = followed.as_ref().map_or(1.0, left);
+            let guide = Guide::learn([&before[..], &lessons].concat(), settings.options.basis);
             learnt.guide = guide.map(|guide| Arc::new(guide.judged(second_moment)));
             before = lessons;
             let bound = if strategies.need_light_walks() { PAYS_CONNECTED } else { PAYS };
@@ -401,11 +402,11 @@ impl Trial {
         all
     }
 
-    /// What `guide`, which the samples followed, left of the second moment of what `strategies` bring; 1 without any.
-    fn second_moment(&self, strategies: Strategies, guide: Option<&Guide>) -> f64 {
+    /// What `guide`, which the samples followed, left of the second moment of what `strategies` bring.
+    fn second_moment(&self, strategies: Strategies, guide: &Guide) -> f64 {
         let value = self.values();
         let mut tiles = vec![[0.0; 2]; self.pixels.len()];
-        for (tile, moments) in self.moments(strategies, guide, value).into_iter().flatten() {
+        for (tile, moments) in self.moments(strategies, Some(guide), value).into_iter().flatten() {
             tiles[tile].iter_mut().zip(moments).for_each(|(sum, moment)| *sum += moment);
         }
         tiles.sort_unstable_by(|a, b| b[0].total_cmp(&a[0]));
@@ -414,8 +415,8 @@ impl Trial {
         if unguided > 0.0 { guided / unguided } else { 1.0 }
     }
 
-    /// Second moments of what `strategies` bring, with `guide`, which the samples followed, and without it: of what each part found,
-    /// the tiles and their moments.
+    /// Second moments of what `strategies` bring, with `guide`, which the samples followed if there was one, and without it: of what
+    /// each part found, the tiles and their moments.
     fn moments(
         &self,
         strategies: Strategies,
