@@ -46,12 +46,13 @@ const TILES: u32 = 16;
 /// Tiles with the greatest errors that are left out, as few samples decide there.
 const OUTLIERS: f64 = 0.02;
 /// By how much more than others learnt starts must be better. Light subpaths that reach the image, and connections to them,
-/// take up to twice the time of those that do not, which counts do not say; and pilots find the noise of learnt starts up to
-/// half of what it turns out to be (four times too good behind a frosted pane, three times where the sun shines into a chapel).
-const LEARNT: f64 = 4.0;
-/// Starts are learnt if no more than this part of the light subpaths is seen: training takes as long as a pilot. Measured: of a
-/// scene lit through a small opening 0.0006, behind a frosted pane 0.02 and in a chapel 0.03, where learnt starts hardly pay.
-const REMOTE: f64 = 0.005;
+/// take up to twice the time of those that do not, which counts do not say; and pilots find the noise of learnt starts less than
+/// it turns out to be (they say 3.5 times better where the sun shines into a chapel and 1.5 times behind a frosted pane, of which
+/// 1.7 and 1.0 are true).
+const LEARNT: f64 = 3.0;
+/// Starts are learnt if no more than this part of the light subpaths is seen, and some are worth tracing: training takes as long as
+/// a pilot. Measured: of a scene lit through a small opening 0.0006, behind a frosted pane 0.02 and in a chapel 0.03.
+const REMOTE: f64 = 0.03;
 /// Of a tile's second moment: variances below are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-3;
 /// Other counts than all strategies' must be so much better: pilots are noisy.
@@ -104,33 +105,37 @@ pub fn choose(
     let options = Options { strategies: Strategies { equiangular, ..all }, ..settings.options };
     let with_all = Settings { options, ..*settings };
     let by = |learnt: bool| survivals.map(|(survival, _)| pilot(scene, film, &with_all, survival, learnt));
-    let fly = || {
-        if base.effort.learnt_starts {
-            return by(true);
-        }
-        let pilots = by(false);
-        if starts.is_none() && pilots[0].is_remote() { by(true) } else { pilots }
-    };
-    // Renders survive a panic and say where it was.
-    let Ok(pilots) = catch_unwind(AssertUnwindSafe(fly)) else { return base };
-    let reference = pilots[0].error(&base) * pilots[0].time(&base);
-    let of_pilots = survivals.iter().zip(&pilots);
-    let known = of_pilots.flat_map(|((_, by), pilot)| by.iter().map(move |survival| (*survival, pilot)));
-    let choices = known.flat_map(|(survival, pilot)| {
-        let complete = candidates(options.strategies, survival, pilot.is_learnt);
-        let complete = complete.filter(|choice| is_complete(choice.strategies));
-        let decided = move |choice: &Choice| {
-            let may = |learnt| !choice.strategies.need_light_walks() || choice.effort.learnt_starts == learnt;
-            starts.is_none_or(may)
-        };
-        complete.filter(decided).map(move |choice| Choice {
+    let best_of = |pilots: [Pilot; 2]| {
+        let reference = pilots[0].error(&base) * pilots[0].time(&base);
+        let of_pilots = survivals.iter().zip(&pilots);
+        let known = of_pilots.flat_map(|((_, by), pilot)| by.iter().map(move |survival| (*survival, pilot)));
+        let choices = known.flat_map(|(survival, pilot)| {
+            let complete = candidates(options.strategies, survival, pilot.is_learnt);
+            let complete = complete.filter(|choice| is_complete(choice.strategies));
+            let decided = move |choice: &Choice| {
+                let may =
+                    |learnt| !choice.strategies.need_light_walks() || choice.effort.learnt_starts == learnt;
+                starts.is_none_or(may)
+            };
+            complete.filter(decided).map(move |choice| (choice, pilot))
+        });
+        let judged = |(choice, pilot): (Choice, &Pilot)| Choice {
             among: all,
             gain: reference / (pilot.error(&choice) * pilot.time(&choice)),
             ..choice
-        })
-    });
-    let best = choices.max_by(|a, b| a.worth().total_cmp(&b.worth()));
-    best.filter(|best| best.worth() > WORTHWHILE * base.worth() && best.gain.is_finite()).unwrap_or(base)
+        };
+        let judged: Vec<Choice> = choices.collect::<Vec<_>>().into_par_iter().map(judged).collect();
+        let best = judged.into_iter().max_by(|a, b| a.worth().total_cmp(&b.worth()));
+        best.filter(|best| best.worth() > WORTHWHILE * base.worth() && best.gain.is_finite()).unwrap_or(base)
+    };
+    let fly = || {
+        let pilots = by(base.effort.learnt_starts);
+        let is_remote = starts.is_none() && pilots[0].is_remote();
+        let best = best_of(pilots);
+        if is_remote && best.strategies.need_light_walks() { best_of(by(true)) } else { best }
+    };
+    // Renders survive a panic and say where it was.
+    catch_unwind(AssertUnwindSafe(fly)).unwrap_or(base)
 }
 
 /// A few samples of all strategies of `settings` at equal effort, by learnt starts or not.
@@ -442,7 +447,7 @@ impl Pilot {
         Self { tiles, found, camera, light, light_unlearnt, is_learnt }
     }
 
-    /// True if light starts where it seldom comes into view: then it is worth learning where it should.
+    /// True if light starts where it seldom comes into view: then it may be worth learning where it should.
     fn is_remote(&self) -> bool {
         let [Work { reaching, walks, .. }, ..] = self.light;
         reaching <= REMOTE * walks && walks > 0.0

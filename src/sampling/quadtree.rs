@@ -1,6 +1,7 @@
 //! Adaptive quadtrees: a density over the unit square, learnt from weighted points (after Mueller et al. 2017, Practical
 //! Path Guiding). Nodes of which many points tell are divided, however small they are: a few thousand points find an opening
-//! of a millionth of the square.
+//! of a millionth of the square. Points are spread over the leaves around theirs: just beside them, where none fell, the next
+//! may be, and without a density worth the name it would count for thousands.
 
 use crate::math::{Vec2, vec2};
 
@@ -19,6 +20,14 @@ const SIDE: usize = 1 << BINS;
 /// Points that divide a node of [`Basis::Quadtree`]. With bins at least, and by half the points, path tracing in rooms lit indirectly
 /// and in an attic has 0.8 of the error that it has by [`TO_DIVIDE`] alone.
 const TO_DIVIDE_BINS: f64 = 24.0;
+/// Parts into which a point is spread.
+const PARTS: usize = 4;
+/// How far they are spread [sizes of its leaf] where samples follow the tree alone. By 1 the relative error in a room with a small
+/// opening is 1.2 times as large, by 4 1.7 times; not at all 2 to 5 times, most of it in a hundredth of the pixels.
+const ALONE: f32 = 2.0;
+/// The same where other densities are mixed with the tree's: by 1 path tracing in rooms lit indirectly or through a door has 0.9 of
+/// the error that it has by 0, and by 1.4 as much again.
+const MIXED: f32 = 1.0;
 /// Of all the weight, the coefficients of wavelets that are kept are more than this.
 const DETAIL: f64 = 0.01;
 
@@ -106,6 +115,8 @@ struct Rule<F> {
     detail: f64,
     /// All of it.
     weight: f64,
+    /// Of each point.
+    parts: usize,
 }
 
 impl Bin {
@@ -123,37 +134,53 @@ impl<F> Rule<F> {
 impl Quadtree {
     /// The density of `deposits`, divided where many of them fall.
     pub fn learn(deposits: Vec<Deposit>) -> Self {
-        Self::divided(
-            deposits,
-            |level, count, share| level == LEVELS || count < TO_DIVIDE || share < LEAST_SHARE,
-            0.0,
-        )
+        Self::spread(&deposits, ALONE, |level, count, share| {
+            level == LEVELS || count < TO_DIVIDE || share < LEAST_SHARE
+        })
     }
 
     /// The same in a `basis`.
     pub fn by(basis: Basis, deposits: Vec<Deposit>) -> Self {
         match basis {
-            Basis::Quadtree => Self::divided(
-                deposits,
-                |level, count, share| {
-                    level == LEVELS || (level >= BINS && (count < TO_DIVIDE_BINS || share < LEAST_SHARE))
-                },
-                0.0,
-            ),
-            Basis::Bins => Self::divided(deposits, |level, _, _| level == BINS, 0.0),
+            Basis::Quadtree => Self::spread(&deposits, MIXED, |level, count, share| {
+                level == LEVELS || (level >= BINS && (count < TO_DIVIDE_BINS || share < LEAST_SHARE))
+            }),
+            Basis::Bins => Self::divided(deposits, |level, _, _| level == BINS, 0.0, 1),
             // No coefficient is greater than the weight that it is of.
             Basis::Haar => {
-                Self::divided(deposits, |level, _, share| level == LEVELS || share <= DETAIL, DETAIL)
+                Self::divided(deposits, |level, _, share| level == LEVELS || share <= DETAIL, DETAIL, 1)
             }
         }
     }
 
+    /// Divided twice: the leaves of the first time tell how far to spread `deposits`.
+    fn spread(deposits: &[Deposit], width: f32, is_leaf: impl Fn(u32, f64, f64) -> bool + Copy) -> Self {
+        let tree = Self::divided(deposits.to_vec(), is_leaf, 0.0, 1);
+        // Multiples of the powers of the plastic number, less what is whole: pairs of them are even (Roberts 2018).
+        let even = |index: usize| {
+            [0.754_877_666, 0.569_840_291].map(|step: f64| (0.5 + index as f64 * step).fract() as f32)
+        };
+        let parts = |(index, &Deposit { at, weight }): (usize, &Deposit)| {
+            let reach = width * tree.size_of_leaf(at);
+            let offset = move |part| reach * (2.0 * Vec2::from(even(PARTS * index + part)) - 1.0);
+            let deposit =
+                move |part| Deposit { at: inside(at + offset(part)), weight: weight / PARTS as f32 };
+            (0..PARTS).map(deposit)
+        };
+        Self::divided(deposits.iter().enumerate().flat_map(parts).collect(), is_leaf, 0.0, PARTS)
+    }
+
     /// A node `is_leaf` if so many levels are above it, so many points tell of it, and it has this share of the weight; and where
-    /// no coefficient is more than the share `detail`.
-    fn divided(deposits: Vec<Deposit>, is_leaf: impl Fn(u32, f64, f64) -> bool, detail: f64) -> Self {
+    /// no coefficient is more than the share `detail`. Each point came in so many `parts`.
+    fn divided(
+        deposits: Vec<Deposit>,
+        is_leaf: impl Fn(u32, f64, f64) -> bool,
+        detail: f64,
+        parts: usize,
+    ) -> Self {
         let mut tree = Self { nodes: Vec::new(), bins: Vec::new() };
         let weight = total(&deposits);
-        tree.grow(deposits, 0, &Rule { is_leaf, detail, weight });
+        tree.grow(deposits, 0, &Rule { is_leaf, detail, weight, parts });
         let middle = |index: usize| (vec2((index % SIDE) as f32, (index / SIDE) as f32) + 0.5) / SIDE as f32;
         tree.bins = (0..SIDE * SIDE).map(|index| tree.descend(middle(index), Bin::ALL, BINS)).collect();
         tree
@@ -166,7 +193,7 @@ impl Quadtree {
         level: u32,
         rule: &Rule<impl Fn(u32, f64, f64) -> bool>,
     ) -> Option<u32> {
-        let count = effective(deposits.iter().map(|deposit| deposit.weight));
+        let count = effective(deposits.iter().map(|deposit| deposit.weight)) / rule.parts as f64;
         if level > 0 && (rule.is_leaf)(level, count, rule.share(total(&deposits))) {
             return None;
         }
@@ -189,6 +216,18 @@ impl Quadtree {
         }
         self.nodes.truncate(index);
         None
+    }
+
+    /// Length of a side of the leaf around `at`.
+    fn size_of_leaf(&self, mut at: Vec2) -> f32 {
+        let (mut size, mut index) = (1.0, 0);
+        loop {
+            size *= 0.5;
+            index = self.nodes[index].children[quarter_of(&mut at)] as usize;
+            if index == 0 {
+                return size;
+            }
+        }
     }
 
     /// Memory that it takes [bytes].
@@ -261,6 +300,13 @@ fn divide(deposits: Vec<Deposit>) -> [Vec<Deposit>; 4] {
         quarters[quarter].push(Deposit { at, weight });
     }
     quarters
+}
+
+/// Where a point beside the unit square is taken to be, which is at most two away: of a sphere, x ends at the poles, and y goes
+/// around.
+fn inside(at: Vec2) -> Vec2 {
+    let x = at.x.abs();
+    vec2(x.min(2.0 - x), at.y.rem_euclid(1.0)).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON))
 }
 
 /// The quarter that `at` lies in; from then on its coordinates are those within the quarter.
@@ -347,6 +393,22 @@ mod tests {
         // 3/4 of the points, at a weight of 1.5 and more, lie on 1e-4 of the square.
         assert!(tree.density(vec2(0.375, 0.615)) > 3000.0);
         assert!(tree.density(vec2(0.9, 0.9)) > 0.0 && tree.density(vec2(0.9, 0.9)) < 0.05);
+    }
+
+    /// All fell to the left of the line that divides the square; the next may fall just to the right of it, or on the other side of
+    /// the seam of the sphere.
+    #[test]
+    fn beside_known_points_others_are_likely() {
+        let mut stream = Stream::new(6, 0, 0, Purpose::Study);
+        let patch = (0..4000).map(|_| vec2(0.4, 0.0) + 0.1 * stream.square());
+        let deposits: Vec<Deposit> = patch.map(|at| Deposit { at, weight: 1.0 }).collect();
+        for tree in [Quadtree::learn(deposits.clone()), Quadtree::by(Basis::Quadtree, deposits)] {
+            let within = tree.density(vec2(0.45, 0.05));
+            for beside in [vec2(0.501, 0.05), vec2(0.45, 0.999)] {
+                let density = tree.density(beside);
+                assert!((0.02 * within..0.6 * within).contains(&density), "{beside}: {density} of {within}");
+            }
+        }
     }
 
     fn leaves(tree: &Quadtree, index: usize, area: f64, share: f64, see: &mut impl FnMut(f32, f64)) {
