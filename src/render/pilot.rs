@@ -53,6 +53,8 @@ const LEARNT: f64 = 3.0;
 /// Starts are learnt if no more than this part of the light subpaths is seen, and some are worth tracing: training takes as long as
 /// a pilot. Measured: of a scene lit through a small opening 0.0006, behind a frosted pane 0.02 and in a chapel 0.03.
 const REMOTE: f64 = 0.03;
+/// The same where none seem worth it: so few say little of that, nor of how seldom others find what they do.
+const HIDDEN: f64 = 0.005;
 /// Of a tile's second moment: variances below are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-3;
 /// Other counts than all strategies' must be so much better: pilots are noisy.
@@ -130,9 +132,11 @@ pub fn choose(
     };
     let fly = || {
         let pilots = by(base.effort.learnt_starts);
-        let is_remote = starts.is_none() && pilots[0].is_remote();
+        let seen = pilots[0].seen_subpaths();
         let best = best_of(pilots);
-        if is_remote && best.strategies.need_light_walks() { best_of(by(true)) } else { best }
+        let most = if best.strategies.need_light_walks() { REMOTE } else { HIDDEN };
+        let is_remote = starts.is_none() && seen.is_some_and(|seen| seen <= most);
+        if is_remote { best_of(by(true)) } else { best }
     };
     // Renders survive a panic and say where it was.
     catch_unwind(AssertUnwindSafe(fly)).unwrap_or(base)
@@ -447,10 +451,10 @@ impl Pilot {
         Self { tiles, found, camera, light, light_unlearnt, is_learnt }
     }
 
-    /// True if light starts where it seldom comes into view: then it may be worth learning where it should.
-    fn is_remote(&self) -> bool {
+    /// The part of the light subpaths that is seen; none of none. Where it is small, it may be worth learning where light should start.
+    fn seen_subpaths(&self) -> Option<f64> {
         let [Work { reaching, walks, .. }, ..] = self.light;
-        reaching <= REMOTE * walks && walks > 0.0
+        (walks > 0.0).then(|| reaching / walks)
     }
 
     /// Time of a pixel sample, in segments.
@@ -594,7 +598,7 @@ mod tests {
     fn path_tracing_has_no_light_starts_to_learn() {
         let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::PT);
         let pilot = pilot(&setup.scene, &setup.film, &settings, Survival::Albedo, false);
-        assert!(!pilot.is_remote());
+        assert_eq!(pilot.seen_subpaths(), None);
     }
 
     /// Relative variance of pixel samples, as their images show it.
