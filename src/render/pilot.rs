@@ -72,6 +72,9 @@ mod time {
 
 /// Survivals that are a constant part of the albedo: one pilot tells of all of them.
 const OF_ALBEDO: [Survival; 3] = [Survival::Albedo, Survival::Shorter, Survival::Shortest];
+/// That of each pilot, and those that it tells of.
+const SURVIVALS: [(Survival, &[Survival]); 2] =
+    [(Survival::Albedo, &OF_ALBEDO), (Survival::FourthRoot, &[Survival::FourthRoot])];
 
 /// What was chosen, and how much it is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,44 +105,50 @@ pub fn choose(
     if scene.lights.is_empty() {
         return base;
     }
-    let survivals = [(Survival::Albedo, &OF_ALBEDO[..]), (Survival::FourthRoot, &[Survival::FourthRoot])];
     let equiangular = all == Strategies::BDPT && equiangular_applies(scene);
     let options = Options { strategies: Strategies { equiangular, ..all }, ..settings.options };
     let with_all = Settings { options, ..*settings };
-    let by = |learnt: bool| survivals.map(|(survival, _)| pilot(scene, film, &with_all, survival, learnt));
-    let best_of = |pilots: [Pilot; 2]| {
-        let reference = pilots[0].error(&base) * pilots[0].time(&base);
-        let of_pilots = survivals.iter().zip(&pilots);
-        let known = of_pilots.flat_map(|((_, by), pilot)| by.iter().map(move |survival| (*survival, pilot)));
-        let choices = known.flat_map(|(survival, pilot)| {
-            let complete = candidates(options.strategies, survival, pilot.is_learnt);
-            let complete = complete.filter(|choice| is_complete(choice.strategies));
-            let decided = move |choice: &Choice| {
-                let may =
-                    |learnt| !choice.strategies.need_light_walks() || choice.effort.learnt_starts == learnt;
-                starts.is_none_or(may)
-            };
-            complete.filter(decided).map(move |choice| (choice, pilot))
-        });
-        let judged = |(choice, pilot): (Choice, &Pilot)| Choice {
-            among: all,
-            gain: reference / (pilot.error(&choice) * pilot.time(&choice)),
-            ..choice
-        };
-        let judged: Vec<Choice> = choices.collect::<Vec<_>>().into_par_iter().map(judged).collect();
-        let best = judged.into_iter().max_by(|a, b| a.worth().total_cmp(&b.worth()));
-        best.filter(|best| best.worth() > WORTHWHILE * base.worth() && best.gain.is_finite()).unwrap_or(base)
+    let by = |learnt: bool| SURVIVALS.map(|(survival, _)| pilot(scene, film, &with_all, survival, learnt));
+    let may = |choice: &Choice| {
+        let Choice { strategies, effort, .. } = choice;
+        let decided = |learnt| !strategies.need_light_walks() || effort.learnt_starts == learnt;
+        is_complete(*strategies) && starts.is_none_or(decided)
+    };
+    let allowed = |survival: Survival, learnt: bool| {
+        candidates(options.strategies, survival, learnt)
+            .filter(may)
+            .map(|choice| Choice { among: all, ..choice })
+            .collect()
     };
     let fly = || {
         let pilots = by(base.effort.learnt_starts);
-        let seen = pilots[0].seen_subpaths();
-        let best = best_of(pilots);
+        let best = best_of(&pilots, base, allowed);
         let most = if best.strategies.need_light_walks() { REMOTE } else { HIDDEN };
-        let is_remote = starts.is_none() && seen.is_some_and(|seen| seen <= most);
-        if is_remote { best_of(by(true)) } else { best }
+        let is_remote = starts.is_none() && pilots[0].seen_subpaths().is_some_and(|seen| seen <= most);
+        if is_remote { best_of(&by(true), base, allowed) } else { best }
     };
     // Renders survive a panic and say where it was.
     catch_unwind(AssertUnwindSafe(fly)).unwrap_or(base)
+}
+
+/// The best of the choices that are `allowed` by each survival, with learnt starts or without; `base` if none is clearly better.
+fn best_of(
+    pilots: &[Pilot; SURVIVALS.len()],
+    base: Choice,
+    allowed: impl Fn(Survival, bool) -> Vec<Choice>,
+) -> Choice {
+    let error_time = |choice: &Choice, pilot: &Pilot| pilot.error(choice) * pilot.time(choice);
+    let reference = error_time(&base, &pilots[0]);
+    let mut choices = Vec::new();
+    for (pilot, (_, survivals)) in pilots.iter().zip(SURVIVALS) {
+        let by_survival = |survival: &Survival| allowed(*survival, pilot.is_learnt);
+        choices.extend(survivals.iter().flat_map(by_survival).map(|choice| (choice, pilot)));
+    }
+    let judge =
+        |(choice, pilot): (Choice, &Pilot)| Choice { gain: reference / error_time(&choice, pilot), ..choice };
+    let judged: Vec<Choice> = choices.into_par_iter().map(judge).collect();
+    let best = judged.into_iter().max_by(|a, b| a.worth().total_cmp(&b.worth()));
+    best.filter(|best| best.worth() > WORTHWHILE * base.worth() && best.gain.is_finite()).unwrap_or(base)
 }
 
 /// A few samples of all strategies of `settings` at equal effort, by learnt starts or not.

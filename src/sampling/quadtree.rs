@@ -26,7 +26,7 @@ const PARTS: usize = 4;
 /// opening is 1.2 times as large, by 4 1.7 times; not at all 2 to 5 times, most of it in a hundredth of the pixels.
 const ALONE: f32 = 2.0;
 /// The same where other densities are mixed with the tree's: by 1 path tracing in rooms lit indirectly or through a door has 0.9 of
-/// the error that it has by 0, and by 1.4 as much again.
+/// the error that it has by 0; by 1.4 it has no less than by 0 in the rooms.
 const MIXED: f32 = 1.0;
 /// Of all the weight, the coefficients of wavelets that are kept are more than this.
 const DETAIL: f64 = 0.01;
