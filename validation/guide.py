@@ -61,8 +61,8 @@ WANTED = {"lit through an opening": 5.0, "lit indirectly": 2.0, "P03T's boxes": 
 """How much less error a guide shall leave by bdpt; by pt it is WANTED_PT in the boxes."""
 WANTED_PT = 2.0
 WAYS: dict[str, dict[str, Any]] = {
-    "bdpt": {"integrator": "bdpt", "starts": "emitted"},
-    "bdpt, starts": {"integrator": "bdpt"},
+    "bdpt": {"integrator": "bdpt", "starts": "emitted", "guide": "never"},
+    "bdpt, starts": {"integrator": "bdpt", "guide": "never"},
     "bdpt, guide": {"integrator": "bdpt", "guide": "auto"},
     "pt": {"integrator": "pt"},
     "pt, guide": {"integrator": "pt", "guide": "auto"},
@@ -170,7 +170,7 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
     command = made_by_command()
     return (
         f"# What a guide gives\n\n    {command}\n\n"
-        f"relMSE without what is learnt (`--starts emitted`, no `--guide`) over relMSE with it (`--guide auto`, *followed* or not), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
+        f"relMSE without what is learnt (`--starts emitted --guide never`) over relMSE with it (`--guide auto`, the default of `bdpt`, *followed* or not), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
         f"{options.seeds} seeds ({options.preview_seeds} by `gather`); ± one standard error. Reference of each seed: the mean of `bdpt` by `--guide auto` of the other seeds, whose own noise is taken off. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
         "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its.\n\n"
         "| scene | starts | guide, by bdpt | wanted | followed | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | portals | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"

@@ -79,11 +79,12 @@ pub struct Estimator {
     pub starts: Option<bool>,
 
     /// When walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
-    /// begun [default: the scene's, or never, but auto with gather]
+    /// begun [default: the scene's, or auto by gather and by bdpt with a pilot, else never]
     ///
     /// auto: where it pays, as the first quarter of learning foresees: where light comes through portals, such as a keyhole, and
-    /// where pt has to find light that comes round corners, which light subpaths find anyway. always: also where it does not
-    /// pay. Learning takes a second or so; the expected image is the same. Needs the heuristic balance.
+    /// where pt has to find light that comes round corners, which light subpaths find anyway. Where bdpt has little noise, nothing
+    /// is learnt to find out. always: also where it does not pay. Learning takes a second or so; the expected image is the same.
+    /// Needs the heuristic balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
     pub guide: Option<Guiding>,
 
@@ -179,14 +180,17 @@ impl Estimator {
 
     /// The same, and what the pilot chose, if there was one.
     pub fn chosen(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<(Settings, Option<Choice>)> {
-        let mut settings = self.requested(setup, seed, budget)?;
-        let guided = training::follows_guide(&setup.scene, &setup.film, &settings);
-        settings.options.effort.guide = if guided { Guiding::Always } else { Guiding::Never };
+        let mut settings = self.without_pilot(setup, seed, budget)?;
         let choice = self.choice(setup, &settings);
-        let Options { strategies, effort, .. } = &mut settings.options;
-        if let Some(choice) = choice {
-            (*strategies, *effort) = (choice.strategies, Effort { guide: effort.guide, ..choice.effort });
-        }
+        let Options { strategies, effort, .. } = settings.options;
+        let unchosen = || {
+            let follows = training::follows_guide(&setup.scene, &setup.film, &settings);
+            let guide = if follows { Guiding::Always } else { Guiding::Never };
+            (strategies, Effort { guide, ..effort })
+        };
+        (settings.options.strategies, settings.options.effort) =
+            choice.map_or_else(unchosen, |choice| (choice.strategies, choice.effort));
+        self.warn_of_basis(&settings);
         Ok((settings, choice))
     }
 
@@ -198,11 +202,17 @@ impl Estimator {
             return None;
         }
         let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);
-        Some(pilot::choose(&setup.scene, &setup.film, settings, self.starts, is_complete))
+        Some(pilot::choose(&setup.scene, &setup.film, settings, self.starts, &is_complete))
     }
 
     /// The same without a pilot: all strategies that are not left out.
     pub fn requested(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
+        let settings = self.without_pilot(setup, seed, budget)?;
+        self.warn_of_basis(&settings);
+        Ok(settings)
+    }
+
+    fn without_pilot(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<Settings> {
         let options = self.options(setup)?;
         let profile = match self.profile {
             Profile::Everything => ProfileName::Everything,
@@ -241,7 +251,7 @@ impl Estimator {
         Ok(Options {
             strategies,
             effort,
-            basis: self.basis(scene, guide),
+            basis: self.basis.unwrap_or(scene.basis),
             heuristic,
             max_depth,
             forced_interaction,
@@ -266,24 +276,24 @@ impl Estimator {
         self.starts == Some(true) && strategies.need_light_walks()
     }
 
-    fn basis(&self, scene: Options, guide: Guiding) -> Basis {
-        if self.basis.is_some() && guide == Guiding::Never {
+    fn warn_of_basis(&self, settings: &Settings) {
+        if self.basis.is_some() && !settings.options.effort.is_guided() {
             super::complain("warning: --basis has no effect: walks follow no guide");
         }
-        self.basis.unwrap_or(scene.basis)
     }
 
     fn guiding(&self, scene: Options, strategies: Strategies, heuristic: Heuristic) -> Result<Guiding> {
-        let usual = if strategies.gather { Guiding::Auto } else { scene.effort.guide };
-        let guide = match strategies {
-            Strategies::NONE => Guiding::Never,
-            _ => self.guide.unwrap_or(usual),
+        let guide = match (strategies, self.guide.unwrap_or(scene.effort.guide)) {
+            (Strategies::NONE, _) => Guiding::Never,
+            (_, Guiding::Usual) if strategies.gather => Guiding::Auto,
+            (_, said) => said,
         };
         let (place, remedy) = match strategies.gather {
             true => ("--integrator gather", "choose --heuristic balance"),
             false => ("--guide", "choose --heuristic balance, or give --guide never"),
         };
-        if heuristic != Heuristic::Balance && (strategies.gather || guide != Guiding::Never) {
+        let is_wanted = matches!(guide, Guiding::Auto | Guiding::Always);
+        if heuristic != Heuristic::Balance && (strategies.gather || is_wanted) {
             let found = format!("the heuristic {heuristic}");
             return Err(Error::new(place, "the heuristic balance", found, remedy));
         }

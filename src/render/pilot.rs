@@ -11,7 +11,7 @@ use super::{
     Settings,
     block::Blocks,
     compiled::{self, Ready},
-    training::{Follower, Tiles},
+    training::{self, Follower, Tiles},
 };
 use crate::{
     film::Film,
@@ -55,6 +55,10 @@ const LEARNT: f64 = 3.0;
 const REMOTE: f64 = 0.03;
 /// The same where none seem worth it: so few say little of that, nor of how seldom others find what they do.
 const HIDDEN: f64 = 0.005;
+/// Squared relative error of a pixel sample, where light is seen, above which it is asked whether a guide pays: where it is less,
+/// asking takes longer than a guide could gain. Measured: 61 in a room lit through its keyhole and 40 under a skylight, where one
+/// pays for all strategies; 4 to 27 in others lit through openings and round corners, where none does; 0.1 to 1.2 elsewhere.
+const NOISY: f64 = 2.0;
 /// Of a tile's second moment: variances below are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-3;
 /// Other counts than all strategies' must be so much better: pilots are noisy.
@@ -89,18 +93,35 @@ pub struct Choice {
     pub gain: f64,
 }
 
-/// The strategies among those of `settings` that are worth their time on `film`, how often, and when walks end; whether light
-/// subpaths begin at learnt `starts` may be decided already; `is_complete` says which sets of strategies leave no light out.
+/// The strategies among those of `settings` that are worth their time on `film`, how often, when walks end, and whether they
+/// follow a guide; whether light subpaths begin at learnt `starts` may be decided already; `is_complete` says which sets of
+/// strategies leave no light out.
 pub fn choose(
     scene: &Scene,
     film: &Film,
     settings: &Settings,
     starts: Option<bool>,
-    is_complete: impl Fn(Strategies) -> bool,
+    is_complete: &dyn Fn(Strategies) -> bool,
 ) -> Choice {
     let all = settings.options.strategies;
-    let effort =
-        Effort { learnt_starts: starts == Some(true) && all.need_light_walks(), ..Effort::default() };
+    let by_guide = |follows: bool| {
+        let guide = if follows { Guiding::Always } else { Guiding::Never };
+        let effort = Effort { guide, ..settings.options.effort };
+        let options = Options { effort, ..settings.options };
+        choose(scene, film, &Settings { options, ..*settings }, starts, is_complete)
+    };
+    let pays = || training::guide_pays(scene, film, settings.options);
+    let asks = match settings.options.effort.guide {
+        Guiding::Usual => all == Strategies::BDPT,
+        said => said == Guiding::Auto,
+    };
+    // What camera subpaths alone do not find looks like no noise.
+    if asks && !all.need_light_walks() {
+        return by_guide(pays());
+    }
+    let guide = if asks { Guiding::Never } else { settings.options.effort.guide };
+    let learnt_starts = starts == Some(true) && all.need_light_walks();
+    let effort = Effort { learnt_starts, guide, ..Effort::default() };
     let base = Choice { among: all, strategies: all, effort, gain: 1.0 };
     if scene.lights.is_empty() {
         return base;
@@ -108,20 +129,27 @@ pub fn choose(
     let equiangular = all == Strategies::BDPT && equiangular_applies(scene);
     let options = Options { strategies: Strategies { equiangular, ..all }, ..settings.options };
     let with_all = Settings { options, ..*settings };
-    let by = |learnt: bool| SURVIVALS.map(|(survival, _)| pilot(scene, film, &with_all, survival, learnt));
+    let by = |learnt: bool| {
+        SURVIVALS.map(|(survival, _)| {
+            let effort = Effort { survival, learnt_starts: learnt, ..effort };
+            pilot(scene, film, &with_all, effort)
+        })
+    };
     let may = |choice: &Choice| {
         let Choice { strategies, effort, .. } = choice;
         let decided = |learnt| !strategies.need_light_walks() || effort.learnt_starts == learnt;
         is_complete(*strategies) && starts.is_none_or(decided)
     };
     let allowed = |survival: Survival, learnt: bool| {
-        candidates(options.strategies, survival, learnt)
-            .filter(may)
-            .map(|choice| Choice { among: all, ..choice })
-            .collect()
+        let all_efforts =
+            candidates(options.strategies, Effort { survival, learnt_starts: learnt, ..effort });
+        all_efforts.filter(may).map(|choice| Choice { among: all, ..choice }).collect()
     };
     let fly = || {
-        let pilots = by(base.effort.learnt_starts);
+        let pilots = by(learnt_starts);
+        if asks && pilots[0].error_where_lit(&base) > NOISY && pays() {
+            return by_guide(true);
+        }
         let best = best_of(&pilots, base, allowed);
         let most = if best.strategies.need_light_walks() { REMOTE } else { HIDDEN };
         let is_remote = starts.is_none() && pilots[0].seen_subpaths().is_some_and(|seen| seen <= most);
@@ -151,18 +179,16 @@ fn best_of(
     best.filter(|best| best.worth() > WORTHWHILE * base.worth() && best.gain.is_finite()).unwrap_or(base)
 }
 
-/// A few samples of all strategies of `settings` at equal effort, by learnt starts or not.
-fn pilot(scene: &Scene, film: &Film, settings: &Settings, survival: Survival, learnt_starts: bool) -> Pilot {
-    let guide = settings.options.effort.guide;
-    let effort = Effort { survival, learnt_starts, guide, ..Effort::default() };
+/// A few samples of all strategies of `settings`, with `effort` in its place.
+fn pilot(scene: &Scene, film: &Film, settings: &Settings, effort: Effort) -> Pilot {
     let max_depth = Some(settings.options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST)));
     let options = Options { effort, max_depth, ..settings.options };
     let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*settings };
     compiled::pilot(scene, film, &settings)
 }
 
-/// Every choice among the strategies of `all` where walks end by `survival`, with learnt starts too if there are any.
-fn candidates(all: Strategies, survival: Survival, learnt: bool) -> impl Iterator<Item = Choice> {
+/// Every choice among the strategies of `all` that is like `effort` but for its counts, and for learnt starts if it has them.
+fn candidates(all: Strategies, effort: Effort) -> impl Iterator<Item = Choice> {
     let optional = [all.next_event, all.connection, all.lens, all.equiangular];
     let has = move |bits: u32| (0..4).all(|bit| bits >> bit & 1 == 0 || optional[bit as usize]);
     let sets = (0..16u32).filter(move |bits| has(*bits)).map(move |bits| Strategies {
@@ -176,18 +202,17 @@ fn candidates(all: Strategies, survival: Survival, learnt: bool) -> impl Iterato
         let connections: &[u32] = if strategies.connection { &[1, 2, 4] } else { &[1] };
         let usual: &[f32] = if strategies.need_light_walks() { &[0.5, 1.0, 2.0] } else { &[1.0] };
         // Some of these are dropped as they begin.
-        let more: &[f32] = if learnt && strategies.need_light_walks() { &[0.5, 1.0, 2.0, 4.0] } else { &[] };
+        let more: &[f32] =
+            if effort.learnt_starts && strategies.need_light_walks() { &[0.5, 1.0, 2.0, 4.0] } else { &[] };
         let light_walks =
             usual.iter().map(|walks| (*walks, false)).chain(more.iter().map(|walks| (*walks, true)));
         let efforts = light_walks.flat_map(move |(light_walks, learnt_starts)| {
-            let effort = move |connections: &u32| Effort {
-                survival,
+            connections.iter().map(move |connections| Effort {
                 light_walks,
                 connections: *connections,
                 learnt_starts,
-                guide: Guiding::Never,
-            };
-            connections.iter().map(effort)
+                ..effort
+            })
         });
         efforts.map(move |effort| Choice { among: all, strategies, effort, gain: 1.0 })
     })
@@ -496,6 +521,14 @@ impl Pilot {
         errors[..kept].iter().sum::<f64>() / pixels.max(1.0)
     }
 
+    /// The same over the tiles that light was seen in, none of them left out: where few samples find any, the others look free of
+    /// noise. Infinite where no light was seen at all.
+    fn error_where_lit(&self, choice: &Choice) -> f64 {
+        let is_lit = |(_, tile): &(usize, &Tile)| tile.mean > 0.0;
+        let pixels: f64 = self.seen().filter(is_lit).map(|(_, tile)| tile.pixels).sum();
+        if pixels > 0.0 { self.errors(choice).iter().sum::<f64>() / pixels } else { f64::INFINITY }
+    }
+
     /// Those of the pixels of every tile, added up.
     fn errors(&self, choice: &Choice) -> Vec<f64> {
         let mut moments = vec![(0.0, 0.0); self.tiles.len()];
@@ -606,7 +639,7 @@ mod tests {
     #[test]
     fn path_tracing_has_no_light_starts_to_learn() {
         let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::PT);
-        let pilot = pilot(&setup.scene, &setup.film, &settings, Survival::Albedo, false);
+        let pilot = pilot(&setup.scene, &setup.film, &settings, Effort::default());
         assert_eq!(pilot.seen_subpaths(), None);
     }
 
@@ -651,7 +684,8 @@ mod tests {
     fn pilots_foresee_the_noise_of_other_counts() {
         for scene in ["lampbox_down.xml", "efficiency/glass_fog_sky.xml"] {
             let (setup, settings) = small(scene, Strategies::BDPT);
-            let pilot = pilot(&setup.scene, &setup.film, &settings, Survival::Albedo, true);
+            let learnt = Effort { learnt_starts: true, ..Effort::default() };
+            let pilot = pilot(&setup.scene, &setup.film, &settings, learnt);
             let relative = |choice: Choice| {
                 let Choice { strategies, effort, .. } = choice;
                 let options = Options { strategies, effort, ..settings.options };

@@ -89,21 +89,24 @@ pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
     Learnt { radiance: Some(radiance), ..learnt }
 }
 
-/// True if walks by `settings` follow a guide: where they do so if it pays, as the first rounds of learning it foresee.
+/// True if walks by `settings` follow a guide.
 pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
-    let options = settings.options;
-    match options.effort.guide {
-        Guiding::Never => false,
+    match settings.options.effort.guide {
+        Guiding::Usual | Guiding::Never => false,
         Guiding::Always => true,
-        Guiding::Auto => {
-            let learnt = learn(scene, film, Wanted::by(options, true), true);
-            let pays = learnt.guide.is_some();
-            if pays {
-                scene.lights.learnt.keep(Wanted::by(options, true).key(film), learnt);
-            }
-            pays
-        }
+        Guiding::Auto => guide_pays(scene, film, settings.options),
     }
+}
+
+/// True if it would pay that walks by `options` follow a guide, as the first rounds of learning it foresee.
+pub fn guide_pays(scene: &Scene, film: &Film, options: Options) -> bool {
+    let wanted = Wanted::by(options, true);
+    let learnt = learn(scene, film, wanted, true);
+    let pays = learnt.guide.is_some();
+    if pays {
+        scene.lights.learnt.keep(wanted.key(film), learnt);
+    }
+    pays
 }
 
 /// What is to be learnt.

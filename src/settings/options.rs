@@ -129,8 +129,10 @@ impl Connections {
 /// When walks follow a guide.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guiding {
-    /// Never.
+    /// [`Self::Auto`] where a pilot chooses among all strategies of bdpt, else [`Self::Never`]: what is not said.
     #[default]
+    Usual,
+    /// Never.
     Never,
     /// Where it lowers the error by more than it takes, as a few samples foresee.
     Auto,
@@ -171,7 +173,7 @@ impl Effort {
 
     /// True where a guide is followed, or may be.
     pub fn is_guided(&self) -> bool {
-        self.guide != Guiding::Never
+        matches!(self.guide, Guiding::Auto | Guiding::Always)
     }
 }
 
@@ -209,7 +211,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             strategies: Strategies::BDPT,
-            effort: Effort::default(),
+            effort: Effort { guide: Guiding::default(), ..Effort::default() },
             basis: Basis::default(),
             connections: Connections::default(),
             heuristic: Heuristic::default(),
@@ -229,7 +231,8 @@ pub(super) const PATHS: &[Parameter] = rows! {
 /// What those have that sample paths.
 pub(super) const GUIDE: &[Parameter] = rows! {
     choice("guide", &words::<3, _>(&Guiding::NAMES), "never",
-        "When walks follow a guide, learnt beforehand: where light comes from, and where it is seen from.").ours(),
+        "When walks follow a guide, learnt beforehand: where light comes from, and where it is seen from.")
+        .said("auto by bdpt, else never").ours(),
     choice("guide_basis", &words::<3, _>(&Basis::NAMES), "quadtree",
         "How a guide keeps directions: adaptive `quadtree`, equal `bins`, `haar` wavelets (P03T sec. 5.2.1, A.1).").ours(),
 };
@@ -258,7 +261,11 @@ impl Options {
         Ok(Self {
             strategies,
             effort: Effort {
-                guide: if samples { params.choice("guide", &Guiding::NAMES)? } else { Guiding::Never },
+                guide: match samples {
+                    true if params.has("guide") => params.choice("guide", &Guiding::NAMES)?,
+                    true => Guiding::Usual,
+                    false => Guiding::Never,
+                },
                 ..Effort::default()
             },
             basis: if samples { params.choice("guide_basis", &Basis::NAMES)? } else { Basis::default() },

@@ -53,7 +53,7 @@ fn chosen(scene: &Value) -> Choice {
     let stage = Stage::new(scene);
     let settings = stage.settings(Strategies::BDPT, 1, 0);
     let is_complete = |set| coverage::is_complete(&stage.setup.scene, &settings.options, set);
-    pilot::choose(&stage.setup.scene, &stage.setup.film, &settings, None, is_complete)
+    pilot::choose(&stage.setup.scene, &stage.setup.film, &settings, None, &is_complete)
 }
 
 /// Light subpaths find little of a scene without walls under a sky, and all that lights a room by its ceiling.
