@@ -115,10 +115,6 @@ pub fn choose(
         Guiding::Usual => all == Strategies::BDPT,
         said => said == Guiding::Auto,
     };
-    // What camera subpaths alone do not find looks like no noise.
-    if asks && !all.need_light_walks() {
-        return by_guide(pays());
-    }
     let guide = if asks { Guiding::Never } else { settings.options.effort.guide };
     let learnt_starts = starts == Some(true) && all.need_light_walks();
     let effort = Effort { learnt_starts, guide, ..Effort::default() };
