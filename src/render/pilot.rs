@@ -104,13 +104,6 @@ pub fn choose(
     is_complete: &dyn Fn(Strategies) -> bool,
 ) -> Choice {
     let all = settings.options.strategies;
-    let by_guide = |follows: bool| {
-        let guide = if follows { Guiding::Always } else { Guiding::Never };
-        let effort = Effort { guide, ..settings.options.effort };
-        let options = Options { effort, ..settings.options };
-        choose(scene, film, &Settings { options, ..*settings }, starts, is_complete)
-    };
-    let pays = || training::guide_pays(scene, film, settings.options);
     let asks = match settings.options.effort.guide {
         Guiding::Usual => all == Strategies::BDPT,
         said => said == Guiding::Auto,
@@ -122,57 +115,87 @@ pub fn choose(
     if scene.lights.is_empty() {
         return base;
     }
-    let equiangular = all == Strategies::BDPT && equiangular_applies(scene);
-    let options = Options { strategies: Strategies { equiangular, ..all }, ..settings.options };
-    let with_all = Settings { options, ..*settings };
-    let by = |learnt: bool| {
-        SURVIVALS.map(|(survival, _)| {
-            let effort = Effort { survival, learnt_starts: learnt, ..effort };
-            pilot(scene, film, &with_all, effort)
-        })
-    };
-    let may = |choice: &Choice| {
-        let Choice { strategies, effort, .. } = choice;
-        let decided = |learnt| !strategies.need_light_walks() || effort.learnt_starts == learnt;
-        is_complete(*strategies) && starts.is_none_or(decided)
-    };
-    let allowed = |survival: Survival, learnt: bool| {
-        let all_efforts =
-            candidates(options.strategies, Effort { survival, learnt_starts: learnt, ..effort });
-        all_efforts.filter(may).map(|choice| Choice { among: all, ..choice }).collect()
-    };
-    let fly = || {
-        let pilots = by(learnt_starts);
-        if asks && pilots[0].error_where_lit(&base) > NOISY && pays() {
-            return by_guide(true);
-        }
-        let best = best_of(&pilots, base, allowed);
-        let most = if best.strategies.need_light_walks() { REMOTE } else { HIDDEN };
-        let is_remote = starts.is_none() && pilots[0].seen_subpaths().is_some_and(|seen| seen <= most);
-        if is_remote { best_of(&by(true), base, allowed) } else { best }
-    };
+    let pilots = Pilots { scene, film, settings, starts, is_complete, base };
+    let fly = || pilots.choose(asks);
     // Renders survive a panic and say where it was.
     catch_unwind(AssertUnwindSafe(fly)).unwrap_or(base)
 }
 
-/// The best of the choices that are `allowed` by each survival, with learnt starts or without; `base` if none is clearly better.
-fn best_of(
-    pilots: &[Pilot; SURVIVALS.len()],
+/// Those that are flown for one choice, and what they may choose.
+#[derive(Clone, Copy)]
+struct Pilots<'a> {
+    scene: &'a Scene,
+    film: &'a Film,
+    settings: &'a Settings,
+    starts: Option<bool>,
+    is_complete: &'a dyn Fn(Strategies) -> bool,
+    /// All strategies, with the guide and the starts that there are before any pilot.
     base: Choice,
-    allowed: impl Fn(Survival, bool) -> Vec<Choice>,
-) -> Choice {
-    let error_time = |choice: &Choice, pilot: &Pilot| pilot.error(choice) * pilot.time(choice);
-    let reference = error_time(&base, &pilots[0]);
-    let mut choices = Vec::new();
-    for (pilot, (_, survivals)) in pilots.iter().zip(SURVIVALS) {
-        let by_survival = |survival: &Survival| allowed(*survival, pilot.is_learnt);
-        choices.extend(survivals.iter().flat_map(by_survival).map(|choice| (choice, pilot)));
+}
+
+impl Pilots<'_> {
+    /// The best choice; with a guide if one `asks` for it and it pays.
+    fn choose(&self, asks: bool) -> Choice {
+        let pilots = self.fly(self.base.effort.learnt_starts);
+        let is_noisy = || pilots[0].error_where_lit(&self.base) > NOISY;
+        if asks && is_noisy() && training::guide_pays(self.scene, self.film, self.settings.options) {
+            let effort = Effort { guide: Guiding::Always, ..self.base.effort };
+            return Self { base: Choice { effort, ..self.base }, ..*self }.choose(false);
+        }
+        let best = self.best_of(&pilots);
+        let most = if best.strategies.need_light_walks() { REMOTE } else { HIDDEN };
+        let is_remote = self.starts.is_none() && pilots[0].seen_subpaths().is_some_and(|seen| seen <= most);
+        if is_remote { self.best_of(&self.fly(true)) } else { best }
     }
-    let judge =
-        |(choice, pilot): (Choice, &Pilot)| Choice { gain: reference / error_time(&choice, pilot), ..choice };
-    let judged: Vec<Choice> = choices.into_par_iter().map(judge).collect();
-    let best = judged.into_iter().max_by(|a, b| a.worth().total_cmp(&b.worth()));
-    best.filter(|best| best.worth() > WORTHWHILE * base.worth() && best.gain.is_finite()).unwrap_or(base)
+
+    /// One by each of [`SURVIVALS`].
+    fn fly(&self, learnt_starts: bool) -> [Pilot; SURVIVALS.len()] {
+        let options = Options { strategies: self.strategies(), ..self.settings.options };
+        let settings = Settings { options, ..*self.settings };
+        SURVIVALS.map(|(survival, _)| {
+            let effort = Effort { survival, learnt_starts, ..self.base.effort };
+            pilot(self.scene, self.film, &settings, effort)
+        })
+    }
+
+    /// All that may run: equiangular sampling, too, where it applies.
+    fn strategies(&self) -> Strategies {
+        let all = self.base.among;
+        let equiangular = all == Strategies::BDPT && equiangular_applies(self.scene);
+        Strategies { equiangular, ..all }
+    }
+
+    /// The best of the choices that `pilots` may make; that of all strategies if none is clearly better.
+    fn best_of(&self, pilots: &[Pilot; SURVIVALS.len()]) -> Choice {
+        let base = self.base;
+        let error_time = |choice: &Choice, pilot: &Pilot| pilot.error(choice) * pilot.time(choice);
+        let reference = error_time(&base, &pilots[0]);
+        let mut choices = Vec::new();
+        for (pilot, (_, survivals)) in pilots.iter().zip(SURVIVALS) {
+            let by_survival = |survival: &Survival| self.allowed(*survival, pilot.is_learnt);
+            choices.extend(survivals.iter().flat_map(by_survival).map(|choice| (choice, pilot)));
+        }
+        let judge = |(choice, pilot): (Choice, &Pilot)| Choice {
+            gain: reference / error_time(&choice, pilot),
+            ..choice
+        };
+        let judged: Vec<Choice> = choices.into_par_iter().map(judge).collect();
+        let best = judged.into_iter().max_by(|a, b| a.worth().total_cmp(&b.worth()));
+        best.filter(|best| best.worth() > WORTHWHILE * base.worth() && best.gain.is_finite()).unwrap_or(base)
+    }
+
+    /// The choices by `survival`, with learnt starts too if a pilot knows of them, that leave no light out and nothing open that
+    /// is decided.
+    fn allowed(&self, survival: Survival, learnt_starts: bool) -> Vec<Choice> {
+        let may = |choice: &Choice| {
+            let Choice { strategies, effort, .. } = choice;
+            let decided = |learnt| !strategies.need_light_walks() || effort.learnt_starts == learnt;
+            (self.is_complete)(*strategies) && self.starts.is_none_or(decided)
+        };
+        let effort = Effort { survival, learnt_starts, ..self.base.effort };
+        let all = candidates(self.strategies(), effort).filter(may);
+        all.map(|choice| Choice { among: self.base.among, ..choice }).collect()
+    }
 }
 
 /// A few samples of all strategies of `settings`, with `effort` in its place.
