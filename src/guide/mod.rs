@@ -163,6 +163,12 @@ impl Guide {
         Self { second_moment, ..self }
     }
 
+    /// Without what is known of walks against `transport`, which do not run.
+    pub fn only(mut self, transport: Transport) -> Self {
+        self.cells.iter_mut().for_each(|cell| cell.0[index(transport.reversed())] = None);
+        self
+    }
+
     /// What the walk by `transport` knows where it arrives from unit `incoming`; `normal` is that of a surface, of the point
     /// alone: walks from both ends, perhaps on both sides, find the same cell.
     #[inline]

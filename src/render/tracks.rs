@@ -17,6 +17,8 @@ const WALKS: [Transport; 2] = [Transport::Radiance, Transport::Importance];
 /// A vertex of a walk.
 #[derive(Clone, Copy, Debug)]
 struct Site {
+    /// Of the walk.
+    transport: Transport,
     position: Vec3,
     /// See [`Lesson::normal`].
     normal: Option<Vec3>,
@@ -28,6 +30,16 @@ struct Site {
     connectible: bool,
     /// Where the walk went on.
     onward: Onward,
+}
+
+impl Site {
+    /// Those to the light and to the camera, of a path that goes on in unit direction `outgoing` from where its walk came.
+    fn directions(&self, outgoing: Vec3) -> [Vec3; 2] {
+        match self.transport {
+            Transport::Radiance => [outgoing, self.incoming],
+            Transport::Importance => [self.incoming, outgoing],
+        }
+    }
 }
 
 /// Densities without a guide: of the camera's walk towards the light, and of the light's towards the camera [1/sr]; 0 where they
@@ -89,6 +101,7 @@ impl Tracks {
         let normal = vertex.interaction.normal();
         let (incoming, connectible) = (vertex.subpath.incoming, vertex.is_connectible(scene));
         self.sites.push(Site {
+            transport,
             position: vertex.position(),
             normal,
             incoming,
@@ -137,68 +150,123 @@ impl Tracks {
         Some(Track { camera, light, onward: [near, far], towards_light })
     }
 
-    /// The vertices between `last` and where its walk set out, from `last` on.
-    fn back(&self, last: Option<u32>) -> impl Iterator<Item = &Site> {
-        let site = |index: u32| &self.sites[index as usize];
-        std::iter::successors(last.map(site), move |at| at.before.map(site))
-    }
-
-    /// What a path tells that counts for `weight`, shared between `strategies` as `shares` say, as one of the lessons of `fold`.
+    /// What a path tells that counts for `weight`, shared between `strategies` as `shares` say, as one of the lessons of `fold`:
+    /// `take` sees how much each lesson counts, and the lesson if it asks.
     pub fn lessons(
         &self,
         track: &Track,
         shares: &Shares,
         (weight, fold): (f32, usize),
-        mut take: impl FnMut(Lesson),
+        mut take: impl FnMut(f32, &dyn Fn() -> Lesson),
     ) {
-        let sites = self.sites(track);
-        let count = sites.len();
-        for (index, (site, onward, directions)) in sites.into_iter().enumerate() {
-            let Site { position, normal, .. } = *site;
-            let shares = [shares.camera(index, count), shares.light(index, count)];
+        let path = self.path(track);
+        for (index, at) in path.iter().enumerate() {
+            let site = &self.sites[*at as usize];
+            let shares = [shares.camera(index, path.len()), shares.light(index, path.len())];
             for (own, transport) in WALKS.into_iter().enumerate() {
-                let (direction, unguided, weight) = (directions[own], onward[own], weight * shares[own]);
+                let weight = weight * shares[own];
+                let lesson = || {
+                    let Site { position, normal, .. } = *site;
+                    let (onward, directions) = self.way(track, *at);
+                    let (direction, unguided) = (directions[own], onward[own]);
+                    Lesson { position, normal, transport, direction, weight, unguided, fold }
+                };
                 if site.connectible && weight > 0.0 {
-                    take(Lesson { position, normal, transport, direction, weight, unguided, fold });
+                    take(weight, &lesson);
                 }
             }
         }
     }
 
-    /// How often strategies make a path without `guide`, over how often they do with it, as `shares` of them say.
-    pub fn unguided(&self, track: &Track, shares: &Shares, guide: &Guide) -> f64 {
-        let sites = self.sites(track);
-        let Shares { hit, next_event, connection, lens, .. } = *shares;
-        let by = [hit + next_event + connection, connection + lens];
-        let ratios = |(site, onward, directions): (&Site, Onward, [Vec3; 2])| {
-            if !site.connectible {
-                return [1.0; 2];
-            }
-            let cell = guide.cell(site.position, site.normal);
-            [0, 1].map(|own| {
-                let ratio = || guide.ratio(cell, WALKS[own], (site.position, directions[own]), onward[own]);
-                if by[own] > 0.0 { 1.0 / f64::from(ratio()) } else { 1.0 }
-            })
+    /// For each vertex that a walk went on from, how often `strategies` would go that way without `guide`, over how often they do
+    /// with it.
+    pub fn known<'a>(&self, guide: &'a Guide, strategies: Strategies) -> Known<'a> {
+        let by_camera = strategies.emitter_hit || strategies.next_event || strategies.connection;
+        let walks = [by_camera, strategies.connection || strategies.lens];
+        let mut known = Known { guide, walks, ratios: Vec::new() };
+        let goes_on = |index: usize| self.sites.get(index + 1).is_some_and(|next| next.before.is_some());
+        let ratios = |(index, site): (usize, &Site)| {
+            if goes_on(index) { known.at(site, self.walk(index as u32)) } else { [1.0; 2] }
         };
-        shares.made(&sites.into_iter().map(ratios).collect::<Vec<_>>())
+        known.ratios = self.sites.iter().enumerate().map(ratios).collect();
+        known
     }
 
-    /// From the emitter to the lens, each with the directions to the light and to the camera.
-    fn sites(&self, track: &Track) -> Vec<(&Site, Onward, [Vec3; 2])> {
-        let mut sites: Vec<(&Site, Onward, [Vec3; 2])> = Vec::new();
+    /// How often strategies make a path without a guide, over how often they do with the one that is `known`, as `shares` of them
+    /// say.
+    pub fn unguided(&self, track: &Track, shares: &Shares, known: &Known<'_>) -> f64 {
+        let ratios = |at: u32| {
+            let index = at as usize;
+            if track.ends_at(at) {
+                known.at(&self.sites[index], self.way(track, at))
+            } else {
+                known.ratios[index]
+            }
+        };
+        shares.made(&self.path(track).into_iter().map(ratios).collect::<Vec<_>>())
+    }
+
+    /// The vertices from the emitter to the lens.
+    fn path(&self, track: &Track) -> Vec<u32> {
+        let back = |last| std::iter::successors(last, |at: &u32| self.sites[*at as usize].before);
+        let mut path = Vec::with_capacity(USUAL);
+        path.extend(back(track.light));
+        path.reverse();
+        path.extend(back(track.camera));
+        path
+    }
+
+    /// Where a path goes on from a vertex of it, `at`: the densities, and the unit directions to the light and to the camera.
+    fn way(&self, track: &Track, at: u32) -> Way {
         let [near, far] = track.onward;
-        let mut next = (-track.towards_light, Some(far));
-        for site in self.back(track.light) {
-            sites.push((site, next.1.unwrap_or(site.onward), [site.incoming, next.0]));
-            next = (-site.incoming, None);
+        let site = &self.sites[at as usize];
+        match Some(at) {
+            end if end == track.camera => (near, site.directions(track.towards_light)),
+            end if end == track.light => (far, site.directions(-track.towards_light)),
+            _ => self.walk(at),
         }
-        sites.reverse();
-        let mut next = (track.towards_light, Some(near));
-        for site in self.back(track.camera) {
-            sites.push((site, next.1.unwrap_or(site.onward), [next.0, site.incoming]));
-            next = (-site.incoming, None);
+    }
+
+    /// The same of the walk, which goes on from there to the next vertex.
+    fn walk(&self, at: u32) -> Way {
+        let [site, next] = [at, at + 1].map(|at| &self.sites[at as usize]);
+        (site.onward, site.directions(-next.incoming))
+    }
+}
+
+type Way = (Onward, [Vec3; 2]);
+
+/// Vertices of a path that need no more memory.
+const USUAL: usize = 16;
+
+impl Track {
+    /// True if one of the walks that made it ends at vertex `at`.
+    fn ends_at(&self, at: u32) -> bool {
+        [self.camera, self.light].contains(&Some(at))
+    }
+}
+
+/// How often walks go on without a guide, over how often they do with it.
+pub(super) struct Known<'a> {
+    guide: &'a Guide,
+    /// Whether those of the camera and of light matter.
+    walks: [bool; 2],
+    /// Of each vertex; 1 where none goes on.
+    ratios: Vec<[f64; 2]>,
+}
+
+impl Known<'_> {
+    /// Those of both walks.
+    fn at(&self, site: &Site, (onward, directions): Way) -> [f64; 2] {
+        if !site.connectible {
+            return [1.0; 2];
         }
-        sites
+        let cell = self.guide.cell(site.position, site.normal);
+        let ratio = |own: usize| {
+            let way = (site.position, directions[own]);
+            1.0 / f64::from(self.guide.ratio(cell, WALKS[own], way, onward[own]))
+        };
+        [0, 1].map(|own| if self.walks[own] { ratio(own) } else { 1.0 })
     }
 }
 
@@ -228,15 +296,19 @@ impl Shares {
     /// lens, so much more often: those of the camera towards the light, and those of the light.
     fn made(&self, ratios: &[[f64; 2]]) -> f64 {
         let count = ratios.len();
-        let by_camera =
-            |from: usize| ratios[from.min(count)..].iter().map(|[camera, _]| camera).product::<f64>();
-        let by_light = |to: usize| ratios[..to].iter().map(|[_, light]| light).product::<f64>();
-        let connections: f64 = (1..count).map(|index| by_light(index - 1) * by_camera(index + 1)).sum();
-        let last = count.saturating_sub(1);
-        f64::from(self.hit) * by_camera(0)
-            + f64::from(self.next_event) * by_camera(1)
-            + f64::from(self.connection) * connections / last.max(1) as f64
-            + f64::from(self.lens) * by_light(last)
+        let mut by_camera = vec![1.0; count + 1];
+        for (index, [camera, _]) in ratios.iter().enumerate().rev() {
+            by_camera[index] = camera * by_camera[index + 1];
+        }
+        let (mut by_light, mut connections) = (1.0, 0.0);
+        for index in 1..count {
+            connections += by_light * by_camera[index + 1];
+            by_light *= ratios[index - 1][1];
+        }
+        f64::from(self.hit) * by_camera[0]
+            + f64::from(self.next_event) * by_camera[1.min(count)]
+            + f64::from(self.connection) * connections / count.saturating_sub(1).max(1) as f64
+            + f64::from(self.lens) * by_light
     }
 
     /// Of the strategies by which a camera subpath goes on from vertex `index` to the one before it, if there are so many

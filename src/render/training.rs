@@ -199,6 +199,11 @@ fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt 
             break;
         }
     }
+    // Light's walks found paths for those of the camera, which go on alone.
+    if wanted.guide.is_some_and(|strategies| !strategies.need_light_walks()) {
+        let only = |guide: Arc<Guide>| Arc::new(Arc::unwrap_or_clone(guide).only(Transport::Radiance));
+        learnt.guide = learnt.guide.map(only);
+    }
     learnt
 }
 
@@ -426,13 +431,17 @@ impl Trial {
         guide: Option<&Guide>,
         value: impl Fn(&Found) -> f32 + Sync,
     ) -> Vec<Vec<(usize, [f64; 2])>> {
-        let moments = |part: usize, found: &Found| {
-            let (track, shares) = found.track.zip(Shares::of(&found.shares, strategies))?;
-            let guided = f64::from(value(found)).powi(2) / f64::from(shares.of_all);
-            let unguided = guide.map_or(1.0, |guide| self.tracks[part].unguided(&track, &shares, guide));
-            Some((found.tile, [guided, guided / unguided]))
+        let of = |part: usize| {
+            let tracks = &self.tracks[part];
+            let known = guide.map(|guide| tracks.known(guide, strategies));
+            let moments = |found: &Found| {
+                let (track, shares) = found.track.zip(Shares::of(&found.shares, strategies))?;
+                let guided = f64::from(value(found)).powi(2) / f64::from(shares.of_all);
+                let unguided = known.as_ref().map_or(1.0, |known| tracks.unguided(&track, &shares, known));
+                Some((found.tile, [guided, guided / unguided]))
+            };
+            self.found[part].iter().filter_map(moments).collect()
         };
-        let of = |part: usize| self.found[part].iter().filter_map(|found| moments(part, found)).collect();
         (0..self.found.len()).into_par_iter().map(of).collect()
     }
 
@@ -440,7 +449,7 @@ impl Trial {
     /// weight stand for others.
     fn lessons(&self, strategies: Strategies, samples: f64) -> Vec<Lesson> {
         let value = self.values();
-        let each = |part: usize, take: &mut dyn FnMut(Lesson)| {
+        let each = |part: usize, take: &mut dyn FnMut(f32, &dyn Fn() -> Lesson)| {
             for found in &self.found[part] {
                 let Some((track, shares)) = found.track.zip(Shares::of(&found.shares, strategies)) else {
                     continue;
@@ -454,16 +463,16 @@ impl Trial {
         let parts = || (0..self.found.len()).into_par_iter();
         let total = |part| {
             let mut total = 0.0;
-            each(part, &mut |lesson| total += f64::from(lesson.weight));
+            each(part, &mut |weight, _| total += f64::from(weight));
             total
         };
         let step =
             (parts().map(total).collect::<Vec<f64>>().iter().sum::<f64>() / (LESSONS * samples)) as f32;
         let lessons = |part| {
             let (mut thinning, mut lessons) = (Thinning::by(step), Vec::new());
-            each(part, &mut |lesson| {
-                let kept = thinning.keeps(lesson.weight);
-                lessons.extend(kept.map(|weight| Lesson { weight: samples as f32 * weight, ..lesson }));
+            each(part, &mut |weight, lesson| {
+                let kept = thinning.keeps(weight);
+                lessons.extend(kept.map(|weight| Lesson { weight: samples as f32 * weight, ..lesson() }));
             });
             lessons
         };
