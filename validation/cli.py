@@ -29,6 +29,7 @@ from validation import (
     references,
     selftest,
     studies,
+    thresholds,
     truths,
 )
 from validation.cluster import cli as cluster
@@ -60,6 +61,7 @@ def parser() -> argparse.ArgumentParser:
     add_bias(commands)
     add_progressive(commands)
     add_guide(commands)
+    add_thresholds(commands)
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
@@ -233,6 +235,11 @@ def add_progressive(commands: Commands) -> None:
 def add_guide(commands: Commands) -> None:
     command = add(commands, "guide", guide.run, "What --guide gives: error after the same time with it and without, in eighteen scenes.")
     guide.add_options(command)
+
+
+def add_thresholds(commands: Commands) -> None:
+    command = add(commands, "thresholds", thresholds.run, "P03T's tests A-F at its own thresholds: time with a guide and without, learning included.")
+    thresholds.add_options(command)
 
 
 def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:

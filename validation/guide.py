@@ -172,7 +172,7 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
         f"# What a guide gives\n\n    {command}\n\n"
         f"relMSE without what is learnt (`--starts emitted --guide never`) over relMSE with it (`--guide auto`, the default of `bdpt`, *followed* or not), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
         f"{options.seeds} seeds ({options.preview_seeds} by `gather`); ± one standard error. Reference of each seed: the mean of `bdpt` by `--guide auto` of the other seeds, whose own noise is taken off. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
-        "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its.\n\n"
+        "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its. P03T's boxes by a path tracer like P03T's own, at its thresholds: [thresholds.md](thresholds.md).\n\n"
         "| scene | starts | guide, by bdpt | wanted | followed | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | portals | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
     )
