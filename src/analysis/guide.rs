@@ -115,10 +115,11 @@ pub struct Findings {
     size: [usize; 2],
 }
 
-/// What renders of `setup` by `settings` learn.
-pub fn examine(setup: &Setup, settings: &Settings) -> Findings {
+/// What renders of `setup` by `settings` learn for samples of the number `sample`.
+pub fn examine(setup: &Setup, settings: &Settings, sample: usize) -> Findings {
     let began = Instant::now();
-    let learnt = training::learn_for(&setup.scene, &setup.film, settings);
+    let rounds = training::rounds_for(&setup.film, settings, sample);
+    let learnt = training::learn_rounds(&setup.scene, &setup.film, settings, rounds);
     let seconds = began.elapsed().as_secs_f64();
     let seen = Instrument::new(&setup.scene, &setup.film, settings).first_interactions();
     let cell = |seen: &Option<Interaction>| {

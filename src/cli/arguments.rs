@@ -197,7 +197,7 @@ pub struct Render {
     /// Stop after this time: a number with the unit s, m or h (90, 90s, 5m, 1.5h; seconds without a unit)
     /// [default: no limit]
     ///
-    /// The samples completed by then are written. A pilot and what is learnt beforehand count, up to half of it. With
+    /// The samples completed by then are written. A pilot and what is learnt count, up to half of it if beforehand. With
     /// --spp as well, the render stops at whichever limit is reached first. Alpha and the layers of an aov integrator
     /// are rendered afterwards, within a tenth of a second or one pass over the image.
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true)]

@@ -78,13 +78,13 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS))]
     pub starts: Option<bool>,
 
-    /// When walks follow a guide: where light comes from and where it is seen from, place by place, learnt before the image is
-    /// begun [default: the scene's, or auto by gather and by bdpt with a pilot, else never]
+    /// When walks follow a guide: where light comes from and where it is seen from, place by place
+    /// [default: the scene's, or auto by gather and by bdpt with a pilot, else never]
     ///
     /// auto: where it pays, as the first quarter of learning foresees: where light comes through portals, such as a keyhole, and
     /// where pt has to find light that comes round corners, which light subpaths find anyway. Where bdpt has little noise, nothing
-    /// is learnt to find out. always: also where it does not pay. Learning takes a second or so; the expected image is the same.
-    /// Needs the heuristic balance.
+    /// is learnt to find out. always: also where it does not pay. Learning takes a second or so before the image is begun, and
+    /// goes on after so many samples that more of it pays; the expected image is the same. Needs the heuristic balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
     pub guide: Option<Guiding>,
 

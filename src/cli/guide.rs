@@ -1,4 +1,4 @@
-//! `tyndall guide`: what is learnt of a scene before it is rendered with a guide.
+//! `tyndall guide`: what is learnt of a scene that is rendered with a guide.
 
 use super::{
     arguments::{Scene, Size, size, threads},
@@ -24,6 +24,10 @@ pub struct Arguments {
     /// Folder to write to, created if missing [default: the name of the scene followed by -guide, in the current folder]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
+
+    /// What the samples of this number follow, counted from 0 for each pixel: the more come before it, the more is learnt
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    pub sample: u32,
 
     /// Threads to learn with [default: one per processor]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
@@ -55,7 +59,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     settings.options.effort.learnt_starts = starts && settings.options.strategies.need_light_walks();
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
     outputs::check_short(&FILES.map(|name| folder.join(name)), &[])?;
-    let findings = super::threads(arguments.threads)?.install(|| guide::examine(&setup, &settings));
+    let findings = super::threads(arguments.threads)?
+        .install(|| guide::examine(&setup, &settings, arguments.sample as usize));
     let files = findings.write(&folder)?;
     say(&described(&findings.report));
     say(&outputs::listed(&folder, &files));

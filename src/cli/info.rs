@@ -44,7 +44,12 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     let learnt = training::learn_for(&setup.scene, &setup.film, &settings).bytes();
     say(&describe(&setup, &settings, &plan));
     if learnt > 0 {
-        say(&format!("learnt      {:.1} MiB, before the image is begun", learnt as f64 / f64::from(1 << 20)));
+        let later = if settings.options.effort.is_guided() { ", and more for later samples" } else { "" };
+        say(&format!(
+            "learnt      {:.1} MiB, before the image is begun{}",
+            learnt as f64 / f64::from(1 << 20),
+            later
+        ));
     }
     arguments.answer.give(&figures(&setup, &plan, learnt))
 }

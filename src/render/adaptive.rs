@@ -213,17 +213,19 @@ fn active([first, second]: &[Half; 2]) -> Vec<bool> {
 }
 
 /// A render to a precision at work.
-pub(super) struct Adaptive<'a> {
-    pub bench: &'a Instrument<'a>,
+pub(super) struct Adaptive<'a, 's> {
+    pub bench: &'a Instrument<'s>,
     pub stopwatch: &'a Stopwatch,
     /// Called now and then; what it sees at the end is that from which the render can go on.
     pub watch: &'a mut dyn FnMut(Progress, &Halves),
 }
 
-impl Adaptive<'_> {
+impl Adaptive<'_, '_> {
     /// Goes on from `halves` until every pixel has converged or the budget is spent.
     pub fn run(mut self, halves: &mut Halves) {
         let before = halves.elapsed;
+        // However long that takes, or no time would be enough to go on.
+        self.bench.learn(halves.passes() as usize, &|| false);
         while halves.active.contains(&true) {
             if !self.advance(halves, before) {
                 self.tell(halves, true);
@@ -260,7 +262,9 @@ impl Adaptive<'_> {
     fn work(&self, tasks: Range<usize>, active: &[bool]) -> Vec<Outcome> {
         let wants = |pixel: usize| active[pixel];
         let is_over = || self.bench.settings.budget.is_over(self.stopwatch.elapsed());
-        self.bench.work_until(tasks, is_over, |pass, block| self.bench.render(pass, block, &wants))
+        let blocks = self.bench.compiled.blocks().count();
+        let pass = |task| task / blocks;
+        self.bench.work_until(tasks, pass, is_over, |pass, block| self.bench.render(pass, block, &wants))
     }
 
     fn tell(&mut self, halves: &Halves, is_last: bool) {

@@ -31,7 +31,7 @@ use crate::{
 use std::ops::Range;
 
 /// What every estimator can do, whatever its profile: whole blocks and walks, so that the call costs nothing.
-pub(super) trait Compiled: Sync {
+pub(super) trait Compiled: Send + Sync {
     /// How pixels are divided.
     fn blocks(&self) -> &Blocks;
     /// See [`Blocks::render`]; with a `sorter`, [`sorted::block`].
@@ -70,14 +70,8 @@ pub(super) struct Ready<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Ready<'a, P> {
-    /// With blocks of so many pixels.
-    fn new(scene: &'a Scene, film: &'a Film, settings: &Settings, per_block: usize) -> Self {
-        let learnt = training::learn_for(scene, film, settings);
-        Self::with(scene, film, settings, learnt, per_block)
-    }
-
-    /// The same by what was `learnt`.
-    pub fn with(
+    /// By what was `learnt`, with blocks of so many pixels.
+    pub fn new(
         scene: &'a Scene,
         film: &'a Film,
         settings: &Settings,
@@ -101,9 +95,10 @@ impl<'a, P: Profile> Ready<'a, P> {
         scene: &'a Scene,
         film: &'a Film,
         settings: &Settings,
+        learnt: Learnt,
         per_block: usize,
     ) -> Box<dyn Compiled + 'a> {
-        Box::new(Self::new(scene, film, settings, per_block))
+        Box::new(Self::new(scene, film, settings, learnt, per_block))
     }
 }
 
@@ -155,12 +150,13 @@ impl<P: Profile> Compiled for Ready<'_, P> {
     }
 }
 
-/// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for, with blocks of so
-/// many pixels.
+/// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for, by what was `learnt`,
+/// with blocks of so many pixels.
 pub(super) fn choose<'a>(
     scene: &'a Scene,
     film: &'a Film,
     settings: &Settings,
+    learnt: Learnt,
     per_block: usize,
 ) -> Box<dyn Compiled + 'a> {
     let Options { heuristic, effort, strategies, .. } = settings.options;
@@ -181,15 +177,16 @@ pub(super) fn choose<'a>(
         (Heuristic::Balance, ProfileName::ChromaticFog) => Ready::<ChromaticFog>::prepare,
         (Heuristic::Balance, ProfileName::Everything) => Ready::<Everything>::prepare,
     };
-    prepare(scene, film, settings, per_block)
+    prepare(scene, film, settings, learnt, per_block)
 }
 
 /// What a pilot by `settings` says.
 pub(super) fn pilot(scene: &Scene, film: &Film, settings: &Settings) -> Pilot {
-    Pilot::fly(&Ready::<ByKind>::new(scene, film, settings, PIXELS_PER_BLOCK))
+    let learnt = training::learn_for(scene, film, settings);
+    Pilot::fly(&Ready::<ByKind>::new(scene, film, settings, learnt, PIXELS_PER_BLOCK))
 }
 
-/// What `tasks` by `settings` say of walks that begin and go on by what was `learnt` before.
+/// What `tasks` by `settings` say of walks that begin and go on by what was `learnt` before; none if it `is_over` before.
 pub(super) fn trial(
     scene: &Scene,
     film: &Film,
@@ -197,8 +194,10 @@ pub(super) fn trial(
     learnt: Learnt,
     tasks: Range<usize>,
     for_guide: bool,
-) -> Trial {
-    Trial::run(&Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK), tasks, for_guide)
+    is_over: &(dyn Fn() -> bool + Sync),
+) -> Option<Trial> {
+    let ready = Ready::<ByKind>::new(scene, film, settings, learnt, PIXELS_PER_BLOCK);
+    Trial::run(&ready, tasks, for_guide, is_over)
 }
 
 /// What camera subpaths of `tasks` by `settings` see of places that they come to.
@@ -209,6 +208,6 @@ pub(super) fn look(
     learnt: Learnt,
     tasks: Range<usize>,
 ) -> Looks {
-    let ready = Ready::<ByKind>::with(scene, film, settings, learnt, PIXELS_PER_BLOCK);
+    let ready = Ready::<ByKind>::new(scene, film, settings, learnt, PIXELS_PER_BLOCK);
     radiance::look(&ready, tasks)
 }

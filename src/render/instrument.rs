@@ -6,6 +6,7 @@ use super::{
     block::{Outcome, PIXELS_PER_BLOCK, Pass},
     compiled::{self, Compiled},
     sorted::Sorter,
+    training::{self, LATER_ROUNDS, ROUNDS},
 };
 use crate::{
     film::{Film, layer::Layer},
@@ -16,7 +17,10 @@ use crate::{
 use rayon::prelude::*;
 use std::{
     ops::Range,
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::{
+        OnceLock,
+        atomic::{AtomicUsize, Ordering},
+    },
     time::{Duration, Instant},
 };
 
@@ -29,7 +33,13 @@ pub struct Instrument<'a> {
     pub(super) scene: &'a Scene,
     pub(super) film: &'a Film,
     pub(super) settings: Settings,
+    /// By what was learnt before the first sample.
     pub(super) compiled: Box<dyn Compiled + 'a>,
+    /// True if its walks follow a guide: more is learnt for later samples.
+    is_guided: bool,
+    /// By what is learnt in later rounds.
+    later: [OnceLock<Box<dyn Compiled + 'a>>; LATER_ROUNDS],
+    per_block: usize,
     /// What the image is sorted into besides.
     sorter: Option<Sorter>,
 }
@@ -42,13 +52,11 @@ impl<'a> Instrument<'a> {
 
     /// The same with blocks of so many pixels.
     pub(super) fn of_blocks(per_block: usize, scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
-        Self {
-            scene,
-            film,
-            settings: *settings,
-            compiled: compiled::choose(scene, film, settings, per_block),
-            sorter: None,
-        }
+        let learnt = training::learn_for(scene, film, settings);
+        let is_guided = learnt.guide.is_some();
+        let compiled = compiled::choose(scene, film, settings, learnt, per_block);
+        let (settings, later, sorter) = (*settings, Default::default(), None);
+        Self { scene, film, settings, compiled, is_guided, later, per_block, sorter }
     }
 
     /// The same whose blocks have the layers among `layers` that contributions are sorted into.
@@ -69,30 +77,61 @@ impl<'a> Instrument<'a> {
         (0..film.len()).into_par_iter().map(first).collect()
     }
 
-    /// One sample of every pixel of `block` that `wants` one.
-    pub(super) fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
-        self.compiled.render(self.sorter.as_ref(), pass, block, wants)
+    /// Rounds of learning for `pass`.
+    fn rounds_for(&self, pass: usize) -> usize {
+        if self.is_guided { training::rounds_for(self.film, &self.settings, pass) } else { ROUNDS }
     }
 
-    /// `work` on tasks, each a block of a pass, on all threads, until there are none left or `is_over`; the results in
-    /// their order. Threads take the tasks in turn and finish what they took: what is done is the first of them, and at
-    /// least one.
+    /// The estimator of `pass`, by what is learnt for it. Tasks of a render find that [learnt](Self::learn), for it takes all
+    /// threads.
+    pub(super) fn at(&self, pass: usize) -> &(dyn Compiled + 'a) {
+        let Self { scene, film, settings, per_block, .. } = self;
+        let rounds = self.rounds_for(pass);
+        let compile = || {
+            let learnt = training::learn_rounds(scene, film, settings, rounds);
+            compiled::choose(scene, film, settings, learnt, *per_block)
+        };
+        let later = rounds.checked_sub(ROUNDS + 1).map(|later| &self.later[later]);
+        later.map_or(&*self.compiled, |later| &**later.get_or_init(compile))
+    }
+
+    /// Learns what it takes for `pass`; false if it `is_over` before.
+    pub(super) fn learn(&self, pass: usize, is_over: &(dyn Fn() -> bool + Sync)) -> bool {
+        let rounds = self.rounds_for(pass);
+        let is_known = rounds == ROUNDS || self.later[rounds - ROUNDS - 1].get().is_some();
+        is_known
+            || training::learn_until(self.scene, self.film, &self.settings, rounds, is_over) && {
+                self.at(pass);
+                true
+            }
+    }
+
+    /// One sample of every pixel of `block` that `wants` one.
+    pub(super) fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
+        self.at(pass).render(self.sorter.as_ref(), pass, block, wants)
+    }
+
+    /// `work` on tasks, each a block of the pass that `pass` names for it, on all threads, until there are none left or
+    /// `is_over`; the results in their order. Threads take the tasks in turn and finish what they took: what is done is the first
+    /// of them. At least one is, unless it is over before what that takes is learnt.
     pub(super) fn work_until<T: Send>(
         &self,
         tasks: Range<usize>,
+        pass: impl Fn(usize) -> usize + Sync,
         is_over: impl Fn() -> bool + Sync,
         work: impl Fn(usize, usize) -> T + Sync,
     ) -> Vec<T> {
         let blocks = self.compiled.blocks().count();
+        let end = tasks.clone().find(|task| !self.learn(pass(*task), &is_over)).unwrap_or(tasks.end);
         let next = AtomicUsize::new(tasks.start);
         let lists = rayon::broadcast(|_| {
             let mut done = Vec::new();
             while next.load(Ordering::Relaxed) == tasks.start || !is_over() {
                 let task = next.fetch_add(1, Ordering::Relaxed);
-                if task >= tasks.end {
+                if task >= end {
                     break;
                 }
-                done.push((task, work(task / blocks, task % blocks)));
+                done.push((task, work(pass(task), task % blocks)));
             }
             done
         });
@@ -107,13 +146,14 @@ impl<'a> Instrument<'a> {
         tasks: Range<usize>,
         work: impl Fn(usize, usize) -> T + Sync,
     ) -> Vec<T> {
-        self.work_until(tasks, || false, work)
+        let blocks = self.compiled.blocks().count();
+        self.work_until(tasks, |task| task / blocks, || false, work)
     }
 
     /// Shows `see` the image of every one of `passes`, in order; the time that making them took.
     pub fn passes(&self, passes: Range<usize>, see: &mut dyn FnMut(&[Spectrum])) -> Duration {
         let mut image = Pass::new(self.film.len());
-        let work = |pass, block| self.compiled.render(None, pass, block, &|_| true);
+        let work = |pass, block| self.at(pass).render(None, pass, block, &|_| true);
         self.in_order(passes, work, |outcome, ends_pass| {
             image.add(&outcome);
             if ends_pass {

@@ -279,16 +279,18 @@ fn accumulate(
     let (blocks, before) = (compiled.blocks(), sums.elapsed);
     let queue = Queue::new(budget, sums, blocks.count());
     let (mut next, mut noted) = (sums.blocks.min(queue.end), Instant::now());
+    // However long that takes, or no time would be enough to go on.
+    if next < queue.end {
+        bench.learn(queue.sample(next) as usize, &|| false);
+    }
     loop {
         let end = queue.end.min(next + BLOCKS_AT_ONCE);
         let tasks = next..monitor.limit_tasks(end, (next / queue.per_pass) as u64, queue.per_pass);
         let is_over = || budget.is_over(stopwatch.elapsed());
-        let outcomes = bench.work_until(tasks.clone(), is_over, |pass, block| {
-            let sample = queue.sample(pass * queue.per_pass) as usize;
-            match preview {
-                None => bench.render(sample, block, &|_| true),
-                Some(preview) => blocks.show(preview, film, *seed, sample, block),
-            }
+        let pass = |task| queue.sample(task) as usize;
+        let outcomes = bench.work_until(tasks.clone(), pass, is_over, |pass, block| match preview {
+            None => bench.render(pass, block, &|_| true),
+            Some(preview) => blocks.show(preview, film, *seed, pass, block),
         });
         for (task, outcome) in tasks.clone().zip(&outcomes) {
             sums.add(queue.sample(task), outcome, queue.per_pass);

@@ -164,7 +164,7 @@ impl Instrument<'_> {
     /// them may land on the pixel, the camera subpath, and once more the light subpaths that contributed
     /// something.
     pub fn sample(&self, pass: usize, pixel: usize) -> PixelSample {
-        let (blocks, compiled) = (self.compiled.blocks(), &self.compiled);
+        let (blocks, compiled) = (self.compiled.blocks(), self.at(pass));
         let own = (0..blocks.count()).find(|block| blocks.pixels(*block).any(|p| p == pixel)).unwrap_or(0);
         let splats = self.work(0..blocks.count(), |_, block| compiled.splats(pass, block, pixel));
         let EyeSample { film, aperture, factor, hero, camera, tries } = compiled.eye_sample(pass, own, pixel);

@@ -96,9 +96,9 @@ impl Pass {
 }
 
 /// A primary ray and what it hits first; nulls and boundaries of media count, as in Mitsuba.
-struct View<'a> {
+struct View<'a, 's> {
     scene: &'a Scene,
-    bench: &'a Instrument<'a>,
+    bench: &'a Instrument<'s>,
     film: Vec2,
     aperture: Vec2,
     ray: Ray,
@@ -109,8 +109,8 @@ struct View<'a> {
     step: f32,
 }
 
-impl<'a> View<'a> {
-    fn new(bench: &'a Instrument<'a>, environment: bool, start: &CameraStart, passes: u64) -> Self {
+impl<'a, 's> View<'a, 's> {
+    fn new(bench: &'a Instrument<'s>, environment: bool, start: &CameraStart, passes: u64) -> Self {
         let scene = bench.scene;
         let CameraStart { position: film, aperture, .. } = *start;
         let ray = scene.sensor.ray(film, aperture).ray;

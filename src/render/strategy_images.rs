@@ -250,7 +250,7 @@ impl Instrument<'_> {
         let mut parts =
             StrategyImages { table, images: table.all().map(images).collect(), whole: Moments::new(pixels) };
         let mut whole = vec![Spectrum::ZERO; pixels];
-        let work = |pass, block| self.compiled.parts(table, pass, block);
+        let work = |pass, block| self.at(pass).parts(table, pass, block);
         self.in_order(0..passes, work, |block, ends_pass| {
             block.iter().for_each(|part| parts.take(&mut whole, part));
             if ends_pass {

@@ -172,7 +172,7 @@ impl Instrument<'_> {
     /// The times of `passes` passes.
     pub fn times(&self, table: StrategyTable, passes: usize, progress: &mut dyn FnMut(usize)) -> Times {
         let (mut times, mut done) = (Times::new(table), 0);
-        let work = |pass, block| self.compiled.time(table, pass, block);
+        let work = |pass, block| self.at(pass).time(table, pass, block);
         self.in_order(0..passes, work, |block, ends_pass| {
             times.add(&block);
             if ends_pass {

@@ -5,6 +5,9 @@
 //! its contribution over the pixel's mean, times their share in the weights. In balance, starts are then as dense, together
 //! with all other strategies, as their light is in the image. Next-event estimation finds openings long before light subpaths
 //! do. Directions of walks count likewise, for what those strategies are to make that have to find them.
+//!
+//! No sample of the image teaches, so that all are independent. Those of high numbers follow what more rounds learnt: an image of
+//! few samples learns little, one of many much, and each part of an image learns what the whole learns for the same samples.
 
 use super::{
     Settings,
@@ -38,14 +41,27 @@ use std::{collections::HashMap, ops::Range, sync::Arc};
 const SEED: u64 = 0x7374_6172_7473;
 /// Camera subpaths of the first round; each of the others has twice as many as the one before.
 const FIRST: usize = 2048;
-/// Rounds.
-const ROUNDS: u32 = 4;
-/// Segments after which no further round begins.
+/// Rounds before an image is begun.
+pub(super) const ROUNDS: usize = 4;
+/// Of a guide, as many more as it takes to learn something, and to follow what is new in it, and while that brings much; up to so
+/// many.
+const FOLLOWED: usize = 6;
+/// What two rounds leave of the second moment, at most, where they bring much.
+const BRINGS: f64 = 0.9;
+/// Rounds in all, of which the last two teach a guide.
+const MOST_ROUNDS: usize = 8;
+/// Of these, as many as there are at most while it is made.
+pub(super) const LATER_ROUNDS: usize = MOST_ROUNDS - ROUNDS;
+/// Samples of an image for each camera subpath of the first rounds that are learnt while it is made, before what they learn is worth
+/// its time: a path that teaches takes 3 times as long as one of the image by camera and light subpaths, and some 10 times as long
+/// by camera subpaths alone.
+const PER_SUBPATH: f64 = 8.0;
+const PER_CAMERA_SUBPATH: f64 = 24.0;
+/// Segments after which no further round begins, without a guide and for one.
 const SEGMENTS: f64 = 1e6;
-/// Rounds for a guide, of which the last two teach.
-const GUIDE_ROUNDS: u32 = 6;
-/// From so many on it is given up where it does not seem to pay; where nothing is learnt, after one more.
-const JUDGING_ROUNDS: u32 = 3;
+const GUIDE_SEGMENTS: f64 = 4e6;
+/// From so many rounds on a guide is given up where it does not seem to pay; where nothing is learnt, after one more.
+const JUDGING_ROUNDS: usize = 3;
 /// What a guide that pays leaves of the second moment, at most, by camera subpaths alone: looking up takes a sixth of the time, and
 /// learning some.
 const PAYS: f64 = 0.75;
@@ -53,8 +69,6 @@ const PAYS: f64 = 0.75;
 const PAYS_CONNECTED: f64 = 0.5;
 /// Tiles with the greatest second moments that are left out of it, as few samples decide there.
 const OUTLIERS: f64 = 0.04;
-/// Segments for a guide.
-const GUIDE_SEGMENTS: f64 = 4e6;
 /// Longest path: later vertices tell little of where light starts.
 const DEEPEST: u32 = 32;
 /// The image is divided into so many tiles across and down, at most, whose pixels count as one.
@@ -64,29 +78,57 @@ const LESSONS: f64 = 3.0;
 /// Of the image's mean, added to that of each tile.
 const FLOOR: f64 = 0.1;
 
-/// What renders by `settings` learn beforehand: where light subpaths start that reach the image, where walks go, and what camera
-/// subpaths end in, as far as they ask for it. Kept with the scene.
+/// What renders by `settings` learn before their first sample: where light subpaths start that reach the image, where walks go,
+/// and what camera subpaths end in, as far as they ask for it. Kept with the scene.
 pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
+    learn_rounds(scene, film, settings, ROUNDS)
+}
+
+/// The rounds whose guide the samples of `pass` follow, one of each pixel: the more samples there are before it, the more is
+/// learnt, as the root of their number, for each round brings less than the one before. It is the same whatever samples a render
+/// begins with.
+pub fn rounds_for(film: &Film, settings: &Settings, pass: usize) -> usize {
+    let light = settings.options.strategies.need_light_walks();
+    let least = FIRST as f64 * if light { PER_SUBPATH } else { PER_CAMERA_SUBPATH };
+    let subpaths = film.len() as f64 * pass as f64;
+    let is_due = |rounds: &usize| subpaths >= least * (1_usize << (2 * rounds - ROUNDS - 1)) as f64;
+    (ROUNDS + 1..=MOST_ROUNDS).take_while(is_due).last().unwrap_or(ROUNDS)
+}
+
+/// Learns a guide for `settings` by so many `rounds`; false if it `is_over` before.
+pub(super) fn learn_until(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    rounds: usize,
+    is_over: &(dyn Fn() -> bool + Sync),
+) -> bool {
+    Training::recall(scene, film, Wanted::by(settings.options, true)).go_on(rounds, is_over).is_some()
+}
+
+/// What renders by `settings` learn by so many `rounds`.
+pub fn learn_rounds(scene: &Scene, film: &Film, settings: &Settings, rounds: usize) -> Learnt {
     let Options { strategies, effort, max_depth, .. } = settings.options;
-    let guided = follows_guide(scene, film, settings);
-    let wanted = Wanted::by(settings.options, guided);
-    let key = wanted.key(film);
-    let mut learnt = match wanted {
+    let wanted = Wanted::by(settings.options, follows_guide(scene, film, settings));
+    let after = |rounds| match wanted {
         Wanted { starts: None, guide: None, .. } => Learnt::default(),
-        _ => scene.lights.learnt.recall(key.clone(), || learn(scene, film, wanted, false)),
+        _ => {
+            let training = &mut Training::recall(scene, film, wanted);
+            let learnt = training.go_on(rounds, &|| false).unwrap_or_default();
+            Learnt { starts: learnt.starts.filter(|_| effort.learnt_starts), ..learnt }
+        }
     };
-    if !effort.learnt_starts {
-        learnt.starts = None;
-    }
+    let first = after(ROUNDS);
+    let learnt = if rounds > ROUNDS { after(rounds) } else { first.clone() };
     // Camera subpaths that end before they gather need nothing to end in.
     if !strategies.gather || max_depth.is_some_and(|depth| depth <= 2) {
         return learnt;
     }
     let most_bounces = radiance::most_bounces(max_depth);
     let settings = of_learning(wanted.options);
-    let radiance = || Arc::new(radiance::learn(scene, film, &settings, &learnt, most_bounces));
-    let radiance = scene.lights.radiance.recall(format!("{key} {most_bounces}"), radiance);
-    Learnt { radiance: Some(radiance), ..learnt }
+    let radiance = || Arc::new(radiance::learn(scene, film, &settings, &first, most_bounces));
+    let key = format!("{} {most_bounces}", wanted.key(film));
+    Learnt { radiance: Some(scene.lights.radiance.recall(key, radiance)), ..learnt }
 }
 
 /// True if walks by `settings` follow a guide.
@@ -100,13 +142,7 @@ pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
 
 /// True if it would pay that walks by `options` follow a guide, as the first rounds of learning it foresee.
 pub fn guide_pays(scene: &Scene, film: &Film, options: Options) -> bool {
-    let wanted = Wanted::by(options, true);
-    let learnt = learn(scene, film, wanted, true);
-    let pays = learnt.guide.is_some();
-    if pays {
-        scene.lights.learnt.keep(wanted.key(film), learnt);
-    }
-    pays
+    Training::recall(scene, film, Wanted::by(options, true)).pays()
 }
 
 /// What is to be learnt.
@@ -165,55 +201,147 @@ fn of_learning(options: Options) -> Settings {
     }
 }
 
-/// A guide only where it pays, if that `is_judged`.
-fn learn(scene: &Scene, film: &Film, wanted: Wanted, is_judged: bool) -> Learnt {
-    let settings = of_learning(wanted.options);
-    let (rounds, most) =
-        if wanted.guide.is_some() { (GUIDE_ROUNDS, GUIDE_SEGMENTS) } else { (ROUNDS, SEGMENTS) };
-    let (mut learnt, mut done, mut segments) = (Learnt::default(), 0, 0.0);
-    let mut before = Vec::new();
-    for round in 0..rounds {
-        let tasks = done..done + blocks_for(film.len(), FIRST << round);
-        done = tasks.end;
-        let trial = compiled::trial(scene, film, &settings, learnt.clone(), tasks, wanted.guide.is_some());
-        segments += trial.segments;
-        let is_last = segments > most || round + 1 == rounds;
-        if let Some(compete) = wanted.starts {
-            learnt.starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
-        }
-        if let Some(strategies) = wanted.guide {
-            let lessons = trial.lessons(strategies, (FIRST << round) as f64);
-            let followed = learnt.guide.take();
-            let left = |guide: &Arc<Guide>| trial.second_moment(strategies, guide);
-            let second_moment = followed.as_ref().map_or(1.0, left);
-            let guide = Guide::learn([&before[..], &lessons].concat(), settings.options.basis);
-            learnt.guide = guide.map(|guide| Arc::new(guide.judged(second_moment)));
-            before = lessons;
-            let bound = if strategies.need_light_walks() { PAYS_CONNECTED } else { PAYS };
-            let known = [followed.as_deref(), learnt.guide.as_deref()];
-            if is_judged && !may_pay(known, bound, round + 1, is_last) {
-                return Learnt { guide: None, ..learnt };
-            }
-        }
-        if is_last {
-            break;
-        }
-    }
-    // Light's walks found paths for those of the camera, which go on alone.
-    if wanted.guide.is_some_and(|strategies| !strategies.need_light_walks()) {
-        let only = |guide: Arc<Guide>| Arc::new(Arc::unwrap_or_clone(guide).only(Transport::Radiance));
-        learnt.guide = learnt.guide.map(only);
-    }
-    learnt
+/// What a scene teaches, round by round.
+struct Training<'a> {
+    scene: &'a Scene,
+    film: &'a Film,
+    wanted: Wanted,
+    known: Known,
 }
 
-/// False where after so many rounds a guide does not seem to leave less than `bound`, or in the end was not seen to: the second of
-/// these, learnt by walks that followed the first. What portals give is seen in the round after that in which they are found.
-fn may_pay([followed, learnt]: [Option<&Guide>; 2], bound: f64, rounds: u32, is_last: bool) -> bool {
-    let Some(guide) = learnt else { return rounds <= JUDGING_ROUNDS };
-    let has_portals = |guide: &Guide| !guide.portals().is_empty();
-    let is_new = followed.is_none_or(|followed| has_portals(guide) && !has_portals(followed));
-    guide.second_moment < bound || !is_last && (is_new || rounds < JUDGING_ROUNDS)
+/// What is known by now.
+#[derive(Clone, Default)]
+struct Known {
+    /// After each round, for those walks that a render runs.
+    learnt: Vec<Learnt>,
+    /// After the last, for all walks.
+    latest: Learnt,
+    /// Of the last round.
+    lessons: Arc<Vec<Lesson>>,
+    /// Blocks of passes that were traced, and their segments.
+    tasks: usize,
+    segments: f64,
+}
+
+impl<'a> Training<'a> {
+    /// As far as it is known with the scene.
+    fn recall(scene: &'a Scene, film: &'a Film, wanted: Wanted) -> Self {
+        let known = scene.lights.learnt.known(&wanted.key(film)).unwrap_or_default();
+        Self { scene, film, wanted, known }
+    }
+
+    /// What there is to follow after so many rounds and those that follow what was new by then; none if it `is_over` before.
+    fn go_on(&mut self, rounds: usize, is_over: &(dyn Fn() -> bool + Sync)) -> Option<Learnt> {
+        let had = self.known.learnt.len();
+        while self.after(rounds).is_none() && self.round(is_over) {}
+        if self.known.learnt.len() > had {
+            self.keep();
+        }
+        self.after(rounds).cloned()
+    }
+
+    fn keep(&self) {
+        self.scene.lights.learnt.keep(self.wanted.key(self.film), self.known.clone());
+    }
+
+    fn after(&self, rounds: usize) -> Option<&Learnt> {
+        let done = self.known.learnt.len();
+        let last = (rounds..=done).find(|rounds| self.is_settled(*rounds));
+        self.known.learnt.get(last.or(self.has_ended().then_some(done))? - 1)
+    }
+
+    /// True once no further round should begin.
+    fn has_ended(&self) -> bool {
+        let most = if self.wanted.guide.is_some() { GUIDE_SEGMENTS } else { SEGMENTS };
+        self.known.segments > most
+    }
+
+    /// True if what is learnt after so many rounds need not be tried out by another.
+    fn is_settled(&self, rounds: usize) -> bool {
+        rounds >= FOLLOWED || !self.is_new(rounds) && !self.brings_much(rounds)
+    }
+
+    /// True if guides get better so fast that an image had better wait for the next.
+    fn brings_much(&self, rounds: usize) -> bool {
+        let left = |rounds| self.guide(rounds).map_or(1.0, |guide| guide.second_moment);
+        self.wanted.guide.is_some() && left(rounds) < BRINGS * left(rounds.saturating_sub(2))
+    }
+
+    /// The guide after so many rounds.
+    fn guide(&self, rounds: usize) -> Option<&Guide> {
+        self.known.learnt.get(rounds.checked_sub(1)?)?.guide.as_deref()
+    }
+
+    /// True if nothing is known of what the guide learnt last would bring: there is none yet, or it is the first, with portals or
+    /// at all.
+    fn is_new(&self, rounds: usize) -> bool {
+        let has_portals = |guide: &Guide| !guide.portals().is_empty();
+        let is_first = |guide| {
+            self.guide(rounds - 1).is_none_or(|followed| has_portals(guide) && !has_portals(followed))
+        };
+        self.wanted.guide.is_some() && self.guide(rounds).is_none_or(is_first)
+    }
+
+    /// True if a guide pays; what is learnt is kept then.
+    fn pays(&mut self) -> bool {
+        for rounds in 1.. {
+            while self.known.learnt.len() < rounds {
+                self.round(&|| false);
+            }
+            let is_last = rounds >= ROUNDS && self.is_settled(rounds)
+                || self.has_ended() && rounds == self.known.learnt.len();
+            if !self.may_pay(rounds, is_last) {
+                return false;
+            }
+            if is_last {
+                break;
+            }
+        }
+        self.keep();
+        true
+    }
+
+    /// False where after so many rounds a guide does not seem to leave less of the second moment than one that pays, or in the end
+    /// was not seen to. What portals give is seen in the round after that in which they are found.
+    fn may_pay(&self, rounds: usize, is_last: bool) -> bool {
+        let Some(guide) = self.guide(rounds) else { return rounds <= JUDGING_ROUNDS };
+        let connects = self.wanted.guide.is_some_and(|strategies| strategies.need_light_walks());
+        let bound = if connects { PAYS_CONNECTED } else { PAYS };
+        guide.second_moment < bound || !is_last && (self.is_new(rounds) || rounds < JUDGING_ROUNDS)
+    }
+
+    /// One more round; false if it `is_over` before it ends.
+    fn round(&mut self, is_over: &(dyn Fn() -> bool + Sync)) -> bool {
+        let Self { scene, film, wanted, known } = self;
+        let subpaths = FIRST << known.learnt.len();
+        let tasks = known.tasks..known.tasks + blocks_for(film.len(), subpaths);
+        let end = tasks.end;
+        let settings = of_learning(wanted.options);
+        let followed = known.latest.clone();
+        let trial = compiled::trial(scene, film, &settings, followed, tasks, wanted.guide.is_some(), is_over);
+        let Some(trial) = trial else { return false };
+        (known.tasks, known.segments) = (end, known.segments + trial.segments);
+        if let Some(compete) = wanted.starts {
+            known.latest.starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
+        }
+        let mut learnt = known.latest.clone();
+        if let Some(strategies) = wanted.guide {
+            let lessons = trial.lessons(strategies, subpaths as f64);
+            let left = |guide: &Arc<Guide>| trial.second_moment(strategies, guide);
+            let second_moment = known.latest.guide.as_ref().map_or(1.0, left);
+            let guide = Guide::learn([&known.lessons[..], &lessons].concat(), wanted.options.basis);
+            let guide = guide.map(|guide| Arc::new(guide.judged(second_moment)));
+            known.lessons = Arc::new(lessons);
+            known.latest.guide.clone_from(&guide);
+            // Light's walks found paths for those of the camera, which go on alone.
+            learnt.guide = match strategies.need_light_walks() {
+                true => guide,
+                false => guide.map(|guide| Arc::new(Guide::clone(&guide).only(Transport::Radiance))),
+            };
+        }
+        known.learnt.push(learnt);
+        true
+    }
 }
 
 /// Follows walks, to tell where the light of each contribution starts.
@@ -351,15 +479,19 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// Some blocks of some passes, numbered over all of them; what it finds is for a guide too or is not.
-    pub fn run<P: Profile>(ready: &Ready<'_, P>, tasks: Range<usize>, for_guide: bool) -> Self {
+    /// Some blocks of some passes, numbered over all of them; what it finds is for a guide too or is not. None if it `is_over`
+    /// before.
+    pub fn run<P: Profile>(
+        ready: &Ready<'_, P>,
+        tasks: Range<usize>,
+        for_guide: bool,
+        is_over: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Self> {
         let blocks = ready.blocks.count();
         let tiles = Tiles::of(ready.film, TILES);
         let count = tasks.len() as f64;
-        let parts: Vec<_> = tasks
-            .into_par_iter()
-            .map(|task| part(ready, [task / blocks, task % blocks], for_guide))
-            .collect();
+        let part = |task| (!is_over()).then(|| part(ready, [task / blocks, task % blocks], for_guide));
+        let parts: Vec<_> = tasks.into_par_iter().map(part).collect::<Option<_>>()?;
         let pixels = tiles.pixels();
         let mut samples = vec![0.0; pixels.len()];
         parts.iter().flat_map(|part| &part.pixels).for_each(|pixel| samples[tiles.at(*pixel)] += 1.0);
@@ -377,7 +509,7 @@ impl Trial {
             trial.found.push(camera.chain(light).collect());
             trial.tracks.extend(part.tracks);
         }
-        trial
+        Some(trial)
     }
 
     /// What contributions count for: their parts of the means of their tiles.
@@ -650,10 +782,12 @@ mod tests {
             let Setup { scene, film, integrator, .. } = build::build(&read, overrides).unwrap();
             let options = Options { strategies: Strategies::BDPT, ..integrator.options };
             let wanted = Wanted::by(options, true);
-            let learnt = learn(&scene, &film, Wanted { starts: None, ..wanted }, false);
+            let wanted = Wanted { starts: None, ..wanted };
+            let learnt = Training::recall(&scene, &film, wanted).go_on(FOLLOWED, &|| false).unwrap();
             let tasks = blocks_for(film.len(), 1 << 17);
             let trial = |learnt: &Learnt, tasks: Range<usize>| {
-                compiled::trial(&scene, &film, &of_learning(wanted.options), learnt.clone(), tasks, true)
+                let settings = of_learning(wanted.options);
+                compiled::trial(&scene, &film, &settings, learnt.clone(), tasks, true, &|| false).unwrap()
             };
             let with = trial(&learnt, 1000..1000 + tasks);
             let without = trial(&Learnt::default(), 5000..5000 + tasks);

@@ -19,18 +19,22 @@ impl Clone for Memo {
 }
 
 impl Memo {
+    /// What there is for `key`.
+    pub fn known<T: Clone + Send + Sync + 'static>(&self, key: &str) -> Option<T> {
+        match &*self.lock() {
+            Some((known, learnt)) if known == key => learnt.downcast_ref().cloned(),
+            _ => None,
+        }
+    }
+
     /// What `learn` says, once for each `key`.
     pub fn recall<T: Clone + Send + Sync + 'static>(&self, key: String, learn: impl FnOnce() -> T) -> T {
-        if let Some((known, learnt)) = &*self.lock()
-            && *known == key
-            && let Some(learnt) = learnt.downcast_ref::<T>()
-        {
-            return learnt.clone();
-        }
         // Not while locked: threads that learn may take up other work, which asks for the same.
-        let learnt = learn();
-        self.keep(key, learnt.clone());
-        learnt
+        self.known(&key).unwrap_or_else(|| {
+            let learnt = learn();
+            self.keep(key, learnt.clone());
+            learnt
+        })
     }
 
     /// From now on, `learnt` is what there is for `key`.

@@ -157,7 +157,7 @@ pub struct Effort {
     pub connections: u32,
     /// Light subpaths start where, as a pilot learns, light reaches the image.
     pub learnt_starts: bool,
-    /// When walks follow a guide, learnt beforehand.
+    /// When walks follow a guide, which is learnt.
     pub guide: Guiding,
 }
 
@@ -231,7 +231,7 @@ pub(super) const PATHS: &[Parameter] = rows! {
 /// What those have that sample paths.
 pub(super) const GUIDE: &[Parameter] = rows! {
     choice("guide", &words::<3, _>(&Guiding::NAMES), "never",
-        "When walks follow a guide, learnt beforehand: where light comes from, and where it is seen from.")
+        "When walks follow a guide: where light comes from, and where it is seen from, as is learnt.")
         .said("auto by bdpt, else never").ours(),
     choice("guide_basis", &words::<3, _>(&Basis::NAMES), "quadtree",
         "How a guide keeps directions: adaptive `quadtree`, equal `bins`, `haar` wavelets (P03T sec. 5.2.1, A.1).").ours(),

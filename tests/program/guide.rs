@@ -219,6 +219,28 @@ fn parts_of_a_guided_image_make_the_whole() {
     }
 }
 
+/// From some 25 million subpaths on, they follow what seven rounds learn; samples on both sides, by whatever threads and in
+/// whatever parts, are those of the whole.
+#[test]
+fn later_samples_follow_what_is_learnt_by_then() {
+    let sandbox = Sandbox::with_scene(&divided(1.0));
+    let run = |words: &str| sandbox.run(&format!("{words} scene.json --size 64x64 --integrator pt")).ends(0);
+    let learnt = |sample: u32| {
+        run(&format!("guide --sample {sample} -o found"));
+        numbers(&sandbox, "found/guide.json")
+    };
+    let [before, after] = [6143, 6144].map(learnt);
+    let cells = |numbers: &Value| numbers["surfaces"]["cells"].as_u64().unwrap();
+    assert!(cells(&before) < cells(&after), "{before} {after}");
+    let render = |words: &str| run(&format!("render --guide always {words}"));
+    render("--samples 6143..6146 --threads 2 --sums whole.sums -o whole.exr");
+    render("--samples 6143..6145 --threads 1 --sums a.sums -o a.exr");
+    render("--samples 6145..6146 --threads 3 --sums b.sums -o b.exr");
+    sandbox.run("merge a.sums b.sums -o merged.exr").ends(0);
+    let [whole, merged] = ["whole.exr", "merged.exr"].map(|name| sandbox.channels(name));
+    assert_eq!(whole["G"], merged["G"]);
+}
+
 /// Whether it pays is decided for each part by itself.
 #[test]
 fn parts_with_a_guide_and_without_are_put_together() {

@@ -124,8 +124,8 @@ pub fn run(
 }
 
 /// A picture in the making.
-struct Painter<'a> {
-    bench: &'a Instrument<'a>,
+struct Painter<'a, 's> {
+    bench: &'a Instrument<'s>,
     fog: Option<Preview<'a>>,
     method: Method,
     /// Pixels to shade.
@@ -162,9 +162,9 @@ impl Batch {
     }
 }
 
-impl<'a> Painter<'a> {
+impl<'a, 's> Painter<'a, 's> {
     fn new(
-        bench: &'a Instrument<'a>,
+        bench: &'a Instrument<'s>,
         fog: Option<Preview<'a>>,
         wanted: Progressive,
         started: Instant,
@@ -332,7 +332,7 @@ impl<'a> Painter<'a> {
     }
 }
 
-impl Picture for Painter<'_> {
+impl Picture for Painter<'_, '_> {
     fn image(&self) -> Image {
         Image {
             pixels: self.mesh.paint(&self.maps),
