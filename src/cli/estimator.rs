@@ -84,7 +84,8 @@ pub struct Estimator {
     /// auto: where it pays, as the first quarter of learning foresees: where light comes through portals, such as a keyhole, and
     /// where pt has to find light that comes round corners, which light subpaths find anyway. Where bdpt has little noise, nothing
     /// is learnt to find out. always: also where it does not pay. Learning takes a second or so before the image is begun, and
-    /// goes on after so many samples that more of it pays; the expected image is the same. Needs the heuristic balance.
+    /// goes on after so many samples that more of it pays, but with --error; the expected image is the same. Needs the heuristic
+    /// balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
     pub guide: Option<Guiding>,
 

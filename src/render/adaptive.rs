@@ -224,8 +224,6 @@ impl Adaptive<'_, '_> {
     /// Goes on from `halves` until every pixel has converged or the budget is spent.
     pub fn run(mut self, halves: &mut Halves) {
         let before = halves.elapsed;
-        // However long that takes, or no time would be enough to go on.
-        self.bench.learn(halves.passes() as usize, &|| false);
         while halves.active.contains(&true) {
             if !self.advance(halves, before) {
                 self.tell(halves, true);

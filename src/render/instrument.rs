@@ -35,8 +35,8 @@ pub struct Instrument<'a> {
     pub(super) settings: Settings,
     /// By what was learnt before the first sample.
     pub(super) compiled: Box<dyn Compiled + 'a>,
-    /// True if its walks follow a guide: more is learnt for later samples.
-    is_guided: bool,
+    /// True if its walks follow a guide, of which more is learnt for later samples.
+    learns_on: bool,
     /// By what is learnt in later rounds.
     later: [OnceLock<Box<dyn Compiled + 'a>>; LATER_ROUNDS],
     per_block: usize,
@@ -53,15 +53,20 @@ impl<'a> Instrument<'a> {
     /// The same with blocks of so many pixels.
     pub(super) fn of_blocks(per_block: usize, scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
         let learnt = training::learn_for(scene, film, settings);
-        let is_guided = learnt.guide.is_some();
+        let learns_on = learnt.guide.is_some();
         let compiled = compiled::choose(scene, film, settings, learnt, per_block);
         let (settings, later, sorter) = (*settings, Default::default(), None);
-        Self { scene, film, settings, compiled, is_guided, later, per_block, sorter }
+        Self { scene, film, settings, compiled, learns_on, later, per_block, sorter }
     }
 
     /// The same whose blocks have the layers among `layers` that contributions are sorted into.
     pub(super) fn sorting(self, layers: &[Layer]) -> Self {
         Self { sorter: Sorter::new(self.scene, layers), ..self }
+    }
+
+    /// The same that learns nothing more, for renders whose later passes leave out pixels: they make too few samples.
+    pub(super) fn with_one_guide(self) -> Self {
+        Self { learns_on: false, ..self }
     }
 
     /// Where a camera subpath through each pixel interacts first, see [`Estimator::first_interaction`].
@@ -79,7 +84,7 @@ impl<'a> Instrument<'a> {
 
     /// Rounds of learning for `pass`.
     fn rounds_for(&self, pass: usize) -> usize {
-        if self.is_guided { training::rounds_for(self.film, &self.settings, pass) } else { ROUNDS }
+        if self.learns_on { training::rounds_for(self.film, &self.settings, pass) } else { ROUNDS }
     }
 
     /// The estimator of `pass`, by what is learnt for it. Tasks of a render find that [learnt](Self::learn), for it takes all

@@ -184,7 +184,7 @@ pub fn go_on(
         }
         AnySums::Adaptive(halves) => {
             let (stopwatch, started) = (Stopwatch::start(), Instant::now());
-            let bench = &Instrument::new(scene, film, settings).sorting(layers);
+            let bench = &Instrument::new(scene, film, settings).sorting(layers).with_one_guide();
             let watch = &mut |progress, halves: &Halves| watch(progress, halves);
             Adaptive { bench, stopwatch: &stopwatch, watch }.run(halves);
             finish(bench, started, halves, layers)
