@@ -44,7 +44,11 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     let learnt = training::learn_for(&setup.scene, &setup.film, &settings).bytes();
     say(&describe(&setup, &settings, &plan));
     if learnt > 0 {
-        let later = if settings.options.effort.is_guided() { ", and more for later samples" } else { "" };
+        let later = if settings.options.effort.is_guided() {
+            ", and more for later samples or small errors"
+        } else {
+            ""
+        };
         say(&format!(
             "learnt      {:.1} MiB, before the image is begun{}",
             learnt as f64 / f64::from(1 << 20),

@@ -11,7 +11,8 @@ use super::{
     sorted::{self, Sorter},
     strategy_images::{self, CellContribution, StrategyTable},
     timing::{self, Times},
-    training::{self, Trial},
+    training,
+    trial::Trial,
 };
 use crate::{
     film::Film,

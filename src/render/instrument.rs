@@ -3,6 +3,7 @@
 
 use super::{
     Settings,
+    adaptive::Precision,
     block::{Outcome, PIXELS_PER_BLOCK, Pass},
     compiled::{self, Compiled},
     sorted::Sorter,
@@ -28,6 +29,17 @@ use std::{
 /// independent of their number.
 pub(super) const BLOCKS_AT_ONCE: usize = 64;
 
+/// How much of a guide is learnt.
+#[derive(Clone, Copy)]
+enum Learning {
+    /// What it takes to begin; nothing, if walks follow no guide.
+    ToBegin,
+    /// More for later samples.
+    Growing,
+    /// So many rounds for all samples.
+    Rounds(usize),
+}
+
 /// An estimator ready to make passes over `film`.
 pub struct Instrument<'a> {
     pub(super) scene: &'a Scene,
@@ -35,8 +47,7 @@ pub struct Instrument<'a> {
     pub(super) settings: Settings,
     /// By what was learnt before the first sample.
     pub(super) compiled: Box<dyn Compiled + 'a>,
-    /// True if its walks follow a guide, of which more is learnt for later samples.
-    learns_on: bool,
+    learning: Learning,
     /// By what is learnt in later rounds.
     later: [OnceLock<Box<dyn Compiled + 'a>>; LATER_ROUNDS],
     per_block: usize,
@@ -53,10 +64,10 @@ impl<'a> Instrument<'a> {
     /// The same with blocks of so many pixels.
     pub(super) fn of_blocks(per_block: usize, scene: &'a Scene, film: &'a Film, settings: &Settings) -> Self {
         let learnt = training::learn_for(scene, film, settings);
-        let learns_on = learnt.guide.is_some();
+        let learning = if learnt.guide.is_some() { Learning::Growing } else { Learning::ToBegin };
         let compiled = compiled::choose(scene, film, settings, learnt, per_block);
         let (settings, later, sorter) = (*settings, Default::default(), None);
-        Self { scene, film, settings, compiled, learns_on, later, per_block, sorter }
+        Self { scene, film, settings, compiled, learning, later, per_block, sorter }
     }
 
     /// The same whose blocks have the layers among `layers` that contributions are sorted into.
@@ -64,9 +75,14 @@ impl<'a> Instrument<'a> {
         Self { sorter: Sorter::new(self.scene, layers), ..self }
     }
 
-    /// The same that learns nothing more, for renders whose later passes leave out pixels: they make too few samples.
-    pub(super) fn with_one_guide(self) -> Self {
-        Self { learns_on: false, ..self }
+    /// The same for renders to a `precision`. Their passes leave out pixels and so do not say how many samples there are; all
+    /// follow the same guide.
+    pub(super) fn with_precision(self, precision: Precision) -> Self {
+        let learning = match self.learning {
+            Learning::Growing => Learning::Rounds(training::rounds_to(precision)),
+            other => other,
+        };
+        Self { learning, ..self }
     }
 
     /// Where a camera subpath through each pixel interacts first, see [`Estimator::first_interaction`].
@@ -84,7 +100,11 @@ impl<'a> Instrument<'a> {
 
     /// Rounds of learning for `pass`.
     fn rounds_for(&self, pass: usize) -> usize {
-        if self.learns_on { training::rounds_for(self.film, &self.settings, pass) } else { ROUNDS }
+        match self.learning {
+            Learning::ToBegin => ROUNDS,
+            Learning::Growing => training::rounds_for(self.film, &self.settings, pass),
+            Learning::Rounds(rounds) => rounds,
+        }
     }
 
     /// The estimator of `pass`, by what is learnt for it. Tasks of a render find that [learnt](Self::learn), for it takes all

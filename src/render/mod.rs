@@ -12,6 +12,8 @@ mod compiled;
 pub mod faults;
 mod fill;
 mod fog;
+mod follower;
+mod groups;
 mod half;
 pub mod instrument;
 mod monitor;
@@ -30,6 +32,7 @@ pub mod tiles;
 pub mod timing;
 mod tracks;
 pub mod training;
+mod trial;
 
 pub use monitor::Snapshot;
 
@@ -184,7 +187,8 @@ pub fn go_on(
         }
         AnySums::Adaptive(halves) => {
             let (stopwatch, started) = (Stopwatch::start(), Instant::now());
-            let bench = &Instrument::new(scene, film, settings).sorting(layers).with_one_guide();
+            let bench =
+                &Instrument::new(scene, film, settings).sorting(layers).with_precision(halves.precision);
             let watch = &mut |progress, halves: &Halves| watch(progress, halves);
             Adaptive { bench, stopwatch: &stopwatch, watch }.run(halves);
             finish(bench, started, halves, layers)

@@ -11,7 +11,9 @@ use super::{
     Settings,
     block::Blocks,
     compiled::{self, Ready},
-    training::{self, Follower, Tiles},
+    follower::Follower,
+    groups::Tiles,
+    training,
 };
 use crate::{
     film::Film,
