@@ -46,7 +46,7 @@ pub struct Reached {
 }
 
 /// Passes of a half before it is first examined: variances of fewer are too uncertain.
-const FIRST_LOOK: u64 = 16;
+pub(super) const FIRST_LOOK: u64 = 16;
 /// Passes up to the next check over those up to the last: few checks, so that chance has few opportunities to
 /// stop early.
 const GROWTH: f64 = 1.25;

@@ -3,7 +3,7 @@
 
 use super::{
     Settings,
-    adaptive::Precision,
+    adaptive::{FIRST_LOOK, Precision},
     block::{Outcome, PIXELS_PER_BLOCK, Pass},
     compiled::{self, Compiled},
     sorted::Sorter,
@@ -36,7 +36,7 @@ enum Learning {
     ToBegin,
     /// More for later samples.
     Growing,
-    /// So many rounds for all samples.
+    /// So many rounds for samples after the first look: there are some, however little time there is.
     Rounds(usize),
 }
 
@@ -75,8 +75,8 @@ impl<'a> Instrument<'a> {
         Self { sorter: Sorter::new(self.scene, layers), ..self }
     }
 
-    /// The same for renders to a `precision`. Their passes leave out pixels and so do not say how many samples there are; all
-    /// follow the same guide.
+    /// The same for renders to a `precision`. Their passes leave out pixels and so do not say how many samples there are: all
+    /// after the first look follow the same guide.
     pub(super) fn with_precision(self, precision: Precision) -> Self {
         let learning = match self.learning {
             Learning::Growing => Learning::Rounds(training::rounds_to(precision)),
@@ -102,6 +102,7 @@ impl<'a> Instrument<'a> {
     fn rounds_for(&self, pass: usize) -> usize {
         match self.learning {
             Learning::ToBegin => ROUNDS,
+            Learning::Rounds(_) if (pass as u64) < 2 * FIRST_LOOK => ROUNDS,
             Learning::Growing => training::rounds_for(self.film, &self.settings, pass),
             Learning::Rounds(rounds) => rounds,
         }

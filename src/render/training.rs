@@ -71,8 +71,8 @@ pub fn rounds_for(film: &Film, settings: &Settings, pass: usize) -> usize {
     (ROUNDS + 1..=MOST_ROUNDS).take_while(is_due).last().unwrap_or(ROUNDS)
 }
 
-/// The rounds whose guide all samples of a render to `precision` follow: one more for each fourfold number of samples, the same
-/// as within an image, counted from those for errors as great as the values.
+/// The rounds whose guide samples of a render to `precision` follow after its first look: one more for each fourfold number of
+/// samples, the same as within an image, counted from those for errors as great as the values.
 pub(super) fn rounds_to(precision: Precision) -> usize {
     let halvings = (-precision.error.log2()).ceil() as usize;
     (ROUNDS + halvings).min(MOST_ROUNDS)

@@ -241,6 +241,15 @@ fn later_samples_follow_what_is_learnt_by_then() {
     assert_eq!(whole["G"], merged["G"]);
 }
 
+/// Learning as much as a small error is worth does not come before the first samples.
+#[test]
+fn a_small_error_in_no_time_has_samples() {
+    let sandbox = Sandbox::with_scene(&divided(1.0));
+    sandbox.run("render scene.json --guide always --error 0.01 --time-limit 0.001s -o a.exr").ends(0);
+    let image = sandbox.channels("a.exr");
+    assert!(image["G"].iter().sum::<f32>() > 0.0);
+}
+
 /// Whether it pays is decided for each part by itself.
 #[test]
 fn parts_with_a_guide_and_without_are_put_together() {
