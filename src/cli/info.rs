@@ -17,9 +17,11 @@ use crate::{
     phase::PhaseModel,
     render::{Settings, budget::Budget, training},
     scene::{
-        Infinity, Scene,
+        Scene,
         build::Setup,
+        contact::Contact,
         lights::{Light, Lights},
+        media::{Infinity, MediaMap},
     },
     settings::integrator::Restriction,
     shape::ShapeModel,
@@ -73,12 +75,13 @@ fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
         scene.lights.all.iter().map(|light| format!("emitter     {}", describe_emitter(setup, light))),
     );
     lines.extend(setup.smoke.iter().map(|taken| format!("smoke       {taken}")));
-    lines.push(format!("camera      in {}", setup.medium_name(scene.sensor_medium)));
+    lines.push(format!("camera      in {}", setup.medium_name(scene.media_map.sensor)));
     if scene.lights.has_infinite() {
         lines.push(format!("infinity    {}", describe_infinity(setup)));
     }
     lines
         .extend((1..=setup.medium_names.len()).map(|i| format!("medium      {}", describe_medium(setup, i))));
+    lines.extend(describe_contacts(setup));
     lines.extend(overlapping(setup).map(|names| format!("overlap     {names}: coefficients add")));
     let left_out = settings.profile.left_out();
     let without = if left_out.is_empty() { "nothing".to_owned() } else { left_out.join(", ") };
@@ -108,8 +111,9 @@ fn figures(setup: &Setup, plan: &Plan, learnt: usize) -> Value {
             })
             .collect::<Vec<_>>(),
         "smoke": setup.smoke.iter().map(volumes::taken).collect::<Vec<_>>(),
-        "camera": { "medium": setup.medium_name(scene.sensor_medium) },
+        "camera": { "medium": setup.medium_name(scene.media_map.sensor) },
         "media": (1..=setup.medium_names.len()).map(|index| medium_figures(setup, index)).collect::<Vec<_>>(),
+        "contacts": setup.apart.contacts.iter().map(|contact| contact_figures(setup, contact)).collect::<Vec<_>>(),
         "overlaps": overlapping(setup).collect::<Vec<_>>(),
         "plan": plan.json(),
         "learnt_bytes": learnt,
@@ -117,9 +121,29 @@ fn figures(setup: &Setup, plan: &Plan, learnt: usize) -> Value {
     })
 }
 
+fn contact_figures(setup: &Setup, contact: &Contact) -> Value {
+    let [moved, other] = contact.shapes.map(|shape| setup.shape_names[shape as usize].as_str());
+    json!({ "moved": moved, "from": other, "by": contact.by })
+}
+
+/// Shapes that touch, and how far the first was moved away from the other. Of very many, some.
+fn describe_contacts(setup: &Setup) -> Vec<String> {
+    const MOST: usize = 8;
+    let contacts = &setup.apart.contacts;
+    let describe = |contact: &Contact| {
+        let [moved, other] = contact.shapes.map(|shape| setup.shape_names[shape as usize].as_str());
+        format!("contact     {moved} touches {other}; its faces there are moved by {:.1e} m", contact.by)
+    };
+    let mut lines: Vec<String> = contacts.iter().take(MOST).map(describe).collect();
+    if contacts.len() > MOST {
+        lines.push(format!("contact     and {} more pairs of shapes", contacts.len() - MOST));
+    }
+    lines
+}
+
 /// The names of media that may lie in one place.
 fn overlapping(setup: &Setup) -> impl Iterator<Item = String> {
-    let regions = setup.scene.overlaps.iter().flat_map(|overlaps| overlaps.regions());
+    let regions = setup.scene.media_map.overlaps.iter().flat_map(|overlaps| overlaps.regions());
     let several: BTreeSet<_> =
         regions.filter(|members| members.len() > 1).map(|members| setup.names(members)).collect();
     several.into_iter()
@@ -191,7 +215,7 @@ fn describe_integrator(name: &str, options: &Options, restriction: Restriction) 
 fn describe_shapes(scene: &Scene) -> String {
     let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
     let others = scene.surfaces.iter().filter(|surface| surface.boundary.is_known()).count();
-    let boundaries = others + scene.overlaps.as_ref().map_or(0, |overlaps| overlaps.len());
+    let boundaries = others + scene.media_map.overlaps.as_ref().map_or(0, |overlaps| overlaps.len());
     format!(
         "{} ({primitives} primitives), {boundaries} of them are boundaries of media",
         scene.surfaces.len()
@@ -199,7 +223,7 @@ fn describe_shapes(scene: &Scene) -> String {
 }
 
 fn describe_infinity(setup: &Setup) -> String {
-    let Scene { known, outside, .. } = &setup.scene;
+    let MediaMap { known, outside, .. } = &setup.scene.media_map;
     let name = setup.medium_name(*outside);
     match known.infinity {
         Infinity::Uniform(_) | Infinity::Unseen(_) => format!("in {name}"),

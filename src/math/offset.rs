@@ -77,13 +77,32 @@ pub fn side_of(normal: Vec3, direction: Vec3) -> Vec3 {
     normal * 1f32.copysign(direction.dot(normal))
 }
 
-/// Moves the end of a segment from `origin` off the surface it lies on, along `lift`: the unit normal on the
-/// segment's side, or zero in the open. What the ray tracer computes of the segment (its direction, the
-/// distance to the surface) is rounded in proportion to the coordinates of both ends, whereas
-/// [`leave_surface`] knows one end alone: without this the surface would shadow its own points.
-#[inline]
-pub fn clear_of_end(origin: Vec3, end: Vec3, lift: Vec3) -> Vec3 {
-    end + lift * (gamma(32) * (origin.abs() + end.abs()).max_element())
+/// How the end of a segment is moved off the surface that it lies on.
+#[derive(Clone, Copy, Debug)]
+pub struct Lift {
+    normal: Vec3,
+    /// How much the rounding of each coordinate counts.
+    weight: Vec3,
+}
+
+impl Lift {
+    /// In the open.
+    pub const NONE: Self = Self { normal: Vec3::ZERO, weight: Vec3::ZERO };
+
+    /// Off a surface with this unit `normal` on the segment's side. Of a `round` one all coordinates count in every
+    /// direction, as its equation mixes them; else those along the normal.
+    #[inline]
+    pub fn off(normal: Vec3, round: bool) -> Self {
+        Self { normal, weight: if round { Vec3::ONE } else { normal.abs() } }
+    }
+
+    /// Moves `end` of a segment from `origin`. What the ray tracer computes of the segment (its direction, the distance to
+    /// the surface) is rounded in proportion to the coordinates of both ends, whereas [`leave_surface`] knows one end
+    /// alone: without this the surface would shadow its own points.
+    #[inline]
+    pub fn clear(self, origin: Vec3, end: Vec3) -> Vec3 {
+        end + self.normal * (gamma(32) * self.weight.dot(origin.abs() + end.abs()))
+    }
 }
 
 #[inline]

@@ -27,7 +27,7 @@ pub use overrides::MediumOverrides;
 use std::sync::Arc;
 
 /// Index of a medium in its scene. Vacuum is a medium like any other, with nothing in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MediumIndex(pub u32);
 
 impl MediumIndex {

@@ -4,7 +4,7 @@
 use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{Emitter, InfiniteModel},
-    math::{Channels, Spectrum, Vec3, offset},
+    math::{Channels, Spectrum, Vec3},
     sampling::Stream,
     scene::{Scene, lights::EmitterSample},
     settings::integrator::FogSettings,
@@ -94,7 +94,7 @@ impl<'a> Preview<'a> {
         let nothing = End::Radiance(Spectrum::ZERO);
         let mut sight =
             Sight { through: Spectrum::ONE, veiled: Spectrum::ZERO, emitted: Spectrum::ZERO, end: nothing };
-        let mut segment = Segment::along(self.scene, ray, self.scene.sensor_medium, self.hide_emitters);
+        let mut segment = Segment::along(self.scene, ray, self.scene.media_map.sensor, self.hide_emitters);
         let mut left = self.threshold;
         for _ in 0..MOST_LEGS {
             if let Some(end) = self.advance(&mut sight, &mut segment, &mut left, stream) {
@@ -225,7 +225,7 @@ pub(super) fn deflect<'a>(
         return Some((*segment, Spectrum::ZERO));
     };
     let direction = point.shading.to_world(sample.wo).normalize();
-    let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+    let origin = point.leaving(direction).origin;
     let ray = Ray { origin, direction, t_max: f32::INFINITY };
     Some((segment.deflected(point, ray), sample.weight))
 }

@@ -69,6 +69,20 @@ impl Geometry {
         self.tree.occluded(ray)
     }
 
+    /// All surfaces along `ray`, one after the other.
+    pub fn march(&self, mut ray: Ray) -> impl Iterator<Item = SurfacePoint> {
+        // A ray cannot hit more than there are, except a sphere twice; the bound ends even a faulty loop.
+        const MOST_SURFACES: usize = 10_000;
+        let next = move || {
+            let point = self.surface(&ray, &self.closest(&ray)?);
+            let beyond = point.leaving(ray.direction);
+            let t_max = ray.t_max - (beyond.origin - ray.origin).dot(ray.direction);
+            ray = Ray { t_max, ..beyond };
+            Some(point)
+        };
+        std::iter::from_fn(next).take(MOST_SURFACES)
+    }
+
     /// What the surface is like at `hit`, which `ray` gave.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {

@@ -1,7 +1,7 @@
 //! A scene built again for another moment: what says the same as before is taken from what was built then. Building is
 //! deterministic, so that this changes no bit of the scene.
 
-use super::{Scene, accel::Geometry, build::Setup};
+use super::{accel::Geometry, build::Setup, contact::Apart};
 use crate::{
     bsdf::Bsdf,
     description::{Library, Location, Object, Value},
@@ -32,8 +32,7 @@ pub struct Parts {
 
 /// What was built before.
 pub struct Before<'a> {
-    scene: &'a Scene,
-    parts: &'a Parts,
+    setup: &'a Setup,
     /// What it was built from.
     objects: HashMap<Key<'a>, &'a Object>,
     library: Library,
@@ -73,32 +72,34 @@ impl<'a> Before<'a> {
         let library = Library::new(&setup.root)?;
         let mut objects = HashMap::new();
         collect(&setup.root, &mut objects);
-        Ok(Self { scene: &setup.scene, parts: &setup.parts, objects, library, known: RefCell::default() })
+        Ok(Self { setup, objects, library, known: RefCell::default() })
     }
 
-    /// The geometry of then, if it has `shapes` shapes.
-    pub fn geometry(&self, shapes: usize) -> Option<&'a Geometry> {
-        Some(&self.scene.geometry).filter(|geometry| geometry.shapes().len() == shapes)
+    /// The geometry of then, if it has `shapes` shapes, and what was set apart in it.
+    pub fn geometry(&self, shapes: usize) -> Option<(&'a Geometry, &'a Apart)> {
+        let geometry = &self.setup.scene.geometry;
+        (geometry.shapes().len() == shapes).then_some((geometry, &self.setup.apart))
     }
 
     /// The shape that `object` describes, whatever its surface and the media beside it.
     pub fn shape(&self, object: &Object, recentre: DVec3) -> Option<&'a Shape> {
         let before = self.objects.get(&key(object))?;
-        let index = *self.parts.shapes.get(&object.location)?;
-        let is_same = self.scene.recentre == recentre && own(before).eq(own(object));
-        is_same.then(|| self.scene.geometry.shapes().get(index))?
+        let index = *self.setup.parts.shapes.get(&object.location)?;
+        let is_same = self.setup.scene.recentre == recentre && own(before).eq(own(object));
+        let given = self.setup.apart.given.get(&(index as u32));
+        is_same.then(|| given.or_else(|| self.setup.scene.geometry.shapes().get(index)))?
     }
 
     /// The BSDF that it describes.
     pub fn bsdf(&self, object: &Object, library: &Library) -> Option<&'a Bsdf> {
-        let index = *self.parts.bsdfs.get(&object.location)?;
-        self.is_same(object, library).then(|| self.scene.bsdfs.get(index))?
+        let index = *self.setup.parts.bsdfs.get(&object.location)?;
+        self.is_same(object, library).then(|| self.setup.scene.bsdfs.get(index))?
     }
 
     /// The emitter.
     pub fn emitter(&self, object: &Object, library: &Library) -> Option<&'a Emitter> {
-        let index = *self.parts.emitters.get(&object.location)?;
-        let light = self.is_same(object, library).then(|| self.scene.lights.all.get(index))?;
+        let index = *self.setup.parts.emitters.get(&object.location)?;
+        let light = self.is_same(object, library).then(|| self.setup.scene.lights.all.get(index))?;
         light.map(|light| &light.emitter)
     }
 
@@ -109,8 +110,8 @@ impl<'a> Before<'a> {
         library: &Library,
         recentre: DVec3,
     ) -> Option<&'a MediumDescription> {
-        let medium = self.parts.media.get(&object.location)?;
-        (self.scene.recentre == recentre && self.is_same(object, library)).then_some(medium)
+        let medium = self.setup.parts.media.get(&object.location)?;
+        (self.setup.scene.recentre == recentre && self.is_same(object, library)).then_some(medium)
     }
 
     fn is_same(&self, object: &Object, library: &Library) -> bool {

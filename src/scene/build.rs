@@ -7,14 +7,10 @@ use super::{
     Scene, Surface,
     accel::Geometry,
     again::{Before, Parts},
-    boundary::{self, Boundary},
-    extents::Extents,
+    contact::{Apart, Nature, Rank},
     keyframes,
     lights::{Disk, Light, Lights, emissive},
-    locate::{Known, Locator},
-    overlap::Overlaps,
-    placement::{Names, Placement},
-    range,
+    media::{self as places, Boundary, Extents, Known, Locator, MediaMap, Names, Overlaps, Placement},
     sections::Sections,
     smoke::{self, Taken},
     unseen::{self, Unseen},
@@ -68,6 +64,8 @@ pub struct Setup {
     pub bsdf_names: Vec<String>,
     /// When the scene is seen [s].
     pub time: f64,
+    /// Shapes that were set apart as they touched.
+    pub apart: Apart,
     /// What each smoke was made of.
     pub smoke: Vec<Taken>,
     /// What the command line set.
@@ -124,7 +122,8 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
     let medium_overrides = overrides.media.over(integrator.restriction.medium_overrides());
     let time = builder.place.time;
     let parts = std::mem::take(&mut builder.parts);
-    let (scene, shape_names, bsdf_names) = builder.finish(view.camera, &medium_overrides)?;
+    let Finished { scene, shape_names, bsdf_names, apart } =
+        builder.finish(view.camera, &medium_overrides)?;
     unseen::warn_of_darkness(&scene.lights, &integrator, &root.location, &library);
     let groups = if overrides.groups { scene.lights.groups() } else { Vec::new() };
     let components = if overrides.components { &Component::ALL[..] } else { &[] };
@@ -143,6 +142,7 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
         shape_names,
         bsdf_names,
         time,
+        apart,
         smoke,
         overrides,
         parts,
@@ -178,8 +178,13 @@ struct Camera<'a> {
     location: &'a Location,
 }
 
-/// A scene, and the names of its shapes and BSDFs.
-type Finished = (Scene, Vec<String>, Vec<String>);
+/// A scene, and what is told of it besides.
+struct Finished {
+    scene: Scene,
+    shape_names: Vec<String>,
+    bsdf_names: Vec<String>,
+    apart: Apart,
+}
 
 /// Its id, or the name of its plugin.
 fn name_of(object: &Object) -> String {
@@ -205,6 +210,8 @@ struct Builder<'a> {
     shape_names: Vec<String>,
     shape_locations: Vec<Location>,
     surfaces: Vec<Surface>,
+    natures: Vec<Nature>,
+    apart: Apart,
     bsdfs: Vec<Bsdf>,
     bsdf_names: Vec<String>,
     bsdf_index: HashMap<*const Object, u32>,
@@ -232,6 +239,8 @@ impl<'a> Builder<'a> {
             shape_names: Vec::new(),
             shape_locations: Vec::new(),
             surfaces: Vec::new(),
+            natures: Vec::new(),
+            apart: Apart::default(),
             bsdfs: Vec::new(),
             bsdf_names: Vec::new(),
             bsdf_index: HashMap::new(),
@@ -273,10 +282,39 @@ impl<'a> Builder<'a> {
         self.shape_names.push(name_of(child.object));
         self.shape_locations.push(child.location.clone());
         let model = &self.bsdfs[bsdf as usize];
+        let nature = nature(model, emitter.is_some());
         let (connectible, transmits) = (model.is_connectible(), model.transmits());
         let boundary = Boundary::stated(interior, exterior, transmits);
-        self.surfaces.push(Surface { bsdf, emitter, boundary, transmits, touching: false, connectible });
+        if transmits && boundary.is_known() {
+            self.mend_container(exterior.is_some(), child.location);
+        }
+        self.natures.push(nature);
+        self.surfaces.push(Surface { bsdf, emitter, boundary, transmits, connectible });
         Ok(())
+    }
+
+    /// The last shape bounds a medium: if it is a mesh, each of its triangles has to say alike which side is which.
+    fn mend_container(&mut self, is_exterior_stated: bool, location: &Location) {
+        let (Some(Shape::Mesh(mesh)), Some(name)) = (self.shapes.last_mut(), self.shape_names.last()) else {
+            return;
+        };
+        if let Some((mended, turned)) = mesh.oriented() {
+            let text = format!(
+                "{turned} of the {} triangles of \"{name}\" face the other way than their neighbours. They are turned \
+                 over, because the boundary of a medium has one inside. Recalculate the normals in the program that \
+                 made the mesh",
+                mesh.primitive_count()
+            );
+            self.library.warn(location, &text);
+            *mesh = mended;
+        }
+        if !is_exterior_stated && mesh.is_inside_out() {
+            let text = format!(
+                "\"{name}\" is inside out: its normals point into the mesh, so that its interior medium fills all the \
+                 space around it. Change \"flip_normals\", or turn the mesh over in the program that made it"
+            );
+            self.library.warn(location, &text);
+        }
     }
 
     /// The medium that the file states on one side of a shape.
@@ -427,7 +465,7 @@ impl<'a> Builder<'a> {
         let (surfaces, viewpoint) = (&stated, camera.sensor.position());
         let extents = Extents { geometry: &geometry, surfaces, viewpoint, outside, survey: &survey };
         let mut media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
-        range::check(&media[1..], &self.medium_locations, &extents, self.library)?;
+        places::check(&media[1..], &self.medium_locations, &extents, self.library)?;
         let lights = self.lights(&geometry, &known, &media, overlaps.as_deref(), contradicts, sensor_medium);
         media.extend(overlaps.as_ref().map(|overlaps| overlaps.build(&media)).into_iter().flatten());
         let nowhere = contradicts.then(|| {
@@ -440,7 +478,8 @@ impl<'a> Builder<'a> {
             let unseen = Unseen { geometry: &geometry, surfaces, lights: &lights, viewpoint };
             unseen.warn(&self.names(), camera.location);
         }
-        let Self { surfaces, bsdfs, recentre, shape_names, bsdf_names, .. } = self;
+        self.names().warn_of_ties(&self.apart.contacts);
+        let Self { surfaces, bsdfs, recentre, shape_names, bsdf_names, apart, .. } = self;
         let sensor = camera.sensor;
         let scene = Scene {
             geometry,
@@ -449,14 +488,10 @@ impl<'a> Builder<'a> {
             media,
             lights,
             sensor,
-            outside,
-            known,
-            sensor_medium,
-            overlaps,
-            nowhere,
+            media_map: MediaMap { outside, sensor: sensor_medium, known, overlaps, nowhere },
             recentre,
         };
-        Ok((scene, shape_names, bsdf_names))
+        Ok(Finished { scene, shape_names, bsdf_names, apart })
     }
 
     /// All emitters, emissive media among them, with the medium that each lies in.
@@ -491,17 +526,18 @@ impl<'a> Builder<'a> {
         memory::check("the scene", "shapes", &size, primitives.checked_mul(MEMORY_PER_PRIMITIVE), remedy)
     }
 
-    /// All shapes, indexed; their surfaces learn which of them may share faces.
+    /// All shapes, indexed, those that touch set apart.
     fn geometry(&mut self) -> Geometry {
-        let shapes = std::mem::take(&mut self.shapes);
-        let old =
-            self.before.filter(|_| self.has_old_shapes).and_then(|before| before.geometry(shapes.len()));
-        let geometry = old.cloned().unwrap_or_else(|| Geometry::build(shapes));
+        let mut shapes = std::mem::take(&mut self.shapes);
+        let before = self.before.filter(|_| self.has_old_shapes);
         // What is added later was not there before.
         self.has_old_shapes = false;
-        let touching = boundary::touching(&geometry, &self.surfaces);
-        self.surfaces.iter_mut().zip(touching).for_each(|(surface, touching)| surface.touching = touching);
-        geometry
+        if let Some((geometry, apart)) = before.and_then(|before| before.geometry(shapes.len())) {
+            self.apart = apart.clone();
+            return geometry.clone();
+        }
+        self.apart.separate(&mut shapes, &self.natures);
+        Geometry::build(shapes)
     }
 
     /// What messages call media and shapes by.
@@ -515,6 +551,17 @@ impl<'a> Builder<'a> {
             recentre: self.recentre,
         }
     }
+}
+
+/// What contact needs to know of a shape with this BSDF.
+fn nature(bsdf: &Bsdf, emits: bool) -> Nature {
+    let rank = match bsdf {
+        Bsdf::Null(_) => Rank::Null,
+        bsdf if bsdf.transmits() => Rank::Transmitting,
+        _ if emits => Rank::Emitting,
+        _ => Rank::Opaque,
+    };
+    Nature { rank, one_sided: !matches!(bsdf, Bsdf::TwoSided(_)), is_lid: false }
 }
 
 /// An emitter with the medium that it lies in.

@@ -1,14 +1,17 @@
 //! Warnings of what an image will not show: a scene without light, a camera shut in, a medium shut in.
 
-use super::{Surface, accel::Geometry, boundary, lights::Lights, placement::Names};
+use super::{
+    Surface,
+    accel::Geometry,
+    lights::Lights,
+    media::{Boundary, Names, Solid, direction},
+};
 use crate::{
     description::{Library, Location},
     emitter::{BeamModel, Kind},
-    math::{Vec3, offset},
+    math::Vec3,
     medium::MediumIndex,
-    sampling::{Stream, stream::Purpose},
     settings::{integrator::Integrator, options::Strategies},
-    shape::Ray,
 };
 
 /// The scene at `location` has no light; a preview needs none, nor do layers without an image.
@@ -35,9 +38,6 @@ pub struct Unseen<'a> {
     /// Where camera rays start: one point, or nearly.
     pub viewpoint: Vec3,
 }
-
-/// Most surfaces that are passed on the way out of a shape.
-const MOST_SURFACES: u32 = 10_000;
 
 impl Unseen<'_> {
     /// Says of every closed opaque shape what it hides; the camera is at `camera` in the file.
@@ -67,8 +67,8 @@ impl Unseen<'_> {
         if !boundary.is_known() || emitter.is_some() {
             return None;
         }
-        let medium = self.inner_medium(shape)?;
-        (!self.is_inside(shape, self.viewpoint) && self.is_closed(shape)).then_some(medium)
+        let is_hidden = || self.is_closed(shape) && !self.is_inside(shape, self.viewpoint);
+        self.inner_medium(shape).filter(|_| is_hidden())
     }
 
     fn is_closed(&self, shape: u32) -> bool {
@@ -81,31 +81,19 @@ impl Unseen<'_> {
 
     /// The medium inside a closed shape; none for vacuum, or where the file names none.
     fn inner_medium(&self, shape: u32) -> Option<MediumIndex> {
-        let boundary = self.surfaces[shape as usize].boundary;
-        let point =
-            self.geometry.sample_area(shape, &mut Stream::new(6, u64::from(shape), 0, Purpose::Pilot));
-        let ahead = offset::leave_surface(point.position, point.error, point.normal, point.normal);
-        let inner = if self.is_inside(shape, ahead) { boundary.exterior } else { boundary.interior };
+        let Boundary { interior, exterior } = self.surfaces[shape as usize].boundary;
+        let inner = if self.solid(shape).is_outward() { interior } else { exterior };
         inner.filter(|medium| *medium != MediumIndex::VACUUM)
     }
 
-    /// True if a closed `shape` is around `point`: most of a few rays leave it an odd number of times.
-    fn is_inside(&self, shape: u32, point: Vec3) -> bool {
-        (1..4).filter(|index| self.crossings(shape, point, boundary::direction(7 * index)) % 2 == 1).count()
-            >= 2
+    fn solid(&self, shape: u32) -> Solid {
+        Solid::new(&self.geometry.shapes()[shape as usize], &[])
     }
 
-    /// How often the ray from `origin` in `direction` hits `shape`.
-    fn crossings(&self, shape: u32, origin: Vec3, direction: Vec3) -> u32 {
-        let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
-        let mut count = 0;
-        for _ in 0..MOST_SURFACES {
-            let Some(hit) = self.geometry.closest(&ray) else { break };
-            let point = self.geometry.surface(&ray, &hit);
-            count += u32::from(point.shape == shape);
-            ray.origin = offset::leave_surface(point.position, point.error, point.normal, direction);
-        }
-        count
+    /// True if a closed `shape` is around `point`, by most of a few directions: faces of opaque meshes may be turned over.
+    fn is_inside(&self, shape: u32, point: Vec3) -> bool {
+        let solid = self.solid(shape);
+        (1..4).filter(|index| solid.holds(point, direction(7 * index))).count() >= 2
     }
 
     /// An emitter may be within `shape`, or on it.

@@ -2,7 +2,7 @@
 //! from its axis' base whose f32 roundings would be seen on the small scale of its radius.
 
 use super::{
-    COMMON, Curved, CurvedModel, Disk, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    COMMON, Curved, CurvedModel, Disk, Hit, Patch, Primitive, Ray, ShapeModel, SurfacePoint,
     placement::{Placement, is_in_range},
 };
 use crate::{
@@ -103,13 +103,21 @@ impl Cylinder {
         is_in_range(low) && is_in_range(high) && (self.radius as f32).is_normal() && self.area().is_normal()
     }
 
-    /// Disks across it just before its ends: it may stand on a floor.
+    /// Disks across its ends.
     pub fn lids(&self) -> [Disk; 2] {
-        const BEFORE: f64 = 1e-4;
         let Self { base, axis, length, radius, across: [x, y], .. } = *self;
-        [(BEFORE, -self.facing), (1.0 - BEFORE, self.facing)].map(|(z, facing)| {
-            Disk::spanned(base + axis * (length * z), x * radius, y * radius, axis * facing)
-        })
+        [(0.0, -self.facing), (length, self.facing)]
+            .map(|(z, facing)| Disk::spanned(base + axis * z, x * radius, y * radius, axis * facing))
+    }
+
+    /// The same with a radius greater by `by` [m].
+    pub fn widened(&self, by: f64) -> Self {
+        Self { radius: self.radius + by, ..*self }
+    }
+
+    /// As far as touching depends on it.
+    pub fn patch(&self) -> Patch {
+        Patch::Tube { ends: [self.base, self.base + self.axis * self.length], radius: self.radius }
     }
 
     /// The surface point nearest to `p`.

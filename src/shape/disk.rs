@@ -1,7 +1,7 @@
 //! `disk`: the unit disk in the xy plane, facing +z; any affine transform makes it an ellipse.
 
 use super::{
-    COMMON, Curved, CurvedModel, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    COMMON, Curved, CurvedModel, Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     parallelogram::flat_error,
     placement::{Placement, is_in_range},
 };
@@ -79,6 +79,19 @@ impl Disk {
     fn fits(&self) -> bool {
         self.area.is_normal()
             && [self.center, self.edge_u, self.edge_v, self.normal].into_iter().all(is_in_range)
+    }
+
+    /// The same, moved along its normal by `by` [m].
+    pub fn lifted(&self, by: f64) -> Self {
+        let center = (self.center.as_dvec3() + self.normal.as_dvec3() * by).as_vec3();
+        Self { center, ..*self }
+    }
+
+    /// The parallelogram around it.
+    pub fn square(&self) -> Flat {
+        let Self { center, edge_u, edge_v, normal, .. } = *self;
+        let (corner, edge_u, edge_v) = (center - edge_u - edge_v, 2.0 * edge_u, 2.0 * edge_v);
+        Flat { corner, edge_u, edge_v, normal, triangle: false }
     }
 
     /// The point (`x`, `y`) of the unit disk. Texture coordinates are polar: distance from the centre, and

@@ -3,9 +3,10 @@
 use super::{
     Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     area::AreaTable,
+    orientation::turned_over,
     parallelogram::flat_error,
     placement::{Placement, is_in_range},
-    smooth,
+    shift, smooth,
 };
 use crate::{
     description::{Params, parameter::Parameter, rows},
@@ -14,7 +15,10 @@ use crate::{
     memory,
     sampling::Stream,
 };
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, HashMap},
+    path::Path,
+};
 
 /// What a mesh file says, in object space.
 #[derive(Clone, Debug, Default)]
@@ -131,9 +135,49 @@ impl Mesh {
     }
 
     /// What it adds to the volume that a closed mesh holds, of which it is a part [m^3].
-    fn volume(&self) -> f64 {
+    pub fn volume(&self) -> f64 {
         let corners = |t: &[u32; 3]| t.map(|vertex| self.positions[vertex as usize].as_dvec3());
         self.triangles.iter().map(corners).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+    }
+
+    /// The same with all triangles facing as most of their neighbours do, and how many were turned over for that; none
+    /// where they do.
+    pub fn oriented(&self) -> Option<(Self, usize)> {
+        let places: Vec<_> = self.triangles.iter().map(|t| t.map(|vertex| self.place(vertex))).collect();
+        let turned = turned_over(&places)?;
+        let mut mesh = self.clone();
+        mesh.triangles.iter_mut().zip(&turned).filter(|(_, turned)| **turned).for_each(|(t, _)| t.swap(1, 2));
+        Some((mesh, turned.iter().filter(|turned| **turned).count()))
+    }
+
+    /// True if it is closed and its normals point into what it holds.
+    pub fn is_inside_out(&self) -> bool {
+        self.volume() * f64::from(self.facing) < 0.0 && self.is_closed()
+    }
+
+    /// See [`super::Shape::displaced`]. Vertices at one position stay together.
+    pub fn displaced(&self, moves: &BTreeMap<usize, f64>) -> Self {
+        let mut planes: HashMap<[u32; 3], Vec<(DVec3, f64)>> = HashMap::new();
+        for vertex in moves.keys().flat_map(|triangle| self.triangles[*triangle]) {
+            planes.entry(self.place(vertex)).or_default();
+        }
+        for (index, triangle) in self.triangles.iter().enumerate() {
+            for vertex in triangle {
+                if let Some(planes) = planes.get_mut(&self.place(*vertex)) {
+                    let normal = self.flat(index).normal.as_dvec3().normalize();
+                    planes.push((normal, moves.get(&index).copied().unwrap_or(0.0)));
+                }
+            }
+        }
+        let shifts: HashMap<_, _> =
+            planes.into_iter().map(|(place, planes)| (place, shift(&planes))).collect();
+        let displaced = |vertex: usize| {
+            let by = shifts.get(&self.place(vertex as u32)).copied().unwrap_or(DVec3::ZERO);
+            (self.positions[vertex].as_dvec3() + by).as_vec3()
+        };
+        let positions: Vec<Vec3> = (0..self.positions.len()).map(displaced).collect();
+        let areas = AreaTable::new(self.triangles.iter().map(|t| double_area(&positions, t) * 0.5));
+        Self { positions, areas, ..self.clone() }
     }
 
     /// The position of vertex `index`, for comparison; 0 and -0 are one.

@@ -11,7 +11,9 @@ mod cylinder;
 mod disk;
 mod mesh;
 mod obj;
+mod orientation;
 mod parallelogram;
+mod patch;
 mod placement;
 mod ply;
 mod rectangle;
@@ -24,14 +26,19 @@ mod spherical_rectangle;
 use crate::{
     description::{Params, Plugin, Registry, models, parameter::Parameter, rows},
     error::Result,
-    math::{DVec3, Frame, Uv, Vec3, offset::gamma},
+    math::{
+        DVec3, Frame, Uv, Vec3,
+        offset::{Lift, gamma, leave_surface, side_of},
+    },
     sampling::Stream,
 };
+use std::collections::BTreeMap;
 
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use mesh::Mesh;
 pub use parallelogram::{Parallelogram, Parallelograms};
+pub use patch::Patch;
 pub use smoke::{SMOKE, SMOKE_TABLE};
 pub use sphere::Sphere;
 
@@ -81,6 +88,19 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// The ray from here in unit `direction`, clear of the surface.
+    #[inline]
+    pub fn leaving(&self, direction: Vec3) -> Ray {
+        let origin = leave_surface(self.position, self.error, self.normal, direction);
+        Ray { origin, direction, t_max: f32::INFINITY }
+    }
+
+    /// How the end of a segment here, which comes from where unit `towards` points, keeps clear of the surface.
+    #[inline]
+    pub fn lift(&self, towards: Vec3) -> Lift {
+        Lift::off(side_of(self.normal, towards), matches!(self.uv, Uv::OnSphere(_)))
+    }
+
     /// The normal of the side that emits: geometric, turned to the side that the shading normal names.
     #[inline]
     pub fn front(&self) -> Vec3 {
@@ -294,6 +314,35 @@ impl Shape {
         }
     }
 
+    /// True if it bounds a solid, or the side of one.
+    pub fn is_solid(&self) -> bool {
+        matches!(self, Self::Cylinder(_)) || self.is_closed()
+    }
+
+    /// 1 where the normal of a primitive of a solid ([`Flat::normal`]) points away from what that holds, -1 where into it;
+    /// of a mesh, if it is not inside out (see [`Self::turn`]). Round shapes count as if theirs pointed outwards.
+    pub fn winding(&self, index: usize) -> f64 {
+        if let Self::Parallelograms(faces) = self { faces.winding(index) } else { 1.0 }
+    }
+
+    /// -1 for a mesh that is inside out, whatever `flip_normals` says; else 1.
+    pub fn turn(&self) -> f64 {
+        if let Self::Mesh(mesh) = self { mesh.volume().signum() } else { 1.0 }
+    }
+
+    /// The same shape with its primitives moved along their normals, by number [m]; the radius of a round one grows by
+    /// that. What shares corners with those stays connected.
+    pub fn displaced(&self, moves: &BTreeMap<usize, f64>) -> Self {
+        let first = moves.values().next().copied().unwrap_or(0.0);
+        match self {
+            Self::Parallelograms(faces) => Self::Parallelograms(faces.displaced(moves)),
+            Self::Mesh(mesh) => Self::Mesh(mesh.displaced(moves)),
+            Self::Sphere(sphere) => Self::Sphere(sphere.widened(first)),
+            Self::Cylinder(cylinder) => Self::Cylinder(cylinder.widened(first)),
+            Self::Disk(disk) => Self::Disk(disk.lifted(first)),
+        }
+    }
+
     /// Least and greatest corner of the box around it.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let boxes = (0..self.primitive_count()).map(|index| self.primitive(index).bounds());
@@ -301,4 +350,17 @@ impl Shape {
             .reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)))
             .unwrap_or((Vec3::INFINITY, Vec3::NEG_INFINITY))
     }
+}
+
+/// How a corner moves so that the planes through it, each a unit normal and a distance [m], move by these: exactly where at
+/// most three are independent, else as far as the planes allow.
+fn shift(planes: &[(DVec3, f64)]) -> DVec3 {
+    const SWEEPS: usize = 64;
+    let mut moved = DVec3::ZERO;
+    for _ in 0..SWEEPS {
+        for (normal, distance) in planes {
+            moved += normal * (distance - normal.dot(moved));
+        }
+    }
+    moved
 }

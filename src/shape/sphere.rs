@@ -80,6 +80,11 @@ impl Sphere {
         (fits && !uneven && !sheared).then_some(sphere)
     }
 
+    /// The same with a radius greater by `by` [m].
+    pub fn widened(&self, by: f64) -> Self {
+        Self { radius: (f64::from(self.radius) + by) as f32, ..*self }
+    }
+
     /// The surface point nearest to `p`.
     #[inline]
     pub fn point_near(&self, p: Vec3) -> SurfacePoint {

@@ -70,7 +70,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Ve
     Departure {
         position,
         ray,
-        medium: estimator.scene.sensor_medium,
+        medium: estimator.scene.media_map.sensor,
         from_infinity: sensor.is_parallel(),
         edges: 0,
         hidden: estimator.hide_emitters,

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     bsdf::Transport,
-    math::{Channels, Spectrum, Vec3, measure, offset},
+    math::{Channels, Spectrum, Vec3, measure, offset::Lift},
     medium::MediumIndex,
     sampling::Stream,
     scene::{
@@ -94,10 +94,10 @@ pub fn rate_at<P: Profile>(point: &EmitterPoint) -> P::Channels {
 
 /// See [`End::lift`].
 #[inline]
-fn lift(point: &EmitterPoint, towards: Vec3) -> Vec3 {
+fn lift(point: &EmitterPoint, towards: Vec3) -> Lift {
     match point {
-        EmitterPoint::Surface(point) => offset::side_of(point.normal, towards),
-        _ => Vec3::ZERO,
+        EmitterPoint::Surface(point) => point.lift(towards),
+        _ => Lift::NONE,
     }
 }
 
@@ -168,7 +168,7 @@ pub fn connect<P: Profile>(
     stream: &mut Stream,
 ) -> Option<Contribution> {
     let (origin, other) = (a.origin?, b.origin?);
-    let end = offset::clear_of_end(origin, other, b.lift);
+    let end = b.lift.clear(origin, other);
     let (direction, distance, _) = measure::between(origin, end)?;
     let ray = Ray { origin, direction, t_max: distance };
     // An end nearer than the step away from its surface: nothing is between.

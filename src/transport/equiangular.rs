@@ -63,7 +63,7 @@ use crate::{
 /// left out. A point of a ray has no one medium where several overlap.
 pub fn applies(scene: &Scene) -> bool {
     let media = scene.media.iter().any(|medium| medium.bound().sigma_t != Spectrum::ZERO);
-    media && scene.overlaps.is_none() && scene.lights.has_pivots() && !scene.sensor.is_parallel()
+    media && scene.media_map.overlaps.is_none() && scene.lights.has_pivots() && !scene.sensor.is_parallel()
 }
 
 /// The first collision of a camera subpath.

@@ -67,7 +67,7 @@ pub fn sample<P: Profile, R: Observer<P::MisSums>>(
 /// channel, where primary ray `ray` sees it.
 pub fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Channels {
     let Estimator { scene, hide_emitters, .. } = *estimator;
-    gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.sensor_medium, hide_emitters)))
+    gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.media_map.sensor, hide_emitters)))
 }
 
 /// No gain is taken to be more than this: thinner media are seen by camera subpaths alone as it is.

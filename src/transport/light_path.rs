@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     bsdf::Transport,
-    math::{Channels, Spectrum, Vec2, Vec3},
+    math::{Channels, Spectrum, Vec2, Vec3, offset::Lift},
     sampling::Stream,
     scene::lights::{Densities, EmissionSample, EmitterPoint, Start},
     sensor::Projection,
@@ -231,8 +231,8 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
         let hidden = self.estimator.hide_emitters;
         let lens = End {
             origin: Some(ray.origin),
-            lift: Vec3::ZERO,
-            medium: scene.sensor_medium,
+            lift: Lift::NONE,
+            medium: scene.media_map.sensor,
             within: false,
             value: Spectrum::splat(pdf),
             pdf_fwd: pdf,
@@ -269,7 +269,7 @@ fn start_end<P: Profile>(
     Some(End {
         origin,
         // Never the far end of a connection: the lens is.
-        lift: Vec3::ZERO,
+        lift: Lift::NONE,
         medium: estimator.scene.emission_medium(start.light, leaving, towards),
         within: false,
         value: emission.value / start.pdf,

@@ -23,7 +23,7 @@ use uniform::Uniform;
 
 use super::{observer::StrategyKind, profile::Profile};
 use crate::{
-    math::{Channels, Spectrum, Vec3},
+    math::{Channels, Spectrum, Vec3, offset::Lift},
     medium::MediumIndex,
     settings::heuristic::Heuristic,
 };
@@ -33,8 +33,8 @@ use crate::{
 pub struct End<S: MisSums> {
     /// Where the connecting ray starts; none at infinity.
     pub origin: Option<Vec3>,
-    /// Unit normal on the side of `origin`; zero where it lies on no surface.
-    pub lift: Vec3,
+    /// How a segment that ends here keeps clear of the surface.
+    pub lift: Lift,
     /// The medium it starts in.
     pub medium: MediumIndex,
     /// True if it is a point of that medium only: no segment through another can end here.

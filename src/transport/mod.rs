@@ -269,9 +269,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
 
     /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
     pub fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
-        let Scene { sensor_medium, .. } = *self.scene;
+        let medium = self.scene.media_map.sensor;
         let passed =
-            segment::transmittance::<P>(self.scene, primary, 0.0, sensor_medium, self.hide_emitters, stream);
+            segment::transmittance::<P>(self.scene, primary, 0.0, medium, self.hide_emitters, stream);
         passed.map_or(Spectrum::ZERO, |passed| passed.transmittance)
     }
 
@@ -279,8 +279,8 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// where it leaves the scene.
     #[cold]
     pub fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction> {
-        let Scene { sensor_medium, .. } = *self.scene;
-        let ahead = Segment::along(self.scene, primary, sensor_medium, self.hide_emitters);
+        let medium = self.scene.media_map.sensor;
+        let ahead = Segment::along(self.scene, primary, medium, self.hide_emitters);
         segment::sample_free_flight::<P>(ahead, 0, stream, &mut |_, _| ()).interaction
     }
 

@@ -149,13 +149,13 @@ impl Needs {
     /// What `scene` needs; `hide_emitters` as in [`super::Options`].
     pub fn of(scene: &Scene, hide_emitters: bool) -> Self {
         let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
-        let overlap = scene.overlaps.is_some();
+        let overlap = scene.media_map.overlaps.is_some();
         let passed = hide_emitters && scene.surfaces.iter().any(|surface| surface.emitter.is_some());
         Self {
             media: scene.media.iter().any(|medium| medium.bound().sigma_t != Spectrum::ZERO),
             chromatic: scene.media.iter().any(Medium::is_chromatic),
             heterogeneous: overlap || scene.media.iter().any(|medium| medium.heterogeneous().is_some()),
-            nulls: nulls || passed || overlap || scene.nowhere.is_some(),
+            nulls: nulls || passed || overlap || scene.media_map.nowhere.is_some(),
             infinite: scene.lights.has_parallel() || scene.sensor.is_parallel(),
             emissive: scene.lights.has_media(),
         }

@@ -13,7 +13,7 @@ pub use free_flight::{
 pub use transmittance::{SegmentTransmittance, transmittance};
 
 use crate::{
-    math::{RaySegment, Spectrum, Vec3, measure, offset},
+    math::{RaySegment, Spectrum, Vec3, measure},
     medium::{MediaProfile, Medium, MediumIndex, MediumInterval},
     sampling::Stream,
     scene::Scene,
@@ -64,7 +64,7 @@ impl<'a> Segment<'a> {
     #[inline(always)]
     pub fn next<P: MediaProfile>(&mut self, pdf_over_hero: f32) -> (MediumInterval, Option<Hit>) {
         let Ray { origin, direction, t_max } = self.ray;
-        let overlaps = if P::HETEROGENEOUS { self.scene.overlaps.as_deref() } else { None };
+        let overlaps = if P::HETEROGENEOUS { self.scene.media_map.overlaps.as_deref() } else { None };
         let reach = if overlaps.is_some() { t_max } else { pdf_over_hero.min(t_max) };
         let hit = self.scene.geometry.closest(&Ray { t_max: reach, ..self.ray });
         let segment = RaySegment { origin, direction, length: hit.map_or(t_max, |hit| hit.t) };
@@ -126,11 +126,11 @@ impl<'a> Segment<'a> {
     #[inline]
     pub fn cross(&mut self, point: &SurfacePoint) {
         let Ray { origin, direction, t_max } = self.ray;
-        let beyond = offset::leave_surface(point.position, point.error, point.normal, direction);
+        let beyond = point.leaving(direction).origin;
         let t_max = t_max - (beyond - origin).dot(direction);
         self.skipped = (beyond - point.position).dot(direction).max(0.0);
         self.ray = Ray { origin: beyond, direction, t_max };
-        self.medium = self.scene.medium_beyond(point, &self.ray, self.medium);
+        self.medium = self.scene.medium_beyond(point, direction, self.medium);
     }
 
     /// Aims at a given `end` again. Crossings are rounded: the segment is to end where it should, not in the surface
@@ -185,7 +185,7 @@ mod tests {
         let mut sum = 0.0;
         for index in 0..FLIGHTS {
             let mut stream = Stream::new(3, index, 0, Purpose::Study);
-            let outside = scene.sensor_medium;
+            let outside = scene.media_map.sensor;
             let into = Segment::along(scene, INTO, outside, false);
             let flight = sample_free_flight::<Bounded>(into, 0, &mut stream, &mut |_, _| ());
             let Some(Interaction::Medium(position, _)) = flight.interaction else { panic!("{flight:?}") };
@@ -197,7 +197,7 @@ mod tests {
         let ray = Ray { t_max: 1.0 + 4e-6, ..INTO };
         let mut stream = Stream::new(3, 0, 0, Purpose::Study);
         let passed =
-            transmittance::<Bounded>(scene, ray, 0.0, scene.sensor_medium, false, &mut stream).unwrap();
+            transmittance::<Bounded>(scene, ray, 0.0, scene.media_map.sensor, false, &mut stream).unwrap();
         let expected = -f64::from(ray.t_max - 1.0) * 1e6;
         let found = f64::from(passed.pdf).ln();
         assert!((found - expected).abs() < 0.07, "ln T {found}, not {expected}");

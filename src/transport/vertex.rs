@@ -4,7 +4,7 @@ use super::{mis::MisSums, observer::StrategyKind, profile::Profile, segment::Int
 use crate::{
     bsdf::Transport,
     guide::{Guidance, Guide, Seen},
-    math::{Channels, Spectrum, Vec3, offset},
+    math::{Channels, Spectrum, Vec3, offset::Lift},
     medium::MediumIndex,
     phase::PhaseModel,
     scene::Scene,
@@ -102,19 +102,19 @@ impl<S: MisSums> Vertex<S> {
     pub fn depart(&self, scene: &Scene, direction: Vec3) -> (Vec3, MediumIndex) {
         match &self.interaction {
             Interaction::Medium(position, _) => (*position, self.subpath.medium),
-            Interaction::Surface(point) => {
-                let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
-                (origin, scene.medium_towards(point, self.subpath.incoming, direction, self.subpath.medium))
-            }
+            Interaction::Surface(point) => (
+                point.leaving(direction).origin,
+                scene.medium_towards(point, self.subpath.incoming, direction, self.subpath.medium),
+            ),
         }
     }
 
     /// See [`super::mis::End::lift`].
     #[inline]
-    pub fn lift(&self, direction: Vec3) -> Vec3 {
+    pub fn lift(&self, direction: Vec3) -> Lift {
         match &self.interaction {
-            Interaction::Medium(..) => Vec3::ZERO,
-            Interaction::Surface(point) => offset::side_of(point.normal, direction),
+            Interaction::Medium(..) => Lift::NONE,
+            Interaction::Surface(point) => point.lift(direction),
         }
     }
 

@@ -11,6 +11,7 @@ mod determinism;
 mod efforts;
 mod equiangular;
 mod extremes;
+mod faces;
 mod faults;
 mod forced;
 mod gather;

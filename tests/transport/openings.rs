@@ -11,7 +11,7 @@ use tyndall::{
     math::{Spectrum, Vec3},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
-    scene::Infinity,
+    scene::media::Infinity,
     transport::Strategies,
 };
 
@@ -74,7 +74,7 @@ fn dusty_room(hole: f64, lamp: Value) -> Value {
 /// variance is infinite (light scattered next to the lens), nor where there is a sky: of its light subpaths
 /// too few find the opening for a test of means. `bdpt` starts the same ones.
 fn agree(claims: &mut Claims, what: &str, stage: &Stage, samples_per_pixel: u64, seeds: u64) {
-    let around = &stage.setup.scene.media[stage.setup.scene.sensor_medium.0 as usize];
+    let around = &stage.setup.scene.media[stage.setup.scene.media_map.sensor.0 as usize];
     let sky = stage.setup.scene.lights.environment.is_some();
     let methods = if around.bound().sigma_t == Spectrum::ZERO && !sky {
         &METHODS[..]
@@ -140,7 +140,7 @@ fn however_small_the_opening_the_lamp_outside_is_not_in_the_dust() {
         let hole = 0.5 * (part * 4.0 * std::f64::consts::PI).sqrt();
         for (name, lamp) in lamps_outside() {
             let setup = Stage::new(&dusty_room(hole, lamp)).setup;
-            let (light, outside) = (&setup.scene.lights.all[0], setup.scene.outside);
+            let (light, outside) = (&setup.scene.lights.all[0], setup.scene.media_map.outside);
             assert_eq!((light.medium, outside), (MediumIndex::VACUUM, MediumIndex::VACUUM), "{name}, {part}");
             assert!(!light.straddles && setup.warnings.is_empty(), "{name}, {part}: {:?}", setup.warnings);
         }
@@ -166,7 +166,7 @@ fn lamps_behind_a_small_opening_are_in_the_dust() {
             parts.extend(room_with_a_hole(hole, "dust"));
             let setup = Stage::new(&scene(&parts)).setup;
             assert_eq!(setup.scene.lights.all[0].medium, MediumIndex(1), "{name}, {part}");
-            assert_eq!(setup.scene.sensor_medium, MediumIndex::VACUUM, "{name}, {part}");
+            assert_eq!(setup.scene.media_map.sensor, MediumIndex::VACUUM, "{name}, {part}");
             assert!(setup.warnings.is_empty(), "{name}, {part}: {:?}", setup.warnings);
         }
     }
@@ -216,7 +216,7 @@ fn rooms_of_vacuum_stand_in_fog_without_end() {
         assert!(stage.setup.warnings.is_empty(), "{what}: {:?}", stage.setup.warnings);
         let media: Vec<u32> = stage.setup.scene.lights.all.iter().map(|light| light.medium.0).collect();
         assert_eq!(media.iter().filter(|medium| **medium == 0).count(), 1, "{what}");
-        assert_eq!(stage.setup.scene.sensor_medium == MediumIndex::VACUUM, inside, "{what}");
+        assert_eq!(stage.setup.scene.media_map.sensor == MediumIndex::VACUUM, inside, "{what}");
         let mut claims = Claims::new();
         agree(&mut claims, what, &stage, 64, 8);
         claims.settle();
@@ -290,7 +290,7 @@ fn a_fog_box_a_hair_larger_than_the_room_fills_it() {
         ("panel", lamp_panel([-0.3, 0.99, 0.0], 0.3, 2.0)),
     ];
     let stage = Stage::new(&scene(&parts));
-    assert_eq!(stage.setup.scene.sensor_medium, MediumIndex(1));
+    assert_eq!(stage.setup.scene.media_map.sensor, MediumIndex(1));
     let warned = stage.setup.warnings.iter().any(|w| w.contains("the camera") && w.contains("seen behind"));
     assert!(warned, "{:?}", stage.setup.warnings);
     let mut claims = Claims::new();
@@ -329,7 +329,7 @@ fn infinity_differs_by_direction_where_a_surface_divides_the_world() {
         ("sun", sun([0.2, -1.0, 0.1], 2.0)),
     ];
     let stage = Stage::new(&scene(&parts));
-    let infinity = &stage.setup.scene.known.infinity;
+    let infinity = &stage.setup.scene.media_map.known.infinity;
     assert!(matches!(infinity, Infinity::Directional(_)), "{infinity:?}");
     let [above, below] = [Vec3::Y, Vec3::NEG_Y].map(|direction| infinity.towards(direction));
     assert!(above == MediumIndex::VACUUM && below != above, "{above:?} {below:?}");

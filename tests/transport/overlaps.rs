@@ -27,8 +27,8 @@ fn around(media: &[(&str, Value)]) -> Value {
 /// Every method shows of one scene what `bdpt` shows of another, which says the same without boundaries that overlap.
 fn same(claims: &mut Claims, what: &str, overlapping: &Value, apart: &Value) {
     let (overlapping, apart) = (Stage::new(overlapping), Stage::new(apart));
-    assert!(overlapping.setup.scene.overlaps.is_some(), "{what}: nothing overlaps");
-    assert!(apart.setup.scene.overlaps.is_none(), "{what}: the other overlaps too");
+    assert!(overlapping.setup.scene.media_map.overlaps.is_some(), "{what}: nothing overlaps");
+    assert!(apart.setup.scene.media_map.overlaps.is_none(), "{what}: the other overlaps too");
     assert!(apart.setup.warnings.is_empty(), "{what}: {:?}", apart.setup.warnings);
     let warnings = &overlapping.setup.warnings;
     assert!(warnings.iter().all(|warning| warning.contains("flat lids")), "{what}: {warnings:?}");
@@ -157,7 +157,7 @@ fn cameras_and_lamps_may_lie_where_media_overlap() {
     let [unstated, stated] = [Stage::new(&inside(&[])), Stage::new(&inside(&[("medium", named("a"))]))];
     for stage in [&unstated, &stated] {
         let setup = &stage.setup;
-        assert_eq!(setup.medium_name(setup.scene.sensor_medium), "a + b");
+        assert_eq!(setup.medium_name(setup.scene.media_map.sensor), "a + b");
         assert_eq!(setup.medium_name(setup.scene.lights.all[0].medium), "a + b");
     }
     let mut claims = Claims::new();

@@ -9,10 +9,8 @@ use crate::{
     scene::{
         Surface,
         accel::Geometry,
-        boundary::Boundary,
-        locate::{Known, Survey},
-        overlap::{self, Overlaps},
-        placement::place_camera,
+        contact::{Nature, Rank},
+        media::{Boundary, Known, Overlaps, Survey, open, place_camera},
     },
 };
 use std::collections::BTreeSet;
@@ -42,14 +40,15 @@ impl Builder<'_> {
         if !overlaps.is_empty() {
             (known, left) = self.without(&overlaps, &geometry, camera);
         }
-        let contradictions = left.as_ref().unwrap_or(&survey);
-        self.names().warn_of_contradictions(contradictions);
-        let open = overlap::open(&geometry, &self.surfaces, contradictions);
+        let open = open(&geometry, &self.surfaces, left.as_ref().unwrap_or(&survey));
         if !open.is_empty() {
             geometry = self.close(geometry, &open, &mut overlaps)?;
             (known, left) = self.without(&overlaps, &geometry, camera);
+            self.names().warn_of_lids(&open);
         }
-        let contradicts = !left.as_ref().unwrap_or(&survey).shapes().is_empty();
+        let contradictions = left.as_ref().unwrap_or(&survey);
+        self.names().warn_of_contradictions(contradictions);
+        let contradicts = !contradictions.shapes().is_empty();
         overlaps.find_regions(self.media.len(), &self.bases(camera));
         // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
         let Camera { start, stated, location, .. } = *camera;
@@ -84,12 +83,12 @@ impl Builder<'_> {
                 self.shapes.push(lid);
                 self.shape_names.push(format!("lid of {}", self.shape_names[shape as usize]));
                 self.shape_locations.push(self.shape_locations[shape as usize].clone());
+                self.natures.push(Nature { rank: Rank::Null, one_sided: false, is_lid: true });
                 self.surfaces.push(Surface {
                     bsdf: null,
                     emitter: None,
                     boundary: Boundary::default(),
                     transmits: true,
-                    touching: false,
                     connectible: false,
                 });
             }

@@ -9,7 +9,7 @@ use crate::{
         BeamEmitter, BeamModel, InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel,
         SurfaceEmission, SurfaceEmitter, SurfaceModel, VolumeEmitter,
     },
-    math::{Spectrum, Vec3, offset, warp},
+    math::{Spectrum, Vec3, warp},
     sampling::Stream,
     shape::{Ray, SurfacePoint},
 };
@@ -284,7 +284,7 @@ fn start_of(
 
 /// The ray that leaves `point` in unit `direction`.
 fn leaving(point: &SurfacePoint, direction: Vec3) -> Ray {
-    endless(offset::leave_surface(point.position, point.error, point.normal, direction), direction)
+    endless(point.leaving(direction).origin, direction)
 }
 
 fn endless(origin: Vec3, direction: Vec3) -> Ray {

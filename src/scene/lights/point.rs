@@ -1,7 +1,7 @@
 //! The first vertex of every light path: a point of an emitter, or a direction to one at infinity.
 
 use crate::{
-    math::{Spectrum, Vec3, measure, offset},
+    math::{Spectrum, Vec3, measure},
     shape::SurfacePoint,
 };
 
@@ -62,9 +62,7 @@ impl EmitterPoint {
     #[inline]
     pub fn ray_origin(&self, direction: Vec3) -> Option<Vec3> {
         match self {
-            Self::Surface(point) => {
-                Some(offset::leave_surface(point.position, point.error, point.normal, direction))
-            }
+            Self::Surface(point) => Some(point.leaving(direction).origin),
             _ => self.position(),
         }
     }

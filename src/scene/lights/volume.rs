@@ -6,10 +6,7 @@ use crate::{
     math::{SpectrumExt, Vec3, warp},
     medium::{Emission, Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
-    scene::{
-        locate::{Certainty, Located, Locator},
-        overlap::{self, Overlaps},
-    },
+    scene::media::{Certainty, Located, Locator, Overlaps, lies_in},
 };
 use std::sync::Arc;
 
@@ -36,7 +33,7 @@ pub fn emissive<'a>(
                 return known;
             }
             let base = locator.along(point, direction).unwrap_or(outside);
-            overlap::lies_in(overlaps, base, medium, point, direction)
+            lies_in(overlaps, base, medium, point, direction)
         };
         let filled = filled(&emission, medium, &mut lit);
         let emitter = Emitter::of_medium(VolumeEmitter { emission, filled });

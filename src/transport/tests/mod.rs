@@ -455,7 +455,7 @@ fn paths_through_the_dark() {
             let aside = (stream.square() - 0.5) * 8.0;
             let along = (step as f32 + stream.uniform() - 0.5) * 100.0 / (count + 1) as f32;
             let place = Place::Volume(vec3(aside.x, aside.y, along));
-            nodes.push(Node { place, medium: setup.scene.sensor_medium, dirac: false });
+            nodes.push(Node { place, medium: setup.scene.media_map.sensor, dirac: false });
         }
         nodes.push(Node::lens(&setup.scene));
         let path = Path::through(&setup.scene, false, 0, nodes).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::{
     emitter::Kind,
-    math::{DVec3, RaySegment, Spectrum, Vec2, Vec3, offset, vec2, vec3},
+    math::{DVec3, RaySegment, Spectrum, Vec2, Vec3, offset::Lift, vec2, vec3},
     medium::{DistanceMethod, Heterogeneous, MediumIndex, MediumProperties},
     sampling::Stream,
     scene::{Scene, lights::EmitterPoint},
@@ -60,7 +60,7 @@ impl Node {
     /// The end of every path.
     pub fn lens(scene: &Scene) -> Self {
         let position = scene.sensor.ray(Vec2::ZERO, APERTURE).position;
-        Self { place: Place::Lens(position), medium: scene.sensor_medium, dirac: false }
+        Self { place: Place::Lens(position), medium: scene.media_map.sensor, dirac: false }
     }
 
     /// A vertex of an emitter.
@@ -129,7 +129,7 @@ impl Node {
     fn exit(&self, scene: &Scene, direction: Vec3) -> (Vec3, MediumIndex) {
         match self.place {
             Place::Surface(point) => {
-                let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+                let origin = point.leaving(direction).origin;
                 (origin, scene.medium_towards(&point, direction, direction, self.medium))
             }
             Place::Lens(position) => {
@@ -336,16 +336,16 @@ fn sight(scene: &Scene, from: &Node, to: &Node, direction: Vec3) -> (Ray, Medium
         return (Ray { origin, direction, t_max: f32::INFINITY }, medium);
     }
     let lift = match to.place {
-        Place::Surface(point) => offset::side_of(point.normal, -direction),
-        _ => Vec3::ZERO,
+        Place::Surface(point) => point.lift(-direction),
+        _ => Lift::NONE,
     };
-    let way = offset::clear_of_end(origin, to.exit(scene, -direction).0, lift) - origin;
+    let way = lift.clear(origin, to.exit(scene, -direction).0) - origin;
     (Ray { origin, direction: way.normalize(), t_max: way.length() }, medium)
 }
 
 /// The rest of a ray behind a point that it passes, to the same end.
 fn beyond(ray: &Ray, point: &SurfacePoint) -> Ray {
-    let origin = offset::leave_surface(point.position, point.error, point.normal, ray.direction);
+    let origin = point.leaving(ray.direction).origin;
     let way = ray.origin + ray.direction * ray.t_max - origin;
     if ray.t_max == f32::INFINITY || way.dot(ray.direction) <= 0.0 {
         return Ray { origin, t_max: if ray.t_max == f32::INFINITY { f32::INFINITY } else { 0.0 }, ..*ray };

@@ -5,15 +5,12 @@
 //! points connected by unblocked segments lie in one medium. A guess (nothing unblocked was found) is weaker,
 //! and the caller must warn about it.
 
-use super::{
-    Surface,
-    accel::Geometry,
-    boundary::{self, DIRECTIONS, Met, Side},
-};
+use super::boundary::{self, DIRECTIONS, Met, Side};
 use crate::{
     math::{Frame, Vec3, measure, offset, warp},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
+    scene::{Surface, accel::Geometry},
     shape::{Ray, SurfacePoint},
 };
 use std::collections::BTreeSet;
@@ -26,9 +23,11 @@ const RAYS_PER_SIDE: usize = 64;
 const LONGEST_CHAIN: u32 = 8;
 /// Chains that are tried around a point.
 const CHAINS: usize = 128;
-/// Pieces of evidence that settle the medium of a point.
+/// Pieces of evidence that settle the medium of a point where all agree; where not, so many that one is less than a slip.
 const ENOUGH: u32 = 8;
-/// Shares of evidence below this are attributed to rays that slipped through an edge.
+const ENOUGH_OF_DOUBT: u32 = 512;
+/// Shares of evidence below this are attributed to rays that slipped through an edge: of those aimed at boxes, three in a
+/// million.
 const SLIPS: f32 = 0.01;
 
 /// The medium at infinity, by direction.
@@ -104,6 +103,10 @@ impl Votes {
 
     fn total(&self) -> u32 {
         self.0.iter().map(|(_, count, _)| count).sum()
+    }
+
+    fn disagree(&self) -> bool {
+        self.0.len() > 1
     }
 
     /// The medium of most votes, and the shapes of those and of the runner-up where they disagree.
@@ -294,14 +297,11 @@ impl Locator<'_> {
     /// A ray from a point of `shape` on each side whose medium is known.
     fn survey_sides(&self, shape: u32, survey: &mut Survey, stream: &mut Stream) {
         let point = self.geometry.sample_area(shape, stream);
-        let Surface { boundary, touching, .. } = self.surfaces[shape as usize];
-        if touching && boundary::sharing(self.geometry, &point).is_some() {
-            return;
-        }
+        let Surface { boundary, .. } = self.surfaces[shape as usize];
         for normal in [point.normal, -point.normal] {
             let direction = diffuse(normal, stream);
             if let Some(medium) = boundary.side(point.normal.dot(normal)) {
-                let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+                let origin = point.leaving(direction).origin;
                 self.follow(origin, direction, medium, Some(shape), survey, stream);
             }
         }
@@ -322,7 +322,7 @@ impl Locator<'_> {
             match boundary::first(self.geometry, self.surfaces, ray, false) {
                 Met::Side(side) => {
                     survey.extend(medium, side.position, side.position);
-                    if side.medium != medium && !side.is_doubtful() && !self.share_a_plane(from, side.shape) {
+                    if side.medium != medium {
                         survey.contradictions.push(Contradiction { from, medium, at: side });
                     }
                     return;
@@ -361,22 +361,9 @@ impl Locator<'_> {
         let back = Ray { origin, direction, t_max: f32::INFINITY };
         if let Met::Side(at) = boundary::first(self.geometry, self.surfaces, back, false)
             && at.medium != medium
-            && !at.is_doubtful()
-            && !self.share_a_plane(from, at.shape)
         {
             survey.contradictions.push(Contradiction { from, medium, at });
         }
-    }
-
-    /// True if two shapes end in one plane, up to rounding: faces of theirs may lie in the same place, and a ray that
-    /// starts on one does not say which of the two it has left.
-    fn share_a_plane(&self, a: Option<u32>, b: u32) -> bool {
-        let Some(a) = a else { return false };
-        let [(a_low, a_high), (b_low, b_high)] =
-            [a, b].map(|shape| self.geometry.shapes()[shape as usize].bounds());
-        let slack = offset::gamma(32) * a_low.abs().max(a_high.abs()).max_element();
-        let near = |x: Vec3, y: Vec3| (x - y).abs().cmple(Vec3::splat(slack)).any();
-        a != b && (near(a_low, b_low) || near(a_high, b_high) || near(a_low, b_high) || near(a_high, b_low))
     }
 
     /// The medium around `point`, which lies on no surface.
@@ -384,7 +371,10 @@ impl Locator<'_> {
         if let Some(medium) = self.known.only {
             return Some(Located { medium, certainty: Certainty::Seen });
         }
-        let (votes, unstated) = self.evidence(point, ENOUGH, stream);
+        let (mut votes, unstated) = self.evidence(point, ENOUGH, stream);
+        if votes.disagree() {
+            votes = self.evidence(point, ENOUGH_OF_DOUBT, stream).0;
+        }
         match votes.settled() {
             Some((medium, None)) => Some(Located { medium, certainty: Certainty::Seen }),
             Some((medium, Some(shapes))) => {
@@ -402,7 +392,7 @@ impl Locator<'_> {
         }
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
         if let Met::Side(side) = boundary::first(self.geometry, self.surfaces, ray, false) {
-            return Some(side.undoubted(self.geometry, self.surfaces, origin).medium);
+            return Some(side.medium);
         }
         let bits = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
         let mut stream =
@@ -415,31 +405,11 @@ impl Locator<'_> {
         }
     }
 
-    /// The medium of a ray that leaves a boundary that may share faces with another: that of the first side ahead, seen
-    /// through walls if need be, or what surrounds the scene.
-    pub fn ahead(&self, ray: &Ray) -> Option<MediumIndex> {
-        // Where all boundaries overlap, nothing else is left to be found: not by rays, which would take half the time.
-        if self.known.only.is_some() {
-            return self.known.only;
-        }
-        let first = |through_walls| {
-            let ray = Ray { t_max: f32::INFINITY, ..*ray };
-            boundary::first(self.geometry, self.surfaces, ray, through_walls)
-        };
-        let met = match first(false) {
-            Met::Nothing => return self.known.infinity.seen_towards(ray.direction),
-            Met::Wall { .. } => first(true),
-            side => side,
-        };
-        let Met::Side(side) = met else { return None };
-        Some(side.undoubted(self.geometry, self.surfaces, ray.origin).medium)
-    }
-
     /// What light from infinity that starts at `origin` in `direction` is in.
     pub fn at_infinity(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
         match boundary::first(self.geometry, self.surfaces, ray, false) {
-            Met::Side(side) => side.undoubted(self.geometry, self.surfaces, origin).medium,
+            Met::Side(side) => side.medium,
             Met::Wall { .. } | Met::Nothing => self.known.infinity.towards(-direction),
         }
     }
@@ -448,7 +418,7 @@ impl Locator<'_> {
     fn evidence(&self, point: Vec3, enough: u32, stream: &mut Stream) -> (Votes, bool) {
         let (mut votes, mut unstated) = (Votes::default(), false);
         let targets = self.known.boundaries.len() + self.known.points.len();
-        for _ in 0..CHAINS.max(4 * targets).min(64 * CHAINS) {
+        for _ in 0..CHAINS.max(4 * targets).min(64 * CHAINS).max(2 * enough as usize) {
             if votes.total() >= enough {
                 break;
             }
@@ -472,7 +442,6 @@ impl Locator<'_> {
             let (ray, target) = self.aim(origin, leaving, stream);
             match boundary::first(self.geometry, self.surfaces, ray, false) {
                 Met::Side(side) => {
-                    let side = side.undoubted(self.geometry, self.surfaces, origin);
                     return Some((side.medium, Some(side.shape)));
                 }
                 Met::Wall { point, half_known } => {
@@ -530,5 +499,5 @@ fn diffuse(normal: Vec3, stream: &mut Stream) -> Vec3 {
 /// Where a ray that came in `direction` goes on from a wall.
 fn bounce(point: &SurfacePoint, direction: Vec3, stream: &mut Stream) -> (Vec3, Vec3) {
     let away = diffuse(offset::side_of(point.normal, -direction), stream);
-    (offset::leave_surface(point.position, point.error, point.normal, away), away)
+    (point.leaving(away).origin, away)
 }

@@ -1,17 +1,16 @@
 //! Which media the camera and the emitters of a scene lie in, with a warning for everything that is a guess.
 
 use super::{
-    accel::Geometry,
-    boundary::Boundary,
-    lights::Disk,
+    Boundary,
     locate::{Certainty, Contradiction, Known, Located, Locator, Survey},
 };
 use crate::{
     description::{Library, Location, Position},
     emitter::{Emitter, InfiniteModel, Kind},
-    math::{DVec3, Vec3, offset},
+    math::{DVec3, Vec3},
     medium::{MediumDescription, MediumIndex},
     sampling::{Stream, stream::Purpose},
+    scene::{accel::Geometry, contact::Contact, lights::Disk},
     shape::SurfacePoint,
 };
 
@@ -84,7 +83,18 @@ impl Names<'_> {
         self.library.warn(location, &text);
     }
 
-    /// Shapes that are open.
+    /// Shapes whose openings were closed.
+    pub fn warn_of_lids(&self, open: &[u32]) {
+        for &shape in open {
+            let text = format!(
+                "{} bounds a medium and is open: its openings are taken to be closed by flat lids",
+                self.shape(Some(shape))
+            );
+            self.library.warn(&self.locations[shape as usize], &text);
+        }
+    }
+
+    /// Shapes that are open, or overlap, in a way that nothing can put in order.
     pub fn warn_of_contradictions(&self, survey: &Survey) {
         let found = survey.proven();
         let Some((Contradiction { from, medium, at }, _)) = found.first() else { return };
@@ -94,15 +104,31 @@ impl Names<'_> {
             n => format!(" (and {} more such pairs)", n - 1),
         };
         let text = format!(
-            "the boundaries of media contradict each other: an unblocked way from {} in {} ends on the side of \
-             \"{}\" in {}, near {place:.3}{others}. No image is right then. Openings of cylinders and meshes are \
-             taken to be closed by flat lids, and light that gets around other open shapes is left out. Close shapes that bound media, and state the exterior of those that lie within a medium",
+            "the image cannot be correct: an unobstructed ray from {} in {} reaches the side of \"{}\" in {}, near \
+             {place:.3}{others}. Light that gets around open shapes is left out. Close the shapes that bound media, and \
+             state the exterior of those that lie within a medium",
             self.shape(*from),
             self.medium(*medium),
             self.shapes[at.shape as usize],
             self.medium(at.medium)
         );
         self.library.warn(&self.locations[at.shape as usize], &text);
+    }
+
+    /// Faces in one place, of which nothing but the file says which is before the other.
+    pub fn warn_of_ties(&self, contacts: &[Contact]) {
+        for Contact { shapes: [moved, other], .. } in contacts.iter().filter(|contact| contact.is_tie) {
+            let (first, second) = (moved.min(other), moved.max(other));
+            let text = format!(
+                "faces of {} and {} lie in one place; the camera is taken to see {} first, which comes first in the \
+                 file. Move one of them by more than {:.0e} m",
+                self.shape(Some(*first)),
+                self.shape(Some(*second)),
+                self.shape(Some(*first)),
+                contacts.iter().map(|contact| contact.by).fold(0.0, f64::max),
+            );
+            self.library.warn(&self.locations[*second as usize], &text);
+        }
     }
 
     /// No light gets to a camera at `location`.
@@ -260,7 +286,7 @@ impl Placement<'_> {
         if let Some(medium) = side {
             return Located { medium, certainty: Certainty::Seen };
         }
-        let origin = offset::leave_surface(point.position, point.error, point.normal, towards);
+        let origin = point.leaving(towards).origin;
         self.locator.locate(origin, stream).unwrap_or_else(|| self.assumed())
     }
 

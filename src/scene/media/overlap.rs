@@ -1,27 +1,24 @@
 //! Media whose boundaries overlap: which of them lie at a point.
 //!
-//! A closed boundary puts its interior in the place of its exterior. Where several hold a point, each does so, in any
-//! order: media that overlap are all there, and their coefficients add; one that is there by two boundaries is there
-//! once; a bubble takes away what it states as its exterior. That depends on the point alone, so camera and light
-//! subpaths cannot differ, which they would if each crossing switched from one medium to another.
+//! A closed boundary puts its interior in the place of its exterior. Where several hold a point, each does so: media that
+//! overlap are all there, and their coefficients add; one that is there by two boundaries is there once; a bubble takes away
+//! what it states as its exterior, by whichever boundary that is there, unless the boundary lies within the bubble. That
+//! depends on the point alone, so camera and light subpaths cannot differ, which they would if each crossing switched from
+//! one medium to another.
 //!
 //! Only scenes whose boundaries overlap have this. Walks then carry the index of a region, which stands behind the
 //! indices of media: what would be there without these boundaries (their base, which walks find as in other scenes),
 //! and the boundaries that hold the part of the ray at hand.
 
-use super::{
-    Surface,
-    accel::Geometry,
-    boundary::{MOST_SURFACES, sharing},
-    locate::Survey,
-};
+use super::{Solid, locate::Survey};
 use crate::{
-    math::{RaySegment, Vec3, offset, vec3, warp},
+    math::{RaySegment, Vec3, vec3, warp},
     medium::{Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
-    shape::{Ray, Shape, ShapeModel as _},
+    scene::{Surface, accel::Geometry},
+    shape::{Shape, ShapeModel as _},
 };
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet, VecDeque};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 
 /// Points at which each pair of boundaries is examined, and how many tests of all of these may take.
 const POINTS: u64 = 64;
@@ -46,16 +43,15 @@ pub struct Overlaps {
     /// From a medium or region, and the number of one more boundary, to the region where that is too. Those of a region
     /// come in ascending order.
     next: HashMap<(MediumIndex, usize), MediumIndex>,
+    /// Numbers of boundaries, the first of which lies within the second.
+    nested: BTreeSet<(usize, usize)>,
 }
 
 /// A closed shape that bounds a medium.
 #[derive(Clone, Debug)]
 struct ClosedBoundary {
     shape: u32,
-    /// The shape alone.
-    geometry: Geometry,
-    /// Its normals point away from what it holds.
-    outward: bool,
+    solid: Solid,
     /// What it adds.
     inside: MediumIndex,
     /// What it takes away.
@@ -66,8 +62,8 @@ struct ClosedBoundary {
 #[derive(Clone, Debug)]
 struct Region {
     base: MediumIndex,
-    /// How often each medium is there: once at the base and for every boundary, once less for each that it is outside of.
-    counts: BTreeMap<u32, i32>,
+    /// The numbers of the boundaries, in ascending order.
+    held: Vec<usize>,
     /// What is there, vacuum left out.
     members: Vec<MediumIndex>,
 }
@@ -86,7 +82,6 @@ impl Overlaps {
         let small = |shape: &u32| geometry.shapes()[*shape as usize].primitive_count() <= MOST_PRIMITIVES;
         let examined: Vec<_> = near.shapes().into_iter().filter(small).map(new).collect();
         chosen.extend(near.contradictory(&examined));
-        chosen.extend(near.sharing_faces(geometry));
         near.spread(&mut chosen);
         Self { boundaries: chosen.into_iter().map(new).collect(), ..Self::default() }
     }
@@ -119,6 +114,7 @@ impl Overlaps {
     /// sets of boundaries first; of very many, those that hold points.
     pub fn find_regions(&mut self, media: usize, bases: &BTreeSet<u32>) {
         self.media = media;
+        self.find_nested();
         let everywhere = (Vec3::NEG_INFINITY, Vec3::INFINITY);
         let starts = bases.iter().map(|base| (MediumIndex(*base), 0, everywhere));
         let mut waiting: VecDeque<_> = starts.collect();
@@ -127,7 +123,7 @@ impl Overlaps {
                 if self.regions.len() >= FORESEEN {
                     return self.look_for_regions(bases);
                 }
-                if let Some(within) = common(within, self.boundaries[index].geometry.bounds()) {
+                if let Some(within) = common(within, self.boundaries[index].solid.bounds()) {
                     waiting.push_back((self.with(from, index), index + 1, within));
                 }
             }
@@ -138,7 +134,7 @@ impl Overlaps {
     fn look_for_regions(&mut self, bases: &BTreeSet<u32>) {
         let mut stream = Stream::new(8, 0, 0, Purpose::Pilot);
         for _ in 0..LOOKS {
-            let bounds = self.boundaries[stream.below(self.boundaries.len())].geometry.bounds();
+            let bounds = self.boundaries[stream.below(self.boundaries.len())].solid.bounds();
             let (position, direction) = (within(bounds, &mut stream), warp::to_sphere(stream.square()));
             let holding: Vec<usize> = self.holding(position, direction).collect();
             for base in bases {
@@ -153,21 +149,43 @@ impl Overlaps {
             return *known;
         }
         let new = MediumIndex((self.media + self.regions.len()) as u32);
-        let ClosedBoundary { inside, outside, .. } = self.boundaries[index];
-        let mut counts =
-            self.region(from).map_or_else(|| BTreeMap::from([(from.0, 1)]), |region| region.counts.clone());
-        *counts.entry(inside.0).or_insert(0) += 1;
-        *counts.entry(outside.0).or_insert(0) -= 1;
-        let there = counts.iter().filter(|(medium, count)| **medium != 0 && **count > 0);
-        let members = there.map(|(medium, _)| MediumIndex(*medium)).collect();
-        self.regions.push(Region { base: self.base(from), counts, members });
+        let (base, mut held) =
+            (self.base(from), self.region(from).map_or(vec![], |region| region.held.clone()));
+        held.push(index);
+        let members = self.members(base, &held);
+        self.regions.push(Region { base, held, members });
         self.next.insert((from, index), new);
         new
     }
 
+    /// What is there within the boundaries that are `held` over `base`, vacuum left out.
+    fn members(&self, base: MediumIndex, held: &[usize]) -> Vec<MediumIndex> {
+        let added = held.iter().map(|index| (self.boundaries[*index].inside, Some(*index)));
+        let there = [(base, None)].into_iter().chain(added).filter(|(medium, by)| {
+            *medium != MediumIndex::VACUUM && !held.iter().any(|taker| self.takes(*taker, *medium, *by))
+        });
+        there.map(|(medium, _)| medium).collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
+    /// True if boundary number `taker` takes `medium` away that is there `by` another, or without any.
+    fn takes(&self, taker: usize, medium: MediumIndex, by: Option<usize>) -> bool {
+        let is_spared = by.is_some_and(|by| by == taker || self.nested.contains(&(by, taker)));
+        self.boundaries[taker].outside == medium && !is_spared
+    }
+
+    /// All pairs of boundaries one of which lies within the other.
+    fn find_nested(&mut self) {
+        let numbers = 0..self.boundaries.len();
+        let pairs = numbers.clone().flat_map(|inner| numbers.clone().map(move |outer| (inner, outer)));
+        let is_nested = |(inner, outer): &(usize, usize)| {
+            inner != outer && self.boundaries[*outer].contains(&self.boundaries[*inner])
+        };
+        self.nested = pairs.filter(is_nested).collect();
+    }
+
     /// The boundaries that hold `position`, in order.
     fn holding(&self, position: Vec3, direction: Vec3) -> impl Iterator<Item = usize> {
-        let holds = move |(_, boundary): &(usize, &ClosedBoundary)| boundary.holds(position, direction);
+        let holds = move |(_, boundary): &(usize, &ClosedBoundary)| boundary.solid.holds(position, direction);
         self.boundaries.iter().enumerate().filter(holds).map(|(index, _)| index)
     }
 
@@ -229,7 +247,7 @@ impl Overlaps {
 
     /// The media that boundaries put at `position`, or anywhere.
     pub fn added(&self, position: Option<Vec3>) -> Vec<MediumIndex> {
-        let there = |boundary: &&ClosedBoundary| position.is_none_or(|p| boundary.holds(p, Vec3::X));
+        let there = |boundary: &&ClosedBoundary| position.is_none_or(|p| boundary.solid.holds(p, Vec3::X));
         self.boundaries.iter().filter(there).map(|boundary| boundary.inside).collect()
     }
 }
@@ -262,7 +280,7 @@ impl Near {
         let mut pairs = Vec::new();
         for (i, a) in bounds.iter().enumerate() {
             for (j, b) in bounds.iter().enumerate().skip(i + 1) {
-                if let Some(both) = common(*a, *b).filter(|both| is_thick(*both, *a, *b)) {
+                if let Some(both) = common(*a, *b) {
                     pairs.push(Pair { shapes: [shapes[i], shapes[j]], boxes: [*a, *b, both] });
                 }
             }
@@ -288,7 +306,7 @@ impl Near {
                 .map(|bounds| (within(bounds, &mut stream), warp::to_sphere(stream.square())));
             let mut around = None;
             if !points.into_iter().all(|(position, direction)| {
-                let held = boundaries.iter().filter(|boundary| boundary.holds(position, direction));
+                let held = boundaries.iter().filter(|boundary| boundary.solid.holds(position, direction));
                 let mut steps: Vec<_> = held.map(|boundary| (boundary.outside, boundary.inside)).collect();
                 let first = (0..steps.len()).find(|first| follow_on(&mut steps, *first));
                 let start = first.map(|first| steps[first].0);
@@ -298,19 +316,6 @@ impl Near {
             }
         }
         found
-    }
-
-    /// Those of which one holds a part of the other behind a face of both: of the two faces a ray hits one by chance, and in
-    /// both directions perhaps another.
-    fn sharing_faces(&self, geometry: &Geometry) -> BTreeSet<u32> {
-        let pairs: HashSet<[u32; 2]> = self.pairs.iter().map(|pair| pair.shapes).collect();
-        let is_near = |a: u32, b: u32| pairs.contains(&[a.min(b), a.max(b)]);
-        let shares = |shape: u32| {
-            let mut stream = Stream::new(9, u64::from(shape), 0, Purpose::Pilot);
-            let mut points = (0..POINTS).map(|_| geometry.sample_area(shape, &mut stream));
-            points.find_map(|point| sharing(geometry, &point).filter(|other| is_near(shape, *other)))
-        };
-        self.shapes().into_iter().filter_map(|shape| Some([shape, shares(shape)?])).flatten().collect()
     }
 
     /// Adds to `chosen` whatever is near it.
@@ -340,13 +345,6 @@ fn follow_on(steps: &mut Vec<(MediumIndex, MediumIndex)>, first: usize) -> bool 
     done
 }
 
-/// Boxes that touch have no more than a film in common.
-fn is_thick((low, high): (Vec3, Vec3), a: (Vec3, Vec3), b: (Vec3, Vec3)) -> bool {
-    const FILM: f32 = 1e-4;
-    let size = (a.1 - a.0).min(b.1 - b.0);
-    (high - low).cmpgt(size * FILM).all()
-}
-
 /// True if `medium` is at `position`, where `base` lies without the boundaries that overlap.
 pub fn lies_in(
     overlaps: Option<&Overlaps>,
@@ -363,45 +361,24 @@ pub fn lies_in(
 impl ClosedBoundary {
     /// Number `index` of a scene, closed by `lids` if it is open.
     fn new(shape: &Shape, lids: &[Shape], surfaces: &[Surface], index: u32) -> Self {
-        let geometry = Geometry::build(std::iter::once(shape).chain(lids).cloned().collect());
+        let solid = Solid::new(shape, lids);
         let boundary = surfaces[index as usize].boundary;
         let [interior, exterior] =
             [boundary.interior, boundary.exterior].map(|side| side.unwrap_or(MediumIndex::VACUUM));
-        let outward = is_outward(&geometry);
-        let (inside, outside) = if outward { (interior, exterior) } else { (exterior, interior) };
-        Self { shape: index, geometry, outward, inside, outside }
+        let (inside, outside) = if solid.is_outward() { (interior, exterior) } else { (exterior, interior) };
+        Self { shape: index, solid, inside, outside }
     }
 
-    /// True if `position`, which is not on it, lies within.
-    fn holds(&self, position: Vec3, direction: Vec3) -> bool {
-        let (low, high) = self.geometry.bounds();
-        if position.cmplt(low).any() || position.cmpgt(high).any() {
-            return false;
-        }
-        let ray = Ray { origin: position, direction, t_max: f32::INFINITY };
-        self.geometry.closest(&ray).is_some_and(|hit| {
-            let normal = self.geometry.surface(&ray, &hit).normal;
-            (normal.dot(direction) > 0.0) == self.outward
-        })
+    /// True if another lies within, as far as points of it show.
+    fn contains(&self, other: &Self) -> bool {
+        let [(low, high), (l, h)] = [self, other].map(|boundary| boundary.solid.bounds());
+        let mut stream = Stream::new(7, u64::from(other.shape), 0, Purpose::Pilot);
+        let mut holds = || {
+            let point = other.solid.sample_area(&mut stream);
+            self.solid.holds(point.position, warp::to_sphere(stream.square()))
+        };
+        l.cmpge(low).all() && h.cmple(high).all() && (0..POINTS).all(|_| holds())
     }
-}
-
-/// True if the normals of a closed shape point away from what it holds: a ray along one meets as many surfaces on its way
-/// out as back in.
-fn is_outward(shape: &Geometry) -> bool {
-    let mut stream = Stream::new(6, 0, 0, Purpose::Pilot);
-    let start = shape.sample_area(0, &mut stream);
-    let origin = offset::leave_surface(start.position, start.error, start.normal, start.normal);
-    let mut ray = Ray { origin, direction: start.normal, t_max: f32::INFINITY };
-    let crossings = (0..MOST_SURFACES).take_while(|_| {
-        let hit = shape.closest(&ray);
-        let point = hit.map(|hit| shape.surface(&ray, &hit));
-        if let Some(point) = &point {
-            ray.origin = offset::leave_surface(point.position, point.error, point.normal, ray.direction);
-        }
-        point.is_some()
-    });
-    crossings.count() % 2 == 0
 }
 
 /// A point of a box, by least and greatest corner.

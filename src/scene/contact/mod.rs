@@ -1,0 +1,297 @@
+//! Faces that touch, set apart before anything is traced.
+//!
+//! What a picture of two faces in one place should be is the limit of a gap between them, in the order that common sense
+//! gives (along a ray): faces of solids that it leaves, the innermost first; faces that belong to no solid; faces of solids
+//! that it enters, the outermost first. Rays cannot find that order, as they step over whatever lies within the rounding of
+//! a hit. So the gap is made: solids shrink where they touch something, by a few hundred roundings of positions, and of two
+//! open faces the one that should be met first is moved. Everything else then sees an ordinary scene.
+//!
+//! Where the order above says nothing, index-matched faces come before those that scatter, then those that transmit, those
+//! that emit, and opaque ones; of two alike the first in the file is nearer to the camera, with a warning.
+
+mod pairs;
+
+use crate::{
+    math::Vec3,
+    sampling::{Stream, stream::Purpose},
+    shape::{Hit, Patch, Ray, Shape, ShapeModel as _},
+};
+use pairs::{Pair, pairs};
+use std::{cell::OnceCell, collections::BTreeMap};
+
+/// Moves put solids in new places; shapes nested deeper than this are not set apart.
+const ROUNDS: usize = 16;
+
+/// How a face counts among others in the same place: what is less comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rank {
+    /// Index-matched.
+    Null,
+    /// Scatters and lets light through.
+    Transmitting,
+    /// Emits, opaque.
+    Emitting,
+    /// Opaque.
+    Opaque,
+}
+
+/// What contact needs to know of a shape.
+#[derive(Clone, Copy, Debug)]
+pub struct Nature {
+    /// Its place in the order.
+    pub rank: Rank,
+    /// It is seen from its front alone.
+    pub one_sided: bool,
+    /// It is a part of what bounds a solid, though not closed by itself.
+    pub is_lid: bool,
+}
+
+impl Nature {
+    fn is_opaque(self) -> bool {
+        self.rank >= Rank::Emitting
+    }
+}
+
+/// Two shapes whose faces touched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// The one that was moved, and the other.
+    pub shapes: [u32; 2],
+    /// The farthest that a face was moved [m].
+    pub by: f64,
+    /// Nothing but the order of the file says which of them comes first.
+    pub is_tie: bool,
+}
+
+/// A move of one primitive along its patch's normal [m].
+struct Move {
+    shape: u32,
+    primitive: usize,
+    by: f64,
+    other: u32,
+    is_tie: bool,
+}
+
+/// What was set apart.
+#[derive(Clone, Debug, Default)]
+pub struct Apart {
+    /// Pairs of shapes that touched.
+    pub contacts: Vec<Contact>,
+    /// Shapes that were moved, by number, as they were before.
+    pub given: BTreeMap<u32, Shape>,
+}
+
+impl Apart {
+    /// Sets faces of `shapes` apart that touch; positions are relative to the camera.
+    pub fn separate(&mut self, shapes: &mut [Shape], natures: &[Nature]) {
+        for _ in 0..ROUNDS {
+            let moves: Vec<Move> = {
+                let faces = Faces::new(shapes, natures);
+                pairs(shapes, &faces.bounds).iter().filter_map(|pair| faces.order(pair)).collect()
+            };
+            if moves.is_empty() {
+                return;
+            }
+            moves.iter().for_each(|made| self.note(made));
+            self.apply(shapes, &moves);
+        }
+    }
+
+    fn note(&mut self, made: &Move) {
+        let (shapes, by) = ([made.shape, made.other], made.by.abs());
+        match self.contacts.iter_mut().find(|contact| contact.shapes == shapes) {
+            Some(contact) => contact.by = contact.by.max(by),
+            None => self.contacts.push(Contact { shapes, by, is_tie: made.is_tie }),
+        }
+    }
+
+    /// The farthest of all moves of a primitive counts.
+    fn apply(&mut self, shapes: &mut [Shape], moves: &[Move]) {
+        let mut by_shape: BTreeMap<u32, BTreeMap<usize, f64>> = BTreeMap::new();
+        for Move { shape, primitive, by, .. } in moves {
+            let farthest = by_shape.entry(*shape).or_default().entry(*primitive).or_insert(0.0);
+            if by.abs() > farthest.abs() {
+                *farthest = *by;
+            }
+        }
+        for (shape, moves) in by_shape {
+            let displaced = shapes[shape as usize].displaced(&moves);
+            let given = std::mem::replace(&mut shapes[shape as usize], displaced);
+            self.given.entry(shape).or_insert(given);
+        }
+    }
+}
+
+/// All faces.
+struct Faces<'a> {
+    shapes: &'a [Shape],
+    natures: &'a [Nature],
+    bounds: Vec<(Vec3, Vec3)>,
+    /// See [`Faces::solid`].
+    solids: Vec<OnceCell<Option<f64>>>,
+}
+
+/// A face and the shape that it is a part of.
+#[derive(Clone, Copy)]
+struct Face<'a> {
+    shape: u32,
+    primitive: usize,
+    patch: &'a Patch,
+}
+
+impl<'a> Faces<'a> {
+    fn new(shapes: &'a [Shape], natures: &'a [Nature]) -> Self {
+        let bounds = shapes.iter().map(Shape::bounds).collect();
+        Self { shapes, natures, bounds, solids: vec![OnceCell::new(); shapes.len()] }
+    }
+
+    /// 1 where the normals of a solid's primitives point outwards as [`Shape::winding`] says, -1 where the shape is inside
+    /// out; none where it bounds no solid.
+    fn solid(&self, shape: u32) -> Option<f64> {
+        let shape = shape as usize;
+        *self.solids[shape].get_or_init(|| {
+            let is_solid = self.natures[shape].is_lid || self.shapes[shape].is_solid();
+            is_solid.then(|| self.shapes[shape].turn())
+        })
+    }
+
+    /// What has to move so that a pair is in order; nothing where it is, or where it makes no difference.
+    fn order(&self, pair: &Pair) -> Option<Move> {
+        let [a, b] = [0, 1].map(|i| Face {
+            shape: pair.shapes[i],
+            primitive: pair.primitives[i],
+            patch: &pair.patches[i],
+        });
+        if !self.matters(a, b) {
+            return None;
+        }
+        let [outward_a, outward_b] = [a, b].map(|face| self.outward(face));
+        let same = facing(a, b);
+        match (outward_a, outward_b) {
+            (Some(outward), None) => Self::moved(pair, a, b, -outward, false),
+            (None, Some(outward)) => Self::moved(pair, b, a, -outward, false),
+            (Some(one), Some(other)) if one * other * same < 0.0 => {
+                let (mover, still, outward) = if self.goes_first(a, b) { (a, b, one) } else { (b, a, other) };
+                Self::moved(pair, mover, still, -outward, false)
+            }
+            (Some(one), Some(other)) => {
+                let (inner, is_tie) = self.inner(a, b, one);
+                let (mover, still, outward) = if inner { (a, b, one) } else { (b, a, other) };
+                Self::moved(pair, mover, still, -outward, is_tie)
+            }
+            (None, None) => {
+                let (mover, still) = if self.goes_first(a, b) { (a, b) } else { (b, a) };
+                let is_tie = self.rank(a) == self.rank(b) && self.rank(a) > Rank::Null;
+                Self::moved(pair, mover, still, self.side_of_view(mover, still), is_tie)
+            }
+        }
+    }
+
+    /// `mover` is to lie beyond `still` by the pair's reach, on the side that `sign` times its normal points to.
+    fn moved(pair: &Pair, mover: Face<'_>, still: Face<'_>, sign: f64, is_tie: bool) -> Option<Move> {
+        // A quarter more, so that rounding does not make it touch again.
+        let wanted = 1.25 * pair.reach;
+        let height = sign * mover.patch.height_of(still.patch, pair.reach)?;
+        let by = sign * (wanted + height);
+        Some(Move { shape: mover.shape, primitive: mover.primitive, by, other: still.shape, is_tie })
+    }
+
+    fn nature(&self, face: Face<'_>) -> Nature {
+        self.natures[face.shape as usize]
+    }
+
+    fn rank(&self, face: Face<'_>) -> Rank {
+        self.nature(face).rank
+    }
+
+    /// Light gets by one of both, or both are seen from one side.
+    fn matters(&self, a: Face<'_>, b: Face<'_>) -> bool {
+        if !(self.nature(a).is_opaque() && self.nature(b).is_opaque()) {
+            return true;
+        }
+        let [one, other] = [a, b].map(|face| self.shown_side(face));
+        one.zip(other).is_none_or(|(one, other)| one * other * facing(a, b) > 0.0)
+    }
+
+    /// Of an opaque face, the side that may be seen, as a sign of its patch's normal; none where both may.
+    fn shown_side(&self, face: Face<'_>) -> Option<f64> {
+        self.outward(face).or_else(|| self.nature(face).one_sided.then(|| self.front(face)))
+    }
+
+    /// 1 where the front of a face is where its patch's normal points, else -1.
+    fn front(&self, face: Face<'_>) -> f64 {
+        let shape = &self.shapes[face.shape as usize];
+        let Some(normal) = face.patch.plane_normal() else {
+            let point = shape.sample_area(&mut Stream::new(0, 0, 0, Purpose::Pilot));
+            let (low, high) = self.bounds[face.shape as usize];
+            let from_middle = point.position - 0.5 * (low + high);
+            return f64::from(point.shading.normal.dot(from_middle)).signum();
+        };
+        let nowhere = Ray { origin: Vec3::ZERO, direction: Vec3::Z, t_max: 0.0 };
+        let hit = Hit { t: 0.0, primitive: 0, u: 0.25, v: 0.25 };
+        let point = shape.surface(face.primitive, &nowhere, &hit);
+        point.shading.normal.as_dvec3().dot(normal).signum()
+    }
+
+    /// 1 where the patch's normal points away from the solid that a face bounds, -1 where into it; none where it bounds
+    /// none. The walls of a room are solid outside of it: walls that show their front, or the camera is among.
+    fn outward(&self, face: Face<'_>) -> Option<f64> {
+        let outward = self.solid(face.shape)? * self.shapes[face.shape as usize].winding(face.primitive);
+        if !self.nature(face).is_opaque() {
+            return Some(outward);
+        }
+        if self.nature(face).one_sided {
+            return Some(self.front(face));
+        }
+        let (low, high) = self.bounds[face.shape as usize];
+        let is_room = low.cmplt(Vec3::ZERO).all() && high.cmpgt(Vec3::ZERO).all();
+        Some(if is_room { -outward } else { outward })
+    }
+
+    /// The lower rank, else the one that comes first in the file.
+    fn goes_first(&self, a: Face<'_>, b: Face<'_>) -> bool {
+        (self.rank(a), a.shape) < (self.rank(b), b.shape)
+    }
+
+    /// Of the faces of two solids that face the same way, whether `a` is the inner one; and whether only the file says so.
+    /// The normal of `a` times `outward` points outwards.
+    fn inner(&self, a: Face<'_>, b: Face<'_>, outward: f64) -> (bool, bool) {
+        let [a_in_b, b_in_a] = [(a, b), (b, a)].map(|(a, b)| self.is_within(a.shape, b.shape));
+        if a_in_b != b_in_a {
+            return (a_in_b, false);
+        }
+        let [one, other] = [self.rank(a), self.rank(b)];
+        if one == Rank::Null || other == Rank::Null {
+            return ((one, b.shape) < (other, a.shape), false);
+        }
+        let (point, normal) = a.patch.sample();
+        let camera_is_outside = outward * normal.dot(-point) > 0.0;
+        (self.goes_first(a, b) != camera_is_outside, one == other)
+    }
+
+    /// True if the box of shape `a` lies within that of `b`, up to rounding.
+    fn is_within(&self, a: u32, b: u32) -> bool {
+        let [(low, high), (l, h)] = [a, b].map(|shape| self.bounds[shape as usize]);
+        let slack = (pairs::reach(&self.bounds, [a, b]) * 4.0).as_vec3();
+        low.cmpge(l - slack).all() && high.cmple(h + slack).all()
+    }
+
+    /// Which way, along its normal, an open face `mover` lies before another: in front of an opaque one, else towards the
+    /// camera.
+    fn side_of_view(&self, mover: Face<'_>, still: Face<'_>) -> f64 {
+        let Nature { one_sided, .. } = self.nature(still);
+        if one_sided && self.nature(still).is_opaque() {
+            return self.front(still) * facing(mover, still);
+        }
+        let (point, normal) = mover.patch.sample();
+        if normal.dot(point) > 0.0 { -1.0 } else { 1.0 }
+    }
+}
+
+/// 1 where the normals of both point the same way, else -1.
+fn facing(a: Face<'_>, b: Face<'_>) -> f64 {
+    match (a.patch.plane_normal(), b.patch.plane_normal()) {
+        (Some(a), Some(b)) => a.dot(b).signum(),
+        _ => 1.0,
+    }
+}
