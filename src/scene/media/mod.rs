@@ -28,7 +28,12 @@ use super::{
     Scene, Surface,
     lights::{EmitterSample, Light},
 };
-use crate::{emitter::Kind, math::Vec3, medium::MediumIndex, shape::SurfacePoint};
+use crate::{
+    emitter::Kind,
+    math::{Spectrum, Vec3},
+    medium::MediumIndex,
+    shape::SurfacePoint,
+};
 
 /// What is known about where media lie.
 pub struct MediaMap {
@@ -53,6 +58,11 @@ impl MediaMap {
 }
 
 impl Scene {
+    /// True if fog lies around everything, so that walks in it need not come to an end.
+    pub fn is_endless(&self) -> bool {
+        self.media[self.media_map.outside.0 as usize].bound().sigma_t != Spectrum::ZERO
+    }
+
     /// The medium that a ray is in when it leaves `point` in `direction`, which came from the direction `incoming`, in
     /// `medium`.
     #[inline]
