@@ -3,6 +3,7 @@
 //! The modules are listed in the order of the pipeline; each may use the ones above it, none below.
 
 pub mod error;
+pub mod inputs;
 pub mod math;
 pub mod memory;
 pub mod sampling;

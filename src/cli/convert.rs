@@ -6,6 +6,7 @@ use crate::{
     error::{Error, Result},
     film,
     format::{self, Naming},
+    inputs::{self, Reader},
     volume::grid,
 };
 use std::path::Path;
@@ -27,6 +28,7 @@ pub fn run(arguments: &arguments::Convert) -> Result<()> {
     if !to_vol {
         refuse(&of_volumes, "a .vol file to write", output)?;
     }
+    inputs::note(input, Reader::Command);
     match (to_png, to_vol) {
         (true, _) => show(input, output, *display),
         (_, true) => voxels(input, grid.as_deref(), output),
@@ -49,7 +51,7 @@ fn scene(arguments: &arguments::Convert) -> Result<()> {
     let arguments::Convert { input, output, definitions, fill, .. } = arguments;
     let naming = if *fill { Naming::Fill } else { Naming::Keep };
     let conversion = format::convert(input, output, definitions, naming)?;
-    check_short([output], &[])?;
+    check_short([output])?;
     film::output::write(output, |file| file.write_all(conversion.text.as_bytes()))?;
     for note in &conversion.notes {
         complain(&format!("note: {note}"));
@@ -60,7 +62,7 @@ fn scene(arguments: &arguments::Convert) -> Result<()> {
 
 /// The `.vol` file `output` of the volume file `input`.
 fn voxels(input: &Path, grid: Option<&str>, output: &Path) -> Result<()> {
-    check_short([&output.to_owned()], &[input])?;
+    check_short([&output.to_owned()])?;
     let voxels = grid::to_vol(input, grid)?;
     film::output::write(output, |file| voxels.write(file))?;
     super::say(&output.display().to_string());
@@ -70,7 +72,7 @@ fn voxels(input: &Path, grid: Option<&str>, output: &Path) -> Result<()> {
 /// The PNG `output` of the image `input`, which says what the image says of its making.
 fn show(input: &Path, output: &Path, mut display: Display) -> Result<()> {
     let image = picture::read(input)?;
-    check_short([&output.to_owned()], &[input])?;
+    check_short([&output.to_owned()])?;
     let exposure = display.choose(&image.pixels).unwrap_or_default();
     let display = display.of(&image.pixels);
     let is_openexr = input.extension().is_some_and(|end| end.eq_ignore_ascii_case("exr"));

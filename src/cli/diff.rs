@@ -8,6 +8,7 @@ use crate::{
     },
     error::{Error, Result},
     film::{self, png::ToneCurve},
+    inputs::{self, Reader},
 };
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -147,7 +148,8 @@ fn limit(text: &str) -> std::result::Result<Limit, String> {
 /// Runs the command; true if no measure is above its limit.
 pub fn run(arguments: &Diff) -> Result<bool> {
     let files = [arguments.image.as_path(), arguments.reference.as_path()];
-    check_short([&arguments.map, &arguments.answer.report].into_iter().flatten(), &files)?;
+    files.iter().for_each(|file| inputs::note(file, Reader::Command));
+    check_short([&arguments.map, &arguments.answer.report].into_iter().flatten())?;
     let image = picture::read_layer(files[0], arguments.layer.as_deref())?;
     let reference = picture::read_layer(files[1], arguments.layer.as_deref())?;
     let view = View {

@@ -133,7 +133,7 @@ pub fn run(arguments: &Flights) -> Result<bool> {
     let experiment = experiment(arguments)?;
     let steps = steps(arguments, &experiment)?;
     let drawn = drawn(arguments, &experiment, &steps)?;
-    check_short([&arguments.svg, &arguments.answer.report].into_iter().flatten(), &[])?;
+    check_short([&arguments.svg, &arguments.answer.report].into_iter().flatten())?;
     let study = flights::study(&experiment, &steps, effort(arguments));
     say(&describe(arguments, &experiment, &study));
     if let Some((path, sigma_s)) = drawn {

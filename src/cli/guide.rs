@@ -48,8 +48,8 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    arguments.answer.check(&[&arguments.scene.file])?;
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
+    arguments.answer.check()?;
     let mut settings = arguments.estimator.guided_settings(&setup, Budget::ENDLESS)?;
     if let Some(preview) = settings.options.strategies.preview() {
         let remedy = "choose --integrator bdpt, pt or lt";
@@ -58,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let starts = arguments.estimator.starts.unwrap_or(true);
     settings.options.effort.learnt_starts = starts && settings.options.strategies.need_light_walks();
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
-    outputs::check_short(&FILES.map(|name| folder.join(name)), &[])?;
+    outputs::check_short(&FILES.map(|name| folder.join(name)))?;
     let findings = super::threads(arguments.threads)?
         .install(|| guide::examine(&setup, &settings, arguments.sample as usize));
     let files = findings.write(&folder)?;

@@ -13,6 +13,7 @@ use crate::{
         format::{Component, FileKind},
         layer::Layer,
     },
+    inputs::{self, Reader},
     medium::{DistanceMethod, Heterogeneous, MediumIndex, distance::DistanceSampler},
     phase::PhaseModel,
     render::{Settings, budget::Budget, training},
@@ -32,7 +33,8 @@ use std::collections::BTreeSet;
 
 /// Runs the command.
 pub fn run(arguments: &arguments::Info) -> Result<()> {
-    arguments.answer.check(&[&arguments.scene.file])?;
+    inputs::note(&arguments.scene.file, Reader::Command);
+    arguments.answer.check()?;
     if let Some(made) = picture::made(&arguments.scene.file)? {
         return picture::show(&made, &arguments.answer);
     }
@@ -40,6 +42,7 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
         return volumes::run(&arguments.scene.file, &arguments.answer);
     }
     let setup = load(&arguments.scene, arguments.estimator.overrides(None))?;
+    arguments.answer.check()?;
     let budget = Budget::samples(setup.samples_per_pixel);
     let (settings, chosen) = arguments.estimator.chosen(&setup, 0, budget)?;
     let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, None);

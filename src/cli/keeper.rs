@@ -1,8 +1,9 @@
 //! Keeps what a render has: its sums, from which it can go on, and the picture so far.
 
-use super::{complain, interrupt, made, render::Task};
+use super::{arguments::Render, complain, goal::Goal, interrupt, made, render::Task};
 use crate::{
     error::{Error, Result},
+    film::output,
     render::{
         Progress,
         any_sums::{AnySums, Kept, Picture},
@@ -147,6 +148,15 @@ pub struct SumsFile {
     is_resumed: bool,
 }
 
+/// Where the sums go: none where a render does not go on, or has no name to put them beside.
+pub fn sums_file(arguments: &Render, goal: &Goal) -> Option<SumsFile> {
+    if arguments.batches.is_some() || arguments.frames.is_some() {
+        return None;
+    }
+    let beside = || (!output::is_stream(&goal.path)).then(|| goal.sums());
+    arguments.sums.clone().or_else(beside).map(|path| SumsFile::new(&path))
+}
+
 impl SumsFile {
     /// A file at `path`, links followed, for new sums.
     pub fn new(path: &Path) -> Self {
@@ -162,6 +172,15 @@ impl SumsFile {
 
     fn previous(&self) -> PathBuf {
         self.beside(".previous")
+    }
+
+    fn before(&self) -> PathBuf {
+        self.beside(".before")
+    }
+
+    /// All files that may be written or replaced.
+    pub fn names(&self) -> [PathBuf; 3] {
+        [self.path.clone(), self.previous(), self.before()]
     }
 
     /// Writes `sums`. A file that another render wrote is put aside first.
@@ -180,7 +199,7 @@ impl SumsFile {
 
     /// Keeps the newest sums of an earlier render, which may have been killed.
     fn put_aside(&self) {
-        let aside = self.beside(".before");
+        let aside = self.before();
         let newest = [self.path.clone(), self.previous()].into_iter().find(|file| file.is_file());
         if newest.is_some_and(|newest| std::fs::rename(newest, &aside).is_ok()) {
             complain(&format!("note: the sums of an earlier render are kept as {}", aside.display()));

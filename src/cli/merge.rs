@@ -15,6 +15,7 @@ use crate::{
     error::{Error, Result},
     film::Window,
     format,
+    inputs::{self, Reader},
     render::{
         self, Image, Settings,
         any_sums::AnySums,
@@ -56,8 +57,10 @@ pub struct Merge {
 /// Runs the command.
 pub fn run(arguments: &Merge) -> Result<()> {
     let paths: Vec<&Path> = arguments.parts.iter().map(PathBuf::as_path).collect();
-    check_short(arguments.output.iter().chain(&arguments.sums), &paths)?;
-    let parts = gathered(&paths)?;
+    paths.iter().for_each(|path| inputs::note(path, Reader::Command));
+    let mut parts = gathered(&paths)?;
+    parts.iter_mut().for_each(|part| part.find_scene(arguments.scene.as_deref()));
+    check_short(arguments.output.iter().chain(&arguments.sums))?;
     if let Some(path) = &arguments.sums {
         let [Part { sums, made, .. }] = parts.as_slice() else {
             let found = format!("{} parts side by side", parts.len());
@@ -99,6 +102,16 @@ impl Part {
         }
         let render = recorded(&made, path)?;
         Ok(Self { path: path.to_owned(), sums, made, render })
+    }
+
+    /// Says where its scene is, `elsewhere` than it was or not, and notes what that was read from.
+    fn find_scene(&mut self, elsewhere: Option<&Path>) {
+        let folder = Path::new(self.made["folder"].as_str().unwrap_or_default());
+        let scene = &mut self.render.scene.file;
+        *scene = elsewhere.map_or_else(|| folder.join(&scene), Path::to_owned);
+        let files = self.made["settings"]["files"].as_object().into_iter().flatten();
+        let beside = files.map(|(name, _)| scene.with_file_name(name));
+        beside.chain([scene.clone()]).for_each(|file| inputs::note(&file, Reader::Scene));
     }
 
     /// Adds the samples of another, which has the same pixels.
@@ -160,11 +173,6 @@ fn gathered(paths: &[&Path]) -> Result<Vec<Part>> {
 
 /// Writes the image. The scene is read for its film, and for alpha and layers, which are rendered again.
 fn write(arguments: &Merge, output: &Path, mut parts: Vec<Part>) -> Result<()> {
-    for part in &mut parts {
-        let folder = PathBuf::from(part.made["folder"].as_str().unwrap_or_default());
-        let scene = &mut part.render.scene;
-        scene.file = arguments.scene.clone().unwrap_or_else(|| folder.join(&scene.file));
-    }
     let crop = parts[0].render.crop.filter(|_| parts.len() == 1);
     let first = parts[0].render.clone();
     let display = arguments.display.or(first.display);
@@ -172,8 +180,7 @@ fn write(arguments: &Merge, output: &Path, mut parts: Vec<Part>) -> Result<()> {
     let root = format::read(&whole.scene.file, &whole.scene.definitions)?;
     let setup = build(&root, whole.overrides())?;
     let mut goal = Goal::new(&whole, &setup)?;
-    let others: Vec<&Path> = arguments.parts.iter().chain(&arguments.sums).map(PathBuf::as_path).collect();
-    check_short([&goal.path].into_iter().chain(&goal.preview()), &others)?;
+    check_short([&goal.path].into_iter().chain(&goal.preview()).chain(&arguments.sums))?;
     let (mut image, what) = match parts.as_mut_slice() {
         [part] => (part.image(&setup)?, part.describe()),
         parts => (side_by_side(parts, &root, &setup)?, format!("{} parts", parts.len())),

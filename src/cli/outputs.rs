@@ -3,10 +3,12 @@
 use super::{
     arguments::{Render, Scene},
     goal::Goal,
+    keeper::{SumsFile, sums_file},
 };
 use crate::{
     error::Result,
     film::{Film, layer::Layer, output},
+    inputs,
     scene::build::Setup,
 };
 use std::path::{Path, PathBuf};
@@ -32,8 +34,8 @@ const NUMBERS_OF_BATCH: usize = 7;
 
 /// An error unless `outputs` can be written, as [`output::check`] says. Where one of them is standard output, reports go
 /// to standard error.
-pub fn check(outputs: &[(&Path, u64)], read: &[&Path]) -> Result<()> {
-    output::check(outputs, read)?;
+pub fn check(outputs: &[(&Path, u64)]) -> Result<()> {
+    output::check(outputs)?;
     if outputs.iter().any(|(path, _)| output::is_stdout(path)) {
         super::voice::take_stdout();
     }
@@ -55,8 +57,8 @@ pub fn listed(folder: &Path, files: &[PathBuf]) -> String {
 }
 
 /// The same for files of which there may be none, all of them short.
-pub fn check_short<'a>(files: impl IntoIterator<Item = &'a PathBuf>, read: &[&Path]) -> Result<()> {
-    check(&files.into_iter().map(|path| (path.as_path(), 0)).collect::<Vec<_>>(), read)
+pub fn check_short<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
+    check(&files.into_iter().map(|path| (path.as_path(), 0)).collect::<Vec<_>>())
 }
 
 /// Memory for the film of a render, its files, and room for them.
@@ -87,7 +89,9 @@ pub fn check_render(arguments: &Render, setup: &Setup, goal: &Goal) -> Result<()
         outputs.extend(preview.as_deref().map(|preview| (preview, shown)));
     }
     outputs.extend(arguments.answer.report.as_deref().map(|report| (report, 0)));
-    check(&outputs, &[&arguments.scene.file])
+    check(&outputs)?;
+    let sums = sums_file(arguments, goal);
+    sums.iter().flat_map(SumsFile::names).try_for_each(|name| inputs::guard(&name))
 }
 
 /// Images with their previews.

@@ -77,7 +77,7 @@ pub fn run(arguments: &Phase) -> Result<bool> {
     };
     let phase = described::build(name, &arguments.parameters)?;
     let drawings = arguments.output.as_ref().map(|folder| Drawings::new(folder, name));
-    check_short(drawings.iter().flat_map(Drawings::files).chain(&arguments.answer.report), &[])?;
+    check_short(drawings.iter().flat_map(Drawings::files).chain(&arguments.answer.report))?;
     let division = Division { parallels: arguments.parallels.into(), meridians: arguments.meridians.into() };
     let check = phase::check(&phase, &phase, division, arguments.samples, arguments.seed);
     let failures = check.failures(arguments.significance);

@@ -57,8 +57,8 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    check_short(&arguments.output, &[&arguments.scene.file])?;
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
+    check_short(&arguments.output)?;
     let budget = Budget::ENDLESS;
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
     let at = [arguments.x, arguments.y];

@@ -5,7 +5,7 @@ use super::{
     clip::Clip,
     goal::Goal,
     interrupt,
-    keeper::{Keeper, Shown, SumsFile},
+    keeper::{Keeper, Shown, sums_file},
     made,
     plan::Plan,
     precision::precision,
@@ -300,15 +300,6 @@ fn keeping(setup: &Setup, task: &Task<'_>, goal: &Goal, bar: &Bar) -> Result<(Im
     });
     let kept = keeper.finish();
     Ok((image, kept.map(|path| path.map(|path| (path, sums.kept().samples())))))
-}
-
-/// Where the sums go: none where a render does not go on, or has no name to put them beside.
-fn sums_file(arguments: &arguments::Render, goal: &Goal) -> Option<SumsFile> {
-    if arguments.batches.is_some() || arguments.frames.is_some() {
-        return None;
-    }
-    let beside = || (!output::is_stream(&goal.path)).then(|| goal.sums());
-    arguments.sums.clone().or_else(beside).map(|path| SumsFile::new(&path))
 }
 
 fn print_kept(file: &Path, samples: &Samples, taken: f64, task: &Task<'_>) {

@@ -63,8 +63,8 @@ pub struct Arguments {
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    arguments.answer.check(&[&arguments.scene.file])?;
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
+    arguments.answer.check()?;
     let budget = Budget::ENDLESS;
     let settings = arguments.estimator.requested(&setup, arguments.seed, budget)?;
     let passes = arguments.spp.map_or(setup.samples_per_pixel, u64::from) as usize;

@@ -174,12 +174,12 @@ fn error(text: &str) -> std::result::Result<f64, String> {
 /// Runs the command.
 pub fn run(arguments: &Study) -> Result<()> {
     check_files(&arguments.scenes)?;
-    arguments.answer.check(&arguments.scenes.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
     let contenders = contenders::all(arguments)?;
     let pool = threads(arguments.threads)?;
     let question = question(arguments, contenders, pool.current_num_threads())?;
     let mut stage = Stage::new(arguments, pool.current_num_threads());
     check(&mut stage, &question)?;
+    arguments.answer.check()?;
     let signature = Signature {
         command: command(),
         machine: machine(pool.current_num_threads()),

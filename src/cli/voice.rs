@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 use serde_json::Value;
 use std::{
     io::{self, ErrorKind, Write as _},
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::{
         Mutex, OnceLock,
         atomic::{AtomicBool, Ordering::Relaxed},
@@ -28,9 +28,9 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// An error unless the report can be written and is none of the files `read`.
-    pub fn check(&self, read: &[&Path]) -> Result<()> {
-        check_short(&self.report, read)
+    /// An error unless the report can be written.
+    pub fn check(&self) -> Result<()> {
+        check_short(&self.report)
     }
 
     /// Writes and prints `result` where that was asked for.

@@ -391,8 +391,9 @@ pub const fn spectrum(name: &'static str, about: &'static str) -> Parameter {
     Parameter::new(name, Kind::Spectrum, Optional, about)
 }
 
-/// The name of a file, which must be given.
+/// The name of a file, which must be given. `name` ends with `filename`, by which it is known what a scene reads.
 pub const fn file(name: &'static str, about: &'static str) -> Parameter {
+    assert!(matches!(name.as_bytes(), [.., b'f', b'i', b'l', b'e', b'n', b'a', b'm', b'e']));
     Parameter::new(name, Kind::File, Required, about)
 }
 

@@ -8,7 +8,10 @@ mod target;
 
 pub use check::{check, create_folder};
 
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    inputs,
+};
 use partial::Partial;
 use std::{
     fs::OpenOptions,
@@ -22,9 +25,10 @@ pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// Writes a file to `path` by `fill`. A reader of `path` sees the old file or the new one, never a part; a device or
+/// Writes a file to `path` by `fill`, if it is none that is read. A reader of `path` sees the old file or the new one, never a part; a device or
 /// pipe gets all of it at once.
 pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Sink) -> io::Result<()>) -> Result<()> {
+    inputs::guard(path)?;
     let target = Target::of(path)?;
     let at = if let Target::File(at) | Target::Stream(at) = &target { at } else { path };
     let written = match &target {

@@ -5,8 +5,9 @@ use super::{
     read::read_with_origins,
 };
 use crate::{
-    description::{Location, Object, Value, keyframes::Key},
+    description::{Library, Object, Property, Value, keyframes::Key},
     error::{Error, Result},
+    inputs::{self, Reader},
     volume::files::sequence::{Clock, Sequence},
 };
 use std::{
@@ -31,7 +32,7 @@ pub struct Sources {
 pub fn sources(path: &Path, definitions: &[(String, String)], time: Option<f64>) -> Result<Sources> {
     let (root, origins) = read_with_origins(path, definitions)?;
     let mut sources = Sources { files: vec![path.to_owned()], spectra: Vec::new() };
-    origins.included.into_iter().for_each(|file| sources.add(file));
+    sources.add_all(origins.included);
     sources.walk(&root, time.or(root.number("time")).unwrap_or(0.0));
     Ok(sources)
 }
@@ -78,18 +79,17 @@ impl Sources {
                 Value::Keyframes(keyframes) => {
                     self.spectra.extend(keyframes.keys().iter().filter_map(spectrum))
                 }
-                Value::String(name) if property.name.ends_with("filename") => {
-                    self.add(shown(object, beside(&property.location, name), time));
-                }
-                _ => {}
+                _ => self.add_all(named(property).map(|path| shown(object, path, time))),
             }
         }
     }
 
     /// A file that is not there is for its plugin to complain about.
-    fn add(&mut self, file: PathBuf) {
-        if file.is_file() && !self.files.contains(&file) {
-            self.files.push(file);
+    fn add_all(&mut self, files: impl IntoIterator<Item = PathBuf>) {
+        for file in files {
+            if file.is_file() && !self.files.contains(&file) {
+                self.files.push(file);
+            }
         }
     }
 }
@@ -98,9 +98,28 @@ fn spectrum(key: &Key) -> Option<Vec<(f64, f64)>> {
     if let Value::Spectrum(pairs) = &key.value.value { Some(pairs.clone()) } else { None }
 }
 
-/// The file called `name` at `place`, as plugins look for it.
-fn beside(place: &Location, name: &str) -> PathBuf {
-    place.file.parent().unwrap_or(Path::new("")).join(name)
+/// The file that a property names, as plugins look for it. The names of all that do end so.
+fn named(property: &Property) -> Option<PathBuf> {
+    match &property.value {
+        Value::String(name) if property.name.ends_with("filename") => {
+            Some(Library::default().file(name, &property.location))
+        }
+        _ => None,
+    }
+}
+
+/// Notes all files that the objects in `root` name; of numbered ones, whichever is shown when.
+pub(super) fn note(object: &Object) {
+    for property in &object.properties {
+        if let Value::Object(child) = &property.value {
+            note(child);
+        }
+        let Some(path) = named(property) else { continue };
+        match Sequence::new(&path, Clock::of(object)) {
+            Some(sequence) => sequence.files().for_each(|file| inputs::note(&file, Reader::Scene)),
+            None => inputs::note(&path, Reader::Scene),
+        }
+    }
 }
 
 /// The file that `path` is at `time` [s] for a plugin, which may show numbered ones.

@@ -1,7 +1,7 @@
 //! Reads a scene file of either format as a description in which every reference is resolved.
 
 use super::{
-    input, json, origins::Origins, parameters::Parameters, references, references::Alias, text, xml,
+    files, input, json, origins::Origins, parameters::Parameters, references, references::Alias, text, xml,
 };
 use crate::{
     description::Object,
@@ -41,7 +41,9 @@ pub(super) fn read_with_origins(path: &Path, definitions: &[(String, String)]) -
         Spelling::Json => json::read(path, &mut parameters)?,
     };
     parameters.finish()?;
-    Ok((references::settle(draft)?, parameters.into_origins()))
+    let root = references::settle(draft)?;
+    files::note(&root);
+    Ok((root, parameters.into_origins()))
 }
 
 /// How scenes are spelled.

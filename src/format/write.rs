@@ -54,15 +54,6 @@ pub fn convert(
     naming: Naming,
 ) -> Result<Conversion> {
     let spelling = spelling(output)?;
-    if input.canonicalize().is_ok_and(|file| output.canonicalize().is_ok_and(|other| file == other)) {
-        let remedy = "give the new file another name";
-        return Err(Error::new(
-            output.display(),
-            "a file other than the scene itself",
-            "the same file",
-            remedy,
-        ));
-    }
     let (root, mut origins) = read_with_origins(input, definitions)?;
     if naming == Naming::Fill {
         origins.fill();

@@ -444,7 +444,9 @@ fn a_conversion_says_what_it_changed_and_writes_all_or_nothing() {
     sandbox.run("convert ball.xml missing/ball.json -D up=x").refuses(&["ball.xml"]);
     sandbox.run("convert scene.json missing/scene.xml").refuses(&["missing", "create the folder"]);
     sandbox.run("convert scene.json scene.txt").refuses(&["scene.txt", ".xml or .json"]);
-    sandbox.run("convert scene.json scene.json").refuses(&["the same file", "another name"]);
+    sandbox
+        .run("convert scene.json scene.json")
+        .refuses(&["scene.json, which this command reads", "another name"]);
     assert_eq!(sandbox.files(), ["ball.json", "ball.xml", "scene.json"]);
 }
 

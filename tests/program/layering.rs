@@ -8,7 +8,7 @@ use std::{
 
 /// From what everything uses to what uses everything.
 const LAYERS: &[&[&str]] = &[
-    &["error", "math", "memory", "sampling"],
+    &["error", "inputs", "math", "memory", "sampling"],
     &["description"],
     &["phase", "texture", "volume"],
     &["medium", "bsdf", "shape", "emitter", "sensor"],

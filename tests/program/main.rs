@@ -18,6 +18,7 @@ mod gather;
 mod grouping;
 mod guide;
 mod html;
+mod inputs;
 mod keeping;
 mod layering;
 mod outputs;

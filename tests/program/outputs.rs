@@ -73,6 +73,7 @@ fn what_cannot_be_written_is_said_before_the_first_ray() {
     let missing: &[&str] = &["missing/", "create the folder missing first"];
     let folder: &[&str] = &["expected a file to write, found a folder"];
     let same: &[&str] = &["a file of its own", "choose another name"];
+    let read: &[&str] = &["scene.json, which the scene reads"];
     let flights = "flights --sigma-a 1 --sigma-s 1 --photons 1000000000000";
     for (words, hints) in [
         (format!("render scene.json {LONG} -o missing/a.exr"), missing),
@@ -81,7 +82,7 @@ fn what_cannot_be_written_is_said_before_the_first_ray() {
         (format!("render scene.json {LONG} -o f.exr --frames 0..9"), folder),
         (format!("render scene.json {LONG} -o a.exr --report a.exr"), same),
         (format!("render scene.json {LONG} -o a.exr --report ./a.png"), same),
-        (format!("render scene.json {LONG} --report scene.json"), same),
+        (format!("render scene.json {LONG} --report scene.json"), read),
         ("pixel scene.json 1 1 --samples 4000000000 -o missing/p".into(), missing),
         (format!("study scene.json {LONG} -o s"), folder),
         (format!("study scene.json {LONG} -o scene.json"), &["scene.json", "choose another place"]),
@@ -91,7 +92,10 @@ fn what_cannot_be_written_is_said_before_the_first_ray() {
         ("phase hg --samples 1000000000000 -o .".into(), folder),
         ("phase isotropic --samples 1000000000000 -o missing".into(), missing),
         ("diff scene.exr scene.png --report missing/d.json".into(), missing),
-        ("diff scene.exr scene.exr --map scene.png --report scene.exr".into(), same),
+        (
+            "diff scene.exr scene.exr --map scene.png --report scene.exr".into(),
+            &["scene.exr, which this command reads"],
+        ),
         ("convert scene.json missing/a.xml".into(), missing),
     ] {
         sandbox.shell(&format!("timeout 60 $TYNDALL {words}")).refuses(hints);

@@ -6,6 +6,7 @@
 use crate::{
     description::{Library, Location, Object, Position, Property, Value},
     error::{Error, Result},
+    inputs::{self, Reader},
     phase::{self, Phase, ROWS},
 };
 use std::{
@@ -52,6 +53,7 @@ fn insert(object: &mut Object, steps: &[&str], value: Value, word: &str) -> Resu
 fn value(word: &str, text: &str) -> Result<Value> {
     if let Some(file) = text.strip_prefix('@') {
         let path = Path::new(file);
+        inputs::note(path, Reader::Command);
         let text = std::fs::read_to_string(path).map_err(|error| Error::io(path, "read", &error))?;
         return Ok(Value::String(text));
     }

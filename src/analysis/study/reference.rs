@@ -14,6 +14,7 @@ use crate::{
         picture::{self, Picture},
     },
     error::{Error, Result},
+    inputs::{self, Reader},
     math::{DVec3, relative::Relative},
     medium::DistanceMethod,
     scene::Scene,
@@ -339,6 +340,7 @@ pub fn moments(values: impl Iterator<Item = DVec3> + Clone) -> (DVec3, DVec3) {
 /// Reads a reference for a scene of `width` x `height` pixels.
 pub fn read(wanted: &ReferenceFile, width: usize, height: usize) -> Result<Truth> {
     let path = PathBuf::from(&wanted.file);
+    inputs::note(&path, Reader::Command);
     let picture = picture::read(&path)?;
     let found = (picture.width, picture.height);
     let expected = format!("an image of {width} x {height} pixels, as the scene's");

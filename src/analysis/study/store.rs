@@ -13,6 +13,7 @@ use crate::{
     analysis::picture::{self, Picture},
     error::{Error, Result},
     film::output,
+    inputs,
 };
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
@@ -33,7 +34,9 @@ pub struct Store {
 const PLAN: &str = "runs/plan.json";
 /// What says that somebody is at work, in `runs`: a name that no scene has (see [`super::contender::slug`]).
 const LOCK: &str = ".lock";
-/// What a study writes besides `runs`.
+/// What a study has done.
+const RUNS: &str = "runs";
+/// What it writes besides.
 const PRODUCTS: [&str; 4] = [FILES[0], FILES[1], FILES[2], "images"];
 /// The files of these.
 const FILES: [&str; 3] = ["study.json", "study.csv", "study.html"];
@@ -42,8 +45,9 @@ impl Store {
     /// Opens `root` for `question`, and reads what is already planned for it. With `restart` all that an earlier study
     /// left there is removed first.
     pub fn open(root: &Path, question: &Question, restart: bool) -> Result<(Self, Plan)> {
-        output::create_folder(&root.join("runs"))?;
-        let store = Self { root: root.to_owned(), _lock: lock(&root.join("runs").join(LOCK))? };
+        PRODUCTS.iter().chain([&RUNS]).try_for_each(|name| inputs::guard(&root.join(name)))?;
+        output::create_folder(&root.join(RUNS))?;
+        let store = Self { root: root.to_owned(), _lock: lock(&root.join(RUNS).join(LOCK))? };
         store.sweep()?;
         if restart && (store.has("study.json") || store.has_runs()?) {
             store.empty()?;
@@ -55,7 +59,7 @@ impl Store {
             false => Plan::new(question.clone()),
         };
         let files = FILES.map(|name| root.join(name));
-        output::check(&files.each_ref().map(|file| (file.as_path(), 0)), &[])?;
+        output::check(&files.each_ref().map(|file| (file.as_path(), 0)))?;
         store.write_json(PLAN, &plan)?;
         Ok((store, plan))
     }
@@ -79,7 +83,7 @@ impl Store {
 
     /// True if a study has begun here.
     fn has_runs(&self) -> Result<bool> {
-        Ok(entries(&self.root.join("runs"))?.iter().any(|path| !is_lock(path)))
+        Ok(entries(&self.root.join(RUNS))?.iter().any(|path| !is_lock(path)))
     }
 
     /// Removes an earlier study; the lock stays.
@@ -87,7 +91,7 @@ impl Store {
         for name in PRODUCTS {
             remove(&self.root.join(name))?;
         }
-        for path in entries(&self.root.join("runs"))? {
+        for path in entries(&self.root.join(RUNS))? {
             if !is_lock(&path) {
                 remove(&path)?;
             }
@@ -98,7 +102,7 @@ impl Store {
     /// Removes what a killed process had begun to write: beside the study's products, and anywhere in its folders.
     fn sweep(&self) -> Result<()> {
         entries(&self.root)?.iter().filter(|path| is_partial(path)).try_for_each(|path| remove(path))?;
-        ["runs", "images"].into_iter().try_for_each(|name| sweep(&self.root.join(name)))
+        [RUNS, "images"].into_iter().try_for_each(|name| sweep(&self.root.join(name)))
     }
 
     /// Where the folder is.

@@ -1,7 +1,10 @@
 //! What can be known of outputs before any work is done: that they can be written, are different files, and fit on disk.
 
 use super::{explain, folder, partial::Partial, target::Target};
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    inputs,
+};
 use std::{
     collections::{HashMap, HashSet},
     fs::Metadata,
@@ -10,12 +13,12 @@ use std::{
 };
 
 /// An error unless each of `outputs` (a path, and the bytes that it may take; 0 where these are few) can be written,
-/// none of them twice and none of them one of the files to `read`, and there is room for all.
-pub fn check(outputs: &[(&Path, u64)], read: &[&Path]) -> Result<()> {
+/// none of them twice and none of them one of the [`inputs`], and there is room for all. What is read is known by then.
+pub fn check(outputs: &[(&Path, u64)]) -> Result<()> {
     let mut names: HashMap<PathBuf, &Path> = HashMap::new();
-    names.extend(read.iter().filter_map(|path| Some((path.canonicalize().ok()?, *path))));
     let (mut tried, mut needs) = (HashSet::new(), HashMap::new());
     for &(path, bytes) in outputs {
+        inputs::guard(path)?;
         let goal = match Target::of(path)? {
             Target::File(goal) => goal,
             Target::Stream(stream) => {
@@ -131,7 +134,7 @@ mod tests {
         let desk = tempfile::tempdir().unwrap();
         let (new, old) = (desk.path().join("new"), desk.path().join("old"));
         std::fs::write(&old, "old").unwrap();
-        check(&[(&new, 1), (&old, 1), (Path::new("/dev/null"), u64::MAX)], &[]).unwrap();
+        check(&[(&new, 1), (&old, 1), (Path::new("/dev/null"), u64::MAX)]).unwrap();
         assert_eq!(std::fs::read(&old).unwrap(), b"old");
         assert_eq!(std::fs::read_dir(desk.path()).unwrap().count(), 1);
     }
@@ -142,14 +145,15 @@ mod tests {
         let (a, b) = (desk.path().join("a"), desk.path().join("b"));
         std::fs::create_dir(desk.path().join("x")).unwrap();
         let same = desk.path().join("x/../a");
-        assert!(check(&[(&a, 0), (&b, 0)], &[]).is_ok());
-        assert!(check(&[(&a, 0), (&same, 0)], &[]).unwrap_err().found.contains("the same file as"));
+        assert!(check(&[(&a, 0), (&b, 0)]).is_ok());
+        assert!(check(&[(&a, 0), (&same, 0)]).unwrap_err().found.contains("the same file as"));
         std::fs::write(&a, "scene").unwrap();
-        assert!(check(&[(&same, 0)], &[&a]).unwrap_err().found.contains("the same file as"));
+        inputs::note(&a, inputs::Reader::Scene);
+        assert!(check(&[(&same, 0)]).unwrap_err().found.contains("which the scene reads"));
         #[cfg(unix)]
         {
             std::os::unix::fs::symlink("b", desk.path().join("link")).unwrap();
-            assert!(check(&[(&b, 0), (&desk.path().join("link"), 0)], &[]).is_err());
+            assert!(check(&[(&b, 0), (&desk.path().join("link"), 0)]).is_err());
         }
     }
 
@@ -165,16 +169,16 @@ mod tests {
         let desk = tempfile::tempdir().unwrap();
         let paths = [desk.path().join("a"), desk.path().join("b")];
         let half = u64::MAX / 2;
-        assert!(check(&[(&paths[0], half), (&paths[1], half)], &[]).is_err());
+        assert!(check(&[(&paths[0], half), (&paths[1], half)]).is_err());
     }
 
     #[test]
     fn a_missing_folder_is_an_error_or_made() {
         let desk = tempfile::tempdir().unwrap();
         let path = desk.path().join("x/y/a");
-        let error = check(&[(&path, 0)], &[]).unwrap_err();
+        let error = check(&[(&path, 0)]).unwrap_err();
         assert!(error.remedy.contains("create the folder"), "{error}");
         create_folder(path.parent().unwrap()).unwrap();
-        assert!(check(&[(&path, 0)], &[]).is_ok() && create_folder(&path.join("z")).is_ok());
+        assert!(check(&[(&path, 0)]).is_ok() && create_folder(&path.join("z")).is_ok());
     }
 }

@@ -76,6 +76,11 @@ impl Sequence {
         frames
     }
 
+    /// Their files.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        self.frames().into_iter().map(|frame| self.folder.join(self.name(frame)))
+    }
+
     fn folder_to_list(&self) -> PathBuf {
         if self.folder.as_os_str().is_empty() { PathBuf::from(".") } else { self.folder.clone() }
     }

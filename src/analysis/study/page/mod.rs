@@ -33,7 +33,7 @@ pub fn record(folder: &Path, to: &Path) -> Result<Vec<PathBuf>> {
     output::create_folder(to)?;
     let files = record::files(&outcome, &page)?;
     let paths: Vec<_> = files.iter().map(|(name, _)| to.join(name)).collect();
-    output::check(&paths.iter().map(|path| (path.as_path(), 0)).collect::<Vec<_>>(), &[])?;
+    output::check(&paths.iter().map(|path| (path.as_path(), 0)).collect::<Vec<_>>())?;
     paths.into_iter().zip(files).map(|(path, (_, content))| text(path, &content)).collect()
 }
 
