@@ -36,21 +36,48 @@ fn assert_same(sandbox: &Sandbox, a: &str, b: &str) {
     assert!(sandbox.channels(a) == sandbox.channels(b), "{a} and {b} differ");
 }
 
-/// A render that has begun: it has said what it will do. Signals end it, even where whoever started the tests has them
-/// ignored.
+/// A render that has begun: it has said what it will do.
 #[cfg(target_os = "linux")]
 fn started(sandbox: &Sandbox, words: &str) -> Child {
+    child(sandbox, words, |_| true)
+}
+
+/// A render that has samples.
+#[cfg(target_os = "linux")]
+fn under_way(sandbox: &Sandbox, words: &str) -> Child {
+    child(sandbox, &format!("{words} --progress json"), |line| {
+        let progress: Value = serde_json::from_str(line).unwrap_or_default();
+        progress["samples_per_pixel"].as_u64().is_some_and(|samples| samples > 0)
+    })
+}
+
+/// A render that has said what `is_enough`. Signals end it, even where whoever started the tests has them ignored.
+#[cfg(target_os = "linux")]
+fn child(sandbox: &Sandbox, words: &str, is_enough: impl Fn(&str) -> bool) -> Child {
     let all = format!("render fog.json {SIZE} {words}");
     let mut command = Command::new("env");
     command.args(["--default-signal=HUP,INT,TERM", env!("CARGO_BIN_EXE_tyndall")]);
     command.args(all.split_whitespace()).current_dir(sandbox.path("")).stdout(Stdio::null());
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-    let mut line = String::new();
     let mut said = BufReader::new(child.stderr.take().unwrap());
-    said.read_line(&mut line).unwrap();
+    let heard = said.by_ref().lines().any(|line| is_enough(&line.unwrap()));
+    assert!(heard, "it ends without");
     // It goes on talking, with nobody to listen.
     std::thread::spawn(move || std::io::copy(&mut said, &mut std::io::sink()));
     child
+}
+
+/// True as soon as something `holds`; false if it does not within so many seconds.
+#[cfg(target_os = "linux")]
+fn within(seconds: u64, mut holds: impl FnMut() -> bool) -> bool {
+    let begun = Instant::now();
+    while begun.elapsed() < Duration::from_secs(seconds) {
+        if holds() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    false
 }
 
 #[cfg(target_os = "linux")]
@@ -167,8 +194,7 @@ fn damaged_sums_are_refused_and_the_ones_before_them_used() {
 fn what_a_signal_ends_goes_on() {
     for (name, code) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
         let sandbox = foggy();
-        let mut child = started(&sandbox, "--time-limit 100s -o fog.exr --report report.json");
-        std::thread::sleep(Duration::from_millis(400));
+        let mut child = under_way(&sandbox, "--time-limit 1000s -o fog.exr --report report.json");
         signal(&child, name);
         assert_eq!(child.wait().unwrap().code(), Some(code), "{name}");
         let done = sandbox.json("report.json")["samples_per_pixel"].as_u64().unwrap();
@@ -184,8 +210,7 @@ fn what_a_signal_ends_goes_on() {
 #[test]
 fn a_render_to_a_precision_goes_on_after_a_signal() {
     let sandbox = foggy();
-    let mut child = started(&sandbox, "--error 0.5 -o fog.exr --report report.json");
-    std::thread::sleep(Duration::from_millis(300));
+    let mut child = under_way(&sandbox, "--error 0.5 -o fog.exr --report report.json");
     signal(&child, "-INT");
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(sandbox.json("report.json")["pixels_within_error"].as_f64().unwrap() < 1.0);
@@ -219,8 +244,7 @@ fn sums_of_another_precision_are_refused() {
 #[test]
 fn a_second_signal_ends_at_once() {
     let sandbox = foggy();
-    let mut child = started(&sandbox, "--time-limit 100s -o fog.exr");
-    std::thread::sleep(Duration::from_millis(500));
+    let mut child = under_way(&sandbox, "--time-limit 1000s -o fog.exr");
     signal(&child, "-STOP");
     signal(&child, "-INT");
     signal(&child, "-CONT");
@@ -237,19 +261,13 @@ fn a_signal_before_the_first_sample_ends_at_once() {
     let mut command = Command::new("env");
     command.args(["--default-signal=INT", env!("CARGO_BIN_EXE_tyndall"), "render", "-"]);
     let mut child = command.stdin(Stdio::piped()).spawn().unwrap();
-    let waits_for_its_scene = || {
-        let calls = fs::read_to_string(format!("/proc/{}/wchan", child.id())).unwrap();
-        calls.contains("pipe_read")
-    };
-    let begun = Instant::now();
-    while !waits_for_its_scene() && begun.elapsed() < Duration::from_secs(5) {
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    let calls = format!("/proc/{}/wchan", child.id());
+    // Not every kernel tells.
+    within(5, || fs::read_to_string(&calls).unwrap().contains("pipe_read"));
     signal(&child, "-INT");
-    std::thread::sleep(Duration::from_millis(500));
-    let ended = child.try_wait().unwrap();
+    let has_ended = within(60, || child.try_wait().unwrap().is_some());
     child.kill().unwrap();
-    assert!(ended.is_some(), "it waits for its scene");
+    assert!(has_ended, "it waits for its scene");
 }
 
 /// Killed at any moment, also while it writes: what is there is whole, and goes on to the same bits.
@@ -366,10 +384,7 @@ fn the_picture_so_far_is_written() {
 fn writes_the_picture_so_far(words: &str) {
     let sandbox = foggy();
     let mut child = started(&sandbox, &format!("{words} --preview -o fog.exr"));
-    let begun = Instant::now();
-    while !sandbox.path("fog.png").exists() && begun.elapsed() < Duration::from_secs(60) {
-        std::thread::sleep(Duration::from_millis(100));
-    }
+    within(60, || sandbox.path("fog.png").exists());
     child.kill().unwrap();
     child.wait().unwrap();
     assert_eq!(sandbox.channels("fog.exr")["R"].len(), 60 * 50);
@@ -461,8 +476,7 @@ fn the_last_good_sums_outlive_a_damaged_file() {
 fn sums_that_cannot_be_written_do_not_cost_the_image() {
     let sandbox = foggy();
     fs::create_dir(sandbox.path("fog.exr.sums")).unwrap();
-    let mut child = started(&sandbox, "--time-limit 100s -o fog.exr");
-    std::thread::sleep(Duration::from_millis(400));
+    let mut child = under_way(&sandbox, "--time-limit 1000s -o fog.exr");
     signal(&child, "-INT");
     assert_eq!(child.wait().unwrap().code(), Some(2));
     assert!(sandbox.path("fog.exr").exists() && sandbox.path("fog.png").exists());
