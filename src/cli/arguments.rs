@@ -10,8 +10,11 @@ use super::{
     voice::{Answer, ProgressForm},
 };
 use crate::{
+    description::Object,
+    error::Error,
     film::accumulator::MOST_PASSES,
     format,
+    scene::sensors,
     settings::{Crop, Overrides},
 };
 use clap::{
@@ -445,6 +448,10 @@ pub struct Scene {
     /// Set the parameter $name of the scene instead of its default; may be repeated
     #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
+
+    /// Sensor to see the scene by, where it has several: its id, or its number from 0 in file order [default: the first]
+    #[arg(long, value_name = "SENSOR")]
+    pub sensor: Option<String>,
 }
 
 /// Samples of every pixel, the last one excluded.
@@ -457,6 +464,15 @@ pub struct Samples {
 }
 
 impl Scene {
+    /// What the file says, with the one sensor that is wanted.
+    pub fn read(&self) -> Result<Object, Error> {
+        let root = format::read(&self.file, &self.definitions)?;
+        match &self.sensor {
+            None => Ok(root),
+            Some(sensor) => sensors::only(root, sensor),
+        }
+    }
+
     /// What outputs are called that have no name of their own.
     pub fn name(&self) -> PathBuf {
         match format::is_standard_input(&self.file) {

@@ -4,7 +4,6 @@ use super::{arguments, built};
 use crate::{
     description::{Object, Property, Value},
     error::{Error, Result},
-    format,
     scene::{
         build::{self, Setup},
         keyframes, smoke,
@@ -25,7 +24,7 @@ pub struct Clip<'a> {
 impl<'a> Clip<'a> {
     /// Reads the scene file.
     pub fn read(arguments: &'a arguments::Render) -> Result<Self> {
-        let root = format::read(&arguments.scene.file, &arguments.scene.definitions)?;
+        let root = arguments.scene.read()?;
         let changes = smoke::has_sequence(&root) || keyframes::has_any(&root);
         Ok(Self { arguments, root, rebuilds: arguments.frames.is_some() && changes })
     }

@@ -59,6 +59,9 @@ pub fn settings(
         "error": precision.map(|precision| precision.error),
         "confidence": precision.map(|precision| precision.confidence),
     });
+    if let Some(sensor) = &scene.sensor {
+        all["sensor"] = sensor.as_str().into();
+    }
     extend(&mut all, setup, options);
     Ok(all)
 }

@@ -14,7 +14,6 @@ use crate::{
     description::Object,
     error::{Error, Result},
     film::Window,
-    format,
     inputs::{self, Reader},
     render::{
         self, Image, Settings,
@@ -177,7 +176,7 @@ fn write(arguments: &Merge, output: &Path, mut parts: Vec<Part>) -> Result<()> {
     let first = parts[0].render.clone();
     let display = arguments.display.or(first.display);
     let whole = Render { output: Some(output.to_owned()), crop, display, ..first };
-    let root = format::read(&whole.scene.file, &whole.scene.definitions)?;
+    let root = whole.scene.read()?;
     let setup = build(&root, whole.overrides())?;
     let mut goal = Goal::new(&whole, &setup)?;
     check_short([&goal.path].into_iter().chain(&goal.preview()).chain(&arguments.sums))?;

@@ -38,7 +38,6 @@ mod volumes;
 use crate::{
     description::Object,
     error::{Error, Result},
-    format,
     scene::{self, build::Setup},
     settings::Overrides,
 };
@@ -102,7 +101,7 @@ fn judged(outcome: Result<bool>) -> ExitCode {
 
 /// Reads and builds a scene; warnings go to standard error.
 fn load(scene: &arguments::Scene, overrides: Overrides) -> Result<Setup> {
-    built(&format::read(&scene.file, &scene.definitions)?, overrides)
+    built(&scene.read()?, overrides)
 }
 
 /// Builds what was read; warnings go to standard error.

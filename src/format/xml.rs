@@ -1,4 +1,4 @@
-//! The XML format: Mitsuba scene files, versions 2 and 3.
+//! The XML format: Mitsuba scene files, versions 2 and 3, and older ones, which are upgraded as in Mitsuba 3.
 //!
 //! All of Mitsuba's tags are read: objects, values, `transform`, `ref`, `include`, `default`, `alias`, `path`.
 //! What Mitsuba would refuse is refused here; beyond that, text between tags and a `path` that is no folder are
@@ -11,6 +11,7 @@
 mod element;
 mod files;
 mod transform;
+mod upgrade;
 mod values;
 
 use super::{
@@ -67,6 +68,16 @@ struct Reader<'p> {
 struct Page<'s> {
     source: &'s Source,
     folders: Folders,
+    /// True if it is for Mitsuba before version 2.
+    is_old: bool,
+}
+
+impl Page<'_> {
+    /// What `child` is called in `parent`; empty where it has no name.
+    fn name(&self, child: &Element, parent: &Object) -> Result<String> {
+        let name = child.optional_name("name")?.unwrap_or_default();
+        Ok(if self.is_old { upgrade::name(&name, &parent.plugin) } else { name })
+    }
 }
 
 impl Reader<'_> {
@@ -75,9 +86,9 @@ impl Reader<'_> {
         let source = Source::read(path)?;
         let document = source.parse()?;
         folders.enter(path);
-        let mut page = Page { source: &source, folders };
+        let mut page = Page { source: &source, folders, is_old: false };
         let root = self.element(&page, document.root_element())?;
-        self.version(&root)?;
+        page.is_old = is_old(&root)?;
         let mut object = self.object(&mut page, &root, &["version"], 1)?;
         page.folders.settle(&mut object, &source.file, &mut self.parameters.origins);
         Ok(object)
@@ -85,24 +96,6 @@ impl Reader<'_> {
 
     fn element<'s>(&mut self, page: &Page<'s>, node: roxmltree::Node<'s, 's>) -> Result<Element<'s>> {
         Element::new(page.source, node, self.parameters)
-    }
-
-    fn version(&mut self, root: &Element) -> Result<()> {
-        let Some(version) = root.get("version") else {
-            let remedy = format!("write <{} version=\"3.0.0\" ...>", root.tag);
-            return Err(Error::new(&root.location, "the version of Mitsuba the file is for", "none", remedy));
-        };
-        let mut numbers = version.value.split('.').map(|part| part.trim().parse::<u32>());
-        let remedy = match numbers.next() {
-            Some(Ok(2 | 3)) if numbers.all(|part| part.is_ok()) => return Ok(()),
-            Some(Ok(0 | 1)) => {
-                "upgrade it with Mitsuba 3: parse_file, transform_upgrade and write_file of mitsuba.parser, \
-                 then write version=\"3.0.0\""
-            }
-            _ => "write version=\"3.0.0\" if the scene is for Mitsuba 3",
-        };
-        let found = format!("\"{}\"", version.value);
-        Err(Error::new(&version.location, "a scene of version 2.x or 3.x", found, remedy))
     }
 
     /// A plugin with all its children. `more` are attributes beyond `type`, `id` and `name`.
@@ -126,6 +119,9 @@ impl Reader<'_> {
         for node in element.children()? {
             let child = self.element(page, node)?;
             self.child(page, &child, &mut object, depth)?;
+        }
+        if let Some(to_uv) = page.is_old.then(|| upgrade::texture_transform(&mut object)).flatten() {
+            add(&mut object, to_uv)?;
         }
         Ok(object)
     }
@@ -157,7 +153,7 @@ impl Reader<'_> {
                 None => return Err(unknown(child)),
             },
         };
-        let name = child.optional_name("name")?.unwrap_or_default();
+        let name = page.name(child, parent)?;
         add(parent, Property { name, value, location: child.location.clone() })
     }
 
@@ -194,7 +190,7 @@ impl Reader<'_> {
         let (mut steps, mut places) = (Vec::new(), Vec::new());
         for node in transform.children()? {
             let element = self.element(page, node)?;
-            steps.push(transform::step(&element)?);
+            steps.push(transform::step(&element, page.is_old)?);
             places.push(element.location);
         }
         self.parameters.origins.record_steps(transform.location.clone(), places);
@@ -245,9 +241,25 @@ impl Reader<'_> {
         if included.tag.as_deref() == Some("scene") {
             return included.properties.into_iter().try_for_each(|property| add(parent, property));
         }
-        let (name, location) =
-            (element.optional_name("name")?.unwrap_or_default(), included.location.clone());
+        let (name, location) = (page.name(element, parent)?, included.location.clone());
         add(parent, Property { name, value: Value::Object(included), location })
+    }
+}
+
+/// True if the file is for Mitsuba before version 2.
+fn is_old(root: &Element) -> Result<bool> {
+    let Some(version) = root.get("version") else {
+        let remedy = format!("write <{} version=\"3.0.0\" ...>", root.tag);
+        return Err(Error::new(&root.location, "the version of Mitsuba the file is for", "none", remedy));
+    };
+    let mut numbers = version.value.split('.').map(|part| part.trim().parse::<u32>());
+    match numbers.next() {
+        Some(Ok(first @ 0..=3)) if numbers.all(|part| part.is_ok()) => Ok(first < 2),
+        _ => {
+            let remedy = "write version=\"3.0.0\" if the scene is for Mitsuba 3";
+            let found = format!("\"{}\"", version.value);
+            Err(Error::new(&version.location, "a scene of version 0.x to 3.x", found, remedy))
+        }
     }
 }
 

@@ -9,6 +9,7 @@ pub mod lights;
 pub mod media;
 mod memo;
 mod sections;
+pub mod sensors;
 pub mod smoke;
 mod time;
 mod unseen;

@@ -1,5 +1,6 @@
 //! The children of a scene by kind.
 
+use super::sensors;
 use crate::{
     bsdf,
     description::{Library, Object, Params, Position, Table, params::Child, table},
@@ -17,7 +18,7 @@ use crate::{
 pub struct Sections<'a> {
     /// Who renders it, if the file says.
     pub integrator: Option<&'a Object>,
-    /// The one sensor.
+    /// The one that is rendered: the first.
     pub sensor: &'a Object,
     /// In file order.
     pub shapes: Vec<Child<'a>>,
@@ -32,7 +33,7 @@ pub struct Sections<'a> {
 pub(crate) const TABLE: Table = table! {
     "What is rendered.";
     number("time", "s", ANY, Is(0.0), "When it is seen: volumes in a `wind` have drifted since 0.").ours(),
-    nested("sensor", Required, "The camera, one."),
+    nested("sensor", Required, "The camera; of several, the first, or the one that `--sensor` names."),
     nested("integrator", Optional, "How it is rendered: `bdpt` where not given."),
     nested("shape", Optional, "Surfaces, and boundaries of media."),
     nested("emitter", Optional, "Emitters that are not on a shape."),
@@ -63,7 +64,7 @@ impl<'a> Sections<'a> {
         let time = params.float("time")?;
         let shapes = params.children("shape", |child| is_shape(child.object))?;
         let emitters = params.children("emitter", |child| emitter::ROWS.has(child.object))?;
-        let sensors = params.children("sensor", |child| sensor::ROWS.has(child.object))?;
+        let children = params.children("sensor", |child| sensor::ROWS.has(child.object))?;
         let integrators = params.children("integrator", |child| integrator::ROWS.has(child.object))?;
         let definitions = params.children("bsdf", |child| is_definition(child.object))?;
         check_idle(&definitions, root, library, time)?;
@@ -77,11 +78,11 @@ impl<'a> Sections<'a> {
             return Err(misplaced(unknown));
         }
         params.finish()?;
-        let sensor = match sensors.as_slice() {
+        let sensor = match children.as_slice() {
             [] => return Err(without_sensor(root)),
-            [sensor] => sensor.object,
-            [_, second, ..] => return Err(only_one(second, "sensor")),
+            [sensor, ..] => sensor.object,
         };
+        sensors::tell(&children, library);
         if let [_, second, ..] = integrators.as_slice() {
             return Err(only_one(second, "integrator"));
         }

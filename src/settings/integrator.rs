@@ -103,7 +103,7 @@ pub const ROWS: Registry<Plugin<Build<Integrator>>> = Registry::new(
         ("bdpt", plugin(BDPT, build_bdpt)),
         ("path", plugin(SAME, build_bdpt)),
         ("volpath", plugin(SAME, build_bdpt)),
-        ("volpathmis", plugin(SAME, build_bdpt)),
+        ("volpathmis", plugin(VOLPATHMIS, build_bdpt)),
         ("ptracer", plugin(PTRACER, |p| build_as(p, Strategies::LT))),
         ("gather", plugin(GATHER, build_gather)),
         ("fog", plugin(FOG, build_fog)),
@@ -175,6 +175,12 @@ const BDPT: Table = table! {
 };
 
 const SAME: Table = Table { about: "The same as `bdpt`; `--integrator pt` is path tracing.", ..BDPT };
+
+const VOLPATHMIS: Table = table! {
+    "The same as `bdpt`; `--integrator pt` is path tracing.";
+    ignored("use_spectral_mis", "samples are weighted over all channels anyway");
+    MAX_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
+};
 
 const PTRACER: Table = table! {
     "Light tracing: light subpaths connect to the camera; `--integrator lt`.";

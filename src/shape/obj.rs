@@ -57,11 +57,13 @@ impl<'a> Reader<'a> {
     }
 
     fn read(mut self, text: &[u8]) -> Result<MeshData> {
+        // Some editors mark UTF-8 with a byte-order mark, which is no part of the first line's word.
+        let text = text.strip_prefix("\u{feff}".as_bytes()).unwrap_or(text);
         for line in text.split(|byte| *byte == b'\n') {
             self.line += 1;
             // Names and comments may be in any encoding.
             let line = String::from_utf8_lossy(line);
-            let mut words = line.split_whitespace();
+            let mut words = line.split('#').next().unwrap_or_default().split_whitespace();
             match words.next() {
                 Some("v") => self.number_line(0, 3, words)?,
                 Some("vt") => self.number_line(1, 2, words)?,
