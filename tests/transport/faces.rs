@@ -9,6 +9,7 @@ use crate::common::{
 use serde_json::{Value, json};
 use tyndall::{
     sampling::{Stream, stream::Purpose},
+    shape::Ray,
     transport::Strategies,
 };
 
@@ -335,4 +336,31 @@ fn two_hundred_arrangements_of_cells_look_as_a_hair_apart() {
         }
     }
     claims.settle();
+}
+
+/// Rays from all around, some from three times as far away as the camera, meet two boxes that touch one after the other.
+#[test]
+fn rays_meet_faces_in_order() {
+    let inner =
+        json!({"type": "cube", "bsdf": {"type": "null"}, "to_world": place([1.0; 3], [0.0, 1.0, 0.0])});
+    let outer = json!({"type": "cube", "bsdf": {"type": "null"}, "to_world": place([1.5, 1.0, 1.5], [0.0, -1.0, 0.0])});
+    for degrees in ANGLES {
+        let view = camera([3.0, 1.0, 4.0], [0.0; 3], 4);
+        let parts = [("sensor", view), ("upper", inner.clone()), ("lower", outer.clone()), ("sky", sky(1.0))];
+        let setup = Stage::new(&turned(&scene(&parts), degrees)).setup;
+        let geometry = &setup.scene.geometry;
+        let mut wrong = 0;
+        for index in 0..200_000 {
+            let mut stream = Stream::new(3, index, 0, Purpose::Study);
+            let [from, to] = [0, 1].map(|shape| geometry.sample_area(shape, &mut stream).position);
+            let direction = (to - from).normalize();
+            let origin = from - direction * (15.0 * stream.uniform());
+            let met = geometry.march(Ray { origin, direction, t_max: f32::INFINITY });
+            let met: Vec<u32> = met.map(|point| point.shape).collect();
+            let ends: Vec<u32> = met.iter().rev().take(4).rev().copied().collect();
+            // In and out of the upper box, in and out of the lower one; in its own middle where the ray starts within.
+            wrong += u32::from(!ends.ends_with(&[1, 1]) || ends.len() == 4 && ends[..2] != [0, 0]);
+        }
+        assert!(wrong <= 2, "{degrees}: {wrong} rays of 200,000");
+    }
 }

@@ -347,7 +347,7 @@ fn the_media_of_camera_and_lamps_are_found() {
         let mut parts = fogs.to_vec();
         parts.extend([("sensor", view), ("lamp", lamp)]);
         let stage = Stage::new(&scene(&parts));
-        let warned = stage.setup.warnings.iter().any(|w| w.contains("contradict each other"));
+        let warned = stage.setup.warnings.iter().any(|w| w.contains("the image cannot be correct"));
         assert_eq!(warned, contradicts, "{:?}", stage.setup.warnings);
         stage.render(Strategies::BDPT, 16, 3)
     };

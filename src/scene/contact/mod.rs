@@ -12,7 +12,7 @@
 mod pairs;
 
 use crate::{
-    math::Vec3,
+    math::{DVec3, Vec3, offset::gamma},
     sampling::{Stream, stream::Purpose},
     shape::{Hit, Patch, Ray, Shape, ShapeModel as _},
 };
@@ -87,7 +87,8 @@ impl Apart {
         for _ in 0..ROUNDS {
             let moves: Vec<Move> = {
                 let faces = Faces::new(shapes, natures);
-                pairs(shapes, &faces.bounds).iter().filter_map(|pair| faces.order(pair)).collect()
+                let found = pairs(shapes, &faces.bounds, &|pair| faces.reach(pair));
+                found.iter().filter_map(|pair| faces.order(pair)).collect()
             };
             if moves.is_empty() {
                 return;
@@ -153,6 +154,16 @@ impl<'a> Faces<'a> {
             let is_solid = self.natures[shape].is_lid || self.shapes[shape].is_solid();
             is_solid.then(|| self.shapes[shape].turn())
         })
+    }
+
+    /// Per axis, how near faces of two shapes may come before rays step over one of them, or meet them in the wrong order
+    /// [m]. Of faces that scatter, what is behind one must not be taken for what is before it either: ends of connections
+    /// keep clear of a surface by half of this where the other end is three times as far away as these shapes.
+    fn reach(&self, shapes: [u32; 2]) -> DVec3 {
+        let is_null = shapes.iter().any(|shape| self.natures[*shape as usize].rank == Rank::Null);
+        let roundings = if is_null { gamma(48) } else { gamma(128) };
+        let [a, b] = shapes.map(|shape| pairs::far(&self.bounds[shape as usize]));
+        a.max(b) * f64::from(roundings)
     }
 
     /// What has to move so that a pair is in order; nothing where it is, or where it makes no difference.
@@ -272,7 +283,7 @@ impl<'a> Faces<'a> {
     /// True if the box of shape `a` lies within that of `b`, up to rounding.
     fn is_within(&self, a: u32, b: u32) -> bool {
         let [(low, high), (l, h)] = [a, b].map(|shape| self.bounds[shape as usize]);
-        let slack = (pairs::reach(&self.bounds, [a, b]) * 4.0).as_vec3();
+        let slack = (self.reach([a, b]) * 4.0).as_vec3();
         low.cmpge(l - slack).all() && high.cmple(h + slack).all()
     }
 

@@ -1,7 +1,7 @@
 //! Which faces touch: shapes whose boxes meet, and of these the primitives in what the boxes have in common.
 
 use crate::{
-    math::{DVec3, Vec3, offset::gamma},
+    math::{DVec3, Vec3},
     shape::{Patch, Shape, ShapeModel as _},
 };
 use obvhs::{
@@ -10,6 +10,9 @@ use obvhs::{
     bvh2::{Bvh2, builder::build_bvh2},
 };
 use std::time::Duration;
+
+/// The most that `reach` is of coordinates: beyond it boxes are not compared.
+const MOST_REACH: f64 = 1e-4;
 
 /// Two faces in one place.
 pub struct Pair {
@@ -26,23 +29,17 @@ struct Boxed {
     bounds: Aabb,
 }
 
-/// Per axis, how near faces of two shapes may come before rays step over one of them [m]. Ends of connections keep clear of a
-/// surface by half of that where the other end is three times as far away as these shapes.
-pub fn reach(bounds: &[(Vec3, Vec3)], shapes: [u32; 2]) -> DVec3 {
-    let [a, b] = shapes.map(|shape| far(&bounds[shape as usize]));
-    a.max(b) * f64::from(gamma(128))
-}
-
 /// The largest coordinate per axis.
-fn far((low, high): &(Vec3, Vec3)) -> DVec3 {
+pub fn far((low, high): &(Vec3, Vec3)) -> DVec3 {
     low.abs().max(high.abs()).as_dvec3()
 }
 
-/// All pairs of faces of different shapes that are nearer than they may be.
-pub fn pairs(shapes: &[Shape], bounds: &[(Vec3, Vec3)]) -> Vec<Pair> {
+/// All pairs of faces of different shapes, in their `bounds`, that are nearer than they may be: by `reach` per axis [m], no more
+/// than `MOST_REACH` of their coordinates.
+pub fn pairs(shapes: &[Shape], bounds: &[(Vec3, Vec3)], reach: &dyn Fn([u32; 2]) -> DVec3) -> Vec<Pair> {
     let mut order: Vec<u32> = (0..shapes.len() as u32).collect();
     order.sort_by(|a, b| bounds[*a as usize].0.x.total_cmp(&bounds[*b as usize].0.x));
-    let farthest = bounds.iter().map(far).fold(DVec3::ZERO, DVec3::max).x * f64::from(gamma(128));
+    let farthest = bounds.iter().map(far).fold(DVec3::ZERO, DVec3::max).x * MOST_REACH;
     let mut found = Vec::new();
     for (index, &a) in order.iter().enumerate() {
         let (low, high) = bounds[a as usize];
@@ -52,7 +49,7 @@ pub fn pairs(shapes: &[Shape], bounds: &[(Vec3, Vec3)]) -> Vec<Pair> {
                 break;
             }
             let pair = [a.min(b), a.max(b)];
-            let reach = reach(bounds, pair);
+            let reach = reach(pair);
             let slack = reach.as_vec3();
             let common = (low.max(l) - slack, high.min(h) + slack);
             if common.0.cmple(common.1).all() {
