@@ -334,7 +334,8 @@ impl Render {
     pub fn overrides(&self) -> Overrides {
         let Self { crop, groups, components, .. } = *self;
         let fog = self.fog.settings();
-        Overrides { crop, groups, components, fog, ..self.estimator.overrides(self.size) }
+        let strict = self.scene.strict;
+        Overrides { crop, groups, components, fog, strict, ..self.estimator.overrides(self.size) }
     }
 
     /// Seed of the random numbers: of parts of an image, no two share one, or the noise of one would be repeated in others.
@@ -452,6 +453,15 @@ pub struct Scene {
     /// Sensor to see the scene by, where it has several: its id, or its number from 0 in file order [default: the first]
     #[arg(long, value_name = "SENSOR")]
     pub sensor: Option<String>,
+
+    /// Refuse files with numbers a hair out of range instead of mending them
+    ///
+    /// Of volumes and images: negative numbers become 0, albedos and reflectances above 1 become 1, infinite numbers the
+    /// greatest finite one of the file, each file with one warning. NaN is an error, and so are numbers so far out of range
+    /// that they must mean something else: more than one in a hundred of those that are not 0, by more than a fifth of the
+    /// greatest.
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// Samples of every pixel, the last one excluded.

@@ -101,6 +101,7 @@ fn judged(outcome: Result<bool>) -> ExitCode {
 
 /// Reads and builds a scene; warnings go to standard error.
 fn load(scene: &arguments::Scene, overrides: Overrides) -> Result<Setup> {
+    let overrides = Overrides { strict: scene.strict, ..overrides };
     built(&scene.read()?, overrides)
 }
 

@@ -13,6 +13,8 @@ use std::{
 pub struct Library {
     objects: HashMap<String, Object>,
     warnings: RefCell<Vec<String>>,
+    /// True if numbers of files that are a hair out of range are refused, not mended.
+    pub is_strict: bool,
 }
 
 impl Library {
@@ -67,6 +69,16 @@ impl Library {
     /// Informs the user of something that is not an error.
     pub fn warn(&self, location: &Location, text: &str) {
         self.warnings.borrow_mut().push(format!("{location}: {text}"));
+    }
+
+    /// Informs the user of something about a file, once, and of several things in one warning.
+    pub fn note(&self, file: &Path, text: &str) {
+        let (start, mut warnings) = (format!("{}: ", file.display()), self.warnings.borrow_mut());
+        match warnings.iter_mut().find(|warning| warning.starts_with(&start)) {
+            None => warnings.push(format!("{start}{text}")),
+            Some(warning) if warning.contains(text) => {}
+            Some(warning) => *warning = format!("{warning}; {text}"),
+        }
     }
 
     /// All warnings so far, in order.

@@ -3,6 +3,7 @@
 pub mod colour;
 pub mod keyframes;
 mod library;
+pub mod mend;
 pub mod parameter;
 pub mod params;
 mod registry;

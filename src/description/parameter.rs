@@ -89,8 +89,8 @@ pub enum Kind {
     Colour(Role, f64),
     /// The same, or a texture.
     Texture(Role, f64),
-    /// A colour or a volume.
-    Volume(Role),
+    /// The same, or a volume.
+    Volume(Role, f64),
     /// A spectrum of wavelengths and values.
     Spectrum,
     /// The name of a file.
@@ -225,7 +225,7 @@ impl Parameter {
     pub fn range(&self) -> Range {
         match self.kind {
             Kind::Number(range) | Kind::NumberOrName(range) | Kind::Integer(range) => range,
-            Kind::Colour(_, most) | Kind::Texture(_, most) => within(0.0, most),
+            Kind::Colour(_, most) | Kind::Texture(_, most) | Kind::Volume(_, most) => within(0.0, most),
             _ => ANY,
         }
     }
@@ -248,7 +248,8 @@ impl Parameter {
             Kind::Texture(_, most) if most < MAX => format!("a colour or texture{range}"),
             Kind::Colour(..) => COLOR.into(),
             Kind::Texture(..) => "a colour or texture".into(),
-            Kind::Volume(_) => "a colour or volume".into(),
+            Kind::Volume(_, most) if most < MAX => format!("a colour or volume{range}"),
+            Kind::Volume(..) => "a colour or volume".into(),
             Kind::Spectrum => "a spectrum of wavelength:value pairs".into(),
             Kind::File => "a file name".into(),
             Kind::Object(tag) => format!("a {tag}"),
@@ -377,13 +378,19 @@ pub const fn light_texture(
 }
 
 /// A colour of matter, or a volume.
-pub const fn volume(name: &'static str, unit: &'static str, default: f64, about: &'static str) -> Parameter {
-    Parameter::new(name, Kind::Volume(Role::Matter), Is(default), about).unit(unit)
+pub const fn volume(
+    name: &'static str,
+    unit: &'static str,
+    most: f64,
+    default: f64,
+    about: &'static str,
+) -> Parameter {
+    Parameter::new(name, Kind::Volume(Role::Matter, most), Is(default), about).unit(unit)
 }
 
 /// A colour of light, or a volume.
 pub const fn light_volume(name: &'static str, unit: &'static str, about: &'static str) -> Parameter {
-    Parameter::new(name, Kind::Volume(Role::Light), Optional, about).unit(unit)
+    Parameter::new(name, Kind::Volume(Role::Light, f64::INFINITY), Optional, about).unit(unit)
 }
 
 /// A spectrum of wavelengths and values.

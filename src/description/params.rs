@@ -224,13 +224,13 @@ impl<'a> Params<'a> {
     /// one. What a spectrum becomes depends on what its row says the colour is of.
     pub fn optional_color(&self, name: &'static str) -> Result<Option<Spectrum>> {
         let (row, role) = self.row(name, |kind| match kind {
-            Kind::Colour(role, _) | Kind::Texture(role, _) | Kind::Volume(role) => Some(*role),
+            Kind::Colour(role, _) | Kind::Texture(role, _) | Kind::Volume(role, _) => Some(*role),
             _ => None,
         })?;
         let Some(property) = self.take(name) else { return Ok(None) };
         let color = colour::read(property, self.library, role)?;
-        // Of textures and volumes the builder knows whether every value fits.
-        if matches!(row.kind, Kind::Colour(..)) && f64::from(color.max_element()) > row.range().high {
+        // Of textures the builder knows whether every value fits.
+        if !matches!(row.kind, Kind::Texture(..)) && f64::from(color.max_element()) > row.range().high {
             return Err(self.complain(name, row.expected(0.0), format!("{color}")));
         }
         Ok(Some(color))
@@ -273,7 +273,7 @@ impl<'a> Params<'a> {
 
     /// The child object called `name`, where given.
     pub fn child(&self, name: &'static str) -> Result<Option<Child<'a>>> {
-        let is_child = |k: &Kind| matches!(k, Kind::Object(_) | Kind::Texture(..) | Kind::Volume(_));
+        let is_child = |k: &Kind| matches!(k, Kind::Object(_) | Kind::Texture(..) | Kind::Volume(..));
         self.row(name, |kind| is_child(kind).then_some(()))?;
         let Some(property) = self.take(name) else { return Ok(None) };
         match self.as_child(property)? {
@@ -321,6 +321,11 @@ impl<'a> Params<'a> {
     pub fn expected(&self, name: &str, found: f64) -> Option<String> {
         let row = self.table.find(name).filter(|row| !row.range().contains(found))?;
         Some(row.expected(found))
+    }
+
+    /// The greatest number that the row of `name` allows.
+    pub fn most(&self, name: &str) -> f64 {
+        self.table.find(name).map_or(f64::INFINITY, |row| row.range().high)
     }
 
     /// The error for a parameter that must be given.

@@ -60,7 +60,7 @@ impl EnvMap {
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let path = params.file("filename")?;
         let scale = params.float("scale")? as f32;
-        let image = image::read(&path, false)?;
+        let image = image::read(&path, false, f32::INFINITY, params.library)?;
         if image.width < 2 || image.height < 3 {
             let found = format!("{} x {}", image.width, image.height);
             let remedy = "give a larger image (a constant environment needs none)";

@@ -13,7 +13,7 @@ use crate::{
     error::{Error, Result},
     math::{Spectrum, Vec3},
     phase::{self, Phase},
-    volume::{self, Place},
+    volume::{self, Place, Volume, VolumeModel as _},
 };
 
 /// How the parameters of a medium are read.
@@ -73,6 +73,20 @@ impl MediumDescription {
         given.has_no_end(self.varies()).then_some(&given.location)
     }
 
+    /// The error where it surrounds the scene without end, and what varies in it would have to be examined as far.
+    pub fn check_end(&self) -> Result<()> {
+        match &self.fields {
+            Some(fields) if self.extinguishes_without_end() => {
+                let remedy =
+                    "close it by shapes, openings by a \"null\" surface with this medium as its interior";
+                let found = "one that surrounds the whole scene";
+                let expected = "a medium with an end, as its albedo varies";
+                Err(Error::new(&fields.location, expected, found, remedy))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// True if nothing arrives through it from infinity.
     pub fn extinguishes_without_end(&self) -> bool {
         self.medium.transmittance_from_infinity() == Spectrum::ZERO
@@ -102,6 +116,7 @@ fn overridden(medium: Medium, overrides: &MediumOverrides) -> Medium {
 
 /// What all media have.
 const COMMON: &[Parameter] = rows! {
+    volume("albedo", "", 1.0, 0.75, "Share of the extinction that is scattering: sigma_s / sigma_t."),
     factor("scale", 1.0, "A factor on `sigma_t`."),
     nested("phase", Optional, "The phase function: `isotropic` where not given."),
     ignored("sample_emitters", "the scene itself decides"),
@@ -109,9 +124,8 @@ const COMMON: &[Parameter] = rows! {
 };
 
 const HOMOGENEOUS: Table = table! {
-    "A medium that is the same everywhere.";
-    colour("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient: sigma_s + sigma_a."),
-    colour("albedo", "", 1.0, Is(0.75), "Share of the extinction that is scattering: sigma_s / sigma_t.");
+    "A medium that is the same everywhere, but for an albedo that may vary.";
+    colour("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient: sigma_s + sigma_a.");
     COMMON, EMISSION
 };
 
@@ -121,15 +135,28 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> 
     if !sigma_t.is_finite() {
         return Err(params.complain("sigma_t", "a finite product with scale", format!("{sigma_t}")));
     }
-    let albedo = params.color("albedo")?;
-    let medium = Medium::homogeneous(MediumProperties::of(sigma_t, albedo), phase(params)?);
-    Ok(MediumDescription { medium, fields: None, emission: EmissionDescription::read(params, place)? })
+    let albedo = volume::parameter(params, "albedo", place)?;
+    let properties = |albedo| MediumProperties::of(sigma_t, albedo);
+    let (properties, fields) = match albedo {
+        Volume::Constant(albedo) => {
+            let albedo: Spectrum = albedo.eval(Vec3::ZERO);
+            match params.expected("albedo", f64::from(albedo.max_element())) {
+                None => (properties(albedo), None),
+                Some(expected) => return Err(params.complain("albedo", expected, format!("{albedo}"))),
+            }
+        }
+        // Trackers of media that vary are told of it; of one value without end it is known in closed form.
+        albedo => {
+            (properties(Spectrum::ZERO), Some(Fields::new(Volume::endless(sigma_t), albedo, params, place)))
+        }
+    };
+    let medium = Medium::homogeneous(properties, phase(params)?);
+    Ok(MediumDescription { medium, fields, emission: EmissionDescription::read(params, place)? })
 }
 
 const HETEROGENEOUS: Table = table! {
     "A medium that varies in space.";
-    volume("sigma_t", "1/m", 1.0, "Extinction coefficient; one value fills the unit cube only, as in Mitsuba."),
-    volume("albedo", "", 0.75, "Share of the extinction that is scattering, from 0 to 1."),
+    volume("sigma_t", "1/m", f64::INFINITY, 1.0, "Extinction coefficient; one value fills the unit cube only, as in Mitsuba."),
     choice("tracker", &words::<6, _>(&DistanceMethod::NAMES), "auto", "How free flights are sampled; `auto` takes the cheapest without error.").ours(),
     number("step", "m", above(0.0, f64::MAX), Said("by `march_error`"), "The interval of the tracker `march`.").ours(),
     number("march_error", "", within(1e-7, 1.0), Is(1e-3), "Greatest error of transmittance of `march`.").ours();
@@ -138,14 +165,16 @@ const HETEROGENEOUS: Table = table! {
 
 fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> {
     let fields = Fields {
-        sigma_t: volume::parameter(params, "sigma_t", place)?,
         scale: scale(params)?,
-        albedo: volume::parameter(params, "albedo", place)?,
         tracker: params.choice("tracker", &DistanceMethod::NAMES)?,
         step: params.optional_float("step")?,
         march_error: params.float("march_error")?,
-        recentre: place.recentre,
-        location: params.location().clone(),
+        ..Fields::new(
+            volume::parameter(params, "sigma_t", place)?,
+            volume::parameter(params, "albedo", place)?,
+            params,
+            place,
+        )
     };
     let medium = Medium::homogeneous(MediumProperties::NOTHING, phase(params)?);
     Ok(MediumDescription {

@@ -6,7 +6,7 @@ use super::{
     emission::Within,
 };
 use crate::{
-    description::Location,
+    description::{Location, Params},
     error::{Error, Result},
     math::{Channels, DVec3, RaySegment, Spectrum, Vec3},
     sampling::Stream,
@@ -35,6 +35,13 @@ pub struct Fields {
 }
 
 impl Fields {
+    /// Those of the medium of `params`, whose flights are sampled in the usual way.
+    pub fn new(sigma_t: Volume, albedo: Volume, params: &Params<'_>, place: &Place) -> Self {
+        let (recentre, location) = (place.recentre, params.location().clone());
+        let (scale, tracker, step, march_error) = (1.0, DistanceMethod::Auto, None, 1e-3);
+        Self { sigma_t, scale, albedo, tracker, step, march_error, recentre, location }
+    }
+
     /// The extinction that `overrides` makes of them, before its factor; the factor; and the albedo.
     fn overridden(&self, overrides: &MediumOverrides) -> (Volume, f32, Volume) {
         let Self { sigma_t, scale, albedo, .. } = self;
@@ -47,7 +54,7 @@ impl Fields {
             Volume::Constant(_) if albedo.is_grey() => (sigma_t.clone(), scale * (1.0 - range[0].x)),
             albedo => (sigma_t.clone().absorbed(albedo.clone()), *scale),
         };
-        (absorbed, scale, Volume::constant(0.0, &Place { recentre: self.recentre, time: 0.0 }))
+        (absorbed, scale, Volume::constant(0.0, &Place::new(self.recentre, 0.0)))
     }
 
     /// The fields at `time` [s]; none where they are the same at all times.
@@ -241,7 +248,7 @@ fn check(fields: &Fields, [low, high]: [Vec3; 2]) -> Result<()> {
         let remedy = format!("make \"{name}\" of the medium less");
         return Err(Error::new(location, format!("{expected} for \"{name}\""), found, remedy));
     }
-    let place = Place { recentre: fields.recentre, time: 0.0 };
+    let place = Place::new(fields.recentre, 0.0);
     for volume in [sigma_t, albedo] {
         check_non_negative(volume, low, high).map_err(|negative| negative.error(location, &place))?;
     }
@@ -272,7 +279,7 @@ mod tests {
 
     /// Noise from 0 to `amplitude` as albedo.
     fn with_albedo(amplitude: f64) -> Result<Heterogeneous> {
-        let place = Place { recentre: DVec3::ZERO, time: 0.0 };
+        let place = Place::new(DVec3::ZERO, 0.0);
         let noise = object("noise", &[("amplitude", Value::Float(amplitude))]);
         let fields = Fields {
             sigma_t: Volume::constant(1.0, &place),

@@ -101,11 +101,12 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
     plugins::check(root)?;
     let root = &keyframes::resolve(root);
     let (root, smoke) = smoke::expand(root)?;
-    let library = Library::new(&root)?;
+    let mut library = Library::new(&root)?;
+    library.is_strict = overrides.strict;
     let sections = Sections::sort(&root, &library)?;
     let recentre = sections.viewpoint(&library)?;
     let before = before.map(Before::new).transpose()?;
-    let mut builder = Builder::new(&library, Place { recentre, time: sections.time }, before.as_ref());
+    let mut builder = Builder::new(&library, Place::new(recentre, sections.time), before.as_ref());
     for child in &sections.shapes {
         builder.shape(child)?;
     }

@@ -100,7 +100,7 @@ impl<'a> Sections<'a> {
 /// A definition is built even if nothing refers to it, so that a mistake in it is reported. Its position does
 /// not matter to whether it can be built.
 fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()> {
-    let place = Place { recentre: DVec3::ZERO, time };
+    let place = Place::new(DVec3::ZERO, time);
     if bsdf::ROWS.has(object) {
         bsdf::build(object, library).map(drop)
     } else if medium::ROWS.has(object) {
@@ -110,7 +110,7 @@ fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()>
     } else if volume::ROWS.has(object) {
         volume::build(object, library, &place).map(drop)
     } else {
-        crate::texture::build(object, library).map(drop)
+        crate::texture::build(object, library, f32::INFINITY).map(drop)
     }
 }
 

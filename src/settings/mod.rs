@@ -32,6 +32,8 @@ pub struct Overrides {
     pub groups: bool,
     /// Also an image of each component of radiance.
     pub components: bool,
+    /// Files with numbers a hair out of range are refused, not mended.
+    pub strict: bool,
 }
 
 impl Overrides {

@@ -37,7 +37,7 @@ impl Bitmap {
         ignored("accel", "images are kept in single precision"),
     };
 
-    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) fn build(params: &Params<'_>, most: f32) -> Result<Self> {
         if params
             .object
             .properties
@@ -54,7 +54,7 @@ impl Bitmap {
             filter: params.choice("filter_type", &filters)?,
             wrap: params.choice("wrap_mode", &Wrap::NAMES)?,
             to_uv: ToUv::read(params)?,
-            image: Arc::new(image::read(&path, raw)?),
+            image: Arc::new(image::read(&path, raw, most, params.library)?),
         })
     }
 

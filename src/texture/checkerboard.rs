@@ -21,7 +21,7 @@ impl Checkerboard {
         TO_UV,
     };
 
-    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) fn build(params: &Params<'_>, _: f32) -> Result<Self> {
         let colors = [parameter(params, "color0")?, parameter(params, "color1")?];
         Ok(Self { colors: Arc::new(colors), to_uv: ToUv::read(params)? })
     }

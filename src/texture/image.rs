@@ -6,6 +6,10 @@ mod tests;
 
 pub use exr::check as check_exr;
 
+use crate::description::{
+    Library,
+    mend::{self, Number},
+};
 use crate::error::{Error, Result};
 use crate::math::{Spectrum, srgb::Srgb as _, vec3};
 use ::image::{
@@ -34,9 +38,10 @@ pub const MOST_PIXELS: usize = 1 << 27;
 const MOST_BYTES: u64 = 16 * MOST_PIXELS as u64;
 
 /// Reads an image file of any known format. Integer formats hold sRGB and are made linear unless `raw`; float
-/// formats hold linear colours. Grey becomes three equal channels; opacity is dropped, as in Mitsuba.
-pub fn read(path: &Path, raw: bool) -> Result<Image> {
-    checked(path, read_unchecked(path, raw)?)
+/// formats hold linear colours. Grey becomes three equal channels; opacity is dropped, as in Mitsuba. Channels that are
+/// almost from 0 to `most` are brought there.
+pub fn read(path: &Path, raw: bool, most: f32, library: &Library) -> Result<Image> {
+    mended(path, read_unchecked(path, raw)?, most, library)
 }
 
 /// The same without checking the pixels, which may be negative or not finite.
@@ -89,17 +94,27 @@ fn linear(image: DynamicImage, raw: bool) -> Image {
     Image { width: buffer.width() as usize, height: buffer.height() as usize, pixels }
 }
 
-/// `image` if it has colours, and all of them are colours.
-fn checked(path: &Path, image: Image) -> Result<Image> {
-    let bad = image.pixels.iter().position(|c| !(c.is_finite() && c.min_element() >= 0.0));
-    let found = match bad {
-        None if !image.pixels.is_empty() => return Ok(image),
-        None => "no pixels".into(),
-        Some(at) => {
-            let (x, y) = (at % image.width, at / image.width);
-            format!("{} in column {x}, row {y}", image.pixels[at])
+/// `image` with all of its colours finite and from 0 to `most`, if it has colours and they almost are.
+fn mended(path: &Path, mut image: Image, most: f32, library: &Library) -> Result<Image> {
+    let remedy = "correct the image: light and reflectance must be finite and in this range in every pixel";
+    if image.pixels.is_empty() {
+        return Err(Error::new(path.display(), "pixels with finite colours >= 0", "no pixels", remedy));
+    }
+    let numbers = |visit: &mut dyn FnMut(Number)| {
+        for (index, pixel) in image.pixels.iter().enumerate() {
+            let at = [index % image.width, index / image.width, 0];
+            for (channel, value) in pixel.to_array().into_iter().enumerate() {
+                visit(Number { value, at, channel, count: 1 });
+            }
         }
     };
-    let remedy = "correct the image: light and reflectance must be finite and >= 0 in every pixel";
-    Err(Error::new(path.display(), "pixels with finite colours >= 0", found, remedy))
+    let place = |number: &Number| {
+        let [x, y, _] = number.at;
+        format!("channel {} of column {x}, row {y}", number.channel)
+    };
+    let file = mend::Source { path, part: "", what: "pixels", place, remedy };
+    if let Some(mend) = file.mend(numbers, most, library)? {
+        image.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(|number| mend.of(number)));
+    }
+    Ok(image)
 }

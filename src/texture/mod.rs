@@ -13,7 +13,7 @@ pub use image::Image;
 pub use uniform::Uniform;
 
 use crate::description::{
-    Build, Library, Object, Params, Plugin, Registry, Value, colour,
+    Library, Object, Params, Plugin, Registry, Value, colour,
     parameter::{self, Parameter},
 };
 use crate::error::Result;
@@ -66,10 +66,10 @@ macro_rules! textures {
         }
 
         /// Every texture there is, by plugin name.
-        pub const ROWS: Registry<Plugin<Build<Texture>>> = Registry::new("a texture", &[
+        pub const ROWS: Registry<Plugin<BuildTexture>> = Registry::new("a texture", &[
             $(($name, Plugin {
                 table: $model::TABLE,
-                build: |params: &Params<'_>| $model::build(params).map(Texture::$model),
+                build: |params: &Params<'_>, most: f32| $model::build(params, most).map(Texture::$model),
             }),)*
             $(($color, Plugin { table: colour::$table, build: build_color }),)*
         ]);
@@ -99,9 +99,16 @@ impl Texture {
     }
 }
 
-/// Builds the texture that `object` describes.
-pub fn build(object: &Object, library: &Library) -> Result<Texture> {
-    ROWS.build(object, library)
+/// How a texture is built whose channels may be up to a number.
+pub type BuildTexture = fn(&Params<'_>, f32) -> Result<Texture>;
+
+/// Builds the texture that `object` describes. Where channels are bounded by `most`, images that exceed it a little are
+/// mended.
+pub fn build(object: &Object, library: &Library, most: f32) -> Result<Texture> {
+    let (params, build) = ROWS.read(object, library)?;
+    let built = build(&params, most)?;
+    params.finish()?;
+    Ok(built)
 }
 
 /// The parameter `name` as a texture: a colour, or a nested or referenced texture. Bounds are the caller's to check, by
@@ -112,15 +119,15 @@ pub fn parameter(params: &Params<'_>, name: &'static str) -> Result<Texture> {
         && let Some(child) = params.child(name)?
         && !colour::is_plugin(child.object)
     {
-        return build(child.object, params.library);
+        return build(child.object, params.library, params.most(name) as f32);
     }
     params.color(name).map(Texture::constant)
 }
 
 /// A plugin that represents one colour; or `d65` around a texture, which is that texture.
-fn build_color(params: &Params<'_>) -> Result<Texture> {
+fn build_color(params: &Params<'_>, most: f32) -> Result<Texture> {
     if colour::is_plugin(params.object) {
-        return Uniform::build(params).map(Texture::Uniform);
+        return Uniform::build(params, most).map(Texture::Uniform);
     }
     if let Some(scale) = params.given("scale") {
         let text = "\"scale\" is accepted but not used: Mitsuba does not scale a texture in d65 either";
@@ -128,7 +135,7 @@ fn build_color(params: &Params<'_>) -> Result<Texture> {
         params.float("scale")?;
     }
     match params.children("texture", |_| true)?.as_slice() {
-        [child] if !params.has("color") => build(child.object, params.library),
+        [child] if !params.has("color") => build(child.object, params.library, most),
         _ => Err(params.complain("", "either one texture or a \"color\" in d65", "more")),
     }
 }

@@ -84,21 +84,24 @@ fn bitmaps_are_read_as_mitsuba_reads_them() {
     ];
     for (name, value, values) in rows {
         let object = object("bitmap", &[("filename", path.clone()), (name, value)]);
-        check(&build(&object, &Library::default()).unwrap(), &values);
+        check(&build(&object, &Library::default(), f32::INFINITY).unwrap(), &values);
     }
     for (name, value) in [("filter_type", text("cubic")), ("data", text("x")), ("foo", text("x"))] {
         let object = object("bitmap", &[("filename", path.clone()), (name, value)]);
-        assert!(build(&object, &Library::default()).is_err(), "{name}");
+        assert!(build(&object, &Library::default(), f32::INFINITY).is_err(), "{name}");
     }
 }
 
 #[test]
 fn checkerboards_are_those_of_mitsuba() {
     let plain = [0.4, 0.4, 0.2, 0.2, 0.4, 0.4, 0.4, 0.4, 0.4];
-    check(&build(&object("checkerboard", &[]), &Library::default()).unwrap(), &plain);
+    check(&build(&object("checkerboard", &[]), &Library::default(), f32::INFINITY).unwrap(), &plain);
     let shift = Value::Transform(vec![TransformStep::Translate([0.25, 0.1, 0.0])]);
     let shifted = [0.4, 0.2, 0.4, 0.2, 0.2, 0.4, 0.4, 0.4, 0.4];
-    check(&build(&object("checkerboard", &[("to_uv", shift)]), &Library::default()).unwrap(), &shifted);
+    check(
+        &build(&object("checkerboard", &[("to_uv", shift)]), &Library::default(), f32::INFINITY).unwrap(),
+        &shifted,
+    );
 }
 
 #[test]
@@ -109,7 +112,7 @@ fn integer_images_are_made_linear_unless_raw() {
     let read = |raw| {
         let file = Value::String(path.display().to_string());
         let object = object("bitmap", &[("filename", file), ("raw", Value::Boolean(raw))]);
-        build(&object, &Library::default()).unwrap().eval(Vec2::splat(0.5))
+        build(&object, &Library::default(), f32::INFINITY).unwrap().eval(Vec2::splat(0.5))
     };
     // Mitsuba 3.9.1's values.
     assert!(read(false).distance(vec3(0.003_035_27, 0.215_86, 0.577_581)) < 1e-5);
@@ -162,9 +165,9 @@ fn light_and_matter_read_spectra_differently_and_textures_hold_matter() {
         assert!(texture("radiance").distance(as_light) < 2e-6, "{value:?}");
     }
     let both = object("d65", &[("", Value::Object(board())), ("color", Value::Rgb([0.5; 3]))]);
-    assert!(build(&both, &library).is_err());
+    assert!(build(&both, &library, 1.0).is_err());
     let black = object("blackbody", &[("temperature", Value::Float(3000.0))]);
-    assert!(build(&black, &library).is_ok());
+    assert!(build(&black, &library, 1.0).is_ok());
 }
 
 #[test]
@@ -175,8 +178,8 @@ fn files_that_are_no_images_are_errors_that_name_them() {
     let location = Location { file: Arc::new(folder.path().join("scene.json")), ..nowhere() };
     let mut object = object("bitmap", &[("filename", Value::String("text.png".into()))]);
     object.properties[0].location = location;
-    let error = build(&object, &Library::default()).unwrap_err();
+    let error = build(&object, &Library::default(), f32::INFINITY).unwrap_err();
     assert!(error.place.ends_with("text.png"), "{error}");
     object.properties[0].value = Value::String("absent.png".into());
-    assert!(build(&object, &Library::default()).is_err());
+    assert!(build(&object, &Library::default(), f32::INFINITY).is_err());
 }

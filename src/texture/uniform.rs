@@ -17,7 +17,7 @@ impl Uniform {
 
     /// Of any plugin that represents one colour. As light, for that has the widest range; where a plugin is
     /// nested in another, [`super::parameter`] reads it as what it is there.
-    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) fn build(params: &Params<'_>, _: f32) -> Result<Self> {
         colour::of_plugin(params, Role::Light).map(Self)
     }
 

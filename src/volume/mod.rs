@@ -31,7 +31,7 @@ pub use grid::Grid;
 pub use noise::Noise;
 pub use polynomial::Polynomial;
 pub use product::Product;
-pub use samples::Samples;
+pub use samples::{Mapped, Samples};
 pub use sum::Sum;
 pub use wind::Wind;
 
@@ -49,9 +49,21 @@ pub struct Place {
     pub recentre: DVec3,
     /// The scene's time [s].
     pub time: f64,
+    /// The most that a value may be, where that is less than anything: 1 for a share of light.
+    pub most: f32,
 }
 
 impl Place {
+    /// At `time` [s], for values of any size.
+    pub const fn new(recentre: DVec3, time: f64) -> Self {
+        Self { recentre, time, most: f32::INFINITY }
+    }
+
+    /// The same for values up to `most`.
+    pub const fn up_to(self, most: f32) -> Self {
+        Self { most, ..self }
+    }
+
     /// The map from a volume's own coordinates, placed by `to_world`, to recentred ones.
     pub fn to_world(&self, params: &Params<'_>) -> Result<DAffine3> {
         let to_file = DAffine3::from_mat4(params.transform("to_world")?);
@@ -205,6 +217,11 @@ impl Volume {
         Self::Constant(Constant::new(Spectrum::splat(value), place.unit_cube()))
     }
 
+    /// `value` everywhere, without an end of its own.
+    pub fn endless(value: Spectrum) -> Self {
+        Self::Product(Product::new(vec![Self::Constant(Constant::new(value, [Vec3::ZERO; 2]))]))
+    }
+
     /// `self` times 1 - `albedo`: what is absorbed of an extinction.
     pub fn absorbed(self, albedo: Self) -> Self {
         Self::Product(Product::absorbed(self, albedo))
@@ -255,13 +272,14 @@ pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Volume
     Ok(built)
 }
 
-/// The parameter `name` as a volume: a nested or referenced volume, or a number or colour for one everywhere.
+/// The parameter `name` as a volume: a nested or referenced volume, or a number or colour for one everywhere. Grids may
+/// hold what its row allows.
 pub fn parameter(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Volume> {
     if let Some(Value::Object(_) | Value::Reference(_)) = params.given(name).map(|property| &property.value)
         && let Some(child) = params.child(name)?
         && ROWS.has(child.object)
     {
-        return build(child.object, params.library, place);
+        return build(child.object, params.library, &place.up_to(params.most(name) as f32));
     }
     params.color(name).map(|color| Volume::Constant(Constant::new(color, place.unit_cube())))
 }
@@ -275,10 +293,15 @@ fn all_at_time(volumes: &[Volume], time: f64) -> Option<Arc<[Volume]>> {
 
 /// All volumes nested in another, at least one; a child of another kind is an error.
 fn nested(params: &Params<'_>, place: &Place) -> Result<Vec<Volume>> {
+    nested_in(params)?.iter().map(|object| build(object, params.library, place)).collect()
+}
+
+/// What describes them.
+fn nested_in<'a>(params: &Params<'a>) -> Result<Vec<&'a Object>> {
     let children = params.children("volume", |_| true)?;
     if children.is_empty() {
         let remedy = format!("put a volume into the {}", params.object.plugin);
         return Err(Error::new(params.location(), "one or more nested volumes", "none", remedy));
     }
-    children.iter().map(|child| build(child.object, params.library, place)).collect()
+    Ok(children.iter().map(|child| child.object).collect())
 }

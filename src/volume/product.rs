@@ -1,8 +1,8 @@
 //! `product`: the values of nested volumes, multiplied: a shape times a texture.
 
-use super::{NESTED, Place, Volume, VolumeModel, all_at_time, nested};
+use super::{NESTED, Place, Volume, VolumeModel, all_at_time, build, nested_in};
 use crate::{
-    description::{Params, Table, table},
+    description::{Object, Params, Table, table},
     error::Result,
     math::{Channels, DVec3, RaySegment, Spectrum, Vec3},
 };
@@ -23,7 +23,17 @@ impl Product {
         table! { "Nested volumes, multiplied: a shape times a texture."; ; NESTED };
 
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
-        nested(params, place).map(Self::new)
+        let (constants, varying): (Vec<_>, Vec<_>) =
+            nested_in(params)?.into_iter().partition(|object| object.plugin == "constvolume");
+        let built = |objects: Vec<&Object>, place: &Place| {
+            objects.into_iter().map(|object| build(object, params.library, place)).collect::<Result<Vec<_>>>()
+        };
+        let alone = varying.len() == 1;
+        let constants = built(constants, place)?;
+        let factor = Self::new(constants.clone()).constant.max_element();
+        // Of several that vary nobody knows what each may be.
+        let most = if alone && factor > 0.0 { place.most / factor } else { f32::INFINITY };
+        Ok(Self::new([constants, built(varying, &place.up_to(most))?].concat()))
     }
 
     pub(super) fn new(all: Vec<Volume>) -> Self {

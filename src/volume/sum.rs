@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn terms_of_nothing_are_left_out() {
-        let place = Place { recentre: DVec3::ZERO, time: 0.0 };
+        let place = Place::new(DVec3::ZERO, 0.0);
         let fog = |value: f64| {
             let wave =
                 object("exponential", &[("height", Value::Float(1.0)), ("value", Value::Float(value))]);

@@ -165,7 +165,7 @@ fn value_of(row: &Parameter) -> Value {
         Kind::Transform => one("transform"),
         Kind::Colour(..) => one("colour"),
         Kind::Texture(..) => one("colour or texture"),
-        Kind::Volume(_) => one("colour or volume"),
+        Kind::Volume(..) => one("colour or volume"),
         Kind::Spectrum => one("spectrum"),
         Kind::Object(tag) => one(tag),
         Kind::Nested | Kind::Ignored { .. } => json!({}),

@@ -98,7 +98,7 @@ fn samples(plugin: &str, row: &Parameter) -> Vec<Value> {
         Kind::Channels => vec![json!(0.5), json!([0.5, 0, 1])],
         Kind::Vector => vec![json!([1, 0, 0])],
         Kind::Transform => vec![json!([])],
-        Kind::Colour(..) | Kind::Texture(..) | Kind::Volume(_) => vec![json!(0.5)],
+        Kind::Colour(..) | Kind::Texture(..) | Kind::Volume(..) => vec![json!(0.5)],
         Kind::Spectrum => vec![json!({"type": "spectrum", "value": [[400, 0.1], [700, 0.5]]})],
         Kind::File => vec![json!(sample_file(plugin))],
         Kind::Object(tag) => vec![sample_of(tag, plugin)],

@@ -108,7 +108,7 @@ pub fn allowed(row: &Parameter) -> String {
         Kind::Transform => "transform".into(),
         Kind::Colour(..) => format!("colour{bounded}"),
         Kind::Texture(..) => format!("colour or texture{bounded}"),
-        Kind::Volume(_) => "colour or volume".into(),
+        Kind::Volume(..) => format!("colour or volume{bounded}"),
         Kind::Spectrum => "spectrum".into(),
         Kind::File => "file".into(),
         Kind::Object(tag) => tag.into(),

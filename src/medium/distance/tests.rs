@@ -13,7 +13,7 @@ use crate::{
     volume::{self, Place},
 };
 
-const HERE: Place = Place { recentre: DVec3::ZERO, time: 0.0 };
+const HERE: Place = Place::new(DVec3::ZERO, 0.0);
 
 /// The volume of `plugin`, times `factor` of its own.
 fn volume(description: &Object) -> Volume {

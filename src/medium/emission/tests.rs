@@ -19,7 +19,7 @@ fn properties(sigma_t: f32, albedo: f32) -> Within {
 fn emission(parameters: &[(&str, Value)], within: Within) -> Result<Option<Emission>> {
     let object = object("homogeneous", parameters);
     let library = Library::default();
-    let place = Place { recentre: DVec3::ZERO, time: 0.0 };
+    let place = Place::new(DVec3::ZERO, 0.0);
     let given = EmissionDescription::read(&crate::medium::ROWS.read(&object, &library)?.0, &place)?;
     given.map_or(Ok(None), |given| Emission::new(given, within, &AROUND))
 }

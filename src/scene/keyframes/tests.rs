@@ -27,7 +27,7 @@ fn at(object_: &Object, time: f64) -> Volume {
     let root = object("scene", &[("time", Value::Float(time)), ("v", Value::Object(object_.clone()))]);
     let resolved = resolve(&root);
     let Value::Object(resolved) = &resolved.properties[1].value else { panic!("no object") };
-    let place = Place { recentre: DVec3::ZERO, time };
+    let place = Place::new(DVec3::ZERO, time);
     volume::build(resolved, &Library::default(), &place).unwrap()
 }
 

@@ -35,6 +35,9 @@ impl Extents<'_> {
     ) -> Result<Vec<Medium>> {
         let finish = |(index, description): (usize, MediumDescription)| {
             let (is_bound, [low, high]) = self.of(MediumIndex(index as u32));
+            if self.outside.0 as usize == index {
+                description.check_end()?;
+            }
             let medium = description.finish(MediumBounds { low, high, is_bound }, medium_overrides)?;
             Ok(medium.numbered(MediumIndex(index as u32)))
         };

@@ -90,7 +90,7 @@ const FACTS: &[(&str, bool, Values)] = &[
 #[test]
 fn images_are_read_as_mitsuba_reads_them() {
     for (name, raw, values) in FACTS {
-        let image = read(&sample(name), *raw).unwrap();
+        let image = read(&sample(name), *raw, f32::INFINITY, &Library::default()).unwrap();
         let size = if *name == "flat.jpg" { 8 } else { 2 };
         assert_eq!((image.width, image.height), (size, size), "{name}");
         for (pixel, value) in image.pixels.iter().zip(values) {
@@ -101,7 +101,7 @@ fn images_are_read_as_mitsuba_reads_them() {
 }
 
 fn refused(path: &Path) -> Error {
-    let error = read(path, false).unwrap_err();
+    let error = read(path, false, f32::INFINITY, &Library::default()).unwrap_err();
     assert_eq!(error.place, path.display().to_string(), "{error}");
     error
 }
@@ -163,4 +163,33 @@ fn pixels_that_are_no_colours_are_refused_with_their_place() {
         ::exr::prelude::write_rgb_file(&path, 3, 2, pixel).unwrap();
         assert!(refused(&path).found.contains("column 2, row 1"));
     }
+}
+
+/// An image of 10 x 10 grey pixels of 0.5, but for the first.
+fn grey_but_for(first: f32) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("almost.exr");
+    let pixel = |x, y| if (x, y) == (0, 0) { (first, first, 0.5) } else { (0.5, 0.5, 0.5f32) };
+    ::exr::prelude::write_rgb_file(&path, 10, 10, pixel).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn pixels_a_hair_out_of_range_are_brought_into_it_with_one_warning() {
+    for (first, most, expected) in
+        [(-1e-4, f32::INFINITY, 0.0), (f32::INFINITY, f32::INFINITY, 0.5), (1.1, 1.0, 1.0)]
+    {
+        let (_folder, path) = grey_but_for(first);
+        let mut library = Library::default();
+        let image = read(&path, false, most, &library).unwrap();
+        assert_eq!(image.pixels[..2], [vec3(expected, expected, 0.5), Spectrum::splat(0.5)]);
+        let warnings = library.take_warnings();
+        let said =
+            format!("2 values are out of range and changed: the worst, {first:?}, becomes {expected:?}");
+        assert!(warnings.len() == 1 && warnings[0].ends_with(&said), "{warnings:?}");
+        library.is_strict = true;
+        assert!(read(&path, false, most, &library).unwrap_err().found.contains("column 0, row 0"));
+    }
+    let (_folder, path) = grey_but_for(1.1);
+    assert_eq!(read(&path, false, f32::INFINITY, &Library::default()).unwrap().pixels[0].x, 1.1);
 }

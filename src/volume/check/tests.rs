@@ -15,7 +15,7 @@ fn volume(fog: &str, place: &Place) -> (Volume, Location) {
     (build(object, &library, place).unwrap(), object.location.clone())
 }
 
-const HERE: Place = Place { recentre: DVec3::ZERO, time: 0.0 };
+const HERE: Place = Place::new(DVec3::ZERO, 0.0);
 const HALF: Vec3 = Vec3::splat(10.0);
 
 fn checked(fog: &str) -> Result<(), Negative> {
@@ -56,7 +56,7 @@ fn what_goes_below_0_is_found() {
 
 #[test]
 fn the_place_is_told_in_the_coordinates_of_the_file() {
-    let place = Place { recentre: DVec3::new(1e5, 0.0, 0.0), time: 0.0 };
+    let place = Place::new(DVec3::new(1e5, 0.0, 0.0), 0.0);
     let hole = r#"{"type": "equipotential", "strength": -1, "center": [100003, 1, 2], "d": 1e6, "min": [100002, 0, 1],
         "max": [100003.5, 2, 3]}"#;
     let (hole, location) = volume(hole, &place);

@@ -36,7 +36,7 @@ use std::{
     io::{BufReader, Read, Seek},
     path::Path,
 };
-use value::Value;
+pub use value::Value;
 
 /// One grid of a file.
 #[derive(Debug)]
@@ -49,6 +49,8 @@ pub struct Source {
     pub low: [i64; 3],
     /// The values, as they are in the file: finite or not, negative or not.
     pub samples: Field,
+    /// Other grids of the file that may have been meant: those of numbers, or of them the density.
+    pub others: Vec<String>,
 }
 
 /// Values of either kind.
@@ -105,7 +107,7 @@ impl Source {
             return Err(Problem::new(expected, format!("{to_world:?}"), remedy));
         }
         let samples = builder.finish()?;
-        Ok(Self { label, to_world, low: samples.low(), samples: V::field(samples) })
+        Ok(Self { label, to_world, low: samples.low(), samples: V::field(samples), others: vec![] })
     }
 }
 
@@ -165,8 +167,9 @@ impl<R: Read + Seek> Archive<R> {
     }
 
     fn chosen(&mut self, grid: Option<&str>) -> Result<Source> {
-        let number = choose(&self.labels(), grid)?;
-        self.source(number)
+        let labels = self.labels();
+        let number = choose(&labels, grid)?;
+        Ok(Source { others: roles::others(&labels, number), ..self.source(number)? })
     }
 }
 

@@ -56,6 +56,17 @@ pub fn is_velocity(label: &Label) -> bool {
     VELOCITIES.contains(&base.unwrap_or(&name))
 }
 
+/// Names of grids that may have been meant in place of grid `number`: those of numbers that are no velocities, or of
+/// them the density.
+pub fn others(grids: &[Label], number: usize) -> Vec<String> {
+    let is_one = |grid: &Label| grid.channels == Some(1) && !grid.is_level_set() && !is_velocity(grid);
+    let all = || grids.iter().enumerate().filter(|(other, grid)| *other != number && is_one(grid));
+    let is_density = |grid: &Label| DENSITIES.iter().any(|name| grid.plain_name().eq_ignore_ascii_case(name));
+    let densities: Vec<_> = all().filter(|(_, grid)| is_density(grid)).collect();
+    let best = if densities.is_empty() { all().collect() } else { densities };
+    best.into_iter().map(|(_, grid)| shown(&grid.name)).collect()
+}
+
 impl Roles {
     /// Those of all grids of a file; where they have no names, the only one is a density.
     pub fn of_file(grids: &[Label], wanted: Wanted<'_>) -> Result<Self> {

@@ -91,6 +91,17 @@ impl<V: Value> Sparse<V> {
     fn index(&self, sample: [usize; 3]) -> [i64; 3] {
         std::array::from_fn(|axis| self.low[axis] + sample[axis] as i64)
     }
+
+    /// The first sample of the cube at `start`, and how many of its samples are within the box.
+    fn cut(&self, start: [i64; 3], side: i64) -> Option<([usize; 3], u64)> {
+        let first: [i64; 3] = std::array::from_fn(|axis| (start[axis] - self.low[axis]).max(0));
+        let length = |axis: usize| {
+            let end = (start[axis] - self.low[axis] + side).min(self.size[axis] as i64);
+            (end - first[axis]).max(0) as u64
+        };
+        let count = (0..3).map(length).product();
+        (count > 0).then_some((first.map(|i| i as usize), count))
+    }
 }
 
 impl<V: Value> Samples<V> for Sparse<V> {
@@ -129,6 +140,27 @@ impl<V: Value> Samples<V> for Sparse<V> {
             }
         }
         first
+    }
+
+    fn each(&self, visit: &mut dyn FnMut([usize; 3], V, u64)) {
+        let Tree { background, blocks, tiles } = &self.tree;
+        visit([0; 3], *background, 1);
+        for (place, block) in blocks {
+            let start = place.map(|i| i64::from(i) << LEVELS[0]);
+            for (n, value) in block.iter().enumerate() {
+                let offset = unpack(n, LEVELS[0]);
+                let index = std::array::from_fn(|axis| start[axis] + i64::from(offset[axis]));
+                self.cut(index, 1).into_iter().for_each(|(sample, count)| visit(sample, *value, count));
+            }
+        }
+        for (tiles, level) in tiles.iter().zip(LEVELS) {
+            for (place, value) in tiles {
+                let start = place.map(|i| i64::from(i) << level);
+                self.cut(start, 1 << level)
+                    .into_iter()
+                    .for_each(|(sample, count)| visit(sample, *value, count));
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::{
     error::Result,
     math::{Spectrum, black_body},
     volume::{
-        Samples,
+        Mapped,
         files::{Field, Problem, Source},
     },
 };
@@ -69,7 +69,7 @@ impl Convert {
                 if !(is_surface && depth > 0.0) {
                     return Err(no_surface(&name, &class));
                 }
-                Ok(Values::Grey(Box::new(Mapped(samples, move |distance: f32| {
+                Ok(Values::Grey(Box::new(Mapped::new(samples, move |distance: f32| {
                     (-distance / depth).clamp(0.0, 1.0)
                 }))))
             }
@@ -89,7 +89,7 @@ impl Convert {
             }
             (Self::BlackBody { scale, offset }, Values::Grey(samples)) => {
                 let light = move |number| radiance(number, scale, offset);
-                Ok(Values::Chromatic(Box::new(Mapped(samples, light))))
+                Ok(Values::Chromatic(Box::new(Mapped::new(samples, light))))
             }
         }
     }
@@ -108,21 +108,4 @@ fn no_surface(name: &str, class: &str) -> Problem {
     let class = if class.is_empty() { "no class" } else { class };
     let remedy = "leave out \"convert\", or name a level set with the parameter \"grid\"";
     Problem::new("a level set to make fog of", format!("\"{name}\" ({class})"), remedy)
-}
-
-/// Samples of which a function is taken.
-struct Mapped<S, F>(S, F);
-
-impl<U, S: Samples<f32>, F: Fn(f32) -> U> Samples<U> for Mapped<S, F> {
-    fn size(&self) -> [usize; 3] {
-        self.0.size()
-    }
-
-    fn at(&self, index: [usize; 3]) -> U {
-        self.1(self.0.at(index))
-    }
-
-    fn uniform(&self, low: [usize; 3], high: [usize; 3]) -> Option<U> {
-        self.0.uniform(low, high).map(&self.1)
-    }
 }

@@ -71,17 +71,6 @@ impl<V> std::fmt::Debug for Lattice<V> {
     }
 }
 
-/// A value that no density can have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fault {
-    /// The voxel's index in the file.
-    pub voxel: [usize; 3],
-    /// Its channel.
-    pub channel: usize,
-    /// What is there.
-    pub value: f32,
-}
-
 impl<V: Voxel> Lattice<V> {
     /// The most bytes that [`Self::build`] may take: no brick of which the source knows that it is even needs values.
     pub fn most_bytes<S: Samples<V> + ?Sized>(
@@ -106,7 +95,7 @@ impl<V: Voxel> Lattice<V> {
         filter: Filter,
         extent: &Extent,
         is_needed: impl Fn([usize; 3]) -> bool,
-    ) -> Result<Self, Fault> {
+    ) -> Self {
         let size = extent.size();
         let mut reader = Reader { samples, wrap, filter, extent, scratch: vec![V::splat(0.0); VALUES] };
         let mut bricks = Vec::with_capacity(size.iter().product());
@@ -114,11 +103,11 @@ impl<V: Voxel> Lattice<V> {
             for y in 0..size[1] {
                 for x in 0..size[0] {
                     let at = [x, y, z];
-                    bricks.push(if is_needed(at) { reader.brick(at)? } else { Brick::of(V::splat(0.0)) });
+                    bricks.push(if is_needed(at) { reader.brick(at) } else { Brick::of(V::splat(0.0)) });
                 }
             }
         }
-        Ok(Self { cells: extent.cells, size, filter, bricks })
+        Self { cells: extent.cells, size, filter, bricks }
     }
 
     /// The same lattice of values made by `change`, which keeps order.
@@ -216,19 +205,18 @@ struct Reader<'a, V, S: ?Sized> {
 }
 
 impl<V: Voxel, S: Samples<V> + ?Sized> Reader<'_, V, S> {
-    fn brick(&mut self, at: [usize; 3]) -> Result<Brick<V>, Fault> {
-        let indices: [[usize; SIDE]; 3] = std::array::from_fn(|axis| self.indices(axis, at[axis]));
+    fn brick(&mut self, at: [usize; 3]) -> Brick<V> {
         if let Some(value) = self.known(at) {
-            return checked(value, [indices[0][0], indices[1][0], indices[2][0]]).map(Brick::of);
+            return Brick::of(value);
         }
-        self.copy(&indices)?;
+        self.copy(&std::array::from_fn(|axis| self.indices(axis, at[axis])));
         let first = self.scratch[0];
         if self.scratch.iter().all(|value| value.same(first)) {
-            return Ok(Brick::of(first));
+            return Brick::of(first);
         }
         let fold = |change: fn(V, V) -> V| self.scratch.iter().copied().fold(first, change);
         let (least, most, mean) = (fold(V::least), fold(V::most), self.mean(at));
-        Ok(Brick { values: Some(boxed(self.scratch.iter().copied())), mean, least, most })
+        Brick { values: Some(boxed(self.scratch.iter().copied())), mean, least, most }
     }
 
     /// The corners of a brick along an axis, as indices of the endless lattice. What no cell reaches repeats the last
@@ -256,16 +244,15 @@ impl<V: Voxel, S: Samples<V> + ?Sized> Reader<'_, V, S> {
         self.samples.uniform(ends.map(|[low, _]| low), ends.map(|[_, high]| high))
     }
 
-    fn copy(&mut self, [xs, ys, zs]: &[[usize; SIDE]; 3]) -> Result<(), Fault> {
+    fn copy(&mut self, [xs, ys, zs]: &[[usize; SIDE]; 3]) {
         let mut to = self.scratch.iter_mut();
         for z in zs {
             for y in ys {
                 for (x, to) in xs.iter().zip(&mut to) {
-                    *to = checked(self.samples.at([*x, *y, *z]), [*x, *y, *z])?;
+                    *to = self.samples.at([*x, *y, *z]);
                 }
             }
         }
-        Ok(())
     }
 
     /// The exact mean of the interpolant over what counts of the brick.
@@ -299,12 +286,5 @@ impl<V: Voxel, S: Samples<V> + ?Sized> Reader<'_, V, S> {
         let sum: f64 = shares.iter().sum();
         // A brick of which nothing counts has no mean; no ray stays in it for long.
         if sum > 0.0 { shares.map(|share| share / sum) } else { [1.0 / SIDE as f64; SIDE] }
-    }
-}
-
-fn checked<V: Voxel>(value: V, voxel: [usize; 3]) -> Result<V, Fault> {
-    match value.fault() {
-        None => Ok(value),
-        Some(channel) => Err(Fault { voxel, channel, value: value.to_spectrum()[channel] }),
     }
 }

@@ -29,7 +29,7 @@ use crate::{
 };
 use convert::Convert;
 pub use convert::HOTTEST;
-use lattice::{BRICK, Brick, Extent, Fault, Lattice};
+use lattice::{BRICK, Brick, Extent, Lattice};
 use std::{path::Path, sync::Arc};
 use voxel::Voxel;
 use walk::{Line, Target, Walk};
@@ -130,7 +130,8 @@ impl Grid {
         params.boolean("raw")?;
         let mut to_world = place.to_world(params)?;
         let uses_file_box = params.optional_boolean("use_grid_bbox")?.unwrap_or(is_vdb);
-        let source = file::open(&path, grid, Convert::read(params)?)?;
+        let source =
+            file::open(&path, grid, Convert::read(params)?)?.mended(&path, place.most, params.library)?;
         if uses_file_box {
             check_box(&path, &source.to_file)?;
             to_world *= source.to_file;
@@ -138,8 +139,8 @@ impl Grid {
         Self::new(&path, source.values, filter, wrap, to_world)
     }
 
-    /// Makes bricks of `values`, whose voxels fill the unit cube of `to_world`; errors name `path`. Voxels that
-    /// are negative or not finite, and more of them than memory holds, are errors.
+    /// Makes bricks of `values`, which are finite and at least 0 and whose voxels fill the unit cube of `to_world`; errors
+    /// name `path`. More of them than memory holds is an error.
     pub fn new(path: &Path, values: Values, filter: Filter, wrap: Wrap, to_world: DAffine3) -> Result<Self> {
         let to_local = to_world.inverse();
         check_place(path, &to_world, &to_local)?;
@@ -166,15 +167,14 @@ impl Grid {
             Values::Grey(samples) => {
                 let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
                 check_memory(path, size, Some(bytes))?;
-                let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
-                Bricks::Grey(Arc::new(lattice.map_err(|fault| refused(path, fault))?))
+                Bricks::Grey(Arc::new(Lattice::build(&*samples, wrap, filter, &extent, is_needed)))
             }
             Values::Chromatic(samples) => {
                 let bytes = Lattice::most_bytes(&*samples, wrap, filter, &extent);
                 check_memory(path, size, Some(bytes))?;
                 let lattice = Lattice::build(&*samples, wrap, filter, &extent, is_needed);
                 drop(samples);
-                collapse(lattice.map_err(|fault| refused(path, fault))?)
+                collapse(lattice)
             }
         };
         let frame = Arc::new(Frame { wrap, to_local, to_lattice, scale, shift, domain });
@@ -454,10 +454,4 @@ fn check_box(path: &Path, to_file: &DAffine3) -> Result<()> {
     let found = format!("one whose edges are {}", to_file.matrix3);
     let remedy = "correct the box in the file's header, or set \"use_grid_bbox\" to false";
     Err(Error::new(path.display(), "a bounding box with a finite volume", found, remedy))
-}
-
-fn refused(path: &Path, Fault { voxel: [x, y, z], channel, value }: Fault) -> Error {
-    let found = format!("{value} in channel {channel} of the voxel ({x}, {y}, {z})");
-    let remedy = "correct the grid: densities and colours must be finite and >= 0";
-    Error::new(path.display(), "voxels that are finite numbers >= 0", found, remedy)
 }

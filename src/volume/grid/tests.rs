@@ -556,8 +556,7 @@ fn a_walk_and_its_reverse_are_one() {
     let size = [33, 12, 20];
     let extent =
         Extent { first: [-1; 3], cells: size.map(|n| n + 1), counted: [[0.5; 3], size.map(|n| n as f64)] };
-    let lattice =
-        Lattice::build(&contrasts(size, 3), Wrap::Clamp, Filter::Trilinear, &extent, |_| true).unwrap();
+    let lattice = Lattice::build(&contrasts(size, 3), Wrap::Clamp, Filter::Trilinear, &extent, |_| true);
     for index in 0..300 {
         let mut stream = Stream::new(14, index, 0, Purpose::Study);
         let mut point = || extent.cells.map(|n| (stream.uniform() * n as f32 * 2.0).round() as f64 * 0.5);
@@ -585,7 +584,7 @@ fn vdb_files_are_placed_by_their_own_map() {
     let grid = crate::volume::build(
         &object("gridvolume", &[("filename", name)]),
         &Library::default(),
-        &Place { recentre: DVec3::new(1.0, 0.0, 0.0), time: 0.0 },
+        &Place::new(DVec3::new(1.0, 0.0, 0.0), 0.0),
     )
     .unwrap_or_else(|error| panic!("{error}"));
     let source = crate::volume::files::open(&path, None).unwrap();

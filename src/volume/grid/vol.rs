@@ -60,7 +60,7 @@ pub fn read(path: &Path) -> Result<Source> {
             Values::Chromatic(Box::new(Voxels::<Spectrum> { size, values }))
         }
     };
-    Ok(Source { values, to_file })
+    Ok(Source { values, to_file, name: String::new(), others: vec![] })
 }
 
 /// A grid as a file of this format is to hold it.
@@ -71,7 +71,7 @@ pub struct Vol {
 
 impl Vol {
     /// The grid that the file at `path` holds, all of its voxels: those that a sparse file leaves out are among them.
-    pub fn new(path: &Path, Source { values, to_file }: Source) -> Result<Self> {
+    pub fn new(path: &Path, Source { values, to_file, .. }: Source) -> Result<Self> {
         let (size, channels) = match &values {
             Values::Grey(samples) => (samples.size(), 1),
             Values::Chromatic(samples) => (samples.size(), 3),

@@ -32,14 +32,8 @@ pub trait Voxel: Channels {
     fn most(self, other: Self) -> Self;
     /// True if both are the same in every channel.
     fn same(self, other: Self) -> bool;
-    /// The number of the first channel that no density can have: NaN, infinite or negative.
-    fn fault(self) -> Option<usize>;
     /// The sum of a cell's eight corners, each times its weight: in `low` those of smaller z, in order of x, then y.
     fn weighted(corners: &[Self; SPAN], low: Vec4, high: Vec4) -> Self;
-}
-
-fn is_fault(value: f32) -> bool {
-    !(value >= 0.0 && value.is_finite())
 }
 
 impl Voxel for f32 {
@@ -67,9 +61,6 @@ impl Voxel for f32 {
     }
     fn same(self, other: Self) -> bool {
         self == other
-    }
-    fn fault(self) -> Option<usize> {
-        is_fault(self).then_some(0)
     }
     #[inline]
     fn weighted(corners: &[Self; SPAN], low: Vec4, high: Vec4) -> Self {
@@ -104,9 +95,6 @@ impl Voxel for Spectrum {
     }
     fn same(self, other: Self) -> bool {
         self == other
-    }
-    fn fault(self) -> Option<usize> {
-        self.to_array().into_iter().position(is_fault)
     }
     #[inline]
     fn weighted(corners: &[Self; SPAN], low: Vec4, high: Vec4) -> Self {

@@ -16,7 +16,7 @@ fn read(name: &str, text: &str, place: &Place) -> Result<(Object, Volume)> {
     Ok((root, volume))
 }
 
-const HERE: Place = Place { recentre: DVec3::ZERO, time: 0.0 };
+const HERE: Place = Place::new(DVec3::ZERO, 0.0);
 
 fn json(fog: &str, place: &Place) -> Result<Volume> {
     read("a.json", &format!(r#"{{"type": "scene", "fog": {fog}}}"#), place).map(|(_, volume)| volume)
@@ -201,11 +201,11 @@ fn recentring_changes_nothing() {
 
 const TABLE: Table = table! {
     "Any plugin.";
-    volume("a", "", 0.25, ""),
-    volume("b", "", 0.25, ""),
-    volume("c", "", 0.25, ""),
-    volume("d", "", 0.25, ""),
-    volume("e", "", 0.25, ""),
+    volume("a", "", f64::INFINITY, 0.25, ""),
+    volume("b", "", f64::INFINITY, 0.25, ""),
+    volume("c", "", f64::INFINITY, 0.25, ""),
+    volume("d", "", f64::INFINITY, 0.25, ""),
+    volume("e", "", f64::INFINITY, 0.25, ""),
 };
 
 #[test]

@@ -37,7 +37,7 @@ fn build(bytes: &[u8], properties: &[(&str, Value)]) -> Result<Volume> {
     fs::write(&path, bytes).unwrap();
     let mut all = vec![("filename", Value::String(path.display().to_string()))];
     all.extend_from_slice(properties);
-    let place = Place { recentre: DVec3::ZERO, time: 0.0 };
+    let place = Place::new(DVec3::ZERO, 0.0);
     volume::build(&object("gridvolume", &all), &Library::default(), &place)
 }
 
@@ -229,7 +229,7 @@ fn parameters_that_make_no_sense_are_errors() {
     for row in rows {
         assert!(build(&bytes, std::slice::from_ref(&row)).is_err(), "{row:?}");
     }
-    let place = Place { recentre: DVec3::ZERO, time: 0.0 };
+    let place = Place::new(DVec3::ZERO, 0.0);
     let missing = object("gridvolume", &[("filename", text("/nowhere/grid.vol"))]);
     for lost in [missing, object("gridvolume", &[])] {
         assert!(volume::build(&lost, &Library::default(), &place).is_err());
@@ -272,4 +272,36 @@ fn what_cannot_be_converted_is_told() {
     assert!(plain.expected.contains("a level set"), "{plain}");
     let unknown = build(&vol([4, 3, 2, 1], UNIT, &NUMBERS), &convert("fogg")).unwrap_err();
     assert!(unknown.remedy.contains("did you mean \"fog\""), "{unknown}");
+}
+
+/// The volume of a file of 10 x 10 x 10 numbers, the first as given and the others 0.5, and what is said of it.
+fn almost(first: &[f32], most: f32, is_strict: bool) -> (Result<Volume>, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("grid.vol");
+    let mut numbers = [0.5; 1000];
+    numbers[..first.len()].copy_from_slice(first);
+    fs::write(&path, vol([10, 10, 10, 1], UNIT, &numbers)).unwrap();
+    let mut library = Library::default();
+    library.is_strict = is_strict;
+    let place = Place::new(DVec3::ZERO, 0.0).up_to(most);
+    let grid = object("gridvolume", &[("filename", Value::String(path.display().to_string()))]);
+    (volume::build(&grid, &library, &place), library.take_warnings())
+}
+
+#[test]
+fn voxels_a_hair_out_of_range_are_brought_into_it_with_one_warning() {
+    let corner = Vec3::splat(0.05);
+    for (first, most, expected) in
+        [(-8e-24, f32::INFINITY, 0.0), (f32::INFINITY, f32::INFINITY, 0.5), (1.2, 1.0, 1.0)]
+    {
+        let (volume, warnings) = almost(&[first], most, false);
+        assert!((volume.unwrap().eval::<Spectrum>(corner).x - expected).abs() < 1e-6);
+        let said = format!("1 value is out of range and changed: the worst, {first:?}, becomes {expected:?}");
+        assert!(warnings.len() == 1 && warnings[0].ends_with(&said), "{warnings:?}");
+        let (strict, _) = almost(&[first], most, true);
+        assert!(strict.unwrap_err().found.contains("channel 0 of the voxel (0, 0, 0)"));
+    }
+    assert!(almost(&[1.2], f32::INFINITY, true).0.is_ok(), "no share of anything");
+    let error = almost(&[-0.5; 20], f32::INFINITY, false).0.unwrap_err();
+    assert!(error.found.ends_with("and 19 other values out of range"), "{error}");
 }
