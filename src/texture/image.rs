@@ -4,7 +4,7 @@ mod exr;
 #[cfg(test)]
 mod tests;
 
-pub use exr::check as check_exr;
+pub use exr::{Window, check as check_exr};
 
 use crate::description::{
     Library,

@@ -5,7 +5,7 @@ use crate::{
     description::suggest,
     error::{Error, Result},
     math::{Spectrum, colour::xyz_to_rgb},
-    texture::image::{check_exr, undecodable},
+    texture::image::{Window, check_exr, undecodable},
 };
 use exr::{
     image::{AnyChannels, FlatImage, FlatSamples},
@@ -42,8 +42,7 @@ fn decode(path: &Path) -> Result<FlatImage> {
 struct Layer<'a> {
     /// Empty for channels without a dot in the only part, or in one without a name.
     name: String,
-    width: usize,
-    height: usize,
+    window: Window,
     /// What follows the dot, and the values.
     channels: Vec<(String, &'a FlatSamples)>,
 }
@@ -53,7 +52,7 @@ fn layers(image: &FlatImage) -> Vec<Layer<'_>> {
     let several = image.layer_data.len() > 1;
     for part in &image.layer_data {
         let named = part.attributes.layer_name.as_ref().filter(|_| several).map(ToString::to_string);
-        let (width, height) = (part.size.width(), part.size.height());
+        let window = Window::new(&image.attributes, part);
         let AnyChannels { list } = &part.channel_data;
         for channel in list {
             let full = channel.name.to_string();
@@ -61,9 +60,9 @@ fn layers(image: &FlatImage) -> Vec<Layer<'_>> {
             let words = [named.as_deref().unwrap_or_default(), layer];
             let name = words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(".");
             let value = (suffix.to_owned(), &channel.sample_data);
-            match layers.iter_mut().find(|l| l.name == name && (l.width, l.height) == (width, height)) {
+            match layers.iter_mut().find(|layer| layer.name == name && layer.window == window) {
                 Some(layer) => layer.channels.push(value),
-                None => layers.push(Layer { name, width, height, channels: vec![value] }),
+                None => layers.push(Layer { name, window, channels: vec![value] }),
             }
         }
     }
@@ -100,7 +99,7 @@ impl Layer<'_> {
     /// The image; X, Y, Z without a layer's name are its colours in another space, in a layer they may be anything.
     fn picture(&self, order: &[usize]) -> Picture {
         let planes: Vec<Vec<f32>> =
-            order.iter().map(|index| self.channels[*index].1.values_as_f32().collect()).collect();
+            order.iter().map(|index| self.window.values(self.channels[*index].1)).collect();
         let values = |at: usize| {
             let mut values = [0.0; 3];
             values.iter_mut().zip(&planes).for_each(|(value, plane)| *value = plane[at]);
@@ -109,8 +108,9 @@ impl Layer<'_> {
         let is_colour = self.is_colour(order);
         let is_xyz = is_colour && self.channels[order[0]].0 == "X";
         let colour = |raw: Spectrum| if is_xyz { xyz_to_rgb(raw.as_dvec3()).as_vec3() } else { raw };
-        let pixels = (0..self.width * self.height).map(|at| colour(values(at))).collect();
-        Picture { width: self.width, height: self.height, pixels, channels: planes.len(), is_colour }
+        let [width, height] = self.window.size;
+        let pixels = (0..width * height).map(|at| colour(values(at))).collect();
+        Picture { width, height, pixels, channels: planes.len(), is_colour }
     }
 
     /// True if these channels are light: R G B anywhere, X Y Z and Y where no layer is named.

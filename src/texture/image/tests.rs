@@ -193,3 +193,45 @@ fn pixels_a_hair_out_of_range_are_brought_into_it_with_one_warning() {
     let (_folder, path) = grey_but_for(1.1);
     assert_eq!(read(&path, false, f32::INFINITY, &Library::default()).unwrap().pixels[0].x, 1.1);
 }
+
+/// A grey image of 3 x 2 pixels from `first` on, the number of each 1 more, whose picture is `shown`: a corner and a size.
+fn windows(path: &Path, first: [i32; 2], (corner, size): ([i32; 2], [usize; 2])) {
+    use ::exr::{
+        image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, write::WritableImage as _},
+        math::Vec2,
+        meta::{
+            attribute::IntegerBounds,
+            header::{ImageAttributes, LayerAttributes},
+        },
+    };
+    let values = FlatSamples::F32((1..=6).map(|i| i as f32).collect());
+    let channels = AnyChannels::sort([AnyChannel::new("Y", values)].into_iter().collect());
+    let attributes =
+        LayerAttributes { layer_position: Vec2(first[0], first[1]), ..LayerAttributes::default() };
+    let layer = Layer::new((3, 2), attributes, Encoding::UNCOMPRESSED, channels);
+    let shown = IntegerBounds::new(Vec2(corner[0], corner[1]), Vec2(size[0], size[1]));
+    Image::new(ImageAttributes::new(shown), layer).write().to_file(path).unwrap();
+}
+
+#[test]
+fn the_display_window_is_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("windows.exr");
+    let cases: [([i32; 2], _, &[f32]); 4] = [
+        ([0, 0], ([0, 0], [3, 2]), &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+        ([-1, -1], ([0, 0], [2, 1]), &[5.0, 6.0]),
+        ([6, 8], ([5, 8], [3, 3]), &[0.0, 1.0, 2.0, 0.0, 4.0, 5.0, 0.0, 0.0, 0.0]),
+        ([100, 0], ([0, 0], [1, 2]), &[0.0, 0.0]),
+    ];
+    for (first, shown, expected) in cases {
+        windows(&path, first, shown);
+        let image = read(&path, false, f32::INFINITY, &Library::default()).unwrap();
+        assert_eq!([image.width, image.height], shown.1);
+        assert_eq!(image.pixels, expected.iter().map(|x| Spectrum::splat(*x)).collect::<Vec<_>>());
+        let picture = crate::analysis::picture::read(&path).unwrap();
+        assert_eq!(
+            (picture.width, picture.height, picture.pixels),
+            (image.width, image.height, image.pixels)
+        );
+    }
+}
