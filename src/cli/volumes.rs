@@ -36,19 +36,20 @@ pub fn run(path: &Path, answer: &Answer) -> Result<()> {
         }
         figures.push(figures_of(label, contents.ok().as_ref()));
     }
-    let use_of = use_of(&file);
+    let use_of = use_of(&mut file);
     lines.push(format!("smoke       {}", use_of.0));
     say(&lines.join("\n"));
     answer.give(&json!({ "grids": figures, "smoke": use_of.1 }))
 }
 
 /// What the plugin `smoke` takes without being told, in words and for scripts.
-fn use_of(file: &Catalogue) -> (String, Value) {
-    let labels = &file.labels;
-    let roles = match Roles::of_file(labels, Wanted::default()) {
-        Ok(roles) => roles,
+fn use_of(file: &mut Catalogue) -> (String, Value) {
+    let roles = match Roles::of_file(&file.labels, Wanted::default()) {
+        // What cannot be read has been said.
+        Ok(roles) => file.held(roles.clone()).map_or(roles, |held| held.roles),
         Err(problem) => return (format!("nothing by itself: {}", problem.remedy), Value::Null),
     };
+    let labels = &file.labels;
     let name = |number: &usize| labels[*number].name.as_str();
     let mut parts = vec![];
     parts.extend(roles.density.iter().map(|number| format!("density from {}", quoted(name(number)))));

@@ -18,7 +18,7 @@ use crate::{
             roles::{self, Roles},
             sequence::{Clock, Sequence},
         },
-        grid::{Catalogue, Contents},
+        grid::{Catalogue, Held},
     },
 };
 use parameters::Parameters;
@@ -78,21 +78,16 @@ fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Op
     params.finish()?;
     let mut file = Catalogue::open(&given.file.path)?;
     let roles = Roles::of_file(&file.labels, given.wanted).map_err(|problem| problem.at(given.location))?;
-    let density = contents(&mut file, roles.density)?;
-    let fire = contents(&mut file, roles.temperature)?;
+    let Held { roles, density, fire, empty } = file.held(roles)?;
     let boxes = density.iter().chain(&fire).map(|contents| contents.domain);
     let Some([low, high]) = boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]) else {
         return Err(given.nothing_left());
     };
     let glow = roles.temperature.zip(fire).map(|(number, fire)| {
         let label = &file.labels[number];
-        given.glow(label, fire.range[1][0], roles::is_fire(label))
+        given.glow(label, fire.range[1][0].min(fire.greatest), roles::is_fire(label))
     });
-    let taken = Taken::new(smoke, &given, &file, &roles, glow);
+    let taken = Taken::new(smoke, &given, &file.labels, &roles, &empty, glow);
     let (object, medium) = parts::container(smoke, &given, &taken, [low, high]);
     Ok((object, medium, taken))
-}
-
-fn contents(file: &mut Catalogue, number: Option<usize>) -> Result<Option<Contents>> {
-    number.map(|number| file.contents(number)).transpose()
 }

@@ -4,13 +4,10 @@ use super::parameters::Parameters;
 use crate::{
     description::{Location, Object},
     error::Result,
-    volume::{
-        files::{
-            Label,
-            roles::{Roles, is_velocity},
-            sequence::Sequence,
-        },
-        grid::Catalogue,
+    volume::files::{
+        Label,
+        roles::{Roles, is_velocity},
+        sequence::Sequence,
     },
 };
 use std::{fmt, path::PathBuf};
@@ -52,15 +49,15 @@ pub struct Glow {
 }
 
 impl Taken {
-    /// What `roles` of `file` became the smoke that is `given`.
+    /// What of the grids called `labels` became the smoke that is `given`, by their `roles`; `empty` ones have none.
     pub fn new(
         smoke: &Object,
         given: &Parameters<'_>,
-        file: &Catalogue,
+        labels: &[Label],
         roles: &Roles,
+        empty: &[usize],
         glow: Option<Glow>,
     ) -> Self {
-        let labels = &file.labels;
         let unused = labels.iter().enumerate().filter(|(number, _)| !roles.has(*number));
         Self {
             name: smoke.id.clone().unwrap_or_else(|| smoke.plugin.clone()),
@@ -71,7 +68,7 @@ impl Taken {
             is_surface: roles.density.is_some_and(|number| labels[number].is_level_set()),
             glow,
             color: roles.color.iter().map(|number| labels[*number].name.clone()).collect(),
-            unused: unused.map(|(_, label)| described(label)).collect(),
+            unused: unused.map(|(number, label)| described(label, empty.contains(&number))).collect(),
         }
     }
 }
@@ -85,8 +82,12 @@ impl Taken {
 }
 
 /// A grid that is not used.
-fn described(label: &Label) -> String {
-    let what = if is_velocity(label) { " (a velocity)" } else { "" };
+fn described(label: &Label, is_empty: bool) -> String {
+    let what = match is_empty {
+        true => " (empty)",
+        false if is_velocity(label) => " (a velocity)",
+        false => "",
+    };
     format!("\"{}\"{what}", label.name)
 }
 

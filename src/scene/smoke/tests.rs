@@ -85,6 +85,27 @@ fn roles_are_those_of_the_tool_that_wrote_the_file() {
 }
 
 #[test]
+fn grids_that_hold_nothing_are_as_good_as_none() {
+    let smoke = taken("blender5.vdb", "");
+    let unused = r#""flame" (empty), "temperature", "color_r" (empty), "color_g" (empty), "color_b" (empty), "velocity" (a velocity)"#;
+    assert_eq!(smoke, format!(r#"density from "density"; not used: {unused}"#));
+    assert_eq!(bound(&self::smoke("blender5.vdb", ""))[1], Spectrum::splat(0.75));
+    let fire = taken("burning.vdb", "");
+    assert!(fire.starts_with("no density, light from \"flame\""), "{fire}");
+    assert!(fire.ends_with(r#"; not used: "density" (empty), "heat", "Cd""#), "{fire}");
+    // Of smoke that has not begun there is still the density.
+    let nothing = taken("burning.vdb", r#", "temperature_grid": "heat""#);
+    assert_eq!(nothing, r#"density from "density", colour from "Cd"; not used: "flame", "heat" (empty)"#);
+}
+
+#[test]
+fn a_velocity_that_is_taken_for_a_density_is_refused_and_the_density_named() {
+    let velocity = refused("blender5.vdb", r#", "density_grid": "velocity""#, "");
+    assert!(velocity.place.ends_with("blender5.vdb") && velocity.found.starts_with("-0.4"), "{velocity}");
+    assert_eq!(velocity.remedy, "choose another grid of the file: \"density\"");
+}
+
+#[test]
 fn names_and_ramps_may_be_given() {
     let of_heat =
         r#", "temperature_grid": "temperature", "temperature_scale": 900, "temperature_offset": 100"#;

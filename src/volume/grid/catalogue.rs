@@ -1,13 +1,14 @@
 //! What a grid file holds, without building a volume of it.
 
-use super::file::{Values, is_vdb};
+use super::file::{Values, is_vdb, numbers};
 use super::vol;
 use crate::{
+    description::mend::Survey,
     error::Result,
     math::{DAffine3, DVec3, Spectrum, boxes::image},
     volume::{
         Samples,
-        files::{Archive, Field, Label, Source, Sparse},
+        files::{Archive, Field, Label, Source, Sparse, Value, roles::Roles},
     },
 };
 use std::path::{Path, PathBuf};
@@ -33,8 +34,24 @@ pub struct Contents {
     pub to_world: DAffine3,
     /// The box around all that a `gridvolume` of the grid fills.
     pub domain: [DVec3; 2],
+    /// True if all values are 0.
+    pub is_nothing: bool,
+    /// The greatest finite value, at least 0.
+    pub greatest: f32,
     /// Memory that the values take when they have been read [bytes].
     pub bytes: u64,
+}
+
+/// The grids of a file that are of use, and what they hold.
+pub struct Held {
+    /// Which they are.
+    pub roles: Roles,
+    /// What the density holds.
+    pub density: Option<Contents>,
+    /// What the fire or temperature holds.
+    pub fire: Option<Contents>,
+    /// Those that are of none, for they hold nothing.
+    pub empty: Vec<usize>,
 }
 
 impl Contents {
@@ -74,6 +91,28 @@ impl Catalogue {
         self.archive.is_some()
     }
 
+    /// What of its grids has the `roles` that their names say, its values read: a grid that holds nothing but 0 is as good
+    /// as none, as long as there is smoke or fire.
+    pub fn held(&mut self, mut roles: Roles) -> Result<Held> {
+        let mut read = |number: Option<usize>| number.map(|number| self.contents(number)).transpose();
+        let (mut density, mut fire) = (read(roles.density)?, read(roles.temperature)?);
+        let is_nothing = |contents: &Option<Contents>| contents.as_ref().is_some_and(|it| it.is_nothing);
+        let mut empty = vec![];
+        if density.is_some() && is_nothing(&fire) {
+            (fire, empty) = (None, roles.temperature.take().into_iter().collect());
+        }
+        if fire.is_some() && is_nothing(&density) {
+            (density, empty) = (None, roles.density.take().into_iter().collect());
+        }
+        let colours = roles.color.iter().map(|number| read(Some(*number))).collect::<Result<Vec<_>>>()?;
+        if colours.iter().all(is_nothing) {
+            empty.append(&mut roles.color);
+        } else if density.is_none() {
+            roles.color.clear();
+        }
+        Ok(Held { roles, density, fire, empty })
+    }
+
     /// Reads grid `number`.
     pub fn contents(&mut self, number: usize) -> Result<Contents> {
         match &mut self.archive {
@@ -87,9 +126,9 @@ impl Catalogue {
 }
 
 fn of_vdb(source: &Source) -> Contents {
-    let (active, range, bytes) = match &source.samples {
-        Field::Grey(samples) => figures(samples, |value| vec![value]),
-        Field::Colour(samples) => figures(samples, |value| value.to_array().to_vec()),
+    let (active, range, bytes, survey) = match &source.samples {
+        Field::Grey(samples) => figures(samples, |value| [value]),
+        Field::Colour(samples) => figures(samples, |value| value.to_array()),
     };
     let (low, size) = (source.low, source.size());
     let last = [0, 1, 2].map(|axis| low[axis] + size[axis] as i64 - 2);
@@ -99,24 +138,35 @@ fn of_vdb(source: &Source) -> Contents {
         range,
         to_world: source.to_world,
         domain: image(&source.to_world, source.voxels()),
+        is_nothing: survey.is_nothing(),
+        greatest: survey.greatest(),
         bytes,
     }
 }
 
-fn figures<V: Copy>(samples: &Sparse<V>, numbers: impl Fn(V) -> Vec<f32>) -> (u64, [Vec<f32>; 2], u64) {
+fn figures<V: Value, const N: usize>(
+    samples: &Sparse<V>,
+    split: impl Fn(V) -> [f32; N],
+) -> (u64, [Vec<f32>; 2], u64, Survey) {
     let active = samples.active();
-    (active.count, active.range.map(numbers), samples.bytes())
+    let range = active.range.map(|value| split(value).to_vec());
+    (active.count, range, samples.bytes(), survey(samples, split))
+}
+
+fn survey<V, const N: usize>(samples: &(impl Samples<V> + ?Sized), split: impl Fn(V) -> [f32; N]) -> Survey {
+    Survey::of(|visit| numbers(samples, &split, visit), f32::INFINITY)
 }
 
 fn of_vol(source: &super::Source) -> Contents {
-    let (size, range) = match &source.values {
+    let (size, range, survey) = match &source.values {
         Values::Grey(samples) => {
             let [low, high] = range(&**samples, f32::min, f32::max);
-            (samples.size(), [vec![low], vec![high]])
+            (samples.size(), [vec![low], vec![high]], survey(samples, |value| [value]))
         }
         Values::Chromatic(samples) => {
             let ends = range(&**samples, Spectrum::min, Spectrum::max);
-            (samples.size(), ends.map(|end| end.to_array().to_vec()))
+            let survey = survey(samples, |value| value.to_array());
+            (samples.size(), ends.map(|end| end.to_array().to_vec()), survey)
         }
     };
     let active = size.iter().map(|n| *n as u64).product();
@@ -130,6 +180,8 @@ fn of_vol(source: &super::Source) -> Contents {
             * DAffine3::from_scale(voxel)
             * DAffine3::from_translation(DVec3::splat(0.5)),
         domain: image(&source.to_file, [DVec3::ZERO, DVec3::ONE]),
+        is_nothing: survey.is_nothing(),
+        greatest: survey.greatest(),
     }
 }
 

@@ -35,7 +35,7 @@ use voxel::Voxel;
 use walk::{Line, Target, Walk};
 
 pub use crate::math::Wrap;
-pub use catalogue::{Catalogue, Contents};
+pub use catalogue::{Catalogue, Contents, Held};
 pub use file::{Source, Values, to_vol};
 pub use lattice::Filter;
 

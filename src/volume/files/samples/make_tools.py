@@ -22,6 +22,12 @@ def grid(name, values, low=(0, 0, 0), half=False, fog=True):
     return made
 
 
+def zeros(name):
+    made = grid(name, puff)
+    made.mapOn(lambda value: 0.0)
+    return made
+
+
 def colours(*factors):
     return np.stack([factor * (0.5 + 0.5 * y) for factor in factors], -1)
 
@@ -43,6 +49,10 @@ files = {
     "bifrost": [grid("voxel_fog_density", puff, fog=False), grid("voxel_velocity", velocity, fog=False)],
     # A simulation of fire in kelvin; the fire reaches below the smoke.
     "kelvin": [grid("density", puff), grid("temperature", 300 + 1500 * fire, low=(0, -3, 0))],
+    # Blender 5: what a simulation does not have is there, but empty. The wind blows both ways.
+    "blender5": [grid("density", puff), grid("flame", 0 * puff), grid("temperature", 2 * fire), *[grid("color" + end, 0 * puff) for end in ["_r", "_g", "_b"]], grid("velocity", velocity - 0.5)],
+    # Smoke that has gone; all of its voxels are active, and 0.
+    "burning": [zeros("density"), grid("flame", fire), zeros("heat"), grid("Cd", colours(0.9, 0.6, 0.3))],
     # Two of one name, and one that no name tells.
     "twins": [grid("density", puff), grid("density", 2 * puff)],
     "strange": [grid("soot", puff), grid("tar", puff)],
