@@ -250,18 +250,21 @@ pub struct Render {
     #[arg(long)]
     pub components: bool,
 
-    /// Continue from the sums of an earlier render: the rest of an interrupted one, or more samples for a finished one
+    /// Continue from the sums of an earlier render: the rest of an interrupted one, or, with --sums in both commands, more
+    /// samples for a finished one
     ///
     /// The image is the same, bit for bit, as if the render had never stopped; --spp is the total. Scene, files and
-    /// options that decide about the image must be the same.
+    /// options that decide about the image must be the same. Where there are no sums yet, the render starts from the
+    /// beginning.
     #[arg(long, overrides_with = "resume", conflicts_with_all = ["batches", "frames"])]
     pub resume: bool,
 
     /// File for the sums of all samples, from which --resume continues and tyndall merge makes one image
     /// [default: the image's name and .sums, such as fog.exr.sums, once the render has taken a minute]
     ///
-    /// Written every minute (--sums-every), less often where it would take more than 1 % of the time, and at the end. The
-    /// format is safetensors.
+    /// Written every minute (--sums-every), less often where it would take more than 1 % of the time, and at the end. A
+    /// file that is named stays; the default one is removed once the image has all samples, or the error, that were asked
+    /// for. The format is safetensors.
     #[arg(long, visible_alias = "checkpoint", value_name = "FILE", conflicts_with_all = ["batches", "frames"])]
     pub sums: Option<PathBuf>,
 

@@ -2,11 +2,13 @@
 
 use super::{arguments::Render, complain, goal::Goal, interrupt, made, render::Task};
 use crate::{
-    error::{Error, Result},
+    error::Result,
     film::output,
     render::{
         Progress,
         any_sums::{AnySums, Kept, Picture},
+        budget::Budget,
+        samples::Samples,
         sums_file::{read, write},
     },
 };
@@ -90,7 +92,7 @@ pub struct Keeper<'a> {
     task: &'a Task<'a>,
     sums: Turn,
     shown: Shown<'a>,
-    /// The file is to be there at the end.
+    /// The file is to be there at the end, unless the image is then what was asked for.
     is_wanted: bool,
     /// The last sums are written, or cannot be.
     last: Option<Result<()>>,
@@ -109,7 +111,7 @@ impl<'a> Keeper<'a> {
             task,
             sums: Turn::new(arguments.sums_every.unwrap_or(PATIENCE)),
             shown: Shown::new(task, draw),
-            is_wanted: arguments.sums.is_some() || arguments.resume,
+            is_wanted: arguments.resume,
             last: None,
         }
     }
@@ -118,10 +120,12 @@ impl<'a> Keeper<'a> {
     /// rendered again, samples cannot.
     pub fn watch(&mut self, progress: &Progress, sums: &dyn Kept) {
         let Self { file, task, .. } = self;
+        let is_done = is_done(task, progress, sums);
         let mut replace = || file.as_mut().map(|file| file.replace(sums, &task.made));
         if progress.is_last {
             self.shown.watch(progress, sums);
-            self.last = if self.is_wanted || interrupt::came() { replace() } else { None };
+            let is_needed = self.task.arguments.sums.is_some() || self.is_wanted && !is_done;
+            self.last = if is_needed || interrupt::came() { replace() } else { None };
             return;
         }
         let kept = self.sums.take(replace).flatten();
@@ -130,12 +134,37 @@ impl<'a> Keeper<'a> {
         self.shown.watch(progress, sums);
     }
 
-    /// Where the sums are, if they are kept.
-    pub fn finish(self) -> Result<Option<PathBuf>> {
+    /// What is left of the sums.
+    pub fn finish(self) -> Result<Left> {
         match (self.file, self.last) {
-            (Some(file), Some(written)) => written.map(|()| Some(file.finish())),
-            _ => Ok(None),
+            (Some(file), Some(written)) => written.map(|()| Left::Kept(file.finish())),
+            (Some(file), None) if file.is_ours || file.is_resumed => Ok(Left::Spent(file)),
+            _ => Ok(Left::Nothing),
         }
+    }
+}
+
+/// What a render leaves of its sums.
+pub enum Left {
+    /// No file.
+    Nothing,
+    /// A file, from which it goes on.
+    Kept(PathBuf),
+    /// A file that nobody named, of an image that is what was asked for: of no more use once that is written.
+    Spent(SumsFile),
+}
+
+/// The samples that `task` is to take, where it is said which.
+pub fn wanted(task: &Task<'_>) -> Option<Samples> {
+    let Budget { first_sample: first, samples_per_pixel, .. } = task.settings.budget;
+    samples_per_pixel.map(|spp| Samples::from(first..first + spp))
+}
+
+/// True if no limit of time kept a render from what it was asked for.
+fn is_done(task: &Task<'_>, progress: &Progress, sums: &dyn Kept) -> bool {
+    match progress.within {
+        Some(share) => share >= 1.0,
+        None => wanted(task).is_none_or(|wanted| wanted == sums.samples()),
     }
 }
 
@@ -211,12 +240,21 @@ impl SumsFile {
         self.path
     }
 
-    /// The sums in it, or, where that is damaged or missing, in the one before it; of an image that is `made` so.
-    pub fn resume(&mut self, made: &Value) -> Result<AnySums> {
+    /// Removes it.
+    pub fn remove(self) {
+        let _ = std::fs::remove_file(self.finish());
+    }
+
+    /// The sums in it, or, where that is damaged or missing, in the one before it; of an image that is `made` so. None where
+    /// no render has begun.
+    pub fn resume(&mut self, made: &Value) -> Result<Option<AnySums>> {
         let previous = self.previous();
         if !self.path.is_file() && !previous.is_file() {
-            let remedy = "leave out --resume, or name the file of sums with --sums";
-            return Err(Error::new(self.path.display(), "the sums of an earlier render", "no file", remedy));
+            complain(&format!(
+                "note: there is no {} yet: the render starts from the beginning",
+                self.path.display()
+            ));
+            return Ok(None);
         }
         let (sums, found) = match read(&self.path) {
             Ok(whole) => {
@@ -231,6 +269,6 @@ impl SumsFile {
         };
         made::must_equal(&self.path, &found, made)?;
         self.is_resumed = true;
-        Ok(sums)
+        Ok(Some(sums))
     }
 }

@@ -5,7 +5,7 @@ use super::{
     clip::Clip,
     goal::Goal,
     interrupt,
-    keeper::{Keeper, Shown, sums_file},
+    keeper::{Keeper, Left, Shown, sums_file, wanted},
     made,
     plan::Plan,
     precision::precision,
@@ -31,7 +31,7 @@ use crate::{
 };
 use serde_json::Value;
 use std::{
-    path::{Path, PathBuf},
+    path::Path,
     sync::Mutex,
     time::{Duration, Instant},
 };
@@ -207,13 +207,15 @@ fn shoot(setup: &Setup, task: &Task<'_>, goal: &mut Goal, label: Option<&str>) -
     }
     let (image, written) = match task.arguments.batches {
         None => watched(setup, task, goal, label)?,
-        Some(count) => (batches(setup, task, goal, count, label)?, Ok(None)),
+        Some(count) => (batches(setup, task, goal, count, label)?, nothing()),
     };
     let samples = image.samples();
     let figures = deliver(setup, task, goal, image, None, label)?;
     // The image is not lost where the sums are.
-    if let Some((file, kept)) = written? {
-        print_kept(&file, &kept, samples, task);
+    match written? {
+        (Left::Kept(file), kept) => print_kept(&file, &kept, samples, task),
+        (Left::Spent(file), _) => file.remove(),
+        (Left::Nothing, _) => {}
     }
     Ok(figures)
 }
@@ -265,8 +267,13 @@ fn few_pixels(
     done
 }
 
-/// A file of sums, and the samples in it.
-type Written = Result<Option<(PathBuf, Samples)>>;
+/// What is left of the sums, and the samples in them.
+type Written = Result<(Left, Samples)>;
+
+/// Of a render that has none.
+fn nothing() -> Written {
+    Ok((Left::Nothing, Samples::default()))
+}
 
 /// Renders one image under a progress bar; where what there is was kept.
 fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<(Image, Written)> {
@@ -275,7 +282,7 @@ fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> 
     let (layers, settings) = (&integrator.layers, &task.settings);
     let done = if settings.options.strategies == Strategies::NONE {
         let show = &mut |progress| bar.show(&progress);
-        (render::preview(scene, film, settings, &integrator.fog, layers, show), Ok(None))
+        (render::preview(scene, film, settings, &integrator.fog, layers, show), nothing())
     } else {
         keeping(setup, task, goal, &bar)?
     };
@@ -290,8 +297,9 @@ fn keeping(setup: &Setup, task: &Task<'_>, goal: &Goal, bar: &Bar) -> Result<(Im
     let mut file = sums_file(arguments, goal);
     let mut sums = match &mut file {
         Some(file) if arguments.resume => file.resume(&task.made)?,
-        _ => AnySums::new(film, layers, task.precision),
-    };
+        _ => None,
+    }
+    .unwrap_or_else(|| AnySums::new(film, layers, task.precision));
     let draw = |picture: &dyn Picture| goal.draw(film, picture, &task.made);
     let mut keeper = Keeper::new(file, task, &draw);
     let image = render::go_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
@@ -299,7 +307,7 @@ fn keeping(setup: &Setup, task: &Task<'_>, goal: &Goal, bar: &Bar) -> Result<(Im
         keeper.watch(&progress, sums);
     });
     let kept = keeper.finish();
-    Ok((image, kept.map(|path| path.map(|path| (path, sums.kept().samples())))))
+    Ok((image, kept.map(|left| (left, sums.kept().samples()))))
 }
 
 fn print_kept(file: &Path, samples: &Samples, taken: f64, task: &Task<'_>) {
@@ -313,11 +321,9 @@ fn print_kept(file: &Path, samples: &Samples, taken: f64, task: &Task<'_>) {
     if task.precision.is_some() {
         return;
     }
-    let wanted = task.settings.budget.samples_per_pixel.map(|spp| {
-        let first = task.settings.budget.first_sample;
-        Samples::from(first..first + spp)
-    });
-    if let Some(wanted) = wanted.filter(|wanted| wanted != samples && task.arguments.time_limit.is_none()) {
+    if let Some(wanted) =
+        wanted(task).filter(|wanted| wanted != samples && task.arguments.time_limit.is_none())
+    {
         super::complain(&format!(
             "warning: {file} has other samples than {wanted}: the image is of {samples}"
         ));

@@ -202,7 +202,28 @@ fn what_a_signal_ends_goes_on() {
         good(render(&sandbox, &format!("--spp {} --resume -o fog.exr", done + 2)));
         good(render(&sandbox, &format!("--spp {} -o all.exr", done + 2)));
         assert_same(&sandbox, "fog.exr", "all.exr");
+        assert!(!sandbox.path("fog.exr.sums").exists());
     }
+}
+
+/// Scripts repeat one command until it is done: it starts from nothing, goes on, and leaves nothing but the image.
+#[cfg(target_os = "linux")]
+#[test]
+fn one_command_begins_goes_on_and_cleans_up() {
+    let sandbox = foggy();
+    let words = |limit: &str| format!("--spp 40 {limit} --sums-every 0.05s --resume -o fog.exr");
+    let first = good(render(&sandbox, &words("--time-limit 0.01s"))).err();
+    assert!(first.contains("no ") && first.contains("from the beginning"), "{first}");
+    assert!(sandbox.path("fog.exr.sums").exists(), "a limit of time ended it");
+    let last = good(render(&sandbox, &words(""))).err();
+    assert!(!last.contains("from the beginning") && !last.contains("warning"), "{last}");
+    assert_eq!(sandbox.files(), ["fog.exr", "fog.json", "fog.png"]);
+    good(render(&sandbox, "--spp 40 -o all.exr"));
+    assert_same(&sandbox, "fog.exr", "all.exr");
+    good(render(&sandbox, "--spp 2 --resume --sums fog.sums -o fog.exr"));
+    let more = good(render(&sandbox, "--spp 40 --resume --sums fog.sums -o fog.exr")).err();
+    assert!(!more.contains("from the beginning") && sandbox.path("fog.sums").exists(), "{more}");
+    assert_same(&sandbox, "fog.exr", "all.exr");
 }
 
 /// The same to a precision: it says so, and goes on.
@@ -517,7 +538,6 @@ fn what_cannot_be_kept_is_refused() {
         ("--samples 0..4 --sums a.sums --preview", &["--preview", "-o"]),
         ("--preview -o /dev/stdout", &["--preview", "device"]),
         ("--sums /dev/null", &["/dev/null", "plain file"]),
-        ("--resume", &["fog.exr.sums", "leave out --resume"]),
         ("--samples 4..4 --sums a.sums", &["0..64"]),
     ] {
         refused(render(&sandbox, words), hints);
