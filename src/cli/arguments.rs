@@ -382,7 +382,7 @@ pub struct Completions {
 /// Explain what scenes can hold.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Explain {
-    /// Plugin (spot), kind of plugins (emitter) or parameter (cutoff_angle) [default: list all plugins]
+    /// Plugin (spot), kind of plugins (emitter), parameter (cutoff_angle) or keyframes [default: list all plugins]
     #[arg(value_name = "PLUGIN")]
     pub topic: Option<String>,
 

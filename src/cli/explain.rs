@@ -30,11 +30,16 @@ const KINDS: [(&str, &str); 13] = [
     ("phase", "Phase functions"),
 ];
 
+/// What is no plugin and may stand in place of values.
+const KEYFRAMES: &str = "keyframes";
+
 /// Prints what was asked for.
 pub fn run(arguments: &arguments::Explain) -> Result<()> {
     let text = match &arguments.topic {
         _ if arguments.schema => format!("{:#}", schema::of_scenes()),
-        None => KINDS.map(|(tag, _)| text::kind(tag)).join("\n"),
+        None => {
+            format!("{}\n{KEYFRAMES}: {}", KINDS.map(|(tag, _)| text::kind(tag)).join("\n"), text::KEYFRAMES)
+        }
         Some(topic) => explained(topic)?,
     };
     voice::print(text.trim_end());
@@ -49,6 +54,9 @@ pub fn listing(tag: &str) -> String {
 /// A plugin, a kind of plugins, or a parameter; several where they share the name.
 fn explained(topic: &str) -> Result<String> {
     let mut texts: Vec<String> = Vec::new();
+    if topic == KEYFRAMES {
+        texts.push(format!("{KEYFRAMES}: {}\n{}", text::KEYFRAMES, text::KEYFRAMES_WRITTEN));
+    }
     for (tag, plugin, table) in everything() {
         if plugin == topic {
             texts.push(text::plugin(tag, plugin, table));
@@ -64,7 +72,7 @@ fn explained(topic: &str) -> Result<String> {
 }
 
 fn unknown(topic: &str) -> Error {
-    let mut known: Vec<&str> = KINDS.iter().map(|(tag, _)| *tag).collect();
+    let mut known: Vec<&str> = KINDS.iter().map(|(tag, _)| *tag).chain([KEYFRAMES]).collect();
     for (_, plugin, table) in everything() {
         known.push(plugin);
         known.extend(table.rows().map(|row| row.name));

@@ -113,8 +113,8 @@ const COMMON: &[Parameter] = rows! {
     nested("film", Optional, "The image: an `hdrfilm` as it is where not given."),
     nested("sampler", Optional, "How many samples a pixel takes."),
     nested("medium", Optional, "The medium that the camera is in; found where not given."),
-    ignored("shutter_open", "nothing moves"),
-    ignored("shutter_close", "nothing moves"),
+    ignored("shutter_open", "no motion blur"),
+    ignored("shutter_close", "no motion blur"),
 };
 
 /// The sensor's position in the file's coordinates.

@@ -18,8 +18,10 @@ fn plugins_kinds_and_parameters_are_explained() {
         ("explain gaussian", &["gaussian (rfilter)", "gaussian* (phase)"]),
         ("explain emitter", &["spot ", "envmap "]),
         ("explain cutoff_angle", &["spot (emitter)"]),
-        ("explain", &["heterogeneous", "hdrfilm", "wave", "Phase functions"]),
-    ] as [(&str, &[&str]); 5]
+        ("explain shutter_open", &["perspective (sensor)", "accepted, without effect: no motion blur"]),
+        ("explain keyframes", &["\"type\": \"keyframes\"", "<keyframes name=", "smooth", "--frames 0..47"]),
+        ("explain", &["heterogeneous", "hdrfilm", "wave", "Phase functions", "keyframes: "]),
+    ] as [(&str, &[&str]); 7]
     {
         let text = sandbox.run(words).ends(0).out();
         for hint in hints {
@@ -40,6 +42,7 @@ fn the_schema_is_json() {
 fn mistakes_are_explained() {
     let sandbox = Sandbox::new();
     sandbox.run("explain hetrogeneous").refuses(&["did you mean \"heterogeneous\"?"]);
+    sandbox.run("explain keyframe").refuses(&["did you mean \"keyframes\"?"]);
     sandbox.run("explain cutof_angle").refuses(&["did you mean \"cutoff_angle\"?"]);
     sandbox.run("explain spot --schema").refuses(&["cannot be used with"]);
 }

@@ -68,6 +68,13 @@ fn a_translucent_pane_gives_back_what_it_should() {
         let found = albedo(&narrow, warp::spherical(cosine, 0.4)).x;
         assert!((least..0.802).contains(&found), "{cosine}: {found}");
     }
+    // Of light from everywhere, what the table says.
+    for (n, lost) in [(0.0, 0.33), (20.0, 0.12), (3_000.0, 0.01)] {
+        let lobe = pane(&[("directional", number(1.0)), ("exponent", number(n))]);
+        let at = |i: usize| albedo(&lobe, warp::spherical(((i as f32 + 0.5) / 16.0).sqrt(), 0.4)).x;
+        let kept = (0..16).map(at).sum::<f64>() / 16.0 / 0.8;
+        assert!((1.0 - kept - lost).abs() < 0.006, "{n}: {kept}");
+    }
     let clear = pane(&[("directional", number(0.75))]);
     assert!(close(clear.null_transmission(UV, 0.3).x, 0.6, 1e-6));
     incoming().into_iter().for_each(|wi| checked(&clear, wi, 0.2, 1e-3));

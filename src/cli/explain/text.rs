@@ -6,6 +6,25 @@ use crate::description::{
     parameter::{Default, Kind, Parameter, plain},
 };
 
+/// What keyframes are.
+pub const KEYFRAMES: &str = "In place of any value of numbers: what it is at some times [s]. Not in Mitsuba.";
+
+/// How they are written, and what they mean.
+pub const KEYFRAMES_WRITTEN: &str = r#"
+JSON: "radiance": { "type": "keyframes", "value": [[0, 1], [2.5, 3]], "interpolation": "smooth" }
+XML:  <keyframes name="radiance"> <float time="0" value="1"/> <float time="2.5" value="3"/> </keyframes>
+
+  value          pairs of a time and the value then: numbers, vectors, colours, transforms, or
+                 strings of numbers. All have the same form, and transforms the same steps
+  interpolation  linear, smooth; default linear. Smooth eases in and out, and stays between the keys
+
+Before the first key and after the last one, theirs hold. Steps of a transform change in their own
+numbers: a rotation by 0 and then by 720 degrees turns twice. Names of files, counts, "true" and
+"false" stay as they are.
+
+"tyndall render SCENE --frames 0..47 --fps 24" renders what is between 0 and 2 s.
+"#;
+
 /// One line a plugin.
 pub fn kind(tag: &str) -> String {
     let heading = KINDS.iter().find(|(known, _)| *known == tag).map_or(tag, |(_, heading)| heading);
@@ -45,8 +64,12 @@ pub fn plugin(tag: &str, name: &str, table: &'static Table) -> String {
 /// All plugins that have a parameter, if any has.
 pub fn parameter(name: &str) -> Option<String> {
     let holders = everything().filter_map(|(tag, plugin, table)| {
-        let row = table.find(name).filter(|row| !row.is_ignored())?;
-        Some((format!("{plugin} ({tag})"), format!("{}; {}. {}", allowed(row), default(row), row.about)))
+        let row = table.find(name)?;
+        let text = match row.is_ignored() {
+            true => format!("accepted, without effect: {}", row.about),
+            false => format!("{}; {}. {}", allowed(row), default(row), row.about),
+        };
+        Some((format!("{plugin} ({tag})"), text))
     });
     let holders: Vec<_> = holders.collect();
     (!holders.is_empty()).then(|| format!("{name}, a parameter of\n{}", columns(holders)))
