@@ -50,6 +50,19 @@ impl Patch {
         if let Self::Flat(polygon) = self { Some(polygon.normal) } else { None }
     }
 
+    /// What the rounding of a point of it is in proportion to, along the normal [m]: nothing for a rectangle along the axes.
+    pub fn skew(&self) -> f64 {
+        match self {
+            Self::Flat(Polygon { corners, normal }) => {
+                let [along_u, along_v] =
+                    [corners[1], corners[corners.len() - 1]].map(|corner| corner - corners[0]);
+                normal.abs().dot(along_u.abs() + along_v.abs())
+            }
+            Self::Ball { center, radius } => center.length() + radius,
+            Self::Tube { ends: [a, b], radius } => a.length().max(b.length()) + radius,
+        }
+    }
+
     /// A point of it and the normal there.
     pub fn sample(&self) -> (DVec3, DVec3) {
         match self {

@@ -12,7 +12,7 @@
 mod pairs;
 
 use crate::{
-    math::{DVec3, Vec3, offset::gamma},
+    math::{Vec3, offset::gamma},
     sampling::{Stream, stream::Purpose},
     shape::{Hit, Patch, Ray, Shape, ShapeModel as _},
 };
@@ -87,7 +87,7 @@ impl Apart {
         for _ in 0..ROUNDS {
             let moves: Vec<Move> = {
                 let faces = Faces::new(shapes, natures);
-                let found = pairs(shapes, &faces.bounds, &|pair| faces.reach(pair));
+                let found = pairs(shapes, &faces.bounds, &|pair| faces.closeness(pair));
                 found.iter().filter_map(|pair| faces.order(pair)).collect()
             };
             if moves.is_empty() {
@@ -156,14 +156,12 @@ impl<'a> Faces<'a> {
         })
     }
 
-    /// Per axis, how near faces of two shapes may come before rays step over one of them, or meet them in the wrong order
-    /// [m]. Of faces that scatter, what is behind one must not be taken for what is before it either: ends of connections
-    /// keep clear of a surface by half of this where the other end is three times as far away as these shapes.
-    fn reach(&self, shapes: [u32; 2]) -> DVec3 {
+    /// In proportion to coordinates, how near faces of two shapes may come before rays step over one of them, or meet them in
+    /// the wrong order. Of faces that scatter, what is behind one must not be taken for what is before it either: ends of
+    /// connections keep clear of a surface by half of this where the other end is three times as far away as these shapes.
+    fn closeness(&self, shapes: [u32; 2]) -> f64 {
         let is_null = shapes.iter().any(|shape| self.natures[*shape as usize].rank == Rank::Null);
-        let roundings = if is_null { gamma(48) } else { gamma(128) };
-        let [a, b] = shapes.map(|shape| pairs::far(&self.bounds[shape as usize]));
-        a.max(b) * f64::from(roundings)
+        f64::from(if is_null { gamma(16) } else { gamma(128) })
     }
 
     /// What has to move so that a pair is in order; nothing where it is, or where it makes no difference.
@@ -283,7 +281,8 @@ impl<'a> Faces<'a> {
     /// True if the box of shape `a` lies within that of `b`, up to rounding.
     fn is_within(&self, a: u32, b: u32) -> bool {
         let [(low, high), (l, h)] = [a, b].map(|shape| self.bounds[shape as usize]);
-        let slack = (self.reach([a, b]) * 4.0).as_vec3();
+        let far = pairs::far(&self.bounds[a as usize]).max(pairs::far(&self.bounds[b as usize]));
+        let slack = (far * f64::from(gamma(512))).as_vec3();
         low.cmpge(l - slack).all() && high.cmple(h + slack).all()
     }
 

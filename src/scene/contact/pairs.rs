@@ -1,7 +1,7 @@
 //! Which faces touch: shapes whose boxes meet, and of these the primitives in what the boxes have in common.
 
 use crate::{
-    math::{DVec3, Vec3},
+    math::{DVec3, Vec3, offset::gamma},
     shape::{Patch, Shape, ShapeModel as _},
 };
 use obvhs::{
@@ -11,8 +11,10 @@ use obvhs::{
 };
 use std::time::Duration;
 
-/// The most that `reach` is of coordinates: beyond it boxes are not compared.
-const MOST_REACH: f64 = 1e-4;
+/// The most that faces may be apart to count as touching, over coordinates: shapes that are farther apart are not compared.
+const MOST: f64 = 3e-5;
+/// How near faces may come, over their [`Patch::skew`].
+const SKEW: f64 = gamma(48) as f64;
 
 /// Two faces in one place.
 pub struct Pair {
@@ -23,10 +25,43 @@ pub struct Pair {
     pub reach: f64,
 }
 
+/// Two shapes whose boxes meet.
+struct Near<'a> {
+    shapes: [&'a Shape; 2],
+    /// What their boxes have in common.
+    common: Aabb,
+    /// By how much boxes are widened [m].
+    slack: Vec3,
+    /// How near faces may come, per axis [m].
+    reach: DVec3,
+    /// The size of the smaller shape [m].
+    smaller: f64,
+}
+
 /// A primitive with the box around it.
 struct Boxed {
     primitive: usize,
     bounds: Aabb,
+}
+
+/// All pairs of faces of different shapes, in their `bounds`, that are nearer than they may be: `closeness` is that of two
+/// shapes over their coordinates.
+pub fn pairs(shapes: &[Shape], bounds: &[(Vec3, Vec3)], closeness: &dyn Fn([u32; 2]) -> f64) -> Vec<Pair> {
+    let mut order: Vec<u32> = (0..shapes.len() as u32).collect();
+    order.sort_by(|a, b| bounds[*a as usize].0.x.total_cmp(&bounds[*b as usize].0.x));
+    let farthest = bounds.iter().map(far).fold(DVec3::ZERO, DVec3::max).x * MOST;
+    let mut found = Vec::new();
+    for (index, &a) in order.iter().enumerate() {
+        let end = f64::from(bounds[a as usize].1.x) + farthest;
+        let meets = |b: &&u32| f64::from(bounds[**b as usize].0.x) <= end;
+        for &b in order[index + 1..].iter().take_while(meets) {
+            let pair = [a.min(b), a.max(b)];
+            if let Some(near) = Near::of(shapes, bounds, pair, closeness) {
+                near.add_touching(pair, &mut found);
+            }
+        }
+    }
+    found
 }
 
 /// The largest coordinate per axis.
@@ -34,45 +69,60 @@ pub fn far((low, high): &(Vec3, Vec3)) -> DVec3 {
     low.abs().max(high.abs()).as_dvec3()
 }
 
-/// All pairs of faces of different shapes, in their `bounds`, that are nearer than they may be: by `reach` per axis [m], no more
-/// than `MOST_REACH` of their coordinates.
-pub fn pairs(shapes: &[Shape], bounds: &[(Vec3, Vec3)], reach: &dyn Fn([u32; 2]) -> DVec3) -> Vec<Pair> {
-    let mut order: Vec<u32> = (0..shapes.len() as u32).collect();
-    order.sort_by(|a, b| bounds[*a as usize].0.x.total_cmp(&bounds[*b as usize].0.x));
-    let farthest = bounds.iter().map(far).fold(DVec3::ZERO, DVec3::max).x * MOST_REACH;
-    let mut found = Vec::new();
-    for (index, &a) in order.iter().enumerate() {
-        let (low, high) = bounds[a as usize];
-        for &b in &order[index + 1..] {
-            let (l, h) = bounds[b as usize];
-            if f64::from(l.x) > f64::from(high.x) + farthest {
-                break;
-            }
-            let pair = [a.min(b), a.max(b)];
-            let reach = reach(pair);
-            let slack = reach.as_vec3();
-            let common = (low.max(l) - slack, high.min(h) + slack);
-            if common.0.cmple(common.1).all() {
-                touching(shapes, pair, Aabb::new(common.0.into(), common.1.into()), reach, &mut found);
-            }
+impl<'a> Near<'a> {
+    fn of(
+        shapes: &'a [Shape],
+        bounds: &[(Vec3, Vec3)],
+        pair: [u32; 2],
+        closeness: &dyn Fn([u32; 2]) -> f64,
+    ) -> Option<Self> {
+        let [a, b] = pair.map(|shape| bounds[shape as usize]);
+        let far = far(&a).max(far(&b));
+        let slack = (far * MOST).as_vec3();
+        let (low, high) = (a.0.max(b.0) - slack, a.1.min(b.1) + slack);
+        if low.cmpgt(high).any() {
+            return None;
         }
+        let size = |(low, high): (Vec3, Vec3)| f64::from((high - low).length());
+        Some(Self {
+            shapes: pair.map(|shape| &shapes[shape as usize]),
+            common: Aabb::new(low.into(), high.into()),
+            slack,
+            reach: far * closeness(pair),
+            smaller: size(a).min(size(b)),
+        })
     }
-    found
-}
 
-/// Adds the faces of two shapes that touch within a box.
-fn touching(shapes: &[Shape], pair: [u32; 2], common: Aabb, reach: DVec3, found: &mut Vec<Pair>) {
-    let [one, other] = pair.map(|shape| &shapes[shape as usize]);
-    let [a, b] = [one, other].map(|shape| within(shape, &common, reach.as_vec3()));
-    let size = |shape: &Shape| f64::from((shape.bounds().1 - shape.bounds().0).length());
-    let smaller = size(one).min(size(other));
-    each_meeting(&a, &b, |a, b| {
-        let patches = [Patch::of(&one.primitive(a)), Patch::of(&other.primitive(b))];
-        let reach = along_normal(&patches[0], reach, smaller);
-        if patches[0].height_of(&patches[1], reach).is_some() {
-            found.push(Pair { shapes: pair, primitives: [a, b], patches, reach });
-        }
-    });
+    /// Adds the faces that touch to those `found`; the shapes are those of `pair`.
+    fn add_touching(&self, pair: [u32; 2], found: &mut Vec<Pair>) {
+        let [one, other] = self.shapes;
+        each_meeting(&self.within(one), &self.within(other), |a, b| {
+            let patches = [Patch::of(&one.primitive(a)), Patch::of(&other.primitive(b))];
+            let reach = self.along_normal(&patches);
+            if patches[0].height_of(&patches[1], reach).is_some() {
+                found.push(Pair { shapes: pair, primitives: [a, b], patches, reach });
+            }
+        });
+    }
+
+    /// The primitives of a shape that reach into the common box.
+    fn within(&self, shape: &Shape) -> Vec<Boxed> {
+        let boxed = |primitive: usize| {
+            let (low, high) = shape.primitive(primitive).bounds();
+            Boxed { primitive, bounds: Aabb::new((low - self.slack).into(), (high + self.slack).into()) }
+        };
+        let all = (0..shape.primitive_count()).map(boxed);
+        all.filter(|boxed| boxed.bounds.intersect_aabb(&self.common)).collect()
+    }
+
+    /// How near two patches may come along their normal [m]; round ones have all normals. No more than a thousandth of the
+    /// smaller shape, so that nothing thin is turned inside out, but more than rounding.
+    fn along_normal(&self, [one, other]: &[Patch; 2]) -> f64 {
+        let along =
+            one.plane_normal().map_or(self.reach.max_element(), |normal| normal.abs().dot(self.reach));
+        let along = along + SKEW * one.skew().max(other.skew());
+        along.min((1e-3 * self.smaller).max(0.2 * along))
+    }
 }
 
 /// Calls `test` with every two primitives whose boxes meet.
@@ -100,20 +150,4 @@ fn each_meeting(a: &[Boxed], b: &[Boxed], mut test: impl FnMut(usize, usize)) {
 fn tree(boxed: &[Boxed]) -> Bvh2 {
     let boxes: Vec<Aabb> = boxed.iter().map(|boxed| boxed.bounds).collect();
     build_bvh2(&boxes, BvhBuildParams::fast_build(), &mut Duration::default())
-}
-
-/// The primitives of a shape that reach into a box.
-fn within(shape: &Shape, common: &Aabb, slack: Vec3) -> Vec<Boxed> {
-    let boxed = |primitive: usize| {
-        let (low, high) = shape.primitive(primitive).bounds();
-        Boxed { primitive, bounds: Aabb::new((low - slack).into(), (high + slack).into()) }
-    };
-    (0..shape.primitive_count()).map(boxed).filter(|boxed| boxed.bounds.intersect_aabb(common)).collect()
-}
-
-/// What reaches so far per axis, along the normal of a patch; round ones have all normals. No more than a thousandth of the
-/// `smaller` shape, so that nothing thin is turned inside out, but more than rounding.
-fn along_normal(patch: &Patch, reach: DVec3, smaller: f64) -> f64 {
-    let along = patch.plane_normal().map_or(reach.max_element(), |normal| normal.abs().dot(reach));
-    along.min((1e-3 * smaller).max(0.2 * along))
 }
