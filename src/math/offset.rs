@@ -29,6 +29,10 @@ pub const RESOLVED_ANGLE: f32 = 1e-3;
 /// their products with others must stay below the largest number of f32.
 pub const LEAST_MEAN_FREE_PATH: f32 = 5e-11;
 
+/// Least mean free path [m] that has a use: what a medium gains over a shorter one, and transmittances over parts of it, leave
+/// the normal numbers of f32.
+pub const SHORTEST_MEAN_FREE_PATH: f32 = 1e-30;
+
 /// Least sigma_t over the squared size of a scene [1/m^3]: a density of that size times a transmittance of 1e-5 is the
 /// smallest normal number of f32.
 pub const LEAST_VOLUME_DENSITY: f64 = 1e-33;

@@ -7,7 +7,9 @@ use crate::{
     error::{Error, Result},
     math::{
         Vec3,
-        offset::{LEAST_MEAN_FREE_PATH, LEAST_VOLUME_DENSITY, RESOLVED_STEPS, ROUNDOFF},
+        offset::{
+            LEAST_MEAN_FREE_PATH, LEAST_VOLUME_DENSITY, RESOLVED_STEPS, ROUNDOFF, SHORTEST_MEAN_FREE_PATH,
+        },
     },
     medium::{DistanceMethod, Heterogeneous, Medium, MediumIndex},
 };
@@ -53,6 +55,14 @@ fn check_mean_free_path(
     location: &Location,
     library: &Library,
 ) -> Result<()> {
+    if free_path < SHORTEST_MEAN_FREE_PATH {
+        return Err(Error::new(
+            location,
+            format!("sigma_t of at most {:.0e} per metre (single precision)", 1.0 / SHORTEST_MEAN_FREE_PATH),
+            format!("{:.1e} per metre", 1.0 / free_path),
+            "lower sigma_t or scale; an opaque surface shows what so dense a medium would",
+        ));
+    }
     let step = 2.0 * ROUNDOFF;
     let tracker = medium.heterogeneous().map(|varying: &Heterogeneous| varying.tracker().choice());
     let by_collisions = [DistanceMethod::RatioTracking, DistanceMethod::ResidualRatioTracking];
@@ -71,10 +81,12 @@ fn check_mean_free_path(
     }
     let resolved = free_path / (RESOLVED_STEPS * step);
     if farthest > resolved || free_path < LEAST_MEAN_FREE_PATH {
+        // What starts behind the boundary loses the light that is scattered before it, and keeps what is not absorbed there.
+        let wrong = if medium.emission.is_some() { "wrong, most likely too bright," } else { "too dark" };
         let text = format!(
             "expected a mean free path of at least {:.1e} m, found {free_path:.1e} m (1 over the largest sigma_t), in a \
              medium that reaches {farthest:.2e} m from the camera: positions are rounded to {:.1e} m there, and its \
-             boundaries will be too dark beyond {resolved:.1e} m. Lower sigma_t, or bring the medium closer",
+             boundaries will be {wrong} beyond {resolved:.1e} m. Lower sigma_t, or bring the medium closer",
             (RESOLVED_STEPS * step * farthest).max(LEAST_MEAN_FREE_PATH),
             step * farthest,
         );
