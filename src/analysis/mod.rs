@@ -66,6 +66,7 @@
 
 pub mod chi_square;
 pub mod coverage;
+pub mod darkness;
 pub mod diff;
 pub mod flights;
 pub mod guide;

@@ -36,7 +36,7 @@ pub struct Arguments {
     ///
     /// json: a line for each update, ten a second at most and one at the end, such as
     /// {"done": 0.25, "samples_per_pixel": 16, "noise": 0.031, "within": null, "seconds": 2.1, "image": null}: the part of the way to
-    /// the nearest limit (0 to 1), the relative error of the image so far, or null where it is not known yet, the share of
+    /// the nearest limit (0 to 1), the relative error of the image so far (root of relMSE), or null where it is not known yet, the share of
     /// the pixels within --error, the time since the render began, and which frame or batch it is. study says what it is
     /// doing ("doing") in place of samples and noise; strategies has "done" alone. With --quiet, other lines are warnings and errors.
     /// A render whose standard error is closed meanwhile ends as on Ctrl-C.

@@ -120,7 +120,7 @@ pub fn metadata(made: &Value, image: &Image) -> String {
     let mut all = made.clone();
     all["samples_per_pixel"] = image.samples().into();
     all["render_seconds"] = image.elapsed.as_secs_f64().into();
-    all["relative_error"] = image.noise.into();
+    all["relative_error"] = image.noise.map(|noise| noise.error).into();
     all["machine"] = machine().into();
     ascii(&all)
 }

@@ -37,7 +37,7 @@ fn of_sums(path: &Path) -> Result<Value> {
     let image = sums.kept().image();
     made["samples"] = sums.kept().samples().to_string().into();
     made["render_seconds"] = image.elapsed.as_secs_f64().into();
-    made["relative_error"] = image.noise.into();
+    made["relative_error"] = image.noise.map(|noise| noise.error).into();
     if let Some(reached) = image.reached {
         made["pixels_within_error"] = reached.share.into();
     }

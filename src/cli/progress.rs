@@ -1,7 +1,10 @@
 //! The progress bar of a render.
 
 use super::voice;
-use crate::render::{Progress, Settings, adaptive::Precision};
+use crate::{
+    film::noise::Noise,
+    render::{Progress, Settings, adaptive::Precision},
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
@@ -36,7 +39,7 @@ impl Bar {
                 let share = 100.0 * progress.within.unwrap_or(0.0);
                 format!("{share:.1} % of the pixels within {}", percent(error))
             }
-            (None, Some(noise)) => format!("noise {}", percent(noise)),
+            (None, Some(noise)) => noise_text(noise),
             (None, None) => "noise not known yet".to_owned(),
         };
         self.tell(progress, &state);
@@ -59,7 +62,7 @@ impl Bar {
         json!({
             "done": self.done(progress),
             "samples_per_pixel": progress.passes,
-            "noise": progress.noise,
+            "noise": progress.noise.map(|noise| noise.error),
             "within": progress.within,
             "seconds": progress.elapsed.as_secs_f64(),
             "image": self.label,
@@ -90,6 +93,20 @@ pub fn samples_text(samples: f64) -> String {
         _ => format!("{samples:.2}"),
     }
 }
+
+/// The noise of an image, and how far to trust it where that is not far.
+pub fn noise_text(noise: Noise) -> String {
+    let error = percent(noise.error);
+    match noise.uncertainty() {
+        fine if fine < WELL_KNOWN => format!("noise {error}"),
+        fair if fair < HARDLY_KNOWN => format!("noise {error} \u{b1} {}", percent(fair * noise.error)),
+        _ => format!("noise {error} (few bright samples carry it: it may be twice as high)"),
+    }
+}
+
+/// Uncertainties of the noise, relative to it, below which it is said without one, and above which with a warning.
+const WELL_KNOWN: f64 = 0.1;
+const HARDLY_KNOWN: f64 = 0.25;
 
 /// A relative error, in percent with two digits.
 pub fn percent(relative: f64) -> String {

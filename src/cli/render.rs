@@ -9,13 +9,15 @@ use super::{
     made,
     plan::Plan,
     precision::precision,
-    progress::{Bar, percent, samples_text},
+    progress::{Bar, noise_text, percent, samples_text},
     progressive, threads,
     viewer::Viewer,
 };
 use crate::{
+    analysis::darkness,
     error::{Error, Result},
     film::output,
+    math::Spectrum,
     render::{
         self, Image, Settings,
         adaptive::Precision,
@@ -235,6 +237,7 @@ fn deliver(
         let exposure = goal.expose(&image.pixels).unwrap_or_default();
         goal.write(&setup.film, &mut image, &task.made)?;
         print_summary(&image, task, goal, &exposure, shaded, label);
+        explain_darkness(&image, setup, task);
         figures["exposure"] = goal.display.of(&image.pixels).stops.into();
         figures["image"] = goal.path.display().to_string().into();
     }
@@ -359,6 +362,15 @@ fn batches(setup: &Setup, task: &Task<'_>, goal: &Goal, count: u32, label: Optio
     })
 }
 
+/// Says why an image is black, or next to it.
+fn explain_darkness(image: &Image, setup: &Setup, task: &Task<'_>) {
+    let options = &task.settings.options;
+    let is_preview = options.strategies == Strategies::NONE;
+    if !is_preview && let Some(reason) = darkness::reason(&image.pixels, setup, options) {
+        super::complain(&format!("warning: {reason}"));
+    }
+}
+
 /// What went wrong inside, as a warning.
 fn report_faults(image: &Image, setup: &Setup) {
     let Faults { count, first } = &image.faults;
@@ -377,7 +389,8 @@ fn figures(image: &Image, task: &Task<'_>) -> Value {
     let mut figures = serde_json::json!({
         "samples_per_pixel": image.samples_per_pixel,
         "render_seconds": image.elapsed.as_secs_f64(),
-        "relative_error": image.noise,
+        "relative_error": image.noise.map(|noise| noise.error),
+        "relative_error_uncertainty": image.noise.map(|noise| noise.error * noise.uncertainty()),
         "profile": task.settings.profile.name(),
         "faults": image.faults.count,
     });
@@ -439,7 +452,11 @@ fn print_summary(
     shaded: Option<&str>,
     label: Option<&str>,
 ) {
-    let noise = image.noise.map_or(String::new(), |noise| format!(", noise {}", percent(noise)));
+    let noise = match image.noise {
+        Some(noise) => format!(", {}", noise_text(noise)),
+        None if image.pixels.iter().all(|pixel| *pixel == Spectrum::ZERO) => ", no light was seen".to_owned(),
+        None => String::new(),
+    };
     let noise = match (&image.reached, task.precision) {
         (Some(reached), Some(Precision { error, .. })) => {
             let share = 100.0 * reached.share;

@@ -4,10 +4,10 @@
 //! How far the mean may be off is what its halves say, the passes of even and those of odd number: these are independent of
 //! each other whatever the sampler, while passes of one half may be spread evenly together.
 
+use super::noise::Noise;
 use crate::math::{
     Spectrum, SpectrumExt, Vec3, axes,
     exact_sums::{ExactSums, MOST_TERMS, Parts},
-    relative::Relative,
     spectrum::LUMINANCE,
 };
 use rayon::prelude::*;
@@ -154,26 +154,21 @@ impl Accumulator {
         self.image == 0
     }
 
-    /// Estimated relative error of the mean: the root of the mean over pixels of var / (mean^2 + 0.01 m^2), by
-    /// luminance, where m is that of the whole image; none before each half has a pass.
-    pub fn noise(&self) -> Option<f64> {
+    /// Estimated relative error of the mean of an image `width` pixels across, whose pixels see this much of emitters; none
+    /// before each half has a pass, and light was found.
+    pub fn noise(&self, width: usize, seen: &dyn Fn(usize) -> f64) -> Option<Noise> {
         let [even, odd] = self.passes.map(|passes| passes as f64);
         if even == 0.0 || odd == 0.0 {
             return None;
         }
         let [r, g, b] = LUMINANCE.as_dvec3().to_array();
-        let moments = |sums: &ExactSums<4>| {
+        let halves = |sums: &ExactSums<4>| {
             let [sum_r, sum_g, sum_b, contrast] = sums.values();
             let sum = r * sum_r + g * sum_g + b * sum_b;
-            let halves = [(sum + contrast) / (2.0 * even), (sum - contrast) / (2.0 * odd)];
-            // The halves differ by the root of twice the variance of either, their mean varies by half of it.
-            (sum / (even + odd), (0.5 * (halves[0] - halves[1])).powi(2))
+            ((sum + contrast) / (2.0 * even), (sum - contrast) / (2.0 * odd))
         };
-        let moments: Vec<(f64, f64)> = self.pixels[..self.image].par_iter().map(moments).collect();
-        let total: f64 = moments.iter().map(|(mean, _)| mean).filter(|mean| mean.is_finite()).sum();
-        let to = Relative::to_mean(total / moments.len() as f64);
-        let sum: f64 = moments.iter().map(|(mean, variance)| to.square(*variance, *mean)).sum();
-        Some((sum / moments.len() as f64).sqrt())
+        let halves: Vec<(f64, f64)> = self.pixels[..self.image].par_iter().map(halves).collect();
+        Noise::of_halves(width, &halves, seen)
     }
 }
 
@@ -213,15 +208,15 @@ mod tests {
     fn mean_and_noise_of_known_passes() {
         let mut film = Accumulator::new(1);
         film.add(0, &[Spectrum::splat(1.0)]);
-        assert_eq!(film.noise(), None);
+        assert_eq!(film.noise(1, &|_| 0.0), None);
         film.add(1, &[Spectrum::splat(3.0)]);
         assert_eq!(film.mean(), vec![Spectrum::splat(2.0)]);
         // Variance of the mean of {1, 3} is 1; relative to 2^2 + 0.01 2^2.
         let expected = (1.0f64 / 4.04).sqrt();
-        assert!((film.noise().unwrap() - expected).abs() < 1e-5);
+        assert!((film.noise(1, &|_| 0.0).unwrap().error - expected).abs() < 1e-5);
         // A third pass: the halves' means are 3 and 3.
         film.add(2, &[Spectrum::splat(5.0)]);
-        assert!(film.noise().unwrap() < 1e-7);
+        assert!(film.noise(1, &|_| 0.0).unwrap().error < 1e-7);
     }
 
     /// Over many pixels it is the error of the mean, for any numbers of passes in the halves.
@@ -240,7 +235,7 @@ mod tests {
             }
             // Where the halves are not equal, this is a little more than the variance of the mean.
             let variance = 0.01 * passes.iter().map(|passes| 0.25 / *passes as f64).sum::<f64>();
-            let relative = film.noise().unwrap().powi(2) / (variance / 1.01);
+            let relative = film.noise(200, &|_| 0.0).unwrap().error.powi(2) / (variance / 1.01);
             let z = (relative - 1.0) / (2.0 / pixels as f64).sqrt();
             assert!(z.abs() < 4.0, "{passes:?}: {z}");
         }
@@ -253,7 +248,7 @@ mod tests {
             for (number, pass) in [[0.0, 1.0, 5.0], [0.0, 3.0, 4.0], [0.1, 2.0, 6.0]].iter().enumerate() {
                 film.add(number as u64, &pass.map(|value| Spectrum::splat(unit * value)));
             }
-            film.noise().unwrap()
+            film.noise(1, &|_| 0.0).unwrap().error
         };
         let one = noise(1.0);
         assert!(one > 0.1 && [1e-3, 1e3].iter().all(|unit| (noise(*unit) / one - 1.0).abs() < 1e-5));

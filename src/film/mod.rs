@@ -7,6 +7,7 @@ pub mod format;
 pub mod layer;
 mod lobes;
 pub mod moments;
+pub mod noise;
 pub mod output;
 pub mod png;
 pub mod raster;

@@ -12,12 +12,12 @@ use super::{
     Image, Progress,
     block::{Blocks, Outcome, Pass},
     faults::Faults,
-    half::{Half, Limits},
+    half::{Half, Limits, luminance},
     instrument::{BLOCKS_AT_ONCE, Instrument},
     monitor::Stopwatch,
 };
 use crate::{
-    film::Film,
+    film::{Film, noise::Noise},
     math::{DVec3, Spectrum},
     sampling::Sampler,
 };
@@ -179,11 +179,14 @@ impl Halves {
         (0..self.active.len()).map(|pixel| value(first + pixel).as_vec3()).collect()
     }
 
-    /// Root of the mean squared relative error, as the halves estimated it last, if they did.
-    fn noise(&self) -> Option<f64> {
-        let errors = || self.halves.iter().flat_map(|half| &half.errors);
-        let is_known = self.halves.iter().all(|half| half.errors[0].is_finite());
-        is_known.then(|| (errors().sum::<f64>() / (2 * self.active.len()) as f64).sqrt())
+    /// The relative error of the mean, if both halves have passes and pixels see this much of emitters.
+    pub(super) fn noise(&self, seen: &dyn Fn(usize) -> f64) -> Option<Noise> {
+        if self.halves.iter().any(|half| half.passes == 0) {
+            return None;
+        }
+        let [a, b] = &self.halves;
+        let both = |pixel| (luminance(a.value(pixel)), luminance(b.value(pixel)));
+        Noise::of_halves(self.width, &(0..self.active.len()).map(both).collect::<Vec<_>>(), seen)
     }
 
     /// The image so far, without alpha and layers.
@@ -197,7 +200,7 @@ impl Halves {
             samples_per_pixel: samples as u64,
             unfinished: samples.fract(),
             elapsed: self.elapsed,
-            noise: self.noise(),
+            noise: self.noise(&|_| 0.0),
             alpha: Vec::new(),
             layers: Vec::new(),
             reached: Some(Reached { share: self.share(), samples: self.samples.clone() }),

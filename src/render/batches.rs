@@ -6,6 +6,7 @@ use crate::{
         Channel,
         format::Format,
         layer::{Content, Layer},
+        noise::Noise,
     },
     math::DVec3,
 };
@@ -35,14 +36,14 @@ impl Image {
             (sum / count).as_vec3()
         };
         let alphas: Vec<_> = images.iter().map(|image| &image.alpha[..]).collect();
-        let squared_noise: Option<f64> =
-            images.iter().map(|image| image.noise.map(|noise| noise * noise)).sum();
+        let noises: Option<Vec<_>> =
+            images.iter().map(|image| Some((1.0 / (count * count), image.noise?))).collect();
         Self {
             pixels: (0..images[0].pixels.len()).map(mean_pixel).collect(),
             samples_per_pixel: images.iter().map(|image| image.samples_per_pixel).sum(),
             unfinished: images.iter().map(|image| image.unfinished).sum(),
             elapsed: images.iter().map(|image| image.elapsed).sum::<Duration>(),
-            noise: squared_noise.map(|squares| squares.sqrt() / count),
+            noise: noises.map(|noises| Noise::sum(noises.into_iter())),
             alpha: merged(&alphas, mean),
             layers: channels,
             reached: None,
@@ -104,7 +105,7 @@ mod tests {
             samples_per_pixel: 4,
             unfinished: 0.0,
             elapsed: Duration::from_secs(1),
-            noise: Some(0.3),
+            noise: Some(Noise { error: 0.3, carriers: 5.0 }),
             alpha: vec![value / 10.0],
             layers: ["depth.T", "variance.R"]
                 .map(|name| Channel { name: name.into(), values: vec![value] })
@@ -115,7 +116,9 @@ mod tests {
         let layers = [Layer { name: "variance".into(), content: Content::Variance }];
         let all = Image::mean_of(&images, &layers, Format::default());
         assert_eq!((&all.pixels[..], all.samples_per_pixel), (&[vec3(3.0, 2.0, 0.0)][..], 12));
-        assert!((all.noise.unwrap() - 0.3 / 3f64.sqrt()).abs() < 1e-12 && (all.alpha[0] - 0.3).abs() < 1e-6);
+        assert!(
+            (all.noise.unwrap().error - 0.3 / 3f64.sqrt()).abs() < 1e-12 && (all.alpha[0] - 0.3).abs() < 1e-6
+        );
         let value = |name: &str| all.layers.iter().find(|layer| layer.name == name).unwrap().values[0];
         // Sample variance 4, of the mean a third of it.
         assert!((value("standard_error.R") - (4.0f32 / 3.0).sqrt()).abs() < 1e-6);

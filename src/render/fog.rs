@@ -58,11 +58,17 @@ impl<'a> Preview<'a> {
         rays: impl Iterator<Item = (Ray, Stream)>,
     ) -> Self {
         let threshold = fog.threshold.unwrap_or(f32::INFINITY);
-        let dark = Self { scene, hide_emitters, threshold, veil: Spectrum::ZERO, ambient: Spectrum::ZERO };
+        let dark = Self { threshold, ..Self::dark(scene, hide_emitters) };
         let sky = surroundings(scene);
         let veil = fog.color.or(sky).unwrap_or_else(|| dark.brightness(rays));
         let ambient = fog.ambient.unwrap_or(if sky.is_some() { Spectrum::ZERO } else { veil });
         Self { veil, ambient: ambient + even_sky(scene), ..dark }
+    }
+
+    /// Without fog, and without light from everywhere.
+    fn dark(scene: &'a Scene, hide_emitters: bool) -> Self {
+        let (threshold, veil, ambient) = (f32::INFINITY, Spectrum::ZERO, Spectrum::ZERO);
+        Self { scene, hide_emitters, threshold, veil, ambient }
     }
 
     /// The mean brightness that emitters give the surfaces that rays hit; 1 where they give none.
@@ -206,6 +212,15 @@ impl<'a> Preview<'a> {
         let wi = point.shading.to_local(incoming);
         let sample = self.scene.bsdf(point.shape).sample(point.uv, wi, Transport::Radiance, stream);
         sample.map_or(Spectrum::ZERO, |sample| sample.weight) * self.ambient
+    }
+}
+
+/// Radiance of emitters along a primary ray that nothing scatters but smooth surfaces.
+pub(super) fn seen(scene: &Scene, hide_emitters: bool, ray: Ray, stream: &mut Stream) -> Spectrum {
+    let Sight { through, emitted, end, .. } = Preview::dark(scene, hide_emitters).follow(ray, stream);
+    match end {
+        End::Radiance(radiance) => emitted + through * radiance,
+        End::Surface(..) => emitted,
     }
 }
 

@@ -179,6 +179,7 @@ impl Limits {
     }
 }
 
-fn luminance(rgb: DVec3) -> f64 {
+/// Of linear RGB.
+pub(super) fn luminance(rgb: DVec3) -> f64 {
     rgb.dot(LUMINANCE.as_dvec3())
 }

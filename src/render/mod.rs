@@ -24,6 +24,7 @@ mod primary;
 pub mod progressive;
 mod radiance;
 pub mod samples;
+mod seen;
 mod sorted;
 pub mod strategy_images;
 pub mod sums;
@@ -42,6 +43,7 @@ use crate::{
         accumulator::Accumulator,
         format::{XYZ_ROWS, planes, to_xyz},
         layer::{Content, Layer},
+        noise::Noise,
     },
     math::{Spectrum, Vec3},
     sampling::Sampler,
@@ -57,6 +59,7 @@ use fog::Preview;
 use instrument::{BLOCKS_AT_ONCE, Instrument};
 use monitor::{Monitor, Stopwatch};
 use samples::Samples;
+use seen::Seen;
 use std::time::{Duration, Instant};
 use sums::Sums;
 
@@ -85,8 +88,8 @@ pub struct Progress {
     pub passes: u64,
     /// Time since the first sample.
     pub elapsed: Duration,
-    /// See [`Accumulator::noise`].
-    pub noise: Option<f64>,
+    /// Its estimated relative error, once it is known.
+    pub noise: Option<Noise>,
     /// The part of the pixels that have the requested precision, if one was requested.
     pub within: Option<f64>,
     /// No more samples follow.
@@ -104,8 +107,8 @@ pub struct Image {
     pub unfinished: f64,
     /// Time spent on samples, pilot walks included.
     pub elapsed: Duration,
-    /// See [`Accumulator::noise`].
-    pub noise: Option<f64>,
+    /// Its estimated relative error, once it is known.
+    pub noise: Option<Noise>,
     /// The part of each pixel that the scene covers, in [0, 1] for filters without negative lobes; empty
     /// where it was not requested.
     pub alpha: Vec<f32>,
@@ -258,7 +261,8 @@ fn late(settings: &Settings, started: Instant) -> impl Fn() -> bool {
 /// The image of an adaptive render that began at `started`, with alpha, `layers`, and one more that shows how many samples
 /// its pixels took.
 fn finish(bench: &Instrument<'_>, started: Instant, halves: &Halves, layers: &[Layer]) -> Image {
-    let image = halves.image();
+    let seen = Seen::new(bench);
+    let image = Image { noise: halves.noise(&|pixel| seen.of(pixel)), ..halves.image() };
     let (passes, is_over) = (image.samples_per_pixel.max(1), late(&bench.settings, started));
     let seen = primary::Pass::new(bench.film, layers).run(bench, passes, is_over);
     let known = Known { pixels: &image.pixels, passes: &Accumulator::new(0), seen: &seen };
@@ -283,6 +287,7 @@ fn accumulate(
     let (blocks, before) = (compiled.blocks(), sums.elapsed);
     let queue = Queue::new(budget, sums, blocks.count());
     let (mut next, mut noted) = (sums.blocks.min(queue.end), Instant::now());
+    let seen = Seen::new(bench);
     // However long that takes, or no time would be enough to go on.
     if next < queue.end {
         bench.learn(queue.sample(next) as usize, &|| false);
@@ -303,8 +308,10 @@ fn accumulate(
         let (elapsed, samples_per_pixel) = (stopwatch.elapsed(), sums.samples.count());
         sums.elapsed = before + elapsed;
         let is_last = next == queue.end || outcomes.len() < tasks.len();
-        if is_last || noted.elapsed() > NOISE_EVERY {
-            sums.note_noise();
+        if is_last {
+            sums.note_last_noise(&|pixel| seen.of(pixel));
+        } else if noted.elapsed() > NOISE_EVERY {
+            sums.note_noise(&|pixel| seen.of(pixel));
             noted = Instant::now();
         }
         if next.is_multiple_of(queue.per_pass) && monitor.is_mark(samples_per_pixel) {

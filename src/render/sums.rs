@@ -8,7 +8,7 @@ use super::{
     samples::Samples,
 };
 use crate::{
-    film::{Film, accumulator::Accumulator},
+    film::{Film, accumulator::Accumulator, noise::Noise},
     math::Spectrum,
     sampling::Sampler,
 };
@@ -28,8 +28,8 @@ pub struct Sums {
     pub(super) blocks: usize,
     /// Time spent on all of it.
     pub(super) elapsed: Duration,
-    /// See [`Accumulator::noise`], of whole passes.
-    pub(super) noise: Option<f64>,
+    /// The relative error of whole passes, if it is known.
+    pub(super) noise: Option<Noise>,
     /// Of so many passes.
     noted: u64,
     /// What went wrong on the way.
@@ -48,8 +48,11 @@ impl Sums {
 
     /// Whole passes of `samples`, of an image of `width` pixels across.
     pub(super) fn of(accumulator: Accumulator, samples: Samples, width: usize) -> Self {
-        let (pass, noise, noted) =
-            (Pass::new(accumulator.len_of_planes()), accumulator.noise(), accumulator.passes());
+        let (pass, noise, noted) = (
+            Pass::new(accumulator.len_of_planes()),
+            accumulator.noise(width, &|_| 0.0),
+            accumulator.passes(),
+        );
         Self {
             accumulator,
             samples,
@@ -85,7 +88,7 @@ impl Sums {
         let Some(samples) = self.samples.and(&other.samples) else { return false };
         self.samples = samples;
         self.accumulator.merge(&other.accumulator);
-        self.note_noise();
+        self.note_noise(&|_| 0.0);
         self.faults.merge(&other.faults);
         self.elapsed += other.elapsed;
         true
@@ -127,11 +130,18 @@ impl Sums {
         Progress { samples, passes, elapsed, noise: self.noise, within: None, is_last }
     }
 
-    /// Estimates the noise again where a pass was added since.
-    pub(super) fn note_noise(&mut self) {
+    /// Estimates the noise again where a pass was added since. What is `seen` of emitters tells small lamps from rare
+    /// samples; without it, the noise is too large where there are some in view.
+    pub(super) fn note_noise(&mut self, seen: &dyn Fn(usize) -> f64) {
         if self.noted != self.accumulator.passes() {
-            (self.noise, self.noted) = (self.accumulator.noise(), self.accumulator.passes());
+            (self.noise, self.noted) = (self.accumulator.noise(self.width, seen), self.accumulator.passes());
         }
+    }
+
+    /// The same whether or not a pass was added: what was read from a file was estimated without a scene.
+    pub(super) fn note_last_noise(&mut self, seen: &dyn Fn(usize) -> f64) {
+        self.noted = u64::MAX;
+        self.note_noise(seen);
     }
 
     /// Which pixels a block has does not depend on how it is rendered.
@@ -226,7 +236,7 @@ mod tests {
                 sums.start(sample);
                 sums.add(sample, &outcome(&blocks, task % 4, film.len()), 4);
             }
-            sums.note_noise();
+            sums.note_noise(&|_| 0.0);
             sums.elapsed = Duration::from_secs(3);
             super::super::sums_file::write(&path, &sums, &"made".into()).unwrap();
             let (read, made) = super::super::sums_file::read(&path).unwrap();

@@ -2,7 +2,7 @@
 
 use super::{Image, adaptive::Reached, faults::Fault, faults::Faults};
 use crate::{
-    film::{Channel, Window},
+    film::{Channel, Window, noise::Noise},
     math::Spectrum,
 };
 use std::time::Duration;
@@ -62,8 +62,8 @@ impl Image {
             sums.sum::<f64>() / pixels as f64
         };
         let samples = mean(&|image| image.samples());
-        let is_noise_known = tiles.iter().all(|tile| tile.image.noise.is_some());
-        let noise = mean(&|image| image.noise.map_or(0.0, |noise| noise * noise)).sqrt();
+        let part = |image: &Self| Some((image.pixels.len() as f64 / pixels as f64, image.noise?));
+        let noises: Option<Vec<_>> = tiles.iter().map(|tile| part(&tile.image)).collect();
         let share = mean(&|image| image.reached.as_ref().map_or(0.0, |reached| reached.share));
         let has_reached = tiles.iter().all(|tile| tile.image.reached.is_some());
         let counts = |image: &Self| image.reached.as_ref().map(|reached| reached.samples.clone());
@@ -72,7 +72,7 @@ impl Image {
             samples_per_pixel: samples as u64,
             unfinished: samples.fract(),
             elapsed: tiles.iter().map(|tile| tile.image.elapsed).sum::<Duration>(),
-            noise: is_noise_known.then_some(noise),
+            noise: noises.map(|noises| Noise::sum(noises.into_iter())),
             alpha: match tiles.iter().any(|tile| tile.image.alpha.is_empty()) {
                 true => Vec::new(),
                 false => placed(whole, tiles, 0.0, |image| Some(image.alpha.clone())),

@@ -9,6 +9,7 @@ mod animating;
 mod command_line;
 mod converting;
 mod cropping;
+mod darkness;
 mod diff;
 mod display;
 mod errors;

@@ -158,7 +158,7 @@ fn the_noise_shown_is_that_of_the_image() {
                 / (seeds - 1) as f64
         };
         let excess: Vec<f64> =
-            images.iter().map(|image| image.noise.expect("noise").powi(2) - error(image)).collect();
+            images.iter().map(|image| image.noise.expect("noise").error.powi(2) - error(image)).collect();
         let average = excess.iter().sum::<f64>() / seeds as f64;
         let variance = excess.iter().map(|e| (e - average).powi(2)).sum::<f64>() / (seeds - 1) as f64;
         let z = average / (variance / seeds as f64).sqrt();

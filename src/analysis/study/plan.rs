@@ -118,7 +118,7 @@ pub fn variance(entry: &Entry, first_seed: u64) -> f64 {
     const SAMPLES: u64 = 16;
     let budget = Budget::samples(SAMPLES);
     let image = unit::pilot(entry, first_seed ^ PILOT_SEED, budget);
-    image.and_then(|image| image.noise).map_or(f64::NAN, |noise| noise * noise)
+    image.and_then(|image| image.noise).map_or(f64::NAN, |noise| noise.error * noise.error)
 }
 
 #[cfg(test)]
