@@ -125,7 +125,7 @@ impl Look<'_> {
         let mut stream = Stream::new(0, index as u64, 0, Purpose::Study);
         let (position, _) = self.film.sample(index * self.film.len() / RAYS, &mut stream);
         let ray = scene.sensor.ray(position, scene.sensor.sample_aperture(&mut stream)).ray;
-        let mut segment = Segment::along(scene, ray, scene.sensor_medium, false);
+        let mut segment = Segment::along(scene, ray, scene.media_map.sensor, false);
         let End { depth, length, surface } = follow(scene, &mut segment);
         if depth > THICK {
             return Some((Cause::Thick, depth, length));
