@@ -161,7 +161,7 @@ impl<'a> Faces<'a> {
     /// connections keep clear of a surface by half of this where the other end is three times as far away as these shapes.
     fn closeness(&self, shapes: [u32; 2]) -> f64 {
         let is_null = shapes.iter().any(|shape| self.natures[*shape as usize].rank == Rank::Null);
-        f64::from(if is_null { gamma(16) } else { gamma(128) })
+        f64::from(if is_null { gamma(32) } else { gamma(128) })
     }
 
     /// What has to move so that a pair is in order; nothing where it is, or where it makes no difference.
