@@ -250,8 +250,9 @@ fn describe_medium(setup: &Setup, index: usize) -> String {
     let (kind, most) =
         if medium.heterogeneous().is_some() { ("heterogeneous", "at most ") } else { ("homogeneous", "") };
     format!(
-        "{}: {kind}, sigma_t {most}{r} {g} {b} /m, albedo {most}{ar} {ag} {ab}, mean cosine {:.3}; {}",
+        "{}: {kind}, sigma_t {most}{r} {g} {b} /m, albedo {most}{ar} {ag} {ab}, mean cosine {}{:.3}; {}",
         setup.medium_name(MediumIndex(index as u32)),
+        if medium.phase.varies() { "about " } else { "" },
         medium.phase.mean_cosine(),
         medium
             .heterogeneous()

@@ -382,10 +382,10 @@ pub const fn volume(
     name: &'static str,
     unit: &'static str,
     most: f64,
-    default: f64,
+    default: Default,
     about: &'static str,
 ) -> Parameter {
-    Parameter::new(name, Kind::Volume(Role::Matter, most), Is(default), about).unit(unit)
+    Parameter::new(name, Kind::Volume(Role::Matter, most), default, about).unit(unit)
 }
 
 /// A colour of light, or a volume.

@@ -116,7 +116,7 @@ fn overridden(medium: Medium, overrides: &MediumOverrides) -> Medium {
 
 /// What all media have.
 const COMMON: &[Parameter] = rows! {
-    volume("albedo", "", 1.0, 0.75, "Share of the extinction that is scattering: sigma_s / sigma_t."),
+    volume("albedo", "", 1.0, Is(0.75), "Share of the extinction that is scattering: sigma_s / sigma_t."),
     factor("scale", 1.0, "A factor on `sigma_t`."),
     nested("phase", Optional, "The phase function: `isotropic` where not given."),
     ignored("sample_emitters", "the scene itself decides"),
@@ -124,7 +124,7 @@ const COMMON: &[Parameter] = rows! {
 };
 
 const HOMOGENEOUS: Table = table! {
-    "A medium that is the same everywhere, but for an albedo that may vary.";
+    "A medium that is the same everywhere, but for an albedo and a phase function that may vary.";
     colour("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient: sigma_s + sigma_a.");
     COMMON, EMISSION
 };
@@ -150,13 +150,13 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> 
             (properties(Spectrum::ZERO), Some(Fields::new(Volume::endless(sigma_t), albedo, params, place)))
         }
     };
-    let medium = Medium::homogeneous(properties, phase(params)?);
+    let medium = Medium::homogeneous(properties, phase(params, place)?);
     Ok(MediumDescription { medium, fields, emission: EmissionDescription::read(params, place)? })
 }
 
 const HETEROGENEOUS: Table = table! {
     "A medium that varies in space.";
-    volume("sigma_t", "1/m", f64::INFINITY, 1.0, "Extinction coefficient; one value fills the unit cube only, as in Mitsuba."),
+    volume("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient; one value fills the unit cube only, as in Mitsuba."),
     choice("tracker", &words::<6, _>(&DistanceMethod::NAMES), "auto", "How free flights are sampled; `auto` takes the cheapest without error.").ours(),
     number("step", "m", above(0.0, f64::MAX), Said("by `march_error`"), "The interval of the tracker `march`.").ours(),
     number("march_error", "", within(1e-7, 1.0), Is(1e-3), "Greatest error of transmittance of `march`.").ours();
@@ -176,7 +176,7 @@ fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription
             place,
         )
     };
-    let medium = Medium::homogeneous(MediumProperties::NOTHING, phase(params)?);
+    let medium = Medium::homogeneous(MediumProperties::NOTHING, phase(params, place)?);
     Ok(MediumDescription {
         medium,
         fields: Some(fields),
@@ -189,10 +189,10 @@ fn scale(params: &Params<'_>) -> Result<f32> {
 }
 
 /// The phase function.
-fn phase(params: &Params<'_>) -> Result<Phase> {
+fn phase(params: &Params<'_>, place: &Place) -> Result<Phase> {
     match params.children("phase", |child| phase::ROWS.has(child.object))?.as_slice() {
         [] => Ok(Phase::Isotropic(phase::Isotropic)),
-        [one] => phase::build(one.object, params.library),
+        [one] => phase::build(one.object, params.library, place),
         [_, second, ..] => Err(Error::new(
             second.location,
             "one phase function in a medium",

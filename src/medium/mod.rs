@@ -175,12 +175,14 @@ impl Medium {
     pub fn at_time(&self, time: f64) -> Result<Option<Self>> {
         let varying = self.heterogeneous().map(|varying| varying.at_time(time)).transpose()?.flatten();
         let given = self.given.as_ref().and_then(|given| given.0.at_time(time));
-        if varying.is_none() && given.is_none() {
+        let phase = self.phase.at_time(time);
+        if varying.is_none() && given.is_none() && phase.is_none() {
             return Ok(None);
         }
+        let same = Self { phase: phase.unwrap_or_else(|| self.phase.clone()), ..self.clone() };
         let medium = match varying {
-            Some(varying) => self.clone().with(varying),
-            None => self.clone(),
+            Some(varying) => same.with(varying),
+            None => same,
         };
         let Some(before) = &self.given else { return Ok(Some(medium)) };
         medium.with_emission(given.unwrap_or_else(|| before.0.clone()), before.1).map(Some)

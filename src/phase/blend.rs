@@ -2,16 +2,19 @@
 //! P03T 2.3.4.
 
 use super::{Deflection, HenyeyGreenstein, Phase, PhaseModel, Schlick, build};
-use crate::description::{Params, Table, Value, parameter::Parameter, rows, table};
+use crate::description::{Params, Table, parameter::Parameter, rows, table};
 use crate::error::{Error, Result};
 use crate::math::Vec3;
 use crate::sampling::Stream;
+use crate::volume::{self, Place, Volume, VolumeModel as _};
 use std::sync::Arc;
 
 /// (1 - weight) first + weight second.
 #[derive(Clone, Debug)]
 pub struct Blend {
+    /// In [0, 1]; where it varies, the middle of its bounds: what the blend is like on the whole.
     weight: f32,
+    varying: Option<Volume>,
     parts: Arc<[Phase; 2]>,
 }
 
@@ -25,27 +28,52 @@ const TERMS: &[Parameter] = rows! {
 impl Blend {
     /// `weight` in [0, 1] is the share of the second part.
     pub fn new(weight: f32, first: Phase, second: Phase) -> Self {
-        Self { weight, parts: Arc::new([first, second]) }
+        Self { weight, varying: None, parts: Arc::new([first, second]) }
+    }
+
+    /// The share of the second part is a volume, which is evaluated everywhere; beyond 0 and 1 it counts as these.
+    fn varying(weight: Volume, first: Phase, second: Phase) -> Self {
+        let [low, high] = weight.domain().unwrap_or([Vec3::ZERO; 2]);
+        let [least, most] = weight.range(low, high).map(|bound| bound.x.clamp(0.0, 1.0));
+        Self { varying: Some(weight), ..Self::new(0.5 * (least + most), first, second) }
+    }
+
+    fn weight_at(&self, position: Vec3) -> f32 {
+        let varying = |weight: &Volume| weight.eval::<f32>(position).clamp(0.0, 1.0);
+        self.varying.as_ref().map_or(self.weight, varying)
+    }
+
+    /// What `of` says of the parts, by their shares.
+    #[inline]
+    fn mean(&self, weight: f32, of: impl Fn(&Phase) -> f32) -> f32 {
+        let [first, second] = &*self.parts;
+        of(first) * (1.0 - weight) + of(second) * weight
+    }
+
+    #[inline]
+    fn choose(&self, weight: f32, stream: &mut Stream) -> &Phase {
+        &self.parts[usize::from(stream.uniform() < weight)]
     }
 
     pub(super) const TABLE: Table = table! {
         "Two phase functions, mixed: (1 - weight) first + weight second.";
-        number("weight", "", within(0.0, 1.0), Required, "Share of the second."),
+        volume("weight", "", 1.0, Required, "Share of the second; a volume below 0 counts as 0, above 1 as 1."),
         nested("phase", Required, "The two."),
     };
 
-    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let expected = "a number from 0 to 1 (a weight that varies in space is not supported)";
-        if let Some(volume @ (Value::Object(_) | Value::Reference(_))) =
-            params.given("weight").map(|p| &p.value)
-        {
-            return Err(params.complain("weight", expected, volume.describe()));
+    pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
+        let weight = volume::parameter(params, "weight", place)?;
+        if !weight.is_grey() {
+            return Err(params.complain("weight", "one value for all colours", "one for each"));
         }
-        let weight = params.float("weight")? as f32;
         match params.children("phase", |child| child.name != "weight")?.as_slice() {
             [first, second] => {
-                let part = |object| build(object, params.library);
-                Ok(Self::new(weight, part(first.object)?, part(second.object)?))
+                let part = |object| build(object, params.library, place);
+                let (first, second) = (part(first.object)?, part(second.object)?);
+                Ok(match weight {
+                    Volume::Constant(weight) => Self::new(weight.eval(Vec3::ZERO), first, second),
+                    weight => Self::varying(weight, first, second),
+                })
             }
             others => Err(Error::new(
                 params.location(),
@@ -92,18 +120,56 @@ impl Blend {
 impl PhaseModel for Blend {
     #[inline]
     fn pdf_sr(&self, turn: Deflection) -> f32 {
-        let [first, second] = &*self.parts;
-        first.pdf_sr(turn) * (1.0 - self.weight) + second.pdf_sr(turn) * self.weight
+        self.mean(self.weight, |part| part.pdf_sr(turn))
     }
 
     #[inline]
     fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
-        let chosen = usize::from(stream.uniform() < self.weight);
-        self.parts[chosen].sample(direction, stream)
+        self.choose(self.weight, stream).sample(direction, stream)
     }
 
     fn mean_cosine(&self) -> f32 {
-        let [first, second] = &*self.parts;
-        first.mean_cosine() * (1.0 - self.weight) + second.mean_cosine() * self.weight
+        self.mean(self.weight, PhaseModel::mean_cosine)
+    }
+}
+
+/// What differs from one point to another. What [`PhaseModel`] says of such a blend is so where its weight is the middle
+/// of its bounds.
+impl Phase {
+    /// [`PhaseModel::pdf_sr`] at a world position.
+    #[inline]
+    pub fn pdf_sr_at(&self, position: Vec3, turn: Deflection) -> f32 {
+        let Self::Blend(blend) = self else { return self.pdf_sr(turn) };
+        blend.mean(blend.weight_at(position), |part| part.pdf_sr_at(position, turn))
+    }
+
+    /// [`PhaseModel::sample`] at a world position.
+    #[inline]
+    pub fn sample_at(&self, position: Vec3, direction: Vec3, stream: &mut Stream) -> Vec3 {
+        let Self::Blend(blend) = self else { return self.sample(direction, stream) };
+        blend.choose(blend.weight_at(position), stream).sample_at(position, direction, stream)
+    }
+
+    /// True if it differs from one point to another.
+    pub fn varies(&self) -> bool {
+        let Self::Blend(blend) = self else { return false };
+        blend.varying.is_some() || blend.parts.iter().any(Self::varies)
+    }
+
+    /// It at `time` [s]; none where it is the same at all times.
+    pub fn at_time(&self, time: f64) -> Option<Self> {
+        let Self::Blend(blend) = self else { return None };
+        let varying = blend.varying.as_ref().and_then(|weight| weight.at_time(time));
+        let moved = blend.parts.each_ref().map(|part| part.at_time(time));
+        if varying.is_none() && moved.iter().all(Option::is_none) {
+            return None;
+        }
+        let [first, second] = moved;
+        let [a, b] = &*blend.parts;
+        let (first, second) = (first.unwrap_or_else(|| a.clone()), second.unwrap_or_else(|| b.clone()));
+        Some(Self::Blend(match varying.or_else(|| blend.varying.clone()) {
+            Some(weight) => Blend::varying(weight, first, second),
+            None => Blend::new(blend.weight, first, second),
+        }))
     }
 }

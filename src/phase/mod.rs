@@ -1,8 +1,8 @@
 //! Phase functions: one file a model; this page is the contract and the registry.
 //!
-//! All depend on the angle between the directions of flight before and after scattering alone (cos > 0 is
+//! At a point all depend on the angle between the directions of flight before and after scattering alone (cos > 0 is
 //! forward), are normalised to 1 over the sphere, and are sampled exactly: the density of a sampled direction
-//! is the value of the function, both ways.
+//! is the value of the function, both ways. Only a blend may differ from one point to another.
 
 mod blend;
 mod cornette_shanks;
@@ -38,10 +38,11 @@ pub use schlick::Schlick;
 pub use specular_sphere::SpecularSphere;
 pub use table::Table;
 
-use crate::description::{Build, Library, Object, Params, Plugin, Registry, models};
+use crate::description::{Library, Object, Params, Plugin, Registry, models};
 use crate::error::Result;
 use crate::math::{Frame, Vec3};
 use crate::sampling::Stream;
+use crate::volume::Place;
 
 /// What every phase function can do.
 pub trait PhaseModel {
@@ -56,10 +57,16 @@ pub trait PhaseModel {
 }
 
 /// Makes the enum, its dispatch, the registry and the list of test examples from one row a model: its type,
-/// and each of its names with the `fn(&Params) -> Result<Self>` that builds it and the table of its parameters. For the tests a model has
-/// `fn examples() -> Vec<Self>`.
+/// and each of its names with the `fn(&Params) -> Result<Self>` that builds it and the table of its parameters; `placed`
+/// where that asks for the place too. For the tests a model has `fn examples() -> Vec<Self>`.
 macro_rules! phases {
-    ($($model:ident: $($name:literal => $build:ident $table:ident),+;)*) => {
+    (@build $model:ident $build:ident) => {
+        |params: &Params<'_>, _: &Place| $model::$build(params).map(Phase::$model)
+    };
+    (@build $model:ident $build:ident placed) => {
+        |params: &Params<'_>, place: &Place| $model::$build(params, place).map(Phase::$model)
+    };
+    ($($model:ident: $($name:literal => $build:ident $table:ident $($placed:ident)?),+;)*) => {
         models! {
             /// Any phase function.
             Phase: PhaseModel [$($model)*]
@@ -69,10 +76,10 @@ macro_rules! phases {
         }
 
         /// Every phase function there is, by plugin name.
-        pub const ROWS: Registry<Plugin<Build<Phase>>> = Registry::new("a phase function", &[
+        pub const ROWS: Registry<Plugin<BuildPhase>> = Registry::new("a phase function", &[
             $($(($name, Plugin {
                 table: $model::$table,
-                build: |params: &Params<'_>| $model::$build(params).map(Phase::$model),
+                build: phases!(@build $model $build $($placed)?),
             }),)+)*
         ]);
 
@@ -100,13 +107,19 @@ phases! {
     DiffuseSphere: "diffuse_sphere" => build TABLE;
     SpecularSphere: "specular_sphere" => build TABLE;
     Table: "tabphase" => build TABLE;
-    Blend: "blendphase" => build TABLE, "two_term_hg" => two_term_hg HG_TABLE,
+    Blend: "blendphase" => build TABLE placed, "two_term_hg" => two_term_hg HG_TABLE,
         "two_term_schlick" => two_term_schlick SCHLICK_TABLE;
 }
 
+/// How a phase function is built.
+pub type BuildPhase = fn(&Params<'_>, &Place) -> Result<Phase>;
+
 /// Builds the phase function that `object` describes.
-pub fn build(object: &Object, library: &Library) -> Result<Phase> {
-    ROWS.build(object, library)
+pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Phase> {
+    let (params, build) = ROWS.read(object, library)?;
+    let built = build(&params, place)?;
+    params.finish()?;
+    Ok(built)
 }
 
 /// The world direction that `local` is in a frame around `direction`. It is made unit again: in a walk of

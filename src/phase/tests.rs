@@ -101,7 +101,7 @@ fn every_model_samples_its_density() {
 }
 
 fn built(plugin: &str, properties: &[(&str, Value)]) -> Result<Phase> {
-    build(&object(plugin, properties), &Library::default())
+    build(&object(plugin, properties), &Library::default(), &Place::new(DVec3::ZERO, 0.0))
 }
 
 fn at_cosine(cosine: f64) -> Deflection {
@@ -307,4 +307,49 @@ fn parameters_out_of_range_are_errors() {
     for (plugin, properties) in cases {
         assert!(built(plugin, &properties).is_err(), "{plugin} {properties:?}");
     }
+}
+
+/// A blend of forward and backward whose weight is that of `weight`.
+fn blend_of(weight: Object) -> Result<Phase> {
+    let hg = |g| Value::Object(object("hg", &[("g", Value::Float(g))]));
+    built("blendphase", &[("weight", Value::Object(weight)), ("a", hg(0.8)), ("b", hg(-0.8))])
+}
+
+fn wave() -> Object {
+    let wave =
+        object("wave", &[("amplitude", Value::Float(2.0)), ("vector", Value::Vector([1.0, 0.0, 0.0]))]);
+    object("cosine", &[("constant", Value::Float(0.5)), ("a", Value::Object(wave))])
+}
+
+#[test]
+fn a_blend_that_varies_is_at_every_point_that_of_the_weight_there() {
+    let varying = blend_of(wave()).unwrap();
+    assert!(varying.varies() && varying.at_time(3.0).is_none());
+    for x in [0.0f32, 1.4, 1.6, 1.8, 3.0] {
+        let weight = f64::from(0.5 + 2.0 * x.cos()).clamp(0.0, 1.0);
+        let there = blend_of(object("constvolume", &[("value", Value::Float(weight))])).unwrap();
+        assert!(!there.varies());
+        for turn in [-1.0, 0.3, 0.99].map(at_cosine) {
+            let (found, exact) = (varying.pdf_sr_at(vec3(x, 5.0, 0.0), turn), there.pdf_sr(turn));
+            assert!((found / exact - 1.0).abs() < 1e-4, "at {x}: {found} for {exact}");
+        }
+        let [mut found, mut exact] = [(); 2].map(|()| Stream::new(7, 0, 0, Purpose::Study));
+        let sampled = varying.sample_at(vec3(x, 5.0, 0.0), Vec3::Z, &mut found);
+        assert_eq!(sampled, there.sample(Vec3::Z, &mut exact));
+    }
+}
+
+#[test]
+fn the_weight_of_a_blend_drifts_and_so_does_that_of_a_blend_in_it() {
+    let wind = object("wind", &[("velocity", Value::Vector([2.0, 0.0, 0.0])), ("a", Value::Object(wave()))]);
+    let drifting = blend_of(wind).unwrap();
+    let later = drifting.at_time(0.5).unwrap();
+    let turn = at_cosine(0.9);
+    let (before, after) =
+        (drifting.pdf_sr_at(vec3(1.6, 0.0, 0.0), turn), later.pdf_sr_at(vec3(2.6, 0.0, 0.0), turn));
+    assert!((before / after - 1.0).abs() < 1e-4, "{before} {after}");
+    let outer = Phase::from(Blend::new(0.5, drifting, Phase::Isotropic(Isotropic)));
+    let outer_later = outer.at_time(0.5).unwrap();
+    let mean = 0.5 * after + 0.5 * Isotropic.pdf_sr(turn);
+    assert!((outer_later.pdf_sr_at(vec3(2.6, 0.0, 0.0), turn) / mean - 1.0).abs() < 1e-4);
 }

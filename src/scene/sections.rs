@@ -106,7 +106,7 @@ fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()>
     } else if medium::ROWS.has(object) {
         medium::build(object, library, &place).map(drop)
     } else if crate::phase::ROWS.has(object) {
-        crate::phase::build(object, library).map(drop)
+        crate::phase::build(object, library, &place).map(drop)
     } else if volume::ROWS.has(object) {
         volume::build(object, library, &place).map(drop)
     } else {

@@ -13,7 +13,7 @@ use crate::{
     guide::{Guidance, Guide},
     math::{Channels, Spectrum, Vec3, measure, offset},
     medium::{MediumIndex, MediumProperties},
-    phase::{Deflection, PhaseModel},
+    phase::Deflection,
     sampling::Stream,
     scene::Scene,
     settings::options::Survival,
@@ -418,8 +418,9 @@ fn collide<S: MisSums>(
 ) -> ScatterSample {
     let medium = &scene.media[properties.medium.0 as usize];
     let survival = vertex.survival;
-    let direction = medium.phase.sample(-vertex.subpath.incoming, stream);
-    let pdf = medium.phase.pdf_sr(Deflection::between(-vertex.subpath.incoming, direction)) * survival;
+    let (position, flight) = (vertex.position(), -vertex.subpath.incoming);
+    let direction = medium.phase.sample_at(position, flight, stream);
+    let pdf = medium.phase.pdf_sr_at(position, Deflection::between(flight, direction)) * survival;
     let weight = properties.albedo / survival;
     ScatterSample { direction, weight, pdf_fwd: pdf, pdf_rev: pdf, dirac: false }
 }

@@ -423,6 +423,21 @@ fn in_smoke_that_varies_by_every_tracker() {
     }
 }
 
+/// Forward where it is dense of drops, backward elsewhere, and a blend in that which varies too.
+#[test]
+fn in_fog_whose_phase_function_varies() {
+    let wave = |x: f64, y: f64| {
+        json!({"type": "cosine", "constant": 0.5,
+        "a": {"type": "wave", "amplitude": 0.5, "vector": [x, y, 2]}})
+    };
+    let hg = |g: f64| json!({"type": "hg", "g": g});
+    let inner =
+        json!({"type": "blendphase", "weight": wave(0.0, 4.0), "a": hg(-0.7), "b": {"type": "rayleigh"}});
+    let phase = json!({"type": "blendphase", "weight": wave(5.0, 1.0), "a": hg(0.7), "b": inner});
+    let fog = with(medium(1.0, 0.8, 0.0), &[("phase", phase)]);
+    all_agree("blend that varies", &scene(&foggy_room(fog)), LAMP_IN_VIEW, 64);
+}
+
 #[test]
 fn within_chromatic_smoke_that_varies() {
     let [(_, waves), _] = fogs();

@@ -100,6 +100,26 @@ fn smoke_in_fog_adds_to_it() {
     claims.settle();
 }
 
+/// Particles of two kinds, whose shares vary: by the phase function, and as two media in one place.
+#[test]
+fn a_blend_that_varies_is_two_media_that_overlap() {
+    let wave = |constant: f64, amplitude: f64| {
+        json!({"type": "cosine", "constant": constant,
+        "w": {"type": "wave", "vector": [3.0, 1.0, 0.5], "amplitude": amplitude}})
+    };
+    let hg = |g: f64| json!({"type": "hg", "g": g});
+    let part = |id: &str, amplitude: f64, g: f64| json!({"type": "heterogeneous", "id": id, "sigma_t": wave(0.6, amplitude), "albedo": 0.8, "phase": hg(g)});
+    let overlapping = around(&[
+        ("first", in_box(LEFT, part("forward", -0.6, 0.8))),
+        ("second", in_box(LEFT, part("back", 0.6, -0.8))),
+    ]);
+    let phase = json!({"type": "blendphase", "weight": wave(0.5, 0.5), "a": hg(0.8), "b": hg(-0.8)});
+    let blend = with(medium(1.2, 0.8, 0.0), &[("phase", phase)]);
+    let mut claims = Claims::new();
+    same(&mut claims, "blend", &overlapping, &around(&[("first", in_box(LEFT, blend))]));
+    claims.settle();
+}
+
 /// Each medium glows for itself.
 #[test]
 fn media_that_overlap_both_glow() {

@@ -7,7 +7,9 @@ use crate::{
     description::{Library, Location, Object, Position, Property, Value},
     error::{Error, Result},
     inputs::{self, Reader},
+    math::DVec3,
     phase::{self, Phase, ROWS},
+    volume::Place,
 };
 use std::{
     path::{Path, PathBuf},
@@ -24,7 +26,7 @@ pub fn build(plugin: &str, words: &[String]) -> Result<Phase> {
         let steps: Vec<&str> = path.split('.').collect();
         insert(&mut root, &steps, value(word, text)?, word)?;
     }
-    phase::build(&root, &Library::default()).map_err(respelled)
+    phase::build(&root, &Library::default(), &Place::new(DVec3::ZERO, 0.0)).map_err(respelled)
 }
 
 /// Puts a parameter in its place.

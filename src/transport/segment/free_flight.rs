@@ -5,7 +5,7 @@ use crate::{
     bsdf::{BsdfModel, Transport},
     math::{Channels, RaySegment, Spectrum, Vec3},
     medium::{Medium, MediumIndex, MediumInterval, MediumProperties, distance::collision_ratio},
-    phase::{Deflection, PhaseModel},
+    phase::Deflection,
     sampling::Stream,
     scene::Scene,
     shape::SurfacePoint,
@@ -59,9 +59,9 @@ impl Interaction {
     #[inline]
     pub fn scatter(&self, scene: &Scene, incoming: Vec3, outgoing: Vec3, transport: Transport) -> Scattering {
         match self {
-            Self::Medium(_, properties) => {
+            Self::Medium(position, properties) => {
                 let medium = &scene.media[properties.medium.0 as usize];
-                let phase = medium.phase.pdf_sr(Deflection::between(-incoming, outgoing));
+                let phase = medium.phase.pdf_sr_at(*position, Deflection::between(-incoming, outgoing));
                 Scattering { value: properties.albedo * phase, pdf_fwd: phase, pdf_rev: phase }
             }
             Self::Surface(point) => {

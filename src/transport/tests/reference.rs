@@ -10,7 +10,7 @@ use crate::{
     emitter::{BeamModel, Emitter, Kind, PointModel, SurfaceModel},
     guide::Guide,
     math::{Channels, DVec3, Vec3, offset},
-    phase::{Deflection, PhaseModel},
+    phase::Deflection,
     sampling::{Stream, stream::Purpose},
     scene::{
         Scene,
@@ -249,7 +249,8 @@ impl<'a> Reference<'a> {
             Place::Volume(position) => {
                 let medium = &self.scene.media[here.medium.0 as usize];
                 let properties = properties(self.scene, here.medium, *position);
-                let phase = medium.phase.pdf_sr(Deflection::between(-back.as_vec3(), on.as_vec3()));
+                let turn = Deflection::between(-back.as_vec3(), on.as_vec3());
+                let phase = medium.phase.pdf_sr_at(*position, turn);
                 let survival = f64::from(self.survival.of(properties.survival()));
                 survival
                     * self.guided(Interaction::Medium(*position, properties), on, phase, false, transport)

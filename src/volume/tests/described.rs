@@ -201,11 +201,11 @@ fn recentring_changes_nothing() {
 
 const TABLE: Table = table! {
     "Any plugin.";
-    volume("a", "", f64::INFINITY, 0.25, ""),
-    volume("b", "", f64::INFINITY, 0.25, ""),
-    volume("c", "", f64::INFINITY, 0.25, ""),
-    volume("d", "", f64::INFINITY, 0.25, ""),
-    volume("e", "", f64::INFINITY, 0.25, ""),
+    volume("a", "", f64::INFINITY, Is(0.25), ""),
+    volume("b", "", f64::INFINITY, Is(0.25), ""),
+    volume("c", "", f64::INFINITY, Is(0.25), ""),
+    volume("d", "", f64::INFINITY, Is(0.25), ""),
+    volume("e", "", f64::INFINITY, Is(0.25), ""),
 };
 
 #[test]
