@@ -1,6 +1,7 @@
 //! Distributions of microfacet normals, their shadowing and the sampling of the visible ones (Walter et al.
 //! 2007; Heitz 2018). All in a shading frame turned so that the direction in question has z > 0.
 
+use super::beckmann::View;
 use super::{bounded, number};
 use crate::description::{Params, parameter::Parameter, rows};
 use crate::error::{Error, Result};
@@ -123,24 +124,13 @@ impl Microfacets {
     /// D(m) [1/sr] of the unit normal `m`; 0 unless m.z > 0.
     #[inline]
     pub fn distribution(&self, m: Vec3) -> f32 {
-        self.distribution_as(self.kind, m)
-    }
-
-    /// D(m) [1/sr] of the distribution that `sample_visible` draws from.
-    #[inline]
-    pub fn sampled_distribution(&self, m: Vec3) -> f32 {
-        self.distribution_as(Kind::Ggx, m)
-    }
-
-    #[inline]
-    fn distribution_as(&self, kind: Kind, m: Vec3) -> f32 {
         if m.z <= 0.0 {
             return 0.0;
         }
         let (x, y, square) = (m.x / self.alpha_u, m.y / self.alpha_v, m.z * m.z);
         let slope = x * x + y * y;
         let scale = PI * self.alpha_u * self.alpha_v;
-        match kind {
+        match self.kind {
             Kind::Ggx => 1.0 / (scale * (slope + square) * (slope + square)),
             // Beyond 80 the exponential is below 1e-34, and further on it would be 0/0.
             Kind::Beckmann if slope > 80.0 * square => 0.0,
@@ -160,12 +150,18 @@ impl Microfacets {
     /// Walter et al. 2007, sec. 5.2: a rational fit, which Mitsuba uses too.
     #[inline]
     fn beckmann_masking_over_cosine(&self, v: Vec3) -> f32 {
-        let width = (self.alpha_u * v.x).hypot(self.alpha_v * v.y);
+        let width = self.stretched_width(v);
         if v.z >= 1.6 * width {
             return 1.0 / v.z;
         }
         let a = v.z / width;
         (3.535 + 2.181 * a) / ((1.0 + (2.276 + 2.577 * a) * a) * width)
+    }
+
+    /// Length of `v`'s horizontal part in the frame in which the roughness is 1.
+    #[inline]
+    fn stretched_width(&self, v: Vec3) -> f32 {
+        (self.alpha_u * v.x).hypot(self.alpha_v * v.y)
     }
 
     /// Length of `v` in the frame in which the GGX distribution is a unit hemisphere.
@@ -174,31 +170,50 @@ impl Microfacets {
         vec3(self.alpha_u * v.x, self.alpha_v * v.y, v.z).length()
     }
 
+    /// Projected area of the facets that `v` (z > 0) sees, per area of the surface: its cosine over the exact masking.
+    #[inline]
+    fn visible_area(&self, v: Vec3) -> f32 {
+        match self.kind {
+            Kind::Ggx => 0.5 * (v.z + self.stretched_length(v)),
+            Kind::Beckmann => View { z: v.z, width: self.stretched_width(v) }.area(),
+        }
+    }
+
     /// Density [1/sr] of `sample_visible` at the normal `m` seen from `v`, divided by their cosine v.m
     /// (Heitz 2018, eq. 3).
     #[inline]
     pub fn visible_pdf_over_cosine(&self, v: Vec3, m: Vec3) -> f32 {
-        2.0 * self.sampled_distribution(m) / (v.z + self.stretched_length(v))
+        self.distribution(m) / self.visible_area(v)
     }
 
-    /// A normal that `v` (z > 0) sees, distributed as the visible normals of GGX (Heitz 2018, sec. 4).
-    ///
-    /// Beckmann's normals are drawn from GGX's of the same roughness: their ratio has no pole anywhere (at
-    /// most 4/e), the sampling is exact for its own density, and no error function has to be inverted.
+    /// A normal that `v` (z > 0) sees.
     #[inline]
     pub fn sample_visible(&self, v: Vec3, u: Vec2) -> Vec3 {
         let stretched = vec3(self.alpha_u * v.x, self.alpha_v * v.y, v.z).normalize();
         let across = vec3(-stretched.y, stretched.x, 0.0).try_normalize().unwrap_or(Vec3::X);
-        let upwards = stretched.cross(across);
-        let (sine, cosine) = (TAU * u.y).sin_cos();
-        let radius = u.x.sqrt();
-        let (a, b) = (radius * cosine, radius * sine);
-        let share = 0.5 * (1.0 + stretched.z);
-        let b = (1.0 - share) * (1.0 - a * a).max(0.0).sqrt() + share * b;
-        let c = (1.0 - a * a - b * b).max(0.0).sqrt();
-        let normal = across * a + upwards * b + stretched * c;
+        let normal = match self.kind {
+            Kind::Ggx => visible_in_ggx(stretched, across, u),
+            Kind::Beckmann => {
+                let width = stretched.x.hypot(stretched.y);
+                let slope = View { z: stretched.z, width }.sample(u);
+                across.cross(Vec3::Z) * slope.x + across * slope.y + Vec3::Z
+            }
+        };
         vec3(self.alpha_u * normal.x, self.alpha_v * normal.y, normal.z.max(0.0)).normalize()
     }
+}
+
+/// A normal of the unit hemisphere as `v` sees it, `across` horizontal and at right angles to it (Heitz 2018, sec. 4).
+#[inline]
+fn visible_in_ggx(v: Vec3, across: Vec3, u: Vec2) -> Vec3 {
+    let upwards = v.cross(across);
+    let (sine, cosine) = (TAU * u.y).sin_cos();
+    let radius = u.x.sqrt();
+    let (a, b) = (radius * cosine, radius * sine);
+    let share = 0.5 * (1.0 + v.z);
+    let b = (1.0 - share) * (1.0 - a * a).max(0.0).sqrt() + share * b;
+    let c = (1.0 - a * a - b * b).max(0.0).sqrt();
+    across * a + upwards * b + v * c
 }
 
 #[cfg(test)]
@@ -227,9 +242,11 @@ mod tests {
 
     #[test]
     fn the_density_of_visible_normals_is_normalised() {
-        for (u, v) in [(0.3, 0.3), (0.2, 0.7), (1.0, 1.0)] {
-            let microfacets = Microfacets::new(Kind::Ggx, u, v);
-            for cosine in [1.0, 0.5, 0.1] {
+        let roughnesses = [(0.3, 0.3), (0.2, 0.7), (1.0, 1.0)];
+        let both =
+            [Kind::Beckmann, Kind::Ggx].map(|kind| roughnesses.map(|(u, v)| Microfacets::new(kind, u, v)));
+        for microfacets in both.into_iter().flatten() {
+            for cosine in [1.0, 0.5, 0.1, 0.01] {
                 let from = warp::spherical(cosine, 0.7);
                 let pdf = |m: Vec3| microfacets.visible_pdf_over_cosine(from, m) * from.dot(m).max(0.0);
                 let total = integral(pdf);

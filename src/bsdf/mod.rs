@@ -5,6 +5,7 @@
 //! angle [1/sr]: `pdf_fwd` is that of `wo` given `wi`, `pdf_rev` that of `wi` given `wo`. For a Dirac lobe
 //! they are the discrete probabilities of choosing that lobe.
 
+mod beckmann;
 mod blend;
 mod conductor;
 mod dielectric;

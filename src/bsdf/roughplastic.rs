@@ -32,16 +32,17 @@ fn entry(i: usize) -> (f32, f32) {
     (cosine, (1.0 - cosine * cosine).sqrt())
 }
 
-/// `f`(cosine to the facet, facet, direction) averaged over the facets that the direction of entry `i` sees.
+/// `f`(cosine to the facet, facet, direction) averaged over the facets that the direction of entry `i` sees. The points
+/// are denser towards the ends, where slopes grow without bound.
 fn average(microfacets: &Microfacets, i: usize, f: impl Fn(f32, Vec3, Vec3) -> f32) -> f32 {
-    let (rings, spokes) = (256, 24);
+    let (rings, spokes) = (96, 64);
     let (cosine, sine) = entry(i);
     let w = vec3(sine, 0.0, cosine);
     let (mut sum, mut total) = (0.0, 0.0);
     for j in 0..rings * spokes {
-        let u = vec2(((j / spokes) as f32 + 0.5) / rings as f32, ((j % spokes) as f32 + 0.5) / spokes as f32);
-        let m = microfacets.sample_visible(w, u);
-        let weight = f64::from(microfacets.distribution(m) / microfacets.sampled_distribution(m));
+        let v = vec2(((j / spokes) as f32 + 0.5) / rings as f32, ((j % spokes) as f32 + 0.5) / spokes as f32);
+        let m = microfacets.sample_visible(w, v * v * (3.0 - 2.0 * v));
+        let weight = f64::from((v * (1.0 - v)).element_product());
         sum += weight * f64::from(f(w.dot(m).max(0.0), m, w));
         total += weight;
     }

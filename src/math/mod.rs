@@ -8,6 +8,7 @@ pub mod channels;
 pub mod cie;
 pub mod colour;
 pub mod cubic;
+pub mod erf;
 pub mod exact_sums;
 pub mod frame;
 pub mod fresnel;
