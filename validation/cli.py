@@ -21,6 +21,7 @@ from validation import (
     guide,
     instructions,
     matrix,
+    models,
     package_tests,
     page,
     progressive,
@@ -55,6 +56,7 @@ def parser() -> argparse.ArgumentParser:
     add_closed_forms(commands)
     add_studies(commands)
     add_efficiency(commands)
+    add_models(commands)
     add_gallery(commands)
     add_instructions(commands)
     add_growth(commands)
@@ -205,6 +207,11 @@ def add_studies(commands: Commands) -> None:
 def add_efficiency(commands: Commands) -> None:
     command = add(commands, "efficiency", efficiency.run, "Time to equal error against Mitsuba on the scenes of scenes/efficiency.")
     efficiency.add_options(command)
+
+
+def add_models(commands: Commands) -> None:
+    command = add(commands, "models", models.run, "Variance and time of a sample, model by model, against Mitsuba's.")
+    models.add_options(command)
 
 
 def add_gallery(commands: Commands) -> None:
