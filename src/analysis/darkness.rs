@@ -5,7 +5,7 @@ use super::coverage::{self, Share};
 use crate::{
     bsdf::{BsdfModel, Transport},
     film::Film,
-    math::{Spectrum, SpectrumExt, Vec3, offset},
+    math::{Spectrum, SpectrumExt, Vec3},
     sampling::{Stream, stream::Purpose},
     scene::{Scene, build::Setup, lights::Light},
     shape::{Ray, SurfacePoint},
@@ -131,7 +131,7 @@ impl Look<'_> {
             return Some((Cause::Thick, depth, length));
         }
         match surface {
-            None if depth == 0.0 && !scene.lights.has_infinite() => Some((Cause::Nothing, 0.0, 0.0)),
+            None if depth == 0.0 && scene.lights.environment.is_none() => Some((Cause::Nothing, 0.0, 0.0)),
             None => None,
             Some(point) => self.from_surface(&segment, &point, &mut stream),
         }
@@ -179,7 +179,7 @@ impl Look<'_> {
         if bsdf.evaluate(point.uv, wi, wo, Transport::Radiance).value.max_element() <= 0.0 {
             return (wi.z * wo.z < 0.0).then_some((Cause::BackLit(point.shape), 0.0, 0.0));
         }
-        let origin = offset::leave_surface(point.position, point.error, point.normal, direction);
+        let origin = point.leaving(direction).origin;
         let t_max = if sample.point.is_infinite() { f32::INFINITY } else { squared.sqrt() * 0.999 };
         let ray = Ray { origin, direction, t_max };
         let End { depth, length, surface } = follow(scene, &mut segment.deflected(point, ray));

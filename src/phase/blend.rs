@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub struct Blend {
     /// In [0, 1]; where it varies, the middle of its bounds: what the blend is like on the whole.
     weight: f32,
-    varying: Option<Volume>,
+    varying: Option<Arc<Volume>>,
     parts: Arc<[Phase; 2]>,
 }
 
@@ -32,7 +32,7 @@ impl Blend {
     }
 
     /// The share of the second part is a volume, which is evaluated everywhere; beyond 0 and 1 it counts as these.
-    fn varying(weight: Volume, first: Phase, second: Phase) -> Self {
+    fn varying(weight: Arc<Volume>, first: Phase, second: Phase) -> Self {
         let [low, high] = weight.domain().unwrap_or([Vec3::ZERO; 2]);
         let [least, most] = weight.range(low, high).map(|bound| bound.x.clamp(0.0, 1.0));
         Self { varying: Some(weight), ..Self::new(0.5 * (least + most), first, second) }
@@ -40,7 +40,7 @@ impl Blend {
 
     fn weight_at(&self, position: Vec3) -> f32 {
         let varying = |weight: &Volume| weight.eval::<f32>(position).clamp(0.0, 1.0);
-        self.varying.as_ref().map_or(self.weight, varying)
+        self.varying.as_deref().map_or(self.weight, varying)
     }
 
     /// What `of` says of the parts, by their shares.
@@ -72,7 +72,7 @@ impl Blend {
                 let (first, second) = (part(first.object)?, part(second.object)?);
                 Ok(match weight {
                     Volume::Constant(weight) => Self::new(weight.eval(Vec3::ZERO), first, second),
-                    weight => Self::varying(weight, first, second),
+                    weight => Self::varying(Arc::new(weight), first, second),
                 })
             }
             others => Err(Error::new(
@@ -159,7 +159,7 @@ impl Phase {
     /// It at `time` [s]; none where it is the same at all times.
     pub fn at_time(&self, time: f64) -> Option<Self> {
         let Self::Blend(blend) = self else { return None };
-        let varying = blend.varying.as_ref().and_then(|weight| weight.at_time(time));
+        let varying = blend.varying.as_ref().and_then(|weight| weight.at_time(time)).map(Arc::new);
         let moved = blend.parts.each_ref().map(|part| part.at_time(time));
         if varying.is_none() && moved.iter().all(Option::is_none) {
             return None;

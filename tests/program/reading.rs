@@ -827,7 +827,8 @@ fn a_homogeneous_medium_may_have_an_albedo_of_voxels() {
     sandbox.run("info scene.json").refuses(&["an end", "surrounds the whole scene"]);
 }
 
-/// Mitsuba 3.9.1's mean of the image: 0.96613.
+/// Mitsuba 3.9.1's mean of the image: 0.96613; with the same weight everywhere it would be 0.9649, with the
+/// parts swapped 0.9637.
 #[test]
 fn a_blend_of_phase_functions_may_have_a_weight_of_voxels() {
     let weight = json!({"type": "gridvolume", "filename": "weight.vol"});
@@ -851,9 +852,9 @@ fn a_blend_of_phase_functions_may_have_a_weight_of_voxels() {
     write(1, &[0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0]);
     for (name, kind) in [("even", "homogeneous"), ("varying", "heterogeneous")] {
         fs::write(sandbox.path("scene.json"), of(json!(1), kind).to_string()).unwrap();
-        sandbox.run(&format!("render scene.json --quiet --spp 1024 -o {name}.exr")).ends(0);
+        sandbox.run(&format!("render scene.json --quiet --spp 8192 -o {name}.exr")).ends(0);
         let mean = sandbox.channels(&format!("{name}.exr"))["R"].iter().sum::<f32>() / 64.0;
-        assert!((mean - 0.966_13).abs() < 0.001, "{name}: {mean}");
+        assert!((mean - 0.966_13).abs() < 0.0006, "{name}: {mean}");
     }
     assert!(sandbox.run("info scene.json").ends(0).out().contains("mean cosine about 0.400"));
     write(3, &[[0.5; 4], [0.5; 4], [0.7; 4]].concat());

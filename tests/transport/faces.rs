@@ -28,7 +28,7 @@ fn turned(scene: &Value, degrees: f64) -> Value {
             ["cube", "rectangle", "sphere", "disk", "cylinder", "obj", "perspective", "orthographic"]
                 .contains(&part["type"].as_str().unwrap_or_default());
         if is_placed && degrees != 0.0 {
-            let mut steps = part.get("to_world").map_or(vec![], |steps| steps.as_array().unwrap().clone());
+            let mut steps = part.get("to_world").and_then(Value::as_array).cloned().unwrap_or_default();
             steps.push(turn.clone());
             part.insert("to_world".to_owned(), steps.into());
         }
@@ -38,7 +38,7 @@ fn turned(scene: &Value, degrees: f64) -> Value {
 
 /// The same parts with two of them in the other order.
 fn swapped(scene: &Value, a: &str, b: &str) -> Value {
-    let parts = scene.as_object().unwrap();
+    let Value::Object(parts) = scene else { panic!("no scene") };
     let swap = |name: &String| {
         if name == a {
             b.to_owned()

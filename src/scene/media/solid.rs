@@ -57,5 +57,5 @@ impl Solid {
 fn is_outward(shape: &Geometry) -> bool {
     let mut stream = Stream::new(6, 0, 0, Purpose::Pilot);
     let start = shape.sample_area(0, &mut stream);
-    shape.march(start.leaving(start.normal)).count() % 2 == 0
+    shape.march(start.leaving(start.normal)).count().is_multiple_of(2)
 }
