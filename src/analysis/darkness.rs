@@ -133,17 +133,12 @@ impl Look<'_> {
         match surface {
             None if depth == 0.0 && scene.lights.environment.is_none() => Some((Cause::Nothing, 0.0, 0.0)),
             None => None,
-            Some(point) => self.from_surface(&segment, &point, &mut stream),
+            Some(point) => self.at_surface(&segment, &point, &mut stream),
         }
     }
 
     /// What keeps light from the `point` that `segment` ends on.
-    fn from_surface(
-        &self,
-        segment: &Segment<'_>,
-        point: &SurfacePoint,
-        stream: &mut Stream,
-    ) -> Option<Found> {
+    fn at_surface(&self, segment: &Segment<'_>, point: &SurfacePoint, stream: &mut Stream) -> Option<Found> {
         let (bsdf, incoming) = (self.setup.scene.bsdf(point.shape), -segment.ray().direction);
         let wi = point.shading.to_local(incoming);
         if bsdf.survival(point.uv, wi) <= 0.0 {
