@@ -123,7 +123,8 @@ impl Look<'_> {
     fn through(&self, index: usize) -> Option<Found> {
         let scene = &self.setup.scene;
         let mut stream = Stream::new(0, index as u64, 0, Purpose::Study);
-        let (position, _) = self.film.sample(index * self.film.len() / RAYS, &mut stream);
+        let pixel = (stream.uniform() * self.film.len() as f32) as usize;
+        let (position, _) = self.film.sample(pixel.min(self.film.len() - 1), &mut stream);
         let ray = scene.sensor.ray(position, scene.sensor.sample_aperture(&mut stream)).ray;
         let mut segment = Segment::along(scene, ray, scene.media_map.sensor, false);
         let End { depth, length, surface } = follow(scene, &mut segment);

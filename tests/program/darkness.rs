@@ -26,6 +26,11 @@ fn a_black_image_says_why() {
     let fog = null_box([-1000.0; 3], [1000.0; 3], Some(medium(2.0, 0.5, 0.0)));
     let roof = json!({"type": "sphere", "radius": 20, "center": [0, 0, 50]});
     for (eye, parts, hint) in [
+        (
+            BEFORE,
+            vec![("wall", json!({"type": "rectangle"})), sun(1.0)],
+            "all light falls on the back of \"wall\"",
+        ),
         (BEFORE, vec![wall(), sun(1.0)], "all light falls on the back of \"wall\""),
         ([0.0, 0.0, -4.0], vec![wall(), sun(1.0)], "the camera sees the back of \"wall\""),
         (BEFORE, vec![wall(), ("lamp", turned)], "all lamps face away"),
