@@ -4,7 +4,7 @@ use super::{COMMON, InfiniteModel};
 use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
-    math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec3, similarity, vec3},
+    math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec3, similarity, vec3, warp},
     sampling::{Cell, Grid, Stream},
     texture::image::{self, Image},
 };
@@ -19,7 +19,8 @@ use std::{
 /// row are the poles.
 ///
 /// Directions are chosen by cells, the squares between four neighbouring pixels, in proportion to their mean
-/// luminance times their solid angle, uniform by solid angle within each: the poles are no special places.
+/// luminance times their solid angle, and within each by luminance too, which is bilinear in azimuth and cosine there: the
+/// poles are no special places.
 #[derive(Clone, Debug)]
 pub struct EnvMap {
     map: Arc<Map>,
@@ -34,11 +35,18 @@ pub struct EnvMap {
 struct Map {
     image: Image,
     cells: Grid,
+    /// One over the integral of [`Self::aim`], [1/sr]; 0 where that is black.
+    per_aim: f32,
+    /// How much less than its luminance a pixel counts.
+    spared: f32,
     /// Cosine to +y at each row, from 1 down to -1.
     cosines: Vec<f64>,
 }
 
-/// Where a direction points on the map: the cell, and how far into it.
+/// Of what `mis_compensation` spares, the least that is kept.
+const KEPT: f32 = 0.1;
+
+/// Where a direction points on the map: the cell, and how far into it by angles.
 #[derive(Clone, Copy, Debug)]
 struct Spot {
     column: usize,
@@ -53,7 +61,7 @@ impl EnvMap {
         file("filename", "The image: EXR, HDR, PNG, JPEG, BMP, TGA or PPM."),
         factor("scale", 1.0, "A factor on its radiance."),
         transform("to_world", "Turns or mirrors it."),
-        ignored("mis_compensation", "the balance heuristic is told of all strategies anyway");
+        boolean("mis_compensation", false, "Aims at what is brighter than the mean, and leaves the rest to the directions that surfaces choose (Karlik et al. 2019).");
         COMMON
     };
 
@@ -72,7 +80,7 @@ impl EnvMap {
             return Err(params.complain("to_world", expected, "one that scales or shears"));
         }
         let to_local = DMat3::from_mat4(to_world).transpose().as_mat3();
-        let (map, fluence) = Map::new(image);
+        let (map, fluence) = Map::new(image, params.boolean("mis_compensation")?);
         Ok(Self { map: Arc::new(map), to_local, scale, fluence: fluence * f64::from(scale) })
     }
 }
@@ -85,11 +93,13 @@ impl InfiniteModel for EnvMap {
 
     #[inline]
     fn sample(&self, stream: &mut Stream) -> Vec3 {
-        let Cell { column, row, .. } = self.map.cells.sample(stream);
-        let u = stream.square();
+        let Cell { column, row, within } = self.map.cells.sample(stream);
+        let [[a, b], [c, d]] = self.map.aims(column, row);
+        let y = warp::linear(a + b, c + d, within.y);
+        let x = warp::linear(a + y * (c - a), b + y * (d - b), within.x);
         let (top, bottom) = (self.map.cosines[row], self.map.cosines[row + 1]);
-        let cosine = (top + f64::from(u.y) * (bottom - top)) as f32;
-        let azimuth = (column as f32 + 0.5 + u.x) / self.map.image.width as f32 * TAU;
+        let cosine = (top + f64::from(y) * (bottom - top)) as f32;
+        let azimuth = (column as f32 + 0.5 + x) / self.map.image.width as f32 * TAU;
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let (s, c) = azimuth.sin_cos();
         (self.to_local.transpose() * vec3(sine * s, cosine, -sine * c)).normalize()
@@ -97,13 +107,15 @@ impl InfiniteModel for EnvMap {
 
     #[inline]
     fn pdf_sr(&self, towards: Vec3) -> f32 {
-        self.map.pdf_sr(&self.map.spot(self.to_local * towards))
+        let local = self.to_local * towards;
+        self.map.pdf_sr(local, &self.map.spot(local))
     }
 
     #[inline]
     fn radiance_and_pdf(&self, towards: Vec3) -> (Spectrum, f32) {
-        let spot = self.map.spot(self.to_local * towards);
-        (self.map.radiance(&spot) * self.scale, self.map.pdf_sr(&spot))
+        let local = self.to_local * towards;
+        let spot = self.map.spot(local);
+        (self.map.radiance(&spot) * self.scale, self.map.pdf_sr(local, &spot))
     }
 
     fn fluence(&self) -> DVec3 {
@@ -112,24 +124,36 @@ impl InfiniteModel for EnvMap {
 }
 
 impl Map {
-    /// The map and the integral of its radiance.
-    fn new(image: Image) -> (Self, DVec3) {
+    /// The map and the integral of its radiance; `spare` what is no brighter than the mean.
+    fn new(image: Image, spare: bool) -> (Self, DVec3) {
         let cosines =
             (0..image.height).map(|row| (PI * row as f64 / (image.height - 1) as f64).cos()).collect();
-        let mut map = Self { image, cells: Grid::new(1, &[0.0]), cosines };
-        let (width, rows) = (map.image.width, map.image.height - 1);
-        let mut weights = Vec::with_capacity(width * rows);
-        let mut fluence = DVec3::ZERO;
-        for row in 0..rows {
-            for column in 0..width {
-                let corners = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
-                let mean = 0.25 * corners.map(|(x, y)| map.pixel(x, y)).iter().sum::<Spectrum>();
-                weights.push(f64::from(mean.luminance()) * map.solid_angle(row));
-                fluence += mean.as_dvec3() * map.solid_angle(row);
-            }
+        let mut map = Self { image, cells: Grid::new(1, &[0.0]), per_aim: 0.0, spared: 0.0, cosines };
+        let fluence =
+            map.places().map(|(x, y)| map.mean(x, y).as_dvec3() * map.solid_angle(y)).sum::<DVec3>();
+        if spare {
+            map.spared = (fluence / (4.0 * PI)).as_vec3().luminance();
         }
-        map.cells = Grid::new(width, &weights);
+        let weight = |(x, y)| {
+            map.aims(x, y).as_flattened().iter().map(|aim| f64::from(0.25 * aim)).sum::<f64>()
+                * map.solid_angle(y)
+        };
+        let weights: Vec<f64> = map.places().map(weight).collect();
+        map.cells = Grid::new(map.image.width, &weights);
+        map.per_aim = if map.cells.is_empty() { 0.0 } else { map.cells.total().recip() as f32 };
         (map, fluence)
+    }
+
+    /// Column and row of every cell, row by row.
+    fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        let width = self.image.width;
+        (0..self.image.height - 1).flat_map(move |row| (0..width).map(move |column| (column, row)))
+    }
+
+    /// The mean over a cell.
+    fn mean(&self, column: usize, row: usize) -> Spectrum {
+        let corners = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
+        0.25 * corners.map(|(x, y)| self.pixel(x, y)).iter().sum::<Spectrum>()
     }
 
     #[inline]
@@ -138,9 +162,28 @@ impl Map {
         mix(row).lerp(mix(row + 1), y)
     }
 
+    /// Density at `local` [1/sr], which is at `spot`.
     #[inline]
-    fn pdf_sr(&self, &Spot { column, row, .. }: &Spot) -> f32 {
-        self.cells.probability(column, row) / self.solid_angle(row) as f32
+    fn pdf_sr(&self, local: Vec3, &Spot { column, row, x, .. }: &Spot) -> f32 {
+        let (top, bottom) = (self.cosines[row], self.cosines[row + 1]);
+        let y = ((top - cosine(local)) / (top - bottom)).clamp(0.0, 1.0) as f32;
+        let [[a, b], [c, d]] = self.aims(column, row);
+        let (left, right) = (a + y * (c - a), b + y * (d - b));
+        (left + x * (right - left)) * self.per_aim
+    }
+
+    /// What the density is in proportion to, at the corners of a cell, row by row.
+    #[inline]
+    fn aims(&self, column: usize, row: usize) -> [[f32; 2]; 2] {
+        [row, row + 1].map(|row| [column, column + 1].map(|column| self.aim(column, row)))
+    }
+
+    /// The same at a pixel: its luminance, or what of it is not spared. Nothing is left out altogether, as some strategies have
+    /// no other way to reach it.
+    #[inline]
+    fn aim(&self, column: usize, row: usize) -> f32 {
+        let luminance = self.pixel(column, row).luminance();
+        (luminance - self.spared).max(KEPT * luminance)
     }
 
     #[inline]
@@ -167,4 +210,12 @@ impl Map {
         let row = (y as usize).min(self.image.height - 2);
         Spot { column, row, x: (x - column as f32).min(1.0), y: (y - row as f32).clamp(0.0, 1.0) }
     }
+}
+
+/// Of a direction to +y, as precise near the poles as between them.
+#[inline]
+fn cosine(local: Vec3) -> f64 {
+    let across = f64::from(local.x).powi(2) + f64::from(local.z).powi(2);
+    let y = f64::from(local.y);
+    if across < 0.5 { (1.0 - across).sqrt().copysign(y) } else { y }
 }

@@ -130,12 +130,11 @@ impl Cells {
 
     #[inline]
     fn sample(&self, stream: &mut Stream) -> Vec2 {
-        let u = stream.square();
         if self.grid.is_empty() || stream.uniform() < UNIFORM {
-            return u;
+            return stream.square();
         }
-        let Cell { column, row, .. } = self.grid.sample(stream);
-        vec2((column as f32 + u.x) / self.columns as f32, (row as f32 + u.y) / self.rows as f32)
+        let Cell { column, row, within } = self.grid.sample(stream);
+        (vec2(column as f32, row as f32) + within) / vec2(self.columns as f32, self.rows as f32)
     }
 
     /// Density over the unit square.

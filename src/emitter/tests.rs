@@ -116,6 +116,10 @@ fn examples(folder: &Path) -> Vec<Emitter> {
         built("envmap", &[("filename", file(folder, "image.exr"))]),
         built(
             "envmap",
+            &[("filename", file(folder, "image.exr")), ("mis_compensation", Value::Boolean(true))],
+        ),
+        built(
+            "envmap",
             &[("filename", file(folder, "image.exr")), ("to_world", turned()), ("scale", Value::Float(2.0))],
         ),
     ]
@@ -149,6 +153,34 @@ fn power_is_what_leaves() {
         let found: f64 = found.iter().sum();
         assert!((found / reported - 1.0).abs() < 1e-2, "{}: {found}, told {reported}", emitter.name);
     }
+}
+
+/// A map between its brightest directions and its darkest: the density follows the radiance within the cells too, and with
+/// compensation more than that, though nowhere down to 0.
+#[test]
+fn a_map_is_aimed_at_where_it_is_bright() {
+    let folder = desk();
+    let sky = |compensated| {
+        let given = [
+            ("filename", file(folder.path(), "full.exr")),
+            ("mis_compensation", Value::Boolean(compensated)),
+        ];
+        let Kind::Infinite(sky) = built("envmap", &given).unwrap().kind else { panic!() };
+        sky
+    };
+    let (plain, compensated) = (sky(false), sky(true));
+    let total = plain.fluence().as_vec3().dot(LUMINANCE);
+    let mut stream = Stream::new(3, 0, 0, Purpose::Study);
+    let (mut least, mut most) = (f32::INFINITY, 0f32);
+    for _ in 0..10_000 {
+        let towards = warp::to_sphere(stream.square());
+        let (radiance, pdf) = plain.radiance_and_pdf(towards);
+        let ratio = pdf * total / radiance.dot(LUMINANCE);
+        assert!((ratio - 1.0).abs() < 0.25, "{towards}: {ratio}");
+        let change = compensated.pdf_sr(towards) / pdf;
+        (least, most) = (least.min(change), most.max(change));
+    }
+    assert!(least > 0.1 && least < 0.7 && most > 1.5, "{least} to {most}");
 }
 
 #[test]

@@ -100,6 +100,18 @@ pub fn cone_pdf(one_minus_cos: f32) -> f32 {
     1.0 / (2.0 * PI * one_minus_cos)
 }
 
+/// A number in [0, 1] of density proportional to that of a line from `a` at 0 to `b` at 1, both >= 0; uniform if both are 0.
+#[inline]
+pub fn linear(a: f32, b: f32, u: f32) -> f32 {
+    let sum = a + b;
+    if sum <= 0.0 {
+        return u;
+    }
+    let (a, b) = (a / sum, b / sum);
+    let bottom = a + (a * a + u * (b * b - a * a)).max(0.0).sqrt();
+    if bottom > 0.0 { (u / bottom).min(1.0) } else { 0.0 }
+}
+
 /// Uniform barycentric weights (of the second and third corner) of a triangle; density 1/area.
 #[inline]
 pub fn to_triangle(u: Vec2) -> Vec2 {

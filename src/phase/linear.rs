@@ -1,6 +1,6 @@
 //! Scattering a little more to one side: the linear-anisotropic phase function (P03T 2.3.2).
 
-use super::{Deflection, PhaseModel, deflect, table};
+use super::{Deflection, PhaseModel, deflect};
 use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Vec3, warp};
@@ -43,7 +43,7 @@ impl PhaseModel for Linear {
     #[inline]
     fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
         let u = stream.square();
-        let cosine = 2.0 * table::linear(1.0 - self.g, 1.0 + self.g, u.x) - 1.0;
+        let cosine = 2.0 * warp::linear(1.0 - self.g, 1.0 + self.g, u.x) - 1.0;
         deflect(direction, warp::spherical(cosine, TAU * u.y))
     }
 

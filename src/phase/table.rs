@@ -70,14 +70,6 @@ fn entry(params: &Params<'_>, word: &str) -> Result<f64> {
     }
 }
 
-/// Position in [0, 1] distributed linearly from `a` to `b` (>= 0, not both 0).
-#[inline]
-pub(super) fn linear(a: f32, b: f32, u: f32) -> f32 {
-    let root = (a * a + u * (b * b - a * a)).max(0.0).sqrt();
-    let bottom = a + root;
-    if bottom > 0.0 { (u * (a + b) / bottom).min(1.0) } else { 0.0 }
-}
-
 impl PhaseModel for Table {
     #[inline]
     fn pdf_sr(&self, turn: Deflection) -> f32 {
@@ -93,7 +85,7 @@ impl PhaseModel for Table {
         let Entries { values, sections, .. } = &*self.0;
         let (index, _) = sections.sample(stream.uniform());
         let u = stream.square();
-        let position = index as f32 + linear(values[index], values[index + 1], u.x);
+        let position = index as f32 + warp::linear(values[index], values[index + 1], u.x);
         let cosine = (2.0 * position / (values.len() - 1) as f32 - 1.0).clamp(-1.0, 1.0);
         deflect(direction, warp::spherical(cosine, TAU as f32 * u.y))
     }

@@ -66,6 +66,15 @@ impl Discrete {
         let index = self.cumulative.partition_point(|c| *c <= u).min(self.cumulative.len() - 1);
         (index, self.probability_precisely(index))
     }
+
+    /// The index as by [`Self::sample_precisely`], and how far into its section `u` is, in [0, 1): uniform, if `u` is.
+    #[inline]
+    pub fn sample_within(&self, u: f64) -> (usize, f32) {
+        let (index, probability) = self.sample_precisely(u);
+        let past = u - (self.cumulative[index] - probability);
+        let within = if probability > 0.0 { (past / probability) as f32 } else { 0.0 };
+        (index, within.clamp(0.0, 1.0 - f32::EPSILON))
+    }
 }
 
 #[cfg(test)]
@@ -79,6 +88,7 @@ mod tests {
         assert_eq!(d.sample(0.2499), (0, 0.25));
         assert_eq!(d.sample(0.25), (2, 0.75));
         assert_eq!(d.sample(0.999_999), (2, 0.75));
+        assert_eq!((d.sample_within(0.125), d.sample_within(0.625)), ((0, 0.5), (2, 0.5)));
         assert!(Discrete::new([0.0]).is_empty() && Discrete::new([]).is_empty());
     }
 }

@@ -1,6 +1,7 @@
 //! Choice among the cells of a grid in proportion to given weights: rows first, then columns.
 
 use super::{Discrete, Stream};
+use crate::math::{Vec2, vec2};
 
 /// A discrete distribution over rows x columns.
 #[derive(Clone, Debug)]
@@ -16,8 +17,8 @@ pub struct Cell {
     pub column: usize,
     /// From 0.
     pub row: usize,
-    /// Its probability.
-    pub probability: f32,
+    /// How far into it, along the columns and the rows: uniform.
+    pub within: Vec2,
 }
 
 impl Grid {
@@ -37,12 +38,13 @@ impl Grid {
         self.rows.total()
     }
 
-    /// A cell; those of weight 0 never come.
+    /// A place in a cell, by two numbers, of which points that are spread evenly stay so within rows; cells of weight 0
+    /// never come.
     #[inline]
     pub fn sample(&self, stream: &mut Stream) -> Cell {
-        let (row, of_row) = self.rows.sample_precisely(stream.uniform_precisely());
-        let (column, of_column) = self.columns[row].sample_precisely(stream.uniform_precisely());
-        Cell { column, row, probability: (of_row * of_column) as f32 }
+        let (row, down) = self.rows.sample_within(stream.uniform_precisely());
+        let (column, along) = self.columns[row].sample_within(stream.uniform_precisely());
+        Cell { column, row, within: vec2(along, down) }
     }
 
     /// Probability of a cell.
@@ -64,15 +66,17 @@ mod tests {
         let grid = Grid::new(3, &weights);
         let mut stream = Stream::new(5, 0, 0, Purpose::Study);
         let n = 200_000;
-        let mut counts = [0; 9];
+        let (mut counts, mut quarters) = ([0; 9], [0; 4]);
         for _ in 0..n {
             let cell = grid.sample(&mut stream);
             counts[cell.row * 3 + cell.column] += 1;
-            assert_eq!(cell.probability, grid.probability(cell.column, cell.row));
+            let quarter = (2.0 * cell.within).floor();
+            quarters[(2.0 * quarter.y + quarter.x) as usize] += 1;
         }
         let expected = weights.map(|w| w / grid.total() * f64::from(n));
+        assert!(testing::chi_square(&quarters, &[f64::from(n) / 4.0; 4]) > testing::significance(1));
         assert!(testing::chi_square(&counts, &expected) > testing::significance(1));
-        assert_eq!(grid.probability(0, 1), 0.0);
+        assert_eq!((grid.probability(0, 1), grid.probability(2, 0)), (0.0, (3.0 / grid.total()) as f32));
         assert!(Grid::new(2, &[0.0; 4]).is_empty());
     }
 }
