@@ -537,7 +537,9 @@ impl<'a> Builder<'a> {
             self.apart = apart.clone();
             return geometry.clone();
         }
-        self.apart.separate(&mut shapes, &self.natures);
+        let positions = self.emitters.iter().filter_map(|placed| placed.emitter.position());
+        let lamps: Vec<Vec3> = positions.map(|position| (position - self.recentre).as_vec3()).collect();
+        self.apart.separate(&mut shapes, &self.natures, &lamps);
         Geometry::build(shapes)
     }
 

@@ -13,7 +13,7 @@ pub use free_flight::{
 pub use transmittance::{SegmentTransmittance, transmittance};
 
 use crate::{
-    math::{RaySegment, Spectrum, Vec3, measure},
+    math::{RaySegment, Spectrum, Vec3, measure, offset},
     medium::{MediaProfile, Medium, MediumIndex, MediumInterval},
     sampling::Stream,
     scene::Scene,
@@ -143,7 +143,9 @@ impl<'a> Segment<'a> {
         let overshot = aim.dot(direction) <= 0.0;
         self.ray = match overshot {
             true => Ray { t_max: 0.0, ..self.ray },
-            false => Ray { origin, direction: aim, t_max },
+            // An end that lies on a boundary is before it: positions there are rounded by more than what is left, and the
+            // segment would cross to and fro for ever.
+            false => Ray { origin, direction: aim, t_max: t_max * (1.0 - offset::gamma(8)) },
         };
     }
 }
@@ -201,5 +203,28 @@ mod tests {
         let expected = -f64::from(ray.t_max - 1.0) * 1e6;
         let found = f64::from(passed.pdf).ln();
         assert!((found - expected).abs() < 0.07, "ln T {found}, not {expected}");
+    }
+
+    /// Segments to points in the plane of a boundary that they reach from within: each takes an end there for one before the
+    /// boundary or beyond, but takes it once.
+    #[test]
+    fn ends_on_a_boundary_are_reached() {
+        let sensor = r#""sensor": {"type": "perspective", "to_world":
+            [{"type": "lookat", "origin": [0.3, 1.1, 1.2], "target": [0, 1, 0], "up": [0, 1, 0]}]}"#;
+        let cube = r#""cube": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "homogeneous",
+            "sigma_t": 0.25}, "to_world": [{"type": "scale", "value": [1.5, 1, 1.5]}]}"#;
+        let Setup { scene, .. } = &scenes::build(&[sensor, cube, r#""sky": {"type": "constant"}"#]);
+        let mut passed = 0;
+        for index in 0..300_000 {
+            let mut stream = Stream::new(5, index, 0, Purpose::Study);
+            let [from, to] = [0, 1].map(|_| scene.geometry.sample_area(0, &mut stream));
+            let origin = from.position - from.normal * (0.5 * stream.uniform());
+            let Some((direction, t_max, _)) = measure::between(origin, to.position) else { continue };
+            let ray = Ray { origin, direction, t_max };
+            let medium = scene.surface(0).boundary.interior.unwrap();
+            let found = transmittance::<Bounded>(scene, ray, 0.0, medium, false, &mut stream);
+            passed += u32::from(found.is_some());
+        }
+        assert!(passed > 290_000, "{passed}");
     }
 }

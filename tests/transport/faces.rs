@@ -364,3 +364,42 @@ fn rays_meet_faces_in_order() {
         assert!(wrong <= 2, "{degrees}: {wrong} rays of 200,000");
     }
 }
+
+/// A plate between a floor and a lamp, a null face in its plane before it in the file, and the camera at that height: shadow rays
+/// passed the plate, as faces were set apart by what is near the camera's height, which is nothing.
+#[test]
+fn a_plate_at_the_height_of_the_camera_casts_its_shadow() {
+    let with_pane = |pane: f64| {
+        scene(&[
+            ("sensor", camera([0.0, 1.2, 3.0], [0.0, 0.4, 0.0], 6)),
+            ("floor", floor(0.0, 3.0, 0.6)),
+            ("pane", with(floor(pane, 0.8, 0.5), &[("bsdf", json!({"type": "null"}))])),
+            ("plate", floor(1.2, 0.6, 0.5)),
+            ("lamp", point([0.2, 2.5, 0.1], 5.0)),
+        ])
+    };
+    let mut claims = Claims::new();
+    let [found, expected] = [(1.2, 0), (1.2 + GAP, 100)]
+        .map(|(pane, first)| sample(&Stage::new(&with_pane(pane)), Strategies::PT, 64, first));
+    claims.equal("a plate", &found, &expected);
+    claims.settle();
+}
+
+/// Ends of connections to a panel may lie on the fog's face before it, to the last digit: such segments crossed it to and fro
+/// without end.
+#[test]
+fn connections_to_a_panel_behind_a_face_come_to_an_end() {
+    let stage = Stage::new(&scene(&[
+        ("sensor", camera([0.3, 1.1, 1.2], [-0.3, 0.9, -1.0], 6)),
+        ("floor", floor(0.0, 1.5, 0.6)),
+        ("ceiling", with(lamp_panel([0.0, 2.0, 0.0], 1.5, 0.0), &[("bsdf", diffuse(0.7))])),
+        ("panel", lamp_panel([0.0, 2.0, 0.0], 0.3, 6.0)),
+        ("fog", null_box([-1.5, 0.0, -1.5], [1.5, 2.0, 1.5], Some(medium(0.25, 0.9, 0.0)))),
+        ("depth", depth(12)),
+    ]));
+    let mut claims = Claims::new();
+    let [pt, bdpt] =
+        [(Strategies::PT, 0), (Strategies::BDPT, 100)].map(|(set, first)| sample(&stage, set, 1024, first));
+    claims.equal("bdpt", &bdpt, &pt);
+    claims.settle();
+}

@@ -12,7 +12,7 @@
 mod pairs;
 
 use crate::{
-    math::{Vec3, offset::gamma},
+    math::{DVec3, Vec3, offset::gamma},
     sampling::{Stream, stream::Purpose},
     shape::{Hit, Patch, Ray, Shape, ShapeModel as _},
 };
@@ -82,12 +82,13 @@ pub struct Apart {
 }
 
 impl Apart {
-    /// Sets faces of `shapes` apart that touch; positions are relative to the camera.
-    pub fn separate(&mut self, shapes: &mut [Shape], natures: &[Nature]) {
+    /// Sets faces of `shapes` apart that touch; positions are relative to the camera, those of `lamps` too.
+    pub fn separate(&mut self, shapes: &mut [Shape], natures: &[Nature], lamps: &[Vec3]) {
         for _ in 0..ROUNDS {
             let moves: Vec<Move> = {
                 let faces = Faces::new(shapes, natures);
-                let found = pairs(shapes, &faces.bounds, &|pair| faces.closeness(pair));
+                let found =
+                    pairs(shapes, &faces.bounds, faces.farthest(lamps), &|pair| faces.closeness(pair));
                 found.iter().filter_map(|pair| faces.order(pair)).collect()
             };
             if moves.is_empty() {
@@ -154,6 +155,12 @@ impl<'a> Faces<'a> {
             let is_solid = self.natures[shape].is_lid || self.shapes[shape].is_solid();
             is_solid.then(|| self.shapes[shape].turn())
         })
+    }
+
+    /// The largest coordinate, per axis, that rays start from.
+    fn farthest(&self, lamps: &[Vec3]) -> DVec3 {
+        let lamps = lamps.iter().map(|lamp| lamp.abs().as_dvec3());
+        self.bounds.iter().map(pairs::far).chain(lamps).fold(DVec3::ZERO, DVec3::max)
     }
 
     /// In proportion to coordinates, how near faces of two shapes may come before rays step over one of them, or meet them in

@@ -13,6 +13,8 @@ use std::time::Duration;
 
 /// The most that faces may be apart to count as touching, over coordinates: shapes that are farther apart are not compared.
 const MOST: f64 = 3e-5;
+/// Rays from farther away than so many times the coordinates of two shapes do not tell where these are.
+const BEYOND: f64 = 100.0;
 /// How near faces may come, over their [`Patch::skew`].
 const SKEW: f64 = gamma(48) as f64;
 
@@ -45,18 +47,22 @@ struct Boxed {
 }
 
 /// All pairs of faces of different shapes, in their `bounds`, that are nearer than they may be: `closeness` is that of two
-/// shapes over their coordinates.
-pub fn pairs(shapes: &[Shape], bounds: &[(Vec3, Vec3)], closeness: &dyn Fn([u32; 2]) -> f64) -> Vec<Pair> {
+/// shapes over the coordinates between which rays run to them, and `farthest` the largest of the whole scene.
+pub fn pairs(
+    shapes: &[Shape],
+    bounds: &[(Vec3, Vec3)],
+    farthest: DVec3,
+    closeness: &dyn Fn([u32; 2]) -> f64,
+) -> Vec<Pair> {
     let mut order: Vec<u32> = (0..shapes.len() as u32).collect();
     order.sort_by(|a, b| bounds[*a as usize].0.x.total_cmp(&bounds[*b as usize].0.x));
-    let farthest = bounds.iter().map(far).fold(DVec3::ZERO, DVec3::max).x * MOST;
     let mut found = Vec::new();
     for (index, &a) in order.iter().enumerate() {
-        let end = f64::from(bounds[a as usize].1.x) + farthest;
+        let end = f64::from(bounds[a as usize].1.x) + farthest.x * MOST;
         let meets = |b: &&u32| f64::from(bounds[**b as usize].0.x) <= end;
         for &b in order[index + 1..].iter().take_while(meets) {
             let pair = [a.min(b), a.max(b)];
-            if let Some(near) = Near::of(shapes, bounds, pair, closeness) {
+            if let Some(near) = Near::of(shapes, bounds, pair, farthest, closeness(pair)) {
                 near.add_touching(pair, &mut found);
             }
         }
@@ -74,10 +80,12 @@ impl<'a> Near<'a> {
         shapes: &'a [Shape],
         bounds: &[(Vec3, Vec3)],
         pair: [u32; 2],
-        closeness: &dyn Fn([u32; 2]) -> f64,
+        farthest: DVec3,
+        closeness: f64,
     ) -> Option<Self> {
         let [a, b] = pair.map(|shape| bounds[shape as usize]);
         let far = far(&a).max(far(&b));
+        let far = far.max(farthest.min(DVec3::splat(BEYOND * far.max_element())));
         let slack = (far * MOST).as_vec3();
         let (low, high) = (a.0.max(b.0) - slack, a.1.min(b.1) + slack);
         if low.cmpgt(high).any() {
@@ -88,7 +96,7 @@ impl<'a> Near<'a> {
             shapes: pair.map(|shape| &shapes[shape as usize]),
             common: Aabb::new(low.into(), high.into()),
             slack,
-            reach: far * closeness(pair),
+            reach: far * closeness,
             smaller: size(a).min(size(b)),
         })
     }
