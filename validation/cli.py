@@ -20,6 +20,7 @@ from validation import (
     growth,
     guide,
     instructions,
+    lottery,
     matrix,
     models,
     package_tests,
@@ -64,6 +65,7 @@ def parser() -> argparse.ArgumentParser:
     add_progressive(commands)
     add_guide(commands)
     add_thresholds(commands)
+    add_lottery(commands)
     add_plume(commands)
     add_page(commands)
     add_stability(commands)
@@ -247,6 +249,11 @@ def add_guide(commands: Commands) -> None:
 def add_thresholds(commands: Commands) -> None:
     command = add(commands, "thresholds", thresholds.run, "P03T's tests A-F at its own thresholds: time with a guide and without, learning included.")
     thresholds.add_options(command)
+
+
+def add_lottery(commands: Commands) -> None:
+    command = add(commands, "lottery", lottery.run, "The default choice of strategies against others, in scenes that nobody made.")
+    lottery.add_options(command)
 
 
 def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:
