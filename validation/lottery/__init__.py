@@ -64,13 +64,15 @@ def interval(text: str) -> range:
 
 @dataclass(frozen=True)
 class Row:
-    """What was found in a scene: costs of the default over others'."""
+    """What was found in a scene."""
 
     seed: int
     words: str
     best: str
     gains: dict[str, Gain]
-    """Over the best, `pt` and all alike; `pt` is left out where it does not reach all light."""
+    """Costs of the default over those of the best, of `pt` and of all alike; `pt` is left out where it does not reach all light."""
+    search: dict[str, float]
+    """Costs of all others as the search found them, relMSE x seconds."""
     plan: dict[str, Any]
     """What the default chose."""
 
@@ -124,8 +126,9 @@ def judged(seed: int, options: argparse.Namespace) -> Row:
     reaching = {name: words for name, words in OTHERS.items() if shot(path, words, 1, 1).unreached() <= images[0].unreached()}
     if "pt" in reaching:
         cross_check(seed, judge, shots(path, PT, options.reference, REFERENCE))
-    best = min(reaching, key=lambda name: abs(judge.cost(reaching[name], SEARCH, options.seconds / 2).mean))
-    return Row(seed, found.words, best, gains(judge, best, reaching, range(1, options.renders + 1)), images[0].report["plan"])
+    search = {name: judge.cost(words, SEARCH).mean for name, words in reaching.items()}
+    best = min(search, key=lambda name: abs(search[name]))  # below 0 is what the reference cannot tell from 0
+    return Row(seed, found.words, best, gains(judge, best, reaching, range(1, options.renders + 1)), search, images[0].report["plan"])
 
 
 def gains(judge: Judge, best: str, reaching: dict[str, str], seeds: range) -> dict[str, Gain]:

@@ -2,7 +2,6 @@
 sample too. Every image is one process with one thread."""
 
 import json
-import math
 import os
 import subprocess
 import tempfile
@@ -19,8 +18,10 @@ from validation.guide import Gain
 
 FLOOR = 0.01
 """Of relMSE: this part of the squared mean is added to a pixel's square."""
-CLOSE = 0.6
-"""A render of this part of the wanted seconds is long enough."""
+CLOSE = 0.7
+"""A render of this part of the wanted seconds is long enough to tell how many samples take all of them."""
+STEPS = 6
+"""It is tried so often."""
 TILES = 4
 """Means of this many by this many tiles must agree."""
 
@@ -55,14 +56,17 @@ def shot(scene: Path, words: str, spp: int, seed: int) -> Shot:
 
 
 def spp_for(scene: Path, words: str, seconds: float) -> int:
-    """So many samples a pixel take about that long: by renders that become longer."""
-    spp = 1
-    for _ in range(8):
+    """So many samples a pixel take about that long: by renders that become longer, as what precedes the first sample may take
+    most of the time."""
+    before, spp = (0, 0.0), 4
+    for _ in range(STEPS):
         taken = shot(scene, words, spp, 1).seconds
+        rate = (spp - before[0]) / max(taken - before[1], 1e-3)
+        wanted = max(1, round(spp + (seconds - taken) * rate))
         if taken > CLOSE * seconds:
             break
-        spp = math.ceil(spp * min(16, seconds / max(taken, 1e-3)))
-    return max(1, round(spp * min(1, seconds / taken)))
+        before, spp = (spp, taken), min(max(wanted, spp + 1), 16 * spp)
+    return wanted
 
 
 def shots(scene: Path, words: str, seconds: float, seeds: Iterable[int]) -> list[Shot]:
@@ -131,7 +135,7 @@ class Judge:
     reference: Reference
     seconds: float
 
-    def cost(self, words: str, seeds: Iterable[int], seconds: float | None = None) -> Cost:
+    def cost(self, words: str, seeds: Iterable[int]) -> Cost:
         """Of these options."""
-        found = shots(self.scene, words, seconds or self.seconds, seeds)
+        found = shots(self.scene, words, self.seconds, seeds)
         return Cost([self.reference.relmse(one.image) * one.seconds for one in found])
