@@ -50,9 +50,9 @@ BEARABLE = 1.2
 def add_options(command: argparse.ArgumentParser) -> None:
     """Those of the command line."""
     command.add_argument("--seeds", type=interval, default=range(0, 20), metavar="A..B", help="of the scenes, both included (default 0..19)")
-    command.add_argument("--renders", type=int, default=4, help="independent renders of each contender, at least 2 (default %(default)s)")
+    command.add_argument("--renders", type=int, default=4, help="independent renders of each contender, at least 3 (default %(default)s)")
     command.add_argument("--seconds", type=float, default=1.5, help="of the processor, for each (default %(default)s)")
-    command.add_argument("--reference", type=float, default=4, help=f"seconds of each of the {len(REFERENCE)} images of a reference (default %(default)s)")
+    command.add_argument("--reference", type=float, default=2, help=f"seconds of each of the {len(REFERENCE)} images of a reference (default %(default)s)")
     command.add_argument("--output", type=Path, default=OUTPUT / "lottery", help="folder for the scenes and lottery.json (default %(default)s)")
 
 
@@ -85,8 +85,8 @@ class Row:
 
 def run(options: argparse.Namespace) -> bool:
     """Judges all scenes; true if none is marked and nothing failed."""
-    if options.renders < 2:
-        raise Failure("--renders is below 2: no error can be known", "give at least 4")
+    if options.renders < 3:
+        raise Failure("--renders is below 3: no error can be known", "give at least 4")
     rows: list[Row] = []
     failed = 0
     print("| seed | scene | best of others | default over it | over pt | over all alike | |\n|---|---|---|---|---|---|---|", flush=True)
@@ -127,7 +127,7 @@ def judged(seed: int, options: argparse.Namespace) -> Row:
     if "pt" in reaching:
         cross_check(seed, judge, shots(path, PT, options.reference, REFERENCE))
     search = {name: judge.cost(words, SEARCH).mean for name, words in reaching.items()}
-    best = min(search, key=lambda name: abs(search[name]))  # below 0 is what the reference cannot tell from 0
+    best = min(search, key=lambda name: search[name])
     return Row(seed, found.words, best, gains(judge, best, reaching, range(1, options.renders + 1)), search, images[0].report["plan"])
 
 

@@ -77,26 +77,24 @@ def shots(scene: Path, words: str, seconds: float, seeds: Iterable[int]) -> list
 
 @dataclass(frozen=True)
 class Reference:
-    """Two independent means of as many images."""
+    """Independent images, of which the mean is what errors are relative to, and what others must agree with."""
 
-    halves: tuple[np.ndarray, np.ndarray]
     images: np.ndarray
 
     @staticmethod
     def of(shots: list[Shot]) -> "Reference":
-        """Of an even number."""
-        images = np.array([one.image for one in shots])
-        return Reference((images[::2].mean(axis=0), images[1::2].mean(axis=0)), images)
+        return Reference(np.array([one.image for one in shots]))
 
     @property
     def mean(self) -> np.ndarray:
         return self.images.mean(axis=0)
 
-    def relmse(self, image: np.ndarray) -> float:
-        """Without bias by the reference's own noise: of the product of an image's errors against either half the expected
-        value is its squared error."""
-        product = (image - self.halves[0]) * (image - self.halves[1])
-        return float(np.mean(product / (self.mean**2 + FLOOR * self.mean.mean() ** 2)))
+    def relmse(self, images: np.ndarray) -> list[float]:
+        """Of independent images without bias, by how they differ from each other: measured against the reference, its own few
+        bright pixels would decide. Whether there is bias, `score` tells."""
+        squares = (images - images.mean(axis=0)) ** 2 / (1 - 1 / len(images))
+        parts = squares / (self.mean**2 + FLOOR * self.mean.mean() ** 2)
+        return [float(part.mean()) for part in parts]
 
     def score(self, shots: list[Shot]) -> float:
         """How far those are off: the greatest z of tiles, over what it may be where nothing is wrong."""
@@ -138,4 +136,5 @@ class Judge:
     def cost(self, words: str, seeds: Iterable[int]) -> Cost:
         """Of these options."""
         found = shots(self.scene, words, self.seconds, seeds)
-        return Cost([self.reference.relmse(one.image) * one.seconds for one in found])
+        errors = self.reference.relmse(np.array([one.image for one in found]))
+        return Cost([error * one.seconds for error, one in zip(errors, found)])

@@ -35,8 +35,9 @@ TRUTH = np.ones((24, 32, 3))
 
 def test_noise_of_the_reference_is_no_error() -> None:
     reference = Reference.of(shots(TRUTH, 0.1, 1))
-    assert reference.relmse(TRUTH) == pytest.approx(0, abs=5e-4), "its own would be 0.1^2 / 8 = 1.25e-3"
-    assert reference.relmse(1.2 * TRUTH) == pytest.approx(0.04 / 1.01, rel=0.1)
+    images = np.array([one.image for one in shots(TRUTH, 0.2, 2)])
+    assert reference.relmse(images) == pytest.approx([0.04 / 1.01] * 8, rel=0.1)
+    assert reference.relmse(np.array([TRUTH, TRUTH])) == pytest.approx([0, 0])
 
 
 def test_another_image_is_seen() -> None:
