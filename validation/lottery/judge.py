@@ -63,9 +63,9 @@ def spp_for(scene: Path, words: str, seconds: float) -> int:
         taken = shot(scene, words, spp, 1).seconds
         rate = (spp - before[0]) / max(taken - before[1], 1e-3)
         wanted = max(1, round(spp + (seconds - taken) * rate))
-        if taken > CLOSE * seconds:
+        if taken > (CLOSE if before[0] else 1) * seconds:  # one time alone does not tell what precedes the first sample
             break
-        before, spp = (spp, taken), min(max(wanted, spp + 1), 16 * spp)
+        before, spp = (spp, taken), min(max(wanted, 2 * spp), 16 * spp)
     return wanted
 
 
