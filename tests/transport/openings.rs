@@ -414,3 +414,22 @@ fn random_rooms_openings_and_nested_boxes_agree() {
     }
     claims.settle();
 }
+
+/// A camera that states its fog, in a box of it in a room: few rays from the box find the hole in the roof, and infinity was taken
+/// to lie in the camera's fog, so that no light of the sky arrived.
+#[test]
+fn a_box_of_fog_in_a_room_does_not_reach_to_the_sky() {
+    for hole in [0.04, 0.2, 0.4] {
+        let mut parts = room_with_a_hole(hole, "fog");
+        parts.retain(|(name, _)| *name != "window");
+        parts.extend([
+            ("fog", medium(0.5, 0.9, 0.0)),
+            ("box", null_box([-0.85; 3], [0.85; 3], Some(named("fog")))),
+            ("sensor", with(camera([0.0, 0.0, 0.7], [0.0, 0.1, -1.0], 6), &[("medium", named("fog"))])),
+            ("sky", sky(10.0)),
+        ]);
+        let stage = Stage::new(&scene(&parts));
+        assert_eq!(stage.setup.scene.media_map.outside, MediumIndex::VACUUM, "{hole}");
+        assert!(stage.setup.warnings.is_empty(), "{hole}: {:?}", stage.setup.warnings);
+    }
+}

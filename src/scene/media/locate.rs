@@ -17,6 +17,8 @@ use std::collections::BTreeSet;
 
 /// Rays of a survey from the boundaries of a scene, all together.
 const SURVEY_RAYS: usize = 32_768;
+/// More of them, as long as none has left the scene.
+const LOOKS: u64 = 8_192;
 /// Rays of a survey from one side of a boundary, and from a point whose medium is stated.
 const RAYS_PER_SIDE: usize = 64;
 /// Segments of a chain of evidence from wall to wall.
@@ -243,7 +245,9 @@ impl Known {
         }
         let mut survey = Survey::default();
         Locator { geometry, surfaces, known: &known }.survey(&mut survey);
-        let infinity = Infinity::of(std::mem::take(&mut survey.escapes), otherwise);
+        // Whatever is not seen from any boundary lies beyond opaque walls, in vacuum if the file does not say otherwise.
+        let unseen = if known.boundaries.is_empty() { otherwise } else { MediumIndex::VACUUM };
+        let infinity = Infinity::of(std::mem::take(&mut survey.escapes), unseen);
         (Self { infinity, ..known }, survey)
     }
 
@@ -291,6 +295,20 @@ impl Locator<'_> {
                 let direction = warp::to_sphere(stream.square());
                 self.follow(position, direction, medium, None, survey, &mut stream);
             }
+        }
+        self.look_for_openings(survey);
+    }
+
+    /// Few rays find a small opening: as long as nothing has left the scene, more look for one.
+    fn look_for_openings(&self, survey: &mut Survey) {
+        let boundaries = &self.known.boundaries;
+        for index in 0..LOOKS {
+            if boundaries.is_empty() || !survey.escapes.is_empty() {
+                return;
+            }
+            let mut stream = Stream::new(10, index, 0, Purpose::Pilot);
+            let shape = boundaries[stream.below(boundaries.len())];
+            self.survey_sides(shape, survey, &mut stream);
         }
     }
 
