@@ -283,7 +283,7 @@ impl<'a> Builder<'a> {
         self.shape_names.push(name_of(child.object));
         self.shape_locations.push(child.location.clone());
         let model = &self.bsdfs[bsdf as usize];
-        let nature = nature(model, emitter.is_some());
+        let nature = nature(model, bsdf, emitter.is_some());
         let (connectible, transmits) = (model.is_connectible(), model.transmits());
         let boundary = Boundary::stated(interior, exterior, transmits);
         if transmits && boundary.is_known() {
@@ -557,14 +557,14 @@ impl<'a> Builder<'a> {
 }
 
 /// What contact needs to know of a shape with this BSDF.
-fn nature(bsdf: &Bsdf, emits: bool) -> Nature {
-    let rank = match bsdf {
+fn nature(model: &Bsdf, bsdf: u32, emits: bool) -> Nature {
+    let rank = match model {
         Bsdf::Null(_) => Rank::Null,
-        bsdf if bsdf.transmits() => Rank::Transmitting,
+        model if model.transmits() => Rank::Transmitting,
         _ if emits => Rank::Emitting,
         _ => Rank::Opaque,
     };
-    Nature { rank, one_sided: !matches!(bsdf, Bsdf::TwoSided(_)), is_lid: false }
+    Nature { rank, bsdf, one_sided: !matches!(model, Bsdf::TwoSided(_)), is_lid: false }
 }
 
 /// An emitter with the medium that it lies in.

@@ -96,7 +96,10 @@ fn a_medium_in_an_open_boundary_is_told() {
     assert!(found.iter().any(|said| said.contains("closed by flat lids")), "{found:?}");
     let water = json!({"type": "rectangle", "bsdf": {"type": "null"}, "interior": medium(1.0, 0.5, 0.0)});
     let found = warnings(OUTSIDE, &[("water", water), ("sky", sky(1.0))]);
-    assert!(!found.iter().any(|said| said.contains("lids") || said.contains("cannot be correct")), "{found:?}");
+    assert!(
+        !found.iter().any(|said| said.contains("lids") || said.contains("cannot be correct")),
+        "{found:?}"
+    );
 }
 
 #[test]

@@ -14,7 +14,10 @@ from validation.lottery.scenes import drawn
 
 @pytest.mark.parametrize("seed", range(3))
 def test_every_scene_renders_and_is_the_same_again(seed: int, tmp_path: Path) -> None:
-    again = [scene_file(Scene(drawn(seed).tree, "again"), folder) for name in "ab" if (folder := tmp_path / name).mkdir() is None]
+    folders = [tmp_path / name for name in "ab"]
+    for folder in folders:
+        folder.mkdir()
+    again = [scene_file(Scene(drawn(seed).tree, "again"), folder) for folder in folders]
     assert again[0].read_text() == again[1].read_text()
     first = shot(again[0], lottery.OURS, 1, 1)
     assert first.image.shape == (24, 32, 3) and np.isfinite(first.image).all() and first.seconds > 0

@@ -83,7 +83,7 @@ impl Builder<'_> {
                 self.shapes.push(lid);
                 self.shape_names.push(format!("lid of {}", self.shape_names[shape as usize]));
                 self.shape_locations.push(self.shape_locations[shape as usize].clone());
-                self.natures.push(Nature { rank: Rank::Null, one_sided: false, is_lid: true });
+                self.natures.push(Nature { rank: Rank::Null, bsdf: null, one_sided: false, is_lid: true });
                 self.surfaces.push(Surface {
                     bsdf: null,
                     emitter: None,

@@ -40,6 +40,8 @@ pub enum Rank {
 pub struct Nature {
     /// Its place in the order.
     pub rank: Rank,
+    /// Its BSDF: which of two alike is seen makes no difference.
+    pub bsdf: u32,
     /// It is seen from its front alone.
     pub one_sided: bool,
     /// It is a part of what bounds a solid, though not closed by itself.
@@ -197,8 +199,7 @@ impl<'a> Faces<'a> {
             }
             (None, None) => {
                 let (mover, still) = if self.goes_first(a, b) { (a, b) } else { (b, a) };
-                let is_tie = self.rank(a) == self.rank(b) && self.rank(a) > Rank::Null;
-                Self::moved(pair, mover, still, self.side_of_view(mover, still), is_tie)
+                Self::moved(pair, mover, still, self.side_of_view(mover, still), self.is_tie(a, b))
             }
         }
     }
@@ -264,12 +265,20 @@ impl<'a> Faces<'a> {
         Some(if is_room { -outward } else { outward })
     }
 
+    /// Nothing but the file says which of two comes first, and they may look different.
+    fn is_tie(&self, a: Face<'_>, b: Face<'_>) -> bool {
+        let [one, other] = [a, b].map(|face| self.nature(face));
+        let differ = one.bsdf != other.bsdf || one.rank == Rank::Emitting;
+        one.rank == other.rank && one.rank > Rank::Null && differ
+    }
+
     /// The lower rank, else the one that comes first in the file.
     fn goes_first(&self, a: Face<'_>, b: Face<'_>) -> bool {
         (self.rank(a), a.shape) < (self.rank(b), b.shape)
     }
 
-    /// Of the faces of two solids that face the same way, whether `a` is the inner one; and whether only the file says so.
+    /// Of the faces of two solids that face the same way, whether `a` is the inner one; and whether only the file says so, of
+    /// faces that the camera may see.
     /// The normal of `a` times `outward` points outwards.
     fn inner(&self, a: Face<'_>, b: Face<'_>, outward: f64) -> (bool, bool) {
         let [a_in_b, b_in_a] = [(a, b), (b, a)].map(|(a, b)| self.is_within(a.shape, b.shape));
@@ -282,7 +291,7 @@ impl<'a> Faces<'a> {
         }
         let (point, normal) = a.patch.sample();
         let camera_is_outside = outward * normal.dot(-point) > 0.0;
-        (self.goes_first(a, b) != camera_is_outside, one == other)
+        (self.goes_first(a, b) != camera_is_outside, camera_is_outside && self.is_tie(a, b))
     }
 
     /// True if the box of shape `a` lies within that of `b`, up to rounding.

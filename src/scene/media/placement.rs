@@ -13,6 +13,7 @@ use crate::{
     scene::{accel::Geometry, contact::Contact, lights::Disk},
     shape::SurfacePoint,
 };
+use std::collections::BTreeSet;
 
 /// Points of an emitting shape that are located.
 const POINTS: u32 = 64;
@@ -115,19 +116,19 @@ impl Names<'_> {
         self.library.warn(&self.locations[at.shape as usize], &text);
     }
 
-    /// Faces in one place, of which nothing but the file says which is before the other.
+    /// Faces in one place, of which nothing but the file says which is before the other: each pair of shapes once.
     pub fn warn_of_ties(&self, contacts: &[Contact]) {
-        for Contact { shapes: [moved, other], .. } in contacts.iter().filter(|contact| contact.is_tie) {
-            let (first, second) = (moved.min(other), moved.max(other));
+        let by = contacts.iter().map(|contact| contact.by).fold(0.0, f64::max);
+        let ties = contacts.iter().filter(|contact| contact.is_tie);
+        let pairs: BTreeSet<[u32; 2]> =
+            ties.map(|Contact { shapes: [a, b], .. }| [*a.min(b), *a.max(b)]).collect();
+        for [first, second] in pairs {
+            let [one, other] = [first, second].map(|shape| self.shape(Some(shape)));
             let text = format!(
-                "faces of {} and {} lie in one place; the camera is taken to see {} first, which comes first in the \
-                 file. Move one of them by more than {:.0e} m",
-                self.shape(Some(*first)),
-                self.shape(Some(*second)),
-                self.shape(Some(*first)),
-                contacts.iter().map(|contact| contact.by).fold(0.0, f64::max),
+                "faces of {one} and {other} lie in one place; the camera is taken to see {one} first, which comes first in \
+                 the file. Move one of them by more than {by:.0e} m"
             );
-            self.library.warn(&self.locations[*second as usize], &text);
+            self.library.warn(&self.locations[second as usize], &text);
         }
     }
 
