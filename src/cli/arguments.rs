@@ -366,6 +366,10 @@ pub struct Info {
     #[command(flatten)]
     pub estimator: Estimator,
 
+    /// Also show what the pilot foretells of all that it could choose: error, time, and why the winner won
+    #[arg(long)]
+    pub pilot: bool,
+
     /// How the summary is given.
     #[command(flatten)]
     pub answer: Answer,

@@ -11,7 +11,7 @@ use crate::{
     render::{
         Settings,
         budget::Budget,
-        pilot::{self, Choice},
+        pilot::{self, Choice, Report},
         training,
     },
     sampling::{Basis, Sampler},
@@ -179,10 +179,17 @@ impl Estimator {
         self.chosen(setup, seed, budget).map(|(settings, _)| settings)
     }
 
-    /// The same, and what the pilot chose, if there was one.
+    /// The same, and what the pilot chose, if it might choose.
     pub fn chosen(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<(Settings, Option<Choice>)> {
+        let (settings, report) = self.reported(setup, seed, budget)?;
+        Ok((settings, report.map(|report| report.choice)))
+    }
+
+    /// The same, and all that the pilot says.
+    pub fn reported(&self, setup: &Setup, seed: u64, budget: Budget) -> Result<(Settings, Option<Report>)> {
         let mut settings = self.without_pilot(setup, seed, budget)?;
-        let choice = self.choice(setup, &settings);
+        let report = self.pilot(setup, &settings);
+        let choice = report.as_ref().map(|report| report.choice);
         let Options { strategies, effort, .. } = settings.options;
         let unchosen = || {
             let follows = training::follows_guide(&setup.scene, &setup.film, &settings);
@@ -192,11 +199,11 @@ impl Estimator {
         (settings.options.strategies, settings.options.effort) =
             choice.map_or_else(unchosen, |choice| (choice.strategies, choice.effort));
         self.warn_of_basis(&settings);
-        Ok((settings, choice))
+        Ok((settings, report))
     }
 
-    /// What a pilot chooses, if it may.
-    fn choice(&self, setup: &Setup, settings: &Settings) -> Option<Choice> {
+    /// What a pilot says, if it may choose.
+    fn pilot(&self, setup: &Setup, settings: &Settings) -> Option<Report> {
         let Options { strategies, heuristic, connections, .. } = settings.options;
         let is_judged = heuristic == Heuristic::Balance && connections == Connections::Cached;
         if !self.strategies.is_empty() || strategies.preview().is_some() || !is_judged {

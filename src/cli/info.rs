@@ -1,7 +1,7 @@
 //! `tyndall info`: what a scene holds, and how it would be rendered.
 
 use super::{
-    arguments, load, picture,
+    arguments, candidates, load, picture,
     plan::{self, Plan},
     say, volumes,
 };
@@ -44,7 +44,8 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     let setup = load(&arguments.scene, arguments.estimator.overrides(None))?;
     arguments.answer.check()?;
     let budget = Budget::samples(setup.samples_per_pixel);
-    let (settings, chosen) = arguments.estimator.chosen(&setup, 0, budget)?;
+    let (settings, report) = arguments.estimator.reported(&setup, 0, budget)?;
+    let chosen = report.as_ref().map(|report| report.choice);
     let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, None);
     let learnt = training::learn_for(&setup.scene, &setup.film, &settings).bytes();
     say(&describe(&setup, &settings, &plan));
@@ -60,7 +61,12 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
             later
         ));
     }
-    arguments.answer.give(&figures(&setup, &plan, learnt))
+    let mut figures = figures(&setup, &plan, learnt);
+    if let Some(report) = report.filter(|_| arguments.pilot) {
+        say(&candidates::table(&report));
+        figures["pilot"] = candidates::json(&report);
+    }
+    arguments.answer.give(&figures)
 }
 
 fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {

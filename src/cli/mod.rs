@@ -1,6 +1,7 @@
 //! The command line: arguments in, exit code out.
 
 pub mod arguments;
+mod candidates;
 mod clip;
 mod contenders;
 mod convert;

@@ -59,7 +59,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
     check_short(&arguments.output)?;
-    let budget = Budget::ENDLESS;
+    let budget = Budget::samples(setup.samples_per_pixel);
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
     let at = [arguments.x, arguments.y];
     let pool = super::threads(arguments.threads)?;

@@ -101,7 +101,6 @@ impl Plan {
         text += match survival {
             Survival::Albedo => "",
             Survival::FourthRoot => "; longer walks",
-            Survival::Shorter | Survival::Shortest => "; shorter walks",
         };
         let Some(Choice { among, gain, .. }) = self.chosen else { return text };
         let mut left_out = among.names();

@@ -406,17 +406,25 @@ fn figures(image: &Image, task: &Task<'_>) -> Value {
 }
 
 fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<(Settings, Option<Choice>)> {
-    let endless = Budget::ENDLESS;
     let estimator = match arguments.pixels.progressive {
         None => arguments.estimator.clone(),
         Some(_) => progressive::estimator(&arguments.estimator, setup)?,
     };
     let started = Instant::now();
-    let (settings, chosen) = estimator.chosen(setup, arguments.seed, endless)?;
+    let (settings, chosen) = estimator.chosen(setup, arguments.seed, to_come(arguments, setup))?;
     let spent = started.elapsed();
     arguments.fog.warn_of_idle(settings.options.strategies);
     let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
     Ok((Settings { budget: Budget { spent, ..budget }, ..settings }, chosen))
+}
+
+/// The budget by which a pilot judges. Parts of one image, which need not know how many there are, all count as an image of the
+/// scene's samples: they choose alike.
+pub fn to_come(arguments: &arguments::Render, setup: &Setup) -> Budget {
+    match arguments.samples {
+        None => budget(arguments, setup, false),
+        Some(_) => Budget::samples(setup.samples_per_pixel),
+    }
 }
 
 /// Maximum number of samples per pixel of a preview, unless --spp is given.

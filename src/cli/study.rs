@@ -366,7 +366,7 @@ impl<'a> Stage<'a> {
         let overrides = requested.overrides(self.arguments.size);
         let (setup, load_seconds) = self.setup(scene, overrides)?;
         let started = Instant::now();
-        let settings = requested.settings(&setup, 0, Budget::samples(1))?;
+        let settings = requested.settings(&setup, 0, Budget::ENDLESS)?;
         let load_seconds = load_seconds + started.elapsed().as_secs_f64();
         if settings.options.strategies == Strategies::NONE {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");

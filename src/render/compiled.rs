@@ -5,7 +5,7 @@ use super::{
     Settings,
     block::{Blocks, Outcome, PIXELS_PER_BLOCK},
     faults::guarded,
-    pilot::Pilot,
+    pilot::{self, Forecast},
     pixel_sample::{self, EyeSample, Splat, Walk},
     radiance::{self, Looks},
     sorted::{self, Sorter},
@@ -181,10 +181,17 @@ pub(super) fn choose<'a>(
     prepare(scene, film, settings, learnt, per_block)
 }
 
-/// What a pilot by `settings` says.
-pub(super) fn pilot(scene: &Scene, film: &Film, settings: &Settings) -> Pilot {
+/// What so many passes by `settings` over so many pixels foretell.
+pub(super) fn pilot(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    passes: usize,
+    pixels: usize,
+) -> Forecast {
     let learnt = training::learn_for(scene, film, settings);
-    Pilot::fly(&Ready::<ByKind>::new(scene, film, settings, learnt, PIXELS_PER_BLOCK))
+    let ready = Ready::<ByKind>::new(scene, film, settings, learnt, pilot::PIXELS_PER_BLOCK);
+    Forecast::fly(&ready, passes, pixels)
 }
 
 /// What `tasks` by `settings` say of walks that begin and go on by what was `learnt` before; none if it `is_over` before.

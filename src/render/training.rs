@@ -41,6 +41,8 @@ pub(super) const LATER_ROUNDS: usize = MOST_ROUNDS - ROUNDS;
 /// by camera subpaths alone.
 const PER_SUBPATH: f64 = 8.0;
 const PER_CAMERA_SUBPATH: f64 = 24.0;
+/// Time of a path that teaches, over that of one of an image.
+const TEACHING: f64 = 3.0;
 /// Segments after which no further round begins, without a guide and for one.
 const SEGMENTS: f64 = 1e6;
 const GUIDE_SEGMENTS: f64 = 4e6;
@@ -121,6 +123,11 @@ pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
         Guiding::Always => true,
         Guiding::Auto => guide_pays(scene, film, settings.options),
     }
+}
+
+/// True if an image of so many samples is worth that something is learnt first: that takes a tenth of its time, at most.
+pub(super) fn is_worth(samples: f64) -> bool {
+    samples >= 10.0 * TEACHING * (FIRST << ROUNDS) as f64
 }
 
 /// True if it would pay that walks by `options` follow a guide, as the first rounds of learning it foresee.

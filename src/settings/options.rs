@@ -73,11 +73,6 @@ pub enum Survival {
     /// The fourth root of the albedo, by which fewer walks end and those that go on weigh less. It pays where walks soon leave
     /// the scene anyway.
     FourthRoot,
-    /// 0.85 of the albedo, by which more walks end and those that go on weigh more. It pays where walks lead away from all
-    /// light before they end: in fog without end.
-    Shorter,
-    /// 0.7 of the albedo.
-    Shortest,
 }
 
 impl Survival {
@@ -85,18 +80,16 @@ impl Survival {
     #[inline]
     pub fn of(self, albedo: f32) -> f32 {
         match self {
+            Self::Albedo => albedo,
             Self::FourthRoot => albedo.sqrt().sqrt(),
-            _ => self.factor() * albedo,
         }
     }
 
-    /// What the albedo is multiplied by.
-    #[inline]
-    pub fn factor(self) -> f32 {
+    /// The power of the albedo that it is.
+    pub fn exponent(self) -> f32 {
         match self {
-            Self::Albedo | Self::FourthRoot => 1.0,
-            Self::Shorter => 0.85,
-            Self::Shortest => 0.7,
+            Self::Albedo => 1.0,
+            Self::FourthRoot => 0.25,
         }
     }
 
@@ -105,8 +98,6 @@ impl Survival {
         match self {
             Self::Albedo => "albedo",
             Self::FourthRoot => "fourth root of albedo",
-            Self::Shorter => "0.85 of albedo",
-            Self::Shortest => "0.7 of albedo",
         }
     }
 }

@@ -241,6 +241,11 @@ impl<'a, P: Profile> Estimator<'a, P> {
         }
     }
 
+    /// When walks end.
+    pub fn survival(&self) -> Survival {
+        self.survival
+    }
+
     /// The starts that light subpaths were given.
     pub fn starts(&self) -> Option<&Starts> {
         self.starts.as_deref()

@@ -82,15 +82,6 @@ fn what_a_pilot_chooses_is_said() {
 }
 
 #[test]
-fn walks_that_leave_all_light_behind_end_sooner() {
-    let road = include_str!("../../scenes/efficiency/headlights.xml");
-    let sandbox = Sandbox::with_files(&[("road.xml", road)]);
-    let said = sandbox.run("render road.xml -D res=32 --spp 1 --report r.json").ends(0).err();
-    assert!(said.contains("; shorter walks"), "{said}");
-    assert_eq!(sandbox.json("r.json")["plan"]["survival"], json!("0.7 of albedo"));
-}
-
-#[test]
 fn free_flights_are_named_by_their_methods() {
     let ramp = json!({"type": "exponential", "value": 1.0});
     let cloud = json!({"type": "heterogeneous", "sigma_t": ramp, "albedo": 0.5, "tracker": "null_collision"});
