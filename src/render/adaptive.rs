@@ -13,7 +13,7 @@ use super::{
     block::{Blocks, Outcome, Pass},
     faults::Faults,
     half::{Half, Limits, luminance},
-    instrument::{BLOCKS_AT_ONCE, Instrument},
+    instrument::Instrument,
     monitor::Stopwatch,
 };
 use crate::{
@@ -22,7 +22,7 @@ use crate::{
     sampling::Sampler,
 };
 use serde::{Deserialize, Serialize};
-use std::{ops::Range, time::Duration};
+use std::time::Duration;
 
 /// The precision required of every pixel: that its value is off by less than `error`, relative to it and a hundredth of
 /// the image's mean luminance together (see [`Relative::difference`]); in every channel, with probability `confidence`.
@@ -244,28 +244,24 @@ impl Adaptive<'_, '_> {
     fn advance(&mut self, halves: &mut Halves, before: Duration) -> bool {
         let (budget, count) = (self.bench.settings.budget, self.bench.compiled.blocks().count());
         let end = budget.samples_per_pixel.unwrap_or(u64::MAX).min(2 * halves.goal);
-        let (mut next, end_task) = (halves.passes() as usize * count + halves.blocks, end as usize * count);
-        while next < end_task {
-            let tasks = next..end_task.min(next + BLOCKS_AT_ONCE);
-            let outcomes = self.work(tasks.clone(), &halves.active);
-            outcomes.iter().for_each(|outcome| halves.add(outcome, count));
-            next += outcomes.len();
-            halves.elapsed = before + self.stopwatch.elapsed();
-            self.tell(halves, false);
-            if outcomes.len() < tasks.len() {
-                return false;
-            }
-        }
-        end == 2 * halves.goal
-    }
-
-    /// Renders the active pixels of blocks, and their light subpaths, as far as the budget goes.
-    fn work(&self, tasks: Range<usize>, active: &[bool]) -> Vec<Outcome> {
-        let wants = |pixel: usize| active[pixel];
-        let is_over = || self.bench.settings.budget.is_over(self.stopwatch.elapsed());
-        let blocks = self.bench.compiled.blocks().count();
-        let pass = |task| task / blocks;
-        self.bench.work_until(tasks, pass, is_over, |pass, block| self.bench.render(pass, block, &wants))
+        let tasks = halves.passes() as usize * count + halves.blocks..end as usize * count;
+        let (bench, stopwatch) = (self.bench, self.stopwatch);
+        let is_over = || budget.is_over(stopwatch.elapsed());
+        // Which pixels are active changes at checks only.
+        let active = halves.active.clone();
+        let render = |pass, block| bench.render(pass, block, &|pixel: usize| active[pixel]);
+        let done = bench.work_in_turn(
+            tasks.clone(),
+            |task| task / count,
+            is_over,
+            render,
+            |_, outcomes| {
+                outcomes.iter().for_each(|outcome| halves.add(outcome, count));
+                halves.elapsed = before + stopwatch.elapsed();
+                self.tell(halves, false);
+            },
+        );
+        done >= tasks.len() && end == 2 * halves.goal
     }
 
     fn tell(&mut self, halves: &Halves, is_last: bool) {

@@ -21,6 +21,7 @@ use std::{
     sync::{
         OnceLock,
         atomic::{AtomicUsize, Ordering},
+        mpsc,
     },
     time::{Duration, Instant},
 };
@@ -139,29 +140,35 @@ impl<'a> Instrument<'a> {
 
     /// `work` on tasks, each a block of the pass that `pass` names for it, on all threads, until there are none left or
     /// `is_over`; the results in their order. Threads take the tasks in turn and finish what they took: what is done is the first
-    /// of them. At least one is, unless it is over before what that takes is learnt.
+    /// of them. At least one is, unless it is over before what that takes is learnt. This thread does `meanwhile` before it takes
+    /// any.
     pub(super) fn work_until<T: Send>(
         &self,
         tasks: Range<usize>,
         pass: impl Fn(usize) -> usize + Sync,
         is_over: impl Fn() -> bool + Sync,
         work: impl Fn(usize, usize) -> T + Sync,
+        meanwhile: impl FnOnce(),
     ) -> Vec<T> {
         let blocks = self.compiled.blocks().count();
         let end = tasks.clone().find(|task| !self.learn(pass(*task), &is_over)).unwrap_or(tasks.end);
         let next = AtomicUsize::new(tasks.start);
-        let lists = rayon::broadcast(|_| {
-            let mut done = Vec::new();
+        let (done, results) = mpsc::channel();
+        let work_on = || {
             while next.load(Ordering::Relaxed) == tasks.start || !is_over() {
                 let task = next.fetch_add(1, Ordering::Relaxed);
                 if task >= end {
                     break;
                 }
-                done.push((task, work(pass(task), task % blocks)));
+                // The other end is open as long as this function runs.
+                let _ = done.send((task, work(pass(task), task % blocks)));
             }
-            done
+        };
+        rayon::in_place_scope(|scope| {
+            scope.spawn_broadcast(|_, _| work_on());
+            meanwhile();
         });
-        let mut done: Vec<_> = lists.into_iter().flatten().collect();
+        let mut done: Vec<_> = results.try_iter().collect();
         done.sort_unstable_by_key(|(task, _)| *task);
         done.into_iter().map(|(_, outcome)| outcome).collect()
     }
@@ -173,7 +180,7 @@ impl<'a> Instrument<'a> {
         work: impl Fn(usize, usize) -> T + Sync,
     ) -> Vec<T> {
         let blocks = self.compiled.blocks().count();
-        self.work_until(tasks, |task| task / blocks, || false, work)
+        self.work_until(tasks, |task| task / blocks, || false, work, || ())
     }
 
     /// Shows `see` the image of every one of `passes`, in order; the time that making them took.

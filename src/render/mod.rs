@@ -34,6 +34,7 @@ pub mod timing;
 mod tracks;
 pub mod training;
 mod trial;
+mod turns;
 
 pub use monitor::Snapshot;
 
@@ -56,7 +57,7 @@ use any_sums::{AnySums, Kept};
 use budget::Budget;
 use faults::Faults;
 use fog::Preview;
-use instrument::{BLOCKS_AT_ONCE, Instrument};
+use instrument::Instrument;
 use monitor::{Monitor, Stopwatch};
 use samples::Samples;
 use seen::Seen;
@@ -293,34 +294,36 @@ fn accumulate(
         bench.learn(queue.sample(next) as usize, &|| false);
     }
     loop {
-        let end = queue.end.min(next + BLOCKS_AT_ONCE);
-        let tasks = next..monitor.limit_tasks(end, (next / queue.per_pass) as u64, queue.per_pass);
+        let passes = (next / queue.per_pass) as u64;
+        let tasks = next..monitor.limit_tasks(queue.end, passes, queue.per_pass);
         let is_over = || budget.is_over(stopwatch.elapsed());
         let pass = |task| queue.sample(task) as usize;
-        let outcomes = bench.work_until(tasks.clone(), pass, is_over, |pass, block| match preview {
+        let render = |pass, block| match preview {
             None => bench.render(pass, block, &|_| true),
             Some(preview) => blocks.show(preview, film, *seed, pass, block),
+        };
+        let done = bench.work_in_turn(tasks.clone(), pass, is_over, render, |first, outcomes| {
+            for (task, outcome) in (first..).zip(outcomes) {
+                sums.add(queue.sample(task), outcome, queue.per_pass);
+            }
+            if noted.elapsed() > NOISE_EVERY {
+                sums.note_noise(&|pixel| seen.of(pixel));
+                noted = Instant::now();
+            }
+            let elapsed = stopwatch.elapsed();
+            sums.elapsed = before + elapsed;
+            (monitor.watch)(sums.progress(elapsed, false), sums);
         });
-        for (task, outcome) in tasks.clone().zip(&outcomes) {
-            sums.add(queue.sample(task), outcome, queue.per_pass);
-        }
-        next += outcomes.len();
+        next += done;
         let (elapsed, samples_per_pixel) = (stopwatch.elapsed(), sums.samples.count());
-        sums.elapsed = before + elapsed;
-        let is_last = next == queue.end || outcomes.len() < tasks.len();
-        if is_last {
-            sums.note_last_noise(&|pixel| seen.of(pixel));
-        } else if noted.elapsed() > NOISE_EVERY {
-            sums.note_noise(&|pixel| seen.of(pixel));
-            noted = Instant::now();
-        }
         if next.is_multiple_of(queue.per_pass) && monitor.is_mark(samples_per_pixel) {
             let pixels = || sums.accumulator.mean();
             stopwatch.hold(|| (monitor.show)(Snapshot { pixels: pixels(), samples_per_pixel, elapsed }));
         }
-        (monitor.watch)(sums.progress(elapsed, is_last), sums);
-        if is_last {
-            return;
+        if next == queue.end || done < tasks.len() {
+            sums.elapsed = before + elapsed;
+            sums.note_last_noise(&|pixel| seen.of(pixel));
+            return (monitor.watch)(sums.progress(elapsed, true), sums);
         }
     }
 }
