@@ -473,10 +473,14 @@ impl<'a> Builder<'a> {
             media.push(Medium::vacuum());
             MediumIndex(media.len() as u32 - 1)
         });
+        let (surfaces, bsdfs, viewpoint) = (&self.surfaces, &self.bsdfs, camera.start);
+        let unseen = Unseen { geometry: &geometry, surfaces, bsdfs, lights: &lights, viewpoint };
+        let shut_in = match overlaps.is_some() || contradicts {
+            true => vec![false; media.len()],
+            false => unseen.shut_in(&media, &[MediumIndex::VACUUM, outside, sensor_medium]),
+        };
         // Parallel rays start all over a plane: in a shape here, out of it there.
         if !camera.sensor.is_parallel() {
-            let (surfaces, viewpoint) = (&self.surfaces, camera.start);
-            let unseen = Unseen { geometry: &geometry, surfaces, lights: &lights, viewpoint };
             unseen.warn(&self.names(), camera.location);
         }
         self.names().warn_of_ties(&self.apart.contacts);
@@ -489,7 +493,7 @@ impl<'a> Builder<'a> {
             media,
             lights,
             sensor,
-            media_map: MediaMap { outside, sensor: sensor_medium, known, overlaps, nowhere },
+            media_map: MediaMap { outside, sensor: sensor_medium, known, overlaps, nowhere, shut_in },
             recentre,
         };
         Ok(Finished { scene, shape_names, bsdf_names, apart })

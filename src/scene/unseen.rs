@@ -1,4 +1,5 @@
-//! Warnings of what an image will not show: a scene without light, a camera shut in, a medium shut in.
+//! What an image will not show, with a warning: a scene without light, a camera shut in, a medium shut in. And from which media
+//! no light is seen.
 
 use super::{
     Surface,
@@ -7,10 +8,11 @@ use super::{
     media::{Boundary, Names, Solid, direction},
 };
 use crate::{
+    bsdf::{Bsdf, BsdfModel},
     description::{Library, Location},
     emitter::{BeamModel, Kind},
     math::Vec3,
-    medium::MediumIndex,
+    medium::{Medium, MediumIndex},
     settings::{integrator::Integrator, options::Strategies},
 };
 
@@ -33,6 +35,8 @@ pub struct Unseen<'a> {
     pub geometry: &'a Geometry,
     /// Their properties.
     pub surfaces: &'a [Surface],
+    /// Their BSDFs.
+    pub bsdfs: &'a [Bsdf],
     /// All emitters.
     pub lights: &'a Lights,
     /// Where camera rays start: one point, or nearly.
@@ -51,6 +55,29 @@ impl Unseen<'_> {
                 names.warn_of_medium_shut_in(medium, shape);
             }
         }
+    }
+
+    /// For each of `media`, whether all that lies in it is shut in with it, as in frosted glass: nothing there emits, and light comes
+    /// and goes by scattering at a closed surface only. `elsewhere` are media that also lie somewhere else.
+    pub fn shut_in(&self, media: &[Medium], elsewhere: &[MediumIndex]) -> Vec<bool> {
+        let mut shut_in: Vec<bool> = media.iter().map(|medium| medium.emission.is_none()).collect();
+        let lit = self.lights.all.iter().map(|light| light.medium);
+        elsewhere.iter().copied().chain(lit).for_each(|medium| shut_in[medium.0 as usize] = false);
+        for (shape, Surface { boundary, .. }) in self.surfaces.iter().enumerate() {
+            for medium in [boundary.interior, boundary.exterior].into_iter().flatten() {
+                let shut_in = &mut shut_in[medium.0 as usize];
+                *shut_in = *shut_in && self.shuts_in_all(shape as u32, medium);
+            }
+        }
+        shut_in
+    }
+
+    /// All that touches `shape` of `medium` is within, no emitter is, and no ray goes straight out. What costs most is asked last.
+    fn shuts_in_all(&self, shape: u32, medium: MediumIndex) -> bool {
+        let Surface { bsdf, boundary: Boundary { interior, exterior }, .. } = self.surfaces[shape as usize];
+        let is_passed = self.bsdfs[bsdf as usize].has_null();
+        let is_around = || self.is_closed(shape) && self.inner_medium(shape) == Some(medium);
+        !is_passed && interior != exterior && !self.may_hold_light(shape) && is_around()
     }
 
     /// The camera is inside an opaque `shape`, and no emitter is. What costs most is asked last.

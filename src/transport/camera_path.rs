@@ -109,7 +109,7 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
             self.first = FirstCollision::of(vertex, self.previous, self.pdf_fwd);
         }
         if vertex.subpath.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
-            if self.estimator.counts.next_event > 0.0 {
+            if self.estimator.counts.next_event > 0.0 && !vertex.is_shut_in::<P>(self.estimator.scene) {
                 self.next_event(vertex, stream);
             }
             self.connect_light(vertex, stream);

@@ -131,7 +131,7 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for LightPath<'_, P, R> {
         if !vertex.is_connectible(self.estimator.scene) {
             return;
         }
-        if self.estimator.counts.lens > 0.0 {
+        if self.estimator.counts.lens > 0.0 && !vertex.is_shut_in::<P>(self.estimator.scene) {
             let aperture = self.estimator.scene.sensor.sample_aperture(stream);
             self.observer.start();
             let contribution = self.connect_to_lens(vertex, aperture, stream);

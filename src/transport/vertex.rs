@@ -150,6 +150,13 @@ impl<S: MisSums> Vertex<S> {
         }
     }
 
+    /// True at a collision from where neither an emitter nor the camera is seen.
+    #[inline]
+    pub fn is_shut_in<P: Profile>(&self, scene: &Scene) -> bool {
+        P::MEDIA
+            && matches!(&self.interaction, Interaction::Medium(_, found) if scene.is_shut_in(found.medium))
+    }
+
     /// True on a shape that emits.
     #[inline]
     pub fn is_on_emitter(&self, scene: &Scene) -> bool {

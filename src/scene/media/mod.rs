@@ -48,6 +48,8 @@ pub struct MediaMap {
     /// What walks carry from where a boundary says that they are in another medium than they are in; only in scenes whose
     /// boundaries contradict each other.
     pub nowhere: Option<MediumIndex>,
+    /// For each medium: no emitter, and nothing outside of it, is seen from anywhere in it.
+    pub(super) shut_in: Vec<bool>,
 }
 
 impl MediaMap {
@@ -61,6 +63,12 @@ impl Scene {
     /// True if fog lies around everything, so that walks in it need not come to an end.
     pub fn is_endless(&self) -> bool {
         self.media[self.media_map.outside.0 as usize].bound().sigma_t != Spectrum::ZERO
+    }
+
+    /// True if no ray out of `medium` gets to an emitter, or out at all, unless it is scattered at the surface around it.
+    #[inline]
+    pub fn is_shut_in(&self, medium: MediumIndex) -> bool {
+        self.media_map.shut_in[medium.0 as usize]
     }
 
     /// The medium that a ray is in when it leaves `point` in `direction`, which came from the direction `incoming`, in

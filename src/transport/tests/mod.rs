@@ -14,6 +14,7 @@ mod reference;
 mod replay;
 mod report;
 pub mod scenes;
+mod shut_in;
 mod starts;
 
 use super::{
