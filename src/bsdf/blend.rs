@@ -44,43 +44,30 @@ impl Blend {
         [1.0 - second, second]
     }
 
-    /// Survival of both parts on this side, and where light crosses the surface, on whichever side has more. What
-    /// lets light across survives alike on both: evaluating it twice would double the cost at every depth of
-    /// blends.
+    /// Survival of part `i`, where light crosses the surface on whichever side has more. What lets light across survives alike
+    /// on both: evaluating it twice would double the cost at every depth of blends.
     #[inline]
-    fn survivals(&self, uv: Uv, wi: Vec3) -> ([f32; 2], [f32; 2]) {
-        let here = [self.parts[0].survival(uv, wi), self.parts[1].survival(uv, wi)];
-        let most = |i: usize| match self.across {
-            [false, false] => here[i],
-            across if across[i] => here[i],
-            _ => here[i].max(self.parts[i].survival(uv, -wi)),
-        };
-        (here, [most(0), most(1)])
+    fn survival_of(&self, i: usize, uv: Uv, wi: Vec3) -> f32 {
+        let here = self.parts[i].survival(uv, wi);
+        if self.across[i] || !self.scatters_across() {
+            here
+        } else {
+            here.max(self.parts[i].survival(uv, -wi))
+        }
     }
 
-    /// Survival of the whole, given that of its parts.
-    #[inline]
-    fn total(weights: [f32; 2], survivals: [f32; 2]) -> f32 {
-        let part = |i: usize| if weights[i] > 0.0 { survivals[i] } else { 0.0 };
-        part(0).max(part(1))
-    }
-
-    /// Probabilities of going on by either part, given `survival`: those with which light does. The part that
-    /// passes straight through each of them has been taken away before.
+    /// Probabilities of going on by either part, by how much light does; 0 where none does. The part that passes straight
+    /// through each of them has been taken away before.
     #[inline]
     fn choices(&self, uv: Uv, wi: Vec3) -> [f32; 2] {
-        let (weights, (here, most)) = (self.weights(uv), self.survivals(uv, wi));
-        let total = Self::total(weights, most);
+        let weights = self.weights(uv);
         let kept = |i: usize| {
             let through = self.parts[i].null_transmission(uv, wi.z.abs()).max_element();
-            weights[i] * (1.0 - through).max(0.0)
+            weights[i] * self.parts[i].survival(uv, wi) * (1.0 - through).max(0.0)
         };
         let kept = [kept(0), kept(1)];
-        let scale = (kept[0] + kept[1]) * total;
-        let choice = |i: usize| {
-            if kept[i] > 0.0 && total > 0.0 { kept[i] * here[i] / scale } else { 0.0 }
-        };
-        [choice(0), choice(1)]
+        let total = kept[0] + kept[1];
+        kept.map(|kept| if kept > 0.0 { kept / total } else { 0.0 })
     }
 
     #[cfg(test)]
@@ -127,9 +114,8 @@ impl BsdfModel for Blend {
     #[inline]
     fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let choices = self.choices(uv, wi);
-        let u = stream.uniform();
-        let chosen = usize::from(u >= choices[0]);
-        if u >= choices[0] + choices[1] {
+        let chosen = usize::from(stream.uniform() >= choices[0]);
+        if choices[chosen] <= 0.0 {
             return None;
         }
         let sample = self.parts[chosen].sample(uv, wi, transport, stream)?;
@@ -145,9 +131,14 @@ impl BsdfModel for Blend {
         })
     }
 
+    /// The mean of the parts'. Where some light passes straight through, how much of what does not is either part's depends on
+    /// the direction, and the greater counts.
     #[inline]
     fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
-        Self::total(self.weights(uv), self.survivals(uv, wi).1)
+        let weights = self.weights(uv);
+        let part = |i: usize| if weights[i] > 0.0 { self.survival_of(i, uv, wi) } else { 0.0 };
+        let [first, second] = [part(0), part(1)];
+        if self.has_null() { first.max(second) } else { weights[0] * first + weights[1] * second }
     }
 
     #[inline]

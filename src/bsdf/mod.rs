@@ -119,7 +119,8 @@ pub trait BsdfModel {
     /// the largest channel of the albedo. It must be the same for both directions of any scattering pair, as
     /// it enters forward and backward densities alike, so it may depend on `uv` and, for models that do not
     /// scatter across, on the side of `wi`, on nothing else. Where the albedo varies more with the direction,
-    /// the survival bounds it and `sample` gives none as often as the rest is absorbed; densities say so.
+    /// this is some mean of it. Walks end by it and not in `sample`: how albedos become survivals is a choice, see
+    /// [`crate::settings::options::Survival`].
     fn survival(&self, uv: Uv, wi: Vec3) -> f32;
 
     /// The part of light that passes straight through as if nothing were there (`null`: 1; `thindielectric`:

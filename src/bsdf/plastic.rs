@@ -32,6 +32,10 @@ pub(super) struct Base {
     compression: f32,
 }
 
+/// How much rather than the base, by the light of either, the coat is chosen: to the base emitters are connected, what the coat
+/// mirrors is found this way alone.
+const FAVOURED: f32 = 4.0;
+
 /// Beyond, next to nothing gets out of the coat again, and f32 does not know how much.
 const HIGHEST_RATIO: f32 = 20.0;
 
@@ -42,12 +46,20 @@ pub(super) struct Shares {
     pub(super) specular: Spectrum,
     /// f of the base over the transmittances of the coat on both ways [1/sr].
     pub(super) base: Spectrum,
-    /// Largest channel of either albedo: what a walk survives with.
-    pub(super) survival: f32,
-    /// Albedos of coat (as if all were reflected) and base (as if all got in) over `survival`: a walk goes on
-    /// with just the probability that light does.
-    pub(super) of_coat: f32,
-    pub(super) of_base: f32,
+    /// Largest channel of the albedos of coat (as if all were reflected) and base (as if all got in).
+    of_coat: f32,
+    of_base: f32,
+}
+
+impl Shares {
+    /// Probabilities of the coat, `favoured` so many times, and of the base, of light of which the coat lets the part `into`
+    /// in; none where neither reflects any.
+    #[inline]
+    pub(super) fn choose(&self, into: f32, favoured: f32) -> (f32, f32) {
+        let (coat, base) = (favoured * (1.0 - into) * self.of_coat, into * self.of_base);
+        let total = coat + base;
+        if total > 0.0 { (coat / total, base / total) } else { (0.0, 0.0) }
+    }
 }
 
 /// What plastics have.
@@ -81,11 +93,21 @@ impl Base {
         let (specular, diffuse) = (self.specular.eval(uv), self.diffuse.eval(uv));
         let kept = if self.nonlinear { diffuse * self.returned } else { Spectrum::splat(self.returned) };
         let base = diffuse * (self.compression * FRAC_1_PI) / (Spectrum::ONE - kept);
-        let (coat_albedo, base_albedo) = (specular.max_element(), base.max_element() * PI * entering);
-        let survival = coat_albedo.max(base_albedo).min(1.0);
-        let scale = if survival > 0.0 { 1.0 / survival } else { 0.0 };
-        let part = |albedo: f32| (albedo * scale).min(1.0);
-        Shares { specular, base, survival, of_coat: part(coat_albedo), of_base: part(base_albedo) }
+        Shares {
+            specular,
+            base,
+            of_coat: specular.max_element(),
+            of_base: base.max_element() * PI * entering,
+        }
+    }
+
+    /// Between the albedo in even light and that of the coat where it reflects all: walks that graze it again and again gain
+    /// little weight.
+    #[inline]
+    pub(super) fn survival(&self, uv: Uv, entering: f32) -> f32 {
+        let Shares { of_coat, of_base, .. } = self.at(uv, entering);
+        let even = (1.0 - entering) * of_coat + entering * of_base;
+        (even * of_coat.max(of_base)).sqrt().min(1.0)
     }
 
     #[cfg(test)]
@@ -138,8 +160,8 @@ impl Plastic {
         let (into, out) = (1.0 - self.coat.reflectance(wi.z), 1.0 - self.coat.reflectance(wo.z));
         BsdfValue {
             value: shares.base * (into * out),
-            pdf_fwd: into * shares.of_base * warp::cosine_hemisphere_pdf(wo.z),
-            pdf_rev: out * shares.of_base * warp::cosine_hemisphere_pdf(wi.z),
+            pdf_fwd: shares.choose(into, FAVOURED).1 * warp::cosine_hemisphere_pdf(wo.z),
+            pdf_rev: shares.choose(out, FAVOURED).1 * warp::cosine_hemisphere_pdf(wi.z),
         }
     }
 
@@ -173,9 +195,8 @@ impl BsdfModel for Plastic {
         }
         let shares = self.base.at(uv, self.entering);
         let fresnel = self.coat.reflectance(wi.z);
-        let (reflect, scatter) = (fresnel * shares.of_coat, (1.0 - fresnel) * shares.of_base);
-        let u = stream.uniform();
-        if u < reflect {
+        let (reflect, _) = shares.choose(1.0 - fresnel, FAVOURED);
+        if stream.uniform() < reflect {
             let weight = shares.specular * (fresnel / reflect);
             return Some(BsdfSample {
                 wo: mirror(wi),
@@ -185,16 +206,13 @@ impl BsdfModel for Plastic {
                 dirac: true,
             });
         }
-        if u >= reflect + scatter {
-            return None;
-        }
         let wo = warp::to_cosine_hemisphere(stream.square());
         self.scatter(&shares, wi, wo).sampled(wo)
     }
 
     #[inline]
     fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
-        if wi.z > 0.0 { self.base.at(uv, self.entering).survival } else { 0.0 }
+        if wi.z > 0.0 { self.base.survival(uv, self.entering) } else { 0.0 }
     }
 
     fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {

@@ -125,7 +125,8 @@ impl RoughPlastic {
         let pdf = |from: Vec3, into: f32, to: Vec3| {
             let coat = 0.25 * facets.visible_pdf_over_cosine(from, m);
             let base = warp::cosine_hemisphere_pdf(to.z);
-            (1.0 - into) * shares.of_coat * coat + into * shares.of_base * base
+            let (reflect, scatter) = shares.choose(into, 1.0);
+            reflect * coat + scatter * base
         };
         BsdfValue {
             value: shares.specular * reflected + shares.base * (into * out),
@@ -166,22 +167,19 @@ impl BsdfModel for RoughPlastic {
         }
         let shares = self.base.at(uv, self.entering);
         let into = self.transmittance(wi.z);
-        let (reflect, scatter) = ((1.0 - into) * shares.of_coat, into * shares.of_base);
-        let u = stream.uniform();
-        let wo = if u < reflect {
+        let (reflect, _) = shares.choose(into, 1.0);
+        let wo = if stream.uniform() < reflect {
             let m = self.microfacets.sample_visible(wi, stream.square());
             (m * (2.0 * wi.dot(m)) - wi).normalize()
-        } else if u < reflect + scatter {
-            warp::to_cosine_hemisphere(stream.square())
         } else {
-            return None;
+            warp::to_cosine_hemisphere(stream.square())
         };
         self.evaluate_with(&shares, wi, wo).sampled(wo)
     }
 
     #[inline]
     fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
-        if wi.z > 0.0 { self.base.at(uv, self.entering).survival } else { 0.0 }
+        if wi.z > 0.0 { self.base.survival(uv, self.entering) } else { 0.0 }
     }
 
     fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {

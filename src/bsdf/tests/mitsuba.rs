@@ -130,10 +130,6 @@ fn rgb(r: f64, g: f64, b: f64) -> Value {
     Value::Rgb([r, g, b])
 }
 
-fn nested(plugin: &str, properties: &[(&str, Value)]) -> Value {
-    Value::Object(object(plugin, properties))
-}
-
 /// A plastic, coloured and all, and the same as properties of a rough one.
 fn shiny() -> Vec<(&'static str, Value)> {
     vec![

@@ -234,6 +234,27 @@ fn walks_survive_alike_both_ways() {
     }
 }
 
+/// Plastics and blends of surfaces that absorb much leave it to [`BsdfModel::survival`] to end walks.
+#[test]
+fn what_is_absorbed_ends_no_sample() {
+    let dark = |name| (name, Value::Float(0.1));
+    let matt = || ("a", nested("diffuse", &[dark("reflectance")]));
+    let metal = || ("b", nested("conductor", &[dark("specular_reflectance")]));
+    let blend: &[_] = &[("weight", number(0.3)), matt(), metal()];
+    for (plugin, properties) in [
+        ("plastic", &[dark("diffuse_reflectance")][..]),
+        ("roughplastic", &[dark("diffuse_reflectance")]),
+        ("blendbsdf", blend),
+    ] {
+        let bsdf = built(plugin, properties).unwrap();
+        let mut stream = stream(3);
+        let mut go_on = || bsdf.sample(UV, Vec3::Z, Transport::Radiance, &mut stream).is_some();
+        assert!((0..1_000).all(|_| go_on()), "{plugin}");
+        let survival = bsdf.survival(UV, Vec3::Z);
+        assert!((0.05..0.5).contains(&survival), "{plugin}: {survival}");
+    }
+}
+
 #[test]
 fn survival_is_a_probability_and_blind_to_the_direction() {
     for bsdf in examples() {
@@ -249,6 +270,10 @@ fn survival_is_a_probability_and_blind_to_the_direction() {
 
 fn built(plugin: &str, properties: &[(&str, Value)]) -> Result<Bsdf> {
     build(&object(plugin, properties), &Library::default())
+}
+
+fn nested(plugin: &str, properties: &[(&str, Value)]) -> Value {
+    Value::Object(object(plugin, properties))
 }
 
 fn number(x: f64) -> Value {
