@@ -1,6 +1,6 @@
 //! An image of the surroundings, infinitely far away: Mitsuba's `envmap`.
 
-use super::{COMMON, InfiniteModel};
+use super::{COMMON, InfiniteModel, Seen};
 use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
@@ -20,10 +20,14 @@ use std::{
 ///
 /// Directions are chosen by cells, the squares between four neighbouring pixels, in proportion to their mean
 /// luminance times their solid angle, and within each by luminance too, which is bilinear in azimuth and cosine there: the
-/// poles are no special places.
+/// poles are no special places. Next-event estimation counts luminance less where it is no brighter than the mean: directions
+/// that surfaces and media choose find that well enough.
 #[derive(Clone, Debug)]
 pub struct EnvMap {
     map: Arc<Map>,
+    /// Of light subpaths, and of next-event estimation if it has its own.
+    starts: Arc<Aim>,
+    aimed: Option<Arc<Aim>>,
     /// Orthogonal; may mirror.
     to_local: Mat3,
     scale: f32,
@@ -34,17 +38,26 @@ pub struct EnvMap {
 #[derive(Debug)]
 struct Map {
     image: Image,
-    cells: Grid,
-    /// One over the integral of [`Self::aim`], [1/sr]; 0 where that is black.
-    per_aim: f32,
-    /// How much less than its luminance a pixel counts.
-    spared: f32,
     /// Cosine to +y at each row, from 1 down to -1.
     cosines: Vec<f64>,
 }
 
-/// Of what `mis_compensation` spares, the least that is kept.
-const KEPT: f32 = 0.1;
+/// A distribution of directions.
+#[derive(Debug)]
+struct Aim {
+    cells: Grid,
+    /// One over the integral of [`Self::at`], [1/sr]; 0 where that is black.
+    scale: f32,
+    /// How much less than its luminance a pixel counts.
+    spared: f32,
+}
+
+/// What `mis_compensation` spares, in units of the mean luminance: by half of it both ways to choose directions follow the
+/// luminance together, if surfaces and media choose all alike, and as often as next-event estimation.
+const SPARED: f32 = 0.5;
+
+/// The least part of its luminance that a pixel keeps: some strategies have no other way to reach it.
+const KEPT: f32 = 0.03;
 
 /// Where a direction points on the map: the cell, and how far into it by angles.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +74,7 @@ impl EnvMap {
         file("filename", "The image: EXR, HDR, PNG, JPEG, BMP, TGA or PPM."),
         factor("scale", 1.0, "A factor on its radiance."),
         transform("to_world", "Turns or mirrors it."),
-        boolean("mis_compensation", false, "Aims at what is brighter than the mean, and leaves the rest to the directions that surfaces choose (Karlik et al. 2019).");
+        boolean("mis_compensation", true, "Next-event estimation aims at what is brighter than the mean, and leaves the rest to the directions that surfaces and media choose (Karlik et al. 2019). Mitsuba's default is false.");
         COMMON
     };
 
@@ -80,8 +93,13 @@ impl EnvMap {
             return Err(params.complain("to_world", expected, "one that scales or shears"));
         }
         let to_local = DMat3::from_mat4(to_world).transpose().as_mat3();
-        let (map, fluence) = Map::new(image, params.boolean("mis_compensation")?);
-        Ok(Self { map: Arc::new(map), to_local, scale, fluence: fluence * f64::from(scale) })
+        let map = Map::new(image);
+        let fluence = map.fluence();
+        let spared = SPARED * (fluence / (4.0 * PI)).as_vec3().luminance();
+        let aim = |spared| Arc::new(Aim::new(&map, spared));
+        let aimed = params.boolean("mis_compensation")?.then(|| aim(spared));
+        let starts = aim(0.0);
+        Ok(Self { starts, aimed, map: Arc::new(map), to_local, scale, fluence: fluence * f64::from(scale) })
     }
 }
 
@@ -93,8 +111,40 @@ impl InfiniteModel for EnvMap {
 
     #[inline]
     fn sample(&self, stream: &mut Stream) -> Vec3 {
-        let Cell { column, row, within } = self.map.cells.sample(stream);
-        let [[a, b], [c, d]] = self.map.aims(column, row);
+        self.sample_by(&self.starts, stream)
+    }
+
+    #[inline]
+    fn pdf_sr(&self, towards: Vec3) -> f32 {
+        let local = self.to_local * towards;
+        self.starts.pdf_sr(&self.map, local, &self.map.spot(local))
+    }
+
+    #[inline]
+    fn aim(&self, stream: &mut Stream) -> Vec3 {
+        self.sample_by(self.aimed.as_ref().unwrap_or(&self.starts), stream)
+    }
+
+    #[inline]
+    fn seen(&self, towards: Vec3) -> Seen {
+        let local = self.to_local * towards;
+        let spot = self.map.spot(local);
+        let radiance = self.map.radiance(&spot) * self.scale;
+        let pdf_sr = self.starts.pdf_sr(&self.map, local, &spot);
+        let aimed_sr = self.aimed.as_ref().map_or(pdf_sr, |aimed| aimed.pdf_sr(&self.map, local, &spot));
+        Seen { radiance, pdf_sr, aimed_sr }
+    }
+
+    fn fluence(&self) -> DVec3 {
+        self.fluence
+    }
+}
+
+impl EnvMap {
+    #[inline]
+    fn sample_by(&self, aim: &Aim, stream: &mut Stream) -> Vec3 {
+        let Cell { column, row, within } = aim.cells.sample(stream);
+        let [[a, b], [c, d]] = aim.corners(&self.map, column, row);
         let y = warp::linear(a + b, c + d, within.y);
         let x = warp::linear(a + y * (c - a), b + y * (d - b), within.x);
         let (top, bottom) = (self.map.cosines[row], self.map.cosines[row + 1]);
@@ -104,44 +154,55 @@ impl InfiniteModel for EnvMap {
         let (s, c) = azimuth.sin_cos();
         (self.to_local.transpose() * vec3(sine * s, cosine, -sine * c)).normalize()
     }
+}
 
-    #[inline]
-    fn pdf_sr(&self, towards: Vec3) -> f32 {
-        let local = self.to_local * towards;
-        self.map.pdf_sr(local, &self.map.spot(local))
+impl Aim {
+    /// In proportion to luminance, of which `spared` is left out.
+    fn new(map: &Map, spared: f32) -> Self {
+        let mut aim = Self { cells: Grid::new(1, &[0.0]), scale: 0.0, spared };
+        let weight = |(x, y)| {
+            let corners = aim.corners(map, x, y);
+            corners.as_flattened().iter().map(|aim| f64::from(0.25 * aim)).sum::<f64>() * map.solid_angle(y)
+        };
+        let weights: Vec<f64> = map.places().map(weight).collect();
+        aim.cells = Grid::new(map.image.width, &weights);
+        aim.scale = if aim.cells.is_empty() { 0.0 } else { aim.cells.total().recip() as f32 };
+        aim
     }
 
+    /// Density at `local` [1/sr], which is at `spot`.
     #[inline]
-    fn radiance_and_pdf(&self, towards: Vec3) -> (Spectrum, f32) {
-        let local = self.to_local * towards;
-        let spot = self.map.spot(local);
-        (self.map.radiance(&spot) * self.scale, self.map.pdf_sr(local, &spot))
+    fn pdf_sr(&self, map: &Map, local: Vec3, &Spot { column, row, x, .. }: &Spot) -> f32 {
+        let (top, bottom) = (map.cosines[row], map.cosines[row + 1]);
+        let y = ((top - cosine(local)) / (top - bottom)).clamp(0.0, 1.0) as f32;
+        let [[a, b], [c, d]] = self.corners(map, column, row);
+        let (left, right) = (a + y * (c - a), b + y * (d - b));
+        (left + x * (right - left)) * self.scale
     }
 
-    fn fluence(&self) -> DVec3 {
-        self.fluence
+    /// What the density is in proportion to, at the corners of a cell, row by row.
+    #[inline]
+    fn corners(&self, map: &Map, column: usize, row: usize) -> [[f32; 2]; 2] {
+        [row, row + 1].map(|row| [column, column + 1].map(|column| self.at(map.pixel(column, row))))
+    }
+
+    /// The same at a pixel.
+    #[inline]
+    fn at(&self, pixel: Spectrum) -> f32 {
+        let luminance = pixel.luminance();
+        (luminance - self.spared).max(KEPT * luminance)
     }
 }
 
 impl Map {
-    /// The map and the integral of its radiance; `spare` what is no brighter than the mean.
-    fn new(image: Image, spare: bool) -> (Self, DVec3) {
-        let cosines =
-            (0..image.height).map(|row| (PI * row as f64 / (image.height - 1) as f64).cos()).collect();
-        let mut map = Self { image, cells: Grid::new(1, &[0.0]), per_aim: 0.0, spared: 0.0, cosines };
-        let fluence =
-            map.places().map(|(x, y)| map.mean(x, y).as_dvec3() * map.solid_angle(y)).sum::<DVec3>();
-        if spare {
-            map.spared = (fluence / (4.0 * PI)).as_vec3().luminance();
-        }
-        let weight = |(x, y)| {
-            map.aims(x, y).as_flattened().iter().map(|aim| f64::from(0.25 * aim)).sum::<f64>()
-                * map.solid_angle(y)
-        };
-        let weights: Vec<f64> = map.places().map(weight).collect();
-        map.cells = Grid::new(map.image.width, &weights);
-        map.per_aim = if map.cells.is_empty() { 0.0 } else { map.cells.total().recip() as f32 };
-        (map, fluence)
+    fn new(image: Image) -> Self {
+        let cosine = |row| (PI * row as f64 / (image.height - 1) as f64).cos();
+        Self { cosines: (0..image.height).map(cosine).collect(), image }
+    }
+
+    /// The integral of its radiance.
+    fn fluence(&self) -> DVec3 {
+        self.places().map(|(x, y)| self.mean(x, y).as_dvec3() * self.solid_angle(y)).sum()
     }
 
     /// Column and row of every cell, row by row.
@@ -160,30 +221,6 @@ impl Map {
     fn radiance(&self, &Spot { column, row, x, y }: &Spot) -> Spectrum {
         let mix = |row| self.pixel(column, row).lerp(self.pixel(column + 1, row), x);
         mix(row).lerp(mix(row + 1), y)
-    }
-
-    /// Density at `local` [1/sr], which is at `spot`.
-    #[inline]
-    fn pdf_sr(&self, local: Vec3, &Spot { column, row, x, .. }: &Spot) -> f32 {
-        let (top, bottom) = (self.cosines[row], self.cosines[row + 1]);
-        let y = ((top - cosine(local)) / (top - bottom)).clamp(0.0, 1.0) as f32;
-        let [[a, b], [c, d]] = self.aims(column, row);
-        let (left, right) = (a + y * (c - a), b + y * (d - b));
-        (left + x * (right - left)) * self.per_aim
-    }
-
-    /// What the density is in proportion to, at the corners of a cell, row by row.
-    #[inline]
-    fn aims(&self, column: usize, row: usize) -> [[f32; 2]; 2] {
-        [row, row + 1].map(|row| [column, column + 1].map(|column| self.aim(column, row)))
-    }
-
-    /// The same at a pixel: its luminance, or what of it is not spared. Nothing is left out altogether, as some strategies have
-    /// no other way to reach it.
-    #[inline]
-    fn aim(&self, column: usize, row: usize) -> f32 {
-        let luminance = self.pixel(column, row).luminance();
-        (luminance - self.spared).max(KEPT * luminance)
     }
 
     #[inline]

@@ -118,20 +118,37 @@ pub trait PointModel {
     fn power(&self) -> DVec3;
 }
 
+/// What an emitter at infinity is in one direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// See [`InfiniteModel::radiance`].
+    pub radiance: Spectrum,
+    /// See [`InfiniteModel::pdf_sr`].
+    pub pdf_sr: f32,
+    /// Density of [`InfiniteModel::aim`] [1/sr]; 1 of the only direction there is.
+    pub aimed_sr: f32,
+}
+
 /// What every emitter at infinity can do.
 pub trait InfiniteModel {
     /// Radiance from the unit direction `towards` it [W/(m^2 sr)]; from a single direction irradiance [W/m^2].
     fn radiance(&self, towards: Vec3) -> Spectrum;
 
-    /// A unit direction for light to come from.
+    /// A unit direction for a light subpath to come from.
     fn sample(&self, stream: &mut Stream) -> Vec3;
 
     /// Density of [`Self::sample`] [1/sr]; 1 of the only direction there is.
     fn pdf_sr(&self, towards: Vec3) -> f32;
 
-    /// [`Self::radiance`] and [`Self::pdf_sr`] together, for the cost of one where that is most of both.
-    fn radiance_and_pdf(&self, towards: Vec3) -> (Spectrum, f32) {
-        (self.radiance(towards), self.pdf_sr(towards))
+    /// A unit direction for next-event estimation to take.
+    fn aim(&self, stream: &mut Stream) -> Vec3 {
+        self.sample(stream)
+    }
+
+    /// What there is in a direction, for the cost of one of its parts where that is most of all.
+    fn seen(&self, towards: Vec3) -> Seen {
+        let pdf_sr = self.pdf_sr(towards);
+        Seen { radiance: self.radiance(towards), pdf_sr, aimed_sr: pdf_sr }
     }
 
     /// The integral of radiance over all directions [W/m^2].
@@ -227,7 +244,8 @@ emitters! {
         #[inline] fn radiance(towards: Vec3) -> Spectrum;
         #[inline] fn sample(stream: &mut Stream) -> Vec3;
         #[inline] fn pdf_sr(towards: Vec3) -> f32;
-        #[inline] fn radiance_and_pdf(towards: Vec3) -> (Spectrum, f32);
+        #[inline] fn aim(stream: &mut Stream) -> Vec3;
+        #[inline] fn seen(towards: Vec3) -> Seen;
         fn fluence() -> DVec3;
         #[inline] fn direction() -> Option<Vec3>;
         fn even_radiance() -> Option<Spectrum>;

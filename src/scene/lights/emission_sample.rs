@@ -246,6 +246,9 @@ impl Lights {
             (EmitterPoint::Volume { position, .. }, Kind::Medium(volume)) => {
                 self.connections.pdf_vol(index, &volume.emission, *position, reference) / start.pdf
             }
+            (EmitterPoint::Direction(towards), Kind::Infinite(sky)) => {
+                chosen() * sky.seen(*towards).aimed_sr / start.pdf
+            }
             _ => chosen() / self.starts.probability(index) * (start.unlearnt.point / start.pdf),
         }
     }

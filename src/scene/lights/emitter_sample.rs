@@ -75,7 +75,7 @@ impl Lights {
                 self.surface_sample(geometry, index, point, chosen * pdf, reference)
             }
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
-            Kind::Infinite(sky) => self.infinite_sample(index, sky, sky.sample(stream), chosen),
+            Kind::Infinite(sky) => self.infinite_sample(index, sky, sky.aim(stream), chosen),
             Kind::Beam(beam) => self.beam_sample(index, beam, chosen, reference),
             Kind::Medium(volume) => {
                 let position = volume.emission.sample(stream);
@@ -135,14 +135,14 @@ impl Lights {
         towards: Vec3,
         chosen: f32,
     ) -> Option<EmitterSample> {
-        let (value, by_sky) = sky.radiance_and_pdf(towards);
-        (by_sky > 0.0).then(|| EmitterSample {
+        let seen = sky.seen(towards);
+        (seen.aimed_sr > 0.0).then(|| EmitterSample {
             light: index as u32,
             point: EmitterPoint::Direction(towards),
-            value,
+            value: seen.radiance,
             cosine: 1.0,
-            pdf: chosen * by_sky,
-            pdf_start: self.starts.probability(index) * by_sky,
+            pdf: chosen * seen.aimed_sr,
+            pdf_start: self.starts.probability(index) * seen.pdf_sr,
             pdf_direction: self.disk_towards(towards).pdf_area(),
         })
     }
