@@ -58,7 +58,7 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     // Before this there is nothing that a signal should save.
     interrupt::listen();
     plan.announce();
-    let load_time = started.elapsed().as_secs_f64();
+    let load_time = started.elapsed().saturating_sub(task.settings.budget.spent).as_secs_f64();
     let figures = match arguments.frames {
         None => vec![pool.install(|| shoot(&setup, &task, &mut goal, None))?],
         Some(frames) => pool.install(|| animate(&clip, &mut setup, task, goal, frames))?,

@@ -21,7 +21,7 @@ use crate::{
     error::{Error, Result},
     format,
     format::Sources,
-    render::budget::Budget,
+    render::{Settings, budget::Budget},
     scene::build::{self, Setup},
     settings::Overrides,
     transport::Strategies,
@@ -367,7 +367,8 @@ impl<'a> Stage<'a> {
         let (setup, load_seconds) = self.setup(scene, overrides)?;
         let started = Instant::now();
         let settings = requested.settings(&setup, 0, Budget::ENDLESS)?;
-        let load_seconds = load_seconds + started.elapsed().as_secs_f64();
+        let budget = Budget { spent: started.elapsed(), ..settings.budget };
+        let settings = Settings { budget, ..settings };
         if settings.options.strategies == Strategies::NONE {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));

@@ -106,7 +106,7 @@ pub struct Image {
     pub samples_per_pixel: u64,
     /// The fraction of the pixels that have one more, where the time ended before all had it.
     pub unfinished: f64,
-    /// Time spent on samples, pilot walks included.
+    /// Time spent on samples, and on pilots and learning before them.
     pub elapsed: Duration,
     /// Its estimated relative error, once it is known.
     pub noise: Option<Noise>,
@@ -285,7 +285,7 @@ fn accumulate(
     monitor: &mut Monitor<'_>,
 ) {
     let Instrument { film, settings: Settings { budget, seed, .. }, compiled, .. } = bench;
-    let (blocks, before) = (compiled.blocks(), sums.elapsed);
+    let (blocks, before) = (compiled.blocks(), sums.elapsed + budget.spent);
     let queue = Queue::new(budget, sums, blocks.count());
     let (mut next, mut noted) = (sums.blocks.min(queue.end), Instant::now());
     let seen = Seen::new(bench);
@@ -318,6 +318,7 @@ fn accumulate(
         let (elapsed, samples_per_pixel) = (stopwatch.elapsed(), sums.samples.count());
         if next.is_multiple_of(queue.per_pass) && monitor.is_mark(samples_per_pixel) {
             let pixels = || sums.accumulator.mean();
+            let elapsed = budget.spent + elapsed;
             stopwatch.hold(|| (monitor.show)(Snapshot { pixels: pixels(), samples_per_pixel, elapsed }));
         }
         if next == queue.end || done < tasks.len() {

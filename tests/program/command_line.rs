@@ -231,9 +231,8 @@ fn sums_know_the_step_that_was_marched_by() {
     sandbox.run(&format!("render scene.json --spp 1 {all}")).ends(0);
     let pairs = format!("render scene.json --spp 2 {all} --resume --connections all");
     sandbox.run(&pairs).refuses(&["connections = \"all\""]);
-    sandbox
-        .run(&format!("render scene.json --spp 2 {all} --resume --guide always"))
-        .refuses(&["guide = true"]);
+    // How noisy samples are does not matter.
+    sandbox.run(&format!("render scene.json --spp 2 {all} --resume --guide always")).ends(0);
     sandbox.run("render scene.json --spp 2 --guide auto --heuristic power").refuses(&[
         "--guide",
         "power",
@@ -241,12 +240,10 @@ fn sums_know_the_step_that_was_marched_by() {
     ]);
     let guided = sandbox.run("render scene.json --spp 2 --guide always").ends(0).err();
     assert!(guided.contains("guided walks"), "{guided}");
-    sandbox
-        .run(&format!("render scene.json --spp 2 {all} --resume --starts learnt"))
-        .refuses(&["learnt_starts = true"]);
+    sandbox.run(&format!("render scene.json --spp 3 {all} --resume --starts learnt")).ends(0);
     let kept = "render scene.json --strategies hit,next-event,join,lens --spp 1 --guide always --sums c.sums";
     sandbox.run(kept).ends(0);
-    sandbox.run(&format!("{kept} --resume --basis haar")).refuses(&["basis = \"haar\""]);
+    sandbox.run(&format!("{kept} --resume --basis haar")).ends(0);
     for (words, flag) in [("--starts learnt --integrator pt", "--starts"), ("--basis bins", "--basis")] {
         let said = sandbox.run(&format!("render scene.json --spp 1 {words}")).ends(0).err();
         assert!(said.contains(&format!("{flag} has no effect")), "{said}");

@@ -161,41 +161,6 @@ fn portals_are_shown() {
     }
 }
 
-/// Path tracing alone has a use for a guide where light comes round corners, all integrators where it comes through a portal. Through
-/// a small opening it finds so few paths that it would weigh those more which it did not foresee.
-#[test]
-fn walks_follow_a_guide_where_it_pays() {
-    let scene = |name: &str| format!("{}/scenes/{name}", env!("CARGO_MANIFEST_DIR"));
-    let [indirect, open] = ["gallery/indirect_room.json", "gallery/cornell_d.json -D medium=0"].map(scene);
-    let [keyhole, ajar, small_opening] =
-        ["keyhole", "door_ajar", "small_opening"].map(|name| scene(&format!("efficiency/{name}.xml")));
-    let sandbox = Sandbox::new();
-    for (scene, words, follows) in [
-        (&indirect, "--integrator pt --guide auto", true),
-        (&indirect, "--strategies hit,next-event --guide auto", true),
-        (&indirect, "--integrator bdpt --guide auto", false),
-        (&ajar, "--integrator bdpt --guide auto", false),
-        (&small_opening, "--integrator pt --guide auto", false),
-        (&keyhole, "--integrator bdpt --guide auto", true),
-        (&keyhole, "--integrator bdpt", true),
-        (&keyhole, "--integrator bdpt --guide never", false),
-        (&keyhole, "--strategies hit,next-event,join,lens", false),
-        (&keyhole, "--connections all", false),
-        (&keyhole, "--heuristic power", false),
-        (&keyhole, "--integrator pt --guide auto", true),
-        (&indirect, "--integrator pt", false),
-        (&open, "--integrator pt --guide auto", false),
-        (&open, "--integrator pt --guide always", true),
-    ] {
-        let render = format!("render {scene} {words} --size 32x24 -o a.exr --sums a.sums --json");
-        let plan: Value =
-            serde_json::from_str(&sandbox.run(&format!("{render} --spp 1")).ends(0).out()).unwrap();
-        assert_eq!(plan["plan"]["guided"], json!(follows), "{words}: {plan}");
-        sandbox.run(&format!("{render} --spp 2 --resume")).ends(0);
-        std::fs::remove_file(sandbox.path("a.sums")).unwrap();
-    }
-}
-
 /// A guide is learnt anew from the scene by every part of an image, and is the same each time.
 #[test]
 fn parts_of_a_guided_image_make_the_whole() {

@@ -57,8 +57,11 @@ fn a_render_says_in_one_line_what_it_will_do() {
 /// Whatever the command renders by, its report, its picture and `info` say it too.
 #[test]
 fn what_a_pilot_chooses_is_said() {
+    let mut sensor = camera([0.0, 1.0, 3.0], [0.0; 3], 8);
+    // Fewer are not worth a pilot.
+    sensor["sampler"] = json!({"type": "independent", "sample_count": 4096});
     let sky = scene(&[
-        ("sensor", camera([0.0, 1.0, 3.0], [0.0; 3], 8)),
+        ("sensor", sensor),
         ("floor", floor(-0.6, 4.0, 0.5)),
         ("sky", sky(1.0)),
         ("integrator", json!({"type": "volpath"})),

@@ -123,7 +123,9 @@ pub fn shoot(
     match &entry.renderer {
         Renderer::Own { settings, load_seconds } => {
             let last = marks.last().copied().unwrap_or(1);
-            let settings = settled(settings, seed, Budget::samples(last));
+            // The pilot's time is part of every image's.
+            let budget = Budget { spent: settings.budget.spent, ..Budget::samples(last) };
+            let settings = settled(settings, seed, budget);
             let film = plain_film(entry);
             let all = last as f64 * film.len() as f64;
             let progress = &mut |progress: render::Progress| notify(progress.samples as f64 / all);
