@@ -8,7 +8,11 @@ use crate::common::{
 use serde_json::{Value, json};
 use tyndall::{
     analysis::coverage,
-    render::pilot::{self, Choice},
+    render::{
+        Settings,
+        budget::Budget,
+        pilot::{self, Choice},
+    },
     transport::{Effort, Strategies, Survival},
 };
 
@@ -52,17 +56,21 @@ fn every_effort_shows_the_same() {
 fn chosen(scene: &Value) -> Choice {
     let stage = Stage::new(scene);
     let settings = stage.settings(Strategies::BDPT, 1, 0);
+    let settings = Settings { budget: Budget::ENDLESS, ..settings };
     let is_complete = |set| coverage::is_complete(&stage.setup.scene, &settings.options, set);
-    pilot::choose(&stage.setup.scene, &stage.setup.film, &settings, None, &is_complete)
+    pilot::choose(&stage.setup.scene, &stage.setup.film, &settings, None, &is_complete).choice
 }
 
 /// Light subpaths find little of a scene without walls under a sky, and all that lights a room by its ceiling.
 #[test]
 fn a_pilot_leaves_out_what_does_not_pay() {
     let open = chosen(&cloud_under_sky(&[]));
-    // Half as many light subpaths that the lens sees are as good there as none: within one per cent.
-    let is_lean = !open.strategies.connection && (!open.strategies.lens || open.effort.light_walks < 1.0);
-    assert!(is_lean && open.gain > 1.1 && open.effort.survival == Survival::FourthRoot, "{open:?}");
+    assert!(
+        !open.strategies.need_light_walks()
+            && open.gain > 1.1
+            && open.effort.survival == Survival::FourthRoot,
+        "{open:?}"
+    );
     let lamp = |direction: [f64; 3]| {
         let target: Vec<f64> = (0..3).map(|i| [0.0, 0.5, 0.0][i] + direction[i]).collect();
         spot([0.0, 0.5, 0.0], [target[0], target[1], target[2]], 1.0)

@@ -201,7 +201,8 @@ impl Pilots<'_> {
         }
         candidates.sort_by(|a, b| a.judgement.total_cmp(&b.judgement));
         let best = candidates[0];
-        let gain = base.map_or(1.0, |base| base.judgement / best.judgement);
+        let cost = |one: &Foretold| one.error.all() * one.time;
+        let gain = base.map_or(1.0, |base| cost(&base) / cost(&best));
         Report { choice: Choice { gain, ..best.choice }, candidates, samples: pilot.samples() }
     }
 
