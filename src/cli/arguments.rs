@@ -87,7 +87,8 @@ pub enum Command {
     /// Put together parts of one image, rendered with --samples or --crop, and write the image
     ///
     /// The parts are files of sums of the same scene, options and seed. Those with other samples of the same pixels
-    /// (--samples) are added up: the image is the same, bit for bit, as that of one render of all of these samples. Those
+    /// (--samples) are added up: the image is the same, bit for bit, as that of one render of all of these samples with
+    /// --samples, or with --spp if they are two million or more, all pixels together (of fewer, the pilot is shorter). Those
     /// with other pixels (--crop) are put side by side; they must cover the image and not overlap.
     Merge(super::merge::Merge),
     /// Print a summary of a scene without rendering it
@@ -253,7 +254,8 @@ pub struct Render {
     /// Continue from the sums of an earlier render: the rest of an interrupted one, or, with --sums in both commands, more
     /// samples for a finished one
     ///
-    /// The image is the same, bit for bit, as if the render had never stopped; --spp is the total. Scene, files and
+    /// The image is the same, bit for bit, as if the render had never stopped; --spp is the total. Where that is another than
+    /// before, a pilot may choose other strategies for the samples that follow, unless --strategies names them. Scene, files and
     /// options that decide about the image must be the same. Where there are no sums yet, the render starts from the
     /// beginning.
     #[arg(long, overrides_with = "resume", conflicts_with_all = ["batches", "frames"])]

@@ -418,12 +418,12 @@ fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<(Settings, O
     Ok((Settings { budget: Budget { spent, ..budget }, ..settings }, chosen))
 }
 
-/// The budget by which a pilot judges. Parts of one image, which need not know how many there are, all count as an image of the
-/// scene's samples: they choose alike.
+/// The budget by which a pilot judges. Parts of one image, which need not know how many there are, choose alike, as for an image
+/// without end.
 pub fn to_come(arguments: &arguments::Render, setup: &Setup) -> Budget {
     match arguments.samples {
         None => budget(arguments, setup, false),
-        Some(_) => Budget::samples(setup.samples_per_pixel),
+        Some(_) => Budget::ENDLESS,
     }
 }
 

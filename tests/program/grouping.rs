@@ -23,6 +23,8 @@ fn lamps() -> Value {
     })
 }
 
+/// So that samples are alike, however many they are to be.
+const ALIKE: &str = "--strategies hit,next-event,join,lens";
 const GROUPS: [&str; 4] = ["a", "b.left", "glow", "rest"];
 
 /// The layers of the image `name` add up to it.
@@ -57,7 +59,7 @@ fn assert_same_in_parts(sandbox: &Sandbox, render: impl Fn(&str)) {
 fn groups_are_layers_whatever_a_render_is_cut_into() {
     let sandbox = Sandbox::with_scene(&lamps());
     let render = |words: &str| {
-        sandbox.run(&format!("render scene.json --groups {words}")).ends(0);
+        sandbox.run(&format!("render scene.json --groups {ALIKE} {words}")).ends(0);
     };
     render("--spp 6 --threads 2 -o all.exr");
     assert_whole(&sandbox, "all.exr");
@@ -121,7 +123,7 @@ fn groups_leave_the_image_as_it_is() {
 fn components_are_layers_whatever_a_render_is_cut_into() {
     let sandbox = Sandbox::with_scene(&lamps());
     let render = |words: &str| {
-        sandbox.run(&format!("render scene.json --size 24x20 --components {words}")).ends(0);
+        sandbox.run(&format!("render scene.json --size 24x20 --components {ALIKE} {words}")).ends(0);
     };
     let components = ["unscattered", "emitted", "scattered.single", "scattered.multiple"].map(str::to_owned);
     render("--spp 6 -o all.exr");

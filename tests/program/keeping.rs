@@ -108,13 +108,14 @@ fn any_partition_of_the_samples_makes_the_same_image() {
     }
 }
 
+const START: &str = "render opening.xml -D res=16 --strategies hit,next-event,join,lens --starts learnt";
+
 /// Of samples and of pixels, where light subpaths begin at learnt starts; each window of pixels learns its own.
 #[test]
 fn parts_with_learnt_starts_make_the_same_image() {
     let scene = include_str!("../../scenes/efficiency/small_opening.xml");
     let sandbox = Sandbox::with_files(&[("opening.xml", scene)]);
-    let render =
-        |words: &str| good(sandbox.run(&format!("render opening.xml -D res=16 --starts learnt {words}")));
+    let render = |words: &str| good(sandbox.run(&format!("{START} {words}")));
     for (name, crop) in [("all", ""), ("top", "--crop 16x7+0+0"), ("bottom", "--crop 16x9+0+7")] {
         let render = |words: &str| render(&format!("{crop} {words}"));
         let said = render(&format!("--spp 7 --sums {name}.sums -o {name}.exr --threads 2")).err();

@@ -49,7 +49,7 @@ def equal(some: Path, other: Path) -> bool:
 def single(of: Job, folder: Path) -> Path:
     """The same picture by one render."""
     image = folder / "single.exr"
-    program.call([*of.render(), "--spp", str(of.spp), "-o", str(image)])
+    program.call([*of.render(), "--samples", f"0..{of.spp}", "--sums", str(folder / "single.sums"), "-o", str(image)])
     return image
 
 

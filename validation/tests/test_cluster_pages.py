@@ -86,8 +86,8 @@ def shell(script: str) -> None:
 
 
 def single(desk: Path, *options: str) -> Path:
-    """What the pages promise."""
-    shell(shlex.join(["tyndall", "-q", "render", "fog.json", "--spp", "4096", "-o", "single.exr", *options]))
+    """What the pages promise, of an image so small that its pilot would be shorter than those of parts."""
+    shell(shlex.join(["tyndall", "-q", "render", "fog.json", "--samples", "0..4096", "--sums", "single.sums", "-o", "single.exr", *options]))
     return desk / "single.exr"
 
 
