@@ -88,7 +88,8 @@ pub enum Command {
     ///
     /// The parts are files of sums of the same scene, options and seed. Those with other samples of the same pixels
     /// (--samples) are added up: the image is the same, bit for bit, as that of one render of all of these samples with
-    /// --samples, or with --spp if they are two million or more, all pixels together (of fewer, the pilot is shorter). Those
+    /// --samples. It is also that of one render with --spp, if they are 2.1 million or more, all pixels together: the pilot of
+    /// fewer is shorter. Those
     /// with other pixels (--crop) are put side by side; they must cover the image and not overlap.
     Merge(super::merge::Merge),
     /// Print a summary of a scene without rendering it

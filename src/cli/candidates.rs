@@ -1,9 +1,7 @@
 //! What a pilot foretells of all that it may choose: for `info --pilot`.
 
-use crate::{
-    render::pilot::{Foretold, Report},
-    settings::options::Survival,
-};
+use super::{made, plan};
+use crate::render::pilot::{Foretold, Report};
 use serde_json::{Value, json};
 
 /// How many are shown.
@@ -13,8 +11,7 @@ const SHOWN: usize = 12;
 pub fn table(report: &Report) -> String {
     let Report { candidates, samples, choice } = report;
     if candidates.is_empty() {
-        let why = "none: for so few samples of this image it would take longer than a choice could gain";
-        return format!("pilot       {why}");
+        return "pilot       none: nothing emits light, or too few samples are to come".to_owned();
     }
     let mut lines = vec![
         format!(
@@ -24,13 +21,11 @@ pub fn table(report: &Report) -> String {
     ];
     lines.extend(candidates.iter().take(SHOWN).map(line));
     let learnt = if choice.effort.is_guided() { ", all of which follow a guide" } else { "" };
-    lines.push(format!(
-        "            {} candidates{learnt}; the least judgement wins: time x error, in which rare bright",
-        candidates.len()
-    ));
+    lines.push(format!("            {} candidates{learnt}. The least judgement wins.", candidates.len()));
     lines.push(
-        "            paths count alike for all, x 1.1 for each thing that is out of the common".to_owned(),
+        "            It is time x error. All have the same noise of rare bright paths in it.".to_owned(),
     );
+    lines.push("            Longer walks and equiangular sampling have to be 1.1 times better.".to_owned());
     lines.join("\n")
 }
 
@@ -40,39 +35,19 @@ fn line(foretold: &Foretold) -> String {
 }
 
 fn name(Foretold { choice, .. }: &Foretold) -> String {
-    let effort = choice.effort;
-    let mut words = vec![choice.strategies.names().join("+")];
-    if effort.survival != Survival::default() {
-        words.push(format!("survival {}", effort.survival.name()));
-    }
-    if effort.light_walks != 1.0 {
-        words.push(format!("{} light subpaths a sample", effort.light_walks));
-    }
-    if effort.connections != 1 {
-        words.push(format!("{} joins a vertex", effort.connections));
-    }
-    if effort.learnt_starts {
-        words.push("learnt starts".to_owned());
-    }
-    words.join(", ")
+    let strategies = choice.strategies.names().join("+");
+    [vec![strategies], plan::efforts(choice.effort)].concat().join(", ")
 }
 
 /// The same for scripts.
 pub fn json(report: &Report) -> Value {
-    let one = |foretold: &Foretold| {
-        let Foretold { choice, error, time, judgement } = foretold;
-        let effort = choice.effort;
-        json!({
-            "strategies": choice.strategies.names(),
-            "survival": effort.survival.name(),
-            "light_walks": effort.light_walks,
-            "connections": effort.connections,
-            "learnt_starts": effort.learnt_starts,
-            "error": error.all(),
-            "error_in_few_tiles": error.few,
-            "time": time,
-            "judgement": judgement,
-        })
+    let one = |Foretold { choice, error, time, judgement }: &Foretold| {
+        let mut one = made::by_pilot(*choice);
+        one["error"] = error.all().into();
+        one["error_in_few_tiles"] = error.few.into();
+        one["time"] = (*time).into();
+        one["judgement"] = (*judgement).into();
+        one
     };
     json!({ "samples": report.samples, "candidates": report.candidates.iter().map(one).collect::<Vec<_>>() })
 }

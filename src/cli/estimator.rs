@@ -46,8 +46,8 @@ pub struct Estimator {
     ///
     /// Without this option, a short pilot finds out which strategies of bdpt lower the error most for their time in this
     /// scene, how many samples each should have, and whether light subpaths should start where it saw that light reaches the
-    /// image (info --pilot shows what it foretells). It takes 1 in 128 of the samples to come; of fewer than 100,000 samples, all pixels together, no pilot is worth its time, and all
-    /// strategies run alike. Strategies that are named all have as many samples, and learn nothing but what --starts and --guide say. Equiangular sampling runs only if the pilot of
+    /// image. It takes 1 in 128 of the samples to come. An image of fewer than 100,000 samples, all pixels together, has no pilot:
+    /// all strategies run alike. tyndall info --pilot shows what it foretells. Strategies that are named all have as many samples, and learn nothing but what --starts and --guide say. Equiangular sampling runs only if the pilot of
     /// bdpt finds it worth its time, or if it is named.
     ///
     /// hit: the camera subpath hits an emitter; next-event: it connects to a point sampled on an emitter; join: one of its
@@ -84,7 +84,8 @@ pub struct Estimator {
     ///
     /// auto: where it pays, as the first quarter of learning foresees: where light comes through portals, such as a keyhole, and
     /// where pt has to find light that comes round corners, which light subpaths find anyway. Where bdpt has little noise, nothing
-    /// is learnt to find out, nor for fewer than a million samples, all pixels together. always: also where it does not pay. Learning takes a second or so before the image is begun, and
+    /// is learnt to find out. The same holds for images of fewer than a million samples, all pixels together. always: also where it
+    /// does not pay. Learning takes a second or so before the image is begun, and
     /// goes on after so many samples that more of it pays, but with --error; the expected image is the same. Needs the heuristic
     /// balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]

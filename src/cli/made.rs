@@ -90,7 +90,7 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
 }
 
 /// What a pilot chose; learnt starts are named where there are any, so that earlier sums without them can go on.
-fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
+pub fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
     let mut chosen = json!({
         "strategies": strategies.names(),
         "survival": effort.survival.name(),

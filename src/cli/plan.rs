@@ -81,27 +81,11 @@ impl Plan {
     /// How often strategies run that do not all run equally often.
     fn effort(&self) -> String {
         let Options { strategies, effort, .. } = self.settings.options;
-        let Effort { survival, light_walks, connections, learnt_starts, .. } = effort;
         let mut text = String::new();
         if self.settings.options.connections == Connections::All {
             text += "; every vertex joins all of a light subpath";
         }
-        if connections != 1 {
-            text += &format!("; {connections} joins a vertex");
-        }
-        if light_walks != 1.0 {
-            text += &format!("; {light_walks} light subpaths a sample");
-        }
-        if learnt_starts {
-            text += "; learnt starts";
-        }
-        if effort.is_guided() {
-            text += "; guided walks";
-        }
-        text += match survival {
-            Survival::Albedo => "",
-            Survival::FourthRoot => "; longer walks",
-        };
+        efforts(effort).iter().for_each(|part| text += &format!("; {part}"));
         let Some(Choice { among, gain, .. }) = self.chosen else { return text };
         let mut left_out = among.names();
         left_out.retain(|name| !strategies.names().contains(name));
@@ -208,4 +192,17 @@ fn in_words(method: DistanceMethod) -> &'static str {
             "delta tracking"
         }
     }
+}
+
+/// What is out of the common in `effort`.
+pub fn efforts(effort: Effort) -> Vec<String> {
+    let Effort { survival, light_walks, connections, learnt_starts, .. } = effort;
+    let parts = [
+        (connections != 1, format!("{connections} joins a vertex")),
+        (light_walks != 1.0, format!("{light_walks} light subpaths a sample")),
+        (learnt_starts, "learnt starts".to_owned()),
+        (effort.is_guided(), "guided walks".to_owned()),
+        (survival == Survival::FourthRoot, "longer walks".to_owned()),
+    ];
+    parts.into_iter().filter_map(|(is, part)| is.then_some(part)).collect()
 }

@@ -75,6 +75,11 @@ fn what_a_pilot_chooses_is_said() {
     told.iter().for_each(|part| assert!(said.contains(part), "{said}"));
     assert!(sandbox.run("info scene.json").ends(0).out().contains("without join and lens"));
     let plan = &sandbox.json("r.json")["plan"];
+    let found: Value =
+        serde_json::from_str(&sandbox.run("info scene.json --pilot --json").ends(0).out()).unwrap();
+    let [best, next] = [0, 1].map(|index| &found["pilot"]["candidates"][index]);
+    assert_eq!((&best["strategies"], &best["survival"]), (&plan["strategies"], &plan["survival"]));
+    assert!(best["judgement"].as_f64() <= next["judgement"].as_f64(), "{best} {next}");
     assert_eq!(
         (&plan["strategies"], &plan["survival"]),
         (&json!(["hit", "next-event"]), &json!("fourth root of albedo"))
