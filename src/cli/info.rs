@@ -41,7 +41,8 @@ pub fn run(arguments: &arguments::Info) -> Result<()> {
     if volumes::is_one(&arguments.scene.file) {
         return volumes::run(&arguments.scene.file, &arguments.answer);
     }
-    let setup = load(&arguments.scene, arguments.estimator.overrides(None))?;
+    let mut setup = load(&arguments.scene, arguments.estimator.overrides(None))?;
+    setup.samples_per_pixel = arguments.spp.map_or(setup.samples_per_pixel, u64::from);
     arguments.answer.check()?;
     let budget = Budget::samples(setup.samples_per_pixel);
     let (settings, report) = arguments.estimator.reported(&setup, 0, budget)?;

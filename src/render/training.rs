@@ -125,9 +125,9 @@ pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
     }
 }
 
-/// True if an image of so many samples is worth that something is learnt first: that takes a tenth of its time, at most.
-pub(super) fn is_worth(samples: f64) -> bool {
-    samples >= 10.0 * TEACHING * (FIRST << ROUNDS) as f64
+/// True if what is learnt first takes no more than this `share` of the time of an image of so many samples.
+pub(super) fn is_worth(samples: f64, share: f64) -> bool {
+    share * samples >= TEACHING * (FIRST << ROUNDS) as f64
 }
 
 /// True if it would pay that walks by `options` follow a guide, as the first rounds of learning it foresee.
