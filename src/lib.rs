@@ -32,6 +32,10 @@ pub mod guide;
 
 pub mod transport;
 
+pub mod passes;
+
+pub mod learning;
+
 pub mod render;
 
 pub mod analysis;

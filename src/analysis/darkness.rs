@@ -1,7 +1,7 @@
 //! Why an image is black: rays through it are followed to the first surface that scatters, and from there to the lights.
 //! Asked only where the image is black, after the fact.
 
-use super::coverage::{self, Share};
+use crate::transport::coverage::{self, Share};
 use crate::{
     bsdf::{BsdfModel, Transport},
     film::Film,

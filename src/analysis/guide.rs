@@ -10,8 +10,10 @@ use crate::{
     error::Result,
     film,
     guide::{self, Guide, Learnt},
+    learning::training,
     math::{Spectrum, Vec3, srgb::Srgb, vec2, vec3, warp},
-    render::{Settings, instrument::Instrument, training},
+    passes::Settings,
+    render::instrument::Instrument,
     scene::{Scene, build::Setup, lights::Starts},
     transport::Interaction,
 };

@@ -65,7 +65,6 @@
 //! miss the mean free path by (P03T fig. A.12).
 
 pub mod chi_square;
-pub mod coverage;
 pub mod darkness;
 pub mod diff;
 pub mod flights;

@@ -1,22 +1,21 @@
 //! The paths of one pixel sample, written out for debugging: every vertex with its densities, every contribution with
 //! its weight. Positions are those of the scene file.
 
+pub mod sample;
+
 use crate::{
     error::{Error, Result},
     math::{Spectrum, Vec3},
     medium::MediumIndex,
-    render::{
-        Settings,
-        instrument::Instrument,
-        pixel_sample::{Arrival, Leg, Partner, PixelSample, Splat, Stop, Try, Walk},
-    },
+    render::{Settings, instrument::Instrument},
     scene::{
         build::Setup,
         lights::{EmitterPoint, EmitterSample},
     },
     shape::SurfacePoint,
-    transport::Interaction,
+    transport::{Arrival, Interaction, Leg},
 };
+use sample::{Partner, PixelSample, Splat, Stop, Try, Walk};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -269,8 +268,9 @@ pub fn examine(
     let pixel = y as usize * film.width as usize + x as usize;
     let numbers = u64::from(first)..u64::from(first) + u64::from(count);
     let max_depth = settings.options.max_depth;
-    let samples =
-        numbers.map(|number| describe(setup, max_depth, number, &instrument.sample(number as usize, pixel)));
+    let samples = numbers.map(|number| {
+        describe(setup, max_depth, number, &PixelSample::of(&instrument, number as usize, pixel))
+    });
     let made_by = concat!("Tyndall ", env!("CARGO_PKG_VERSION")).to_owned();
     Ok(Pixel { made_by, pixel: [x, y], seed: settings.seed, samples: samples.collect() })
 }

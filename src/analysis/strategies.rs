@@ -1,32 +1,28 @@
 //! What every strategy of the estimator is worth in a scene (LW96 sec. 4; Veach 1997, sec. 10.3): its image weighted
 //! and alone, its share of energy, variance and time; and which kinds of strategies the scene could do without.
 
+pub mod images;
 pub mod pilot;
 mod table;
+mod timing;
 
 pub use table::table;
 
-use super::{
-    coverage::Traits,
-    sheet::{self, Row},
-};
+use super::sheet::{self, Row};
 use crate::{
     analysis::study::outcome::Interval,
     error::{Error, Result},
     film::{self, Channel, Film, format::Format, moments::Moments},
     math::{Spectrum, SpectrumExt},
     memory,
-    render::{
-        Settings,
-        instrument::Instrument,
-        strategy_images::{CellImages, StrategyCell, StrategyImages, StrategyTable},
-        timing::Times,
-    },
+    render::{Settings, instrument::Instrument},
     scene::build::Setup,
-    transport::{Options, Strategies, observer::StrategyKind},
+    transport::{Options, Strategies, coverage::Traits, observer::StrategyKind},
 };
+use images::{CellImages, StrategyCell, StrategyImages, StrategyTable};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use timing::Times;
 
 /// How much is done.
 #[derive(Clone, Copy, Debug)]
@@ -155,8 +151,11 @@ pub fn examine(
     // As many contenders as there can be: which of them can make all paths is not known yet.
     let total = before + pilots * (subsets.len() + 1);
     let instrument = Instrument::new(&setup.scene, &setup.film, settings);
-    let parts = instrument.parts(cells, plan.passes, &mut |done| progress(done, total));
-    let times = instrument.times(cells, timed, &mut |done| progress(plan.passes + done, total));
+    let parts =
+        StrategyImages::render(&instrument, settings.options.strategies, cells, plan.passes, &mut |done| {
+            progress(done, total)
+        });
+    let times = Times::of(&instrument, cells, timed, &mut |done| progress(plan.passes + done, total));
     let mut report = report(setup, &options, &parts, &times, timed);
     let seen = parts.luminance_of(Some(1)) > 0.0;
     let traits = Traits::of(&setup.scene, (&options).into(), seen);

@@ -1,7 +1,7 @@
 //! What a pilot foretells of all that it may choose: for `info --pilot`.
 
 use super::{made, plan};
-use crate::render::pilot::{Foretold, Report};
+use crate::learning::pilot::{Foretold, Report};
 use serde_json::{Value, json};
 
 /// How many are shown.

@@ -5,15 +5,13 @@ use super::{
     media::Media,
 };
 use crate::{
-    analysis::coverage,
     error::{Error, Result},
     film::layer::Content,
-    render::{
-        Settings,
-        budget::Budget,
+    learning::{
         pilot::{self, Choice, Report},
         training,
     },
+    passes::{Settings, budget::Budget},
     sampling::{Basis, Sampler},
     scene::build::Setup,
     settings::{Overrides, integrator::Restriction},
@@ -211,8 +209,7 @@ impl Estimator {
         if !self.strategies.is_empty() || strategies.preview().is_some() || !is_judged {
             return None;
         }
-        let is_complete = |set| coverage::is_complete(&setup.scene, &settings.options, set);
-        Some(pilot::choose(&setup.scene, &setup.film, settings, self.starts, &is_complete))
+        Some(pilot::choose(&setup.scene, &setup.film, settings, self.starts))
     }
 
     /// The same without a pilot: all strategies that are not left out.

@@ -8,7 +8,7 @@ use crate::{
         format::{FileKind, Format},
     },
     math::Spectrum,
-    render::{Image, any_sums::Picture},
+    render::{Image, sums::Picture},
     scene::build::Setup,
 };
 use serde_json::Value;

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     analysis::guide::{self, Cells, FILES, Portal, Report},
     error::{Error, Result},
-    render::budget::Budget,
+    passes::budget::Budget,
 };
 use clap::Args;
 use std::{num::NonZeroUsize, path::PathBuf};

@@ -14,9 +14,10 @@ use crate::{
         layer::Layer,
     },
     inputs::{self, Reader},
+    learning::training,
     medium::{DistanceMethod, Heterogeneous, MediumIndex, distance::DistanceSampler},
+    passes::{Settings, budget::Budget},
     phase::PhaseModel,
-    render::{Settings, budget::Budget, training},
     scene::{
         Scene,
         build::Setup,

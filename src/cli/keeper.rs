@@ -4,12 +4,14 @@ use super::{arguments::Render, complain, goal::Goal, interrupt, made, render::Ta
 use crate::{
     error::Result,
     film::output,
+    passes::budget::Budget,
     render::{
         Progress,
-        any_sums::{AnySums, Kept, Picture},
-        budget::Budget,
-        samples::Samples,
-        sums_file::{read, write},
+        sums::{
+            AnySums, Kept, Picture,
+            file::{read, write},
+            samples::Samples,
+        },
     },
 };
 use serde_json::Value;

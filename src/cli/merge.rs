@@ -15,12 +15,13 @@ use crate::{
     error::{Error, Result},
     film::Window,
     inputs::{self, Reader},
+    passes::{Settings, budget::Budget},
     render::{
-        self, Image, Settings,
-        any_sums::AnySums,
-        budget::Budget,
-        sums_file,
-        tiles::{self, Tile},
+        self, Image,
+        sums::{
+            AnySums, file,
+            tiles::{self, Tile},
+        },
     },
     scene::build::{Setup, build},
     settings::Crop,
@@ -66,7 +67,7 @@ pub fn run(arguments: &Merge) -> Result<()> {
             let remedy = "merge the samples of each part on its own, or leave out --sums";
             return Err(Error::new("--sums", "samples of the same pixels", found, remedy));
         };
-        sums_file::write(path, sums.kept(), made)?;
+        file::write(path, sums.kept(), made)?;
         say(&format!("samples {}: {}", sums.kept().samples(), path.display()));
     }
     match &arguments.output {
@@ -87,7 +88,7 @@ struct Part {
 
 impl Part {
     fn read(path: &Path) -> Result<Self> {
-        let (mut sums, made) = sums_file::read(path)?;
+        let (mut sums, made) = file::read(path)?;
         let left_out = match &mut sums {
             AnySums::Samples(sums) => Some(sums.drop_unfinished())
                 .filter(|fraction| *fraction > 0.0)

@@ -4,7 +4,7 @@ use super::voice::{Answer, say};
 use crate::{
     error::{Error, Result},
     film::{exr, png},
-    render::sums_file,
+    render::sums::file,
 };
 use serde_json::Value;
 use std::path::Path;
@@ -13,7 +13,7 @@ use std::path::Path;
 pub fn made(path: &Path) -> Result<Option<Value>> {
     let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let text = match end.as_str() {
-        _ if sums_file::is_one(path) => return of_sums(path).map(Some),
+        _ if file::is_one(path) => return of_sums(path).map(Some),
         "exr" => exr::made(path)?,
         "png" => png::made(path)?,
         "sums" => return of_sums(path).map(Some),
@@ -33,7 +33,7 @@ pub fn made(path: &Path) -> Result<Option<Value>> {
 }
 
 fn of_sums(path: &Path) -> Result<Value> {
-    let (sums, mut made) = sums_file::read(path)?;
+    let (sums, mut made) = file::read(path)?;
     let image = sums.kept().image();
     made["samples"] = sums.kept().samples().to_string().into();
     made["render_seconds"] = image.elapsed.as_secs_f64().into();

@@ -7,7 +7,7 @@ use super::{
     outputs::check_short,
     say, voice,
 };
-use crate::{analysis::pixel, error::Result, film, render::budget::Budget};
+use crate::{analysis::pixel, error::Result, film, passes::budget::Budget};
 use clap::Args;
 use std::{num::NonZeroUsize, path::PathBuf};
 

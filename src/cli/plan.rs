@@ -2,11 +2,13 @@
 
 use super::{estimator::Estimator, progress::percent, voice};
 use crate::{
-    analysis::coverage::{self, Share, Unreached, list},
+    learning::pilot::Choice,
     math::Spectrum,
     medium::{DistanceMethod, Medium},
-    render::{Settings, budget::Budget, pilot::Choice, progressive::Progressive},
+    passes::{Settings, budget::Budget},
+    render::progressive::Progressive,
     scene::build::Setup,
+    transport::coverage::{self, Share, Unreached, list},
     transport::{Connections, Effort, Options, Strategies, Survival},
 };
 use serde_json::{Value, json};

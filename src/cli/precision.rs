@@ -4,7 +4,7 @@ use super::arguments;
 use crate::{
     error::{Error, Result},
     film::layer::Content,
-    render::{Settings, adaptive::Precision},
+    render::{Precision, Settings},
     scene::build::Setup,
 };
 

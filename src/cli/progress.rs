@@ -3,7 +3,7 @@
 use super::voice;
 use crate::{
     film::noise::Noise,
-    render::{Progress, Settings, adaptive::Precision},
+    render::{Precision, Progress, Settings},
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
@@ -124,7 +124,7 @@ pub fn percent(relative: f64) -> String {
 mod tests {
     use super::*;
     use crate::{
-        render::budget::Budget,
+        passes::budget::Budget,
         sampling::Sampler,
         transport::{Options, profile::ProfileName},
     };

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     analysis::strategies::{self, Plan},
     error::Result,
-    render::budget::Budget,
+    passes::budget::Budget,
 };
 use clap::Args;
 use indicatif::ProgressStyle;

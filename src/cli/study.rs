@@ -21,7 +21,7 @@ use crate::{
     error::{Error, Result},
     format,
     format::Sources,
-    render::{Settings, budget::Budget},
+    passes::{Settings, budget::Budget},
     scene::build::{self, Setup},
     settings::Overrides,
     transport::Strategies,

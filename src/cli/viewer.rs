@@ -2,7 +2,7 @@
 
 use crate::{
     error::{Error, Result},
-    render::any_sums::Picture,
+    render::sums::Picture,
 };
 use std::{
     io,

@@ -5,7 +5,8 @@ use crate::{
     bsdf::{BsdfModel, Transport},
     emitter::{Emitter, InfiniteModel},
     math::{Channels, Spectrum, Vec3},
-    sampling::Stream,
+    passes::{Settings, compiled::Compiled, pass::Outcome},
+    sampling::{Stream, stream::Purpose},
     scene::{Scene, lights::EmitterSample},
     settings::integrator::FogSettings,
     shape::{Ray, SurfacePoint},
@@ -18,17 +19,29 @@ const MOST_LEGS: u32 = 64;
 /// Where there are no more emitters than this, all light every point; else so many are drawn for each.
 const LIGHTS_PER_POINT: usize = 16;
 /// Rays that measure how bright surfaces are.
-pub const PILOT_RAYS: usize = 1024;
+const PILOT_RAYS: usize = 1024;
 
 /// A scene in fog of one radiance.
 pub struct Preview<'a> {
-    pub(super) scene: &'a Scene,
+    scene: &'a Scene,
     hide_emitters: bool,
     threshold: f32,
     /// L_fog.
     veil: Spectrum,
     /// What surfaces receive from everywhere.
     ambient: Spectrum,
+}
+
+/// Rays through pixels all over the film, with random numbers of their own.
+fn pilot_rays(compiled: &dyn Compiled, seed: u64) -> impl Iterator<Item = (Ray, Stream)> {
+    let (scene, film) = (compiled.scene(), compiled.film());
+    (0..PILOT_RAYS).map(move |index| {
+        let pixel = (index as u128 * film.len() as u128 / PILOT_RAYS as u128) as usize;
+        let mut stream = Stream::new(seed, index as u64, 0, Purpose::Pilot);
+        let (position, _) = film.sample(pixel, &mut stream);
+        let aperture = scene.sensor.sample_aperture(&mut stream);
+        (scene.sensor.ray(position, aperture).ray, stream)
+    })
 }
 
 /// What a ray has reached.
@@ -50,8 +63,24 @@ enum End {
 }
 
 impl<'a> Preview<'a> {
+    /// Prepares to show what `compiled` shows.
+    pub fn of(compiled: &'a dyn Compiled, fog: &FogSettings, settings: &Settings) -> Self {
+        let Settings { seed, options, .. } = settings;
+        Self::new(compiled.scene(), fog, options.hide_emitters, pilot_rays(compiled, *seed))
+    }
+
+    /// One sample of each of `pixels`, as the camera subpaths of `compiled` begin.
+    pub fn show(&self, compiled: &dyn Compiled, pass: usize, pixels: impl Iterator<Item = usize>) -> Outcome {
+        let show = |pixel| {
+            let mut start = compiled.camera_start(pass, pixel);
+            let ray = self.scene.sensor.ray(start.position, start.aperture).ray;
+            (pixel as u32, self.radiance(ray, &mut start.stream) * start.weight)
+        };
+        Outcome::of_parts(pixels.map(show).collect(), Vec::new(), Vec::new())
+    }
+
     /// Prepares to show `scene`. Where `fog` leaves it open, radiance is measured along `rays`.
-    pub fn new(
+    fn new(
         scene: &'a Scene,
         fog: &FogSettings,
         hide_emitters: bool,

@@ -1,17 +1,22 @@
-//! A bench: a scene with its compiled estimator; instruments inspect its passes one by one. Blocks, streams and
+//! A scene with its compiled estimator, whose passes are rendered or inspected one by one. Blocks, streams and
 //! the order of sums are those of a render with the same seed.
 
 use super::{
-    Settings,
-    adaptive::{FIRST_LOOK, Precision},
-    block::{Outcome, PIXELS_PER_BLOCK, Pass},
-    compiled::{self, Compiled},
-    sorted::Sorter,
-    training::{self, LATER_ROUNDS, ROUNDS},
+    image::Precision,
+    sorted::{self, Sorter},
+    sums::halves::FIRST_LOOK,
 };
 use crate::{
     film::{Film, layer::Layer},
+    learning::training::{self, LATER_ROUNDS, ROUNDS},
     math::Spectrum,
+    passes::{
+        Settings,
+        blocks::PIXELS_PER_BLOCK,
+        compiled::{self, Compiled},
+        observe::BlockObserver,
+        pass::{Outcome, Pass},
+    },
     scene::Scene,
     transport::Interaction,
 };
@@ -43,11 +48,13 @@ enum Learning {
 
 /// An estimator ready to make passes over `film`.
 pub struct Instrument<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) film: &'a Film,
+    /// What is shown.
+    pub scene: &'a Scene,
+    /// Where.
+    pub film: &'a Film,
     pub(super) settings: Settings,
     /// By what was learnt before the first sample.
-    pub(super) compiled: Box<dyn Compiled + 'a>,
+    pub compiled: Box<dyn Compiled + 'a>,
     learning: Learning,
     /// By what is learnt in later rounds.
     later: [OnceLock<Box<dyn Compiled + 'a>>; LATER_ROUNDS],
@@ -80,7 +87,7 @@ impl<'a> Instrument<'a> {
     /// after the first look follow the same guide.
     pub(super) fn with_precision(self, precision: Precision) -> Self {
         let learning = match self.learning {
-            Learning::Growing => Learning::Rounds(training::rounds_to(precision)),
+            Learning::Growing => Learning::Rounds(training::rounds_to(precision.error)),
             other => other,
         };
         Self { learning, ..self }
@@ -90,9 +97,9 @@ impl<'a> Instrument<'a> {
     ///
     /// [`Estimator::first_interaction`]: crate::transport::Estimator::first_interaction
     pub fn first_interactions(&self) -> Vec<Option<Interaction>> {
-        let Self { scene, film, settings, compiled, .. } = self;
+        let Self { scene, film, compiled, .. } = self;
         let first = |pixel: usize| {
-            let mut start = compiled.blocks().camera_start(scene, film, settings.seed, 0, pixel);
+            let mut start = compiled.camera_start(0, pixel);
             let ray = scene.sensor.ray(start.position, start.aperture).ray;
             compiled.first_interaction(ray, &mut start.stream)
         };
@@ -111,7 +118,7 @@ impl<'a> Instrument<'a> {
 
     /// The estimator of `pass`, by what is learnt for it. Tasks of a render find that [learnt](Self::learn), for it takes all
     /// threads.
-    pub(super) fn at(&self, pass: usize) -> &(dyn Compiled + 'a) {
+    pub fn at(&self, pass: usize) -> &(dyn Compiled + 'a) {
         let Self { scene, film, settings, per_block, .. } = self;
         let rounds = self.rounds_for(pass);
         let compile = || {
@@ -135,7 +142,10 @@ impl<'a> Instrument<'a> {
 
     /// One sample of every pixel of `block` that `wants` one.
     pub(super) fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
-        self.at(pass).render(self.sorter.as_ref(), pass, block, wants)
+        match &self.sorter {
+            None => self.at(pass).render(pass, block, wants),
+            Some(sorter) => sorted::block(self.at(pass), sorter, [pass, block], wants),
+        }
     }
 
     /// `work` on tasks, each a block of the pass that `pass` names for it, on all threads, until there are none left or
@@ -174,11 +184,7 @@ impl<'a> Instrument<'a> {
     }
 
     /// The same for all tasks.
-    pub(super) fn work<T: Send>(
-        &self,
-        tasks: Range<usize>,
-        work: impl Fn(usize, usize) -> T + Sync,
-    ) -> Vec<T> {
+    pub fn work<T: Send>(&self, tasks: Range<usize>, work: impl Fn(usize, usize) -> T + Sync) -> Vec<T> {
         let blocks = self.compiled.blocks().count();
         self.work_until(tasks, |task| task / blocks, || false, work, || ())
     }
@@ -186,7 +192,7 @@ impl<'a> Instrument<'a> {
     /// Shows `see` the image of every one of `passes`, in order; the time that making them took.
     pub fn passes(&self, passes: Range<usize>, see: &mut dyn FnMut(&[Spectrum])) -> Duration {
         let mut image = Pass::new(self.film.len());
-        let work = |pass, block| self.at(pass).render(None, pass, block, &|_| true);
+        let work = |pass, block| self.at(pass).render(pass, block, &|_| true);
         self.in_order(passes, work, |outcome, ends_pass| {
             image.add(&outcome);
             if ends_pass {
@@ -195,9 +201,25 @@ impl<'a> Instrument<'a> {
         })
     }
 
+    /// `see` all blocks of `passes`, each with an observer of its own that `make` makes, on all threads; `take` gets these in
+    /// order, and whether the pass ends with it.
+    pub fn observe<T: BlockObserver + Send>(
+        &self,
+        passes: Range<usize>,
+        make: impl Fn(usize) -> T + Sync,
+        take: impl FnMut(T, bool),
+    ) -> Duration {
+        let work = |pass, block| {
+            let mut observer = make(pass);
+            self.at(pass).observe(pass, block, &|_| true, &mut observer);
+            observer
+        };
+        self.in_order(passes, work, take)
+    }
+
     /// `work` on all blocks of `passes`, on all threads; `take` gets the results in order, and whether the
     /// pass ends with it. The time that `work` took.
-    pub(super) fn in_order<T: Send>(
+    pub fn in_order<T: Send>(
         &self,
         passes: Range<usize>,
         work: impl Fn(usize, usize) -> T + Sync,

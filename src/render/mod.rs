@@ -3,130 +3,37 @@
 //! Results depend on the seed alone: every walk draws from its own stream, blocks are fixed sets of pixels, and
 //! their results are added up in block order, whichever thread made them.
 
-pub mod adaptive;
-pub mod any_sums;
-mod batches;
-mod block;
-pub mod budget;
-mod compiled;
-pub mod faults;
-mod fill;
+mod adaptive;
 mod fog;
-mod follower;
-mod groups;
-mod half;
+pub mod image;
 pub mod instrument;
+mod known;
 mod monitor;
-mod observer;
-pub mod pilot;
-pub mod pixel_sample;
 mod primary;
 pub mod progressive;
-mod radiance;
-pub mod samples;
 mod seen;
 mod sorted;
-pub mod strategy_images;
 pub mod sums;
-pub mod sums_file;
-pub mod tiles;
-pub mod timing;
-mod tracks;
-pub mod training;
-mod trial;
 mod turns;
 
-pub use monitor::Snapshot;
+pub use crate::passes::Settings;
+pub use image::{Image, Precision, Progress, Reached, Snapshot};
 
 use crate::{
-    film::{
-        Channel, Film,
-        accumulator::Accumulator,
-        format::{XYZ_ROWS, planes, to_xyz},
-        layer::{Content, Layer},
-        noise::Noise,
-    },
-    math::{Spectrum, Vec3},
-    sampling::Sampler,
+    film::{Channel, Film, accumulator::Accumulator, layer::Layer},
+    passes::budget::Budget,
     scene::Scene,
     settings::integrator::FogSettings,
-    transport::{Heuristic, Options, Strategies, profile::ProfileName},
+    transport::{Heuristic, Options, Strategies},
 };
-use adaptive::{Adaptive, Halves, Precision, Reached};
-use any_sums::{AnySums, Kept};
-use budget::Budget;
-use faults::Faults;
+use adaptive::Adaptive;
 use fog::Preview;
 use instrument::Instrument;
+use known::{Known, late};
 use monitor::{Monitor, Stopwatch};
-use samples::Samples;
 use seen::Seen;
 use std::time::{Duration, Instant};
-use sums::Sums;
-
-/// What to render and for how long.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings {
-    /// Strategies, depth, visibility of emitters.
-    pub options: Options,
-    /// Where the random numbers of walks come from.
-    pub sampler: Sampler,
-    /// When to stop.
-    pub budget: Budget,
-    /// The same seed gives the same image, bit for bit.
-    pub seed: u64,
-    /// The compiled estimator to use; must have all the scene needs. Heuristics other than the balance heuristic run
-    /// on what [`ProfileName::weighing`] makes of it.
-    pub profile: ProfileName,
-}
-
-/// How far a render is.
-#[derive(Clone, Copy, Debug)]
-pub struct Progress {
-    /// Pixel samples done, over all pixels.
-    pub samples: u64,
-    /// Passes (samples per pixel) completed.
-    pub passes: u64,
-    /// Time since the first sample.
-    pub elapsed: Duration,
-    /// Its estimated relative error, once it is known.
-    pub noise: Option<Noise>,
-    /// The part of the pixels that have the requested precision, if one was requested.
-    pub within: Option<f64>,
-    /// No more samples follow.
-    pub is_last: bool,
-}
-
-/// A finished render.
-#[derive(Clone, Debug)]
-pub struct Image {
-    /// Row-major radiance, top row first.
-    pub pixels: Vec<Spectrum>,
-    /// Samples of every pixel.
-    pub samples_per_pixel: u64,
-    /// The fraction of the pixels that have one more, where the time ended before all had it.
-    pub unfinished: f64,
-    /// Time spent on samples, and on pilots and learning before them.
-    pub elapsed: Duration,
-    /// Its estimated relative error, once it is known.
-    pub noise: Option<Noise>,
-    /// The part of each pixel that the scene covers, in [0, 1] for filters without negative lobes; empty
-    /// where it was not requested.
-    pub alpha: Vec<f32>,
-    /// The channels of all layers, in their order.
-    pub layers: Vec<Channel>,
-    /// How far a requested precision was reached, if one was requested.
-    pub reached: Option<Reached>,
-    /// What went wrong on the way.
-    pub faults: Faults,
-}
-
-impl Image {
-    /// Samples per pixel, on average.
-    pub fn samples(&self) -> f64 {
-        self.samples_per_pixel as f64 + self.unfinished
-    }
-}
+use sums::{AnySums, Halves, Kept, Sums, samples::Samples};
 
 /// Renders `scene` onto `film`, reporting to `progress` now and then.
 pub fn render(scene: &Scene, film: &Film, settings: &Settings, progress: &mut dyn FnMut(Progress)) -> Image {
@@ -236,10 +143,7 @@ fn dispatch(
     let (stopwatch, started) = (Stopwatch::start(), Instant::now());
     let bench = Instrument::new(scene, film, settings).sorting(layers);
     let (preview, sums) = match mode {
-        Mode::Preview(fog, sums) => {
-            let rays = bench.compiled.blocks().pilot_rays(scene, film, settings.seed);
-            (Some(Preview::new(scene, fog, settings.options.hide_emitters, rays)), sums)
-        }
+        Mode::Preview(fog, sums) => (Some(Preview::of(&*bench.compiled, fog, settings)), sums),
         Mode::Budget(sums) => (None, sums),
     };
     accumulate(&bench, preview.as_ref(), sums, stopwatch, monitor);
@@ -249,14 +153,6 @@ fn dispatch(
     let known = Known { pixels: &image.pixels, passes: &sums.accumulator, seen: &seen };
     let layers = known.channels(layers, |plane| sums.plane(plane));
     Image { alpha: seen.alpha, layers, ..image }
-}
-
-/// True once alpha and layers, which come after the samples, take too long for the budget of a render that began at
-/// `started`.
-fn late(settings: &Settings, started: Instant) -> impl Fn() -> bool {
-    const GRACE: Duration = Duration::from_millis(100);
-    let budget = settings.budget;
-    move || budget.is_over(started.elapsed().saturating_sub(GRACE))
 }
 
 /// The image of an adaptive render that began at `started`, with alpha, `layers`, and one more that shows how many samples
@@ -284,9 +180,9 @@ fn accumulate(
     mut stopwatch: Stopwatch,
     monitor: &mut Monitor<'_>,
 ) {
-    let Instrument { film, settings: Settings { budget, seed, .. }, compiled, .. } = bench;
-    let (blocks, before) = (compiled.blocks(), sums.elapsed + budget.spent);
-    let queue = Queue::new(budget, sums, blocks.count());
+    let Instrument { settings: Settings { budget, .. }, compiled, .. } = bench;
+    let before = sums.elapsed + budget.spent;
+    let queue = Queue::new(budget, sums, compiled.blocks().count());
     let (mut next, mut noted) = (sums.blocks.min(queue.end), Instant::now());
     let seen = Seen::new(bench);
     // However long that takes, or no time would be enough to go on.
@@ -300,7 +196,7 @@ fn accumulate(
         let pass = |task| queue.sample(task) as usize;
         let render = |pass, block| match preview {
             None => bench.render(pass, block, &|_| true),
-            Some(preview) => blocks.show(preview, film, *seed, pass, block),
+            Some(preview) => preview.show(&**compiled, pass, compiled.blocks().pixels(block)),
         };
         let done = bench.work_in_turn(tasks.clone(), pass, is_over, render, |first, outcomes| {
             for (task, outcome) in (first..).zip(outcomes) {
@@ -355,49 +251,5 @@ impl Queue {
     /// The number of the sample that `task` belongs to.
     fn sample(&self, task: usize) -> u64 {
         self.had.missing(self.first, (task / self.per_pass) as u64)
-    }
-}
-
-/// What is known of an image, for its layers.
-struct Known<'a> {
-    pixels: &'a [Spectrum],
-    passes: &'a Accumulator,
-    seen: &'a primary::Seen,
-}
-
-impl Known<'_> {
-    /// The channels of all `layers`; those that contributions are sorted into are planes in their order, from 1 on.
-    fn channels(&self, layers: &[Layer], plane: impl Fn(usize) -> Vec<Spectrum>) -> Vec<Channel> {
-        let mut sorted = 0;
-        let mut channels = Vec::new();
-        for layer in layers {
-            let values = if layer.is_sorted() {
-                sorted += 1;
-                planes(plane(sorted).iter().copied())
-            } else {
-                self.develop(layer)
-            };
-            let named = layer.channel_names().zip(values);
-            channels.extend(named.map(|(name, values)| Channel { name, values }));
-        }
-        channels
-    }
-
-    /// The values of a layer, channel by channel. Variances are left out where a single pass cannot estimate them.
-    fn develop(&self, layer: &Layer) -> Vec<Vec<f32>> {
-        let Self { pixels, passes, seen } = self;
-        match layer.content {
-            Content::Surface(quantity) => seen.of(quantity),
-            Content::Image => {
-                let mut values = planes(pixels.iter().copied());
-                values.push(seen.alpha.clone());
-                values
-            }
-            Content::Mean => planes(pixels.iter().map(|pixel| to_xyz(*pixel))),
-            Content::SecondMoment => XYZ_ROWS.iter().map(|row| passes.second_moment(*row)).collect(),
-            Content::Variance => Vec3::AXES.iter().filter_map(|row| passes.variance(*row)).collect(),
-            // Sorted, not developed.
-            Content::Part(_) => Vec::new(),
-        }
     }
 }

@@ -1,19 +1,10 @@
 //! Watches a render: receives its progress, and the image at requested marks.
 
-use super::{Progress, sums::Sums};
-use crate::math::Spectrum;
+use super::{
+    image::{Progress, Snapshot},
+    sums::Sums,
+};
 use std::time::{Duration, Instant};
-
-/// The image while it is being rendered.
-#[derive(Clone, Debug)]
-pub struct Snapshot {
-    /// Row-major radiance, top row first: what a render of so many samples would have been, bit for bit.
-    pub pixels: Vec<Spectrum>,
-    /// Samples per pixel.
-    pub samples_per_pixel: u64,
-    /// Time spent on them, pilot walks included; the time for earlier snapshots is not.
-    pub elapsed: Duration,
-}
 
 /// Marks at which the image is requested, and who receives it.
 pub(super) struct Monitor<'a> {

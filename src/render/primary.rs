@@ -1,7 +1,7 @@
 //! What primary rays see: alpha, and the layers that describe the first surface. A cheap pass of its own,
 //! only where something requests it, through the same film positions as the camera subpaths.
 
-use super::{block::CameraStart, instrument::Instrument};
+use super::instrument::Instrument;
 use crate::{
     bsdf::BsdfModel,
     film::{
@@ -9,6 +9,7 @@ use crate::{
         layer::{Content, Layer, Quantity},
     },
     math::{DVec3, Spectrum, Vec2, Vec3, vec2, vec3},
+    passes::blocks::CameraStart,
     sampling::Stream,
     scene::Scene,
     shape::{Hit, Ray, SurfacePoint},
@@ -58,7 +59,7 @@ impl Pass {
 
     /// Traces as many primary rays per pixel as there were `passes`, or fewer once `is_over`, but one at least.
     pub fn run(&self, bench: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
-        let Instrument { scene, film, settings, compiled, .. } = bench;
+        let Instrument { scene, film, compiled, .. } = bench;
         let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
             return Seen { alpha: Vec::new(), planes: Vec::new() };
@@ -68,8 +69,7 @@ impl Pass {
         let mut done = 0;
         while done == 0 || done < passes && !is_over() {
             sums.par_chunks_mut(width).enumerate().for_each(|(pixel, sums)| {
-                let blocks = compiled.blocks();
-                let mut start = blocks.camera_start(scene, film, settings.seed, done as usize, pixel);
+                let mut start = compiled.camera_start(done as usize, pixel);
                 let view = View::new(bench, environment, &start, passes);
                 let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
                 let first = self.interacts().then(|| view.first_interaction(&mut start.stream)).flatten();

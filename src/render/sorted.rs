@@ -5,25 +5,26 @@
 //! An image and such layers of it are planes of one array, the image first: what adds up, keeps and merges passes treats
 //! them as an image of that many more pixels.
 
-use super::{
-    block::Outcome,
-    compiled::Ready,
-    faults::{Cause, Fault},
-};
 use crate::{
     film::{
         Film,
         layer::{Component, Content, Layer, Part},
     },
-    math::{Channels, Spectrum, Vec2},
+    math::{Spectrum, Vec2},
+    passes::{
+        blocks::CameraStart,
+        compiled::Compiled,
+        faults::{Cause, Fault, guarded},
+        observe::BlockObserver,
+        pass::Outcome,
+    },
     scene::{
         Scene,
         lights::{EmissionSample, EmitterSample, Lights},
     },
     transport::{
-        Contribution, Interaction, MisSums, Vertex,
+        Contribution, Event, Interaction,
         observer::{Meeting, Observer},
-        profile::Profile,
     },
 };
 use std::cell::Cell;
@@ -74,12 +75,12 @@ struct Trail {
 }
 
 impl Trail {
-    /// The same with `vertex` at its end.
+    /// The same with `event` at its end.
     #[inline]
-    fn with<S: MisSums>(self, vertex: &Vertex<S>) -> Self {
-        let is_in_medium = matches!(vertex.interaction, Interaction::Medium(..));
+    fn with(self, event: &Event<'_>) -> Self {
+        let is_in_medium = matches!(event.interaction, Interaction::Medium(..));
         // Where an interaction is forced, a second walk of the same observer begins.
-        let is_first = vertex.subpath.edges == 1;
+        let is_first = event.arrival.edges == 1;
         Self {
             collisions: if is_first { 0 } else { self.collisions } + u32::from(is_in_medium),
             is_first_in_medium: if is_first { is_in_medium } else { self.is_first_in_medium },
@@ -95,46 +96,70 @@ struct Kept {
     collisions: u32,
 }
 
-/// How many layers of an image contributions are sorted into.
-pub fn count(layers: &[Layer]) -> usize {
-    layers.iter().filter(|layer| layer.is_sorted()).count()
-}
-
-/// See [`super::block::Blocks::render`]; the planes of layers follow that of the image.
-pub(super) fn block<P: Profile>(
-    ready: &Ready<'_, P>,
+/// See [`Compiled::render`]; the planes of layers follow that of the image.
+pub(super) fn block(
+    compiled: &dyn Compiled,
     sorter: &Sorter,
     [pass, block]: [usize; 2],
     wants: &dyn Fn(usize) -> bool,
-    at: &Cell<Option<u32>>,
 ) -> Outcome {
-    let Ready { estimator, blocks, scene, film, seed } = ready;
-    let mut light = LightPathObserver::new(film, sorter, pass, P::Channels::COUNT);
-    // Compiled for instruments in any case.
-    let mut observer: &mut dyn Observer<P::MisSums> = &mut light;
-    let cache = blocks.trace_light(estimator, *seed, pass, block, &mut observer);
-    let LightPathObserver { kept, values, mut faults, .. } = light;
-    let mut camera = Vec::new();
-    for pixel in blocks.pixels(block).filter(|pixel| wants(*pixel)) {
-        at.set(Some(pixel as u32));
-        let start = blocks.camera_start(scene, film, *seed, pass, pixel);
-        let (weight, kept) = (start.weight, kept[start.hero].as_slice());
-        let mut sums = vec![Spectrum::ZERO; sorter.planes];
-        let place =
-            Fault { cause: Cause::NotFinite { s: 0, t: 0 }, sample: pass as u64, pixel: Some(pixel as u32) };
-        let mut observer = CameraPathObserver {
+    guarded(pass, |failed, at| {
+        let is_wanted = |pixel: usize| wants(pixel) && !failed.contains(&(pixel as u32));
+        let mut sorted = Sorted::new(compiled, sorter, pass, at);
+        compiled.observe(pass, block, &is_wanted, &mut sorted);
+        let Sorted { light, camera, .. } = sorted;
+        let faults = [light.faults, camera.faults].concat();
+        Outcome::of_parts(camera.values, light.values, faults)
+    })
+}
+
+/// A block in the making.
+struct Sorted<'a> {
+    /// The pixel at hand.
+    at: &'a Cell<Option<u32>>,
+    light: LightPathObserver<'a>,
+    camera: CameraPathObserver<'a>,
+}
+
+impl<'a> Sorted<'a> {
+    fn new(compiled: &'a dyn Compiled, sorter: &'a Sorter, pass: usize, at: &'a Cell<Option<u32>>) -> Self {
+        let (film, sample) = (compiled.film(), pass as u64);
+        let light = LightPathObserver::new(film, sorter, pass, compiled.heroes());
+        let place = Fault { cause: Cause::NotFinite { s: 0, t: 0 }, sample, pixel: None };
+        let camera = CameraPathObserver {
+            film,
             sorter,
             trail: Trail::default(),
-            kept,
-            sums: &mut sums,
-            place: &place,
-            faults: &mut faults,
+            kept: Vec::new(),
+            hero: 0,
+            weight: 1.0,
+            sums: vec![Spectrum::ZERO; sorter.planes],
+            values: Vec::new(),
+            place,
+            faults: Vec::new(),
         };
-        start.trace(estimator, &cache, &mut observer as &mut dyn Observer<P::MisSums>);
-        let planes = sums.iter().enumerate();
-        camera.extend(planes.map(|(plane, sum)| ((plane * film.len() + pixel) as u32, *sum * weight)));
+        Self { at, light, camera }
     }
-    Outcome::of_parts(camera, values, faults)
+}
+
+impl BlockObserver for Sorted<'_> {
+    fn light(&mut self, _: u64) -> &mut dyn Observer {
+        &mut self.light
+    }
+
+    fn lit(&mut self) {
+        self.camera.kept = std::mem::take(&mut self.light.kept);
+    }
+
+    fn camera(&mut self, pixel: usize, start: &CameraStart) -> &mut dyn Observer {
+        self.at.set(Some(pixel as u32));
+        self.camera.begin(pixel, start);
+        &mut self.camera
+    }
+
+    fn ended(&mut self, pixel: usize) {
+        self.camera.end(pixel);
+    }
 }
 
 /// What light subpaths contribute to the film, and where they come from.
@@ -170,7 +195,7 @@ impl<'a> LightPathObserver<'a> {
     }
 }
 
-impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
+impl Observer for LightPathObserver<'_> {
     fn covers(&self, film: Vec2) -> bool {
         self.film.covers(film)
     }
@@ -179,15 +204,15 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
         (self.light, self.is_from_medium, self.hero) = (start.light, start.point.is_volume(), hero);
     }
 
-    fn arrive(&mut self, vertex: &Vertex<S>) {
-        self.trail = self.trail.with(vertex);
+    fn arrive(&mut self, event: Event<'_>) {
+        self.trail = self.trail.with(&event);
     }
 
     fn keep(&mut self) {
         self.kept[self.hero].push(Kept { light: self.light, collisions: self.trail.collisions });
     }
 
-    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>) {
         let (Meeting::Lens(film), Some(Contribution { value, .. })) = (meeting, contribution) else { return };
         if !value.is_finite() {
             let cause = Cause::NotFinite { s, t };
@@ -206,21 +231,39 @@ impl<S: MisSums> Observer<S> for LightPathObserver<'_> {
     }
 }
 
-/// What one camera subpath contributes to each plane.
+/// What camera subpaths contribute to each plane.
 struct CameraPathObserver<'a> {
+    film: &'a Film,
     sorter: &'a Sorter,
     trail: Trail,
-    /// The vertices in the cache.
-    kept: &'a [Kept],
-    sums: &'a mut [Spectrum],
+    /// The vertices in the cache, per hero channel.
+    kept: Vec<Vec<Kept>>,
+    /// Of the camera subpath at hand.
+    hero: usize,
+    weight: f32,
+    sums: Vec<Spectrum>,
+    /// Of those before.
+    values: Vec<(u32, Spectrum)>,
     /// Where faults are, but for their cause.
-    place: &'a Fault,
-    faults: &'a mut Vec<Fault>,
+    place: Fault,
+    faults: Vec<Fault>,
 }
 
 impl CameraPathObserver<'_> {
+    fn begin(&mut self, pixel: usize, start: &CameraStart) {
+        (self.hero, self.weight, self.trail) = (start.hero, start.weight, Trail::default());
+        self.place.pixel = Some(pixel as u32);
+        self.sums.fill(Spectrum::ZERO);
+    }
+
+    fn end(&mut self, pixel: usize) {
+        let Self { film, weight, .. } = self;
+        let value = |(plane, sum): (usize, &Spectrum)| ((plane * film.len() + pixel) as u32, *sum * *weight);
+        self.values.extend(self.sums.iter().enumerate().map(value));
+    }
+
     /// The emitter of what the strategy of `t` camera vertices contributes, and its component; none of light subpaths.
-    fn origin<S: MisSums>(&self, t: u32, meeting: &Meeting<'_, S>) -> Option<(u32, Component)> {
+    fn origin(&self, t: u32, meeting: &Meeting<'_>) -> Option<(u32, Component)> {
         let Trail { is_first_in_medium, collisions, .. } = self.trail;
         let by_trail = |more| Component::of(is_first_in_medium, collisions + more);
         let of = |sample: &EmitterSample, component| Some((sample.light, component));
@@ -229,7 +272,7 @@ impl CameraPathObserver<'_> {
             Meeting::Met(_, sample) | Meeting::Emitter(sample) => of(sample, by_trail(0)),
             Meeting::Pivot(_, _, sample) => of(sample, Component::Single),
             Meeting::Light(index, _) => {
-                let Kept { light, collisions } = self.kept[*index];
+                let Kept { light, collisions } = self.kept[self.hero][*index];
                 Some((light, by_trail(collisions)))
             }
             Meeting::Lens(_) => None,
@@ -237,12 +280,12 @@ impl CameraPathObserver<'_> {
     }
 }
 
-impl<S: MisSums> Observer<S> for CameraPathObserver<'_> {
-    fn arrive(&mut self, vertex: &Vertex<S>) {
-        self.trail = self.trail.with(vertex);
+impl Observer for CameraPathObserver<'_> {
+    fn arrive(&mut self, event: Event<'_>) {
+        self.trail = self.trail.with(&event);
     }
 
-    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>) {
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>) {
         let Some(Contribution { value, .. }) = contribution else { return };
         if !value.is_finite() {
             let cause = Cause::NotFinite { s, t };

@@ -43,7 +43,7 @@ mod tests {
     use super::*;
     use crate::{
         format,
-        render::{Settings, budget::Budget},
+        passes::{Settings, budget::Budget},
         sampling::Sampler,
         scene::build,
         settings::Overrides,

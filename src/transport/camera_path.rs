@@ -38,7 +38,7 @@ pub struct CameraPath<'a, P: Profile, R> {
 
 /// One camera subpath through `film` [pixels] and a point of the aperture, connected to vertices of `light` subpaths; its
 /// radiance goes to `observer`.
-pub fn sample<P: Profile, R: Observer<P::MisSums>>(
+pub fn sample<P: Profile, R: Observer>(
     estimator: &Estimator<'_, P>,
     light: Partners<'_, P::MisSums>,
     film: Vec2,
@@ -82,7 +82,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Ve
     }
 }
 
-impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
+impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
     #[inline]
     fn kind(edges: u32) -> StrategyKind {
         if edges == 1 { StrategyKind::Lens } else { StrategyKind::Connection }
@@ -99,7 +99,7 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
         if P::MEDIA && departure.edges == 0 {
             (self.pdf_fwd, self.first) = (departure.pdf_fwd, None);
         }
-        self.observer.depart(departure);
+        self.observer.depart(&departure.leg());
     }
 
     #[inline]
@@ -132,13 +132,13 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for CameraPath<'_, P, R> {
     }
 
     fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
-        self.observer.escape(subpath);
+        self.observer.escape(&subpath.arrival());
         let (lights, previous) = (&self.estimator.scene.lights, self.previous);
         self.emission(subpath, || lights.infinity_hit(-subpath.incoming, previous));
     }
 }
 
-impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
+impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
     /// Its contributions go to `observer`.
     pub fn new(
         estimator: &'a Estimator<'a, P>,
@@ -152,7 +152,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
     /// Shows `vertex`, and what is emitted there, whether the walk goes on from there or not.
     #[inline]
     pub fn reach(&mut self, vertex: &Vertex<P::MisSums>) {
-        self.observer.arrive(vertex);
+        self.observer.arrive(vertex.event());
         // Where nulls exist, flights have already reported the emitters that they reached, passed or not.
         if !P::NULLS
             && let Interaction::Surface(point) = &vertex.interaction
@@ -187,7 +187,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
             self.observer.contribute(
                 0,
                 subpath.edges + 1,
-                Meeting::Met(subpath, &sample),
+                Meeting::Met(subpath.arrival(), &sample),
                 contribution.as_ref(),
             );
         }
@@ -244,7 +244,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
             self.observer.contribute(
                 0,
                 subpath.edges + 1,
-                Meeting::Met(&subpath, &sample),
+                Meeting::Met(subpath.arrival(), &sample),
                 contribution.as_ref(),
             );
         }
@@ -374,7 +374,7 @@ impl<'a, P: Profile, R: Observer<P::MisSums>> CameraPath<'a, P, R> {
                 self.observer.start();
                 let contribution =
                     self.connect_with(vertex, other, stream).map(|contribution| contribution * light.scale);
-                self.observer.contribute(s, t, Meeting::Light(index, other), contribution.as_ref());
+                self.observer.contribute(s, t, Meeting::Light(index, other.event()), contribution.as_ref());
                 self.observer.stop(StrategyKind::Connection, s, t);
             }
         }

@@ -127,13 +127,13 @@ impl<P: Profile> Estimator<'_, P> {
     }
 }
 
-impl<P: Profile, R: Observer<P::MisSums>> CameraPath<'_, P, R> {
+impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
     /// One sample along the primary ray of `departure`.
     pub fn sample_equiangular(&mut self, departure: &Departure<P::MisSums>, stream: &mut Stream) {
         self.observer.start();
         if let Some((vertex, sample)) = self.pick_equiangular(departure, stream) {
             let contribution = self.join_equiangular(&vertex, &sample, stream);
-            let meeting = Meeting::Pivot(departure, &vertex, &sample);
+            let meeting = Meeting::Pivot(departure.leg(), vertex.event(), &sample);
             self.observer.contribute(1, 2, meeting, contribution.as_ref());
         }
         self.observer.stop(StrategyKind::Equiangular, 1, 2);

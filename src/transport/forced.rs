@@ -25,7 +25,7 @@ use crate::{
 };
 
 /// One camera sample with a forced interaction; the rest as in [`super::camera_path::sample`].
-pub fn sample<P: Profile, R: Observer<P::MisSums>>(
+pub fn sample<P: Profile, R: Observer>(
     estimator: &Estimator<'_, P>,
     light: Partners<'_, P::MisSums>,
     film: Vec2,

@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// One camera subpath; the rest as in [`super::camera_path::sample`].
-pub fn sample<P: Profile, R: Observer<P::MisSums>>(
+pub fn sample<P: Profile, R: Observer>(
     estimator: &Estimator<'_, P>,
     radiance: &Radiance,
     [film, aperture]: [Vec2; 2],
@@ -53,7 +53,7 @@ struct Gather<'a, P: Profile, R> {
     is_done: bool,
 }
 
-impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for Gather<'_, P, R> {
+impl<P: Profile, R: Observer> Visitor<P> for Gather<'_, P, R> {
     #[inline]
     fn kind(edges: u32) -> StrategyKind {
         <CameraPath<'_, P, R> as Visitor<P>>::kind(edges)
@@ -72,14 +72,14 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for Gather<'_, P, R> {
     #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
         let Estimator { scene, max_edges, .. } = *self.path.estimator;
-        if !(self.has_scattered && vertex.is_dull(scene)) {
+        if !(self.has_scattered && vertex.event().is_dull(scene)) {
             self.has_scattered |= vertex.is_connectible(scene);
             return self.path.arrive(vertex, stream);
         }
         self.path.reach(vertex);
         if vertex.subpath.edges < max_edges {
             let Subpath { throughput, pdf_over_hero, .. } = vertex.subpath;
-            let radiance = self.radiance.at(&vertex.seen(scene));
+            let radiance = self.radiance.at(&vertex.event().seen(scene));
             self.path.observer.gather(throughput * radiance * mis::weight_alone(pdf_over_hero));
         }
         self.is_done = true;

@@ -35,7 +35,7 @@ pub struct LightPath<'a, P: Profile, R> {
 pub fn trace<P: Profile>(
     estimator: &Estimator<'_, P>,
     cache: &mut LightCache<P::MisSums>,
-    observer: &mut impl Observer<P::MisSums>,
+    observer: &mut impl Observer,
     hero: usize,
     stream: &mut Stream,
 ) {
@@ -104,7 +104,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) 
     }
 }
 
-impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for LightPath<'_, P, R> {
+impl<P: Profile, R: Observer> Visitor<P> for LightPath<'_, P, R> {
     #[inline]
     fn kind(edges: u32) -> StrategyKind {
         if edges == 1 { StrategyKind::NextEvent } else { StrategyKind::Connection }
@@ -122,12 +122,12 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for LightPath<'_, P, R> {
 
     #[inline]
     fn depart(&mut self, departure: &Departure<P::MisSums>) {
-        self.observer.depart(departure);
+        self.observer.depart(&departure.leg());
     }
 
     #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
-        self.observer.arrive(vertex);
+        self.observer.arrive(vertex.event());
         if !vertex.is_connectible(self.estimator.scene) {
             return;
         }
@@ -145,7 +145,7 @@ impl<P: Profile, R: Observer<P::MisSums>> Visitor<P> for LightPath<'_, P, R> {
     }
 }
 
-impl<'a, P: Profile, R: Observer<P::MisSums>> LightPath<'a, P, R> {
+impl<'a, P: Profile, R: Observer> LightPath<'a, P, R> {
     /// The walk that begins with `start`.
     pub fn new(
         estimator: &'a Estimator<'a, P>,

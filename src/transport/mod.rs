@@ -60,12 +60,14 @@
 //! | P03T sec. A.2.2, forced interactions | [`forced::sample`], [`segment::force`] |
 //! | P03T sec. 5.3, the local gather | [`gather::sample`] |
 //! | BMA02 eq. 5 and 6, the fog blend | `render::fog` |
-//! | BMA02 eq. 7, extinction as a sum | `pdf::sum` |
+//! | BMA02 eq. 7, extinction as a sum | `volume::sum` |
 
 mod cache;
 mod camera_path;
 mod connect;
+pub mod coverage;
 mod equiangular;
+mod event;
 mod forced;
 mod gather;
 mod light_path;
@@ -82,10 +84,10 @@ pub use cache::LightCache;
 use cache::Partners;
 pub use connect::Contribution;
 pub use equiangular::applies as equiangular_applies;
+pub use event::{Arrival, Event, Leg};
 pub use mis::MisSums;
 pub use segment::{Interaction, NullCrossing, Segment};
-pub use vertex::{Scattering, Subpath, Vertex};
-pub use walk::Departure;
+pub use vertex::{Scattering, Vertex};
 
 pub use crate::{
     settings::heuristic::Heuristic,
@@ -197,7 +199,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
         self.keep = 1.0;
         let mut vertices = 0;
         // Compiled for instruments in any case; pilot walks are few.
-        let mut observer: &mut dyn Observer<P::MisSums> = &mut Nowhere;
+        let mut observer: &mut dyn Observer = &mut Nowhere;
         for walk in 0..PILOT_WALKS {
             // One by one: without absorption, walks are as long as the depth allows, and all of them fill the memory.
             let mut cache = LightCache::new(P::Channels::COUNT);
@@ -265,7 +267,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     pub fn trace_light(
         &self,
         cache: &mut LightCache<P::MisSums>,
-        observer: &mut impl Observer<P::MisSums>,
+        observer: &mut impl Observer,
         hero: usize,
         stream: &mut Stream,
     ) {
@@ -307,7 +309,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
 
     /// One camera subpath of channel `hero` through `film` [pixels] and a point of the aperture; what it
     /// contributes goes to `observer`. `walk` as in [`Self::partners`].
-    pub fn sample_pixel<R: Observer<P::MisSums>>(
+    pub fn sample_pixel<R: Observer>(
         &self,
         cache: &LightCache<P::MisSums>,
         [film, aperture]: [Vec2; 2],
@@ -331,9 +333,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
 /// A film that nothing reaches, for pilot walks.
 struct Nowhere;
 
-impl<S: MisSums> Observer<S> for Nowhere {
+impl Observer for Nowhere {
     fn covers(&self, _: Vec2) -> bool {
         false
     }
-    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Contribution>) {}
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_>, _: Option<&Contribution>) {}
 }

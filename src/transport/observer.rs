@@ -1,13 +1,11 @@
-//! Recorders receive the contributions of the estimator. An image is rendered with one, and instruments
-//! inspect the walks with one. The estimator is compiled for its recorder: what a recorder does not use costs
-//! nothing.
+//! Observers see the walks of the estimator and what they contribute. An image is rendered with one, and instruments
+//! inspect the walks with one. The estimator is compiled for its observer: what an observer does not look at costs
+//! nothing. No observer knows how paths are weighted, so that it need not be compiled for every profile.
 
 use super::{
     Strategies,
     connect::Contribution,
-    mis::MisSums,
-    vertex::{Subpath, Vertex},
-    walk::Departure,
+    event::{Arrival, Event, Leg},
 };
 use crate::{
     math::{Spectrum, Vec2},
@@ -110,20 +108,20 @@ impl Strategies {
 
 /// What the last vertex of one walk was connected to.
 #[derive(Clone, Copy, Debug)]
-pub enum Meeting<'a, S: MisSums> {
+pub enum Meeting<'a> {
     /// s = 0: the camera subpath hit this point of an emitter.
-    Met(&'a Subpath<S>, &'a EmitterSample),
+    Met(Arrival, &'a EmitterSample),
     /// s = 1: a point of an emitter, picked for the last vertex.
     Emitter(&'a EmitterSample),
     /// s >= 2: a vertex of a light subpath, and its place in the pool of the hero channel.
-    Light(usize, &'a Vertex<S>),
+    Light(usize, Event<'a>),
     /// t = 1: the lens, through this film position [pixels].
     Lens(Vec2),
     /// Equiangular sampling: a vertex on the primary ray, which is none of the walk, and a point of an emitter.
-    Pivot(&'a Departure<S>, &'a Vertex<S>, &'a EmitterSample),
+    Pivot(Leg, Event<'a>, &'a EmitterSample),
 }
 
-impl<S: MisSums> Meeting<'_, S> {
+impl Meeting<'_> {
     /// The kind of the strategy of `s` light and `t` camera vertices that met so.
     #[inline]
     pub fn kind(&self, s: u32, t: u32) -> StrategyKind {
@@ -135,10 +133,10 @@ impl<S: MisSums> Meeting<'_, S> {
 }
 
 /// Sees the walks of one pixel sample, or those of light, and all that they contribute.
-pub trait Observer<S: MisSums> {
+pub trait Observer {
     /// The strategy of `s` light and `t` camera vertices, the lens among these, contributes a path; none
     /// where it is blocked or nothing scatters along it. The sum of all values is the estimate.
-    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_, S>, contribution: Option<&Contribution>);
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>);
 
     /// True if a contribution at `film` [pixels] can count.
     #[inline]
@@ -164,37 +162,71 @@ pub trait Observer<S: MisSums> {
 
     /// A walk leaves its start or a vertex.
     #[inline]
-    fn depart(&mut self, _departure: &Departure<S>) {}
+    fn depart(&mut self, _leg: &Leg) {}
 
     /// A walk reached a vertex that may scatter on.
     #[inline]
-    fn arrive(&mut self, _vertex: &Vertex<S>) {}
+    fn arrive(&mut self, _event: Event<'_>) {}
 
-    /// A camera subpath left the scene: the `incoming` of `subpath`, reversed, is the direction it left in.
+    /// A camera subpath left the scene: the `incoming` of its arrival at infinity, reversed, is the direction it left in.
     #[inline]
-    fn escape(&mut self, _subpath: &Subpath<S>) {}
+    fn escape(&mut self, _arrival: &Arrival) {}
 
     /// The last vertex of the light subpath at hand was added to the cache.
     #[inline]
     fn keep(&mut self) {}
 }
 
-/// The recorder of ordinary camera subpaths: it adds up.
+/// The observer of ordinary camera subpaths: it adds up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sum {
     /// Radiance estimate.
     pub radiance: Spectrum,
 }
 
-impl<S: MisSums> Observer<S> for Sum {
+impl Observer for Sum {
     #[inline]
-    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, contribution: Option<&Contribution>) {
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_>, contribution: Option<&Contribution>) {
         self.radiance += contribution.map_or(Spectrum::ZERO, |contribution| contribution.value);
     }
 
     #[inline]
     fn gather(&mut self, value: Spectrum) {
         self.radiance += value;
+    }
+}
+
+/// Instruments need not be fast: their observers are chosen at run time, and share one compiled estimator.
+impl Observer for &mut (dyn Observer + '_) {
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>) {
+        (**self).contribute(s, t, meeting, contribution);
+    }
+    fn covers(&self, film: Vec2) -> bool {
+        (**self).covers(film)
+    }
+    fn gather(&mut self, value: Spectrum) {
+        (**self).gather(value);
+    }
+    fn start(&mut self) {
+        (**self).start();
+    }
+    fn stop(&mut self, kind: StrategyKind, s: u32, t: u32) {
+        (**self).stop(kind, s, t);
+    }
+    fn emit(&mut self, start: &EmissionSample, hero: usize) {
+        (**self).emit(start, hero);
+    }
+    fn depart(&mut self, leg: &Leg) {
+        (**self).depart(leg);
+    }
+    fn arrive(&mut self, event: Event<'_>) {
+        (**self).arrive(event);
+    }
+    fn escape(&mut self, arrival: &Arrival) {
+        (**self).escape(arrival);
+    }
+    fn keep(&mut self) {
+        (**self).keep();
     }
 }
 

@@ -1,19 +1,20 @@
 //! A path vertex: where it is, how it scatters, and what the balance heuristic needs of the walk behind it.
 
-use super::{mis::MisSums, observer::StrategyKind, profile::Profile, segment::Interaction};
+use super::{
+    event::{Arrival, Event},
+    mis::MisSums,
+    observer::StrategyKind,
+    profile::Profile,
+    segment::Interaction,
+};
 use crate::{
     bsdf::Transport,
-    guide::{Guidance, Guide, Seen},
+    guide::{Guidance, Guide},
     math::{Channels, Spectrum, Vec3, offset::Lift},
     medium::MediumIndex,
-    phase::PhaseModel,
     scene::Scene,
     shape::SurfacePoint,
 };
-use std::f32::consts::FRAC_1_PI;
-
-/// The density of a dull BSDF in the direction of a mirror, or straight on, is less than so many times that of one that is even.
-const GLOSSY: f32 = 4.0;
 
 /// Scattering at a vertex between two given directions.
 #[derive(Clone, Copy, Debug)]
@@ -28,8 +29,7 @@ pub struct Scattering {
     pub pdf_rev: f32,
 }
 
-/// A subpath of a camera or light subpath: all that is known about it when it reaches its i-th point after
-/// the start, before anything happens there.
+/// All that is known of a camera or light subpath when it reaches its i-th point after the start, before anything happens there.
 ///
 /// The last four fields are the running sums of the weights. With p>_i the density by which this
 /// walk makes vertex i (flight, direction and geometry, LW96 eq. 13) and p<_i that of the opposite walk, for
@@ -78,7 +78,23 @@ pub struct Vertex<S: MisSums> {
     pub subpath: Subpath<S>,
 }
 
+impl<S: MisSums> Subpath<S> {
+    /// What observers see of it.
+    #[inline]
+    pub fn arrival(&self) -> Arrival {
+        let Self { medium, incoming, edges, inv_pdf, throughput, .. } = *self;
+        Arrival { medium, incoming, edges, density: 1.0 / inv_pdf, throughput }
+    }
+}
+
 impl<S: MisSums> Vertex<S> {
+    /// What observers see of it.
+    #[inline]
+    pub fn event(&self) -> Event<'_> {
+        let Self { interaction, survival, subpath, .. } = self;
+        Event { interaction, survival: *survival, arrival: subpath.arrival() }
+    }
+
     /// World position.
     #[inline]
     pub fn position(&self) -> Vec3 {
@@ -124,30 +140,6 @@ impl<S: MisSums> Vertex<S> {
     pub fn others_before(&self, pdf_rev: f32) -> S {
         S::of(self.kind, self.subpath.pdf_over_hero_before.scaled(self.connections))
             .and(self.subpath.others_over_pdf_rev.scaled(pdf_rev))
-    }
-
-    /// True in media, and on surfaces that look about the same from everywhere: their mean tells something.
-    pub fn is_dull(&self, scene: &Scene) -> bool {
-        let Interaction::Surface(point) = &self.interaction else { return true };
-        let (incoming, normal) = (self.subpath.incoming, point.shading.normal);
-        let most = GLOSSY * FRAC_1_PI;
-        let pdf =
-            |outgoing: Vec3| self.interaction.scatter(scene, incoming, outgoing, Transport::Radiance).pdf_fwd;
-        let mirrored = 2.0 * normal.dot(incoming) * normal - incoming;
-        self.is_connectible(scene) && pdf(mirrored) < most && pdf(-incoming) < most
-    }
-
-    /// What the vertex before sees of it, nothing yet.
-    #[inline]
-    pub fn seen(&self, scene: &Scene) -> Seen {
-        let (position, incoming) = (self.position(), self.subpath.incoming);
-        match &self.interaction {
-            Interaction::Surface(point) => Seen::surface(position, point.normal, incoming),
-            Interaction::Medium(_, properties) => {
-                let phase = &scene.media[properties.medium.0 as usize].phase;
-                Seen::medium(position, phase.mean_cosine(), incoming)
-            }
-        }
     }
 
     /// True at a collision from where neither an emitter nor the camera is seen.

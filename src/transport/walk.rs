@@ -2,6 +2,7 @@
 //! running sums of the weights.
 
 use super::{
+    event::Leg,
     mis::MisSums,
     observer::StrategyKind,
     profile::Profile,
@@ -48,6 +49,13 @@ pub struct Departure<S: MisSums> {
 }
 
 impl<S: MisSums> Departure<S> {
+    /// What observers see of it.
+    #[inline]
+    pub fn leg(&self) -> Leg {
+        let Self { position, ray, medium, edges, dirac, pdf_fwd, throughput, .. } = *self;
+        Leg { position, direction: ray.direction, medium, edges, dirac, density: pdf_fwd, throughput }
+    }
+
     /// The segment ahead, which has no end yet.
     #[inline(always)]
     pub fn segment<'a>(&self, scene: &'a Scene) -> Segment<'a> {

@@ -11,7 +11,8 @@ use tempfile::TempDir;
 use tyndall::{
     format,
     math::Spectrum,
-    render::{self, Image, Settings, budget::Budget, faults::Faults},
+    passes::{Settings, budget::Budget, faults::Faults},
+    render::{self, Image},
     sampling::Sampler,
     scene::build::{self, Setup},
     settings::Overrides,

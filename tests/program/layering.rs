@@ -18,6 +18,8 @@ const LAYERS: &[&[&str]] = &[
     &["scene"],
     &["guide"],
     &["transport"],
+    &["passes"],
+    &["learning"],
     &["render"],
     &["analysis"],
     &["cli"],

@@ -7,11 +7,9 @@ use crate::{
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use tyndall::{
+    analysis::pixel::sample::{Partner, PixelSample},
     math::Spectrum,
-    render::{
-        instrument::Instrument,
-        pixel_sample::{Partner, PixelSample},
-    },
+    render::instrument::Instrument,
     scene::lights::EmissionSample,
     transport::Strategies,
 };
@@ -121,7 +119,7 @@ fn a_sample_made_again_is_what_its_pass_adds() {
             for (number, pass) in passes.iter().enumerate() {
                 for pixel in pixels {
                     let what = format!("{name}, {}, pass {number}, pixel {pixel}", common::name_of(set));
-                    let sample = bench.sample(number, pixel);
+                    let sample = PixelSample::of(&bench, number, pixel);
                     assert_eq!(bits(sample.value), bits(pass[pixel]), "{what}");
                     if number == 0 {
                         assert_eq!(bits(sample.value), bits(rendered[pixel]), "{what}");
@@ -147,7 +145,7 @@ fn densities_of_starts_are_those_of_learnt_starts() {
     stage.setup.integrator.options.effort.learnt_starts = true;
     let settings = stage.settings(Strategies::BDPT, 1, 3);
     let bench = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
-    let samples: Vec<PixelSample> = (0..40).map(|pixel| bench.sample(0, 41 * pixel)).collect();
+    let samples: Vec<PixelSample> = (0..40).map(|pixel| PixelSample::of(&bench, 0, 41 * pixel)).collect();
     let starts = samples.iter().flat_map(|sample| sample.light.values()).filter_map(|walk| walk.emitter);
     // All points of a lamp are as dense.
     let starts: BTreeMap<u32, EmissionSample> = starts.map(|start| (start.light, start)).collect();

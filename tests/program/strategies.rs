@@ -12,11 +12,9 @@ use crate::{
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use tyndall::{
+    analysis::strategies::images::{StrategyCell, StrategyImages, StrategyTable},
     math::Spectrum,
-    render::{
-        instrument::Instrument,
-        strategy_images::{StrategyCell, StrategyImages, StrategyTable},
-    },
+    render::instrument::Instrument,
     transport::{Strategies, observer::StrategyKind},
 };
 
@@ -73,7 +71,8 @@ fn scenes() -> Vec<(&'static str, Value)> {
 
 fn parts(stage: &Stage, set: Strategies, cells: StrategyTable, passes: usize, seed: u64) -> StrategyImages {
     let settings = stage.settings(set, passes as u64, seed);
-    Instrument::new(&stage.setup.scene, &stage.setup.film, &settings).parts(cells, passes, &mut |_| {})
+    let bench = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
+    StrategyImages::render(&bench, set, cells, passes, &mut |_| {})
 }
 
 fn sum<'a>(images: impl Iterator<Item = &'a Vec<Spectrum>>, pixels: usize) -> Vec<Spectrum> {

@@ -9,7 +9,8 @@ use serde_json::{Value, json};
 use std::time::Duration;
 use tyndall::{
     math::Spectrum,
-    render::{self, Image, Settings, adaptive::Precision, budget::Budget},
+    passes::{Settings, budget::Budget},
+    render::{self, Image, Precision},
     sampling::Sampler,
     scene::build::Setup,
     transport::{Options, Strategies},

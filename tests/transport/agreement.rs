@@ -10,7 +10,7 @@ use crate::common::{
 };
 use serde_json::{Value, json};
 use tyndall::{
-    analysis::coverage,
+    transport::coverage,
     transport::{Connections, Guiding, Options, Strategies},
 };
 

@@ -7,12 +7,8 @@ use crate::common::{
 };
 use serde_json::{Value, json};
 use tyndall::{
-    analysis::coverage,
-    render::{
-        Settings,
-        budget::Budget,
-        pilot::{self, Choice},
-    },
+    learning::pilot::{self, Choice},
+    passes::{Settings, budget::Budget},
     transport::{Effort, Strategies, Survival},
 };
 
@@ -57,8 +53,7 @@ fn chosen(scene: &Value) -> Choice {
     let stage = Stage::new(scene);
     let settings = stage.settings(Strategies::BDPT, 1, 0);
     let settings = Settings { budget: Budget::ENDLESS, ..settings };
-    let is_complete = |set| coverage::is_complete(&stage.setup.scene, &settings.options, set);
-    pilot::choose(&stage.setup.scene, &stage.setup.film, &settings, None, &is_complete).choice
+    pilot::choose(&stage.setup.scene, &stage.setup.film, &settings, None).choice
 }
 
 /// Light subpaths find little of a scene without walls under a sky, and all that lights a room by its ceiling.

@@ -8,10 +8,8 @@ use crate::common::{
 use serde_json::json;
 use tyndall::{
     bsdf::{Bsdf, Diffuse},
-    render::{
-        self, Image,
-        faults::{Cause, Faults},
-    },
+    passes::faults::{Cause, Faults},
+    render::{self, Image},
     transport::Strategies,
 };
 

@@ -10,7 +10,8 @@ use crate::common::{
 use serde_json::{Value, json};
 use tyndall::{
     math::{Spectrum, vec3},
-    render::{self, Image, Settings, adaptive::Precision, budget::Budget},
+    passes::{Settings, budget::Budget},
+    render::{self, Image, Precision},
     transport::Strategies,
 };
 

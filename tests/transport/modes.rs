@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use std::f64::consts::PI;
 use tyndall::{
     math::{RaySegment, Spectrum, Vec3},
-    render::{self, Settings, budget::Budget},
+    passes::{Settings, budget::Budget},
+    render,
     sampling::Sampler,
     transport::{Heuristic, Options, Strategies},
 };

@@ -6,7 +6,7 @@ use super::{
     question::{Effort, Question},
     unit,
 };
-use crate::{error::Result, render::budget::Budget};
+use crate::{error::Result, passes::budget::Budget};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 

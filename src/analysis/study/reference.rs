@@ -9,7 +9,6 @@ use super::{
 };
 use crate::{
     analysis::{
-        coverage,
         interval::Mean,
         picture::{self, Picture},
     },
@@ -18,6 +17,7 @@ use crate::{
     math::{DVec3, relative::Relative},
     medium::DistanceMethod,
     scene::Scene,
+    transport::coverage,
 };
 use std::path::PathBuf;
 

@@ -12,11 +12,11 @@ use super::{
 };
 use crate::{
     analysis::{
-        coverage,
         picture::Picture,
         study::outcome::{ContenderOutcome, Outcome, Reference, SceneOutcome},
     },
     error::{Error, Result},
+    transport::coverage,
 };
 use std::path::Path;
 

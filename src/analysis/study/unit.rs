@@ -12,8 +12,10 @@ use crate::{
     },
     error::Result,
     film::{Film, format::Format},
+    learning::training,
     math::Spectrum,
-    render::{self, Image, Settings, Snapshot, budget::Budget, training},
+    passes::{Settings, budget::Budget},
+    render::{self, Image, Snapshot},
 };
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;

@@ -13,17 +13,17 @@ mod sight;
 mod tests;
 
 use super::{
-    Image, Progress, Settings,
-    any_sums::Picture,
-    block::{Blocks, Outcome},
-    faults::Faults,
     fog::Preview,
+    image::{Image, Progress},
     instrument::Instrument,
-    late, primary,
+    known::{Known, late},
+    primary,
+    sums::Picture,
 };
 use crate::{
     film::{Channel, Film, accumulator::Accumulator, layer::Layer},
     math::{DVec3, Spectrum, vec2},
+    passes::{Settings, blocks::Blocks, faults::Faults, pass::Outcome},
     scene::Scene,
     settings::integrator::FogSettings,
 };
@@ -109,15 +109,12 @@ pub fn run(
 ) -> (Image, Shaded) {
     let started = Instant::now();
     let bench = Instrument::of_blocks(GROUP, scene, film, settings);
-    let fog = fog.map(|fog| {
-        let rays = bench.compiled.blocks().pilot_rays(scene, film, settings.seed);
-        Preview::new(scene, fog, settings.options.hide_emitters, rays)
-    });
+    let fog = fog.map(|fog| Preview::of(&*bench.compiled, fog, settings));
     let mut painter = Painter::new(&bench, fog, wanted, started);
     painter.paint(watch);
     let image = painter.image();
     let seen = primary::Pass::new(film, layers).run(&bench, painter.samples, late(settings, started));
-    let known = super::Known { pixels: &image.pixels, passes: &Accumulator::new(0), seen: &seen };
+    let known = Known { pixels: &image.pixels, passes: &Accumulator::new(0), seen: &seen };
     let mut layers = known.channels(layers, |_| Vec::new());
     layers.push(painter.counts());
     (Image { alpha: seen.alpha, layers, ..image }, painter.shaded())
@@ -291,7 +288,9 @@ impl<'a, 's> Painter<'a, 's> {
                 let (group, pass) = (task / samples, task % samples);
                 match &self.fog {
                     None => bench.compiled.shade(pass, first + group, groups[group]),
-                    Some(fog) => self.show(fog, pass, groups[group]),
+                    Some(fog) => {
+                        fog.show(&*bench.compiled, pass, groups[group].iter().map(|pixel| *pixel as usize))
+                    }
                 }
             })
             .collect();
@@ -306,13 +305,6 @@ impl<'a, 's> Painter<'a, 's> {
             }
         }
         sums.into_iter().map(|sum| (sum / samples as f64).as_vec3()).collect()
-    }
-
-    fn show(&self, fog: &Preview<'_>, pass: usize, pixels: &[u32]) -> Outcome {
-        let Instrument { film, settings, compiled, .. } = self.bench;
-        let show = |pixel| compiled.blocks().show_pixel(fog, film, settings.seed, pass, pixel);
-        let camera = pixels.iter().map(|pixel| (*pixel, show(*pixel as usize))).collect();
-        Outcome::of_parts(camera, Vec::new(), Vec::new())
     }
 
     /// How many samples each pixel took.

@@ -2,7 +2,8 @@ use super::{conductance::Maps, mesh::Mesh, queue::Queue, regions::Outlines, sigh
 use crate::{
     format,
     math::{Vec3, vec3},
-    render::{budget::Budget, render},
+    passes::budget::Budget,
+    render::render,
     sampling::Sampler,
     scene::build::{self, Setup},
     settings::Overrides,

@@ -37,11 +37,11 @@ pub struct Case {
 /// A film that reaches a little further than the image.
 pub struct WideFilm;
 
-impl<S: MisSums> Observer<S> for WideFilm {
+impl Observer for WideFilm {
     fn covers(&self, film: Vec2) -> bool {
         (film - vec2(8.0, 6.0)).abs().max_element() < 12.0
     }
-    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Contribution>) {}
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_>, _: Option<&Contribution>) {}
 }
 
 /// Remembers where a walk went.

@@ -1,0 +1,111 @@
+//! Where the light of each contribution starts, and how often light subpaths start there.
+
+use crate::{
+    math::Vec3,
+    scene::lights::{Densities, EmissionSample, EmitterSample, Lights, Start, Starts},
+    transport::{Event, Leg, observer::Meeting},
+};
+
+/// Follows walks, to tell where the light of each contribution starts.
+pub(super) struct Follower<'a> {
+    lights: &'a Lights,
+    starts: Option<&'a Starts>,
+    /// The last vertex of the walk at hand, or where it set out from.
+    last: Vec3,
+    /// Channel of the walk at hand.
+    pub hero: usize,
+    walks: u32,
+    /// That of the light subpath at hand.
+    current: Option<Followed>,
+    /// Those of the vertices in the cache, per hero channel in the cache's order.
+    kept: Vec<Vec<Followed>>,
+}
+
+/// Where light starts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Followed {
+    pub start: Start,
+    /// How often light subpaths start there without what was learnt, over how often they do.
+    pub unlearnt: f32,
+    /// The number of the light subpath that did.
+    pub walk: Option<u32>,
+}
+
+impl<'a> Follower<'a> {
+    pub fn new(lights: &'a Lights, starts: Option<&'a Starts>, heroes: usize) -> Self {
+        Self {
+            lights,
+            starts,
+            last: Vec3::ZERO,
+            hero: 0,
+            walks: 0,
+            current: None,
+            kept: vec![Vec::new(); heroes],
+        }
+    }
+
+    /// Camera subpaths follow, which begin at no emitter.
+    pub fn leave_light(&mut self) {
+        self.current = None;
+    }
+
+    /// A camera subpath of channel `hero` follows.
+    pub fn begin(&mut self, hero: usize) {
+        self.hero = hero;
+    }
+
+    pub fn emit(&mut self, sample: &EmissionSample, hero: usize) {
+        self.hero = hero;
+        let start = sample.start();
+        let learnt = Densities { point: sample.pdf, direction: sample.pdf_direction };
+        let walk = Some(self.walks);
+        self.walks += 1;
+        self.current = Some(Followed { start, unlearnt: ratio(sample.unlearnt, learnt), walk });
+    }
+
+    pub fn depart(&mut self, leg: &Leg) {
+        self.last = leg.position;
+    }
+
+    pub fn arrive(&mut self, event: &Event<'_>) {
+        self.last = event.position();
+    }
+
+    pub fn keep(&mut self) {
+        self.kept[self.hero].extend(self.current);
+    }
+
+    /// How often light subpaths start like the one at hand without what was learnt, over how often they do.
+    pub fn unlearnt(&self) -> f32 {
+        self.current.map_or(1.0, |followed| followed.unlearnt)
+    }
+
+    /// Where the light of a contribution starts; none where it comes straight from the emitter to the lens.
+    pub fn start(&self, s: u32, t: u32, meeting: &Meeting<'_>) -> Option<Followed> {
+        match meeting {
+            _ if s + t < 3 => None,
+            Meeting::Light(index, _) => Some(self.kept[self.hero][*index]),
+            Meeting::Lens(_) => self.current,
+            Meeting::Met(arrival, sample) => Some(self.found(sample, self.last, arrival.incoming)),
+            Meeting::Emitter(sample) => self.joined(sample, self.last),
+            Meeting::Pivot(_, event, sample) => self.joined(sample, event.position()),
+        }
+    }
+
+    fn joined(&self, sample: &EmitterSample, reference: Vec3) -> Option<Followed> {
+        let (direction, _) = sample.point.seen_from(reference)?;
+        Some(self.found(sample, reference, -direction))
+    }
+
+    fn found(&self, sample: &EmitterSample, reference: Vec3, direction: Vec3) -> Followed {
+        let start = Start::towards(sample.light, &sample.point, reference, direction);
+        let unlearnt = Densities { point: sample.pdf_start, direction: sample.pdf_direction };
+        let learnt = self.starts.map(|starts| starts.densities(self.lights, &start, unlearnt));
+        Followed { start, unlearnt: learnt.map_or(1.0, |learnt| ratio(unlearnt, learnt)), walk: None }
+    }
+}
+
+fn ratio(unlearnt: Densities, learnt: Densities) -> f32 {
+    let ratio = unlearnt.both() / learnt.both();
+    if ratio.is_finite() { ratio } else { 1.0 }
+}

@@ -1,0 +1,409 @@
+//! Pilots: a few samples by all strategies, which foretell how well others would do for their time.
+//!
+//! No race of the best follows: over 29 scenes drawn at random, what 10,000 samples of each of them showed decided no better than
+//! the forecast from 3,000 samples of all, which sees the rare bright paths of every strategy by those of the others.
+
+mod forecast;
+mod record;
+
+pub use forecast::Error;
+
+use super::training;
+use crate::{
+    film::Film,
+    passes::{Settings, compiled},
+    sampling::Sampler,
+    scene::Scene,
+    settings::options::{Effort, Guiding, Survival},
+    transport::{Options, Strategies, coverage, equiangular_applies, observer::StrategyKind},
+};
+use forecast::{Forecast, PIXELS_PER_BLOCK};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
+const SEED: u64 = 0x7079_6c6f_7473;
+/// A pilot takes this part of an image's samples at most...
+const SHARE: f64 = 1.0 / 128.0;
+/// ... no more than so many, as more tell hardly more...
+const MOST: f64 = 16384.0;
+/// ... and is left out where fewer remain: from so few, all alike do as well as what they choose.
+const LEAST: f64 = 768.0;
+/// Noise of rare bright paths, over what a pilot sees of it. Measured: 2 to 4 do equally well, 0 chooses 10 % worse.
+const UNSEEN: f64 = 3.0;
+/// Samples of each pixel that takes part: enough for a variance.
+const PASSES: usize = 4;
+/// Longest path. Where walks hardly ever end, what comes later would be most of the time and little of the light.
+const DEEPEST: u32 = 256;
+/// Whatever is not common must be so much better: pilots are noisy, and some do not see that light subpaths are spread less evenly.
+const WORTHWHILE: f64 = 1.1;
+/// By how much learnt starts must be better. Light subpaths that reach the image, and connections to them, take longer than counts
+/// say, and a pilot that has learnt its starts finds the others somewhat too noisy. Measured: in 35 scenes drawn at random, the
+/// truth was 0.7 of what was foretold where that was above 1.1, training apart.
+const LEARNT: f64 = 1.6;
+/// Starts are learnt if no more than this part of the light subpaths is seen. Measured in the same scenes: starts paid where 0 to
+/// 0.09 were seen.
+const REMOTE: f64 = 0.1;
+/// Parts of an image's time that the first rounds of training may take, for starts and for a guide, which takes longer to learn
+/// and pays more rarely.
+const STARTS_SHARE: f64 = 0.2;
+const GUIDE_SHARE: f64 = 0.1;
+/// Squared relative error of a pixel sample, where light is seen, above which it is asked whether a guide pays: where it is less,
+/// asking takes longer than a guide could gain. Measured: 61 in a room lit through its keyhole and 40 under a skylight, where one
+/// pays for all strategies; 4 to 27 in others lit through openings and round corners, where none does; 0.1 to 1.2 elsewhere.
+const NOISY: f64 = 2.0;
+
+/// When walks may end.
+const WALKS_END: [Survival; 2] = [Survival::FourthRoot, Survival::Albedo];
+/// How many light subpaths there may be for a sample, and how many connections of a vertex.
+const COUNTS: [(f32, u32); 5] = [(1.0, 1), (0.5, 1), (2.0, 1), (1.0, 2), (1.0, 4)];
+
+/// What was chosen, and how much it is worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// Strategies that it could choose among, and equiangular sampling, which all of them do without.
+    pub among: Strategies,
+    /// Strategies that run.
+    pub strategies: Strategies,
+    /// How often.
+    pub effort: Effort,
+    /// Error x time by all strategies at equal effort, over that of this choice, as the pilot sees it.
+    pub gain: f64,
+}
+
+/// A choice as a pilot sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foretold {
+    /// Which.
+    pub choice: Choice,
+    /// Squared relative error of a pixel sample.
+    pub error: Error,
+    /// Time of a pixel sample, over that of a segment of a walk.
+    pub time: f64,
+    /// What it is judged by: the least is best.
+    pub judgement: f64,
+}
+
+/// What a pilot says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// What was chosen.
+    pub choice: Choice,
+    /// All that it could choose, the best first; empty without a pilot.
+    pub candidates: Vec<Foretold>,
+    /// Samples that it took.
+    pub samples: f64,
+}
+
+/// The strategies among those of `settings` that are worth their time on `film`, how often, when walks end, and whether they
+/// follow a guide, for as many samples as their budget allows; whether light subpaths begin at learnt `starts` may be decided
+/// already.
+pub fn choose(scene: &Scene, film: &Film, settings: &Settings, starts: Option<bool>) -> Report {
+    let all = settings.options.strategies;
+    let asks = match settings.options.effort.guide {
+        Guiding::Usual => all == Strategies::BDPT,
+        said => said == Guiding::Auto,
+    };
+    let guide = if asks { Guiding::Never } else { settings.options.effort.guide };
+    let learnt_starts = starts == Some(true) && all.need_light_walks();
+    let effort = Effort { learnt_starts, guide, ..Effort::default() };
+    let base = Choice { among: all, strategies: all, effort, gain: 1.0 };
+    let work = settings.budget.samples_of(film.len());
+    let none = Report { choice: base, candidates: Vec::new(), samples: 0.0 };
+    if scene.lights.is_empty() || SHARE * work < LEAST {
+        return none;
+    }
+    let pilots = Pilots { scene, film, settings, starts, base, work };
+    let fly = || pilots.choose(asks);
+    // Renders survive a panic and say where it was.
+    catch_unwind(AssertUnwindSafe(fly)).unwrap_or(none)
+}
+
+/// Those that are flown for one choice, and what they may choose.
+#[derive(Clone, Copy)]
+struct Pilots<'a> {
+    scene: &'a Scene,
+    film: &'a Film,
+    settings: &'a Settings,
+    starts: Option<bool>,
+    /// All strategies, with the guide and the starts that there are before any pilot.
+    base: Choice,
+    /// Samples to come.
+    work: f64,
+}
+
+impl Pilots<'_> {
+    /// The best choice; with a guide if one `asks` for it and it pays.
+    fn choose(&self, asks: bool) -> Report {
+        let pilot = self.fly(self.base.effort.learnt_starts);
+        let asks = asks && training::is_worth(self.work, GUIDE_SHARE);
+        let is_noisy = || pilot.error_where_lit(&self.base) > NOISY;
+        if asks && is_noisy() && training::guide_pays(self.scene, self.film, self.settings.options) {
+            let effort = Effort { guide: Guiding::Always, ..self.base.effort };
+            return Self { base: Choice { effort, ..self.base }, ..*self }.choose(false);
+        }
+        let report = self.report(&pilot);
+        let is_remote = self.starts.is_none() && pilot.seen_subpaths().is_some_and(|seen| seen <= REMOTE);
+        if is_remote && training::is_worth(self.work, STARTS_SHARE) {
+            self.report(&self.fly(true))
+        } else {
+            report
+        }
+    }
+
+    /// A few samples of all strategies.
+    fn fly(&self, learnt_starts: bool) -> Forecast {
+        let Choice { effort, .. } = self.base;
+        let effort = Effort { survival: self.survivals()[0], learnt_starts, ..effort };
+        let max_depth = self.settings.options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST));
+        let options = Options {
+            strategies: self.strategies(),
+            effort,
+            max_depth: Some(max_depth),
+            ..self.settings.options
+        };
+        let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*self.settings };
+        let samples = (SHARE * self.work).min(MOST) as usize;
+        let passes = PASSES.max(samples / self.film.len());
+        let learnt = training::learn_for(self.scene, self.film, &settings);
+        let compiled = compiled::by_kind(self.scene, self.film, &settings, learnt, PIXELS_PER_BLOCK);
+        Forecast::fly(&*compiled, effort.survival, passes, samples / passes)
+    }
+
+    /// When walks may end: first that of the pilot, which tells of others that end sooner. In fog without end they had better do.
+    fn survivals(&self) -> &'static [Survival] {
+        if self.scene.is_endless() { &[Survival::Albedo] } else { &WALKS_END }
+    }
+
+    /// All that may run: equiangular sampling, too, where it applies.
+    fn strategies(&self) -> Strategies {
+        let all = self.base.among;
+        let equiangular = all == Strategies::BDPT && equiangular_applies(self.scene);
+        Strategies { equiangular, ..all }
+    }
+
+    /// What `pilot` makes of all that may be chosen.
+    fn report(&self, pilot: &Forecast) -> Report {
+        let choices = self.candidates(pilot.is_learnt);
+        let errors = pilot.judge(&choices);
+        let foretell = |(choice, error): (Choice, Error)| Foretold {
+            choice,
+            error,
+            time: pilot.time(&choice),
+            judgement: f64::INFINITY,
+        };
+        let mut candidates: Vec<Foretold> = choices.into_iter().zip(errors).map(foretell).collect();
+        let least = candidates.iter().map(|one| one.error.few).fold(f64::INFINITY, f64::min);
+        candidates.iter_mut().for_each(|one| one.judgement = self.judge(one, least));
+        let base = candidates.iter().find(|one| one.choice == self.base).copied();
+        if candidates.iter().all(|one| !one.judgement.is_finite()) {
+            return Report { choice: self.base, candidates, samples: pilot.samples() };
+        }
+        candidates.sort_by(|a, b| a.judgement.total_cmp(&b.judgement));
+        let best = candidates[0];
+        let cost = |one: &Foretold| one.error.all() * one.time;
+        let gain = base.map_or(1.0, |base| cost(&base) / cost(&best));
+        Report { choice: Choice { gain, ..best.choice }, candidates, samples: pilot.samples() }
+    }
+
+    /// Error x time. What few tiles have of the error is chance, and more of it comes than a short pilot sees, whatever is chosen:
+    /// in place of it counts so many times the `least` that any choice has there. What is not common must be worth more.
+    fn judge(&self, foretold: &Foretold, least: f64) -> f64 {
+        let Choice { strategies, effort, .. } = foretold.choice;
+        let all = self.base.strategies;
+        let rare = [effort.survival != self.base.effort.survival, strategies.equiangular && !all.equiangular];
+        let burden = WORTHWHILE.powi(rare.into_iter().filter(|is| *is).count() as i32);
+        let learnt = effort.learnt_starts && !self.base.effort.learnt_starts;
+        burden * if learnt { LEARNT } else { 1.0 } * (foretold.error.usual + UNSEEN * least) * foretold.time
+    }
+
+    /// The choices that leave no light out and nothing open that is decided; with learnt starts too if a pilot knows of them. Of
+    /// strategies that need light subpaths, all run or none: in 29 scenes drawn at random, some alone were never much better, and
+    /// a short pilot may not see what others miss.
+    fn candidates(&self, knows_starts: bool) -> Vec<Choice> {
+        let all = self.strategies();
+        let camera = Strategies { connection: false, lens: false, ..all };
+        let hits = camera.without(StrategyKind::NextEvent).without(StrategyKind::Equiangular);
+        let mut sets = vec![all, all.without(StrategyKind::Equiangular), camera];
+        sets.extend([camera.without(StrategyKind::Equiangular), hits]);
+        sets.sort_unstable_by_key(|set| set.names());
+        sets.dedup();
+        sets.retain(|set| coverage::is_complete(self.scene, &self.settings.options, *set));
+        sets.into_iter().flat_map(|set| self.efforts(set, knows_starts)).collect()
+    }
+
+    /// The same of one set of strategies.
+    fn efforts(&self, strategies: Strategies, knows_starts: bool) -> Vec<Choice> {
+        let walks = strategies.need_light_walks();
+        let differ = |(light_walks, connections): &(f32, u32)| {
+            (walks || *light_walks == 1.0) && (strategies.connection || *connections == 1)
+        };
+        let starts: &[bool] = match self.starts {
+            _ if !walks => &[false],
+            Some(true) => &[true],
+            None if knows_starts => &[false, true],
+            _ => &[false],
+        };
+        let mut choices = Vec::new();
+        for (light_walks, connections) in COUNTS.into_iter().filter(differ) {
+            for survival in self.survivals().iter().copied() {
+                choices.extend(starts.iter().map(|learnt_starts| {
+                    let learnt_starts = *learnt_starts;
+                    let effort =
+                        Effort { survival, light_walks, connections, learnt_starts, ..self.base.effort };
+                    Choice { strategies, effort, ..self.base }
+                }));
+            }
+        }
+        choices
+    }
+}
+
+impl Choice {
+    /// Samples of every kind of strategies, over those of all at equal effort.
+    fn counts(&self) -> [f64; StrategyKind::ALL.len()] {
+        StrategyKind::each(|kind| match kind {
+            _ if !self.strategies.has(kind) => 0.0,
+            StrategyKind::Connection => f64::from(self.effort.connections),
+            StrategyKind::Lens => f64::from(self.effort.light_walks),
+            _ => 1.0,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{
+        forecast::Tile,
+        record::{Ends, Found, Work},
+        *,
+    };
+    use crate::{
+        format,
+        math::SpectrumExt,
+        passes::budget::Budget,
+        render::instrument::Instrument,
+        scene::build::{self, Setup},
+        settings::Overrides,
+        transport::profile::ProfileName,
+    };
+    use std::path::Path;
+
+    /// A small image of a scene, by `strategies`.
+    fn small(scene: &str, strategies: Strategies) -> (Setup, Settings) {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
+        let overrides = Overrides { size: Some((24, 24)), ..Overrides::default() };
+        let setup = build::build(&format::read(&path, &[]).unwrap(), overrides).unwrap();
+        let options = Options { strategies, ..setup.integrator.options };
+        let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
+        (setup, Settings { options, sampler, budget, seed: 0, profile: ProfileName::Everything })
+    }
+
+    /// The pilot of an image without end, with learnt starts or without.
+    fn flown(setup: &Setup, settings: &Settings, learnt_starts: bool) -> Forecast {
+        let among = settings.options.strategies;
+        let base = Choice { among, strategies: among, effort: Effort::default(), gain: 1.0 };
+        let Setup { scene, film, .. } = setup;
+        Pilots { scene, film, settings, starts: None, base, work: f64::INFINITY }.fly(learnt_starts)
+    }
+
+    #[test]
+    fn path_tracing_has_no_light_starts_to_learn() {
+        let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::PT);
+        assert_eq!(flown(&setup, &settings, false).seen_subpaths(), None);
+    }
+
+    /// What takes longer than it can gain is left out; what it takes else is a small part of the samples to come.
+    #[test]
+    fn pilots_are_sized_by_the_work_to_come() {
+        let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::BDPT);
+        let samples = |each: u64| {
+            let settings = Settings { budget: Budget::samples(each), ..settings };
+            choose(&setup.scene, &setup.film, &settings, None).samples
+        };
+        let pixels = setup.film.len() as f64;
+        assert_eq!(samples(16), 0.0);
+        for each in [256, 1024] {
+            let found = samples(each);
+            assert!(found > 0.0 && found <= 1.5 * SHARE * each as f64 * pixels, "{each}: {found}");
+        }
+        assert!(samples(1 << 20) <= MOST);
+    }
+
+    /// Relative variance of pixel samples, as their images show it, but in the few pixels with the greatest.
+    fn measured(instrument: &Instrument<'_>) -> f64 {
+        let mut sums = vec![(0.0, 0.0); instrument.film.len()];
+        let n = 400.0;
+        instrument.passes(0..n as usize, &mut |image| {
+            for ((sum, square), value) in sums.iter_mut().zip(image) {
+                let luminance = f64::from(value.luminance());
+                *sum += luminance;
+                *square += luminance * luminance;
+            }
+        });
+        let mean = sums.iter().map(|(sum, _)| sum / n).sum::<f64>() / sums.len() as f64;
+        let relative = |(sum, square): &(f64, f64)| {
+            let of_pixel = sum / n;
+            (square / n - of_pixel * of_pixel) / (of_pixel * of_pixel + 0.01 * mean * mean)
+        };
+        let mut all: Vec<f64> = sums.iter().map(relative).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        all[..(0.98 * sums.len() as f64) as usize].iter().sum::<f64>() / sums.len() as f64
+    }
+
+    /// A corner of the image that other strategies do not see decides against them, however small.
+    #[test]
+    fn what_a_choice_leaves_out_is_no_outlier() {
+        let found = |shares| Found { pixel: 0, square: 1.0, shares, ends: Ends::default(), unlearnt: 1.0 };
+        let tile = Tile { pixels: 1.0, samples: 1.0, mean: 0.7, ..Tile::default() };
+        let corner = |tile| if tile == 7 { [0.0, 0.0, 0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0, 0.0, 0.0] };
+        let found = (0..100).map(|tile| (tile, found(corner(tile)))).collect();
+        let work = [Work { walks: 1.0, ..Work::default() }; WALKS_END.len()];
+        let forecast = Forecast {
+            tiles: vec![tile; 100],
+            found,
+            camera: work,
+            light: work,
+            light_unlearnt: work,
+            is_learnt: false,
+            survival: Survival::Albedo,
+        };
+        let effort = Effort::default();
+        let all = Choice { among: Strategies::BDPT, strategies: Strategies::BDPT, effort, gain: 1.0 };
+        let [whole, part] = [Strategies::BDPT, Strategies::PT]
+            .map(|strategies| forecast.judge(&[Choice { strategies, ..all }])[0].all());
+        assert!(whole < 10.0);
+        assert_eq!(part, f64::INFINITY);
+    }
+
+    /// From the samples of all strategies, the noise of others is known before they run, and of walks that end sooner.
+    #[test]
+    fn pilots_foresee_the_noise_of_other_counts() {
+        for scene in ["lampbox_down.xml", "efficiency/glass_fog_sky.xml"] {
+            let (setup, settings) = small(scene, Strategies::BDPT);
+            let forecast = flown(&setup, &settings, true);
+            let (among, effort) = (Strategies::BDPT, Effort::default());
+            let all = Choice { among, strategies: among, effort, gain: 1.0 };
+            let four = Effort { connections: 4, ..all.effort };
+            let longer = Effort { survival: Survival::FourthRoot, ..all.effort };
+            let choices = [
+                all,
+                Choice { strategies: Strategies::PT, ..all },
+                Choice { effort: four, ..all },
+                Choice { effort: longer, ..all },
+                Choice { strategies: Strategies::PT, effort: longer, ..all },
+                Choice { effort: Effort { connections: 4, ..longer }, ..all },
+            ];
+            let relative: Vec<f64> = choices
+                .iter()
+                .zip(forecast.judge(&choices))
+                .map(|(Choice { strategies, effort, .. }, error)| {
+                    let options = Options { strategies: *strategies, effort: *effort, ..settings.options };
+                    let settings = Settings { options, ..settings };
+                    error.usual / measured(&Instrument::new(&setup.scene, &setup.film, &settings))
+                })
+                .collect();
+            let near = relative.iter().all(|one| (0.6..1.7).contains(&(one / relative[0])));
+            assert!(near, "{scene}: {relative:?}");
+        }
+    }
+}

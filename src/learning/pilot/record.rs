@@ -1,0 +1,268 @@
+//! What the samples of one block bring: contributions, and the work that they took.
+
+use super::WALKS_END;
+use crate::{
+    film::Film,
+    learning::follower::Follower,
+    math::{Spectrum, SpectrumExt, Vec2},
+    passes::{blocks::CameraStart, compiled::Compiled, observe::BlockObserver},
+    scene::lights::EmissionSample,
+    settings::options::Survival,
+    transport::{
+        Contribution, Event, Leg,
+        observer::{Meeting, Observer, StrategyKind},
+    },
+};
+
+/// Of each of [`WALKS_END`].
+pub(super) type BySurvival<T> = [T; WALKS_END.len()];
+
+/// A contribution to a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct Found {
+    pub pixel: u32,
+    /// Squared luminance; from [`super::forecast::Forecast`] on, its part in the second moment of a pixel sample in a tile.
+    pub square: f64,
+    pub shares: [f32; StrategyKind::ALL.len()],
+    /// Where walks could end between the sensor and the emitter.
+    pub ends: Ends,
+    /// How often light subpaths would start there without learnt starts, over how often they do.
+    pub unlearnt: f32,
+}
+
+/// The vertices that a walk scatters at.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ends {
+    pub vertices: u32,
+    /// The sum of the logarithms of their albedos.
+    albedo: f32,
+}
+
+/// Probabilities to go on are taken to be no less: what comes after that does not count.
+const LEAST: f32 = 1e-3;
+
+impl Ends {
+    /// One that walks which end by `survival` go on from with this `probability`.
+    fn at(probability: f32, survival: Survival) -> Self {
+        Self { vertices: 1, albedo: probability.max(LEAST).ln() / survival.exponent() }
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self { vertices: self.vertices + other.vertices, albedo: self.albedo + other.albedo }
+    }
+
+    /// How often walks would get by, if they ended by the one survival, over how often they do by the other.
+    pub fn passed(self, [now, before]: [Survival; 2]) -> f32 {
+        ((now.exponent() - before.exponent()) * self.albedo).exp()
+    }
+}
+
+/// How often something was done.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Work {
+    pub walks: f64,
+    /// Those that set out.
+    pub begun: f64,
+    pub segments: f64,
+    pub tries: [f64; StrategyKind::ALL.len()],
+    /// Vertices of light subpaths that are kept for connections.
+    pub kept: f64,
+    /// Light subpaths that the lens sees anything of.
+    pub reaching: f64,
+}
+
+impl Work {
+    pub fn and(mut self, other: &Self) -> Self {
+        self.walks += other.walks;
+        self.begun += other.begun;
+        self.segments += other.segments;
+        self.kept += other.kept;
+        self.reaching += other.reaching;
+        self.tries.iter_mut().zip(other.tries).for_each(|(tries, other)| *tries += other);
+        self
+    }
+}
+
+pub(super) type Works = BySurvival<Work>;
+
+/// What the samples of one kind of walk bring.
+#[derive(Default)]
+pub(super) struct Recorded {
+    pub found: Vec<Found>,
+    /// By each of [`WALKS_END`], in place of that of the pilot.
+    pub work: Works,
+    /// The work of light subpaths without learnt starts.
+    pub unlearnt: Works,
+}
+
+/// Sees the walks of a block and what they contribute; those of the camera to the last of its pixels.
+struct Recorder<'a> {
+    film: &'a Film,
+    survival: Survival,
+    follower: Follower<'a>,
+    weight: f32,
+    /// Pixels with what camera subpaths contribute to them.
+    sums: Vec<(u32, f64)>,
+    /// The light subpath at hand is seen.
+    is_seen: bool,
+    /// Of the walk at hand, up to each of its vertices.
+    ends: Vec<Ends>,
+    /// The same up to the vertices in the cache, per hero channel in the cache's order.
+    kept: Vec<Vec<Ends>>,
+    /// How often the walk at hand would have gone on so far, by each of [`WALKS_END`].
+    reached: BySurvival<f64>,
+    /// Of light subpaths.
+    light: Recorded,
+    /// Of walks of the kind at hand.
+    recorded: Recorded,
+}
+
+impl<'a> Recorder<'a> {
+    fn new(film: &'a Film, survival: Survival, follower: Follower<'a>, heroes: usize) -> Self {
+        Self {
+            film,
+            survival,
+            follower,
+            weight: 1.0,
+            sums: Vec::new(),
+            is_seen: false,
+            ends: vec![Ends::default()],
+            kept: vec![Vec::new(); heroes],
+            reached: Default::default(),
+            light: Recorded::default(),
+            recorded: Recorded::default(),
+        }
+    }
+
+    /// Counts some work of the walk at hand.
+    fn count(&mut self, counter: impl Fn(&mut Work) -> &mut f64) {
+        let unlearnt = f64::from(self.follower.unlearnt());
+        let Recorded { work, unlearnt: works, .. } = &mut self.recorded;
+        for ((reached, work), works) in self.reached.iter().zip(work).zip(works) {
+            *counter(work) += reached;
+            *counter(works) += reached * unlearnt;
+        }
+    }
+
+    /// The vertices of a path of `s` light and `t` camera vertices that met so.
+    fn ends(&self, s: u32, t: u32, meeting: &Meeting<'_>) -> Ends {
+        let own = |vertices: u32| self.ends.get(vertices as usize).copied().unwrap_or_default();
+        match meeting {
+            Meeting::Met(..) => own(t.saturating_sub(2)),
+            Meeting::Emitter(_) => own(t - 1),
+            Meeting::Light(index, _) => own(t - 1).and(self.kept[self.follower.hero][*index]),
+            Meeting::Lens(_) => own(s - 1),
+            Meeting::Pivot(_, event, _) => Ends::at(event.survival, self.survival),
+        }
+    }
+}
+
+impl BlockObserver for Recorder<'_> {
+    fn light(&mut self, _: u64) -> &mut dyn Observer {
+        let Recorded { work, unlearnt, .. } = &mut self.recorded;
+        work.iter_mut().chain(unlearnt).for_each(|work| work.walks += 1.0);
+        self
+    }
+
+    fn lit(&mut self) {
+        self.light = std::mem::take(&mut self.recorded);
+        self.follower.leave_light();
+        self.ends.truncate(1);
+    }
+
+    fn camera(&mut self, pixel: usize, start: &CameraStart) -> &mut dyn Observer {
+        self.follower.begin(start.hero);
+        self.weight = start.weight;
+        self.sums.push((pixel as u32, 0.0));
+        self.recorded.work.iter_mut().for_each(|work| work.walks += 1.0);
+        self
+    }
+}
+
+impl Observer for Recorder<'_> {
+    fn covers(&self, film: Vec2) -> bool {
+        self.film.covers(film)
+    }
+
+    fn emit(&mut self, start: &EmissionSample, hero: usize) {
+        self.follower.emit(start, hero);
+        self.is_seen = false;
+    }
+
+    fn depart(&mut self, leg: &Leg) {
+        self.follower.depart(leg);
+        self.ends.truncate(leg.edges as usize + 1);
+        let ends = self.ends[self.ends.len() - 1];
+        self.reached = WALKS_END.map(|survival| f64::from(ends.passed([survival, self.survival])));
+        self.count(|work| &mut work.segments);
+        if leg.edges == 0 {
+            self.count(|work| &mut work.begun);
+        }
+    }
+
+    fn arrive(&mut self, event: Event<'_>) {
+        self.follower.arrive(&event);
+        self.ends.truncate(event.arrival.edges as usize);
+        let before = self.ends[self.ends.len() - 1];
+        self.ends.push(before.and(Ends::at(event.survival, self.survival)));
+    }
+
+    fn keep(&mut self) {
+        self.follower.keep();
+        self.kept[self.follower.hero].extend(self.ends.last());
+        self.count(|work| &mut work.kept);
+    }
+
+    fn stop(&mut self, kind: StrategyKind, _: u32, _: u32) {
+        self.count(|work| &mut work.tries[kind as usize]);
+    }
+
+    fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>) {
+        let Some(Contribution { value, shares, .. }) = contribution.filter(|c| c.value.is_finite()) else {
+            return;
+        };
+        let unlearnt = self.follower.start(s, t, &meeting).map_or(1.0, |followed| followed.unlearnt);
+        let ends = self.ends(s, t, &meeting);
+        let found = &mut self.recorded.found;
+        let mut add = |pixel: u32, value: Spectrum| {
+            let luminance = f64::from(value.luminance());
+            found.push(Found { pixel, square: luminance * luminance, shares: *shares, ends, unlearnt });
+        };
+        if let Meeting::Lens(film) = meeting {
+            if !self.is_seen {
+                self.recorded.work.iter_mut().for_each(|work| work.reaching += 1.0);
+                self.is_seen = true;
+            }
+            return self.film.spread(film, *value, |pixel, value| add(pixel as u32, value));
+        }
+        let value = *value * self.weight;
+        if let Some((pixel, sum)) = self.sums.last_mut() {
+            add(*pixel, value);
+            *sum += f64::from(value.luminance());
+        }
+    }
+}
+
+/// What one block of one pass brings.
+pub(super) struct Part {
+    pub camera: Recorded,
+    pub light: Recorded,
+    /// Pixels with what camera subpaths contribute to them.
+    pub sums: Vec<(u32, f64)>,
+}
+
+impl Part {
+    /// Segments of all walks, which ended by this one of [`WALKS_END`].
+    pub fn segments(&self, run: usize) -> f64 {
+        self.camera.work[run].segments + self.light.work[run].segments
+    }
+}
+
+/// The samples of `block` in `pass` of `compiled`, whose walks end by `survival`.
+pub(super) fn part(compiled: &dyn Compiled, survival: Survival, pass: usize, block: usize) -> Part {
+    let (film, heroes) = (compiled.film(), compiled.heroes());
+    let follower = Follower::new(&compiled.scene().lights, compiled.starts(), heroes);
+    let mut recorder = Recorder::new(film, survival, follower, heroes);
+    compiled.observe(pass, block, &|_| true, &mut recorder);
+    Part { camera: recorder.recorded, light: recorder.light, sums: recorder.sums }
+}

@@ -1,0 +1,358 @@
+//! Training of the starts of light subpaths, and of the guide: a few samples by all strategies, round after round, each of
+//! which begins its light subpaths, and follows walks, where those before it found that light reaches the image.
+//!
+//! A path that any strategy found counts for as much of its pixel as strategies that begin at an emitter are to make of it:
+//! its contribution over the pixel's mean, times their share in the weights. In balance, starts are then as dense, together
+//! with all other strategies, as their light is in the image. Next-event estimation finds openings long before light subpaths
+//! do. Directions of walks count likewise, for what those strategies are to make that have to find them.
+//!
+//! No sample of the image teaches, so that all are independent. Those of high numbers follow what more rounds learnt: an image of
+//! few samples learns little, one of many much, and each part of an image learns what the whole learns for the same samples.
+
+use super::{radiance, trial::Trial};
+use crate::{
+    bsdf::Transport,
+    film::Film,
+    guide::{Guide, Learnt, Lesson},
+    passes::{
+        Settings,
+        blocks::{PIXELS_PER_BLOCK, blocks_for},
+        budget::Budget,
+        compiled,
+    },
+    sampling::Sampler,
+    scene::{Scene, lights::Starts},
+    settings::options::{Effort, Guiding},
+    transport::{Connections, Heuristic, Options, Strategies, profile::ProfileName},
+};
+use std::sync::Arc;
+
+/// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
+const SEED: u64 = 0x7374_6172_7473;
+/// Camera subpaths of the first round; each of the others has twice as many as the one before.
+const FIRST: usize = 2048;
+/// Rounds before an image is begun.
+pub const ROUNDS: usize = 4;
+/// Of a guide, as many more as it takes to learn something, and to follow what is new in it, and while that brings much; up to so
+/// many.
+const FOLLOWED: usize = 6;
+/// What two rounds leave of the second moment, at most, where they bring much.
+const BRINGS: f64 = 0.9;
+/// Rounds in all, of which the last two teach a guide.
+const MOST_ROUNDS: usize = 8;
+/// Of these, as many as there are at most while it is made.
+pub const LATER_ROUNDS: usize = MOST_ROUNDS - ROUNDS;
+/// Samples of an image for each camera subpath of the first rounds that are learnt while it is made, before what they learn is worth
+/// its time: a path that teaches takes 3 times as long as one of the image by camera and light subpaths, and some 10 times as long
+/// by camera subpaths alone.
+const PER_SUBPATH: f64 = 8.0;
+const PER_CAMERA_SUBPATH: f64 = 24.0;
+/// Time of a path that teaches, over that of one of an image.
+const TEACHING: f64 = 3.0;
+/// Segments after which no further round begins, without a guide and for one.
+const SEGMENTS: f64 = 1e6;
+const GUIDE_SEGMENTS: f64 = 4e6;
+/// From so many rounds on a guide is given up where it does not seem to pay; where nothing is learnt, after one more.
+const JUDGING_ROUNDS: usize = 3;
+/// What a guide that pays leaves of the second moment, at most, by camera subpaths alone: looking up takes a sixth of the time, and
+/// learning some.
+const PAYS: f64 = 0.75;
+/// The same by light subpaths too: connections look up at both ends, by which samples were seen to take 1.7 times as long.
+const PAYS_CONNECTED: f64 = 0.5;
+/// Longest path: later vertices tell little of where light starts.
+const DEEPEST: u32 = 32;
+
+/// What renders by `settings` learn before their first sample: where light subpaths start that reach the image, where walks go,
+/// and what camera subpaths end in, as far as they ask for it. Kept with the scene.
+pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
+    learn_rounds(scene, film, settings, ROUNDS)
+}
+
+/// The rounds whose guide the samples of `pass` follow, one of each pixel: the more samples there are before it, the more is
+/// learnt, as the root of their number, for each round brings less than the one before. It is the same whatever samples a render
+/// begins with.
+pub fn rounds_for(film: &Film, settings: &Settings, pass: usize) -> usize {
+    let light = settings.options.strategies.need_light_walks();
+    let least = FIRST as f64 * if light { PER_SUBPATH } else { PER_CAMERA_SUBPATH };
+    let subpaths = film.len() as f64 * pass as f64;
+    let is_due = |rounds: &usize| subpaths >= least * (1_usize << (2 * rounds - ROUNDS - 1)) as f64;
+    (ROUNDS + 1..=MOST_ROUNDS).take_while(is_due).last().unwrap_or(ROUNDS)
+}
+
+/// The rounds whose guide samples of a render to a relative `error` follow after its first look: one more for each fourfold number of
+/// samples, the same as within an image, counted from those for errors as great as the values.
+pub fn rounds_to(error: f64) -> usize {
+    let halvings = (-error.log2()).ceil() as usize;
+    (ROUNDS + halvings).min(MOST_ROUNDS)
+}
+
+/// Learns a guide for `settings` by so many `rounds`; false if it `is_over` before.
+pub fn learn_until(
+    scene: &Scene,
+    film: &Film,
+    settings: &Settings,
+    rounds: usize,
+    is_over: &(dyn Fn() -> bool + Sync),
+) -> bool {
+    Training::recall(scene, film, Wanted::by(settings.options, true)).go_on(rounds, is_over).is_some()
+}
+
+/// What renders by `settings` learn by so many `rounds`.
+pub fn learn_rounds(scene: &Scene, film: &Film, settings: &Settings, rounds: usize) -> Learnt {
+    let Options { strategies, effort, max_depth, .. } = settings.options;
+    let wanted = Wanted::by(settings.options, follows_guide(scene, film, settings));
+    let after = |rounds| match wanted {
+        Wanted { starts: None, guide: None, .. } => Learnt::default(),
+        _ => {
+            let training = &mut Training::recall(scene, film, wanted);
+            let learnt = training.go_on(rounds, &|| false).unwrap_or_default();
+            Learnt { starts: learnt.starts.filter(|_| effort.learnt_starts), ..learnt }
+        }
+    };
+    let first = after(ROUNDS);
+    let learnt = if rounds > ROUNDS { after(rounds) } else { first.clone() };
+    // Camera subpaths that end before they gather need nothing to end in.
+    if !strategies.gather || max_depth.is_some_and(|depth| depth <= 2) {
+        return learnt;
+    }
+    let most_bounces = radiance::most_bounces(max_depth);
+    let settings = of_learning(wanted.options);
+    let radiance = || Arc::new(radiance::learn(scene, film, &settings, &first, most_bounces));
+    let key = format!("{} {most_bounces}", wanted.key(film));
+    Learnt { radiance: Some(scene.lights.radiance.recall(key, radiance)), ..learnt }
+}
+
+/// True if walks by `settings` follow a guide.
+pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
+    match settings.options.effort.guide {
+        Guiding::Usual | Guiding::Never => false,
+        Guiding::Always => true,
+        Guiding::Auto => guide_pays(scene, film, settings.options),
+    }
+}
+
+/// True if what is learnt first takes no more than this `share` of the time of an image of so many samples.
+pub fn is_worth(samples: f64, share: f64) -> bool {
+    share * samples >= TEACHING * (FIRST << ROUNDS) as f64
+}
+
+/// True if it would pay that walks by `options` follow a guide, as the first rounds of learning it foresee.
+pub fn guide_pays(scene: &Scene, film: &Film, options: Options) -> bool {
+    Training::recall(scene, film, Wanted::by(options, true)).pays()
+}
+
+/// What is to be learnt.
+#[derive(Clone, Copy, Debug)]
+struct Wanted {
+    /// Starts of light subpaths, which compete with other strategies or do not.
+    starts: Option<bool>,
+    /// A guide, for these strategies.
+    guide: Option<Strategies>,
+    /// What it is learnt by.
+    options: Options,
+}
+
+impl Wanted {
+    /// For renders by `options`, which follow a guide or do not.
+    fn by(options: Options, guided: bool) -> Self {
+        let Options { strategies, effort, .. } = options;
+        Self {
+            // Camera subpaths that never hit an emitter share nothing with light subpaths. A guide of both is learnt with starts
+            // whether they are wanted or not, so that a pilot that tries both, and what it chooses, share it; one of camera
+            // subpaths alone is better learnt without.
+            starts: (effort.learnt_starts || guided && strategies.need_light_walks())
+                .then_some(strategies.emitter_hit),
+            // What a pilot leaves out later changes nothing.
+            guide: guided.then_some(if strategies.need_light_walks() {
+                Strategies::BDPT
+            } else {
+                strategies
+            }),
+            options: options_of_learning(options),
+        }
+    }
+
+    /// Equal where the same is learnt.
+    fn key(&self, film: &Film) -> String {
+        format!("{:?} {self:?}", (film.window, film.border, film.filter))
+    }
+}
+
+/// What renders by `options` learn by: all strategies alike.
+pub fn options_of_learning(options: Options) -> Options {
+    Options {
+        strategies: Strategies::BDPT,
+        effort: Effort::default(),
+        connections: Connections::default(),
+        heuristic: Heuristic::Balance,
+        max_depth: Some(options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST))),
+        forced_interaction: false,
+        ..options
+    }
+}
+
+/// Samples of `options` that teach.
+pub fn of_learning(options: Options) -> Settings {
+    Settings {
+        options,
+        seed: SEED,
+        sampler: Sampler::Independent,
+        budget: Budget::ENDLESS,
+        profile: ProfileName::Everything,
+    }
+}
+
+/// What a scene teaches, round by round.
+struct Training<'a> {
+    scene: &'a Scene,
+    film: &'a Film,
+    wanted: Wanted,
+    known: Known,
+}
+
+/// What is known by now.
+#[derive(Clone, Default)]
+struct Known {
+    /// After each round, for those walks that a render runs.
+    learnt: Vec<Learnt>,
+    /// After the last, for all walks.
+    latest: Learnt,
+    /// Of the last round.
+    lessons: Arc<Vec<Lesson>>,
+    /// Blocks of passes that were traced, and their segments.
+    tasks: usize,
+    segments: f64,
+}
+
+impl<'a> Training<'a> {
+    /// As far as it is known with the scene.
+    fn recall(scene: &'a Scene, film: &'a Film, wanted: Wanted) -> Self {
+        let known = scene.lights.learnt.known(&wanted.key(film)).unwrap_or_default();
+        Self { scene, film, wanted, known }
+    }
+
+    /// What there is to follow after so many rounds and those that follow what was new by then; none if it `is_over` before.
+    fn go_on(&mut self, rounds: usize, is_over: &(dyn Fn() -> bool + Sync)) -> Option<Learnt> {
+        let had = self.known.learnt.len();
+        while self.after(rounds).is_none() && self.round(is_over) {}
+        if self.known.learnt.len() > had {
+            self.keep();
+        }
+        self.after(rounds).cloned()
+    }
+
+    fn keep(&self) {
+        self.scene.lights.learnt.keep(self.wanted.key(self.film), self.known.clone());
+    }
+
+    fn after(&self, rounds: usize) -> Option<&Learnt> {
+        let done = self.known.learnt.len();
+        let last = (rounds..=done).find(|rounds| self.is_settled(*rounds));
+        self.known.learnt.get(last.or(self.has_ended().then_some(done))? - 1)
+    }
+
+    /// True once no further round should begin.
+    fn has_ended(&self) -> bool {
+        let most = if self.wanted.guide.is_some() { GUIDE_SEGMENTS } else { SEGMENTS };
+        self.known.segments > most
+    }
+
+    /// True if what is learnt after so many rounds need not be tried out by another.
+    fn is_settled(&self, rounds: usize) -> bool {
+        rounds >= FOLLOWED || !self.is_new(rounds) && !self.brings_much(rounds)
+    }
+
+    /// True if guides get better so fast that an image had better wait for the next.
+    fn brings_much(&self, rounds: usize) -> bool {
+        let left = |rounds| self.guide(rounds).map_or(1.0, |guide| guide.second_moment);
+        self.wanted.guide.is_some() && left(rounds) < BRINGS * left(rounds.saturating_sub(2))
+    }
+
+    /// The guide after so many rounds.
+    fn guide(&self, rounds: usize) -> Option<&Guide> {
+        self.known.learnt.get(rounds.checked_sub(1)?)?.guide.as_deref()
+    }
+
+    /// True if nothing is known of what the guide learnt last would bring: there is none yet, or it is the first, with portals or
+    /// at all.
+    fn is_new(&self, rounds: usize) -> bool {
+        let has_portals = |guide: &Guide| !guide.portals().is_empty();
+        let is_first = |guide| {
+            self.guide(rounds - 1).is_none_or(|followed| has_portals(guide) && !has_portals(followed))
+        };
+        self.wanted.guide.is_some() && self.guide(rounds).is_none_or(is_first)
+    }
+
+    /// True if a guide pays; what is learnt is kept then.
+    fn pays(&mut self) -> bool {
+        for rounds in 1.. {
+            while self.known.learnt.len() < rounds {
+                self.round(&|| false);
+            }
+            let is_last = rounds >= ROUNDS && self.is_settled(rounds)
+                || self.has_ended() && rounds == self.known.learnt.len();
+            if !self.may_pay(rounds, is_last) {
+                return false;
+            }
+            if is_last {
+                break;
+            }
+        }
+        self.keep();
+        true
+    }
+
+    /// False where after so many rounds a guide does not seem to leave less of the second moment than one that pays, or in the end
+    /// was not seen to. What portals give is seen in the round after that in which they are found.
+    fn may_pay(&self, rounds: usize, is_last: bool) -> bool {
+        let Some(guide) = self.guide(rounds) else { return rounds <= JUDGING_ROUNDS };
+        let connects = self.wanted.guide.is_some_and(|strategies| strategies.need_light_walks());
+        let bound = if connects { PAYS_CONNECTED } else { PAYS };
+        guide.second_moment < bound || !is_last && (self.is_new(rounds) || rounds < JUDGING_ROUNDS)
+    }
+
+    /// One more round; false if it `is_over` before it ends.
+    fn round(&mut self, is_over: &(dyn Fn() -> bool + Sync)) -> bool {
+        let Self { scene, film, wanted, known } = self;
+        let subpaths = FIRST << known.learnt.len();
+        let tasks = known.tasks..known.tasks + blocks_for(film.len(), subpaths);
+        let end = tasks.end;
+        let settings = of_learning(wanted.options);
+        let followed = known.latest.clone();
+        let compiled = compiled::by_kind(scene, film, &settings, followed, PIXELS_PER_BLOCK);
+        let trial = Trial::run(&*compiled, tasks, wanted.guide.is_some(), is_over);
+        let Some(trial) = trial else { return false };
+        (known.tasks, known.segments) = (end, known.segments + trial.segments);
+        if let Some(compete) = wanted.starts {
+            known.latest.starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
+        }
+        let mut learnt = known.latest.clone();
+        if let Some(strategies) = wanted.guide {
+            let lessons = trial.lessons(strategies, subpaths as f64);
+            let left = |guide: &Arc<Guide>| trial.second_moment(strategies, guide);
+            let second_moment = known.latest.guide.as_ref().map_or(1.0, left);
+            let guide = Guide::learn([&known.lessons[..], &lessons].concat(), wanted.options.basis);
+            let guide = guide.map(|guide| Arc::new(guide.judged(second_moment)));
+            known.lessons = Arc::new(lessons);
+            known.latest.guide.clone_from(&guide);
+            // Light's walks found paths for those of the camera, which go on alone.
+            learnt.guide = match strategies.need_light_walks() {
+                true => guide,
+                false => guide.map(|guide| Arc::new(Guide::clone(&guide).only(Transport::Radiance))),
+            };
+        }
+        known.learnt.push(learnt);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn smaller_errors_are_worth_more_learning() {
+        let of = [1.0, 0.7, 0.5, 0.25, 0.02, f64::MIN_POSITIVE].map(rounds_to);
+        assert_eq!(of, [ROUNDS, ROUNDS + 1, ROUNDS + 1, ROUNDS + 2, MOST_ROUNDS, MOST_ROUNDS]);
+    }
+}

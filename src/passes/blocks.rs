@@ -1,0 +1,233 @@
+//! A block: a fixed set of pixels scattered over the image, rendered together with a light cache of their own.
+
+use crate::{
+    film::Film,
+    math::Vec2,
+    sampling::{Sampler, Stream, stream::Purpose},
+    scene::Scene,
+    transport::{Estimator, LightCache, observer::Observer, profile::Profile},
+};
+use std::ops::Range;
+
+/// Pixels (and light subpaths) of a block: a cache of this many walks still fits the processor's caches, and
+/// its noise is shared by few enough pixels.
+pub const PIXELS_PER_BLOCK: usize = 1024;
+
+/// How an image's pixels are divided among blocks.
+pub struct Blocks {
+    pixels: usize,
+    count: usize,
+    /// Coprime to `pixels`: the pixels of a block lie this far apart, so that what they have in common (their
+    /// light cache) shows nowhere as a pattern.
+    stride: usize,
+    walks_per_block: u64,
+    heroes: u64,
+    sampler: Sampler,
+    /// The inverse of `stride` modulo `pixels`, where every pixel has a light subpath for itself.
+    inverse: Option<usize>,
+}
+
+/// How a camera subpath starts.
+pub struct CameraStart {
+    /// Its random numbers.
+    pub stream: Stream,
+    /// The channel that samples distances.
+    pub hero: usize,
+    /// Where on the film [pixels].
+    pub position: Vec2,
+    /// Through which point of the aperture [m].
+    pub aperture: Vec2,
+    /// What it counts for.
+    pub weight: f32,
+    /// Which light subpath of its block it has for itself, where each has one.
+    pub walk: usize,
+}
+
+/// Blocks that so many camera `subpaths` are, at least.
+pub fn blocks_for(pixels: usize, subpaths: usize) -> usize {
+    (subpaths * pixels.div_ceil(PIXELS_PER_BLOCK)).div_ceil(pixels.max(1))
+}
+
+impl Blocks {
+    /// Divides `pixels`, each of which has `light_walks` light subpaths in a pass, for estimators of so many hero channels,
+    /// whose walks draw from streams of `sampler`.
+    pub fn new(pixels: usize, heroes: usize, sampler: Sampler, light_walks: f32) -> Self {
+        Self::of_size(PIXELS_PER_BLOCK, pixels, heroes, sampler, light_walks)
+    }
+
+    /// The same with blocks of so many pixels.
+    pub fn of_size(size: usize, pixels: usize, heroes: usize, sampler: Sampler, light_walks: f32) -> Self {
+        let count = pixels.div_ceil(size).max(1);
+        let golden = (pixels as f64 * 0.618_033_988_75) as usize;
+        let stride = (golden.max(1)..).find(|s| gcd(*s, pixels) == 1).unwrap_or(1);
+        let heroes = heroes as u64;
+        let walks = (pixels.div_ceil(count) as f64 * f64::from(light_walks)).ceil() as u64;
+        let walks_per_block = walks.div_ceil(heroes) * heroes;
+        Self { pixels, count, stride, walks_per_block, heroes, sampler, inverse: None }
+    }
+
+    /// The same where every pixel has one of the light subpaths for itself, of which there are as many: both have the same
+    /// hero channel, and a light subpath's random numbers are spread evenly over the samples of its pixel.
+    pub fn paired(self) -> Self {
+        Self { inverse: Some(inverse(self.stride, self.pixels)), ..self }
+    }
+
+    /// Number of blocks.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Light subpaths of one block, a multiple of the number of hero channels.
+    pub fn walks_per_block(&self) -> u64 {
+        self.walks_per_block
+    }
+
+    /// Light subpaths of one pass.
+    pub fn walks_per_pass(&self) -> u64 {
+        self.walks_per_block * self.count as u64
+    }
+
+    /// The pixels of `block`.
+    pub fn pixels(&self, block: usize) -> impl Iterator<Item = usize> + '_ {
+        self.places(block).map(|place| self.pixel_at(place))
+    }
+
+    /// Places of the pixels of `block` in the order of all pixels.
+    fn places(&self, block: usize) -> Range<usize> {
+        block * self.pixels / self.count..(block + 1) * self.pixels / self.count
+    }
+
+    fn pixel_at(&self, place: usize) -> usize {
+        (place as u128 * self.stride as u128 % self.pixels as u128) as usize
+    }
+
+    /// Number of pixels.
+    pub fn pixel_count(&self) -> usize {
+        self.pixels
+    }
+
+    /// Which of its block's light subpaths `pixel` has for itself; 0 where none has.
+    fn walk_of(&self, pixel: usize) -> usize {
+        self.home(pixel).map_or(0, |(_, number)| number)
+    }
+
+    /// The block of `pixel` and its number there, where that is the number of its light subpath too.
+    pub fn home(&self, pixel: usize) -> Option<(usize, usize)> {
+        let place = (pixel as u128 * self.inverse? as u128 % self.pixels as u128) as usize;
+        // The last block that begins there or before.
+        let block = ((place + 1) * self.count - 1) / self.pixels;
+        Some((block, place - self.places(block).start))
+    }
+
+    /// Where the camera subpath of `pixel` in `pass` starts.
+    #[inline]
+    pub fn camera_start(
+        &self,
+        scene: &Scene,
+        film: &Film,
+        seed: u64,
+        pass: usize,
+        pixel: usize,
+    ) -> CameraStart {
+        let (mut stream, hero) = self.camera_stream(seed, pass, pixel);
+        let (position, weight) = film.sample(pixel, &mut stream);
+        let aperture = scene.sensor.sample_aperture(&mut stream);
+        CameraStart { stream, hero, position, aperture, weight, walk: self.walk_of(pixel) }
+    }
+
+    /// The random numbers of the camera subpath of `pixel` in `pass`, and its hero channel.
+    #[inline]
+    fn camera_stream(&self, seed: u64, pass: usize, pixel: usize) -> (Stream, usize) {
+        let mut stream = self.sampler.stream(seed, pixel as u64, pass as u64, 0, 1, Purpose::Camera);
+        let hero = if self.heroes > 1 { stream.below(self.heroes as usize) } else { 0 };
+        (stream, hero)
+    }
+
+    /// The random numbers of light subpath `walk` of a pass. All walks of a block contribute to the same
+    /// pixels: a sampler that distributes them evenly distributes all of them together, pass after pass; unless each belongs to
+    /// a pixel.
+    #[inline]
+    pub fn light_stream(&self, seed: u64, pass: usize, walk: u64) -> Stream {
+        if self.inverse.is_some() {
+            return self.sampler.stream(seed, walk, pass as u64, 0, 1, Purpose::Light);
+        }
+        let per_block = self.walks_per_block;
+        self.sampler.stream(seed, walk / per_block, pass as u64, walk % per_block, per_block, Purpose::Light)
+    }
+
+    /// Numbers of the light subpaths of `block` in a pass.
+    pub fn light_paths(&self, block: usize) -> Range<u64> {
+        let first = block as u64 * self.walks_per_block;
+        first..first + self.walks_per_block
+    }
+
+    /// The channel that samples the distances of a light subpath: all equally often in every block, or that of the pixel that
+    /// it belongs to.
+    pub fn hero(&self, seed: u64, pass: usize, walk: u64) -> usize {
+        let (block, number) = (walk / self.walks_per_block, walk % self.walks_per_block);
+        let places = self.places(block as usize);
+        if self.inverse.is_some() && self.heroes > 1 && number < places.len() as u64 {
+            return self.camera_stream(seed, pass, self.pixel_at(places.start + number as usize)).1;
+        }
+        (number % self.heroes) as usize
+    }
+}
+
+impl CameraStart {
+    /// The camera subpath from here, which `observer` sees, connected to the light subpaths of `cache`.
+    #[inline]
+    pub fn trace<P: Profile, R: Observer>(
+        mut self,
+        estimator: &Estimator<'_, P>,
+        cache: &LightCache<P::MisSums>,
+        observer: R,
+    ) -> R {
+        let Self { position, aperture, hero, walk, .. } = self;
+        estimator.sample_pixel(cache, [position, aperture], (hero, walk), observer, &mut self.stream)
+    }
+}
+
+/// The number that times `a`, coprime to `n`, is 1 modulo `n`: by Euclid's extended algorithm.
+fn inverse(a: usize, n: usize) -> usize {
+    let (mut before, mut at) = ((n as i64, 0i64), ((a % n.max(1)) as i64, 1i64));
+    while at.0 != 0 {
+        let times = before.0 / at.0;
+        (before, at) = (at, (before.0 - times * at.0, before.1 - times * at.1));
+    }
+    before.1.rem_euclid(n.max(1) as i64) as usize
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_hold_every_pixel_once() {
+        for pixels in [1, 2, 7, 1024, 1025, 48 * 48, 640 * 480] {
+            let blocks = Blocks::new(pixels, 1, Sampler::Independent, 1.0);
+            let mut seen = vec![0; pixels];
+            (0..blocks.count()).flat_map(|b| blocks.pixels(b)).for_each(|p| seen[p] += 1);
+            assert!(seen.iter().all(|n| *n == 1), "{pixels}");
+            assert_eq!(Blocks::new(pixels, 3, Sampler::Sobol, 0.25).walks_per_block() % 3, 0);
+        }
+    }
+
+    #[test]
+    fn every_pixel_has_a_light_subpath_of_its_own_and_of_its_channel() {
+        for pixels in [1, 2, 3, 7, 1023, 1024, 1025, 48 * 48, 160 * 120] {
+            let blocks = Blocks::new(pixels, 3, Sampler::Sobol, 1.0).paired();
+            for block in 0..blocks.count() {
+                let walks: Vec<usize> = blocks.pixels(block).map(|pixel| blocks.walk_of(pixel)).collect();
+                assert!(walks.iter().copied().eq(0..walks.len()), "{pixels}: {walks:?}");
+                assert!(walks.len() as u64 <= blocks.walks_per_block());
+                for (pixel, walk) in blocks.pixels(block).zip(blocks.light_paths(block)) {
+                    assert_eq!(blocks.hero(5, 2, walk), blocks.camera_stream(5, 2, pixel).1);
+                }
+            }
+        }
+    }
+}

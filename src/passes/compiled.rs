@@ -1,0 +1,102 @@
+//! The compiled estimator: chosen once, outermost. What lies behind [`Compiled`] is compiled for every profile, so only
+//! what walks through the scene belongs there; observers, and loops over passes, checkpoints and files, are compiled once.
+
+use super::{
+    Settings,
+    blocks::{Blocks, CameraStart},
+    observe::BlockObserver,
+    pass::Outcome,
+    ready::Ready,
+};
+use crate::{
+    film::Film,
+    guide::Learnt,
+    math::Spectrum,
+    sampling::Stream,
+    scene::{Scene, lights::Starts},
+    shape::Ray,
+    transport::{
+        Heuristic, Interaction, Options,
+        observer::Observer,
+        profile::{
+            Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, ProfileName,
+            Smoke, Vacuum,
+        },
+    },
+};
+
+/// What every estimator can do, whatever its profile: whole blocks and walks, so that the call costs nothing.
+pub trait Compiled: Send + Sync {
+    /// What it shows.
+    fn scene(&self) -> &Scene;
+    /// What it is seen on.
+    fn film(&self) -> &Film;
+    /// How pixels are divided.
+    fn blocks(&self) -> &Blocks;
+    /// How many channels may sample distances.
+    fn heroes(&self) -> usize;
+    /// The starts that light subpaths were given.
+    fn starts(&self) -> Option<&Starts>;
+    /// Where the camera subpath of `pixel` in `pass` starts.
+    fn camera_start(&self, pass: usize, pixel: usize) -> CameraStart;
+    /// One sample of every pixel of `block` that `wants` one.
+    fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome;
+    /// One sample of each of `pixels`, connected to the light subpaths of a block of that number, which need not be theirs;
+    /// where every pixel has one for itself, to that.
+    fn shade(&self, pass: usize, block: usize, pixels: &[u32]) -> Outcome;
+    /// Shows a block to `observer`: the light subpaths, and one sample of every pixel that `wants` one.
+    fn observe(
+        &self,
+        pass: usize,
+        block: usize,
+        wants: &dyn Fn(usize) -> bool,
+        observer: &mut dyn BlockObserver,
+    );
+    /// Shows light subpath number `walk` of `pass` to `observer`.
+    fn light_walk(&self, pass: usize, walk: u64, observer: &mut dyn Observer);
+    /// See [`crate::transport::Estimator::transmittance`].
+    fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum;
+    /// See [`crate::transport::Estimator::first_interaction`].
+    fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction>;
+}
+
+/// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for, by what was `learnt`,
+/// with blocks of so many pixels.
+pub fn choose<'a>(
+    scene: &'a Scene,
+    film: &'a Film,
+    settings: &Settings,
+    learnt: Learnt,
+    per_block: usize,
+) -> Box<dyn Compiled + 'a> {
+    let Options { heuristic, effort, strategies, .. } = settings.options;
+    let prepare = match (heuristic, settings.profile) {
+        (Heuristic::Power | Heuristic::Maximum | Heuristic::Uniform, _) => Ready::<ByCompared>::prepare,
+        (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
+        (Heuristic::Balance, profile) if effort.is_guided() || strategies.gather => match profile {
+            ProfileName::Vacuum => Ready::<Guided<Vacuum>>::prepare,
+            ProfileName::Fog => Ready::<Guided<Fog>>::prepare,
+            ProfileName::Bounded | ProfileName::Smoke => Ready::<Guided<Smoke>>::prepare,
+            _ => Ready::<Guided<Everything>>::prepare,
+        },
+        (Heuristic::Balance, ProfileName::Vacuum) => Ready::<Vacuum>::prepare,
+        (Heuristic::Balance, ProfileName::Fog) => Ready::<Fog>::prepare,
+        (Heuristic::Balance, ProfileName::Bounded) => Ready::<Bounded>::prepare,
+        (Heuristic::Balance, ProfileName::Smoke) => Ready::<Smoke>::prepare,
+        (Heuristic::Balance, ProfileName::Fire) => Ready::<Fire>::prepare,
+        (Heuristic::Balance, ProfileName::ChromaticFog) => Ready::<ChromaticFog>::prepare,
+        (Heuristic::Balance, ProfileName::Everything) => Ready::<Everything>::prepare,
+    };
+    prepare(scene, film, settings, learnt, per_block)
+}
+
+/// The same whose contributions tell what each kind of strategy has of their weights.
+pub fn by_kind<'a>(
+    scene: &'a Scene,
+    film: &'a Film,
+    settings: &Settings,
+    learnt: Learnt,
+    per_block: usize,
+) -> Box<dyn Compiled + 'a> {
+    Ready::<ByKind>::prepare(scene, film, settings, learnt, per_block)
+}
