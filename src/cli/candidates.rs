@@ -1,6 +1,6 @@
 //! What a pilot foretells of all that it may choose: for `info --pilot`.
 
-use super::{made, plan};
+use super::{plan, provenance};
 use crate::learning::pilot::{Foretold, Report};
 use serde_json::{Value, json};
 
@@ -15,17 +15,17 @@ pub fn table(report: &Report) -> String {
     }
     let mut lines = vec![
         format!(
-            "pilot       {samples:.0} samples; error: squared and relative, of a pixel sample; time: in segments of walks"
+            "pilot       {samples:.0} samples; error: squared relative error of a pixel sample; time: in segments of walks"
         ),
         format!("            {:>9} {:>8} {:>9}  candidate", "error", "time", "judgement"),
     ];
     lines.extend(candidates.iter().take(SHOWN).map(line));
-    let learnt = if choice.effort.is_guided() { ", all of which follow a guide" } else { "" };
+    let learnt = if choice.effort.is_guided() { ", all of which use path guiding" } else { "" };
     lines.push(format!("            {} candidates{learnt}. The least judgement wins.", candidates.len()));
     lines.push(
-        "            It is time x error. All have the same noise of rare bright paths in it.".to_owned(),
+        "            It is time x error, with the same allowance for rare bright paths in all.".to_owned(),
     );
-    lines.push("            Longer walks and equiangular sampling have to be 1.1 times better.".to_owned());
+    lines.push("            Longer walks and equiangular sampling must be 1.1 times better, learnt starts 1.6 times.".to_owned());
     lines.join("\n")
 }
 
@@ -42,7 +42,7 @@ fn name(Foretold { choice, .. }: &Foretold) -> String {
 /// The same for scripts.
 pub fn json(report: &Report) -> Value {
     let one = |Foretold { choice, error, time, judgement }: &Foretold| {
-        let mut one = made::by_pilot(*choice);
+        let mut one = provenance::by_pilot(*choice);
         one["error"] = error.all().into();
         one["error_in_few_tiles"] = error.few.into();
         one["time"] = (*time).into();

@@ -1,6 +1,12 @@
 //! `tyndall convert`: converts a scene between XML and JSON, an image to a PNG, or a volume file to Mitsuba's.
 
-use super::{arguments, complain, display::Display, made, outputs::check_short};
+use super::{
+    console::complain,
+    display::Display,
+    outputs::check_short,
+    parsers::{definition, scene_file},
+    provenance,
+};
 use crate::{
     analysis::picture,
     error::{Error, Result},
@@ -9,11 +15,40 @@ use crate::{
     inputs::{self, Reader},
     volume::grid,
 };
-use std::path::Path;
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// Convert a scene, an image or a volume file.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Convert {
+    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input; or an image; or a volume file
+    #[arg(value_name = "IN", value_parser = scene_file())]
+    pub input: PathBuf,
+
+    /// Scene file to write: .xml or .json; of an image: .png; of a volume file: .vol
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+
+    /// Change the default of the parameter $name in OUT; may be repeated
+    #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
+    pub definitions: Vec<(String, String)>,
+
+    /// Write the values of parameters instead of their names (mitsuba.load_dict does not support parameters)
+    #[arg(long)]
+    pub fill: bool,
+
+    /// The grid that is meant in a file of several [default: the one named "density", else the only one]
+    #[arg(long, value_name = "NAME")]
+    pub grid: Option<String>,
+
+    /// How the PNG of an image shows it.
+    #[command(flatten)]
+    pub display: Display,
+}
 
 /// Runs the command.
-pub fn run(arguments: &arguments::Convert) -> Result<()> {
-    let arguments::Convert { definitions, fill, grid, display, input, output } = arguments;
+pub fn run(arguments: &Convert) -> Result<()> {
+    let Convert { definitions, fill, grid, display, input, output } = arguments;
     let of_scenes = [(!definitions.is_empty(), "-D"), (*fill, "--fill")];
     let of_images = [(display.exposure.is_some(), "--exposure"), (display.view.is_some(), "--view")];
     let of_volumes = [(grid.is_some(), "--grid")];
@@ -47,8 +82,8 @@ fn refuse(options: &[(bool, &str)], expected: &str, output: &Path) -> Result<()>
     }
 }
 
-fn scene(arguments: &arguments::Convert) -> Result<()> {
-    let arguments::Convert { input, output, definitions, fill, .. } = arguments;
+fn scene(arguments: &Convert) -> Result<()> {
+    let Convert { input, output, definitions, fill, .. } = arguments;
     let naming = if *fill { Naming::Fill } else { Naming::Keep };
     let conversion = format::convert(input, output, definitions, naming)?;
     check_short([output])?;
@@ -56,7 +91,7 @@ fn scene(arguments: &arguments::Convert) -> Result<()> {
     for note in &conversion.notes {
         complain(&format!("note: {note}"));
     }
-    super::say(&output.display().to_string());
+    super::console::say(&output.display().to_string());
     Ok(())
 }
 
@@ -65,7 +100,7 @@ fn voxels(input: &Path, grid: Option<&str>, output: &Path) -> Result<()> {
     check_short([&output.to_owned()])?;
     let voxels = grid::to_vol(input, grid)?;
     film::output::write(output, |file| voxels.write(file))?;
-    super::say(&output.display().to_string());
+    super::console::say(&output.display().to_string());
     Ok(())
 }
 
@@ -77,8 +112,8 @@ fn show(input: &Path, output: &Path, mut display: Display) -> Result<()> {
     let display = display.of(&image.pixels);
     let is_openexr = input.extension().is_some_and(|end| end.eq_ignore_ascii_case("exr"));
     let made = if is_openexr { film::exr::made(input)? } else { None };
-    let made = made::shown(made.as_deref().unwrap_or("{}"), display);
+    let made = provenance::shown(made.as_deref().unwrap_or("{}"), display);
     film::png::write_with(output, image.width, image.height, &image.pixels, display, Some(&made))?;
-    super::say(&format!("{}{exposure}", output.display()));
+    super::console::say(&format!("{}{exposure}", output.display()));
     Ok(())
 }

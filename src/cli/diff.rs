@@ -1,6 +1,9 @@
 //! `tyndall diff`: how far an image is from another.
 
-use super::{complain, outputs::check_short, say, voice::Answer};
+use super::{
+    console::{Answer, complain, say},
+    outputs::check_short,
+};
 use crate::{
     analysis::{
         diff::{self, Comparison, Difference, MEASURES, MapOf, Mapped, Tolerance, View},

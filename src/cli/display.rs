@@ -1,6 +1,6 @@
 //! The options --exposure and --view: how the PNG shows an image, of which nothing is in the image itself.
 
-use super::arguments::one_of;
+use super::parsers::one_of;
 use crate::{
     film::view::{self, Exposure, MOST_STOPS, View},
     math::Spectrum,

@@ -1,8 +1,10 @@
 //! How paths are made: the options of the command line, put over what the scene says.
 
 use super::{
-    arguments::{Size, one_of},
+    console::complain,
+    heading,
     media::Media,
+    parsers::{Size, one_of},
 };
 use crate::{
     error::{Error, Result},
@@ -40,17 +42,16 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&Strategies::INTEGRATORS))]
     pub integrator: Option<Strategies>,
 
-    /// Sampling strategies to use, separated by commas [default: those of the integrator that are worth their time]
+    /// Sampling strategies to use, separated by commas [default: those that the pilot of bdpt finds worth their time]
     ///
-    /// Without this option, a short pilot finds out which strategies of bdpt lower the error most for their time in this
-    /// scene, how many samples each should have, and whether light subpaths should start where it saw that light reaches the
-    /// image. It takes 1 in 128 of the samples to come. An image of fewer than 100,000 samples, all pixels together, has no pilot:
-    /// all strategies run alike. tyndall info --pilot shows what it foretells. Strategies that are named all have as many samples, and learn nothing but what --starts and --guide say. Equiangular sampling runs only if the pilot of
-    /// bdpt finds it worth its time, or if it is named.
+    /// The pilot takes 1 in 128 of the samples to come. It chooses the strategies, how many samples each takes, when walks
+    /// end, and where light subpaths start. tyndall info --pilot shows the candidates. Images of fewer than 100,000 samples,
+    /// over all pixels, have no pilot: all strategies but equiangular take equal numbers of samples. So do strategies that
+    /// are named here; nothing is learnt for them unless --starts or --guide asks for it.
     ///
     /// hit: the camera subpath hits an emitter; next-event: it connects to a point sampled on an emitter; join: one of its
-    /// vertices connects to one of a light subpath; lens: a light subpath connects to the lens; equiangular: in media, a
-    /// point of the primary ray that is likely to be near an emitter connects to it.
+    /// vertices connects to one of a light subpath; lens: a light subpath connects to the lens; equiangular: a point of the
+    /// primary ray in a medium, sampled near an emitter, connects to that emitter.
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1, value_parser = one_of(&StrategyKind::NAMES))]
     pub strategies: Vec<StrategyKind>,
 
@@ -58,41 +59,38 @@ pub struct Estimator {
     /// by default; needs a --max-depth of at most 32) or uniform [default: the scene's, or balance]
     ///
     /// The expected image is the same; the noise differs. All heuristics except balance use the profile "everything".
-    #[arg(long, value_name = "NAME", value_parser = heuristic)]
+    #[arg(long, value_name = "NAME", value_parser = heuristic, help_heading = heading::STUDIES)]
     pub heuristic: Option<Heuristic>,
 
-    /// Vertices of light subpaths that those of a camera subpath are connected with (the strategy join) [default: the scene's, or
-    /// cached]
+    /// Light vertices that each camera vertex connects to (the strategy join) [default: the scene's, or cached]
     ///
-    /// cached: some that are drawn from the light subpaths of many pixels; all: every one of a light subpath that belongs to the
-    /// sample alone, as Lafortune and Willems (1996) have it. The expected image is the same; with all, which no pilot
-    /// judges, each strategy takes one sample, whatever it is worth.
-    #[arg(long, value_name = "NAME", value_parser = one_of(&Connections::NAMES))]
+    /// cached: some of those that the light subpaths of many pixels left; all: every vertex of the sample's own light subpath,
+    /// as in Lafortune and Willems (1996). The expected image is the same. With all there is no pilot: each strategy takes
+    /// one sample.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Connections::NAMES), help_heading = heading::STUDIES)]
     pub connections: Option<Connections>,
 
     /// Where light subpaths start [default: a pilot decides where emitters are far from view; emitted with --strategies]
     ///
-    /// emitted: as emitters emit; learnt: where light was found, by a second's samples, to reach the image, as through a small
-    /// opening. The expected image is the same.
-    #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS))]
+    /// emitted: as emitters emit; learnt: where about a second of training found that light reaches the image, such as through
+    /// a small opening. The expected image is the same.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS), help_heading = heading::STUDIES)]
     pub starts: Option<bool>,
 
-    /// When walks follow a guide: where light comes from and where it is seen from, place by place
-    /// [default: the scene's, or auto by gather and by bdpt with a pilot, else never]
+    /// When path guiding is used: walks sample directions that training found to bring light
+    /// [default: the scene's, or auto with gather and with the pilot of bdpt, else never]
     ///
-    /// auto: where it pays, as the first quarter of learning foresees: where light comes through portals, such as a keyhole, and
-    /// where pt has to find light that comes round corners, which light subpaths find anyway. Where bdpt has little noise, nothing
-    /// is learnt to find out. The same holds for images of fewer than a million samples, all pixels together. always: also where it
-    /// does not pay. Learning takes a second or so before the image is begun, and
-    /// goes on after so many samples that more of it pays, but with --error; the expected image is the same. Needs the heuristic
-    /// balance.
+    /// auto: where the first quarter of the training shows that it pays. It does where light comes through a small opening, such
+    /// as a keyhole, and for pt where light comes round corners. bdpt tries it only in noisy scenes, and only for images of a
+    /// million samples or more over all pixels. always: in any case. Training takes about a second before the first sample. It
+    /// goes on during long renders, except with --error. The expected image is the same. Needs the heuristic balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
     pub guide: Option<Guiding>,
 
-    /// How a guide keeps directions, for comparison [default: the scene's, or quadtree]
+    /// How a guide stores directions, for comparison [default: the scene's, or quadtree]
     ///
     /// quadtree: finer where much light comes from; bins: 16 x 16 everywhere; haar: by wavelets. The expected image is the same.
-    #[arg(long, value_name = "NAME", value_parser = one_of(&Basis::NAMES))]
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Basis::NAMES), help_heading = heading::STUDIES)]
     pub basis: Option<Basis>,
 
     /// Maximum number of segments of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 means no limit
@@ -131,7 +129,7 @@ pub struct Estimator {
     pub no_hide_emitters: bool,
 
     /// Specialisation of the compiled code; the expected image is the same, only the time differs
-    #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted)]
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = Profile::Fitted, help_heading = heading::STUDIES)]
     pub profile: Profile,
 }
 
@@ -248,7 +246,7 @@ impl Estimator {
         if strategies.equiangular && !equiangular_applies(&setup.scene) {
             let needs =
                 "a medium, an emitter that is neither at infinity nor a medium, and a sensor with a lens";
-            super::complain(&format!("warning: the strategy equiangular has no effect: it needs {needs}"));
+            complain(&format!("warning: the strategy equiangular has no effect: it needs {needs}"));
         }
         let forced_interaction = self.forced_interaction(setup, strategies);
         let connections = self.connections(scene, strategies);
@@ -270,7 +268,7 @@ impl Estimator {
     /// Where nothing is connected, a pilot may judge all there is.
     fn connections(&self, scene: Options, strategies: Strategies) -> Connections {
         if self.connections.is_some() && !strategies.connection {
-            super::complain("warning: --connections has no effect: the strategy join is not in use");
+            complain("warning: --connections has no effect: the strategy join is not in use");
         }
         let wanted = self.connections.unwrap_or(scene.connections);
         if strategies.connection { wanted } else { Connections::default() }
@@ -278,14 +276,14 @@ impl Estimator {
 
     fn learnt_starts(&self, strategies: Strategies) -> bool {
         if self.starts.is_some() && !strategies.need_light_walks() {
-            super::complain("warning: --starts has no effect: no strategy in use traces light subpaths");
+            complain("warning: --starts has no effect: no strategy in use traces light subpaths");
         }
         self.starts == Some(true) && strategies.need_light_walks()
     }
 
     fn warn_of_basis(&self, settings: &Settings) {
         if self.basis.is_some() && !settings.options.effort.is_guided() {
-            super::complain("warning: --basis has no effect: walks follow no guide");
+            complain("warning: --basis has no effect: walks follow no guide");
         }
     }
 
@@ -321,7 +319,7 @@ impl Estimator {
         ] {
             if is_given {
                 let text = "has no effect: the integrator fog does not sample paths";
-                super::complain(&format!("warning: {flag} {text}"));
+                complain(&format!("warning: {flag} {text}"));
             }
         }
     }
@@ -349,7 +347,7 @@ impl Estimator {
             true => (!Needs::of(&setup.scene, false).media).then_some("the scene has no media"),
         };
         if let (true, Some(why)) = (self.forced_interaction, why_not) {
-            super::complain(&format!("warning: --forced-interaction has no effect: {why}"));
+            complain(&format!("warning: --forced-interaction has no effect: {why}"));
         }
         let forced = self.forced_interaction || setup.integrator.options.forced_interaction;
         by_eye && !strategies.gather && forced && !self.no_forced_interaction

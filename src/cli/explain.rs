@@ -5,13 +5,26 @@ mod schema;
 mod tests;
 mod text;
 
-use super::{arguments, voice};
+use super::console;
 use crate::{
     description::{Table, nearest, parameter::Parameter},
     error::{Error, Result},
     format::tags,
     scene, volume,
 };
+use clap::Args;
+
+/// Explain what scenes can hold.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Explain {
+    /// Plugin (spot), kind of plugins (emitter), parameter (cutoff_angle), keyframes or progress [default: list all plugins]
+    #[arg(value_name = "PLUGIN")]
+    pub topic: Option<String>,
+
+    /// Print a JSON Schema of scenes instead, by which editors complete and check them
+    #[arg(long, conflicts_with = "topic")]
+    pub schema: bool,
+}
 
 /// Kinds of plugins by their tags, as headings.
 const KINDS: [(&str, &str); 13] = [
@@ -32,17 +45,21 @@ const KINDS: [(&str, &str); 13] = [
 
 /// What is no plugin and may stand in place of values.
 const KEYFRAMES: &str = "keyframes";
+/// What is no part of scenes.
+const PROGRESS: &str = "progress";
 
 /// Prints what was asked for.
-pub fn run(arguments: &arguments::Explain) -> Result<()> {
+pub fn run(arguments: &Explain) -> Result<()> {
     let text = match &arguments.topic {
         _ if arguments.schema => format!("{:#}", schema::of_scenes()),
         None => {
-            format!("{}\n{KEYFRAMES}: {}", KINDS.map(|(tag, _)| text::kind(tag)).join("\n"), text::KEYFRAMES)
+            let kinds = KINDS.map(|(tag, _)| text::kind(tag)).join("\n");
+            let progress = text::PROGRESS.lines().next().unwrap_or_default();
+            format!("{kinds}\n{KEYFRAMES}: {}\n{PROGRESS}: {progress}", text::KEYFRAMES)
         }
         Some(topic) => explained(topic)?,
     };
-    voice::print(text.trim_end());
+    console::print(text.trim_end());
     Ok(())
 }
 
@@ -56,6 +73,9 @@ fn explained(topic: &str) -> Result<String> {
     let mut texts: Vec<String> = Vec::new();
     if topic == KEYFRAMES {
         texts.push(format!("{KEYFRAMES}: {}\n{}", text::KEYFRAMES, text::KEYFRAMES_WRITTEN));
+    }
+    if topic == PROGRESS {
+        texts.push(format!("{PROGRESS}: {}", text::PROGRESS));
     }
     for (tag, plugin, table) in everything() {
         if plugin == topic {
@@ -72,7 +92,7 @@ fn explained(topic: &str) -> Result<String> {
 }
 
 fn unknown(topic: &str) -> Error {
-    let mut known: Vec<&str> = KINDS.iter().map(|(tag, _)| *tag).chain([KEYFRAMES]).collect();
+    let mut known: Vec<&str> = KINDS.iter().map(|(tag, _)| *tag).chain([KEYFRAMES, PROGRESS]).collect();
     for (_, plugin, table) in everything() {
         known.push(plugin);
         known.extend(table.rows().map(|row| row.name));

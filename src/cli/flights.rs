@@ -1,6 +1,9 @@
 //! `tyndall flights`: ways of sampling flights, one against the other.
 
-use super::{outputs::check_short, say, voice::Answer};
+use super::{
+    console::{Answer, say},
+    outputs::check_short,
+};
 use crate::{
     analysis::{
         flights::{

@@ -1,10 +1,11 @@
 //! `tyndall guide`: what is learnt of a scene that is rendered with a guide.
 
 use super::{
-    arguments::{Scene, Size, size, threads},
+    console::{Answer, say},
     estimator::Estimator,
-    load, outputs, say,
-    voice::Answer,
+    outputs,
+    parsers::{Size, size, threads},
+    scene::{self, Scene, load},
 };
 use crate::{
     analysis::guide::{self, Cells, FILES, Portal, Report},
@@ -59,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     settings.options.effort.learnt_starts = starts && settings.options.strategies.need_light_walks();
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
     outputs::check_short(&FILES.map(|name| folder.join(name)))?;
-    let findings = super::threads(arguments.threads)?
+    let findings = scene::threads(arguments.threads)?
         .install(|| guide::examine(&setup, &settings, arguments.sample as usize));
     let files = findings.write(&folder)?;
     say(&described(&findings.report));

@@ -1,9 +1,14 @@
 //! `tyndall info`: what a scene holds, and how it would be rendered.
 
 use super::{
-    arguments, candidates, load, picture,
+    candidates,
+    console::{Answer, say},
+    estimator::Estimator,
+    parsers::positive_u32,
+    picture,
     plan::{self, Plan},
-    say, volumes,
+    scene::{self, load},
+    volumes,
 };
 use crate::{
     emitter::Kind,
@@ -29,11 +34,36 @@ use crate::{
     shape::ShapeModel,
     transport::{Options, Strategies},
 };
+use clap::Args;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
+/// Print a summary of a scene.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Info {
+    /// Which scene.
+    #[command(flatten)]
+    pub scene: scene::Scene,
+
+    /// How paths would be sampled.
+    #[command(flatten)]
+    pub estimator: Estimator,
+
+    /// Also show what the pilot foretells of all that it could choose: error, time, and why the winner won
+    #[arg(long)]
+    pub pilot: bool,
+
+    /// Samples per pixel of the render to come, by which the pilot is sized [default: the scene's sample_count]
+    #[arg(long, value_name = "N", value_parser = positive_u32, allow_negative_numbers = true)]
+    pub spp: Option<u32>,
+
+    /// How the summary is given.
+    #[command(flatten)]
+    pub answer: Answer,
+}
+
 /// Runs the command.
-pub fn run(arguments: &arguments::Info) -> Result<()> {
+pub fn run(arguments: &Info) -> Result<()> {
     inputs::note(&arguments.scene.file, Reader::Command);
     arguments.answer.check()?;
     if let Some(made) = picture::made(&arguments.scene.file)? {

@@ -1,26 +1,45 @@
 //! `tyndall completions` and `tyndall man`: what the definition of the arguments says, for shells and for `man`.
 
-use super::{arguments, say, voice};
+use super::{
+    arguments::Arguments,
+    console::{self, say},
+};
 use crate::{
     error::{Error, Result},
     film::output,
 };
-use clap::{Command, CommandFactory};
+use clap::{Args, Command, CommandFactory};
 use clap_mangen::Man;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Print a script for a shell.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Completions {
+    /// The shell
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}
+
+/// Print or write manual pages.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub struct Manual {
+    /// Folder for the pages of all commands, created if missing [default: print the page of tyndall]
+    #[arg(value_name = "FOLDER")]
+    pub folder: Option<PathBuf>,
+}
 
 /// Prints the completions of a shell.
-pub fn complete(arguments: &arguments::Completions) -> Result<()> {
+pub fn complete(arguments: &Completions) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command(), "tyndall", &mut script);
-    voice::print(String::from_utf8_lossy(&script).trim_end());
+    console::print(String::from_utf8_lossy(&script).trim_end());
     Ok(())
 }
 
 /// Prints the manual page of the program, or writes those of all its commands to a folder.
-pub fn run(arguments: &arguments::Manual) -> Result<()> {
+pub fn run(arguments: &Manual) -> Result<()> {
     match &arguments.folder {
-        None => voice::print(page(&command()).trim_end()),
+        None => console::print(page(&command()).trim_end()),
         Some(folder) => write(folder)?,
     }
     Ok(())
@@ -28,7 +47,7 @@ pub fn run(arguments: &arguments::Manual) -> Result<()> {
 
 /// The program as its arguments define it; `help` is no page of its own.
 fn command() -> Command {
-    let mut command = arguments::Arguments::command().disable_help_subcommand(true);
+    let mut command = Arguments::command().disable_help_subcommand(true);
     command.build();
     command
 }

@@ -1,7 +1,7 @@
 //! What the command line says about media, in place of what the scene says: how flights in those that vary are sampled,
 //! and how often light is scattered in any.
 
-use super::{arguments::one_of, complain};
+use super::{console::complain, parsers::one_of};
 use crate::{
     medium::{DistanceMethod, MediumOverrides},
     scene::{Scene, build::Setup},

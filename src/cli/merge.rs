@@ -1,14 +1,13 @@
 //! `tyndall merge`: parts of one image, their samples added up, their pixels put side by side.
 
 use super::{
-    arguments::{self, Arguments, Command, Render},
-    complain,
+    arguments::{Arguments, Command},
+    console::{complain, say},
     display::Display,
-    goal::Goal,
-    made::{self, made, must_equal},
     outputs::check_short,
-    precision::precision,
-    say,
+    parsers::image_file,
+    provenance::{self, made, must_equal},
+    render::{arguments::Render, precision::precision, target::Target},
 };
 use crate::{
     description::Object,
@@ -38,7 +37,7 @@ pub struct Merge {
     pub parts: Vec<PathBuf>,
 
     /// Image to write, as in render; its PNG is written next to it
-    #[arg(short, long, value_name = "FILE", value_parser = arguments::image_file, required_unless_present = "sums")]
+    #[arg(short, long, value_name = "FILE", value_parser = image_file, required_unless_present = "sums")]
     pub output: Option<PathBuf>,
 
     /// Also write the sums of all parts, which must be of the same pixels, to this file, from which render --resume continues
@@ -148,7 +147,7 @@ fn gathered(paths: &[&Path]) -> Result<Vec<Part>> {
     for path in paths {
         let part = Part::read(path)?;
         if let Some(first) = parts.first() {
-            let [made, first] = [&part, first].map(|part| made::without_window(&part.made));
+            let [made, first] = [&part, first].map(|part| provenance::without_window(&part.made));
             must_equal(path, &made, &first)?;
         }
         let window = |part: &Part| part.made["settings"]["film"]["window"].clone();
@@ -179,15 +178,15 @@ fn write(arguments: &Merge, output: &Path, mut parts: Vec<Part>) -> Result<()> {
     let whole = Render { output: Some(output.to_owned()), crop, display, ..first };
     let root = whole.scene.read()?;
     let setup = build(&root, whole.overrides())?;
-    let mut goal = Goal::new(&whole, &setup)?;
-    check_short([&goal.path].into_iter().chain(&goal.preview()).chain(&arguments.sums))?;
+    let mut target = Target::new(&whole, &setup)?;
+    check_short([&target.path].into_iter().chain(&target.preview()).chain(&arguments.sums))?;
     let (mut image, what) = match parts.as_mut_slice() {
         [part] => (part.image(&setup)?, part.describe()),
         parts => (side_by_side(parts, &root, &setup)?, format!("{} parts", parts.len())),
     };
-    let exposure = goal.expose(&image.pixels);
-    goal.write(&setup.film, &mut image, &made_again(&whole, &setup)?.0)?;
-    say(&format!("{what}: {}{}", goal.path.display(), exposure.unwrap_or_default()));
+    let exposure = target.expose(&image.pixels);
+    target.write(&setup.film, &mut image, &made_again(&whole, &setup)?.0)?;
+    say(&format!("{what}: {}{}", target.path.display(), exposure.unwrap_or_default()));
     Ok(())
 }
 
@@ -226,7 +225,7 @@ fn check_cover(parts: &[Part], windows: &[Window], whole: &Window) -> Result<()>
 fn made_again(render: &Render, setup: &Setup) -> Result<(Value, Settings)> {
     let (settings, chosen) = render.estimator.chosen(setup, render.seed, Budget::samples(0))?;
     let precision = precision(render, setup, &settings)?;
-    let now = made(made::settings(&render.scene, setup, &settings, chosen, precision)?);
+    let now = made(provenance::settings(&render.scene, setup, &settings, chosen, precision)?);
     Ok((now, Settings { seed: render.seed_of_part(), ..settings }))
 }
 

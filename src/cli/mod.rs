@@ -2,7 +2,7 @@
 
 pub mod arguments;
 mod candidates;
-mod clip;
+mod console;
 mod contenders;
 mod convert;
 pub mod diff;
@@ -10,42 +10,33 @@ mod display;
 mod estimator;
 mod explain;
 pub mod flights;
-mod goal;
 mod guide;
+mod heading;
 mod info;
 mod interrupt;
-mod keeper;
-mod made;
 mod manual;
 mod media;
 pub mod merge;
 mod outputs;
+mod parsers;
 pub mod phase;
 mod picture;
 mod pixel;
 mod plan;
-mod precision;
-mod preview;
 mod progress;
-mod progressive;
+mod provenance;
 mod render;
 mod report;
+mod scene;
 mod strategies;
 mod study;
-mod viewer;
-mod voice;
 mod volumes;
 
-use crate::{
-    description::Object,
-    error::{Error, Result},
-    scene::{self, build::Setup},
-    settings::Overrides,
-};
+use crate::error::Result;
 use arguments::{Arguments, Command};
 use clap::Parser;
-use std::{num::NonZeroUsize, process::ExitCode};
-use voice::{complain, heard, note, say};
+use console::{complain, heard, note};
+use std::process::ExitCode;
 
 /// Runs the program; bad input ends it with code 2 and a message that says what to mend. So does a standard output that
 /// takes no more, once all files are written; a closed pipe, whose reader has read enough, changes nothing.
@@ -53,7 +44,7 @@ pub fn run() -> ExitCode {
     match Arguments::try_parse() {
         Ok(arguments) => {
             let json = arguments.command.answer().is_some_and(|answer| answer.json);
-            voice::set(arguments.quiet, json, arguments.progress);
+            console::set(arguments.quiet, json, arguments.progress);
             judged(obey(&arguments.command).and_then(|holds| heard().map(|()| holds)))
         }
         // Help, the version, or what is wrong with the arguments.
@@ -98,28 +89,4 @@ fn judged(outcome: Result<bool>) -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-/// Reads and builds a scene; warnings go to standard error.
-fn load(scene: &arguments::Scene, overrides: Overrides) -> Result<Setup> {
-    let overrides = Overrides { strict: scene.strict, ..overrides };
-    built(&scene.read()?, overrides)
-}
-
-/// Builds what was read; warnings go to standard error.
-fn built(root: &Object, overrides: Overrides) -> Result<Setup> {
-    let setup = scene::build::build(root, overrides)?;
-    for warning in &setup.warnings {
-        complain(&format!("warning: {warning}"));
-    }
-    media::warn_of_idle(&overrides, &setup);
-    Ok(setup)
-}
-
-/// The threads that render.
-fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
-    let threads = wanted.map_or(0, usize::from);
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
-        Error::new("--threads", "a number of threads this machine can start", error.to_string(), "use fewer")
-    })
 }

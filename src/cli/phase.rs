@@ -1,10 +1,9 @@
 //! `tyndall phase`: a phase function by itself.
 
 use super::{
+    console::{self, Answer, say},
     explain,
     outputs::check_short,
-    say,
-    voice::{self, Answer},
 };
 use crate::{
     analysis::phase::{self, Check, Division, described, drawing, mesh::Mesh},
@@ -72,7 +71,7 @@ fn significance(text: &str) -> std::result::Result<f64, String> {
 /// Runs the command; true if the samples are as the density says.
 pub fn run(arguments: &Phase) -> Result<bool> {
     let Some(name) = &arguments.name else {
-        voice::print(explain::listing("phase").trim_end());
+        console::print(explain::listing("phase").trim_end());
         return Ok(true);
     };
     let phase = described::build(name, &arguments.parameters)?;

@@ -1,6 +1,6 @@
 //! `tyndall info` of a picture or of sums: how they were made.
 
-use super::voice::{Answer, say};
+use super::console::{Answer, say};
 use crate::{
     error::{Error, Result},
     film::{exr, png},

@@ -1,11 +1,11 @@
 //! `tyndall pixel`: the paths of one pixel's samples.
 
 use super::{
-    arguments::{Scene, Size, positive_u32, size, threads},
+    console::{self, say},
     estimator::Estimator,
-    load,
     outputs::check_short,
-    say, voice,
+    parsers::{Size, positive_u32, size, threads},
+    scene::{self, Scene, load},
 };
 use crate::{analysis::pixel, error::Result, film, passes::budget::Budget};
 use clap::Args;
@@ -62,12 +62,12 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let budget = Budget::samples(setup.samples_per_pixel);
     let settings = arguments.estimator.settings(&setup, arguments.seed, budget)?;
     let at = [arguments.x, arguments.y];
-    let pool = super::threads(arguments.threads)?;
+    let pool = scene::threads(arguments.threads)?;
     let found =
         pool.install(|| pixel::examine(&setup, &settings, at, arguments.sample, arguments.samples))?;
     let json = found.json();
     let Some(path) = &arguments.output else {
-        voice::print(&json);
+        console::print(&json);
         return Ok(());
     };
     film::output::write(path, |file| writeln!(file, "{json}"))?;

@@ -1,6 +1,6 @@
 //! What a render will do, in one line, and what light it does not reach.
 
-use super::{estimator::Estimator, progress::percent, voice};
+use super::{console, estimator::Estimator, progress::percent};
 use crate::{
     learning::pilot::Choice,
     math::Spectrum,
@@ -85,7 +85,7 @@ impl Plan {
         let Options { strategies, effort, .. } = self.settings.options;
         let mut text = String::new();
         if self.settings.options.connections == Connections::All {
-            text += "; every vertex joins all of a light subpath";
+            text += "; each vertex connects to a whole light subpath";
         }
         efforts(effort).iter().for_each(|part| text += &format!("; {part}"));
         let Some(Choice { among, gain, .. }) = self.chosen else { return text };
@@ -94,13 +94,17 @@ impl Plan {
         if !left_out.is_empty() {
             text += &format!("; without {}", list(&left_out));
         }
-        if text.is_empty() { text } else { format!("{text}: all alike would take {gain:.1} times as long") }
+        if text.is_empty() {
+            text
+        } else {
+            format!("{text}: {gain:.1} times as efficient as all strategies equally")
+        }
     }
 
     /// Says it, to standard error. What is missing from the image is said even when little else is.
     pub fn announce(&self) {
-        voice::announce(&self.line());
-        self.unreached().iter().for_each(|line| voice::complain(line));
+        console::announce(&self.line());
+        self.unreached().iter().for_each(|line| console::complain(line));
     }
 
     /// Where the render stops, whichever comes first.
@@ -200,7 +204,7 @@ fn in_words(method: DistanceMethod) -> &'static str {
 pub fn efforts(effort: Effort) -> Vec<String> {
     let Effort { survival, light_walks, connections, learnt_starts, .. } = effort;
     let parts = [
-        (connections != 1, format!("{connections} joins a vertex")),
+        (connections != 1, format!("{connections} connections a vertex")),
         (light_walks != 1.0, format!("{light_walks} light subpaths a sample")),
         (learnt_starts, "learnt starts".to_owned()),
         (effort.is_guided(), "guided walks".to_owned()),

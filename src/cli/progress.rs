@@ -1,6 +1,6 @@
 //! The progress bar of a render.
 
-use super::voice;
+use super::console;
 use crate::{
     film::noise::Noise,
     render::{Precision, Progress, Settings},
@@ -23,7 +23,7 @@ const STEPS: f64 = 1e6;
 impl Bar {
     /// That of an image of so many `pixels`; `label` says which one.
     pub fn new(settings: Settings, precision: Option<Precision>, pixels: usize, label: Option<&str>) -> Self {
-        let bar = voice::bar(STEPS as u64);
+        let bar = console::bar(STEPS as u64);
         if let Ok(style) = ProgressStyle::with_template("{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
         {
             bar.set_style(style);
@@ -54,7 +54,7 @@ impl Bar {
     fn tell(&self, progress: &Progress, state: &str) {
         self.bar.set_message(format!("{} samples/pixel  {state}", progress.passes));
         self.bar.set_position((STEPS * self.done(progress)) as u64);
-        voice::update(progress.is_last, || self.line(progress));
+        console::update(progress.is_last, || self.line(progress));
     }
 
     /// The same for other programs.

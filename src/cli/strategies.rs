@@ -1,10 +1,11 @@
 //! `tyndall strategies`: what every strategy is worth in a scene.
 
 use super::{
-    arguments::{Scene, Size, positive_u32, size, threads},
+    console::{self, Answer, say},
     estimator::Estimator,
-    load, outputs, say, voice,
-    voice::Answer,
+    outputs,
+    parsers::{Size, positive_u32, size, threads},
+    scene::{self, Scene, load},
 };
 use crate::{
     analysis::strategies::{self, Plan},
@@ -73,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     strategies::check(&setup.film, &plan, &settings.options)?;
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "strategies")?;
     strategies::check_files(&folder, &setup.film, &plan, &settings.options)?;
-    let bar = voice::bar(0);
+    let bar = console::bar(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {eta} left") {
         bar.set_style(style);
     }
@@ -81,9 +82,9 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
         let share = || serde_json::json!({ "done": done as f64 / total.max(1) as f64 });
-        voice::update(done == total, share);
+        console::update(done == total, share);
     };
-    let pool = super::threads(arguments.threads)?;
+    let pool = scene::threads(arguments.threads)?;
     let findings = pool.install(|| strategies::examine(&setup, &settings, &plan, &mut show))?;
     bar.finish_and_clear();
     let files = findings.write(&folder)?;

@@ -1,11 +1,12 @@
 //! `tyndall study`: error against run time.
 
 use super::{
-    arguments::{Size, confidence, definition, duration, positive_u32, size, threads as threads_of},
-    complain, contenders, media,
+    console::{self, Answer, complain, say},
+    contenders, media,
     outputs::NUMBERS,
-    say, threads,
-    voice::{self, Answer},
+    parsers::{Size, confidence, definition, duration, positive_u32, size, threads as threads_of},
+    provenance,
+    scene::threads,
 };
 use crate::{
     analysis::study::{
@@ -224,7 +225,7 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
         (None, seconds) => Effort::Seconds(seconds.map_or(SECONDS, |seconds| seconds.as_secs_f64())),
     };
     Ok(Question {
-        program: super::made::program(),
+        program: provenance::program(),
         scenes: names.into_iter().zip(&arguments.scenes).map(scene).collect::<Result<_>>()?,
         definitions: arguments.definitions.clone(),
         size: arguments.size.map(|size| [size.width, size.height]),
@@ -406,7 +407,7 @@ const STEPS: f64 = 1e6;
 
 impl Bar {
     fn new() -> Self {
-        let bar = voice::bar(STEPS as u64);
+        let bar = console::bar(STEPS as u64);
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {eta} left") {
             bar.set_style(style);
         }
@@ -418,14 +419,14 @@ impl Bar {
         let Progress { share, doing, is_old } = progress;
         self.bar.set_message(doing.clone());
         self.bar.set_position((share * STEPS) as u64);
-        voice::update(*share >= 1.0, || serde_json::json!({ "done": share, "doing": doing }));
+        console::update(*share >= 1.0, || serde_json::json!({ "done": share, "doing": doing }));
         if *is_old {
             self.bar.reset_eta();
         }
         let tenths = (share * 10.0) as u64;
         if self.is_hidden && tenths > self.tenths {
             self.tenths = tenths;
-            voice::announce(&format!("{} % done: {doing}", 10 * tenths));
+            console::announce(&format!("{} % done: {doing}", 10 * tenths));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `tyndall info` of a volume file: the grids in it, and what `smoke` would take of them.
 
-use super::voice::{Answer, say};
+use super::console::{Answer, say};
 use crate::{
     error::Result,
     math::DVec3,

@@ -2,9 +2,9 @@
 //! subpaths should start, which way walks should go, and what radiance previews end in.
 
 mod follower;
+mod paths;
 pub mod pilot;
 mod radiance;
 mod tiles;
-mod tracks;
 pub mod training;
 mod trial;

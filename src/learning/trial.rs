@@ -3,8 +3,8 @@
 
 use super::{
     follower::{Followed, Follower},
+    paths::{Shares, Track, Tracks},
     tiles::Tiles,
-    tracks::{Shares, Track, Tracks},
 };
 use crate::{
     bsdf::Transport,

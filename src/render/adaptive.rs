@@ -17,7 +17,7 @@ const GROWTH: f64 = 1.25;
 
 /// A render to a precision at work.
 pub(super) struct Adaptive<'a, 's> {
-    pub bench: &'a Instrument<'s>,
+    pub instrument: &'a Instrument<'s>,
     pub stopwatch: &'a Stopwatch,
     /// Called now and then; what it sees at the end is that from which the render can go on.
     pub watch: &'a mut dyn FnMut(Progress, &Halves),
@@ -26,7 +26,7 @@ pub(super) struct Adaptive<'a, 's> {
 impl Adaptive<'_, '_> {
     /// Goes on from `halves` until every pixel has converged or the budget is spent.
     pub fn run(mut self, halves: &mut Halves) {
-        let before = halves.elapsed + self.bench.settings.budget.spent;
+        let before = halves.elapsed + self.instrument.settings.budget.spent;
         while halves.active.contains(&true) {
             if !self.advance(halves, before) {
                 self.tell(halves, true);
@@ -42,15 +42,15 @@ impl Adaptive<'_, '_> {
     /// Renders until both halves have passes up to the next check; false if the budget ends before. An unfinished pass is
     /// left out of the image, unless it is the first.
     fn advance(&mut self, halves: &mut Halves, before: Duration) -> bool {
-        let (budget, count) = (self.bench.settings.budget, self.bench.compiled.blocks().count());
+        let (budget, count) = (self.instrument.settings.budget, self.instrument.compiled.blocks().count());
         let end = budget.samples_per_pixel.unwrap_or(u64::MAX).min(2 * halves.goal);
         let tasks = halves.passes() as usize * count + halves.blocks..end as usize * count;
-        let (bench, stopwatch) = (self.bench, self.stopwatch);
+        let (instrument, stopwatch) = (self.instrument, self.stopwatch);
         let is_over = || budget.is_over(stopwatch.elapsed());
         // Which pixels are active changes at checks only.
         let active = halves.active.clone();
-        let render = |pass, block| bench.render(pass, block, &|pixel: usize| active[pixel]);
-        let done = bench.work_in_turn(
+        let render = |pass, block| instrument.render(pass, block, &|pixel: usize| active[pixel]);
+        let done = instrument.work_in_turn(
             tasks.clone(),
             |task| task / count,
             is_over,

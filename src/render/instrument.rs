@@ -3,7 +3,7 @@
 
 use super::{
     image::Precision,
-    sorted::{self, Sorter},
+    layers::{self, Sorter},
     sums::halves::FIRST_LOOK,
 };
 use crate::{
@@ -144,7 +144,7 @@ impl<'a> Instrument<'a> {
     pub(super) fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
         match &self.sorter {
             None => self.at(pass).render(pass, block, wants),
-            Some(sorter) => sorted::block(self.at(pass), sorter, [pass, block], wants),
+            Some(sorter) => layers::block(self.at(pass), sorter, [pass, block], wants),
         }
     }
 

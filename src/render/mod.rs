@@ -8,11 +8,11 @@ mod fog;
 pub mod image;
 pub mod instrument;
 mod known;
+mod layers;
 mod monitor;
 mod primary;
 pub mod progressive;
 mod seen;
-mod sorted;
 pub mod sums;
 mod turns;
 
@@ -98,11 +98,11 @@ pub fn go_on(
         }
         AnySums::Adaptive(halves) => {
             let (stopwatch, started) = (Stopwatch::start(), Instant::now());
-            let bench =
+            let instrument =
                 &Instrument::new(scene, film, settings).sorting(layers).with_precision(halves.precision);
             let watch = &mut |progress, halves: &Halves| watch(progress, halves);
-            Adaptive { bench, stopwatch: &stopwatch, watch }.run(halves);
-            finish(bench, started, halves, layers)
+            Adaptive { instrument, stopwatch: &stopwatch, watch }.run(halves);
+            finish(instrument, started, halves, layers)
         }
     }
 }
@@ -141,15 +141,18 @@ fn dispatch(
     monitor: &mut Monitor<'_>,
 ) -> Image {
     let (stopwatch, started) = (Stopwatch::start(), Instant::now());
-    let bench = Instrument::new(scene, film, settings).sorting(layers);
+    let instrument = Instrument::new(scene, film, settings).sorting(layers);
     let (preview, sums) = match mode {
-        Mode::Preview(fog, sums) => (Some(Preview::of(&*bench.compiled, fog, settings)), sums),
+        Mode::Preview(fog, sums) => (Some(Preview::of(&*instrument.compiled, fog, settings)), sums),
         Mode::Budget(sums) => (None, sums),
     };
-    accumulate(&bench, preview.as_ref(), sums, stopwatch, monitor);
+    accumulate(&instrument, preview.as_ref(), sums, stopwatch, monitor);
     let image = sums.image();
-    let seen =
-        primary::Pass::new(film, layers).run(&bench, image.samples_per_pixel.max(1), late(settings, started));
+    let seen = primary::Pass::new(film, layers).run(
+        &instrument,
+        image.samples_per_pixel.max(1),
+        late(settings, started),
+    );
     let known = Known { pixels: &image.pixels, passes: &sums.accumulator, seen: &seen };
     let layers = known.channels(layers, |plane| sums.plane(plane));
     Image { alpha: seen.alpha, layers, ..image }
@@ -157,11 +160,11 @@ fn dispatch(
 
 /// The image of an adaptive render that began at `started`, with alpha, `layers`, and one more that shows how many samples
 /// its pixels took.
-fn finish(bench: &Instrument<'_>, started: Instant, halves: &Halves, layers: &[Layer]) -> Image {
-    let seen = Seen::new(bench);
+fn finish(instrument: &Instrument<'_>, started: Instant, halves: &Halves, layers: &[Layer]) -> Image {
+    let seen = Seen::new(instrument);
     let image = Image { noise: halves.noise(&|pixel| seen.of(pixel)), ..halves.image() };
-    let (passes, is_over) = (image.samples_per_pixel.max(1), late(&bench.settings, started));
-    let seen = primary::Pass::new(bench.film, layers).run(bench, passes, is_over);
+    let (passes, is_over) = (image.samples_per_pixel.max(1), late(&instrument.settings, started));
+    let seen = primary::Pass::new(instrument.film, layers).run(instrument, passes, is_over);
     let known = Known { pixels: &image.pixels, passes: &Accumulator::new(0), seen: &seen };
     let mut layers = known.channels(layers, |plane| halves.plane(plane));
     let samples = image.reached.iter().flat_map(|reached| &reached.samples);
@@ -174,20 +177,20 @@ const NOISE_EVERY: Duration = Duration::from_millis(100);
 
 /// Adds samples until the budget is spent. A preview is shown in place of what the estimator says.
 fn accumulate(
-    bench: &Instrument<'_>,
+    instrument: &Instrument<'_>,
     preview: Option<&Preview<'_>>,
     sums: &mut Sums,
     mut stopwatch: Stopwatch,
     monitor: &mut Monitor<'_>,
 ) {
-    let Instrument { settings: Settings { budget, .. }, compiled, .. } = bench;
+    let Instrument { settings: Settings { budget, .. }, compiled, .. } = instrument;
     let before = sums.elapsed + budget.spent;
     let queue = Queue::new(budget, sums, compiled.blocks().count());
     let (mut next, mut noted) = (sums.blocks.min(queue.end), Instant::now());
-    let seen = Seen::new(bench);
+    let seen = Seen::new(instrument);
     // However long that takes, or no time would be enough to go on.
     if next < queue.end {
-        bench.learn(queue.sample(next) as usize, &|| false);
+        instrument.learn(queue.sample(next) as usize, &|| false);
     }
     loop {
         let passes = (next / queue.per_pass) as u64;
@@ -195,10 +198,10 @@ fn accumulate(
         let is_over = || budget.is_over(stopwatch.elapsed());
         let pass = |task| queue.sample(task) as usize;
         let render = |pass, block| match preview {
-            None => bench.render(pass, block, &|_| true),
+            None => instrument.render(pass, block, &|_| true),
             Some(preview) => preview.show(&**compiled, pass, compiled.blocks().pixels(block)),
         };
-        let done = bench.work_in_turn(tasks.clone(), pass, is_over, render, |first, outcomes| {
+        let done = instrument.work_in_turn(tasks.clone(), pass, is_over, render, |first, outcomes| {
             for (task, outcome) in (first..).zip(outcomes) {
                 sums.add(queue.sample(task), outcome, queue.per_pass);
             }

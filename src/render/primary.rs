@@ -58,8 +58,8 @@ impl Pass {
     }
 
     /// Traces as many primary rays per pixel as there were `passes`, or fewer once `is_over`, but one at least.
-    pub fn run(&self, bench: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
-        let Instrument { scene, film, compiled, .. } = bench;
+    pub fn run(&self, instrument: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
+        let Instrument { scene, film, compiled, .. } = instrument;
         let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
             return Seen { alpha: Vec::new(), planes: Vec::new() };
@@ -70,7 +70,7 @@ impl Pass {
         while done == 0 || done < passes && !is_over() {
             sums.par_chunks_mut(width).enumerate().for_each(|(pixel, sums)| {
                 let mut start = compiled.camera_start(done as usize, pixel);
-                let view = View::new(bench, environment, &start, passes);
+                let view = View::new(instrument, environment, &start, passes);
                 let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
                 let first = self.interacts().then(|| view.first_interaction(&mut start.stream)).flatten();
                 let values = self.quantities.iter().map(|quantity| match quantity.is_of_interaction() {
@@ -98,7 +98,7 @@ impl Pass {
 /// A primary ray and what it hits first; nulls and boundaries of media count, as in Mitsuba.
 struct View<'a, 's> {
     scene: &'a Scene,
-    bench: &'a Instrument<'s>,
+    instrument: &'a Instrument<'s>,
     film: Vec2,
     aperture: Vec2,
     ray: Ray,
@@ -110,27 +110,27 @@ struct View<'a, 's> {
 }
 
 impl<'a, 's> View<'a, 's> {
-    fn new(bench: &'a Instrument<'s>, environment: bool, start: &CameraStart, passes: u64) -> Self {
-        let scene = bench.scene;
+    fn new(instrument: &'a Instrument<'s>, environment: bool, start: &CameraStart, passes: u64) -> Self {
+        let scene = instrument.scene;
         let CameraStart { position: film, aperture, .. } = *start;
         let ray = scene.sensor.ray(film, aperture).ray;
         let hit = scene.geometry.closest(&ray).map(|hit| (hit, scene.geometry.surface(&ray, &hit)));
-        Self { scene, bench, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }
+        Self { scene, instrument, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }
     }
 
     /// The probability that the ray interacts with something or hits a visible environment: what Mitsuba's
     /// `volpath` determines by walking on. Emitters that are hidden do not count.
     fn alpha(&self, stream: &mut Stream) -> f32 {
-        let hidden = self.bench.settings.options.hide_emitters;
+        let hidden = self.instrument.settings.options.hide_emitters;
         if self.environment && !hidden {
             return 1.0;
         }
-        let through = self.bench.compiled.transmittance(self.ray, stream);
+        let through = self.instrument.compiled.transmittance(self.ray, stream);
         1.0 - (through.x + through.y + through.z) / 3.0
     }
 
     fn first_interaction(&self, stream: &mut Stream) -> Option<Interaction> {
-        self.bench.compiled.first_interaction(self.ray, stream)
+        self.instrument.compiled.first_interaction(self.ray, stream)
     }
 
     /// 0 where there is none.

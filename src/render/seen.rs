@@ -12,14 +12,14 @@ const RAYS: u64 = 256;
 
 /// The pixels that were looked at.
 pub(super) struct Seen<'a, 's> {
-    bench: &'a Instrument<'s>,
+    instrument: &'a Instrument<'s>,
     known: RefCell<HashMap<usize, f64>>,
 }
 
 impl<'a, 's> Seen<'a, 's> {
     /// None yet.
-    pub fn new(bench: &'a Instrument<'s>) -> Self {
-        Self { bench, known: RefCell::default() }
+    pub fn new(instrument: &'a Instrument<'s>) -> Self {
+        Self { instrument, known: RefCell::default() }
     }
 
     /// The luminance of what `pixel` sees of emitters, not scattered but by smooth surfaces.
@@ -28,7 +28,7 @@ impl<'a, 's> Seen<'a, 's> {
     }
 
     fn look(&self, pixel: usize) -> f64 {
-        let Instrument { scene, film, settings, .. } = self.bench;
+        let Instrument { scene, film, settings, .. } = self.instrument;
         let hidden = settings.options.hide_emitters;
         let sample = |index| {
             let mut stream = Stream::new(settings.seed, pixel as u64, index, Purpose::Study);

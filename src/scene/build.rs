@@ -6,11 +6,11 @@ mod media;
 use super::{
     Scene, Surface,
     accel::Geometry,
-    again::{Before, Parts},
     contact::{Apart, Nature, Rank},
     keyframes,
     lights::{Disk, Light, Lights, emissive},
     media::{self as places, Boundary, Extents, Known, Locator, MediaMap, Names, Overlaps, Placement},
+    rebuild::{Before, Parts},
     sections::Sections,
     smoke::{self, Taken},
     unseen::{self, Unseen},

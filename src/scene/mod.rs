@@ -1,13 +1,13 @@
 //! A scene ready to render, and how it is made: read a description, build it, index it.
 
 pub mod accel;
-mod again;
 pub mod build;
 pub mod contact;
 pub mod keyframes;
 pub mod lights;
 pub mod media;
 mod memo;
+mod rebuild;
 mod sections;
 pub mod sensors;
 pub mod smoke;

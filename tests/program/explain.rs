@@ -20,8 +20,9 @@ fn plugins_kinds_and_parameters_are_explained() {
         ("explain cutoff_angle", &["spot (emitter)"]),
         ("explain shutter_open", &["perspective (sensor)", "accepted, without effect: no motion blur"]),
         ("explain keyframes", &["\"type\": \"keyframes\"", "<keyframes name=", "smooth", "--frames 0..47"]),
-        ("explain", &["heterogeneous", "hdrfilm", "wave", "Phase functions", "keyframes: "]),
-    ] as [(&str, &[&str]); 7]
+        ("explain progress", &["--progress json", "samples_per_pixel  samples so far", "\"image\": null}"]),
+        ("explain", &["heterogeneous", "hdrfilm", "wave", "Phase functions", "keyframes: ", "progress: "]),
+    ] as [(&str, &[&str]); 8]
     {
         let text = sandbox.run(words).ends(0).out();
         for hint in hints {

@@ -112,14 +112,15 @@ fn a_sample_made_again_is_what_its_pass_adds() {
         let stage = Stage::new(&scene);
         let (mut lit, mut joined, mut splats) = (0, 0, 0);
         for set in [Strategies::BDPT, Strategies::PT, Strategies::LT, strategies("hit+join")] {
-            let bench = Instrument::new(&stage.setup.scene, &stage.setup.film, &stage.settings(set, 1, 3));
+            let instrument =
+                Instrument::new(&stage.setup.scene, &stage.setup.film, &stage.settings(set, 1, 3));
             let mut passes = Vec::new();
-            bench.passes(0..4, &mut |image| passes.push(image.to_vec()));
+            instrument.passes(0..4, &mut |image| passes.push(image.to_vec()));
             let rendered = stage.render(set, 1, 3);
             for (number, pass) in passes.iter().enumerate() {
                 for pixel in pixels {
                     let what = format!("{name}, {}, pass {number}, pixel {pixel}", common::name_of(set));
-                    let sample = PixelSample::of(&bench, number, pixel);
+                    let sample = PixelSample::of(&instrument, number, pixel);
                     assert_eq!(bits(sample.value), bits(pass[pixel]), "{what}");
                     if number == 0 {
                         assert_eq!(bits(sample.value), bits(rendered[pixel]), "{what}");
@@ -144,8 +145,9 @@ fn densities_of_starts_are_those_of_learnt_starts() {
     let mut stage = Stage::new(&foggy_room(Some(medium(1.0, 0.8, 0.3)), "box"));
     stage.setup.integrator.options.effort.learnt_starts = true;
     let settings = stage.settings(Strategies::BDPT, 1, 3);
-    let bench = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
-    let samples: Vec<PixelSample> = (0..40).map(|pixel| PixelSample::of(&bench, 0, 41 * pixel)).collect();
+    let instrument = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
+    let samples: Vec<PixelSample> =
+        (0..40).map(|pixel| PixelSample::of(&instrument, 0, 41 * pixel)).collect();
     let starts = samples.iter().flat_map(|sample| sample.light.values()).filter_map(|walk| walk.emitter);
     // All points of a lamp are as dense.
     let starts: BTreeMap<u32, EmissionSample> = starts.map(|start| (start.light, start)).collect();

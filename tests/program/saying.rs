@@ -69,11 +69,13 @@ fn what_a_pilot_chooses_is_said() {
     let sandbox = Sandbox::with_scene(&sky);
     let said = sandbox.run("render scene.json --report r.json").ends(0).err();
     let told = [
-        "bdpt (hit, next-event; longer walks; without join and lens: all alike would take ",
-        " times as long)",
+        "bdpt (hit, next-event; longer walks; without join and lens: ",
+        " times as efficient as all strategies equally)",
     ];
     told.iter().for_each(|part| assert!(said.contains(part), "{said}"));
     assert!(sandbox.run("info scene.json").ends(0).out().contains("without join and lens"));
+    let short = sandbox.run("info scene.json --pilot --spp 16").ends(0).out();
+    assert!(short.contains("too few samples are to come"), "{short}");
     let plan = &sandbox.json("r.json")["plan"];
     let found: Value =
         serde_json::from_str(&sandbox.run("info scene.json --pilot --json").ends(0).out()).unwrap();

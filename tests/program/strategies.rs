@@ -71,8 +71,8 @@ fn scenes() -> Vec<(&'static str, Value)> {
 
 fn parts(stage: &Stage, set: Strategies, cells: StrategyTable, passes: usize, seed: u64) -> StrategyImages {
     let settings = stage.settings(set, passes as u64, seed);
-    let bench = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
-    StrategyImages::render(&bench, set, cells, passes, &mut |_| {})
+    let instrument = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
+    StrategyImages::render(&instrument, set, cells, passes, &mut |_| {})
 }
 
 fn sum<'a>(images: impl Iterator<Item = &'a Vec<Spectrum>>, pixels: usize) -> Vec<Spectrum> {

@@ -222,12 +222,13 @@ mod tests {
         let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
         let settings = Settings { options, sampler, budget, seed: 0, profile };
         let instrument = Instrument::new(&setup.scene, &setup.film, &settings);
-        let before = RAYS.get();
         let table = StrategyTable { depth: 1 };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().unwrap();
-        let times = pool.install(|| Times::of(&instrument, table, PASSES, &mut |_| ()));
-        let counts =
-            [times.camera_vertices, times.light_vertices, times.tries.iter().sum(), RAYS.get() - before];
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let (times, rays) = pool.install(|| {
+            let before = RAYS.get();
+            (Times::of(&instrument, table, PASSES, &mut |_| ()), RAYS.get() - before)
+        });
+        let counts = [times.camera_vertices, times.light_vertices, times.tries.iter().sum(), rays];
         counts.map(|count| count as f64 / (PASSES * setup.film.len()) as f64)
     }
 

@@ -9,6 +9,18 @@ use crate::description::{
 /// What keyframes are.
 pub const KEYFRAMES: &str = "In place of any value of numbers: what it is at some times [s]. Not in Mitsuba.";
 
+/// What `--progress json` prints.
+pub const PROGRESS: &str = "\
+the lines of JSON that --progress json prints on standard error, ten a second at most and one at the end
+  {\"done\": 0.25, \"samples_per_pixel\": 16, \"noise\": 0.031, \"within\": null, \"seconds\": 2.1, \"image\": null}
+  done               the part of the way to the nearest limit, from 0 to 1
+  samples_per_pixel  samples so far
+  noise              the relative error of the image so far (root of relMSE); null while it is unknown
+  within             the share of the pixels within --error; null without it
+  seconds            the time since the render began
+  image              the frame or batch at hand; null if there is one image
+  study says what it is doing (\"doing\") in place of samples and noise; strategies prints \"done\" alone.
+  With --quiet, all other lines are warnings and errors. If standard error is closed, the render ends as on Ctrl-C.";
 /// How they are written, and what they mean.
 pub const KEYFRAMES_WRITTEN: &str = r#"
 JSON: "radiance": { "type": "keyframes", "value": [[0, 1], [2.5, 3]], "interpolation": "smooth" }

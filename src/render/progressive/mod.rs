@@ -108,12 +108,12 @@ pub fn run(
     watch: &mut dyn FnMut(Progress, &dyn Picture),
 ) -> (Image, Shaded) {
     let started = Instant::now();
-    let bench = Instrument::of_blocks(GROUP, scene, film, settings);
-    let fog = fog.map(|fog| Preview::of(&*bench.compiled, fog, settings));
-    let mut painter = Painter::new(&bench, fog, wanted, started);
+    let instrument = Instrument::of_blocks(GROUP, scene, film, settings);
+    let fog = fog.map(|fog| Preview::of(&*instrument.compiled, fog, settings));
+    let mut painter = Painter::new(&instrument, fog, wanted, started);
     painter.paint(watch);
     let image = painter.image();
-    let seen = primary::Pass::new(film, layers).run(&bench, painter.samples, late(settings, started));
+    let seen = primary::Pass::new(film, layers).run(&instrument, painter.samples, late(settings, started));
     let known = Known { pixels: &image.pixels, passes: &Accumulator::new(0), seen: &seen };
     let mut layers = known.channels(layers, |_| Vec::new());
     layers.push(painter.counts());
@@ -122,7 +122,7 @@ pub fn run(
 
 /// A picture in the making.
 struct Painter<'a, 's> {
-    bench: &'a Instrument<'s>,
+    instrument: &'a Instrument<'s>,
     fog: Option<Preview<'a>>,
     method: Method,
     /// Pixels to shade.
@@ -161,21 +161,21 @@ impl Batch {
 
 impl<'a, 's> Painter<'a, 's> {
     fn new(
-        bench: &'a Instrument<'s>,
+        instrument: &'a Instrument<'s>,
         fog: Option<Preview<'a>>,
         wanted: Progressive,
         started: Instant,
     ) -> Self {
-        let Instrument { film, settings, .. } = bench;
+        let Instrument { film, settings, .. } = instrument;
         let (pixels, width) = (film.len(), film.width as usize);
         let looked = Instant::now();
-        let maps = look(bench);
+        let maps = look(instrument);
         let outlines = match wanted.method {
             Method::Straight => Outlines::default(),
             Method::Regions => Outlines::of(&maps),
         };
         Self {
-            bench,
+            instrument,
             fog,
             method: wanted.method,
             goal: wanted.pixels(pixels),
@@ -199,7 +199,7 @@ impl<'a, 's> Painter<'a, 's> {
         self.advance(corners);
         loop {
             let elapsed = self.started.elapsed();
-            let is_last = self.mesh.len() >= self.goal || self.bench.settings.budget.is_over(elapsed);
+            let is_last = self.mesh.len() >= self.goal || self.instrument.settings.budget.is_over(elapsed);
             let samples = self.mesh.len() as u64 * self.samples;
             let progress =
                 Progress { samples, passes: self.samples, elapsed, noise: None, within: None, is_last };
@@ -241,7 +241,7 @@ impl<'a, 's> Painter<'a, 's> {
             }
         }
         if batch.pixels.is_empty() {
-            let blocks: &Blocks = self.bench.compiled.blocks();
+            let blocks: &Blocks = self.instrument.compiled.blocks();
             let all = (0..blocks.count()).flat_map(|block| blocks.pixels(block));
             all.filter(|pixel| self.mesh.at(*pixel).is_none())
                 .take(size)
@@ -281,16 +281,18 @@ impl<'a, 's> Painter<'a, 's> {
     fn shade(&mut self, pixels: &[u32]) -> Vec<Spectrum> {
         let groups: Vec<&[u32]> = pixels.chunks(GROUP).collect();
         let samples = self.samples as usize;
-        let (bench, first) = (self.bench, self.groups);
+        let (instrument, first) = (self.instrument, self.groups);
         let tasks = (0..groups.len() * samples).into_par_iter();
         let outcomes: Vec<Outcome> = tasks
             .map(|task| {
                 let (group, pass) = (task / samples, task % samples);
                 match &self.fog {
-                    None => bench.compiled.shade(pass, first + group, groups[group]),
-                    Some(fog) => {
-                        fog.show(&*bench.compiled, pass, groups[group].iter().map(|pixel| *pixel as usize))
-                    }
+                    None => instrument.compiled.shade(pass, first + group, groups[group]),
+                    Some(fog) => fog.show(
+                        &*instrument.compiled,
+                        pass,
+                        groups[group].iter().map(|pixel| *pixel as usize),
+                    ),
                 }
             })
             .collect();
@@ -344,9 +346,9 @@ impl Picture for Painter<'_, '_> {
     }
 }
 
-/// The conductance maps of what `bench` renders: one ray a pixel.
-fn look(bench: &Instrument<'_>) -> Maps {
-    let Instrument { scene, film, settings, .. } = bench;
+/// The conductance maps of what `instrument` renders: one ray a pixel.
+fn look(instrument: &Instrument<'_>) -> Maps {
+    let Instrument { scene, film, settings, .. } = instrument;
     let width = film.width as usize;
     let middle = |pixel: usize| vec2((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5);
     let sights = (0..film.len()).into_par_iter();

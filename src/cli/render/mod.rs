@@ -1,23 +1,28 @@
 //! `tyndall render`: a scene file in, an image and its PNG preview out.
 
+mod animation;
+pub mod arguments;
+mod checkpoint;
+mod files;
+pub mod precision;
+mod preview;
+mod progressive;
+pub mod target;
+mod task;
+mod viewer;
+
 use super::{
-    arguments,
-    clip::Clip,
-    goal::Goal,
+    console::{complain, say},
     interrupt,
-    keeper::{Keeper, Left, Shown, sums_file, wanted},
-    made,
+    parsers::Frames,
     plan::Plan,
-    precision::precision,
     progress::{Bar, noise_text, percent, samples_text},
-    progressive, threads,
-    viewer::Viewer,
+    scene::threads,
 };
 use crate::{
     analysis::darkness,
     error::{Error, Result},
     film::output,
-    learning::pilot::Choice,
     math::Spectrum,
     passes::{Settings, budget::Budget, faults::Faults},
     render::{
@@ -28,25 +33,31 @@ use crate::{
     scene::build::Setup,
     transport::Strategies,
 };
+use animation::Clip;
+use arguments::Render;
+use checkpoint::{Keeper, Left, Shown, sums_file, wanted};
 use serde_json::Value;
 use std::{
     path::Path,
     sync::Mutex,
     time::{Duration, Instant},
 };
+use target::Target;
+use task::Task;
+use viewer::Viewer;
 
 /// Runs the command.
-pub fn run(arguments: &arguments::Render) -> Result<()> {
+pub fn run(arguments: &Render) -> Result<()> {
     let started = Instant::now();
     let clip = Clip::read(arguments)?;
     let mut setup = clip.first()?;
-    let mut goal = Goal::new(arguments, &setup)?;
+    let mut target = Target::new(arguments, &setup)?;
     arguments.pixels.progressive.map_or(Ok(()), |_| progressive::check(&setup))?;
-    super::outputs::check_render(arguments, &setup, &goal)?;
+    files::check(arguments, &setup, &target)?;
     let pool = threads(arguments.threads)?;
     let viewer = Mutex::new(None);
     let (task, chosen) = pool.install(|| Task::new(arguments, &setup, &viewer))?;
-    check_kept(arguments, &task.settings, &goal)?;
+    check_kept(arguments, &task.settings, &target)?;
     if let Ok(mut viewer) = viewer.lock() {
         *viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
     }
@@ -57,8 +68,8 @@ pub fn run(arguments: &arguments::Render) -> Result<()> {
     plan.announce();
     let load_time = started.elapsed().saturating_sub(task.settings.budget.spent).as_secs_f64();
     let figures = match arguments.frames {
-        None => vec![pool.install(|| shoot(&setup, &task, &mut goal, None))?],
-        Some(frames) => pool.install(|| animate(&clip, &mut setup, task, goal, frames))?,
+        None => vec![pool.install(|| shoot(&setup, &task, &mut target, None))?],
+        Some(frames) => pool.install(|| animate(&clip, &mut setup, task, target, frames))?,
     };
     arguments.answer.give(&report(figures, load_time, arguments.frames.is_some(), &plan))
 }
@@ -68,10 +79,10 @@ fn animate(
     clip: &Clip<'_>,
     setup: &mut Setup,
     mut task: Task<'_>,
-    mut goal: Goal,
-    frames: arguments::Frames,
+    mut target: Target,
+    frames: Frames,
 ) -> Result<Vec<Value>> {
-    let arguments::Frames { first, last } = frames;
+    let Frames { first, last } = frames;
     let digits = frames.digits();
     let (mut figures, mut spent) = (Vec::new(), task.settings.budget.spent);
     for frame in first..=last {
@@ -79,7 +90,7 @@ fn animate(
         if !clip.rebuilds {
             let moved = setup.scene.set_time(time).map_err(|error| clip.explain(frame, error))?;
             if !moved && frame == first && first < last {
-                super::complain(
+                complain(
                     "warning: nothing in this scene moves (no \"wind\", no keyframes, no numbered files): frames \
                      differ by noise only",
                 );
@@ -96,16 +107,16 @@ fn animate(
         made["settings"]["time"] = time.into();
         let task = Task { settings, made, ..task };
         let label = format!("frame {frame} of {first}..{last}");
-        let mut numbered = goal.numbered(frame, digits);
+        let mut numbered = target.numbered(frame, digits);
         let mut figure = shoot(setup, &task, &mut numbered, Some(&label))?;
         // What was chosen for the first frame holds for all.
-        goal.display = numbered.display;
+        target.display = numbered.display;
         spent = Duration::ZERO;
         figure["frame"] = frame.into();
         figure["time"] = time.into();
         figures.push(figure);
         if let Some((name, _)) = interrupt::signal() {
-            super::complain(&format!("{name} in frame {frame}: continue with --frames {frame}..{last}"));
+            complain(&format!("{name} in frame {frame}: continue with --frames {frame}..{last}"));
             break;
         }
     }
@@ -117,44 +128,8 @@ fn seed_of(seed: u64, frame: u32) -> u64 {
     seed ^ (u64::from(frame) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)
 }
 
-/// What is to be rendered.
-pub struct Task<'a> {
-    /// How, and for how long.
-    pub settings: Settings,
-    precision: Option<Precision>,
-    /// What the user wants.
-    pub arguments: &'a arguments::Render,
-    /// See [`made::made`].
-    pub made: Value,
-    viewer: &'a Mutex<Option<Viewer>>,
-}
-
-impl<'a> Task<'a> {
-    /// That of `setup`, and what a pilot chose.
-    fn new(
-        arguments: &'a arguments::Render,
-        setup: &Setup,
-        viewer: &'a Mutex<Option<Viewer>>,
-    ) -> Result<(Self, Option<Choice>)> {
-        let (settings, chosen) = settings(arguments, setup)?;
-        let precision = precision(arguments, setup, &settings)?;
-        let made = made::made(made::settings(&arguments.scene, setup, &settings, chosen, precision)?);
-        let settings = Settings { seed: arguments.seed_of_part(), ..settings };
-        Ok((Self { settings, precision, arguments, made, viewer }, chosen))
-    }
-
-    /// Shows what there is in the viewer, if there is one; it goes when it fails.
-    pub fn show(&self, picture: &dyn Picture) {
-        let Ok(mut viewer) = self.viewer.lock() else { return };
-        if let Some(Err(error)) = viewer.as_mut().map(|viewer| viewer.show(picture)) {
-            super::complain(&format!("warning: no more is shown: {error}"));
-            *viewer = None;
-        }
-    }
-}
-
 /// Options that keep what there is so far need samples to keep, and a place for it.
-fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -> Result<()> {
+fn check_kept(arguments: &Render, settings: &Settings, target: &Target) -> Result<()> {
     let kept = [
         (arguments.sums.is_some(), "--sums"),
         (arguments.resume, "--resume"),
@@ -173,7 +148,7 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
         return Err(Error::new(name, expected, format!("the preview {preview}"), remedy));
     }
     let is_part = arguments.is_part();
-    if arguments.preview && (is_part || output::is_stream(&goal.path)) {
+    if arguments.preview && (is_part || output::is_stream(&target.path)) {
         let found = if is_part { "only sums to write" } else { "a device or pipe" };
         return Err(Error::new(
             "--preview",
@@ -192,24 +167,24 @@ fn check_kept(arguments: &arguments::Render, settings: &Settings, goal: &Goal) -
 }
 
 /// Renders one image and writes it; its figures.
-fn shoot(setup: &Setup, task: &Task<'_>, goal: &mut Goal, label: Option<&str>) -> Result<Value> {
+fn shoot(setup: &Setup, task: &Task<'_>, target: &mut Target, label: Option<&str>) -> Result<Value> {
     if let Some(wanted) = task.arguments.progressive() {
-        let (image, shaded) = few_pixels(setup, task, goal, wanted, label);
+        let (image, shaded) = few_pixels(setup, task, target, wanted, label);
         let is_without_lens = progressive::is_without_lens(&task.arguments.estimator, setup);
         let text = progressive::text(&shaded, is_without_lens);
         let mut made = task.made.clone();
         made["progressive"] = text.as_str().into();
         let task = Task { made, ..*task };
-        let mut figures = deliver(setup, &task, goal, image, Some(&text), label)?;
+        let mut figures = deliver(setup, &task, target, image, Some(&text), label)?;
         figures["progressive"] = progressive::json(&shaded);
         return Ok(figures);
     }
     let (image, written) = match task.arguments.batches {
-        None => watched(setup, task, goal, label)?,
-        Some(count) => (batches(setup, task, goal, count, label)?, nothing()),
+        None => watched(setup, task, target, label)?,
+        Some(count) => (batches(setup, task, target, count, label)?, nothing()),
     };
     let samples = image.samples();
-    let figures = deliver(setup, task, goal, image, None, label)?;
+    let figures = deliver(setup, task, target, image, None, label)?;
     // The image is not lost where the sums are.
     match written? {
         (Left::Kept(file), kept) => print_kept(&file, &kept, samples, task),
@@ -223,7 +198,7 @@ fn shoot(setup: &Setup, task: &Task<'_>, goal: &mut Goal, label: Option<&str>) -
 fn deliver(
     setup: &Setup,
     task: &Task<'_>,
-    goal: &mut Goal,
+    target: &mut Target,
     mut image: Image,
     shaded: Option<&str>,
     label: Option<&str>,
@@ -231,12 +206,12 @@ fn deliver(
     report_faults(&image, setup);
     let mut figures = figures(&image, task);
     if !task.arguments.is_part() {
-        let exposure = goal.expose(&image.pixels).unwrap_or_default();
-        goal.write(&setup.film, &mut image, &task.made)?;
-        print_summary(&image, task, goal, &exposure, shaded, label);
+        let exposure = target.expose(&image.pixels).unwrap_or_default();
+        target.write(&setup.film, &mut image, &task.made)?;
+        print_summary(&image, task, target, &exposure, shaded, label);
         explain_darkness(&image, setup, task);
-        figures["exposure"] = goal.display.of(&image.pixels).stops.into();
-        figures["image"] = goal.path.display().to_string().into();
+        figures["exposure"] = target.display.of(&image.pixels).stops.into();
+        figures["image"] = target.path.display().to_string().into();
     }
     Ok(figures)
 }
@@ -245,7 +220,7 @@ fn deliver(
 fn few_pixels(
     setup: &Setup,
     task: &Task<'_>,
-    goal: &Goal,
+    target: &Target,
     wanted: render::progressive::Progressive,
     label: Option<&str>,
 ) -> (Image, Shaded) {
@@ -254,7 +229,7 @@ fn few_pixels(
     let bar = Bar::new(*settings, None, wanted.pixels(film.len()), label);
     let mut made = task.made.clone();
     made["progressive"] = progressive::begun(wanted.method);
-    let draw = |picture: &dyn Picture| goal.draw(film, picture, &made);
+    let draw = |picture: &dyn Picture| target.draw(film, picture, &made);
     let mut shown = Shown::new(task, &draw);
     let fog = (settings.options.strategies == Strategies::NONE).then_some(&integrator.fog);
     let layers = &integrator.layers;
@@ -276,7 +251,7 @@ fn nothing() -> Written {
 }
 
 /// Renders one image under a progress bar; where what there is was kept.
-fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> Result<(Image, Written)> {
+fn watched(setup: &Setup, task: &Task<'_>, target: &Target, label: Option<&str>) -> Result<(Image, Written)> {
     let bar = Bar::new(task.settings, task.precision, setup.film.len(), label);
     let Setup { scene, film, integrator, .. } = setup;
     let (layers, settings) = (&integrator.layers, &task.settings);
@@ -284,23 +259,23 @@ fn watched(setup: &Setup, task: &Task<'_>, goal: &Goal, label: Option<&str>) -> 
         let show = &mut |progress| bar.show(&progress);
         (render::preview(scene, film, settings, &integrator.fog, layers, show), nothing())
     } else {
-        keeping(setup, task, goal, &bar)?
+        keeping(setup, task, target, &bar)?
     };
     bar.finish();
     Ok(done)
 }
 
 /// Renders one image, from sums that there are and into those that are kept.
-fn keeping(setup: &Setup, task: &Task<'_>, goal: &Goal, bar: &Bar) -> Result<(Image, Written)> {
+fn keeping(setup: &Setup, task: &Task<'_>, target: &Target, bar: &Bar) -> Result<(Image, Written)> {
     let Setup { scene, film, integrator, .. } = setup;
     let (arguments, settings, layers) = (task.arguments, &task.settings, &integrator.layers);
-    let mut file = sums_file(arguments, goal);
+    let mut file = sums_file(arguments, target);
     let mut sums = match &mut file {
         Some(file) if arguments.resume => file.resume(&task.made)?,
         _ => None,
     }
     .unwrap_or_else(|| AnySums::new(film, layers, task.precision));
-    let draw = |picture: &dyn Picture| goal.draw(film, picture, &task.made);
+    let draw = |picture: &dyn Picture| target.draw(film, picture, &task.made);
     let mut keeper = Keeper::new(file, task, &draw);
     let image = render::go_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
         bar.show(&progress);
@@ -315,24 +290,28 @@ fn print_kept(file: &Path, samples: &Samples, taken: f64, task: &Task<'_>) {
     if let Some((name, _)) = interrupt::signal() {
         let count = samples_text(taken);
         let text = format!("{name} after {count} samples/pixel: continue with the same command and --resume");
-        return super::complain(&format!("{text} ({file} has the sums)"));
+        return complain(&format!("{text} ({file} has the sums)"));
     }
-    super::say(&format!("samples {samples}: {file}"));
+    say(&format!("samples {samples}: {file}"));
     if task.precision.is_some() {
         return;
     }
     if let Some(wanted) =
         wanted(task).filter(|wanted| wanted != samples && task.arguments.time_limit.is_none())
     {
-        super::complain(&format!(
-            "warning: {file} has other samples than {wanted}: the image is of {samples}"
-        ));
+        complain(&format!("warning: {file} has other samples than {wanted}: the image is of {samples}"));
     }
 }
 
 /// Renders images with consecutive seeds; their mean, with each of them as a layer. Where it is interrupted, those that
 /// are finished count, or the first one if none is.
-fn batches(setup: &Setup, task: &Task<'_>, goal: &Goal, count: u32, label: Option<&str>) -> Result<Image> {
+fn batches(
+    setup: &Setup,
+    task: &Task<'_>,
+    target: &Target,
+    count: u32,
+    label: Option<&str>,
+) -> Result<Image> {
     let mut images = Vec::new();
     for k in 0..count {
         let mut settings = task.settings;
@@ -341,10 +320,10 @@ fn batches(setup: &Setup, task: &Task<'_>, goal: &Goal, count: u32, label: Optio
         let label =
             format!("{}batch {} of {count}", label.map_or(String::new(), |l| format!("{l}, ")), k + 1);
         let task = Task { settings, made: Value::Null, ..*task };
-        let (image, _) = watched(setup, &task, goal, Some(&label))?;
+        let (image, _) = watched(setup, &task, target, Some(&label))?;
         if interrupt::came() {
             let has = if k == 0 { "a part of one".to_owned() } else { k.to_string() };
-            super::complain(&format!("interrupted in batch {} of {count}: the image has {has}", k + 1));
+            complain(&format!("interrupted in batch {} of {count}: the image has {has}", k + 1));
         }
         if k == 0 || !interrupt::came() {
             images.push(image);
@@ -355,7 +334,7 @@ fn batches(setup: &Setup, task: &Task<'_>, goal: &Goal, count: u32, label: Optio
     }
     Ok(match images.len() {
         1 => images.remove(0),
-        _ => Image::mean_of(&images, &setup.integrator.layers, goal.format),
+        _ => Image::mean_of(&images, &setup.integrator.layers, target.format),
     })
 }
 
@@ -364,7 +343,7 @@ fn explain_darkness(image: &Image, setup: &Setup, task: &Task<'_>) {
     let options = &task.settings.options;
     let is_preview = options.strategies == Strategies::NONE;
     if !is_preview && let Some(reason) = darkness::reason(&image.pixels, setup, options) {
-        super::complain(&format!("warning: {reason}"));
+        complain(&format!("warning: {reason}"));
     }
 }
 
@@ -374,8 +353,8 @@ fn report_faults(image: &Image, setup: &Setup) {
     if *count > 0 {
         let described: Vec<String> =
             first.iter().map(|fault| fault.describe(setup.film.width as usize)).collect();
-        super::complain(&format!(
-            "warning: {count} faults of the program itself; please report them, with the scene. The first ones:\n  {}",
+        complain(&format!(
+            "warning: {count} internal errors; please report them, with the scene. The first ones:\n  {}",
             described.join("\n  ")
         ));
     }
@@ -402,57 +381,10 @@ fn figures(image: &Image, task: &Task<'_>) -> Value {
     figures
 }
 
-fn settings(arguments: &arguments::Render, setup: &Setup) -> Result<(Settings, Option<Choice>)> {
-    let estimator = match arguments.pixels.progressive {
-        None => arguments.estimator.clone(),
-        Some(_) => progressive::estimator(&arguments.estimator, setup)?,
-    };
-    let started = Instant::now();
-    let (settings, chosen) = estimator.chosen(setup, arguments.seed, to_come(arguments, setup))?;
-    let spent = started.elapsed();
-    arguments.fog.warn_of_idle(settings.options.strategies);
-    let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
-    Ok((Settings { budget: Budget { spent, ..budget }, ..settings }, chosen))
-}
-
-/// The budget by which a pilot judges. Parts of one image, which need not know how many there are, choose alike, as for an image
-/// without end.
-pub fn to_come(arguments: &arguments::Render, setup: &Setup) -> Budget {
-    match arguments.samples {
-        None => budget(arguments, setup, false),
-        Some(_) => Budget::ENDLESS,
-    }
-}
-
-/// Maximum number of samples per pixel of a preview, unless --spp is given.
-const PREVIEW_SAMPLES: u64 = 4;
-
-fn budget(arguments: &arguments::Render, setup: &Setup, is_preview: bool) -> Budget {
-    let samples_per_pixel = match (arguments.spp, arguments.time_limit) {
-        (Some(spp), _) => Some(u64::from(spp)),
-        (None, Some(_)) if arguments.pixels.progressive.is_none() => None,
-        (None, None) if arguments.error.is_some() => None,
-        (None, _) if is_preview => Some(setup.samples_per_pixel.min(PREVIEW_SAMPLES)),
-        (None, _) => Some(setup.samples_per_pixel),
-    };
-    let all = Budget {
-        samples_per_pixel,
-        time: arguments.time_limit,
-        interrupted: interrupt::came,
-        ..Budget::ENDLESS
-    };
-    match arguments.samples {
-        None => all,
-        Some(arguments::Samples { first, end }) => {
-            Budget { first_sample: first.into(), samples_per_pixel: Some((end - first).into()), ..all }
-        }
-    }
-}
-
 fn print_summary(
     image: &Image,
     task: &Task<'_>,
-    goal: &Goal,
+    target: &Target,
     exposure: &str,
     shaded: Option<&str>,
     label: Option<&str>,
@@ -471,12 +403,12 @@ fn print_summary(
     };
     let noise = shaded.map_or(noise, |shaded| format!(", {shaded}"));
     let label = label.map_or(String::new(), |label| format!("{label}: "));
-    let preview = goal.preview().map_or(String::new(), |preview| format!(" and {}", preview.display()));
-    super::say(&format!(
+    let preview = target.preview().map_or(String::new(), |preview| format!(" and {}", preview.display()));
+    say(&format!(
         "{label}{} samples/pixel in {:.1} s{noise}: {}{preview}{exposure}",
         samples_text(image.samples()),
         image.elapsed.as_secs_f64(),
-        goal.path.display(),
+        target.path.display(),
     ));
 }
 

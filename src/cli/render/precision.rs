@@ -1,6 +1,6 @@
 //! The options --error and --confidence.
 
-use super::arguments;
+use super::arguments::Render;
 use crate::{
     error::{Error, Result},
     film::layer::Content,
@@ -9,11 +9,7 @@ use crate::{
 };
 
 /// What every pixel is to be known with.
-pub fn precision(
-    arguments: &arguments::Render,
-    setup: &Setup,
-    settings: &Settings,
-) -> Result<Option<Precision>> {
+pub fn precision(arguments: &Render, setup: &Setup, settings: &Settings) -> Result<Option<Precision>> {
     let Some(error) = arguments.error else { return Ok(None) };
     let refuse = |found: &str, remedy: &str| {
         let expected = "an image without layers of moments";

@@ -1,7 +1,8 @@
 //! The image file of a render: where, and what is in it.
 
-use super::{arguments, complain, display::Display, made};
+use super::arguments::Render;
 use crate::{
+    cli::{console::complain, display::Display, provenance},
     error::{Error, Result},
     film::{
         self, Film,
@@ -15,16 +16,16 @@ use serde_json::Value;
 use std::path::PathBuf;
 
 /// The image file: where, and what is in it. The PNG is beside it.
-pub(super) struct Goal {
+pub struct Target {
     pub path: PathBuf,
     pub format: Format,
     /// How the PNG shows it.
     pub display: Display,
 }
 
-impl Goal {
+impl Target {
     /// The kind of file is that of the output's name, else that of the scene's film.
-    pub fn new(arguments: &arguments::Render, setup: &Setup) -> Result<Self> {
+    pub fn new(arguments: &Render, setup: &Setup) -> Result<Self> {
         let scene = setup.film.format;
         let named = arguments.output.as_deref().and_then(|path| Some((path, path.extension()?)));
         let named =
@@ -83,7 +84,7 @@ impl Goal {
     /// Writes the image, and the layers that it then no longer has; and its PNG.
     /// Files that can say how they were `made` do.
     pub fn write(&self, film: &Film, image: &mut Image, made: &Value) -> Result<()> {
-        let made = made::metadata(made, image);
+        let made = provenance::metadata(made, image);
         let (width, height) = (film.width as usize, film.height as usize);
         let mut channels = self.format.channels(&image.pixels, &image.alpha);
         match self.format.file {
@@ -95,7 +96,7 @@ impl Goal {
             FileKind::Rgbe => film::raster::write_rgbe(&self.path, width, height, &image.pixels),
         }?;
         let display = self.display.of(&image.pixels);
-        let made = made::shown(&made, display);
+        let made = provenance::shown(&made, display);
         let write =
             |path: PathBuf| film::png::write_with(&path, width, height, &image.pixels, display, Some(&made));
         self.preview().map_or(Ok(()), write)
@@ -104,7 +105,7 @@ impl Goal {
     /// Writes the image so far: without alpha and layers, which are rendered at the end.
     pub fn draw(&self, film: &Film, picture: &dyn Picture, made: &Value) -> Result<()> {
         let format = Format { alpha: false, ..self.format };
-        let goal = Self { path: self.path.clone(), format, display: self.display };
-        goal.write(film, &mut picture.image(), made)
+        let target = Self { path: self.path.clone(), format, display: self.display };
+        target.write(film, &mut picture.image(), made)
     }
 }

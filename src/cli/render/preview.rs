@@ -1,7 +1,7 @@
 //! How the preview `fog` looks, in place of what the scene says.
 
-use super::complain;
 use crate::{
+    cli::console::complain,
     math::{Spectrum, vec3},
     settings::integrator::FogSettings,
     transport::Strategies,

@@ -1,7 +1,8 @@
 //! Keeps what a render has: its sums, from which it can go on, and the picture so far.
 
-use super::{arguments::Render, complain, goal::Goal, interrupt, made, render::Task};
+use super::{arguments::Render, target::Target, task::Task};
 use crate::{
+    cli::{console::complain, interrupt, provenance},
     error::Result,
     film::output,
     passes::budget::Budget,
@@ -180,11 +181,11 @@ pub struct SumsFile {
 }
 
 /// Where the sums go: none where a render does not go on, or has no name to put them beside.
-pub fn sums_file(arguments: &Render, goal: &Goal) -> Option<SumsFile> {
+pub fn sums_file(arguments: &Render, target: &Target) -> Option<SumsFile> {
     if arguments.batches.is_some() || arguments.frames.is_some() {
         return None;
     }
-    let beside = || (!output::is_stream(&goal.path)).then(|| goal.sums());
+    let beside = || (!output::is_stream(&target.path)).then(|| target.sums());
     arguments.sums.clone().or_else(beside).map(|path| SumsFile::new(&path))
 }
 
@@ -269,7 +270,7 @@ impl SumsFile {
                 older
             }
         };
-        made::must_equal(&self.path, &found, made)?;
+        provenance::must_equal(&self.path, &found, made)?;
         self.is_resumed = true;
         Ok(Some(sums))
     }

@@ -1,6 +1,7 @@
 //! The frames of an animation: when each is, and the scene that it shows.
 
-use super::{arguments, built};
+use super::arguments::Render;
+use crate::cli::scene::built;
 use crate::{
     description::{Object, Property, Value},
     error::{Error, Result},
@@ -15,7 +16,7 @@ const FPS: f64 = 24.0;
 
 /// A scene file as it is read for one frame or many.
 pub struct Clip<'a> {
-    arguments: &'a arguments::Render,
+    arguments: &'a Render,
     root: Object,
     /// True if the scene is built again for each frame: its description changes, or frames show different files.
     pub rebuilds: bool,
@@ -23,7 +24,7 @@ pub struct Clip<'a> {
 
 impl<'a> Clip<'a> {
     /// Reads the scene file.
-    pub fn read(arguments: &'a arguments::Render) -> Result<Self> {
+    pub fn read(arguments: &'a Render) -> Result<Self> {
         let root = arguments.scene.read()?;
         let changes = smoke::has_sequence(&root) || keyframes::has_any(&root);
         Ok(Self { arguments, root, rebuilds: arguments.frames.is_some() && changes })

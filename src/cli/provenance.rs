@@ -1,6 +1,6 @@
 //! How an image is made: what its files say of themselves, and what must be equal for its samples to be added up.
 
-use super::arguments::Scene;
+use super::scene::Scene;
 use crate::{
     analysis::study::question::differ,
     error::{Error, Result},

@@ -11,9 +11,6 @@ use std::{
 };
 use tev_client::{PacketCreateImage, PacketUpdateImage, TevClient};
 
-/// Where tev listens unless it is told otherwise.
-pub const ADDRESS: &str = "127.0.0.1:14158";
-
 /// A viewer that takes longer is not there.
 const PATIENCE: Duration = Duration::from_secs(2);
 

@@ -1,32 +1,25 @@
 //! Progressive pictures: a preview by few pixels (P03T ch. 6).
 
-use super::{
-    arguments::{Render, one_of},
-    estimator::Estimator,
-    progress::percent,
-};
 use crate::{
+    cli::{estimator::Estimator, parsers::one_of, progress::percent},
     error::{Error, Result},
     film::layer::Layer,
-    render::progressive::{self, Method, Shaded},
+    render::progressive::{Method, Shaded},
     scene::build::Setup,
     transport::{Strategies, observer::StrategyKind},
 };
 use clap::Args;
 use serde_json::{Value, json};
 
-/// The part of the pixels to shade, unless the user wants another.
-const FRACTION: f64 = 0.1;
-
 /// Which pixels are shaded, where not all are.
 #[derive(Args, Clone, Copy, Debug, PartialEq)]
 pub struct Progressive {
-    /// A biased preview: shade few pixels, those that what the camera sees says most about, and interpolate the others
+    /// Biased preview: shade only the pixels that tell most about the image, and interpolate the rest
     ///
     /// One ray a pixel finds where normals, depth, albedo and media change. straight: triangles between shaded pixels are
-    /// divided where that is, or where colours differ; regions: the outlines of what looks alike are shaded first. Each of the
-    /// shaded pixels takes --spp samples. The strategy lens, whose light subpaths reach pixels by chance, is left out. The
-    /// channel samples.N of EXR files shows which pixels are shaded; files and the report say that it is a preview.
+    /// divided there, and where colours differ; regions: the outlines of regions that look alike are shaded first. Each
+    /// shaded pixel takes --spp samples. The strategy lens is left out, as its light subpaths reach pixels by chance. The
+    /// channel samples.N of EXR files shows which pixels are shaded. Files and the report say that this is a preview.
     #[arg(long, value_name = "METHOD", value_parser = one_of(&Method::NAMES), conflicts_with_all =
         ["error", "batches", "samples", "sums", "resume", "groups", "components"])]
     pub progressive: Option<Method>,
@@ -39,15 +32,6 @@ pub struct Progressive {
 fn fraction(text: &str) -> std::result::Result<f64, String> {
     let number = text.parse().ok().filter(|part: &f64| *part > 0.0 && *part <= 1.0);
     number.ok_or_else(|| "expected a part of the pixels above 0, at most 1, such as 0.1".to_owned())
-}
-
-impl Render {
-    /// The progressive picture that is wanted, if one is.
-    pub fn progressive(&self) -> Option<progressive::Progressive> {
-        let all = if self.time_limit.is_some() { 1.0 } else { FRACTION };
-        let fraction = self.pixels.fraction.unwrap_or(all);
-        self.pixels.progressive.map(|method| progressive::Progressive { method, fraction })
-    }
 }
 
 /// The estimator that makes progressive pictures of `setup`: `given` without the strategy lens.

@@ -105,7 +105,7 @@ pub fn note(said: io::Result<()>) {
 pub fn heard() -> Result<()> {
     match UNHEARD.get() {
         Some(error) if error.kind() != ErrorKind::BrokenPipe => {
-            let remedy = "send it to another place; the files of this command are as they should be";
+            let remedy = "redirect it elsewhere; all files were written";
             Err(Error::new("standard output", "to write what is reported", error.to_string(), remedy))
         }
         _ => Ok(()),

@@ -1,0 +1,100 @@
+//! What is to be rendered, as the arguments and a pilot say.
+
+use super::{arguments::Render, precision::precision, progressive, viewer::Viewer};
+use crate::{
+    cli::{console::complain, interrupt, parsers::Samples, provenance},
+    error::Result,
+    learning::pilot::Choice,
+    passes::{Settings, budget::Budget},
+    render::{Precision, sums::Picture},
+    scene::build::Setup,
+    transport::Strategies,
+};
+use serde_json::Value;
+use std::{sync::Mutex, time::Instant};
+
+/// What is to be rendered.
+pub struct Task<'a> {
+    /// How, and for how long.
+    pub settings: Settings,
+    /// That is asked for.
+    pub precision: Option<Precision>,
+    /// What the user wants.
+    pub arguments: &'a Render,
+    /// See [`provenance::made`].
+    pub made: Value,
+    /// Where the picture so far is shown.
+    pub viewer: &'a Mutex<Option<Viewer>>,
+}
+
+impl<'a> Task<'a> {
+    /// That of `setup`, and what a pilot chose.
+    pub fn new(
+        arguments: &'a Render,
+        setup: &Setup,
+        viewer: &'a Mutex<Option<Viewer>>,
+    ) -> Result<(Self, Option<Choice>)> {
+        let (settings, chosen) = settings(arguments, setup)?;
+        let precision = precision(arguments, setup, &settings)?;
+        let made =
+            provenance::made(provenance::settings(&arguments.scene, setup, &settings, chosen, precision)?);
+        let settings = Settings { seed: arguments.seed_of_part(), ..settings };
+        Ok((Self { settings, precision, arguments, made, viewer }, chosen))
+    }
+
+    /// Shows what there is in the viewer, if there is one; it goes when it fails.
+    pub fn show(&self, picture: &dyn Picture) {
+        let Ok(mut viewer) = self.viewer.lock() else { return };
+        if let Some(Err(error)) = viewer.as_mut().map(|viewer| viewer.show(picture)) {
+            complain(&format!("warning: lost the connection to tev: {error}"));
+            *viewer = None;
+        }
+    }
+}
+
+fn settings(arguments: &Render, setup: &Setup) -> Result<(Settings, Option<Choice>)> {
+    let estimator = match arguments.pixels.progressive {
+        None => arguments.estimator.clone(),
+        Some(_) => progressive::estimator(&arguments.estimator, setup)?,
+    };
+    let started = Instant::now();
+    let (settings, chosen) = estimator.chosen(setup, arguments.seed, to_come(arguments, setup))?;
+    let spent = started.elapsed();
+    arguments.fog.warn_of_idle(settings.options.strategies);
+    let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
+    Ok((Settings { budget: Budget { spent, ..budget }, ..settings }, chosen))
+}
+
+/// The budget by which a pilot judges. Parts of one image, which need not know how many there are, choose alike, as for an image
+/// without end.
+pub fn to_come(arguments: &Render, setup: &Setup) -> Budget {
+    match arguments.samples {
+        None => budget(arguments, setup, false),
+        Some(_) => Budget::ENDLESS,
+    }
+}
+
+/// Maximum number of samples per pixel of a preview, unless --spp is given.
+const PREVIEW_SAMPLES: u64 = 4;
+
+fn budget(arguments: &Render, setup: &Setup, is_preview: bool) -> Budget {
+    let samples_per_pixel = match (arguments.spp, arguments.time_limit) {
+        (Some(spp), _) => Some(u64::from(spp)),
+        (None, Some(_)) if arguments.pixels.progressive.is_none() => None,
+        (None, None) if arguments.error.is_some() => None,
+        (None, _) if is_preview => Some(setup.samples_per_pixel.min(PREVIEW_SAMPLES)),
+        (None, _) => Some(setup.samples_per_pixel),
+    };
+    let all = Budget {
+        samples_per_pixel,
+        time: arguments.time_limit,
+        interrupted: interrupt::came,
+        ..Budget::ENDLESS
+    };
+    match arguments.samples {
+        None => all,
+        Some(Samples { first, end }) => {
+            Budget { first_sample: first.into(), samples_per_pixel: Some((end - first).into()), ..all }
+        }
+    }
+}
