@@ -22,6 +22,7 @@ mod html;
 mod inputs;
 mod keeping;
 mod layering;
+mod manual;
 mod outputs;
 mod page;
 mod phase;

@@ -1,4 +1,4 @@
-"""What the README of the repository names exists and works."""
+"""What the README of the repository names exists and works; every link of the manual leads somewhere."""
 
 import re
 import subprocess
@@ -12,6 +12,8 @@ from tyndall import program
 from validation.places import ROOT
 
 TEXT = (ROOT / "README.md").read_text()
+PAGES = [*ROOT.glob("*.md"), *(ROOT / "scenes").rglob("*.md"), *(ROOT / "validation").rglob("*.md")]
+LINKS = [(page, link) for page in PAGES for link in re.findall(r"\]\(([^)]+)\)", page.read_text()) if not link.startswith("http")]
 
 
 def help_of(*command: str) -> str:
@@ -37,9 +39,18 @@ def test_every_option_is_one() -> None:
     assert named and named <= known, named - known
 
 
-@pytest.mark.parametrize("link", re.findall(r"\]\(([^)#]+)[^)]*\)", TEXT))
-def test_every_link_leads_somewhere(link: str) -> None:
-    assert (ROOT / link).exists()
+def anchors(page: Path) -> set[str]:
+    """Names that GitHub gives to the headings of a page."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize(("page", "link"), LINKS)
+def test_every_link_leads_somewhere(page: Path, link: str) -> None:
+    name, _, anchor = link.partition("#")
+    target = page.parent / name if name else page
+    assert target.exists()
+    assert not anchor or anchor in anchors(target)
 
 
 def test_the_example_in_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

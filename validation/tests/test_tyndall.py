@@ -187,10 +187,10 @@ def test_other_files_are_no_scenes() -> None:
         tyndall.render(Path(__file__))
 
 
-def test_the_readmes_example_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_manuals_example_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scenes").symlink_to(SCENES)
-    found = re.search(r"```python\n(.*?)```", (ROOT / "validation" / "README.md").read_text(), re.DOTALL)
+    found = re.search(r"```python\n(.*?)```", (SCENES / "manual" / "python.md").read_text(), re.DOTALL)
     assert found
     code = found[1]
     for slow, quick in (("spp=64", "spp=1"), ("time_limit=10", "spp=1")):
