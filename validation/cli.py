@@ -275,7 +275,7 @@ def run_plume(options: argparse.Namespace) -> bool:
 
 
 def add_page(commands: Commands) -> None:
-    command = add(commands, "page", run_page, "A study's page in a headless Chromium: it loads, and its controls control.")
+    command = add(commands, "page", run_page, "A study's page in a headless Chromium: it loads without errors or requests, and its controls work.")
     command.add_argument("file", type=Path, help="study.html")
     command.add_argument("--output", type=Path, default=OUTPUT / "page", help="folder for pictures of it")
     command.add_argument("--if-possible", action="store_true", help="no failure where no Chromium is found")

@@ -1,4 +1,4 @@
-"""The page of a study in a headless browser: it loads in peace, asks nobody for anything, and its controls control."""
+"""The page of a study in a headless browser: it loads without errors or requests, and its controls work."""
 
 import re
 import sys
