@@ -23,9 +23,9 @@ pub struct Blend {
 
 impl Blend {
     pub(super) const TABLE: Table = table! {
-        "Two surfaces, mixed.";
-        texture("weight", 1.0, Required, "Share of the second."),
-        nested("bsdf", Required, "The two."),
+        "A mixture of two BSDFs.";
+        texture("weight", 1.0, Required, "Weight of the second."),
+        nested("bsdf", Required, "The two BSDFs."),
     };
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {

@@ -103,7 +103,7 @@ pub(super) const METAL: &[Parameter] = rows! {
     text("material", "the name of a metal", Word("none"), "A metal by name, such as Au; none is a perfect mirror."),
     index_texture("eta", LARGEST_INDEX, 0.0, "Real part of the index of refraction, in place of `material`."),
     index_texture("k", LARGEST_INDEX, 1.0, "Imaginary part of the index of refraction."),
-    texture("specular_reflectance", 1.0, Is(1.0), "A factor on what is reflected; 1 in nature."),
+    texture("specular_reflectance", 1.0, Is(1.0), "Scales the reflection; physically 1."),
 };
 
 impl Conductor {

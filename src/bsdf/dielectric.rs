@@ -24,8 +24,8 @@ pub(super) struct Tints {
 
 /// The rows of [`Tints`].
 pub(super) const TINTS: &[Parameter] = rows! {
-    texture("specular_reflectance", 1.0, Is(1.0), "A factor on what is reflected; 1 in nature."),
-    texture("specular_transmittance", 1.0, Is(1.0), "A factor on what is transmitted; 1 in nature."),
+    texture("specular_reflectance", 1.0, Is(1.0), "Scales the reflection; physically 1."),
+    texture("specular_transmittance", 1.0, Is(1.0), "Scales the transmission; physically 1."),
 };
 
 impl Tints {
@@ -70,7 +70,7 @@ pub(super) fn choose(fresnel: f32, reflectance: Spectrum, transmittance: Spectru
 
 impl Dielectric {
     pub(super) const TABLE: Table = table! {
-        "Smooth glass, water: reflects and refracts.";
+        "Smooth glass or water: reflects and refracts.";
         index::inside("bk7"), index::OUTSIDE;
         TINTS
     };

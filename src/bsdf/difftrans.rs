@@ -17,7 +17,7 @@ pub struct DiffuseTransmitter {
 impl DiffuseTransmitter {
     pub(super) const TABLE: Table = table! {
         "A sheet that transmits diffusely.";
-        texture("transmittance", 1.0, Is(0.5), "Share of the light that it transmits."),
+        texture("transmittance", 1.0, Is(0.5), "Fraction of light transmitted."),
     };
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {

@@ -21,8 +21,8 @@ impl Diffuse {
     }
 
     pub(super) const TABLE: Table = table! {
-        "A matt surface: Lambert's.";
-        texture("reflectance", 1.0, Is(0.5), "Share of the light that it reflects."),
+        "A Lambertian surface.";
+        texture("reflectance", 1.0, Is(0.5), "Fraction of light reflected."),
     };
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {

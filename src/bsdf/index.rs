@@ -36,7 +36,7 @@ const NAMED: &[(&str, f64)] = &[
 
 /// The row of the index within, `material` where not given.
 pub const fn inside(material: &'static str) -> Parameter {
-    parameter::number_or_name("int_ior", LIMITS, material, "Index of refraction within, or a material.")
+    parameter::number_or_name("int_ior", LIMITS, material, "Index of refraction inside, or a material.")
 }
 
 /// The row of the index outside.

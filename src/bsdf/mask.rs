@@ -18,7 +18,7 @@ pub struct Mask {
 impl Mask {
     pub(super) const TABLE: Table = table! {
         "A surface with holes.";
-        texture("opacity", 1.0, Is(0.5), "Share of the surface that is there."),
+        texture("opacity", 1.0, Is(0.5), "Fraction of the surface that is present."),
         nested("bsdf", Required, "The surface."),
     };
 

@@ -41,14 +41,14 @@ pub struct Microfacets {
 
 /// What rough surfaces have.
 pub(super) const ROUGHNESS: &[Parameter] = rows! {
-    choice("distribution", &["beckmann", "ggx"], "beckmann", "How the slopes of the facets are distributed."),
-    texture("alpha", GREATEST_ALPHA, Is(0.1), "Roughness: about the mean slope of the facets; of `roughplastic` one number."),
-    boolean("sample_visible", true, "Visible normals are sampled all the same: a warning if false."),
+    choice("distribution", &["beckmann", "ggx"], "beckmann", "Distribution of the microfacets."),
+    texture("alpha", GREATEST_ALPHA, Is(0.1), "Roughness: about the RMS slope of the microfacets; one number for `roughplastic`."),
+    boolean("sample_visible", true, "False is ignored with a warning: visible normals are always sampled."),
 };
 
 /// The two of them by direction.
 pub(super) const ANISOTROPY: &[Parameter] = rows! {
-    texture("alpha_u", GREATEST_ALPHA, Optional, "Roughness along u, in place of `alpha`, with `alpha_v`; the same as that of `roughplastic`."),
+    texture("alpha_u", GREATEST_ALPHA, Optional, "Roughness along u, with `alpha_v` in place of `alpha`; `roughplastic` needs both equal."),
     texture("alpha_v", GREATEST_ALPHA, Optional, "Roughness along v."),
 };
 

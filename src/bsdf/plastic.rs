@@ -66,9 +66,9 @@ impl Shares {
 pub(super) const BASE: &[Parameter] = rows! {
     index::inside("polypropylene"),
     index::OUTSIDE,
-    texture("diffuse_reflectance", 1.0, Is(0.5), "Share of the light that the base reflects."),
-    texture("specular_reflectance", 1.0, Is(1.0), "A factor on what the coat reflects; 1 in nature."),
-    boolean("nonlinear", false, "True lets colours shift by light that goes to and fro under the coat."),
+    texture("diffuse_reflectance", 1.0, Is(0.5), "Albedo of the base."),
+    texture("specular_reflectance", 1.0, Is(1.0), "Scales the coat's reflection; physically 1."),
+    boolean("nonlinear", false, "True: colours shift by interreflection under the coat."),
 };
 
 impl Base {

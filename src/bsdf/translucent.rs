@@ -39,12 +39,12 @@ const LEAST_COSINE: f32 = 1e-6;
 
 impl Translucent {
     pub(super) const TABLE: Table = table! {
-        "A pane that transmits partly undeflected, partly diffusely: the stained glass of LW96 fig. 6.";
-        texture("transmittance", 1.0, Is(0.5), "Share of the light that it transmits."),
-        number("directional", "", within(0.0, 1.0), Is(0.5), "Share of that which is not deflected."),
+        "A pane that transmits light partly undeflected and partly diffusely: the stained glass of LW96 fig. 6.";
+        texture("transmittance", 1.0, Is(0.5), "Fraction of light transmitted."),
+        number("directional", "", within(0.0, 1.0), Is(0.5), "Fraction of the transmitted light that is not deflected."),
         number(
             "exponent", "", within(0.0, LARGEST_EXPONENT), Optional,
-            "Spreads that share into a lobe: greater is narrower. What makes it reciprocal absorbs a part of it: of light from everywhere 33 % at 0, 12 % at 20, 1 % at 3000.",
+            "Spreads that fraction into a lobe; greater is narrower. Reciprocity absorbs a part of it: under uniform light 33 % at 0, 12 % at 20, 1 % at 3000.",
         ),
     };
 

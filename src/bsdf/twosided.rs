@@ -21,7 +21,7 @@ impl TwoSided {
     }
 
     pub(super) const TABLE: Table = table! {
-        "An opaque surface that is the same from both sides, or differs.";
+        "An opaque surface with one BSDF for both sides, or one for each.";
         nested("bsdf", Required, "One for both sides, or two: front and back."),
     };
 

@@ -159,7 +159,7 @@ fn uniform(params: &Params<'_>, _: Role) -> Result<DVec3> {
 
 /// Numbers for the channels.
 pub const RAW: Table = table! {
-    "The channels as they are.";
+    "A colour in linear sRGB, unchanged.";
     channels("value", "Linear sRGB."),
 };
 
@@ -169,9 +169,9 @@ fn raw(params: &Params<'_>, _: Role) -> Result<DVec3> {
 
 /// A colour as three channels.
 pub const SRGB: Table = table! {
-    "A colour by three channels of linear sRGB.";
+    "A colour in linear sRGB.";
     vector("color", "", Required, "The channels."),
-    boolean("unbounded", false, "True allows channels above 1."),
+    boolean("unbounded", false, "True: channels may exceed 1."),
 };
 
 fn srgb(params: &Params<'_>, _: Role) -> Result<DVec3> {
@@ -189,9 +189,9 @@ fn srgb(params: &Params<'_>, _: Role) -> Result<DVec3> {
 
 /// Daylight.
 pub const D65: Table = table! {
-    "Daylight, which is white, as a light or around a texture of light.";
+    "The daylight illuminant D65, which is white: as a light, or around a texture of light.";
     vector("color", "", At([1.0; 3]), "Its colour."),
-    number("scale", "", ANY, Is(1.0), "A factor on it; without effect on a texture, as in Mitsuba."),
+    number("scale", "", ANY, Is(1.0), "Scales it; no effect on a texture, as in Mitsuba."),
     nested("texture", Optional, "A texture, in place of `color`."),
 };
 
@@ -200,15 +200,15 @@ fn d65(params: &Params<'_>, _: Role) -> Result<DVec3> {
     Ok(params.vector("color")? * params.float("scale")?)
 }
 
-const NEEDED: Default = Default::Said("needed without `value`");
+const NEEDED: Default = Default::Said("required without `value`");
 
 /// Values at equal steps of the wavelength.
 pub const REGULAR: Table = table! {
-    "A spectrum by values at equal steps of the wavelength.";
+    "A spectrum of values at equal steps of wavelength.";
     spectrum("value", "The spectrum, in place of the other parameters."),
     text("values", "numbers in a string", NEEDED, "Two or more, separated by commas or space."),
-    number("wavelength_min", "nm", ANY, NEEDED, "Wavelength of the first."),
-    number("wavelength_max", "nm", ANY, NEEDED, "Wavelength of the last."),
+    number("wavelength_min", "nm", ANY, NEEDED, "Wavelength of the first value."),
+    number("wavelength_max", "nm", ANY, NEEDED, "Wavelength of the last value."),
 };
 
 fn regular(params: &Params<'_>, role: Role) -> Result<DVec3> {
@@ -227,10 +227,10 @@ fn regular(params: &Params<'_>, role: Role) -> Result<DVec3> {
 
 /// Values at any wavelengths.
 pub const IRREGULAR: Table = table! {
-    "A spectrum by values at wavelengths of any distance.";
+    "A spectrum of values at given wavelengths.";
     spectrum("value", "The spectrum, in place of the other parameters."),
     text("wavelengths", "numbers in a string", NEEDED, "Two or more [nm], increasing."),
-    text("values", "numbers in a string", NEEDED, "As many values."),
+    text("values", "numbers in a string", NEEDED, "One value for each wavelength."),
 };
 
 fn irregular(params: &Params<'_>, role: Role) -> Result<DVec3> {
@@ -261,10 +261,10 @@ fn inner_spectrum(params: &Params<'_>, role: Role) -> Result<Option<DVec3>> {
 
 /// Light of a black body.
 pub const BLACKBODY: Table = table! {
-    "The light of a black body, by Planck's law.";
+    "Emission of a black body, by Planck's law.";
     number("temperature", "K", above(0.0, f64::MAX), Required, "Its temperature."),
-    number("wavelength_min", "nm", ANY, Is(FIRST), "It is dark below this wavelength."),
-    number("wavelength_max", "nm", ANY, Is(LAST), "It is dark above this wavelength."),
+    number("wavelength_min", "nm", ANY, Is(FIRST), "No emission below this wavelength."),
+    number("wavelength_max", "nm", ANY, Is(LAST), "No emission above this wavelength."),
 };
 
 fn blackbody(params: &Params<'_>, role: Role) -> Result<DVec3> {
@@ -291,8 +291,8 @@ fn blackbody(params: &Params<'_>, role: Role) -> Result<DVec3> {
 pub const INVERSE_POWER: Table = table! {
     "A power of the wavelength: value (wavelength / lambda)^exponent; the coefficient of Rayleigh scattering falls as 1 / lambda^4 (P03 eq. 5; P03T 2.3.3).";
     number("value", "", within(0.0, MAX), Is(1.0), "The value at `wavelength`."),
-    number("wavelength", "nm", within(1.0, 1e6), Is(550.0), "Where it has that value."),
-    number("exponent", "", within(-8.0, 8.0), Is(4.0), "4 of Rayleigh scattering, about 1.3 of haze (Angstrom's exponent), 0 of what is grey."),
+    number("wavelength", "nm", within(1.0, 1e6), Is(550.0), "Wavelength of that value."),
+    number("exponent", "", within(-8.0, 8.0), Is(4.0), "4 for Rayleigh scattering, about 1.3 for haze (Angstrom's exponent), 0 for grey."),
 };
 
 /// Each channel is the mean of the power over the wavelengths that it answers to, by the colour of the spectrum over

@@ -22,7 +22,7 @@ pub struct Area {
 
 impl Area {
     pub(super) const TABLE: Table = table! {
-        "A shape that emits the same radiance in all directions from its front.";
+        "Diffuse emission from the front of a shape.";
         light_texture("radiance", "W/(m^2 sr)", Is(1.0), "Radiance.");
         PROFILE, COMMON
     };

@@ -25,8 +25,8 @@ pub struct Collimated {
 
 impl Collimated {
     pub(super) const TABLE: Table = table! {
-        "A disk of parallel light along +z, as of a laser or searchlight; the disk itself is not seen.";
-        transform("to_world", "Where the disk around the origin of the xy plane is, and its +z; it must stay round."),
+        "A disk of parallel light along +z, such as a laser or searchlight. The disk itself is invisible.";
+        transform("to_world", "Places the disk, which lies in the xy plane around the origin; it must stay round."),
         number("radius", "m", above(0.0, RADII[1]), Is(1.0), "Radius of the disk, times the scale of `to_world`."),
         light("irradiance", "W/m^2", Is(1.0), "Irradiance on a surface that faces the light."),
         light("power", "W", Optional, "In place of `irradiance`: power of the whole beam.");

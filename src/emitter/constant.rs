@@ -18,7 +18,7 @@ pub struct Constant {
 
 impl Constant {
     pub(super) const TABLE: Table = table! {
-        "A sky of the same radiance from everywhere.";
+        "A sky of constant radiance.";
         light("radiance", "W/(m^2 sr)", Is(1.0), "Radiance.");
         COMMON
     };

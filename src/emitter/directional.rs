@@ -20,7 +20,7 @@ pub struct Directional {
 impl Directional {
     pub(super) const TABLE: Table = table! {
         "Parallel light from infinity: a sun.";
-        vector("direction", "", Said("along +z of `to_world`"), "Where the light travels to."),
+        vector("direction", "", Said("along +z of `to_world`"), "Direction in which the light travels."),
         transform("to_world", "In place of `direction`: light travels along its +z."),
         light("irradiance", "W/m^2", Is(1.0), "Irradiance on a surface that faces the light.");
         COMMON

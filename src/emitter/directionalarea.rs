@@ -19,7 +19,7 @@ pub struct DirectionalArea {
 
 impl DirectionalArea {
     pub(super) const TABLE: Table = table! {
-        "A shape that emits along its normals only: parallel light from a flat one.";
+        "Emission along the normals of a shape only: parallel light from a flat one.";
         light_texture("radiance", "W/m^2", Is(1.0), "Power per area; called radiance by Mitsuba.");
         COMMON
     };

@@ -20,8 +20,8 @@ use std::{
 ///
 /// Directions are chosen by cells, the squares between four neighbouring pixels, in proportion to their mean
 /// luminance times their solid angle, and within each by luminance too, which is bilinear in azimuth and cosine there: the
-/// poles are no special places. Next-event estimation counts luminance less where it is no brighter than the mean: directions
-/// that surfaces and media choose find that well enough.
+/// poles are no special places. Next-event estimation counts each pixel less by half the mean luminance: directions that surfaces
+/// and media choose find the rest well enough.
 #[derive(Clone, Debug)]
 pub struct EnvMap {
     map: Arc<Map>,
@@ -70,11 +70,11 @@ struct Spot {
 
 impl EnvMap {
     pub(super) const TABLE: Table = table! {
-        "An image of the surroundings in latitude and longitude, +y up.";
+        "An environment map in latitude and longitude, +y up.";
         file("filename", "The image: EXR, HDR, PNG, JPEG, BMP, TGA or PPM."),
-        factor("scale", 1.0, "A factor on its radiance."),
-        transform("to_world", "Turns or mirrors it."),
-        boolean("mis_compensation", true, "Next-event estimation aims at what is brighter than the mean, and leaves the rest to the directions that surfaces and media choose (Karlik et al. 2019). Mitsuba's default is false.");
+        factor("scale", 1.0, "Scales the radiance."),
+        transform("to_world", "Rotates or mirrors it."),
+        boolean("mis_compensation", true, "Next-event estimation samples what exceeds half the mean luminance; surfaces and media sample the rest (Karlik et al. 2019). Mitsuba's default is false.");
         COMMON
     };
 

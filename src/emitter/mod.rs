@@ -186,9 +186,9 @@ pub trait BeamModel {
 /// What all emitters have.
 const COMMON: &[Parameter] = rows! {
     // Within these bounds, f32 holds it and its products.
-    number("sampling_weight", "", within(1e-20, 1e20), Is(1.0), "A factor on the probability of choosing it."),
-    nested("medium", Optional, "The medium it is in; found where not given."),
-    text("group", "a name of 1 to 200 ASCII letters, digits and signs", Optional, "The layer that `--groups` shows it in.").ours(),
+    number("sampling_weight", "", within(1e-20, 1e20), Is(1.0), "Scales the probability of sampling this emitter."),
+    nested("medium", Optional, "The medium around it; default: found from the boundaries."),
+    text("group", "a name of 1 to 200 ASCII letters, digits and signs", Optional, "Its light group: a layer of `--groups`.").ours(),
 };
 
 /// Makes an enum with its dispatch for each kind, and the registry, from one row an emitter. An emitter has

@@ -21,9 +21,9 @@ pub struct Point {
 
 impl Point {
     pub(super) const TABLE: Table = table! {
-        "A point that emits to all sides.";
-        vector("position", "m", Said("the origin of `to_world`"), "Where it is."),
-        transform("to_world", "In place of `position`; `profile` turns about its +z."),
+        "A point light that emits in all directions.";
+        vector("position", "m", Said("the origin of `to_world`"), "Position."),
+        transform("to_world", "In place of `position`; its +z is the axis of `profile`."),
         light("intensity", "W/sr", Is(1.0), "Intensity.");
         PROFILE, COMMON
     };

@@ -35,7 +35,7 @@ const RINGS: u32 = 8;
 /// What emitters have that a profile shapes.
 pub(super) const PROFILE: &[Parameter] = rows! {
     text("profile", "pairs angle:value such as \"0:1, 30:0.8, 90:0\"", Optional,
-        "Relative brightness by the angle to the axis [degrees], linear in between.").ours(),
+        "Relative brightness by the angle to the axis [degrees], linearly interpolated.").ours(),
 };
 
 impl Profile {

@@ -39,10 +39,10 @@ const FINEST: usize = 1024;
 
 impl Projector {
     pub(super) const TABLE: Table = table! {
-        "A point that throws a slide along +z.";
-        transform("to_world", "Where it is and where it looks to; it may scale evenly."),
-        light_texture("irradiance", "W/m^2", Required, "The slide: irradiance at a distance of 1."),
-        factor("scale", 1.0, "A factor on it.");
+        "A point light that projects an image along +z.";
+        transform("to_world", "Position and direction; scales must be uniform."),
+        light_texture("irradiance", "W/m^2", Required, "The image: irradiance at a distance of 1."),
+        factor("scale", 1.0, "Scales it.");
         sensor::FIELD_OF_VIEW, COMMON
     };
 

@@ -36,13 +36,13 @@ struct Slide {
 
 impl Spot {
     pub(super) const TABLE: Table = table! {
-        "A point that emits within a cone around +z.";
-        transform("to_world", "Where it is and where it points to; it may scale evenly."),
+        "A point light that emits within a cone around +z.";
+        transform("to_world", "Position and direction; scales must be uniform."),
         light("intensity", "W/sr", Is(1.0), "Intensity on the axis."),
-        number("cutoff_angle", "degrees", above(0.0, 180.0), Is(20.0), "Half angle of the whole cone."),
+        number("cutoff_angle", "degrees", above(0.0, 180.0), Is(20.0), "Half angle of the cone."),
         number("beam_width", "degrees", within(0.0, 180.0), Said("three quarters of `cutoff_angle`"),
-            "Half angle within which it is as bright as on the axis; at most `cutoff_angle`."),
-        texture("texture", f64::INFINITY, Optional, "A factor over the cone, which just fits the texture's unit square.");
+            "Half angle of full intensity; at most `cutoff_angle`."),
+        texture("texture", f64::INFINITY, Optional, "Scales the intensity over the cone, which just fits into the texture's unit square.");
         COMMON
     };
 

@@ -64,26 +64,26 @@ const fn plugin(table: Table, build: Build<Filter>) -> Plugin<Build<Filter>> {
 const BOX: Table = table! { "The mean over the pixel."; };
 
 const TENT: Table = table! {
-    "Falls linearly to 0.";
-    number("radius", "pixels", within(1e-3, 1e3), Is(1.0), "Where it is 0."),
+    "A linear falloff to 0.";
+    number("radius", "pixels", within(1e-3, 1e3), Is(1.0), "Distance at which it reaches 0."),
 };
 
 const GAUSSIAN: Table = table! {
     "A Gaussian, cut at four standard deviations.";
-    number("stddev", "pixels", within(1e-3, 1e3), Is(0.5), "Its standard deviation."),
+    number("stddev", "pixels", within(1e-3, 1e3), Is(0.5), "Standard deviation."),
 };
 
 const MITCHELL: Table = table! {
     "The cubic splines of Mitchell and Netravali 1988.";
-    number("B", "", within(0.0, 1.0), Is(1.0 / 3.0), "More blurs."),
-    number("C", "", within(0.0, 1.0), Is(1.0 / 3.0), "More rings."),
+    number("B", "", within(0.0, 1.0), Is(1.0 / 3.0), "Greater values blur."),
+    number("C", "", within(0.0, 1.0), Is(1.0 / 3.0), "Greater values ring."),
 };
 
-const CATMULL_ROM: Table = table! { "Catmull and Rom's spline: `mitchell` of B = 0 and C = 1/2."; };
+const CATMULL_ROM: Table = table! { "The Catmull-Rom spline: `mitchell` with B = 0 and C = 1/2."; };
 
 const LANCZOS: Table = table! {
-    "A windowed sinc: sharp, and rings.";
-    integer("lobes", within(1.0, 32.0), Is(3.0), "How many lobes to each side."),
+    "A windowed sinc: sharp, but it rings.";
+    integer("lobes", within(1.0, 32.0), Is(3.0), "Lobes on each side."),
 };
 
 impl Filter {

@@ -116,15 +116,15 @@ fn overridden(medium: Medium, overrides: &MediumOverrides) -> Medium {
 
 /// What all media have.
 const COMMON: &[Parameter] = rows! {
-    volume("albedo", "", 1.0, Is(0.75), "Share of the extinction that is scattering: sigma_s / sigma_t."),
-    factor("scale", 1.0, "A factor on `sigma_t`."),
-    nested("phase", Optional, "The phase function: `isotropic` where not given."),
-    ignored("sample_emitters", "the scene itself decides"),
-    ignored("has_spectral_extinction", "the scene itself decides"),
+    volume("albedo", "", 1.0, Is(0.75), "Single-scattering albedo: sigma_s / sigma_t."),
+    factor("scale", 1.0, "Scales `sigma_t`."),
+    nested("phase", Optional, "The phase function; default: `isotropic`."),
+    ignored("sample_emitters", "Tyndall looks at the scene itself"),
+    ignored("has_spectral_extinction", "Tyndall looks at the scene itself"),
 };
 
 const HOMOGENEOUS: Table = table! {
-    "A medium that is the same everywhere, but for an albedo and a phase function that may vary.";
+    "A medium of constant extinction; albedo and phase function may vary.";
     colour("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient: sigma_s + sigma_a.");
     COMMON, EMISSION
 };
@@ -156,10 +156,10 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> 
 
 const HETEROGENEOUS: Table = table! {
     "A medium that varies in space.";
-    volume("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient; one value fills the unit cube only, as in Mitsuba."),
-    choice("tracker", &words::<6, _>(&DistanceMethod::NAMES), "auto", "How free flights are sampled; `auto` takes the cheapest without error.").ours(),
-    number("step", "m", above(0.0, f64::MAX), Said("by `march_error`"), "The interval of the tracker `march`.").ours(),
-    number("march_error", "", within(1e-7, 1.0), Is(1e-3), "Greatest error of transmittance of `march`.").ours();
+    volume("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient; a constant fills the unit cube only, as in Mitsuba."),
+    choice("tracker", &words::<6, _>(&DistanceMethod::NAMES), "auto", "Method of free-flight sampling; `auto` takes the cheapest unbiased one.").ours(),
+    number("step", "m", above(0.0, f64::MAX), Said("by `march_error`"), "Step of the tracker `march`.").ours(),
+    number("march_error", "", within(1e-7, 1.0), Is(1e-3), "Maximum error of transmittance of `march`.").ours();
     COMMON, EMISSION
 };
 

@@ -45,11 +45,11 @@ pub fn group(params: &Params<'_>) -> Result<Option<String>> {
 
 /// What media have that emit.
 pub(super) const EMISSION: &[Parameter] = rows! {
-    light_volume("emission", "W/(m^3 sr)", "Radiance gained per metre, whatever absorbs.").ours(),
-    light_volume("radiance", "W/(m^2 sr)", "In place of `emission`: radiance of a thick layer, times absorption.").ours(),
-    light_volume("temperature", "K", "In place of `emission`: temperature of a black body, times absorption.").ours(),
-    factor("emission_scale", 1.0, "A factor on what is emitted.").ours(),
-    text("group", "a name of 1 to 200 ASCII letters, digits and signs", Optional, "The layer that `--groups` shows its emission in.").ours(),
+    light_volume("emission", "W/(m^3 sr)", "Radiance emitted per metre, whether or not the medium absorbs.").ours(),
+    light_volume("radiance", "W/(m^2 sr)", "In place of `emission`: radiance of a thick layer; emission is this times sigma_a.").ours(),
+    light_volume("temperature", "K", "In place of `emission`: temperature of a black body; emission is its radiance times sigma_a.").ours(),
+    factor("emission_scale", 1.0, "Scales the emission.").ours(),
+    text("group", "a name of 1 to 200 ASCII letters, digits and signs", Optional, "The light group of its emission: a layer of `--groups`.").ours(),
 };
 
 /// Emission as the description gives it.

@@ -20,7 +20,7 @@ pub struct Blend {
 
 /// What functions of two lobes have.
 const TERMS: &[Parameter] = rows! {
-    number("r", "", within(0.0, 1.0), Required, "Share of the first lobe."),
+    number("r", "", within(0.0, 1.0), Required, "Weight of the first lobe."),
     number("g1", "", between(-1.0, 1.0), Required, "Asymmetry of the first lobe."),
     number("g2", "", between(-1.0, 1.0), Required, "Asymmetry of the second lobe."),
 };
@@ -56,9 +56,9 @@ impl Blend {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Two phase functions, mixed: (1 - weight) first + weight second.";
-        volume("weight", "", 1.0, Required, "Share of the second; a volume below 0 counts as 0, above 1 as 1."),
-        nested("phase", Required, "The two."),
+        "A mixture of two phase functions: (1 - weight) first + weight second.";
+        volume("weight", "", 1.0, Required, "Weight of the second; a volume is clamped to [0, 1]."),
+        nested("phase", Required, "The two phase functions."),
     };
 
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
@@ -85,10 +85,10 @@ impl Blend {
     }
 
     pub(super) const HG_TABLE: Table = table! {
-    "Two of Henyey and Greenstein's, mixed: r hg(g1) + (1 - r) hg(g2) (P03 eq. 3)."; ; TERMS };
+    "Two Henyey-Greenstein lobes: r hg(g1) + (1 - r) hg(g2) (P03 eq. 3)."; ; TERMS };
 
     pub(super) const SCHLICK_TABLE: Table = table! {
-    "Two of Schlick's, mixed (P03T 2.3.4); r, g1, g2 as Blasi et al. fit them: Rayleigh's 0.5, -0.46, 0.46, haze 0.12, -0.5, 0.7, murk 0.19, -0.65, 0.91."; ; TERMS };
+    "Two Schlick lobes (P03T 2.3.4). r, g1, g2 as fitted by Blasi et al.: Rayleigh 0.5, -0.46, 0.46; haze 0.12, -0.5, 0.7; murk 0.19, -0.65, 0.91."; ; TERMS };
 
     pub(super) fn two_term_hg(params: &Params<'_>) -> Result<Self> {
         Self::two_term(params, |g| HenyeyGreenstein::new(g).into())

@@ -30,8 +30,8 @@ impl CornetteShanks {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Cornette and Shanks' function, Henyey and Greenstein's times Rayleigh's: hg 1.5 (1 + cos^2) / (2 + g^2) (P03 eq. 6).";
-        number("g", "", between(-1.0, 1.0), Is(0.8), "Its asymmetry: above 0 forward, below 0 backward."),
+        "The Cornette-Shanks function, Henyey-Greenstein's times Rayleigh's: hg 1.5 (1 + cos^2) / (2 + g^2) (P03 eq. 6).";
+        number("g", "", between(-1.0, 1.0), Is(0.8), "Asymmetry: above 0 forward, below 0 backward."),
         number("u", "", between(-1.0, 1.0), Optional, "The mean cosine, in place of g: 0.7 to 0.85 in air, by its state (Nishita et al. 1993)."),
     };
 

@@ -32,7 +32,7 @@ impl HenyeyGreenstein {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Henyey and Greenstein's function, one lobe: (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^1.5) (P03 eq. 2).";
+        "The Henyey-Greenstein function, one lobe: (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^1.5) (P03 eq. 2).";
         number("g", "", between(-1.0, 1.0), Is(0.8), "The mean cosine: above 0 forward, below 0 backward."),
     };
 

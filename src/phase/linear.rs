@@ -1,4 +1,4 @@
-//! Scattering a little more to one side: the linear-anisotropic phase function (P03T 2.3.2).
+//! Linear anisotropic scattering: the linear-anisotropic phase function (P03T 2.3.2).
 
 use super::{Deflection, PhaseModel, deflect};
 use crate::description::{Params, Table, table};
@@ -20,7 +20,7 @@ impl Linear {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Scattering a little more to one side: (1 + g cos) / (4 pi) (P03T 2.3.2).";
+        "Linear anisotropic scattering: (1 + g cos) / (4 pi) (P03T 2.3.2).";
         number("g", "", within(-1.0, 1.0), Is(0.0), "The slope; the mean cosine is a third of it."),
     };
 

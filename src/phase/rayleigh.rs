@@ -13,7 +13,7 @@ pub struct Rayleigh;
 
 impl Rayleigh {
     pub(super) const TABLE: Table = table! {
-    "Rayleigh's function, of particles far smaller than the wavelength: 3 (1 + cos^2) / (16 pi) (P03 eq. 5)."; };
+    "Rayleigh scattering, by particles much smaller than the wavelength: 3 (1 + cos^2) / (16 pi) (P03 eq. 5)."; };
 
     pub(super) fn build(_: &Params<'_>) -> Result<Self> {
         Ok(Self)

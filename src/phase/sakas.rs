@@ -23,7 +23,7 @@ impl Sakas {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Sakas', a lobe forward and its mirror image backward: 1 + abs(cos)^n, normalised (P03T eq. 2.18).";
+        "Sakas' function, a lobe forward and its mirror image backward: 1 + abs(cos)^n, normalised (P03T eq. 2.18).";
         number("n", "", within(0.0, LARGEST), Required, "How narrow the lobes are: 0 is isotropic, 2 Rayleigh's."),
     };
 

@@ -27,8 +27,8 @@ impl Schlick {
     }
 
     pub(super) const TABLE: Table = table! {
-        "Schlick's rational function, which resembles Henyey and Greenstein's: (1 - k^2) / (4 pi (1 - k cos)^2) (P03 eq. 4).";
-        number("k", "", between(-1.0, 1.0), Is(0.0), "Its asymmetry: above 0 forward, below 0 backward."),
+        "Schlick's rational approximation of Henyey-Greenstein: (1 - k^2) / (4 pi (1 - k cos)^2) (P03 eq. 4).";
+        number("k", "", between(-1.0, 1.0), Is(0.0), "Asymmetry: above 0 forward, below 0 backward."),
     };
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {

@@ -32,16 +32,16 @@ pub struct Sections<'a> {
 /// What a scene holds.
 pub(crate) const TABLE: Table = table! {
     "What is rendered.";
-    number("time", "s", ANY, Is(0.0), "When it is seen: volumes in a `wind` have drifted since 0.").ours(),
-    nested("sensor", Required, "The camera; of several, the first, or the one that `--sensor` names."),
-    nested("integrator", Optional, "How it is rendered: `bdpt` where not given."),
+    number("time", "s", ANY, Is(0.0), "Time of the image; keyframes and `wind` count from 0.").ours(),
+    nested("sensor", Required, "The camera. Of several, the first or the one that `--sensor` names."),
+    nested("integrator", Optional, "The integrator; default: `bdpt`."),
     nested("shape", Optional, "Surfaces, and boundaries of media."),
     nested("emitter", Optional, "Emitters that are not on a shape."),
-    nested("bsdf", Optional, "To be referred to by its `id`."),
-    nested("medium", Optional, "To be referred to by its `id`."),
-    nested("phase", Optional, "To be referred to by its `id`."),
-    nested("texture", Optional, "To be referred to by its `id`."),
-    nested("volume", Optional, "To be referred to by its `id`."),
+    nested("bsdf", Optional, "For references to its `id`."),
+    nested("medium", Optional, "For references to its `id`."),
+    nested("phase", Optional, "For references to its `id`."),
+    nested("texture", Optional, "For references to its `id`."),
+    nested("volume", Optional, "For references to its `id`."),
 };
 
 /// True if `object` only waits to be referred to.

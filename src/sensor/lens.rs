@@ -22,16 +22,16 @@ pub(super) struct Lens {
 
 /// What cameras with a lens have.
 pub(super) const LENS: &[Parameter] = rows! {
-    transform("to_world", "Where it is and where it looks: rotations, translations and mirrors."),
-    number("principal_point_offset_x", "widths of the film", ANY, Is(0.0), "How far the axis is off the middle, across."),
-    number("principal_point_offset_y", "heights of the film", ANY, Is(0.0), "How far the axis is off the middle, down."),
+    transform("to_world", "Position and direction: rotations, translations and mirrors."),
+    number("principal_point_offset_x", "widths of the film", ANY, Is(0.0), "Horizontal offset of the axis from the centre."),
+    number("principal_point_offset_y", "heights of the film", ANY, Is(0.0), "Vertical offset of the axis from the centre, downwards."),
 };
 
 /// Two ways to give a field of view.
 pub(crate) const FIELD_OF_VIEW: &[Parameter] = rows! {
     number("fov", "degrees", between(0.0, 180.0), Said("by `focal_length`"), "Field of view along `fov_axis`."),
-    choice("fov_axis", &["x", "y", "diagonal", "smaller", "larger"], "x", "Which extent of the film `fov` is across.").said("x"),
-    text("focal_length", "a length such as \"50mm\"", Word("50mm"), "In place of `fov`: the lens of a 35 mm camera."),
+    choice("fov_axis", &["x", "y", "diagonal", "smaller", "larger"], "x", "Side of the film that `fov` spans.").said("x"),
+    text("focal_length", "a length such as \"50mm\"", Word("50mm"), "In place of `fov`: focal length of a 35 mm camera."),
 };
 
 impl Lens {

@@ -108,11 +108,11 @@ const fn plugin(table: Table, build: BuildSensor) -> Plugin<BuildSensor> {
 
 /// What all sensors have.
 const COMMON: &[Parameter] = rows! {
-    number("near_clip", "m", within(0.0, MAX), Is(1e-2), "Nothing nearer than this, along the axis, is seen."),
-    number("far_clip", "m", above(0.0, MAX), Is(1e4), "Nothing further than this is seen; above `near_clip`."),
-    nested("film", Optional, "The image: an `hdrfilm` as it is where not given."),
-    nested("sampler", Optional, "How many samples a pixel takes."),
-    nested("medium", Optional, "The medium that the camera is in; found where not given."),
+    number("near_clip", "m", within(0.0, MAX), Is(1e-2), "Nothing nearer than this along the axis is seen, fog included."),
+    number("far_clip", "m", above(0.0, MAX), Is(1e4), "Nothing farther than this along the axis is seen; above `near_clip`."),
+    nested("film", Optional, "The image; default: an `hdrfilm`."),
+    nested("sampler", Optional, "The number of samples per pixel."),
+    nested("medium", Optional, "The medium around the camera; default: found from the boundaries."),
     ignored("shutter_open", "no motion blur"),
     ignored("shutter_close", "no motion blur"),
 };

@@ -31,7 +31,7 @@ pub struct Orthographic {
 impl Orthographic {
     pub(super) const TABLE: Table = table! {
         "Parallel rays along +z: before `to_world` the film covers [-1, 1] across.";
-        transform("to_world", "Where it is and where it looks; scales change its size."),
+        transform("to_world", "Position, direction and, by scales, size."),
         ignored("focus_distance", "parallel rays have no focus");
         COMMON
     };

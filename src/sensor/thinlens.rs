@@ -22,8 +22,8 @@ pub struct ThinLens {
 impl ThinLens {
     pub(super) const TABLE: Table = table! {
         "A camera with depth of field.";
-        number("aperture_radius", "m", above(0.0, MAX), Required, "Radius of the lens; a `perspective` is the limit of 0."),
-        number("focus_distance", "m", above(0.0, MAX), Said("`far_clip`"), "Distance of what is in focus, along the axis.");
+        number("aperture_radius", "m", above(0.0, MAX), Required, "Radius of the lens."),
+        number("focus_distance", "m", above(0.0, MAX), Said("`far_clip`"), "Distance of the plane in focus, along the axis.");
         LENS, FIELD_OF_VIEW, COMMON
     };
 

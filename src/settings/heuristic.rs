@@ -30,7 +30,7 @@ pub enum Heuristic {
 /// What integrators have that make paths.
 pub(super) const HEURISTIC: &[Parameter] = rows! {
     text("heuristic", "one of balance, power, maximum, cutoff, cutoff:ALPHA, uniform", Word("balance"),
-        "By which rule strategies share a path (Veach 1997, sec. 9.2): noise differs, the expected image does not.").ours(),
+        "Heuristic of multiple importance sampling (Veach 1997, sec. 9.2); the expected image is the same.").ours(),
 };
 
 impl Heuristic {

@@ -170,7 +170,7 @@ const COMMON: &[Parameter] = rows! {
 };
 
 const BDPT: Table = table! {
-    "Bidirectional path tracing, of whose strategies a pilot chooses: the integrator of a scene without one."; ;
+    "Bidirectional path tracing, the default. A pilot chooses among its strategies."; ;
     MAX_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
 };
 
@@ -189,25 +189,25 @@ const PTRACER: Table = table! {
 };
 
 const GATHER: Table = table! {
-    "A preview: path tracing that ends where it scatters twice, in radiance learnt beforehand. Biased (P03T sec. 5.3)."; ;
+    "A biased preview: paths end at their second scattering; the rest is looked up in radiance learnt before (P03T sec. 5.3)."; ;
     MAX_DEPTH, PATHS, COMMON
 };
 
 const FOG: Table = table! {
-    "A preview: the first visible surfaces, lit without shadows, behind fog of constant radiance (BMA02 eq. 5).";
+    "A biased preview: visible surfaces, lit without shadows, behind fog of constant radiance (BMA02 eq. 5). Fog in a scene is a medium, such as `homogeneous`.";
     light("fog_color", "W/(m^2 sr)", Said("the mean of the sky, else of the lit surfaces"), "Radiance of the fog."),
-    light("ambient", "W/(m^2 sr)", Said("0 under a sky, else that of the fog"),
-        "Radiance from all directions, besides the emitters."),
-    number("threshold", "m", above(0.0, MAX), Said("no limit"), "What is further is fog alone."),
+    light("ambient", "W/(m^2 sr)", Said("0 under a sky, else the fog's"),
+        "Ambient radiance, added to the emitters."),
+    number("threshold", "m", above(0.0, MAX), Said("no limit"), "Beyond this distance only fog is seen."),
     ignored("max_depth", "a preview shows the first surfaces only");
     PATHS, COMMON
 };
 
 const SINGLE_SCATTERING: Table = table! {
-    "Light scatters at most once, surfaces are lit directly; media that vary are marched (P03 eq. 18-19).";
-    integer("max_depth", within(0.0, Restriction::SINGLE as f64), Is(2.0), "Most segments of a path."),
-    number("step", "m", above(0.0, f64::MAX), Said("that of each medium"), "The interval of the march."),
-    number("march_error", "", within(1e-7, 1.0), Said("that of each medium"), "Greatest error of transmittance.");
+    "Light scatters at most once, surfaces are lit directly; media that vary are ray-marched (P03 eq. 18-19).";
+    integer("max_depth", within(0.0, Restriction::SINGLE as f64), Is(2.0), "Maximum number of segments of a path."),
+    number("step", "m", above(0.0, f64::MAX), Said("that of each medium"), "Step of the ray marching."),
+    number("march_error", "", within(1e-7, 1.0), Said("that of each medium"), "Maximum error of transmittance.");
     PATHS, HEURISTIC, GUIDE, FORCED, COMMON
 };
 
@@ -218,19 +218,19 @@ const NON_SCATTERING: Table = table! {
 
 /// What integrators have that hold another.
 const OUTER: &[Parameter] = rows! {
-    ignored("hide_emitters", "the integrator inside decides it"),
+    ignored("hide_emitters", "the nested integrator decides"),
 };
 
 const AOV: Table = table! {
-    "What is seen first, as layers of the image of the integrator inside: Mitsuba's quantities of the first surface, and \
-     `first_albedo` and `first_normal`, of where a free flight first interacts, in media too (for denoisers).";
+    "Adds layers of what is seen first to the image of the nested integrator: Mitsuba's quantities of the first surface, and \
+     `first_albedo` and `first_normal` of the first interaction, in media too (for denoisers).";
     text("aovs", "a list such as \"dd:depth,nn:sh_normal\"", Required, "Names and quantities of the layers."),
-    nested("integrator", Optional, "The integrator of the image; black without.");
+    nested("integrator", Optional, "The integrator of the image; without one the image is black.");
     OUTER, COMMON
 };
 
 const MOMENT: Table = table! {
-    "The integrator inside, with second moments and, in Tyndall, the variance of the mean as layers.";
+    "Adds layers to the image of the nested integrator: second moments and, in Tyndall, the variance of the mean.";
     nested("integrator", Required, "The integrator of the image.");
     OUTER, COMMON
 };

@@ -215,34 +215,34 @@ impl Default for Options {
 
 /// What integrators have that make paths; `max_depth` besides.
 pub(super) const PATHS: &[Parameter] = rows! {
-    boolean("hide_emitters", false, "The camera does not see emitters, but what is behind them; emissive media stay."),
-    silent("rr_depth", "paths end by absorption, at any depth"),
+    boolean("hide_emitters", false, "Emitters are invisible to the camera; emissive media stay visible."),
+    silent("rr_depth", "Russian roulette acts at any depth"),
 };
 
 /// What those have that sample paths.
 pub(super) const GUIDE: &[Parameter] = rows! {
     choice("guide", &words::<3, _>(&Guiding::NAMES), "never",
-        "When walks follow a guide: where light comes from, and where it is seen from, as is learnt.")
-        .said("auto by bdpt, else never").ours(),
+        "Path guiding: sample directions learnt from earlier paths.")
+        .said("auto for bdpt, else never").ours(),
     choice("guide_basis", &words::<3, _>(&Basis::NAMES), "quadtree",
-        "How a guide keeps directions: adaptive `quadtree`, equal `bins`, `haar` wavelets (P03T sec. 5.2.1, A.1).").ours(),
+        "Directions in the guide: an adaptive `quadtree`, equal `bins` or `haar` wavelets (P03T sec. 5.2.1, A.1).").ours(),
 };
 
 /// The limit of paths.
 pub(super) const MAX_DEPTH: &[Parameter] = rows! {
-    integer("max_depth", within(-1.0, MAX), Is(-1.0), "Most segments of a path; -1 for no limit."),
+    integer("max_depth", within(-1.0, MAX), Is(-1.0), "Maximum number of segments of a path; -1: no limit."),
 };
 
 /// What those have besides that connect camera and light subpaths.
 pub(super) const CONNECTIONS: &[Parameter] = rows! {
     choice("connections", &words::<2, _>(&Connections::NAMES), "cached",
-        "With what a vertex is connected: `cached`, vertices drawn from many light subpaths; `all` of its own one (LW96).").ours(),
+        "Light vertices to connect to: `cached`, drawn from many light subpaths; `all` of the sample's own subpath (LW96).").ours(),
 };
 
 /// What those have besides that follow primary rays.
 pub(super) const FORCED: &[Parameter] = rows! {
     boolean("forced_interaction", false,
-        "Primary rays that cross media are followed both from a collision in them and from what lies behind.").ours(),
+        "Primary rays through media continue twice: from a forced collision and from the surface behind.").ours(),
 };
 
 impl Options {

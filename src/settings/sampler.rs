@@ -11,14 +11,11 @@ use crate::{
 pub(crate) const ROWS: Registry<Plugin<Option<Sampler>>> = Registry::new(
     "a sampler",
     &[
-        (
-            "independent",
-            plugin("No more than a number of samples: how they are drawn is left to Tyndall.", None),
-        ),
+        ("independent", plugin("The number of samples; Tyndall chooses how they are drawn.", None)),
         ("ldsampler", plugin(SOBOL, Some(Sampler::Sobol))),
         ("multijitter", plugin(SOBOL, Some(Sampler::Sobol))),
         ("orthogonal", plugin(SOBOL, Some(Sampler::Sobol))),
-        ("sobol", plugin("Sobol's sequence.", Some(Sampler::Sobol))),
+        ("sobol", plugin("Owen-scrambled Sobol sequences.", Some(Sampler::Sobol))),
         ("stratified", plugin(SOBOL, Some(Sampler::Sobol))),
     ],
 );
@@ -27,9 +24,9 @@ const SOBOL: &str = "The same as `sobol`.";
 
 const COMMON: &[Parameter] = rows! {
     integer("sample_count", within(1.0, MAX), Is(4.0), "Samples per pixel."),
-    ignored("seed", "the sequence of random numbers is Tyndall's own"),
-    ignored("jitter", "the sequence of random numbers is Tyndall's own"),
-    ignored("strength", "the sequence of random numbers is Tyndall's own"),
+    ignored("seed", "Tyndall has its own random sequences"),
+    ignored("jitter", "Tyndall has its own random sequences"),
+    ignored("strength", "Tyndall has its own random sequences"),
 };
 
 const fn plugin(about: &'static str, build: Option<Sampler>) -> Plugin<Option<Sampler>> {

@@ -37,9 +37,9 @@ pub struct Cylinder {
 
 /// Its parameters.
 pub const TABLE: Table = table! {
-    "An exact tube, open at both ends.";
-    vector("p0", "m", At([0.0; 3]), "Where the axis begins."),
-    vector("p1", "m", At([0.0, 0.0, 1.0]), "Where it ends."),
+    "An analytic cylinder, open at both ends.";
+    vector("p0", "m", At([0.0; 3]), "Start of the axis."),
+    vector("p1", "m", At([0.0, 0.0, 1.0]), "End of the axis."),
     number("radius", "m", ANY, Is(1.0), "Radius, not 0.");
     COMMON
 };

@@ -37,7 +37,7 @@ pub struct Disk {
 
 /// Its parameters.
 pub const TABLE: Table = table! {
-    "An exact disk: radius 1 around the origin, facing +z."; ; COMMON
+    "An analytic disk of radius 1 around the origin, facing +z."; ; COMMON
 };
 
 pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Disk> {

@@ -57,7 +57,7 @@ pub struct Mesh {
 /// What every mesh has.
 pub(super) const FACE_NORMALS: &[Parameter] = rows! {
     boolean("face_normals", false,
-        "True shows flat faces; else vertex normals are those of the file, or computed where it has none."),
+        "True: flat faces. False: vertex normals of the file, or computed if it has none."),
 };
 
 impl Mesh {

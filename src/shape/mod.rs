@@ -249,13 +249,13 @@ pub type BuildShape = fn(&Params<'_>, DVec3) -> Result<Shape>;
 
 /// What all shapes have.
 const COMMON: &[Parameter] = rows! {
-    transform("to_world", "Where it is."),
-    boolean("flip_normals", false, "Turns it inside out: `interior` and the front of an emitter change sides."),
-    nested("bsdf", Optional, "Its surface: a grey diffuse one where not given, black on an emitter."),
-    nested("emitter", Optional, "What it emits: `area` or `directionalarea`."),
-    object("interior", "medium", "The medium behind it, against its normals."),
-    object("exterior", "medium", "The medium before it, where its normals point."),
-    ignored("silhouette_sampling_weight", "it matters to derivatives only"),
+    transform("to_world", "Position, orientation and size."),
+    boolean("flip_normals", false, "Reverses the normals: `interior`, `exterior` and the front of an emitter change sides."),
+    nested("bsdf", Optional, "The surface; default: grey diffuse, on an emitter black."),
+    nested("emitter", Optional, "The emitter: `area` or `directionalarea`."),
+    object("interior", "medium", "The medium behind the surface, against the normals."),
+    object("exterior", "medium", "The medium in front of the surface, where the normals point."),
+    ignored("silhouette_sampling_weight", "used for derivatives only"),
 };
 
 /// Makes the enum, its dispatch and the registry from one row a kind: its type, and each of its names with the module

@@ -16,7 +16,7 @@ use std::{collections::HashMap, path::Path};
 pub const TABLE: Table = table! {
     "A mesh from a Wavefront file (.obj).";
     file("filename", "The file."),
-    boolean("flip_tex_coords", true, "True turns v of the texture coordinates upside down.");
+    boolean("flip_tex_coords", true, "True: flips the texture coordinate v.");
     FACE_NORMALS, COMMON
 };
 

@@ -19,7 +19,7 @@ use std::{fs::File, io::BufReader, path::Path};
 pub const TABLE: Table = table! {
     "A mesh from a PLY file.";
     file("filename", "The file."),
-    boolean("flip_tex_coords", false, "True turns v of the texture coordinates upside down.");
+    boolean("flip_tex_coords", false, "True: flips the texture coordinate v.");
     FACE_NORMALS, COMMON
 };
 

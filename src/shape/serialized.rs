@@ -19,9 +19,9 @@ use std::{
 
 /// Its parameters.
 pub const TABLE: Table = table! {
-    "A mesh from a file of Mitsuba's compressed meshes.";
+    "A mesh from a file in Mitsuba's compressed format (.serialized).";
     file("filename", "The file."),
-    integer("shape_index", within(0.0, u32::MAX as f64), Is(0.0), "Which of its meshes, from 0.");
+    integer("shape_index", within(0.0, u32::MAX as f64), Is(0.0), "Index of the mesh in the file, from 0.");
     FACE_NORMALS, COMMON
 };
 

@@ -29,9 +29,9 @@ pub struct Sphere {
 
 /// Its parameters.
 pub const TABLE: Table = table! {
-    "An exact sphere.";
+    "An analytic sphere.";
     vector("center", "m", At([0.0; 3]), "Centre."),
-    number("radius", "m", ANY, Is(1.0), "Radius, not 0; below 0 its normals face inwards.");
+    number("radius", "m", ANY, Is(1.0), "Radius, not 0; if negative, the normals face inwards.");
     COMMON
 };
 

@@ -29,9 +29,9 @@ impl Bitmap {
     pub(super) const TABLE: Table = table! {
         "An image over the unit square, v down the rows.";
         file("filename", "The image: EXR, HDR, PNG, JPEG, BMP, TGA or PPM."),
-        choice("filter_type", &["bilinear", "nearest"], "bilinear", "How colours between pixel centres come about."),
-        choice("wrap_mode", &words::<3, _>(&Wrap::NAMES), "repeat", "What lies beyond the unit square."),
-        boolean("raw", false, "True takes the numbers as they are; else those of integer formats are sRGB."),
+        choice("filter_type", &["bilinear", "nearest"], "bilinear", "Interpolation."),
+        choice("wrap_mode", &words::<3, _>(&Wrap::NAMES), "repeat", "Lookup outside the unit square."),
+        boolean("raw", false, "True: values are linear. False: those of integer formats are sRGB-encoded."),
         TO_UV,
         ignored("format", "images are kept in single precision"),
         ignored("accel", "images are kept in single precision"),

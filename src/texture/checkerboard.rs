@@ -15,9 +15,9 @@ pub struct Checkerboard {
 
 impl Checkerboard {
     pub(super) const TABLE: Table = table! {
-        "Two colours in squares of half a unit.";
-        texture("color0", f64::INFINITY, Is(0.4), "Where both halves of u and v agree."),
-        texture("color1", f64::INFINITY, Is(0.2), "Where they do not."),
+        "Squares of half a unit in two colours.";
+        texture("color0", f64::INFINITY, Is(0.4), "Where u and v lie in equal halves."),
+        texture("color1", f64::INFINITY, Is(0.2), "Where they lie in different halves."),
         TO_UV,
     };
 

@@ -142,7 +142,7 @@ fn build_color(params: &Params<'_>, most: f32) -> Result<Texture> {
 
 /// The row of [`ToUv`].
 const TO_UV: Parameter =
-    parameter::transform("to_uv", "Applied to texture positions: a scale of 2 repeats twice.");
+    parameter::transform("to_uv", "Applied to texture coordinates: a scale of 2 repeats the texture twice.");
 
 /// The part of a `to_uv` transform that acts on texture positions: an affine map of the plane.
 #[derive(Clone, Copy, Debug)]

@@ -17,9 +17,9 @@ pub struct Constant {
 
 impl Constant {
     pub(super) const TABLE: Table = table! {
-        "One value. As `sigma_t` of a medium it fills the unit cube of `to_world` only, as in Mitsuba.";
+        "A constant. As `sigma_t` it fills only the unit cube of `to_world`, as in Mitsuba.";
         colour("value", "", f64::INFINITY, Is(1.0), "The value."),
-        transform("to_world", "Where the unit cube is."),
+        transform("to_world", "Places the unit cube."),
     };
 
     /// Reads `value` and `to_world`.

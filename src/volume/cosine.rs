@@ -35,9 +35,9 @@ struct Wave {
 
 pub(super) const WAVE: Table = table! {
     "A wave of a `cosine`: amplitude cos(vector . x + phase).";
-    number("amplitude", "", ANY, Is(1.0), "Its height, of either sign."),
-    vector("vector", "rad/m", Required, "Where it goes to; 2 pi over the wavelength long."),
-    number("phase", "rad", ANY, Is(0.0), "Where in the wave the origin is."),
+    number("amplitude", "", ANY, Is(1.0), "Amplitude, of either sign."),
+    vector("vector", "rad/m", Required, "Wave vector, of length 2 pi over the wavelength."),
+    number("phase", "rad", ANY, Is(0.0), "Phase at the origin."),
 };
 
 fn wave(params: &Params<'_>) -> Result<Wave> {
@@ -81,7 +81,7 @@ impl Function for Waves {
     const TABLE: Table = table! {
         "A constant and waves: constant + sum of amplitude cos(vector . x + phase) (BMA02 3.2.1).";
         number("constant", "", ANY, Is(1.0), "The constant."),
-        nested("volume", Required, "Its waves, plugins `wave`.");
+        nested("volume", Required, "The waves, plugins `wave`.");
         COMMON
     };
 

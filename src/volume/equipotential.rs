@@ -193,16 +193,16 @@ impl Potential {
 
 impl Function for Potential {
     const TABLE: Table = table! {
-        "Fog that thickens around a thing: strength / (c + d r^2), r being the distance (BMA02 3.2.3).";
+        "Fog densest near a point, line, segment or sphere: strength / (c + d r^2) at a distance r (BMA02 3.2.3).";
         choice("shape", &["point", "line", "segment", "sphere"], "point",
-            "The thing; of a sphere, r is the length of the tangent, and 0 within."),
-        vector("center", "", Said("the origin"), "Where a point or sphere is."),
-        vector("p0", "", Said("needed for line and segment"), "A point of the line, or where the segment begins."),
-        vector("p1", "", Said("needed for line and segment"), "Another one, or where it ends."),
+            "What the fog gathers around. For a sphere, r is the length of the tangent to it, 0 inside."),
+        vector("center", "", Said("the origin"), "Centre of the point or sphere."),
+        vector("p0", "", Said("required for line and segment"), "A point on the line, or the start of the segment."),
+        vector("p1", "", Said("required for line and segment"), "Another point on the line, or the end of the segment."),
         number("radius", "", above(0.0, f64::MAX), Said("1"), "Radius of the sphere."),
-        number("strength", "", ANY, Is(1.0), "The numerator; below 0 to take away in a sum."),
-        number("c", "", above(0.0, f64::MAX), Is(1.0), "strength / c is the value at the thing."),
-        number("d", "", within(0.0, f64::MAX), Is(1.0), "How fast it thins away from the thing.");
+        number("strength", "", ANY, Is(1.0), "The numerator; negative values subtract in a sum."),
+        number("c", "", above(0.0, f64::MAX), Is(1.0), "strength / c is the value at r = 0."),
+        number("d", "", within(0.0, f64::MAX), Is(1.0), "Falloff: greater values thin sooner.");
         COMMON
     };
 

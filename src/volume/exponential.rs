@@ -42,9 +42,9 @@ fn mean(top: f64, fall: f64) -> f64 {
 impl Function for Haze {
     const TABLE: Table = table! {
         "Fog that thins with height: exp(-(up . x - height) / scale_height).";
-        vector("up", "", At([0.0, 1.0, 0.0]), "Upwards; its length is of no matter."),
-        number("height", "", ANY, Is(0.0), "Where the value is `value`."),
-        number("scale_height", "", above(0.0, f64::MAX), Is(1.0), "In every such height it falls to 1/e.");
+        vector("up", "", At([0.0, 1.0, 0.0]), "Up direction; need not be normalised."),
+        number("height", "", ANY, Is(0.0), "Height at which it equals `value`."),
+        number("scale_height", "", above(0.0, f64::MAX), Is(1.0), "Height over which it falls to 1/e.");
         COMMON
     };
 

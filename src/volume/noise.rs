@@ -78,16 +78,16 @@ impl Turbulence {
 
 impl Function for Turbulence {
     const TABLE: Table = table! {
-        "Turbulence: max(0, bias + amplitude s), s being a mean of octaves of Perlin's noise.";
+        "Turbulence: max(0, bias + amplitude s), where s is a weighted mean of octaves of Perlin noise.";
         number("frequency", "cells/m", above(0.0, 1e30), Is(1.0), "Frequency of the first octave."),
-        integer("octaves", within(1.0, 16.0), Is(4.0), "How many octaves."),
-        number("lacunarity", "", within(0.0, 100.0), Is(2.0), "Frequency of each octave over that of the one before."),
-        number("gain", "", within(0.0, 100.0), Is(0.5), "Weight of each octave over that of the one before."),
+        integer("octaves", within(1.0, 16.0), Is(4.0), "Number of octaves."),
+        number("lacunarity", "", within(0.0, 100.0), Is(2.0), "Frequency ratio of successive octaves."),
+        number("gain", "", within(0.0, 100.0), Is(0.5), "Weight ratio of successive octaves."),
         choice("style", &["turbulence", "fractal"], "turbulence",
-            "Absolute values with creases, s from 0 to 1; or smooth, s from -1 to 1."),
-        number("amplitude", "", within(-1e30, 1e30), Is(1.0), "A factor on s."),
-        number("bias", "", within(-1e30, 1e30), Is(0.0), "What is added; below 0 there is clear air between the clouds."),
-        integer("seed", within(0.0, u32::MAX as f64), Is(0.0), "The same seed gives the same noise.");
+            "`turbulence`: absolute values, with creases, s from 0 to 1. `fractal`: smooth, s from -1 to 1."),
+        number("amplitude", "", within(-1e30, 1e30), Is(1.0), "Scales s."),
+        number("bias", "", within(-1e30, 1e30), Is(0.0), "Added to it; negative values leave clear air between clouds."),
+        integer("seed", within(0.0, u32::MAX as f64), Is(0.0), "Seed of the noise.");
         COMMON
     };
 

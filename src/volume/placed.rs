@@ -30,10 +30,10 @@ impl Line {
 
 /// What all density functions have.
 pub(super) const COMMON: &[Parameter] = rows! {
-    transform("to_world", "From its own coordinates to those of the scene."),
-    colour("value", "", f64::INFINITY, Is(1.0), "A factor on it."),
-    vector("min", "", Said("no limit"), "It is 0 outside the box from here, in its own coordinates,"),
-    vector("max", "", Said("no limit"), "to here."),
+    transform("to_world", "From local to world coordinates."),
+    colour("value", "", f64::INFINITY, Is(1.0), "Scales it."),
+    vector("min", "", Said("no limit"), "Lower corner, in local coordinates, of the box outside of which it is 0."),
+    vector("max", "", Said("no limit"), "Upper corner of that box."),
 };
 
 /// A density function in its own coordinates, without its factor.

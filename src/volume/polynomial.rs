@@ -56,7 +56,7 @@ const CROSSED: f64 = 8192.0;
 pub(super) const TERM: Table = table! {
     "A term of a `polynomial`: a coefficient times powers of the coordinates.";
     number("coefficient", "", ANY, Is(1.0), "The coefficient."),
-    vector("powers", "", Required, "Three whole numbers >= 0, the powers of x, y and z."),
+    vector("powers", "", Required, "Powers of x, y and z: three integers >= 0."),
 };
 
 const NUMBERS: &str = "numbers in a string";
@@ -333,11 +333,11 @@ impl Function for Tile {
     const TABLE: Table = table! {
         "A polynomial of the coordinates on a box, repeated in space or 0 outside (BMA02 3.2.2).";
         text("x", NUMBERS, Optional, "Coefficients of the powers of x, constant first: \"0.8, -1, 0, 0, 1\" is 0.8 - x + x^4."),
-        text("y", NUMBERS, Optional, "Those of y."),
-        text("z", NUMBERS, Optional, "Those of z."),
+        text("y", NUMBERS, Optional, "Coefficients of the powers of y."),
+        text("z", NUMBERS, Optional, "Coefficients of the powers of z."),
         nested("volume", Optional, "Mixed terms, plugins `term`."),
-        number("half_width", "", above(0.0, f64::MAX), Is(1.0), "The box is from minus this to this along every axis."),
-        choice("wrap", &["repeat", "zero"], "repeat", "What is outside: the same again, or 0.");
+        number("half_width", "", above(0.0, f64::MAX), Is(1.0), "The box spans -half_width to half_width along each axis."),
+        choice("wrap", &["repeat", "zero"], "repeat", "Outside the box: repeated, or 0.");
         COMMON
     };
 

@@ -20,7 +20,7 @@ pub struct Product {
 
 impl Product {
     pub(super) const TABLE: Table =
-        table! { "Nested volumes, multiplied: a shape times a texture."; ; NESTED };
+        table! { "The product of nested volumes, such as a shape and a texture."; ; NESTED };
 
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         let (constants, varying): (Vec<_>, Vec<_>) =

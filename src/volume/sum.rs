@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub struct Sum(Arc<[Volume]>);
 
 impl Sum {
-    pub(super) const TABLE: Table = table! { "Nested volumes, added."; ; NESTED };
+    pub(super) const TABLE: Table = table! { "The sum of nested volumes."; ; NESTED };
 
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         nested(params, place).map(Self::of)

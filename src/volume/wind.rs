@@ -24,8 +24,8 @@ pub struct Wind {
 
 impl Wind {
     pub(super) const TABLE: Table = table! {
-        "A nested volume that drifts: it is in its place at the scene's `time` 0.";
-        vector("velocity", "m/s", Required, "Where to, and how fast; of keyframes, what they add up to since 0 counts."),
+        "A nested volume that drifts; at `time` 0 it is in its place.";
+        vector("velocity", "m/s", Required, "Velocity; keyframes are integrated from time 0."),
         nested("volume", Required, "The volume."),
     };
 
