@@ -170,9 +170,9 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
     command = made_by_command()
     return (
         f"# What a guide gives\n\n    {command}\n\n"
-        f"relMSE without what is learnt (`--starts emitted --guide never`) over relMSE with it (`--guide auto`, the default of `bdpt`, *followed* or not), after {options.seconds:g} s each, learning and pilots included: {options.size} pixels, {options.threads} threads, "
-        f"{options.seeds} seeds ({options.preview_seeds} by `gather`); ± one standard error. Reference of each seed: the mean of `bdpt` by `--guide auto` of the other seeds, whose own noise is taken off. *Starts*: those of light subpaths, where the pilot of `bdpt` finds "
-        "them worth learning; the guide has them besides. `gather` is the preview of that name: relMSE by `pt`, and by `bdpt` with its starts, over its. P03T's boxes by a path tracer like P03T's own, at its thresholds: [thresholds.md](thresholds.md).\n\n"
+        f"relMSE without path guiding (`--starts emitted --guide never`) over relMSE with it (`--guide auto`, the default of `bdpt`), after {options.seconds:g} s each, training and pilots included. *Followed*: whether `auto` guided. {options.size} pixels, {options.threads} threads, "
+        f"{options.seeds} seeds ({options.preview_seeds} by `gather`); ± one standard error. The reference of each seed is the mean of the other seeds by `bdpt --guide auto`; its own noise is subtracted. *Starts*: learnt starts of light subpaths alone, where the pilot of `bdpt` finds "
+        "them worth learning; the guide includes them. *gather*: relMSE by `pt`, and by `bdpt` with its starts, over that of the preview `gather`. [thresholds.md](thresholds.md) has P03T's boxes by a path tracer like P03T's own, at its thresholds.\n\n"
         "| scene | starts | guide, by bdpt | wanted | followed | guide, by pt | wanted | followed | gather over pt | over bdpt | learning | memory | portals | cells of surfaces, media | guided on surfaces, in media (camera's walks) |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
     )

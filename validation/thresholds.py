@@ -103,11 +103,11 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
     """The report."""
     return (
         f"# P03T's tests A-F at its own thresholds\n\n    {made_by_command()}\n\n"
-        "P03T (sec. 5.2.1) renders until each pixel is, by its own samples, within a threshold (eprt) with 95 % confidence (A.8). The paths that its classical tracer took, a hundred and "
-        "more for a standard error as large as the mean, are those of one that samples no emitters, in spite of what it says of next-event estimation: so does ours here.\n\n"
+        "P03T (sec. 5.2.1) renders until each pixel is within a threshold (eprt) with 95 % confidence, by its own samples (A.8). Its classical tracer took a hundred paths and more for a "
+        "standard error as large as the mean. So it took no next-event estimation, whatever the text says; ours takes none here either.\n\n"
         f"Below, `pt --strategies hit --error` 1 and 0.5 by `--guide never` and `--guide always`: {options.size} pixels, {options.threads} threads, {options.seeds} seeds; ± one standard error. "
-        "Seconds are from the start to the image, learning included; those of P03T are without its first pass. Ours takes more samples to a threshold, as it has to hold "
-        "in each channel and among neighbours, and in halves that do not judge themselves. P03T's 200 % is left out: two paths that meet the lamp, of however many, are within it.\n\n"
+        "Seconds run from the start to the image, training included; P03T's are without its first pass. Ours takes more samples to a threshold, because it must hold "
+        "in each channel and among neighbours, and in halves that do not judge themselves. P03T's 200 % is left out: any two paths that meet the lamp satisfy it.\n\n"
         "| box | threshold | samples per pixel | guided | P03T's paths per pixel | informed | seconds | guided | times as long without | wanted | P03T's |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
     )

@@ -1,4 +1,4 @@
-//! How flights are sampled and optical depths found in a varying medium: one file a method (transport.md, Media).
+//! How flights are sampled and optical depths found in a varying medium: one file a method.
 
 mod choose;
 mod closed_form;
