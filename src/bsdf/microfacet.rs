@@ -58,7 +58,7 @@ impl Roughness {
         let kind = params.choice("distribution", &kinds)?;
         if !params.boolean("sample_visible")? {
             let place = params.given("sample_visible").map_or(params.location(), |p| &p.location);
-            params.library.warn(place, "visible normals are sampled all the same: it changes noise only");
+            params.library.warn(place, "visible normals are always sampled: it changes noise only");
         }
         let anisotropic = ["alpha_u", "alpha_v"].map(|name| params.has(name));
         let alpha = match (params.has("alpha"), anisotropic) {

@@ -26,7 +26,7 @@ pub const SMOKE_TABLE: Table = table! {
     text("temperature_grid", "the name of a grid", Said("flame, flames, burn, heat or temperature"), "The grid of fire; \"\" takes none."),
     text("color_grid", "the name of a grid", Said("Cd, color, or three grids of one component each"), "The grid of colours; \"\" takes none."),
     number("temperature_scale", "K", within(0.0, HOTTEST), Said("1500 for flames; 1000 for other temperatures, or 1 if they exceed 100"), "Kelvin per unit of the grid."),
-    number("temperature_offset", "K", within(0.0, HOTTEST), Said("1500 for flames, else 0"), "Temperature at a value of 0."),
+    number("temperature_offset", "K", within(0.0, HOTTEST), Said("1500 for flames, else 0"), "Temperature just above a value of 0."),
     boolean("level_set_to_fog", false, "Fills a level set with fog."),
     nested("phase", Optional, "The phase function; default: `isotropic`."),
     object("exterior", "medium", "The medium around it."),

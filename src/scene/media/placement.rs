@@ -54,7 +54,7 @@ impl Names<'_> {
             return "a homogeneous medium with \"sigma_t\" 0".to_owned();
         };
         match (&self.ids[index as usize], &location.position) {
-            (None, _) => "a reference to that medium, under an id".to_owned(),
+            (None, _) => "a reference to that medium (which needs an \"id\")".to_owned(),
             (Some(id), Position::Text { .. }) => format!("<ref id=\"{id}\"/>"),
             (Some(id), Position::Path(_)) => format!("\"medium\": {{\"type\": \"ref\", \"id\": \"{id}\"}}"),
         }
@@ -156,8 +156,8 @@ impl Names<'_> {
     fn warn_of_camera_in(&self, medium: MediumIndex, location: &Location) {
         let (name, line) = (self.medium(medium), self.line(medium, location));
         let text = format!(
-            "the camera states no medium, and the shapes around it say that it lies in {name}, which is what is \
-             rendered; Mitsuba would take vacuum. Add {line} to the sensor to make both the same"
+            "the camera states no medium. By the shapes around it, it lies in {name}; Mitsuba would take vacuum. Add \
+             {line} to the sensor to make both agree"
         );
         self.library.warn(location, &text);
     }

@@ -108,7 +108,7 @@ impl Grid {
         transform("to_world", "Places the unit cube."),
         choice("convert", &words::<3, _>(&Convert::NAMES), "none", "`fog`: level set to density. `blackbody`: temperature to radiance.").ours(),
         number("temperature_scale", "K", within(0.0, HOTTEST), Is(1.0), "For `blackbody`: kelvin per unit of the grid.").ours(),
-        number("temperature_offset", "K", within(0.0, HOTTEST), Is(0.0), "For `blackbody`: temperature at a value of 0.").ours(),
+        number("temperature_offset", "K", within(0.0, HOTTEST), Is(0.0), "For `blackbody`: temperature just above a value of 0.").ours(),
         ignored("accel", "the maximum is known, and no texture unit runs"),
         ignored("max_value", "the maximum is known, and no texture unit runs"),
     };
