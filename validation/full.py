@@ -1,4 +1,4 @@
-"""Everything that can be checked, at full depth: what the quick checks of `cargo test` sample."""
+"""Everything that can be checked, at full depth: what the tests sample."""
 
 import tempfile
 import time

@@ -1,5 +1,5 @@
 """Instructions per sample of three scenes, counted by valgrind: a cost that needs no clock. The counts of vertices, connections
-and rays are held by `cargo test` (src/render/timing.rs); instructions depend on the compiler, so they are recorded here."""
+and rays are held by a test (src/analysis/strategies/timing.rs); instructions depend on the compiler, so they are recorded here."""
 
 import json
 import re
