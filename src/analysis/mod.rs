@@ -78,3 +78,17 @@ pub mod pixel;
 mod sheet;
 pub mod strategies;
 pub mod study;
+
+use crate::{
+    error::{Error, Result},
+    transport::Algorithm,
+};
+
+/// An error where an `algorithm` makes no whole paths, of which there is something to say.
+fn check_paths(algorithm: Algorithm) -> Result<()> {
+    if !algorithm.is_preview() {
+        return Ok(());
+    }
+    let (remedy, found) = ("choose --integrator bdpt, pt or lt", format!("{}, a preview", algorithm.name()));
+    Err(Error::new("the scene's integrator", "one that makes whole paths", found, remedy))
+}

@@ -259,11 +259,7 @@ pub fn examine(
             return Err(Error::new(name, expected, at.to_string(), remedy));
         }
     }
-    if let Some(name) = settings.options.strategies.preview() {
-        let remedy = "choose --integrator bdpt, pt or lt";
-        let found = format!("{name}, a preview");
-        return Err(Error::new("the scene's integrator", "one that makes whole paths", found, remedy));
-    }
+    super::check_paths(settings.options.algorithm)?;
     let instrument = Instrument::new(&setup.scene, film, settings);
     let pixel = y as usize * film.width as usize + x as usize;
     let numbers = u64::from(first)..u64::from(first) + u64::from(count);

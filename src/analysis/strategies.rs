@@ -11,7 +11,7 @@ pub use table::table;
 use super::sheet::{self, Row};
 use crate::{
     analysis::study::outcome::Interval,
-    error::{Error, Result},
+    error::Result,
     film::{self, Channel, Film, format::Format, moments::Moments},
     math::{Spectrum, SpectrumExt},
     memory,
@@ -182,11 +182,7 @@ pub fn examine(
 /// An error where there is nothing to examine, or memory does not hold the images.
 pub fn check(film: &Film, plan: &Plan, options: &Options) -> Result<()> {
     let cells = table_of(plan, options);
-    if let Some(name) = options.strategies.preview() {
-        let remedy = "choose --integrator bdpt, pt or lt";
-        let found = format!("{name}, a preview");
-        return Err(Error::new("the scene's integrator", "one that makes whole paths", found, remedy));
-    }
+    super::check_paths(options.algorithm)?;
     let bytes = film.len().checked_mul(StrategyImages::bytes_per_pixel(cells)).map(|bytes| bytes as u64);
     let size = format!("{} strategies on {} x {} pixels", cells.count(), film.width, film.height);
     let remedy = "use a smaller --size or a smaller --depth";

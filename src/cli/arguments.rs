@@ -169,7 +169,7 @@ mod tests {
     use crate::{
         medium::DistanceMethod,
         sampling::Sampler,
-        transport::{Strategies, observer::StrategyKind},
+        transport::{Algorithm, observer::StrategyKind},
     };
     use clap::CommandFactory;
     use std::{num::NonZeroUsize, time::Duration};
@@ -202,7 +202,7 @@ mod tests {
         assert_eq!((r.spp, r.seed, r.time_limit), (Some(8), 3, Some(Duration::from_secs(300))));
         assert_eq!(
             (r.threads.map(NonZeroUsize::get), r.estimator.integrator),
-            (Some(2), Some(Strategies::LT))
+            (Some(2), Some(Algorithm::Lt))
         );
         let definitions = [("res".to_owned(), "48".to_owned()), ("t".to_owned(), "a=b".to_owned())];
         assert_eq!(r.scene.definitions, definitions);

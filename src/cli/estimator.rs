@@ -18,7 +18,7 @@ use crate::{
     scene::build::Setup,
     settings::{Overrides, integrator::Restriction},
     transport::{
-        Connections, Effort, Guiding, Heuristic, Options, Strategies, equiangular_applies,
+        Algorithm, Connections, Effort, Guiding, Heuristic, Options, Strategies, equiangular_applies,
         observer::StrategyKind,
         profile::{Needs, ProfileName},
     },
@@ -39,8 +39,12 @@ pub struct Estimator {
     /// learnt in seconds: biased, by blur, and far less noisy than pt in clouds and where surfaces light each other; fog: a preview of the first visible surfaces without
     /// shadows, behind fog of constant radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
     /// non_scattering its restriction of media still applies, unless --scattering says otherwise.
-    #[arg(long, value_name = "NAME", value_parser = one_of(&Strategies::INTEGRATORS))]
-    pub integrator: Option<Strategies>,
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Algorithm::NAMES))]
+    pub integrator: Option<Algorithm>,
+
+    /// Light subpaths, which reach pixels by chance, do not connect to the lens.
+    #[arg(skip)]
+    pub without_lens: bool,
 
     /// Sampling strategies to use, separated by commas [default: those that the pilot of bdpt finds worth their time]
     ///
@@ -202,9 +206,9 @@ impl Estimator {
 
     /// What a pilot says, if it may choose.
     fn pilot(&self, setup: &Setup, settings: &Settings) -> Option<Report> {
-        let Options { strategies, heuristic, connections, .. } = settings.options;
+        let Options { algorithm, heuristic, connections, .. } = settings.options;
         let is_judged = heuristic == Heuristic::Balance && connections == Connections::Cached;
-        if !self.strategies.is_empty() || strategies.preview().is_some() || !is_judged {
+        if !self.strategies.is_empty() || algorithm.is_preview() || !is_judged {
             return None;
         }
         Some(pilot::choose(&setup.scene, &setup.film, settings, self.starts))
@@ -235,10 +239,11 @@ impl Estimator {
 
     fn options(&self, setup: &Setup) -> Result<Options> {
         let scene = setup.integrator.options;
-        let strategies = self.strategies(scene.strategies)?;
+        let algorithm = self.algorithm(setup);
+        let strategies = self.strategies(setup)?;
         let max_depth = self.max_depth(setup)?;
         let heuristic = self.heuristic.unwrap_or(scene.heuristic);
-        if strategies == Strategies::NONE {
+        if algorithm == Algorithm::Fog {
             self.warn_of_preview();
         } else {
             self.check_depth(heuristic, max_depth)?;
@@ -248,12 +253,13 @@ impl Estimator {
                 "a medium, an emitter that is neither at infinity nor a medium, and a sensor with a lens";
             complain(&format!("warning: the strategy equiangular has no effect: it needs {needs}"));
         }
-        let forced_interaction = self.forced_interaction(setup, strategies);
+        let forced_interaction = self.forced_interaction(setup, algorithm, strategies);
         let connections = self.connections(scene, strategies);
         let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
-        let guide = self.guiding(scene, strategies, heuristic)?;
+        let guide = self.guiding(scene, algorithm, heuristic)?;
         let effort = Effort { guide, learnt_starts: self.learnt_starts(strategies), ..scene.effort };
         Ok(Options {
+            algorithm,
             strategies,
             effort,
             basis: self.basis.unwrap_or(scene.basis),
@@ -287,18 +293,19 @@ impl Estimator {
         }
     }
 
-    fn guiding(&self, scene: Options, strategies: Strategies, heuristic: Heuristic) -> Result<Guiding> {
-        let guide = match (strategies, self.guide.unwrap_or(scene.effort.guide)) {
-            (Strategies::NONE, _) => Guiding::Never,
-            (_, Guiding::Usual) if strategies.gather => Guiding::Auto,
+    fn guiding(&self, scene: Options, algorithm: Algorithm, heuristic: Heuristic) -> Result<Guiding> {
+        let guide = match (algorithm, self.guide.unwrap_or(scene.effort.guide)) {
+            (Algorithm::Fog, _) => Guiding::Never,
+            (Algorithm::Gather, Guiding::Usual) => Guiding::Auto,
             (_, said) => said,
         };
-        let (place, remedy) = match strategies.gather {
+        let gathers = algorithm == Algorithm::Gather;
+        let (place, remedy) = match gathers {
             true => ("--integrator gather", "choose --heuristic balance"),
             false => ("--guide", "choose --heuristic balance, or give --guide never"),
         };
         let is_wanted = matches!(guide, Guiding::Auto | Guiding::Always);
-        if heuristic != Heuristic::Balance && (strategies.gather || is_wanted) {
+        if heuristic != Heuristic::Balance && (gathers || is_wanted) {
             let found = format!("the heuristic {heuristic}");
             return Err(Error::new(place, "the heuristic balance", found, remedy));
         }
@@ -339,10 +346,11 @@ impl Estimator {
         ))
     }
 
-    fn forced_interaction(&self, setup: &Setup, strategies: Strategies) -> bool {
-        let by_eye = strategies.emitter_hit || strategies.next_event || strategies.connection;
-        let why_not = match by_eye {
-            _ if strategies.gather => Some("the integrator gather forces none"),
+    fn forced_interaction(&self, setup: &Setup, algorithm: Algorithm, strategies: Strategies) -> bool {
+        let gathers = algorithm == Algorithm::Gather;
+        let by_camera = strategies.emitter_hit || strategies.next_event || strategies.connection;
+        let why_not = match by_camera {
+            _ if gathers => Some("the integrator gather forces none"),
             false => Some("no strategy in use traces camera subpaths"),
             true => (!Needs::of(&setup.scene, false).media).then_some("the scene has no media"),
         };
@@ -350,7 +358,7 @@ impl Estimator {
             complain(&format!("warning: --forced-interaction has no effect: {why}"));
         }
         let forced = self.forced_interaction || setup.integrator.options.forced_interaction;
-        by_eye && !strategies.gather && forced && !self.no_forced_interaction
+        by_camera && !gathers && forced && !self.no_forced_interaction
     }
 
     fn max_depth(&self, setup: &Setup) -> Result<Option<u32>> {
@@ -371,13 +379,19 @@ impl Estimator {
         Ok(edges)
     }
 
+    /// That of the scene, unless another is named.
+    pub fn algorithm(&self, setup: &Setup) -> Algorithm {
+        self.integrator.unwrap_or(setup.integrator.options.algorithm)
+    }
+
     /// Those of the integrator, or the ones of them that are named.
-    fn strategies(&self, scene: Strategies) -> Result<Strategies> {
-        let all = self.integrator.unwrap_or(scene);
+    fn strategies(&self, setup: &Setup) -> Result<Strategies> {
+        let all = self.integrator.map_or(setup.integrator.options.strategies, Algorithm::strategies);
+        let all = if self.without_lens { all.without(StrategyKind::Lens) } else { all };
         if self.strategies.is_empty() {
             return Ok(all);
         }
-        if all.gather {
+        if self.algorithm(setup) == Algorithm::Gather {
             let found = "the integrator gather, which leaves none out";
             return Err(Error::new(
                 "--strategies",

@@ -52,9 +52,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
     arguments.answer.check()?;
     let mut settings = arguments.estimator.guided_settings(&setup, Budget::ENDLESS)?;
-    if let Some(preview) = settings.options.strategies.preview() {
+    let algorithm = settings.options.algorithm;
+    if algorithm.is_preview() {
         let remedy = "choose --integrator bdpt, pt or lt";
-        return Err(Error::new("--integrator", "an integrator that is no preview", preview, remedy));
+        return Err(Error::new("--integrator", "an integrator that is no preview", algorithm.name(), remedy));
     }
     let starts = arguments.estimator.starts.unwrap_or(true);
     settings.options.effort.learnt_starts = starts && settings.options.strategies.need_light_walks();

@@ -32,7 +32,7 @@ use crate::{
     },
     settings::integrator::Restriction,
     shape::ShapeModel,
-    transport::{Options, Strategies},
+    transport::{Algorithm, Options},
 };
 use clap::Args;
 use serde_json::{Value, json};
@@ -78,7 +78,7 @@ pub fn run(arguments: &Info) -> Result<()> {
     let budget = Budget::samples(setup.samples_per_pixel);
     let (settings, report) = arguments.estimator.reported(&setup, 0, budget)?;
     let chosen = report.as_ref().map(|report| report.choice);
-    let plan = Plan::new(&setup, &arguments.estimator, settings, chosen, None);
+    let plan = Plan::new(&setup, settings, chosen, None);
     let learnt = training::learn_for(&setup.scene, &setup.film, &settings).bytes();
     say(&describe(&setup, &settings, &plan));
     if learnt > 0 {
@@ -234,12 +234,13 @@ fn describe_layers(layers: &[Layer]) -> String {
 }
 
 fn describe_integrator(name: &str, options: &Options, restriction: Restriction) -> String {
-    let Options { strategies, heuristic, max_depth, .. } = *options;
-    if strategies == Strategies::NONE {
-        return "fog, a preview of first surfaces".to_owned();
-    }
-    if strategies.gather {
-        return "gather, a preview by paths that end in radiance learnt beforehand".to_owned();
+    let Options { algorithm, heuristic, max_depth, .. } = *options;
+    match algorithm {
+        Algorithm::Fog => return "fog, a preview of first surfaces".to_owned(),
+        Algorithm::Gather => {
+            return "gather, a preview by paths that end in radiance learnt beforehand".to_owned();
+        }
+        _ => {}
     }
     let media = match restriction {
         Restriction::None => "",

@@ -1,6 +1,6 @@
 //! What a render will do, in one line, and what light it does not reach.
 
-use super::{console, estimator::Estimator, progress::percent};
+use super::{console, progress::percent};
 use crate::{
     learning::pilot::Choice,
     math::Spectrum,
@@ -9,7 +9,7 @@ use crate::{
     render::progressive::Progressive,
     scene::build::Setup,
     transport::coverage::{self, Share, Unreached, list},
-    transport::{Connections, Effort, Options, Strategies, Survival},
+    transport::{Algorithm, Connections, Effort, Options, Survival},
 };
 use serde_json::{Value, json};
 
@@ -32,21 +32,13 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// That of a render of `setup` by `settings`, which `estimator` gave, as a pilot has `chosen` if there was one.
-    pub fn new(
-        setup: &Setup,
-        estimator: &Estimator,
-        settings: Settings,
-        chosen: Option<Choice>,
-        error: Option<f64>,
-    ) -> Self {
-        let wanted = estimator.integrator.unwrap_or(setup.integrator.options.strategies);
-        let known = Strategies::INTEGRATORS.iter().find(|(_, strategies)| *strategies == wanted);
-        let strategies = settings.options.strategies;
+    /// That of a render of `setup` by `settings`, as a pilot has `chosen` if there was one.
+    pub fn new(setup: &Setup, settings: Settings, chosen: Option<Choice>, error: Option<f64>) -> Self {
+        let Options { algorithm, strategies, .. } = settings.options;
         Self {
-            integrator: known.map_or("bdpt", |(name, _)| *name),
+            integrator: algorithm.name(),
             strategies: strategies.names(),
-            flights: if strategies == Strategies::NONE { Vec::new() } else { flights(&setup.scene.media) },
+            flights: if algorithm == Algorithm::Fog { Vec::new() } else { flights(&setup.scene.media) },
             size: [setup.film.width, setup.film.height],
             unreached: coverage::unreached(&setup.scene, &settings.options),
             chosen,
@@ -118,7 +110,8 @@ impl Plan {
 
     /// Light that does not reach the image, a line each.
     pub fn unreached(&self) -> Vec<String> {
-        let whole = Strategies::INTEGRATORS.contains(&(self.integrator, self.settings.options.strategies));
+        let Options { algorithm, strategies, .. } = self.settings.options;
+        let whole = algorithm.strategies() == strategies;
         let by = if whole { self.integrator } else { "these strategies" };
         let line = |Unreached { light, by_bdpt }: &Unreached| {
             let who = match by_bdpt {

@@ -11,7 +11,7 @@ use crate::{
     render::{Image, Precision},
     sampling::Basis,
     scene::build::Setup,
-    transport::{Connections, Options},
+    transport::{Algorithm, Connections, Options},
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -77,7 +77,7 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
     if options.connections == Connections::All {
         settings["connections"] = "all".into();
     }
-    if options.strategies.gather {
+    if options.algorithm == Algorithm::Gather {
         settings["preview"] = "gather".into();
     }
     if options.effort.learnt_starts && settings["chosen_by_pilot"].is_null() {

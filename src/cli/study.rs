@@ -25,7 +25,7 @@ use crate::{
     passes::{Settings, budget::Budget},
     scene::build::{self, Setup},
     settings::Overrides,
-    transport::Strategies,
+    transport::Algorithm,
 };
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -370,7 +370,7 @@ impl<'a> Stage<'a> {
         let settings = requested.settings(&setup, 0, Budget::ENDLESS)?;
         let budget = Budget { spent: started.elapsed(), ..settings.budget };
         let settings = Settings { budget, ..settings };
-        if settings.options.strategies == Strategies::NONE {
+        if settings.options.algorithm == Algorithm::Fog {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));
         }

@@ -23,7 +23,7 @@ use crate::{
     sampling::Sampler,
     scene::{Scene, lights::Starts},
     settings::options::{Effort, Guiding},
-    transport::{Connections, Heuristic, Options, Strategies, profile::ProfileName},
+    transport::{Algorithm, Connections, Heuristic, Options, Strategies, profile::ProfileName},
 };
 use std::sync::Arc;
 
@@ -99,7 +99,7 @@ pub fn learn_until(
 
 /// What renders by `settings` learn by so many `rounds`.
 pub fn learn_rounds(scene: &Scene, film: &Film, settings: &Settings, rounds: usize) -> Learnt {
-    let Options { strategies, effort, max_depth, .. } = settings.options;
+    let Options { algorithm, effort, max_depth, .. } = settings.options;
     let wanted = Wanted::by(settings.options, follows_guide(scene, film, settings));
     let after = |rounds| match wanted {
         Wanted { starts: None, guide: None, .. } => Learnt::default(),
@@ -112,7 +112,7 @@ pub fn learn_rounds(scene: &Scene, film: &Film, settings: &Settings, rounds: usi
     let first = after(ROUNDS);
     let learnt = if rounds > ROUNDS { after(rounds) } else { first.clone() };
     // Camera subpaths that end before they gather need nothing to end in.
-    if !strategies.gather || max_depth.is_some_and(|depth| depth <= 2) {
+    if algorithm != Algorithm::Gather || max_depth.is_some_and(|depth| depth <= 2) {
         return learnt;
     }
     let most_bounces = radiance::most_bounces(max_depth);
@@ -181,6 +181,7 @@ impl Wanted {
 /// What renders by `options` learn by: all strategies alike.
 pub fn options_of_learning(options: Options) -> Options {
     Options {
+        algorithm: Algorithm::Bdpt,
         strategies: Strategies::BDPT,
         effort: Effort::default(),
         connections: Connections::default(),

@@ -16,7 +16,7 @@ use crate::{
     scene::{Scene, lights::Starts},
     shape::Ray,
     transport::{
-        Heuristic, Interaction, Options,
+        Algorithm, Heuristic, Interaction, Options,
         observer::Observer,
         profile::{
             Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, ProfileName,
@@ -69,16 +69,18 @@ pub fn choose<'a>(
     learnt: Learnt,
     per_block: usize,
 ) -> Box<dyn Compiled + 'a> {
-    let Options { heuristic, effort, strategies, .. } = settings.options;
+    let Options { algorithm, heuristic, effort, .. } = settings.options;
     let prepare = match (heuristic, settings.profile) {
         (Heuristic::Power | Heuristic::Maximum | Heuristic::Uniform, _) => Ready::<ByCompared>::prepare,
         (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
-        (Heuristic::Balance, profile) if effort.is_guided() || strategies.gather => match profile {
-            ProfileName::Vacuum => Ready::<Guided<Vacuum>>::prepare,
-            ProfileName::Fog => Ready::<Guided<Fog>>::prepare,
-            ProfileName::Bounded | ProfileName::Smoke => Ready::<Guided<Smoke>>::prepare,
-            _ => Ready::<Guided<Everything>>::prepare,
-        },
+        (Heuristic::Balance, profile) if effort.is_guided() || algorithm == Algorithm::Gather => {
+            match profile {
+                ProfileName::Vacuum => Ready::<Guided<Vacuum>>::prepare,
+                ProfileName::Fog => Ready::<Guided<Fog>>::prepare,
+                ProfileName::Bounded | ProfileName::Smoke => Ready::<Guided<Smoke>>::prepare,
+                _ => Ready::<Guided<Everything>>::prepare,
+            }
+        }
         (Heuristic::Balance, ProfileName::Vacuum) => Ready::<Vacuum>::prepare,
         (Heuristic::Balance, ProfileName::Fog) => Ready::<Fog>::prepare,
         (Heuristic::Balance, ProfileName::Bounded) => Ready::<Bounded>::prepare,

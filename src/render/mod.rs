@@ -24,7 +24,7 @@ use crate::{
     passes::budget::Budget,
     scene::Scene,
     settings::integrator::FogSettings,
-    transport::{Heuristic, Options, Strategies},
+    transport::{Algorithm, Heuristic, Options, Strategies},
 };
 use adaptive::Adaptive;
 use fog::Preview;
@@ -117,7 +117,8 @@ pub fn preview(
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
 ) -> Image {
-    let options = Options { strategies: Strategies::NONE, heuristic: Heuristic::Balance, ..settings.options };
+    let (algorithm, strategies) = (Algorithm::Fog, Strategies::NONE);
+    let options = Options { algorithm, strategies, heuristic: Heuristic::Balance, ..settings.options };
     let watch = &mut |reached, _: &Sums| progress(reached);
     let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
     let mode = Mode::Preview(fog, &mut Sums::new(film, layers.iter().any(Layer::needs_squares), 0));

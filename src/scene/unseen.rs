@@ -13,13 +13,13 @@ use crate::{
     emitter::{BeamModel, Kind},
     math::Vec3,
     medium::{Medium, MediumIndex},
-    settings::{integrator::Integrator, options::Strategies},
+    settings::{integrator::Integrator, options::Algorithm},
 };
 
 /// The scene at `location` has no light; a preview needs none, nor do layers without an image.
 pub fn warn_of_darkness(lights: &Lights, integrator: &Integrator, location: &Location, library: &Library) {
     let options = &integrator.options;
-    if lights.is_empty() && options.strategies != Strategies::NONE && options.max_depth != Some(0) {
+    if lights.is_empty() && options.algorithm != Algorithm::Fog && options.max_depth != Some(0) {
         let found = if lights.all.is_empty() { "no emitter" } else { "no emitter with power above 0" };
         let text = format!(
             "{found} is in this scene: all integrators but fog give a black image. Add one, such as \"constant\" \

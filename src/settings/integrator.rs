@@ -14,7 +14,7 @@ use crate::{
     settings::{
         Overrides,
         heuristic::HEURISTIC,
-        options::{CONNECTIONS, Connections, FORCED, GUIDE, MAX_DEPTH, Options, PATHS, Strategies},
+        options::{Algorithm, CONNECTIONS, Connections, FORCED, GUIDE, MAX_DEPTH, Options, PATHS},
     },
 };
 
@@ -104,7 +104,7 @@ pub const ROWS: Registry<Plugin<Build<Integrator>>> = Registry::new(
         ("path", plugin(SAME, build_bdpt)),
         ("volpath", plugin(SAME, build_bdpt)),
         ("volpathmis", plugin(VOLPATHMIS, build_bdpt)),
-        ("ptracer", plugin(PTRACER, |p| build_as(p, Strategies::LT))),
+        ("ptracer", plugin(PTRACER, |p| build_as(p, Algorithm::Lt))),
         ("gather", plugin(GATHER, build_gather)),
         ("fog", plugin(FOG, build_fog)),
         ("single_scattering", plugin(SINGLE_SCATTERING, build_single_scattering)),
@@ -260,13 +260,13 @@ fn check_names(location: &Location, layers: &[Layer]) -> Result<()> {
     }
 }
 
-fn build_as(params: &Params<'_>, strategies: Strategies) -> Result<Integrator> {
-    Ok(Integrator { options: Options::read(params, strategies)?, ..Integrator::default() })
+fn build_as(params: &Params<'_>, algorithm: Algorithm) -> Result<Integrator> {
+    Ok(Integrator { options: Options::read(params, algorithm)?, ..Integrator::default() })
 }
 
 fn build_bdpt(params: &Params<'_>) -> Result<Integrator> {
     let connections = params.choice("connections", &Connections::NAMES)?;
-    let integrator = build_as(params, Strategies::BDPT)?;
+    let integrator = build_as(params, Algorithm::Bdpt)?;
     Ok(Integrator { options: Options { connections, ..integrator.options }, ..integrator })
 }
 
@@ -274,7 +274,7 @@ fn build_bdpt(params: &Params<'_>) -> Result<Integrator> {
 fn build_gather(params: &Params<'_>) -> Result<Integrator> {
     let hide_emitters = params.boolean("hide_emitters")?;
     let max_depth = u32::try_from(params.integer("max_depth")?).ok();
-    let options = Options { strategies: Strategies::GATHER, hide_emitters, max_depth, ..Options::default() };
+    let options = Options { hide_emitters, max_depth, ..Options::of(Algorithm::Gather) };
     Ok(Integrator { options, ..Integrator::default() })
 }
 
@@ -284,7 +284,7 @@ fn build_fog(params: &Params<'_>) -> Result<Integrator> {
     let (color, ambient) = (params.optional_color("fog_color")?, params.optional_color("ambient")?);
     let fog = FogSettings { color, ambient, threshold };
     let hide_emitters = params.boolean("hide_emitters")?;
-    let options = Options { strategies: Strategies::NONE, hide_emitters, ..Options::default() };
+    let options = Options { hide_emitters, ..Options::of(Algorithm::Fog) };
     Ok(Integrator { options, fog, ..Integrator::default() })
 }
 
@@ -297,12 +297,12 @@ fn build_single_scattering(params: &Params<'_>) -> Result<Integrator> {
     })?;
     let (step, march_error) = (params.optional_float("step")?, params.optional_float("march_error")?);
     let restriction = Restriction::SingleScattering { step, march_error };
-    Ok(Integrator { restriction, ..build_as(params, Strategies::PT)? })
+    Ok(Integrator { restriction, ..build_as(params, Algorithm::Pt)? })
 }
 
 /// `non_scattering`: media absorb and emit only, among surfaces as they are.
 fn build_non_scattering(params: &Params<'_>) -> Result<Integrator> {
-    let integrator = build_as(params, Strategies::BDPT)?;
+    let integrator = build_as(params, Algorithm::Bdpt)?;
     Ok(Integrator { restriction: Restriction::NonScattering, ..integrator })
 }
 
@@ -311,7 +311,7 @@ fn build_non_scattering(params: &Params<'_>) -> Result<Integrator> {
 fn build_aov(params: &Params<'_>) -> Result<Integrator> {
     let mut built = match nested(params)? {
         None => {
-            let options = Options { strategies: Strategies::PT, max_depth: Some(0), ..Options::default() };
+            let options = Options { max_depth: Some(0), ..Options::of(Algorithm::Pt) };
             Integrator { options, ..Integrator::default() }
         }
         Some(child) => {

@@ -20,46 +20,64 @@ pub struct Strategies {
     pub lens: bool,
     /// s = 1, t = 2 in media: next-event estimation where the primary ray is near an emitter.
     pub equiangular: bool,
-    /// Camera subpaths end where they scatter for the second time, in radiance learnt beforehand: the preview `gather`.
-    pub gather: bool,
 }
 
 impl Strategies {
-    /// None at all: the preview `fog`, which makes no paths.
-    pub const NONE: Self = Self {
-        emitter_hit: false,
-        next_event: false,
-        connection: false,
-        lens: false,
-        equiangular: false,
-        gather: false,
-    };
+    /// None at all.
+    pub const NONE: Self =
+        Self { emitter_hit: false, next_event: false, connection: false, lens: false, equiangular: false };
     /// Bidirectional path tracing.
     pub const BDPT: Self = Self { connection: true, lens: true, ..Self::PT };
     /// Path tracing with next-event estimation.
     pub const PT: Self = Self { emitter_hit: true, next_event: true, ..Self::NONE };
     /// Light tracing.
     pub const LT: Self = Self { lens: true, ..Self::NONE };
+}
 
-    /// Path tracing that ends in what was learnt: a preview.
-    pub const GATHER: Self = Self { gather: true, ..Self::PT };
+/// Light transport algorithms, which scenes and the command line call integrators.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Algorithm {
+    /// Bidirectional path tracing.
+    #[default]
+    Bdpt,
+    /// Path tracing with next-event estimation.
+    Pt,
+    /// Light tracing.
+    Lt,
+    /// A preview by path tracing: camera subpaths end where they scatter for the second time, in radiance learnt beforehand.
+    Gather,
+    /// A preview of first surfaces, which makes no paths.
+    Fog,
+}
 
-    /// The integrators, as printed and as typed.
-    pub const INTEGRATORS: [(&'static str, Self); 5] = [
-        ("bdpt", Self::BDPT),
-        ("pt", Self::PT),
-        ("lt", Self::LT),
-        ("gather", Self::GATHER),
-        ("fog", Self::NONE),
+impl Algorithm {
+    /// As printed and as typed.
+    pub const NAMES: [(&'static str, Self); 5] = [
+        ("bdpt", Self::Bdpt),
+        ("pt", Self::Pt),
+        ("lt", Self::Lt),
+        ("gather", Self::Gather),
+        ("fog", Self::Fog),
     ];
 
-    /// The name of the integrator if it is a preview, whose image is not what it should be on average.
-    pub fn preview(self) -> Option<&'static str> {
+    /// As printed and as typed.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
+
+    /// All that may run.
+    pub fn strategies(self) -> Strategies {
         match self {
-            Self::NONE => Some("fog"),
-            _ if self.gather => Some("gather"),
-            _ => None,
+            Self::Bdpt => Strategies::BDPT,
+            Self::Pt | Self::Gather => Strategies::PT,
+            Self::Lt => Strategies::LT,
+            Self::Fog => Strategies::NONE,
         }
+    }
+
+    /// True if its image is not what it should be on average.
+    pub fn is_preview(self) -> bool {
+        matches!(self, Self::Gather | Self::Fog)
     }
 }
 
@@ -178,6 +196,8 @@ impl Default for Effort {
 /// from, and a flag of the command line (`cli/estimator.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
+    /// What makes the image.
+    pub algorithm: Algorithm,
     /// Which strategies run.
     pub strategies: Strategies,
     /// How often.
@@ -201,6 +221,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
+            algorithm: Algorithm::default(),
             strategies: Strategies::BDPT,
             effort: Effort { guide: Guiding::default(), ..Effort::default() },
             basis: Basis::default(),
@@ -246,11 +267,17 @@ pub(super) const FORCED: &[Parameter] = rows! {
 };
 
 impl Options {
+    /// The usual ones of an algorithm.
+    pub fn of(algorithm: Algorithm) -> Self {
+        Self { algorithm, strategies: algorithm.strategies(), ..Self::default() }
+    }
+
     /// Reads the parameters of integrators that make paths.
-    pub(super) fn read(params: &Params<'_>, strategies: Strategies) -> Result<Self> {
-        let samples = strategies != Strategies::NONE;
+    pub(super) fn read(params: &Params<'_>, algorithm: Algorithm) -> Result<Self> {
+        let samples = algorithm != Algorithm::Fog;
         Ok(Self {
-            strategies,
+            algorithm,
+            strategies: algorithm.strategies(),
             effort: Effort {
                 guide: match samples {
                     true if params.has("guide") => params.choice("guide", &Guiding::NAMES)?,
@@ -264,7 +291,7 @@ impl Options {
             // Limits that u32 does not hold are none.
             max_depth: u32::try_from(params.integer("max_depth")?).ok(),
             hide_emitters: params.boolean("hide_emitters")?,
-            forced_interaction: strategies != Strategies::LT && params.boolean("forced_interaction")?,
+            forced_interaction: algorithm != Algorithm::Lt && params.boolean("forced_interaction")?,
             heuristic: Heuristic::read(params)?,
         })
     }

@@ -91,7 +91,7 @@ pub use vertex::{Scattering, Vertex};
 
 pub use crate::{
     settings::heuristic::Heuristic,
-    settings::options::{Connections, Effort, Guiding, Options, Strategies, Survival},
+    settings::options::{Algorithm, Connections, Effort, Guiding, Options, Strategies, Survival},
 };
 
 use crate::{

@@ -128,7 +128,6 @@ pub fn strategies(names: &str) -> Strategies {
         connection: has("join"),
         lens: has("lens"),
         equiangular: has("equiangular"),
-        gather: false,
     };
     assert_eq!(name_of(chosen).split('+').count(), names.split('+').count(), "misspelt: {names}");
     chosen
@@ -136,7 +135,7 @@ pub fn strategies(names: &str) -> Strategies {
 
 /// The reverse of [`strategies`].
 pub fn name_of(strategies: Strategies) -> String {
-    let Strategies { emitter_hit, next_event, connection, lens, equiangular, gather: _ } = strategies;
+    let Strategies { emitter_hit, next_event, connection, lens, equiangular } = strategies;
     let all = [
         (emitter_hit, "hit"),
         (next_event, "next-event"),

@@ -31,7 +31,7 @@ use crate::{
         sums::{AnySums, Picture, samples::Samples},
     },
     scene::build::Setup,
-    transport::Strategies,
+    transport::Algorithm,
 };
 use animation::Clip;
 use arguments::Render;
@@ -61,7 +61,7 @@ pub fn run(arguments: &Render) -> Result<()> {
     if let Ok(mut viewer) = viewer.lock() {
         *viewer = arguments.tev.as_deref().map(Viewer::connect).transpose()?;
     }
-    let plan = Plan::new(&setup, &arguments.estimator, task.settings, chosen, arguments.error);
+    let plan = Plan::new(&setup, task.settings, chosen, arguments.error);
     let plan = plan.of_pixels(arguments.progressive());
     // Before this there is nothing that a signal should save.
     interrupt::listen();
@@ -140,10 +140,13 @@ fn check_kept(arguments: &Render, settings: &Settings, target: &Target) -> Resul
         (arguments.components, "--components"),
     ];
     let mut given = kept.into_iter().filter_map(|(is_given, name)| is_given.then_some(name));
-    if let Some(preview) = settings.options.strategies.preview()
-        && let Some(name) = given.find(|name| preview == "fog" || ["--groups", "--components"].contains(name))
+    let algorithm = settings.options.algorithm;
+    if algorithm.is_preview()
+        && let Some(name) =
+            given.find(|name| algorithm == Algorithm::Fog || ["--groups", "--components"].contains(name))
     {
         let expected = "an integrator that samples whole paths";
+        let preview = algorithm.name();
         let remedy = format!("remove {name}; {preview} takes seconds");
         return Err(Error::new(name, expected, format!("the preview {preview}"), remedy));
     }
@@ -231,7 +234,7 @@ fn few_pixels(
     made["progressive"] = progressive::begun(wanted.method);
     let draw = |picture: &dyn Picture| target.draw(film, picture, &made);
     let mut shown = Shown::new(task, &draw);
-    let fog = (settings.options.strategies == Strategies::NONE).then_some(&integrator.fog);
+    let fog = (settings.options.algorithm == Algorithm::Fog).then_some(&integrator.fog);
     let layers = &integrator.layers;
     let done =
         render::progressive::run(scene, film, settings, fog, layers, wanted, &mut |progress, picture| {
@@ -255,7 +258,7 @@ fn watched(setup: &Setup, task: &Task<'_>, target: &Target, label: Option<&str>)
     let bar = Bar::new(task.settings, task.precision, setup.film.len(), label);
     let Setup { scene, film, integrator, .. } = setup;
     let (layers, settings) = (&integrator.layers, &task.settings);
-    let done = if settings.options.strategies == Strategies::NONE {
+    let done = if settings.options.algorithm == Algorithm::Fog {
         let show = &mut |progress| bar.show(&progress);
         (render::preview(scene, film, settings, &integrator.fog, layers, show), nothing())
     } else {
@@ -341,7 +344,7 @@ fn batches(
 /// Says why an image is black, or next to it.
 fn explain_darkness(image: &Image, setup: &Setup, task: &Task<'_>) {
     let options = &task.settings.options;
-    let is_preview = options.strategies == Strategies::NONE;
+    let is_preview = options.algorithm == Algorithm::Fog;
     if !is_preview && let Some(reason) = darkness::reason(&image.pixels, setup, options) {
         complain(&format!("warning: {reason}"));
     }

@@ -15,8 +15,8 @@ pub fn precision(arguments: &Render, setup: &Setup, settings: &Settings) -> Resu
         let expected = "an image without layers of moments";
         Err(Error::new("--error", expected, found, remedy))
     };
-    if let Some(name) = settings.options.strategies.preview() {
-        let found = format!("the preview {name}");
+    if settings.options.algorithm.is_preview() {
+        let found = format!("the preview {}", settings.options.algorithm.name());
         return refuse(&found, "remove --error, or choose another --integrator");
     }
     if setup.integrator.layers.iter().any(|layer| layer.needs_squares() || layer.content == Content::Mean) {

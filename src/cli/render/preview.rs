@@ -4,7 +4,7 @@ use crate::{
     cli::console::complain,
     math::{Spectrum, vec3},
     settings::integrator::FogSettings,
-    transport::Strategies,
+    transport::Algorithm,
 };
 use clap::Args;
 
@@ -49,15 +49,14 @@ impl Preview {
         FogSettings { color: self.fog_color, ambient: self.ambient, threshold: self.threshold }
     }
 
-    /// Warns where paths are made by `strategies`, and not the preview.
-    pub fn warn_of_idle(&self, strategies: Strategies) {
+    /// Warns where `algorithm` is another than this preview.
+    pub fn warn_of_idle(&self, algorithm: Algorithm) {
         let given = [
             ("--fog-color", self.fog_color.is_some()),
             ("--ambient", self.ambient.is_some()),
             ("--threshold", self.threshold.is_some()),
         ];
-        for (flag, _) in given.into_iter().filter(|(_, is_given)| *is_given && strategies != Strategies::NONE)
-        {
+        for (flag, _) in given.into_iter().filter(|(_, is_given)| *is_given && algorithm != Algorithm::Fog) {
             complain(&format!("warning: {flag} has no effect: it belongs to the preview --integrator fog"));
         }
     }

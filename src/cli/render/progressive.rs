@@ -6,7 +6,7 @@ use crate::{
     film::layer::Layer,
     render::progressive::{Method, Shaded},
     scene::build::Setup,
-    transport::{Strategies, observer::StrategyKind},
+    transport::{Algorithm, observer::StrategyKind},
 };
 use clap::Args;
 use serde_json::{Value, json};
@@ -47,9 +47,7 @@ pub fn estimator(given: &Estimator, setup: &Setup) -> Result<Estimator> {
             remedy,
         ));
     }
-    let wanted = given.integrator.unwrap_or(setup.integrator.options.strategies);
-    let kept = wanted.without(StrategyKind::Lens);
-    if kept == Strategies::NONE && wanted != kept {
+    if given.algorithm(setup) == Algorithm::Lt {
         let place = if given.integrator.is_some() { "--integrator" } else { "the scene's integrator" };
         let expected = "one that can shade single pixels, for --progressive";
         let found = "lt, whose light subpaths reach any pixel";
@@ -60,7 +58,7 @@ pub fn estimator(given: &Estimator, setup: &Setup) -> Result<Estimator> {
             "use --integrator bdpt or pt, or leave out --progressive",
         ));
     }
-    Ok(Estimator { integrator: Some(kept), ..given.clone() })
+    Ok(Estimator { without_lens: true, ..given.clone() })
 }
 
 /// An error where the image cannot be interpolated, or layers are of all of its samples.
@@ -98,7 +96,7 @@ pub fn begun(method: Method) -> Value {
 
 /// True if the picture lacks what light subpaths that the lens sees would bring.
 pub fn is_without_lens(given: &Estimator, setup: &Setup) -> bool {
-    given.strategies.is_empty() && given.integrator.unwrap_or(setup.integrator.options.strategies).lens
+    given.strategies.is_empty() && given.algorithm(setup).strategies().lens
 }
 
 /// The same of one that is finished, with or without the strategy lens.

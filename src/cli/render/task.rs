@@ -8,7 +8,7 @@ use crate::{
     passes::{Settings, budget::Budget},
     render::{Precision, sums::Picture},
     scene::build::Setup,
-    transport::Strategies,
+    transport::Algorithm,
 };
 use serde_json::Value;
 use std::{sync::Mutex, time::Instant};
@@ -60,8 +60,8 @@ fn settings(arguments: &Render, setup: &Setup) -> Result<(Settings, Option<Choic
     let started = Instant::now();
     let (settings, chosen) = estimator.chosen(setup, arguments.seed, to_come(arguments, setup))?;
     let spent = started.elapsed();
-    arguments.fog.warn_of_idle(settings.options.strategies);
-    let budget = budget(arguments, setup, settings.options.strategies == Strategies::NONE);
+    arguments.fog.warn_of_idle(settings.options.algorithm);
+    let budget = budget(arguments, setup, settings.options.algorithm == Algorithm::Fog);
     Ok((Settings { budget: Budget { spent, ..budget }, ..settings }, chosen))
 }
 

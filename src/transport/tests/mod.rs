@@ -37,6 +37,7 @@ use scenes::*;
 use std::sync::Arc;
 
 const ALL: Options = Options {
+    algorithm: crate::settings::options::Algorithm::Bdpt,
     strategies: Strategies::BDPT,
     effort: Effort::EQUAL,
     basis: crate::sampling::Basis::Quadtree,
