@@ -4,13 +4,14 @@ use super::{COMMON, InfiniteModel, Seen};
 use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
-    math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec3, similarity, vec3, warp},
+    math::{DMat3, DVec3, Mat3, Spectrum, SpectrumExt, Vec3, angle, similarity, vec3, warp},
     sampling::{Cell, Grid, Stream},
     texture::image::{self, Image},
 };
 use std::{
     f32::consts::{FRAC_1_PI, TAU},
     f64::consts::PI,
+    ops::{Add, Mul, Sub},
     sync::Arc,
 };
 
@@ -59,14 +60,20 @@ const SPARED: f32 = 0.5;
 /// The least part of its luminance that a pixel keeps: some strategies have no other way to reach it.
 const KEPT: f32 = 0.03;
 
-/// Where a direction points on the map: the cell, and how far into it by angles.
+/// Where a direction points on the map: the cell, and how far into it.
 #[derive(Clone, Copy, Debug)]
 struct Spot {
     column: usize,
     row: usize,
     x: f32,
+    /// By the angle, as radiance is interpolated.
     y: f32,
+    /// By the cosine, as densities are.
+    descent: f32,
 }
+
+/// The four corners of a cell, row by row.
+type Corners<T> = [T; 4];
 
 impl EnvMap {
     pub(super) const TABLE: Table = table! {
@@ -106,33 +113,28 @@ impl EnvMap {
 impl InfiniteModel for EnvMap {
     #[inline]
     fn radiance(&self, towards: Vec3) -> Spectrum {
-        self.map.radiance(&self.map.spot(self.to_local * towards)) * self.scale
+        self.seen(towards).radiance
     }
 
     #[inline]
     fn sample(&self, stream: &mut Stream) -> Vec3 {
-        self.sample_by(&self.starts, stream)
+        self.sample_by(&self.starts, stream).0
     }
 
     #[inline]
     fn pdf_sr(&self, towards: Vec3) -> f32 {
-        let local = self.to_local * towards;
-        self.starts.pdf_sr(&self.map, local, &self.map.spot(local))
+        self.seen(towards).pdf_sr
     }
 
     #[inline]
-    fn aim(&self, stream: &mut Stream) -> Vec3 {
+    fn aim(&self, stream: &mut Stream) -> (Vec3, Seen) {
         self.sample_by(self.aimed.as_ref().unwrap_or(&self.starts), stream)
     }
 
     #[inline]
     fn seen(&self, towards: Vec3) -> Seen {
-        let local = self.to_local * towards;
-        let spot = self.map.spot(local);
-        let radiance = self.map.radiance(&spot) * self.scale;
-        let pdf_sr = self.starts.pdf_sr(&self.map, local, &spot);
-        let aimed_sr = self.aimed.as_ref().map_or(pdf_sr, |aimed| aimed.pdf_sr(&self.map, local, &spot));
-        Seen { radiance, pdf_sr, aimed_sr }
+        let spot = self.map.spot(self.to_local * towards);
+        self.seen_at(&spot, &self.map.corners(spot.column, spot.row))
     }
 
     fn fluence(&self) -> DVec3 {
@@ -141,18 +143,34 @@ impl InfiniteModel for EnvMap {
 }
 
 impl EnvMap {
+    /// A direction, and what there is.
     #[inline]
-    fn sample_by(&self, aim: &Aim, stream: &mut Stream) -> Vec3 {
+    fn sample_by(&self, aim: &Aim, stream: &mut Stream) -> (Vec3, Seen) {
         let Cell { column, row, within } = aim.cells.sample(stream);
-        let [[a, b], [c, d]] = aim.corners(&self.map, column, row);
-        let y = warp::linear(a + b, c + d, within.y);
-        let x = warp::linear(a + y * (c - a), b + y * (d - b), within.x);
+        let corners = self.map.corners(column, row);
+        let [a, b, c, d] = each(&corners, |pixel| aim.of(pixel.luminance()));
+        let descent = warp::linear(a + b, c + d, within.y);
+        let x = warp::linear(a + descent * (c - a), b + descent * (d - b), within.x);
         let (top, bottom) = (self.map.cosines[row], self.map.cosines[row + 1]);
-        let cosine = (top + f64::from(y) * (bottom - top)) as f32;
+        let cosine = (top + f64::from(descent) * (bottom - top)) as f32;
         let azimuth = (column as f32 + 0.5 + x) / self.map.image.width as f32 * TAU;
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let (s, c) = azimuth.sin_cos();
-        (self.to_local.transpose() * vec3(sine * s, cosine, -sine * c)).normalize()
+        let towards = (self.to_local.transpose() * vec3(sine * s, cosine, -sine * c)).normalize();
+        let y = (self.map.rows_down(sine, cosine) - row as f32).clamp(0.0, 1.0);
+        (towards, self.seen_at(&Spot { column, row, x, y, descent }, &corners))
+    }
+
+    /// What there is at a place whose cell has these `corners`.
+    #[inline]
+    fn seen_at(&self, &Spot { x, y, descent, .. }: &Spot, corners: &Corners<Spectrum>) -> Seen {
+        let luminance = each(corners, |pixel| pixel.luminance());
+        let pdf_sr = self.starts.pdf_sr(&luminance, x, descent);
+        Seen {
+            radiance: between(corners, x, y) * self.scale,
+            pdf_sr,
+            aimed_sr: self.aimed.as_ref().map_or(pdf_sr, |aimed| aimed.pdf_sr(&luminance, x, descent)),
+        }
     }
 }
 
@@ -161,8 +179,8 @@ impl Aim {
     fn new(map: &Map, spared: f32) -> Self {
         let mut aim = Self { cells: Grid::new(1, &[0.0]), scale: 0.0, spared };
         let weight = |(x, y)| {
-            let corners = aim.corners(map, x, y);
-            corners.as_flattened().iter().map(|aim| f64::from(0.25 * aim)).sum::<f64>() * map.solid_angle(y)
+            let corners = each(&map.corners(x, y), |pixel| aim.of(pixel.luminance()));
+            corners.iter().map(|aim| f64::from(0.25 * aim)).sum::<f64>() * map.solid_angle(y)
         };
         let weights: Vec<f64> = map.places().map(weight).collect();
         aim.cells = Grid::new(map.image.width, &weights);
@@ -170,28 +188,33 @@ impl Aim {
         aim
     }
 
-    /// Density at `local` [1/sr], which is at `spot`.
+    /// Density within a cell [1/sr], of whose corners the `luminance` is given.
     #[inline]
-    fn pdf_sr(&self, map: &Map, local: Vec3, &Spot { column, row, x, .. }: &Spot) -> f32 {
-        let (top, bottom) = (map.cosines[row], map.cosines[row + 1]);
-        let y = ((top - cosine(local)) / (top - bottom)).clamp(0.0, 1.0) as f32;
-        let [[a, b], [c, d]] = self.corners(map, column, row);
-        let (left, right) = (a + y * (c - a), b + y * (d - b));
-        (left + x * (right - left)) * self.scale
+    fn pdf_sr(&self, luminance: &Corners<f32>, x: f32, descent: f32) -> f32 {
+        between(&each(luminance, |luminance| self.of(*luminance)), x, descent) * self.scale
     }
 
-    /// What the density is in proportion to, at the corners of a cell, row by row.
+    /// What the density is in proportion to, at a pixel.
     #[inline]
-    fn corners(&self, map: &Map, column: usize, row: usize) -> [[f32; 2]; 2] {
-        [row, row + 1].map(|row| [column, column + 1].map(|column| self.at(map.pixel(column, row))))
-    }
-
-    /// The same at a pixel.
-    #[inline]
-    fn at(&self, pixel: Spectrum) -> f32 {
-        let luminance = pixel.luminance();
+    fn of(&self, luminance: f32) -> f32 {
         (luminance - self.spared).max(KEPT * luminance)
     }
+}
+
+/// Something of all corners. The standard library's way to map arrays is not always inlined.
+#[inline(always)]
+fn each<T, U>([a, b, c, d]: &Corners<T>, of: impl Fn(&T) -> U) -> Corners<U> {
+    [of(a), of(b), of(c), of(d)]
+}
+
+/// What is so far into a cell, between its corners.
+#[inline(always)]
+fn between<T>(&[a, b, c, d]: &Corners<T>, x: f32, y: f32) -> T
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f32, Output = T>,
+{
+    let (left, right) = (a + (c - a) * y, b + (d - b) * y);
+    left + (right - left) * x
 }
 
 impl Map {
@@ -213,20 +236,15 @@ impl Map {
 
     /// The mean over a cell.
     fn mean(&self, column: usize, row: usize) -> Spectrum {
-        let corners = [(column, row), (column + 1, row), (column, row + 1), (column + 1, row + 1)];
-        0.25 * corners.map(|(x, y)| self.pixel(x, y)).iter().sum::<Spectrum>()
+        0.25 * self.corners(column, row).iter().sum::<Spectrum>()
     }
 
     #[inline]
-    fn radiance(&self, &Spot { column, row, x, y }: &Spot) -> Spectrum {
-        let mix = |row| self.pixel(column, row).lerp(self.pixel(column + 1, row), x);
-        mix(row).lerp(mix(row + 1), y)
-    }
-
-    #[inline]
-    fn pixel(&self, column: usize, row: usize) -> Spectrum {
-        let column = if column == self.image.width { 0 } else { column };
-        self.image.pixels[row * self.image.width + column]
+    fn corners(&self, column: usize, row: usize) -> Corners<Spectrum> {
+        let (pixels, width) = (&self.image.pixels, self.image.width);
+        let (left, right) =
+            (row * width + column, row * width + if column + 1 == width { 0 } else { column + 1 });
+        [pixels[left], pixels[right], pixels[left + width], pixels[right + width]]
     }
 
     /// Solid angle of a cell between `row` and the next [sr].
@@ -237,15 +255,23 @@ impl Map {
 
     #[inline]
     fn spot(&self, local: Vec3) -> Spot {
-        let (width, rows) = (self.image.width as f32, (self.image.height - 1) as f32);
-        let turn = local.x.atan2(-local.z) * (0.5 * FRAC_1_PI);
-        let x = (turn - turn.floor()) * width - 0.5;
+        let width = self.image.width as f32;
+        let turn = angle::atan2(local.x, -local.z) * (0.5 * FRAC_1_PI);
+        let x = (if turn < 0.0 { turn + 1.0 } else { turn }) * width - 0.5;
         let x = if x < 0.0 { x + width } else { x };
-        // Precise near the poles too, where the cosine is not.
-        let y = local.x.hypot(local.z).atan2(local.y) * FRAC_1_PI * rows;
+        let y = self.rows_down((local.x * local.x + local.z * local.z).sqrt(), local.y);
         let column = (x as usize).min(self.image.width - 1);
         let row = (y as usize).min(self.image.height - 2);
-        Spot { column, row, x: (x - column as f32).min(1.0), y: (y - row as f32).clamp(0.0, 1.0) }
+        let (top, bottom) = (self.cosines[row], self.cosines[row + 1]);
+        let descent = ((top - cosine(local)) / (top - bottom)).clamp(0.0, 1.0) as f32;
+        let (x, y) = ((x - column as f32).min(1.0), (y - row as f32).clamp(0.0, 1.0));
+        Spot { column, row, x, y, descent }
+    }
+
+    /// From the first row, of a direction of that `sine` and `cosine` to +y: precise near the poles too, where the cosine is not.
+    #[inline]
+    fn rows_down(&self, sine: f32, cosine: f32) -> f32 {
+        angle::atan2(sine, cosine) * FRAC_1_PI * (self.image.height - 1) as f32
     }
 }
 

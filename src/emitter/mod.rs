@@ -140,9 +140,10 @@ pub trait InfiniteModel {
     /// Density of [`Self::sample`] [1/sr]; 1 of the only direction there is.
     fn pdf_sr(&self, towards: Vec3) -> f32;
 
-    /// A unit direction for next-event estimation to take.
-    fn aim(&self, stream: &mut Stream) -> Vec3 {
-        self.sample(stream)
+    /// A unit direction for next-event estimation to take, and what there is.
+    fn aim(&self, stream: &mut Stream) -> (Vec3, Seen) {
+        let towards = self.sample(stream);
+        (towards, self.seen(towards))
     }
 
     /// What there is in a direction, for the cost of one of its parts where that is most of all.
@@ -244,7 +245,7 @@ emitters! {
         #[inline] fn radiance(towards: Vec3) -> Spectrum;
         #[inline] fn sample(stream: &mut Stream) -> Vec3;
         #[inline] fn pdf_sr(towards: Vec3) -> f32;
-        #[inline] fn aim(stream: &mut Stream) -> Vec3;
+        #[inline] fn aim(stream: &mut Stream) -> (Vec3, Seen);
         #[inline] fn seen(towards: Vec3) -> Seen;
         fn fluence() -> DVec3;
         #[inline] fn direction() -> Option<Vec3>;

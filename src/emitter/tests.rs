@@ -136,7 +136,7 @@ fn directions_follow_their_densities() {
             Kind::Point(e) => check(emitter.name, |s| e.sample(s), |d| e.pdf_sr(d), |d| e.intensity(d)),
             Kind::Infinite(e) => {
                 check(emitter.name, |s| e.sample(s), |d| e.pdf_sr(d), |d| e.radiance(d));
-                check(emitter.name, |s| e.aim(s), |d| e.seen(d).aimed_sr, |d| e.seen(d).radiance);
+                check(emitter.name, |s| e.aim(s).0, |d| e.seen(d).aimed_sr, |d| e.seen(d).radiance);
             }
             other => panic!("{other:?}"),
         }

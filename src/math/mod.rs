@@ -1,5 +1,6 @@
 //! Vectors, frames, colours, warps and measures: what every other module builds on.
 
+pub mod angle;
 pub mod axes;
 pub mod black_body;
 pub mod boxes;

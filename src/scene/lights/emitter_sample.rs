@@ -3,7 +3,7 @@
 use super::{Disk, EmitterPoint, Geometry, Lights, light_sampler::Taken};
 use crate::{
     emitter::{
-        BeamEmitter, BeamModel, InfiniteEmitter, InfiniteModel, Kind, PointEmitter, PointModel, SurfaceModel,
+        BeamEmitter, BeamModel, InfiniteModel, Kind, PointEmitter, PointModel, Seen, SurfaceModel,
         VolumeEmitter,
     },
     math::{Spectrum, Vec3, measure},
@@ -75,7 +75,10 @@ impl Lights {
                 self.surface_sample(geometry, index, point, chosen * pdf, reference)
             }
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
-            Kind::Infinite(sky) => self.infinite_sample(index, sky, sky.aim(stream), chosen),
+            Kind::Infinite(sky) => {
+                let (towards, seen) = sky.aim(stream);
+                self.infinite_sample(index, towards, seen, chosen)
+            }
             Kind::Beam(beam) => self.beam_sample(index, beam, chosen, reference),
             Kind::Medium(volume) => {
                 let position = volume.emission.sample(stream);
@@ -128,14 +131,7 @@ impl Lights {
         })
     }
 
-    fn infinite_sample(
-        &self,
-        index: usize,
-        sky: &InfiniteEmitter,
-        towards: Vec3,
-        chosen: f32,
-    ) -> Option<EmitterSample> {
-        let seen = sky.seen(towards);
+    fn infinite_sample(&self, index: usize, towards: Vec3, seen: Seen, chosen: f32) -> Option<EmitterSample> {
         (seen.aimed_sr > 0.0).then(|| EmitterSample {
             light: index as u32,
             point: EmitterPoint::Direction(towards),
@@ -220,6 +216,7 @@ impl Lights {
     pub fn infinity_hit(&self, direction: Vec3, reference: Vec3) -> Option<EmitterSample> {
         let index = self.environment? as usize;
         let sky = self.all[index].emitter.environment()?;
-        self.infinite_sample(index, sky, direction, self.connections.probability(index, reference))
+        let chosen = self.connections.probability(index, reference);
+        self.infinite_sample(index, direction, sky.seen(direction), chosen)
     }
 }
