@@ -43,7 +43,7 @@ impl Lights {
         if self.connections.is_empty() {
             return None;
         }
-        let (index, cell) = match self.connections.sample(reference, stream.uniform_precisely()) {
+        let (index, cell) = match self.connections.sample(reference, stream) {
             Taken::Emitter(index, chosen) => {
                 return self.sample_point_of(geometry, index, chosen, reference, stream);
             }

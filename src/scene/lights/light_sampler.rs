@@ -3,7 +3,11 @@
 mod leaves;
 
 use super::{Light, light_tree::LightTree};
-use crate::{math::Vec3, medium::Emission, sampling::Discrete};
+use crate::{
+    math::Vec3,
+    medium::Emission,
+    sampling::{Discrete, Stream},
+};
 pub use leaves::Extent;
 
 /// How often an emitter is taken whatever the reference: the tree knows nothing of what stands in the way, and may think
@@ -13,6 +17,8 @@ const REGARDLESS: f64 = 0.2;
 /// The distribution.
 #[derive(Clone, Debug, Default)]
 pub struct LightSampler {
+    /// The emitter that there is no other beside.
+    only: Option<usize>,
     /// Half by power, half uniform, whatever the reference.
     regardless: Discrete,
     /// By what each is estimated to give the reference; none where there is nothing to choose. The first leaves are the
@@ -46,7 +52,10 @@ impl LightSampler {
             |(light, power): (&Light, &f64)| if light.emitter.is_connectible() { *power } else { 0.0 };
         let powers: Vec<f64> = all.iter().zip(powers).map(joinable).collect();
         let (tree, media) = extent.tree(all, &powers);
-        Self { regardless: regardless(powers.into_iter()), tree, media }
+        let mut lit = (0..powers.len()).filter(|index| powers[*index] > 0.0);
+        let only = lit.next().filter(|_| tree.is_none() && lit.next().is_none());
+        drop(lit);
+        Self { only, regardless: regardless(powers.into_iter()), tree, media }
     }
 
     /// True where nothing can be connected to.
@@ -54,9 +63,13 @@ impl LightSampler {
         self.regardless.is_empty()
     }
 
-    /// The emitter that `u` in [0, 1) falls on for `reference`.
+    /// One for `reference`; of a single one no number is drawn.
     #[inline]
-    pub fn sample(&self, reference: Vec3, u: f64) -> Taken {
+    pub fn sample(&self, reference: Vec3, stream: &mut Stream) -> Taken {
+        if let Some(index) = self.only {
+            return Taken::Emitter(index, 1.0);
+        }
+        let u = stream.uniform_precisely();
         let Some(tree) = &self.tree else {
             let (index, probability) = self.regardless.sample_precisely(u);
             return Taken::Emitter(index, probability as f32);
@@ -79,6 +92,9 @@ impl LightSampler {
     /// Probability of the emitter `index`, which is no medium of several leaves, for `reference`.
     #[inline]
     pub fn probability(&self, index: usize, reference: Vec3) -> f32 {
+        if let Some(only) = self.only {
+            return if index == only { 1.0 } else { 0.0 };
+        }
         let regardless = self.regardless.probability_precisely(index);
         match &self.tree {
             Some(tree) if regardless > 0.0 => mixed(regardless, tree.probability(index as u32, reference)),
