@@ -172,6 +172,7 @@ struct View<'a> {
 /// The camera as the file places it.
 struct Camera<'a> {
     sensor: Sensor,
+    crop: Crop,
     /// Where the ray through the middle of the image starts: on the near plane.
     start: Vec3,
     /// The medium that the file says it is in.
@@ -450,7 +451,11 @@ impl<'a> Builder<'a> {
         params.finish()?;
         let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
         let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;
-        Ok(View { camera: Camera { sensor, start, stated, location: &object.location }, film, sampling })
+        Ok(View {
+            camera: Camera { sensor, crop, start, stated, location: &object.location },
+            film,
+            sampling,
+        })
     }
 
     /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
@@ -485,7 +490,7 @@ impl<'a> Builder<'a> {
         }
         self.names().warn_of_ties(&self.apart.contacts);
         let Self { surfaces, bsdfs, recentre, shape_names, bsdf_names, apart, .. } = self;
-        let sensor = camera.sensor;
+        let Camera { sensor, crop, .. } = camera;
         let scene = Scene {
             geometry,
             surfaces,
@@ -493,6 +498,7 @@ impl<'a> Builder<'a> {
             media,
             lights,
             sensor,
+            crop,
             media_map: MediaMap { outside, sensor: sensor_medium, known, overlaps, nowhere, shut_in },
             recentre,
         };

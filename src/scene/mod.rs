@@ -18,7 +18,7 @@ use crate::{
     bsdf::{Bsdf, BsdfModel},
     math::{DVec3, Spectrum, Vec3},
     medium::Medium,
-    sensor::Sensor,
+    sensor::{Crop, Sensor},
     shape::SurfacePoint,
 };
 use accel::Geometry;
@@ -58,6 +58,8 @@ pub struct Scene {
     pub lights: Lights,
     /// The camera.
     pub sensor: Sensor,
+    /// Its image.
+    pub crop: Crop,
     /// Where the origin of all positions lies in the file's coordinates [m].
     pub recentre: DVec3,
 }

@@ -9,6 +9,7 @@ use super::{
     mis::{self, MisSums, Weight},
     observer::{Meeting, Observer, StrategyKind},
     profile::Profile,
+    roulette::Pending,
     segment::{FlightPart, Interaction, Passed},
     vertex::{Subpath, Vertex},
     walk::{Arrival, Departure, Kind, Visitor, arrive, cross, walk},
@@ -47,13 +48,7 @@ pub fn sample<P: Profile, R: Observer>(
     observer: R,
     stream: &mut Stream,
 ) -> R {
-    let kind = Kind {
-        transport: Transport::Radiance,
-        hero,
-        max_edges: estimator.max_edges,
-        survival: estimator.survival,
-        guide: estimator.guide.as_deref(),
-    };
+    let kind = Kind::of_camera(estimator, hero);
     let departure = depart(estimator, film, aperture);
     let mut camera = CameraPath::new(estimator, light, hero, observer);
     walk(estimator.scene, kind, departure, &mut camera, stream);
@@ -79,6 +74,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Ve
         pdf_fwd: pdf,
         others_before_segment: P::MisSums::none(),
         pdf_over_hero: P::Channels::splat(1.0),
+        pending: Pending::NONE,
     }
 }
 
@@ -103,8 +99,19 @@ impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
     }
 
     #[inline]
+    fn reach(&mut self, vertex: &Vertex<P::MisSums>) {
+        self.observer.arrive(vertex.event());
+        // Where nulls exist, flights have already reported the emitters that they reached, passed or not.
+        if !P::NULLS
+            && let Interaction::Surface(point) = &vertex.interaction
+            && let Some(light) = self.estimator.scene.surface(point.shape).emitter
+        {
+            self.surface_emission(&vertex.subpath, light, point, self.previous);
+        }
+    }
+
+    #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
-        self.reach(vertex);
         if P::MEDIA && self.estimator.counts.equiangular > 0.0 && vertex.subpath.edges == 1 {
             self.first = FirstCollision::of(vertex, self.previous, self.pdf_fwd);
         }
@@ -147,19 +154,6 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         observer: R,
     ) -> Self {
         Self { estimator, light, hero, previous: Vec3::ZERO, pdf_fwd: 0.0, first: None, observer }
-    }
-
-    /// Shows `vertex`, and what is emitted there, whether the walk goes on from there or not.
-    #[inline]
-    pub fn reach(&mut self, vertex: &Vertex<P::MisSums>) {
-        self.observer.arrive(vertex.event());
-        // Where nulls exist, flights have already reported the emitters that they reached, passed or not.
-        if !P::NULLS
-            && let Interaction::Surface(point) = &vertex.interaction
-            && let Some(light) = self.estimator.scene.surface(point.shape).emitter
-        {
-            self.surface_emission(&vertex.subpath, light, point, self.previous);
-        }
     }
 
     /// What else there is along the primary ray, once the walk is done: it comes to the evenly spread numbers first.

@@ -194,13 +194,14 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
                 .scaled(1.0 / pdf),
             others_over_pdf_rev: P::MisSums::none(),
         };
-        let survival = estimator.survival.of(properties.survival());
+        let (survival, pending) = estimator.roulette.at(properties.survival(), departure.pending);
         let (interaction, connections) = (Interaction::Medium(position, properties), estimator.counts.lens);
         let guidance = match &estimator.guide {
             Some(guide) if P::GUIDED => guide.guidance(position, None, subpath.incoming, Transport::Radiance),
             _ => Guidance::NONE,
         };
-        Some(Vertex { interaction, survival, connections, kind: StrategyKind::Lens, guidance, subpath })
+        let kind = StrategyKind::Lens;
+        Some(Vertex { interaction, survival, pending, connections, kind, guidance, subpath })
     }
 
     /// The connection of `vertex` with the emitter point picked for it.

@@ -18,7 +18,6 @@ use super::{
     walk::{Kind, Visitor, go_on, walk},
 };
 use crate::{
-    bsdf::Transport,
     math::{Channels, Vec2},
     sampling::Stream,
     shape::Ray,
@@ -35,8 +34,7 @@ pub fn sample<P: Profile, R: Observer>(
     stream: &mut Stream,
 ) -> R {
     let (scene, max_edges) = (estimator.scene, estimator.max_edges);
-    let guide = estimator.guide.as_deref();
-    let kind = Kind { transport: Transport::Radiance, hero, max_edges, survival: estimator.survival, guide };
+    let kind = Kind::of_camera(estimator, hero);
     let departure = depart(estimator, film, aperture);
     let mut camera = CameraPath::new(estimator, light, hero, observer);
     if max_edges == 0 {

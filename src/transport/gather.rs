@@ -15,7 +15,6 @@ use super::{
     walk::{Departure, Kind, Visitor, go_on},
 };
 use crate::{
-    bsdf::Transport,
     guide::Radiance,
     math::{Vec2, Vec3},
     sampling::Stream,
@@ -30,8 +29,8 @@ pub fn sample<P: Profile, R: Observer>(
     observer: R,
     stream: &mut Stream,
 ) -> R {
-    let (scene, max_edges, guide) = (estimator.scene, estimator.max_edges, estimator.guide.as_deref());
-    let kind = Kind { transport: Transport::Radiance, hero, max_edges, survival: estimator.survival, guide };
+    let (scene, max_edges) = (estimator.scene, estimator.max_edges);
+    let kind = Kind::of_camera(estimator, hero);
     let path = CameraPath::new(estimator, Partners::NONE, hero, observer);
     let mut gather = Gather { path, radiance, has_scattered: false, is_done: false };
     let mut next = Some(depart(estimator, film, aperture)).filter(|_| max_edges > 0);
@@ -70,13 +69,17 @@ impl<P: Profile, R: Observer> Visitor<P> for Gather<'_, P, R> {
     }
 
     #[inline]
+    fn reach(&mut self, vertex: &Vertex<P::MisSums>) {
+        self.path.reach(vertex);
+    }
+
+    #[inline]
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream) {
         let Estimator { scene, max_edges, .. } = *self.path.estimator;
         if !(self.has_scattered && vertex.event().is_dull(scene)) {
             self.has_scattered |= vertex.is_connectible(scene);
             return self.path.arrive(vertex, stream);
         }
-        self.path.reach(vertex);
         if vertex.subpath.edges < max_edges {
             let Subpath { throughput, pdf_over_hero, .. } = vertex.subpath;
             let radiance = self.radiance.at(&vertex.event().seen(scene));

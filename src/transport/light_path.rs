@@ -9,6 +9,7 @@ use super::{
     mis::{End, MisSums},
     observer::{Meeting, Observer, StrategyKind},
     profile::Profile,
+    roulette::Pending,
     segment::Interaction,
     vertex::Vertex,
     walk::{Departure, Kind, Visitor, walk},
@@ -48,7 +49,7 @@ pub fn trace<P: Profile>(
         transport: Transport::Importance,
         hero,
         max_edges: estimator.max_edges.saturating_sub(1),
-        survival: estimator.survival,
+        roulette: estimator.roulette,
         guide: estimator.guide.as_deref(),
     };
     let mut light = LightPath::new(estimator, cache, observer, start, hero);
@@ -101,6 +102,7 @@ pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) 
             connect::rate_at::<P>(&start.point).scaled(emitter_hits * start.cosine / start.pdf),
         ),
         pdf_over_hero: P::Channels::splat(1.0),
+        pending: Pending::NONE,
     }
 }
 

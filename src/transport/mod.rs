@@ -74,6 +74,7 @@ mod light_path;
 mod mis;
 pub mod observer;
 pub mod profile;
+mod roulette;
 mod segment;
 #[cfg(test)]
 mod tests;
@@ -107,6 +108,7 @@ use crate::{
 use mis::Strategy;
 use observer::{Meeting, Observer, StrategyKind};
 use profile::Profile;
+use roulette::Roulette;
 use std::sync::Arc;
 
 /// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
@@ -129,7 +131,10 @@ pub struct Estimator<'a, P: Profile> {
     scene: &'a Scene,
     counts: Counts,
     heuristic: Heuristic,
+    /// When walks end, as was asked,
     survival: Survival,
+    /// and as they do.
+    roulette: Roulette,
     connections_per_vertex: u32,
     connections: Connections,
     /// Probability that a light vertex is kept for connections.
@@ -172,6 +177,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             },
             heuristic,
             survival: effort.survival,
+            roulette: Roulette::AtOnce(effort.survival),
             connections_per_vertex: 0,
             connections,
             keep: 0.0,
@@ -188,6 +194,10 @@ impl<'a, P: Profile> Estimator<'a, P> {
             Connections::Cached => estimator.plan_connections(effort.connections, seed, walks_per_block),
             // Every strategy takes one sample of each pair of subpaths, as LW96 eq. 14 has it.
             Connections::All => (estimator.keep, estimator.counts.connection) = (1.0, 1.0),
+        }
+        // A guide's walks are those that pilots know, whose records hold the probability at every vertex.
+        if lit && !P::GUIDED && !estimator.needs_light_walks() {
+            estimator.roulette = Roulette::alone(&mut estimator);
         }
         estimator
     }

@@ -5,6 +5,7 @@ use super::{
     mis::MisSums,
     observer::StrategyKind,
     profile::Profile,
+    roulette::Pending,
     segment::Interaction,
 };
 use crate::{
@@ -12,6 +13,7 @@ use crate::{
     guide::{Guidance, Guide},
     math::{Channels, Spectrum, Vec3, offset::Lift},
     medium::MediumIndex,
+    sampling::Stream,
     scene::Scene,
     shape::SurfacePoint,
 };
@@ -66,8 +68,10 @@ pub struct Subpath<S: MisSums> {
 pub struct Vertex<S: MisSums> {
     /// Surface or medium.
     pub interaction: Interaction,
-    /// Probability that the walk goes on from here.
+    /// Probability that the walk goes on from here, if that is drawn before the flight; else 1.
     pub survival: f32,
+    /// What is drawn at the end of the flight.
+    pub pending: Pending,
     /// n_i: expected samples of the strategy that connects across the segment before; 0 where none can.
     pub connections: f32,
     /// Of which kind that strategy is.
@@ -84,6 +88,17 @@ impl<S: MisSums> Subpath<S> {
     pub fn arrival(&self) -> Arrival {
         let Self { medium, incoming, edges, inv_pdf, throughput, .. } = *self;
         Arrival { medium, incoming, edges, density: 1.0 / inv_pdf, throughput }
+    }
+
+    /// The roulette that the vertex before left to this one; none where the walk ends by it.
+    #[inline]
+    pub fn survive(&mut self, survival: f32, stream: &mut Stream) -> Option<()> {
+        if survival < 1.0 {
+            self.throughput /= survival;
+            self.inv_pdf /= survival;
+            return (stream.uniform() < survival).then_some(());
+        }
+        Some(())
     }
 }
 

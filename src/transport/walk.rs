@@ -2,10 +2,12 @@
 //! running sums of the weights.
 
 use super::{
+    Estimator,
     event::Leg,
     mis::MisSums,
     observer::StrategyKind,
     profile::Profile,
+    roulette::{Pending, Roulette},
     segment::{EmitterCrossing, FlightState, FreeFlight, Interaction, Passed, Segment, sample_free_flight},
     vertex::{Scattering, Subpath, Vertex, shading_correction},
 };
@@ -17,7 +19,6 @@ use crate::{
     phase::Deflection,
     sampling::Stream,
     scene::Scene,
-    settings::options::Survival,
     shape::{Ray, SurfacePoint},
 };
 
@@ -46,6 +47,8 @@ pub struct Departure<S: MisSums> {
     pub others_before_segment: S,
     /// pdf_over_hero of this vertex.
     pub pdf_over_hero: S::Channels,
+    /// The roulette of this vertex, if it is drawn at the next one.
+    pub pending: Pending,
 }
 
 impl<S: MisSums> Departure<S> {
@@ -76,7 +79,11 @@ pub trait Visitor<P: Profile> {
     #[inline]
     fn depart(&mut self, _departure: &Departure<P::MisSums>) {}
 
-    /// A vertex was reached; it may scatter on.
+    /// A vertex was reached, where the walk may end.
+    #[inline]
+    fn reach(&mut self, _vertex: &Vertex<P::MisSums>) {}
+
+    /// It did not; it may scatter on.
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream);
 
     /// The flight from `departure` passes something that may emit.
@@ -103,9 +110,18 @@ pub struct Kind<'a> {
     /// Most segments.
     pub max_edges: u32,
     /// When it ends before.
-    pub survival: Survival,
+    pub roulette: Roulette,
     /// What it follows.
     pub guide: Option<&'a Guide>,
+}
+
+impl<'a> Kind<'a> {
+    /// A camera subpath of channel `hero`.
+    #[inline]
+    pub fn of_camera<P: Profile>(estimator: &'a Estimator<'_, P>, hero: usize) -> Self {
+        let Estimator { max_edges, roulette, .. } = *estimator;
+        Self { transport: Transport::Radiance, hero, max_edges, roulette, guide: estimator.guide.as_deref() }
+    }
 }
 
 /// Walks from `departure` until absorption, escape or the depth limit, showing every vertex to `visitor`.
@@ -151,6 +167,8 @@ pub fn go_on<P: Profile>(
     };
     let mut vertex = land::<P, _>(scene, kind, departure, flight, interaction, visitor)?;
     adjusted(&mut vertex.subpath);
+    visitor.reach(&vertex);
+    vertex.subpath.survive(departure.pending.survival, stream)?;
     visitor.arrive(&vertex, stream);
     if vertex.subpath.edges == kind.max_edges {
         return None;
@@ -212,14 +230,16 @@ pub fn land<P: Profile, V: Visitor<P>>(
     };
     let subpath = arrive::<P>(departure, &flight.state, flight.medium, &at, kind.hero)?;
     let connections = if departure.dirac { 0.0 } else { visitor.connections(subpath.edges, position) };
-    let survival = kind.survival.of(interaction.albedo_bound(scene, subpath.incoming));
+    let albedo = interaction.albedo_bound(scene, subpath.incoming);
+    let (survival, pending) = kind.roulette.at(albedo, departure.pending);
     let guidance = match kind.guide {
         Some(guide) if P::GUIDED && interaction.is_connectible(scene) => {
             guide.guidance(position, interaction.normal(), subpath.incoming, kind.transport)
         }
         _ => Guidance::NONE,
     };
-    Some(Vertex { interaction, survival, connections, kind: V::kind(subpath.edges), guidance, subpath })
+    let kind = V::kind(subpath.edges);
+    Some(Vertex { interaction, survival, pending, connections, kind, guidance, subpath })
 }
 
 /// The subpath that a flight extends to `at`; none if its density is not finite and positive.
@@ -329,7 +349,7 @@ fn scatter<P: Profile>(
     vertex: &Vertex<P::MisSums>,
     stream: &mut Stream,
 ) -> Option<Departure<P::MisSums>> {
-    if stream.uniform() >= vertex.survival {
+    if vertex.survival < 1.0 && stream.uniform() >= vertex.survival {
         return None;
     }
     let scattered = match kind.guide {
@@ -413,6 +433,7 @@ pub fn set_out<S: MisSums>(scene: &Scene, vertex: &Vertex<S>, scattered: &Scatte
             .times(vertex.sigma_t())
             .scaled(vertex.cosine(scattered.direction) * subpath.inv_pdf),
         pdf_over_hero: subpath.pdf_over_hero,
+        pending: vertex.pending,
     }
 }
 

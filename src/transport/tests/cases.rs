@@ -66,9 +66,10 @@ impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::MisSums> {
     fn connections(&self, edges: u32, position: Vec3) -> f32 {
         self.visitor.connections(edges, position)
     }
-    fn arrive(&mut self, vertex: &Vertex<P::MisSums>, _: &mut Stream) {
+    fn reach(&mut self, vertex: &Vertex<P::MisSums>) {
         self.vertices.push(*vertex);
     }
+    fn arrive(&mut self, _: &Vertex<P::MisSums>, _: &mut Stream) {}
     fn pass(&mut self, departure: &Departure<P::MisSums>, passed: &Passed<P::Channels>, _: &mut Stream) {
         self.passed.push((self.vertices.len(), *departure, *passed));
     }
@@ -84,13 +85,7 @@ pub fn camera_walk<'a, P: Profile>(
     hero: usize,
     stream: &mut Stream,
 ) -> Trail<CameraPath<'a, P, Sum>, P::MisSums> {
-    let kind = Kind {
-        transport: Transport::Radiance,
-        hero,
-        max_edges: estimator.max_edges,
-        survival: estimator.survival,
-        guide: estimator.guide.as_deref(),
-    };
+    let kind = Kind::of_camera(estimator, hero);
     let departure = camera_path::depart(estimator, film, APERTURE);
     let mut trail = Trail::new(CameraPath::new(estimator, Partners::NONE, hero, Sum::default()));
     walk::<P>(estimator.scene, kind, departure, &mut trail, stream);
@@ -109,14 +104,7 @@ fn light_walk<'a, P: Profile>(
     stream: &mut Stream,
 ) -> Trail<LightPath<'a, P, WideFilm>, P::MisSums> {
     let max_edges = estimator.max_edges.saturating_sub(1);
-    let Estimator { survival, guide, .. } = estimator;
-    let kind = Kind {
-        transport: Transport::Importance,
-        hero,
-        max_edges,
-        survival: *survival,
-        guide: guide.as_deref(),
-    };
+    let kind = Kind { transport: Transport::Importance, max_edges, ..Kind::of_camera(estimator, hero) };
     let mut trail = Trail::new(visitor);
     walk::<P>(estimator.scene, kind, light_path::depart(estimator, start), &mut trail, stream);
     trail

@@ -17,7 +17,11 @@ use crate::{
         lights::{self, Densities, EmissionSample, EmitterPoint, EmitterSample, Light, Pivot, Start, Starts},
     },
     shape::SurfacePoint,
-    transport::{Counts, Estimator, Heuristic, Interaction, Survival, profile::Profile},
+    transport::{
+        Counts, Estimator, Heuristic, Interaction,
+        profile::Profile,
+        roulette::{Pending, Roulette},
+    },
 };
 use std::sync::Arc;
 
@@ -32,7 +36,7 @@ pub struct Reference<'a> {
     pub scene: &'a Scene,
     pub counts: Counts,
     pub heuristic: Heuristic,
-    pub survival: Survival,
+    pub roulette: Roulette,
     pub channels: usize,
     /// A sampled start on every emitter: those of one emitter have equal densities, but for environments
     /// and media.
@@ -50,7 +54,7 @@ struct Written {
 impl<'a> Reference<'a> {
     /// Gathers what is needed of the emitters.
     pub fn new<P: Profile>(estimator: &Estimator<'a, P>) -> Self {
-        let Estimator { scene, counts, heuristic, survival, .. } = *estimator;
+        let Estimator { scene, counts, heuristic, roulette, .. } = *estimator;
         let mut starts = vec![None; scene.lights.all.len()];
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
         // The faintest of the lamps of the scenes comes once in some 10 000.
@@ -63,7 +67,7 @@ impl<'a> Reference<'a> {
             }
         }
         let (learnt, guide) = (estimator.starts.clone(), estimator.guide.clone());
-        Self { scene, counts, heuristic, survival, channels: P::Channels::COUNT, starts, learnt, guide }
+        Self { scene, counts, heuristic, roulette, channels: P::Channels::COUNT, starts, learnt, guide }
     }
 
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
@@ -251,7 +255,7 @@ impl<'a> Reference<'a> {
                 let properties = properties(self.scene, here.medium, *position);
                 let turn = Deflection::between(-back.as_vec3(), on.as_vec3());
                 let phase = medium.phase.pdf_sr_at(*position, turn);
-                let survival = f64::from(self.survival.of(properties.survival()));
+                let survival = f64::from(self.roulette.at(properties.survival(), Pending::NONE).0);
                 survival
                     * self.guided(Interaction::Medium(*position, properties), on, phase, false, transport)
             }
@@ -350,7 +354,7 @@ pub fn reflect(
 ) -> f64 {
     let bsdf = reference.scene.bsdf(point.shape);
     let (wi, wo) = (point.shading.to_local(back.as_vec3()), point.shading.to_local(on.as_vec3()));
-    let survival = f64::from(reference.survival.of(bsdf.survival(point.uv, wi)));
+    let survival = f64::from(reference.roulette.at(bsdf.survival(point.uv, wi), Pending::NONE).0);
     let guided = |pdf| survival * reference.guided(Interaction::Surface(*point), on, pdf, dirac, transport);
     if !dirac {
         return guided(bsdf.evaluate(point.uv, wi, wo, transport).pdf_fwd);

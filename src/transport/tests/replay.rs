@@ -195,9 +195,9 @@ impl Lead<'_> {
         visitor: &impl Visitor<P>,
     ) -> Led<P::MisSums> {
         let scene = self.reference.scene;
-        let Reference { survival, guide, .. } = &self.reference;
-        let (survival, guide) = (*survival, guide.as_deref());
-        let kind = Kind { transport: self.transport, hero: self.hero, max_edges: u32::MAX, survival, guide };
+        let Reference { roulette, ref guide, .. } = *self.reference;
+        let guide = guide.as_deref();
+        let kind = Kind { transport: self.transport, hero: self.hero, max_edges: u32::MAX, roulette, guide };
         let mut led = Led { vertices: Vec::new(), end: None };
         if let [first, second, ..] = self.nodes.as_slice() {
             departure.ray.direction = first.towards(second).as_vec3();
