@@ -5,7 +5,7 @@ use super::beckmann::View;
 use super::{bounded, number};
 use crate::description::{Params, parameter::Parameter, rows};
 use crate::error::{Error, Result};
-use crate::math::{Uv, Vec2, Vec3, vec3};
+use crate::math::{Uv, Vec2, Vec3, vec2, vec3};
 use crate::texture::Texture;
 use std::f32::consts::{PI, TAU};
 
@@ -161,7 +161,7 @@ impl Microfacets {
     /// Length of `v`'s horizontal part in the frame in which the roughness is 1.
     #[inline]
     fn stretched_width(&self, v: Vec3) -> f32 {
-        (self.alpha_u * v.x).hypot(self.alpha_v * v.y)
+        vec2(self.alpha_u * v.x, self.alpha_v * v.y).length()
     }
 
     /// Length of `v` in the frame in which the GGX distribution is a unit hemisphere.
@@ -194,7 +194,7 @@ impl Microfacets {
         let normal = match self.kind {
             Kind::Ggx => visible_in_ggx(stretched, across, u),
             Kind::Beckmann => {
-                let width = stretched.x.hypot(stretched.y);
+                let width = stretched.truncate().length();
                 let slope = View { z: stretched.z, width }.sample(u);
                 across.cross(Vec3::Z) * slope.x + across * slope.y + Vec3::Z
             }

@@ -58,7 +58,17 @@ impl Stream {
     /// Uniform in [0, 1), 24 bits.
     #[inline]
     pub fn uniform(&mut self) -> f32 {
-        (self.bits() >> 40) as f32 * SCALE
+        if !self.point.is_spent() {
+            return self.even_uniform();
+        }
+        (self.generator.next_u64() >> 40) as f32 * SCALE
+    }
+
+    /// Of a coordinate alone.
+    #[cold]
+    #[inline(never)]
+    fn even_uniform(&mut self) -> f32 {
+        (self.point.next() >> 8) as f32 * SCALE
     }
 
     /// Uniform in [0, 1), 53 bits.
