@@ -29,6 +29,8 @@ pub enum Kind {
 pub struct Roughness {
     kind: Kind,
     alpha: [Texture; 2],
+    /// The distribution, where it is the same everywhere.
+    even: Option<Microfacets>,
 }
 
 /// A distribution at one point of a surface.
@@ -73,12 +75,18 @@ impl Roughness {
                 return Err(Error::new(params.location(), expected, found, "give one or the other"));
             }
         };
-        Ok(Self { kind, alpha })
+        Ok(Self::of(kind, alpha))
+    }
+
+    fn of(kind: Kind, alpha: [Texture; 2]) -> Self {
+        let even = alpha.iter().all(|alpha| matches!(alpha, Texture::Uniform(_)));
+        let roughness = Self { kind, alpha, even: None };
+        Self { even: even.then(|| roughness.at(Vec2::ZERO.into())), ..roughness }
     }
 
     /// The same for a model that takes one number for the whole surface.
     pub fn build_even(params: &Params<'_>) -> Result<Microfacets> {
-        let Self { kind, alpha: [u, v] } = Self::build(params)?;
+        let Self { kind, alpha: [u, v], .. } = Self::build(params)?;
         match (&u, &v) {
             (Texture::Uniform(along), Texture::Uniform(across)) if along.0 == across.0 => {
                 let alpha = number(&u, Vec2::ZERO.into());
@@ -102,14 +110,14 @@ impl Roughness {
     #[inline]
     pub fn at(&self, uv: Uv) -> Microfacets {
         let alpha = |i: usize| number(&self.alpha[i], uv);
-        Microfacets::new(self.kind, alpha(0), alpha(1))
+        self.even.unwrap_or_else(|| Microfacets::new(self.kind, alpha(0), alpha(1)))
     }
 
     #[cfg(test)]
     pub fn examples() -> Vec<Self> {
         let alphas = [(0.5, 0.5), (0.12, 0.12), (0.2, 0.6), (1.0, 1.0)];
         let texture = |x| Texture::constant(crate::math::Spectrum::splat(x));
-        let with = |kind| alphas.map(|(u, v)| Self { kind, alpha: [texture(u), texture(v)] });
+        let with = |kind| alphas.map(|(u, v)| Self::of(kind, [texture(u), texture(v)]));
         [Kind::Beckmann, Kind::Ggx].into_iter().flat_map(with).collect()
     }
 }

@@ -82,7 +82,7 @@ impl Algorithm {
 }
 
 /// The probability that a walk goes on from a vertex (LW96 eq. 8 and 9), as a function of its albedo: a function of the vertex
-/// alone, so that it can be part of all densities.
+/// alone, so that it can be part of all densities. Camera subpaths that run alone need not keep to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Survival {
     /// The albedo.
@@ -237,7 +237,7 @@ impl Default for Options {
 /// What integrators have that make paths; `max_depth` besides.
 pub(super) const PATHS: &[Parameter] = rows! {
     boolean("hide_emitters", false, "Emitters are invisible to the camera; emissive media stay visible."),
-    silent("rr_depth", "Russian roulette acts at any depth"),
+    silent("rr_depth", "Russian roulette acts at any depth, or later where paths soon leave the scene"),
 };
 
 /// What those have that sample paths.

@@ -31,6 +31,8 @@ pub struct Leg {
     pub density: f32,
     /// Contribution over density so far.
     pub throughput: Spectrum,
+    /// How often walks that end by the albedo come so far, over how often this one does.
+    pub by_albedo: f32,
 }
 
 /// How a walk reached a point.

@@ -20,10 +20,9 @@ use super::{
     Contribution, Estimator,
     cache::Partners,
     camera_path,
-    mis::MisSums,
+    event::Leg,
     observer::{Meeting, Observer},
     profile::Profile,
-    walk::Departure,
 };
 use crate::{
     math::{Channels, Vec2},
@@ -61,6 +60,12 @@ pub struct Pending {
 impl Pending {
     /// Nothing.
     pub const NONE: Self = Self { survival: 1.0, owed: 1.0 };
+
+    /// How often walks that end by the albedo come so far, over how often this one does.
+    #[inline]
+    pub fn by_albedo(self) -> f32 {
+        self.survival * self.owed
+    }
 }
 
 impl Roulette {
@@ -120,7 +125,7 @@ impl Lengths {
         let film = size * stream.square() - offset;
         let aperture = estimator.scene.sensor.sample_aperture(&mut stream);
         // Compiled for instruments in any case.
-        let observer: &mut dyn Observer<P::MisSums> = self;
+        let observer: &mut dyn Observer = self;
         let hero = walk as usize % P::Channels::COUNT;
         camera_path::sample(estimator, Partners::NONE, film, aperture, hero, observer, &mut stream);
     }
@@ -134,12 +139,11 @@ impl Lengths {
     }
 }
 
-impl<S: MisSums> Observer<S> for Lengths {
-    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_, S>, _: Option<&Contribution>) {}
-    fn depart(&mut self, departure: &Departure<S>) {
-        let Pending { survival, owed } = departure.pending;
+impl Observer for Lengths {
+    fn contribute(&mut self, _: u32, _: u32, _: Meeting<'_>, _: Option<&Contribution>) {}
+    fn depart(&mut self, leg: &Leg) {
         self.late += 1.0;
-        self.usual += f64::from(survival * owed);
+        self.usual += f64::from(leg.by_albedo);
     }
 }
 

@@ -55,8 +55,9 @@ impl<S: MisSums> Departure<S> {
     /// What observers see of it.
     #[inline]
     pub fn leg(&self) -> Leg {
-        let Self { position, ray, medium, edges, dirac, pdf_fwd, throughput, .. } = *self;
-        Leg { position, direction: ray.direction, medium, edges, dirac, density: pdf_fwd, throughput }
+        let Self { position, ray, medium, edges, dirac, pdf_fwd, throughput, pending, .. } = *self;
+        let (direction, density, by_albedo) = (ray.direction, pdf_fwd, pending.by_albedo());
+        Leg { position, direction, medium, edges, dirac, density, throughput, by_albedo }
     }
 
     /// The segment ahead, which has no end yet.
