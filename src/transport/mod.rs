@@ -195,8 +195,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
             // Every strategy takes one sample of each pair of subpaths, as LW96 eq. 14 has it.
             Connections::All => (estimator.keep, estimator.counts.connection) = (1.0, 1.0),
         }
-        // A guide's walks are those that pilots know, whose records hold the probability at every vertex.
-        if lit && !P::GUIDED && !estimator.needs_light_walks() {
+        // Pilots record the probability at every vertex, of the walks that may follow a guide.
+        let is_recorded = P::GUIDED && !strategies.gather;
+        if lit && !is_recorded && !estimator.needs_light_walks() {
             estimator.roulette = Roulette::alone(&mut estimator);
         }
         estimator

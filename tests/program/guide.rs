@@ -18,6 +18,7 @@ fn divided(size: f64) -> Value {
     lamp["emitter"] = json!({"type": "area", "radiance": {"type": "rgb", "value": [2, 3, 1]}});
     lamp["exterior"] = json!({"type": "ref", "id": "fog"});
     let mut sensor = camera(place([0.0, 0.0, 0.9]), place([0.0, 0.0, -1.0]), 32);
+    sensor["far_clip"] = json!(10.0 * size);
     sensor["medium"] = json!({"type": "ref", "id": "fog"});
     let wall = json!({"type": "cube", "exterior": {"type": "ref", "id": "fog"}, "to_world": [
         {"type": "scale", "value": place([0.5, 0.02, 0.5])}, {"type": "translate", "value": place([0.0, 0.3, 0.0])}]});
