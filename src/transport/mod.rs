@@ -74,7 +74,7 @@ mod light_path;
 mod mis;
 pub mod observer;
 pub mod profile;
-mod roulette;
+pub mod roulette;
 mod segment;
 #[cfg(test)]
 mod tests;
@@ -196,7 +196,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             Connections::All => (estimator.keep, estimator.counts.connection) = (1.0, 1.0),
         }
         // Pilots record the probability at every vertex, of the walks that may follow a guide.
-        let is_recorded = P::GUIDED && !strategies.gather;
+        let is_recorded = P::GUIDED && options.algorithm != Algorithm::Gather;
         if lit && !is_recorded && !estimator.needs_light_walks() {
             estimator.roulette = Roulette::alone(&mut estimator);
         }

@@ -135,8 +135,20 @@ impl Lengths {
     }
 
     fn are_worth_it(&self) -> bool {
-        !self.are_long() && self.late <= STRETCH * self.usual
+        is_worth_it(self.late / WALKS as f64, self.usual / WALKS as f64)
     }
+}
+
+/// True if it is worth it that roulette is late, as walks of so many segments then have only so many as `usual` by the albedo.
+pub fn is_worth_it(late: f64, usual: f64) -> bool {
+    late < LONG && late <= STRETCH * usual
+}
+
+/// The logarithm of the probability that a walk goes on from `vertices` of this mean logarithm of the albedo, where roulette is
+/// late. What it owes is seven eighths of what it owed before and of one albedo more.
+pub fn late(vertices: f32, albedo: f32) -> f32 {
+    const KEPT: f32 = 7.0 / 8.0;
+    albedo * (vertices - KEPT / (1.0 - KEPT) * (1.0 - KEPT.powf(vertices)))
 }
 
 impl Observer for Lengths {
@@ -182,6 +194,15 @@ mod tests {
             }
             assert!((pending.survival / albedo - 1.0).abs() < 1e-3, "{albedo}: {pending:?}");
             assert!((pending.owed / albedo.powi(7) - 1.0).abs() < 1e-2, "{albedo}: {pending:?}");
+        }
+        let (mut pending, mut product) = (Pending::NONE, 1.0);
+        for vertices in 1..20 {
+            pending = Roulette::Late.at(0.7, pending).1;
+            product *= pending.survival;
+            assert!(
+                (late(vertices as f32, 0.7f32.ln()) - product.ln()).abs() < 1e-4,
+                "{vertices}: {product}"
+            );
         }
         let (survival, Pending { owed, .. }) = Roulette::Late.at(0.0, Pending::NONE);
         assert_eq!((survival, owed), (0.0, 1.0));

@@ -4,7 +4,7 @@ use crate::common::{Stage, pieces::*};
 use serde_json::{Value, json};
 use tyndall::{
     math::SpectrumExt,
-    transport::{Guiding, Strategies},
+    transport::{Algorithm, Guiding},
 };
 
 /// A hollow ball around the camera whose wall reflects a half and shines, and a thing in it.
@@ -27,11 +27,12 @@ fn furnace(fog: Option<Value>, thing: Option<Value>) -> Stage {
 }
 
 /// The mean radiance of some images, one half with a guide and one half without.
-fn mean(stage: &mut Stage, strategies: Strategies) -> f64 {
+fn mean(stage: &mut Stage, algorithm: Algorithm) -> f64 {
+    stage.setup.integrator.options.algorithm = algorithm;
     let mut all = Vec::new();
     for guide in [Guiding::Never, Guiding::Always] {
         stage.setup.integrator.options.effort.guide = guide;
-        all.extend(stage.renders(strategies, 64, 0..4).concat());
+        all.extend(stage.renders(algorithm.strategies(), 64, 0..4).concat());
     }
     all.iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / all.len() as f64
 }
@@ -53,7 +54,7 @@ fn furnaces_are_in_balance() {
         ("fog", furnace(Some(medium(0.7, 1.0, 0.4)), None)),
         ("coloured fog", furnace(Some(medium(rgb(0.3, 0.6, 1.2), 1.0, 0.0)), None)),
     ] {
-        assert_close(name, mean(&mut stage, Strategies::GATHER), 3.0, 0.01);
+        assert_close(name, mean(&mut stage, Algorithm::Gather), 3.0, 0.01);
     }
 }
 
@@ -65,7 +66,7 @@ fn depth_counts_what_was_learnt() {
     for depth in 1..=5 {
         expected += 1.5 * 0.5f64.powi(depth - 1);
         stage.setup.integrator.options.max_depth = Some(depth as u32);
-        assert_close(&format!("depth {depth}"), mean(&mut stage, Strategies::GATHER), expected, 0.01);
+        assert_close(&format!("depth {depth}"), mean(&mut stage, Algorithm::Gather), expected, 0.01);
     }
 }
 
@@ -82,8 +83,8 @@ fn light_behind_a_wall_stays_there() {
     };
     for (name, fog) in [("vacuum", None), ("fog", Some(medium(0.7, 0.8, 0.3)))] {
         let mut stage = Stage::new(&parts(fog));
-        let expected = mean(&mut stage, Strategies::BDPT);
-        assert_close(name, mean(&mut stage, Strategies::GATHER), expected, 0.1);
+        let expected = mean(&mut stage, Algorithm::Bdpt);
+        assert_close(name, mean(&mut stage, Algorithm::Gather), expected, 0.1);
     }
 }
 
@@ -93,8 +94,8 @@ fn dense_clouds_are_as_bright() {
     let phase = json!({"type": "hg", "g": 0.85});
     let dense = [("scale", json!(30)), ("albedo", json!(0.99)), ("phase", phase)];
     let mut stage = Stage::new(&cloud_under_sky(&dense));
-    let expected = mean(&mut stage, Strategies::BDPT);
-    assert_close("cloud", mean(&mut stage, Strategies::GATHER), expected, 0.03);
+    let expected = mean(&mut stage, Algorithm::Bdpt);
+    assert_close("cloud", mean(&mut stage, Algorithm::Gather), expected, 0.03);
 }
 
 /// What a glossy surface shows depends on where it is seen from: walks go on there, and cells of what lies beside it do not hold it.
@@ -107,13 +108,14 @@ fn glossy_surfaces_are_no_places_to_end() {
     }
     let mut stage = Stage::new(&reflector);
     // Of the dim parts: few paths make the bright ones.
-    let mut median = |strategies: Strategies, guide: Guiding| {
-        stage.setup.integrator.options.effort.guide = guide;
-        let image = stage.render(strategies, 256, 0);
+    let mut median = |algorithm: Algorithm, guide: Guiding| {
+        let options = &mut stage.setup.integrator.options;
+        (options.algorithm, options.effort.guide) = (algorithm, guide);
+        let image = stage.render(algorithm.strategies(), 256, 0);
         let mut all: Vec<f64> = image.iter().map(|pixel| f64::from(pixel.luminance())).collect();
         all.sort_by(f64::total_cmp);
         all[all.len() / 2]
     };
-    let expected = median(Strategies::BDPT, Guiding::Never);
-    assert_close("reflector", median(Strategies::GATHER, Guiding::Always), expected, 0.25);
+    let expected = median(Algorithm::Bdpt, Guiding::Never);
+    assert_close("reflector", median(Algorithm::Gather, Guiding::Always), expected, 0.25);
 }

@@ -9,7 +9,7 @@
 //! does the squared mean in any case, which the variance lacks.
 
 use super::{
-    Choice, WALKS_END,
+    Choice, End, WALKS_END,
     record::{Found, Part, Work, Works, part},
 };
 use crate::{
@@ -17,7 +17,7 @@ use crate::{
     learning::tiles::Tiles,
     passes::{blocks::Blocks, compiled::Compiled},
     settings::options::{Effort, Survival},
-    transport::observer::StrategyKind,
+    transport::{observer::StrategyKind, roulette},
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -103,7 +103,7 @@ impl Forecast {
         let blocks = pixels.div_ceil(PIXELS_PER_BLOCK).clamp(1, compiled.blocks().count());
         let mut parts: Vec<Part> = Vec::new();
         for pass in 0..passes {
-            let done: f64 = parts.iter().map(|part| part.segments(index(survival))).sum();
+            let done: f64 = parts.iter().map(|part| part.segments(index(End::AtOnce(survival)))).sum();
             if pass >= 2 && done > SEGMENTS {
                 break;
             }
@@ -168,8 +168,9 @@ impl Forecast {
     }
 
     /// Time of a pixel sample, in segments.
-    pub fn time(&self, Choice { strategies, effort, .. }: &Choice) -> f64 {
-        let camera = &self.camera[index(effort.survival)];
+    pub fn time(&self, choice: &Choice) -> f64 {
+        let Choice { strategies, effort, .. } = choice;
+        let camera = &self.camera[index(self.end(choice))];
         let light = self.light_work(effort);
         let mut camera_time = time::START * camera.walks + camera.segments;
         let dropped = (light.walks - light.begun).max(0.0);
@@ -185,11 +186,11 @@ impl Forecast {
 
     /// Errors of these choices, in their order.
     pub fn judge(&self, choices: &[Choice]) -> Vec<Error> {
-        let weighed = WALKS_END.map(|survival| {
-            let is_asked = choices.iter().any(|choice| choice.effort.survival == survival);
-            if is_asked { self.weighed(survival) } else { Vec::new() }
+        let weighed = WALKS_END.map(|end| {
+            let is_asked = choices.iter().any(|choice| self.end(choice) == end);
+            if is_asked { self.weighed(end) } else { Vec::new() }
         });
-        choices.par_iter().map(|choice| self.error(choice, &weighed[index(choice.effort.survival)])).collect()
+        choices.par_iter().map(|choice| self.error(choice, &weighed[index(self.end(choice))])).collect()
     }
 
     fn error(&self, choice: &Choice, weighed: &[Weighed]) -> Error {
@@ -208,17 +209,27 @@ impl Forecast {
     pub fn error_where_lit(&self, choice: &Choice) -> f64 {
         let is_lit = |(_, tile): &(usize, &Tile)| tile.mean > 0.0;
         let pixels: f64 = self.seen().filter(is_lit).map(|(_, tile)| tile.pixels).sum();
-        let errors = || self.errors(choice, &self.weighed(choice.effort.survival));
+        let errors = || self.errors(choice, &self.weighed(self.end(choice)));
         if pixels > 0.0 { errors().iter().sum::<f64>() / pixels } else { f64::INFINITY }
     }
 
-    /// All contributions if walks ended by `survival`.
-    fn weighed(&self, survival: Survival) -> Vec<Weighed> {
+    /// When walks of `choice` end: the estimator puts roulette off where camera subpaths are alone and that is worth it.
+    fn end(&self, choice: &Choice) -> End {
+        let survival = choice.effort.survival;
+        let is_alone = !choice.strategies.need_light_walks() && self.survival == Survival::FourthRoot;
+        let segments = |end| self.camera[index(end)].segments / self.samples().max(1.0);
+        let usual = segments(End::AtOnce(Survival::Albedo));
+        let is_late = survival == Survival::FourthRoot || roulette::is_worth_it(segments(End::Late), usual);
+        if is_alone && is_late { End::Late } else { End::AtOnce(survival) }
+    }
+
+    /// All contributions if walks ended so.
+    fn weighed(&self, end: End) -> Vec<Weighed> {
         let weigh = |(tile, found): &(u32, Found)| {
-            let passed = found.ends.passed([survival, self.survival]);
+            let passed = found.ends.passed(end, self.survival);
             // Of all vertices between, both walks together went on from one less where they were connected to an emitter or
             // the lens, and from two less where they were connected to each other.
-            let of_one = passed.powf(1.0 / found.ends.vertices.max(1) as f32);
+            let of_one = found.ends.passed_one(end, self.survival);
             let [hits, next_event, connections, lens, equiangular] = found.shares;
             let shares = [
                 hits,
@@ -238,8 +249,8 @@ impl Forecast {
         let mut moments = vec![[0.0; 3]; self.tiles.len()];
         let learnt = choice.effort.learnt_starts;
         // Connections to each vertex are as many, however many vertices light subpaths leave.
-        let draws =
-            self.light[index(self.survival)].kept.max(1.0) / self.light_work(&choice.effort).kept.max(1.0);
+        let draws = self.light[index(End::AtOnce(self.survival))].kept.max(1.0)
+            / self.light_work(&choice.effort).kept.max(1.0);
         let [hits, next_event, connections, lens, equiangular] = choice.counts().map(|count| count as f32);
         let connections = connections * draws as f32;
         for ((_, found), Weighed { tile, unlearnt, moment, shares }) in self.found.iter().zip(weighed) {
@@ -267,7 +278,7 @@ impl Forecast {
     /// The work of light subpaths by `effort`.
     fn light_work(&self, effort: &Effort) -> &Work {
         let works = if effort.learnt_starts { &self.light } else { &self.light_unlearnt };
-        &works[index(effort.survival)]
+        &works[index(End::AtOnce(effort.survival))]
     }
 
     fn seen(&self) -> impl Iterator<Item = (usize, &Tile)> {
@@ -275,9 +286,9 @@ impl Forecast {
     }
 }
 
-/// Of `survival` among [`WALKS_END`].
-fn index(survival: Survival) -> usize {
-    WALKS_END.iter().position(|one| *one == survival).unwrap_or(0)
+/// Of `end` among [`WALKS_END`].
+fn index(end: End) -> usize {
+    WALKS_END.iter().position(|one| *one == end).unwrap_or(0)
 }
 
 /// What camera subpaths contributed to a pixel.

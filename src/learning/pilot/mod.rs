@@ -52,8 +52,19 @@ const GUIDE_SHARE: f64 = 0.1;
 /// pays for all strategies; 4 to 27 in others lit through openings and round corners, where none does; 0.1 to 1.2 elsewhere.
 const NOISY: f64 = 2.0;
 
-/// When walks may end.
-const WALKS_END: [Survival; 2] = [Survival::FourthRoot, Survival::Albedo];
+/// When walks end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum End {
+    /// At a vertex.
+    AtOnce(Survival),
+    /// Of camera subpaths that run alone, see [`crate::transport::roulette`].
+    Late,
+}
+
+/// When walks may be asked to end.
+const SURVIVALS: [Survival; 2] = [Survival::FourthRoot, Survival::Albedo];
+/// When they may end.
+const WALKS_END: [End; 3] = [End::AtOnce(Survival::FourthRoot), End::AtOnce(Survival::Albedo), End::Late];
 /// How many light subpaths there may be for a sample, and how many connections of a vertex.
 const COUNTS: [(f32, u32); 5] = [(1.0, 1), (0.5, 1), (2.0, 1), (1.0, 2), (1.0, 4)];
 
@@ -171,7 +182,7 @@ impl Pilots<'_> {
 
     /// When walks may end: first that of the pilot, which tells of others that end sooner. In fog without end they had better do.
     fn survivals(&self) -> &'static [Survival] {
-        if self.scene.is_endless() { &[Survival::Albedo] } else { &WALKS_END }
+        if self.scene.is_endless() { &[Survival::Albedo] } else { &SURVIVALS }
     }
 
     /// All that may run: equiangular sampling, too, where it applies.

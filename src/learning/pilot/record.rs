@@ -1,6 +1,6 @@
 //! What the samples of one block bring: contributions, and the work that they took.
 
-use super::WALKS_END;
+use super::{End, WALKS_END};
 use crate::{
     film::Film,
     learning::follower::Follower,
@@ -11,6 +11,7 @@ use crate::{
     transport::{
         Contribution, Event, Leg,
         observer::{Meeting, Observer, StrategyKind},
+        roulette,
     },
 };
 
@@ -51,9 +52,29 @@ impl Ends {
         Self { vertices: self.vertices + other.vertices, albedo: self.albedo + other.albedo }
     }
 
-    /// How often walks would get by, if they ended by the one survival, over how often they do by the other.
-    pub fn passed(self, [now, before]: [Survival; 2]) -> f32 {
-        ((now.exponent() - before.exponent()) * self.albedo).exp()
+    /// How often walks would get by, if they ended so, over how often they do by the survival `before`.
+    pub fn passed(self, now: End, before: Survival) -> f32 {
+        let now = match now {
+            End::AtOnce(survival) => survival.exponent() * self.albedo,
+            End::Late if self.vertices == 0 => 0.0,
+            // The roulette of the last one comes after all that is found from there.
+            End::Late => roulette::late(self.vertices as f32 - 1.0, self.of_one()),
+        };
+        (now - before.exponent() * self.albedo).exp()
+    }
+
+    /// How often walks get by one vertex more, if they end so and did by the survival `before`, over how often they do.
+    pub fn passed_one(self, now: End, before: Survival) -> f32 {
+        let now = match now {
+            End::AtOnce(survival) => survival.exponent(),
+            End::Late => 0.0,
+        };
+        ((now - before.exponent()) * self.of_one()).exp()
+    }
+
+    /// The mean logarithm of the albedo.
+    fn of_one(self) -> f32 {
+        self.albedo / self.vertices.max(1) as f32
     }
 }
 
@@ -193,7 +214,7 @@ impl Observer for Recorder<'_> {
         self.follower.depart(leg);
         self.ends.truncate(leg.edges as usize + 1);
         let ends = self.ends[self.ends.len() - 1];
-        self.reached = WALKS_END.map(|survival| f64::from(ends.passed([survival, self.survival])));
+        self.reached = WALKS_END.map(|end| f64::from(ends.passed(end, self.survival)));
         self.count(|work| &mut work.segments);
         if leg.edges == 0 {
             self.count(|work| &mut work.begun);
