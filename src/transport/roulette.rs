@@ -1,20 +1,21 @@
-//! When walks end: by Russian roulette at every vertex, with a probability to go on that is a function of the vertex alone, so that
-//! it can be part of all densities (LW96 eq. 8 and 9).
+//! When walks end: by Russian roulette at every vertex, with a probability to go on that is a function of the vertex alone,
+//! so that it can be part of all densities (LW96 eq. 8 and 9).
 //!
 //! # Where camera subpaths run alone
-//! The roulette of a vertex is drawn at the end of the flight that leaves it, after the emitter that this flight may have hit is
-//! counted: a walk that ends has seen the sky once more, for the price of one flight. Strategies s = 0 and s = 1 make a path by the same
-//! walk up to the vertex next to the emitter. Both have passed the roulettes of all vertices before it, and neither that of this
-//! vertex: so no roulette is part of the ratio of their densities, and it multiplies the throughput and the density of what
-//! follows only ([`super::vertex::Subpath::survive`]). Light subpaths could not tell the last vertex of such a walk from others.
+//! The roulette of a vertex is drawn at the end of the flight that leaves it, after the emitter that this flight may have
+//! hit is counted: a walk that ends has seen the sky once more, for the price of one flight. Strategies s = 0 and s = 1 make
+//! a path by the same walk up to the vertex next to the emitter. Both have passed the roulettes of all vertices before it,
+//! and neither that of this vertex: so no roulette is part of the ratio of their densities, and it multiplies the throughput
+//! and the density of what follows only ([`super::vertex::Subpath::survive`]). Light subpaths could not tell the last vertex
+//! of such a walk from others.
 //!
 //! # How long walks are
-//! To go on with the albedo as probability keeps throughputs even, and is right in closed rooms, where there is always more of the walk to
-//! pay for. Under a sky most walks soon leave the scene: to end them by roulette saves little time, and brings most of the noise
-//! that is left. There, where camera subpaths run alone, walks put roulette off. Such a walk owes the product of all albedos so far over that of
-//! its probabilities to go on, and goes on with the eighth root of what it owes: soon it owes the seventh power of the albedo and no less,
-//! so that in white clouds it is no longer than with the albedo. [`Lengths`] of a few walks say where that is worth it, alike for all images
-//! of a scene.
+//! To go on with the albedo as probability keeps throughputs even, and is right in closed rooms, where there is always more
+//! of the walk to pay for. Under a sky most walks soon leave the scene: to end them by roulette saves little time, and
+//! brings most of the noise that is left. There, where camera subpaths run alone, walks put roulette off. Such a walk owes
+//! the product of all albedos so far over that of its probabilities to go on, and goes on with the eighth root of what it
+//! owes: soon it owes the seventh power of the albedo and no less, so that in white clouds it is no longer than with the
+//! albedo. [`Lengths`] of a few walks say where that is worth it, alike for all images of a scene.
 
 use super::{
     Contribution, Estimator,
@@ -34,9 +35,9 @@ use crate::{
 const WALKS: u64 = 512;
 const LONGEST: u32 = 256;
 const LONG: f64 = 32.0;
-/// So many times the segments are worth it. Measured by `pt`, variance x instructions gain 1.1 to 6 (glass, metal, fog or smoke over ground,
-/// under a sky or a lamp) where they are 1.3 times as many or fewer; 0.8 to 1.2 at 1.4 (`drifting_mist`, `reflector`), and
-/// 0.5 to 0.9 in rooms, at 1.7 to 2.5.
+/// So many times the segments are worth it. Measured by `pt`, variance x instructions gain 1.0 to 6 (glass, metal, fog or
+/// smoke over ground, under a sky or a lamp) where they are 1.3 times as many or fewer, and 0.8 to 1.2 at 1.4 to 1.5
+/// (`drifting_mist`, `countryside`, `reflector`). Rooms are at 1.7 to 2.8.
 const STRETCH: f64 = 4.0 / 3.0;
 
 /// When walks end.
