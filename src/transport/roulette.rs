@@ -30,6 +30,7 @@ use crate::{
     sampling::{Stream, stream::Purpose},
     settings::options::Survival,
 };
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Walks that are measured; of so many segments at most, each and on average.
 const WALKS: u64 = 512;
@@ -109,13 +110,16 @@ impl Lengths {
         let before = (estimator.roulette, estimator.max_edges);
         (estimator.roulette, estimator.max_edges) = (Roulette::Late, estimator.max_edges.min(LONGEST));
         let mut lengths = Self::default();
-        for walk in 0..WALKS {
-            if !lengths.are_long() {
-                lengths.add(estimator, walk);
+        // What panics here does so in the image as well, which reports it.
+        let measured = catch_unwind(AssertUnwindSafe(|| {
+            for walk in 0..WALKS {
+                if !lengths.are_long() {
+                    lengths.add(estimator, walk);
+                }
             }
-        }
+        }));
         (estimator.roulette, estimator.max_edges) = before;
-        lengths
+        if measured.is_ok() { lengths } else { Self { late: f64::INFINITY, usual: 0.0 } }
     }
 
     /// One more walk, from anywhere on the film: its numbers are the same for all parts and seeds of an image.
