@@ -110,16 +110,14 @@ impl Lengths {
         let before = (estimator.roulette, estimator.max_edges);
         (estimator.roulette, estimator.max_edges) = (Roulette::Late, estimator.max_edges.min(LONGEST));
         let mut lengths = Self::default();
-        // What panics here does so in the image as well, which reports it.
-        let measured = catch_unwind(AssertUnwindSafe(|| {
-            for walk in 0..WALKS {
-                if !lengths.are_long() {
-                    lengths.add(estimator, walk);
-                }
+        for walk in 0..WALKS {
+            if !lengths.are_long() {
+                // What panics here does so in the image as well, which reports it.
+                let _ = catch_unwind(AssertUnwindSafe(|| lengths.add(estimator, walk)));
             }
-        }));
+        }
         (estimator.roulette, estimator.max_edges) = before;
-        if measured.is_ok() { lengths } else { Self { late: f64::INFINITY, usual: 0.0 } }
+        lengths
     }
 
     /// One more walk, from anywhere on the film: its numbers are the same for all parts and seeds of an image.
