@@ -72,16 +72,15 @@ pub enum Command {
     Pixel(pixel::Arguments),
     /// Put together parts of one image, rendered with --samples or --crop, and write the image
     ///
-    /// The parts are files of sums of the same scene, options and seed. Those with other samples of the same pixels
-    /// (--samples) are added up: the image is the same, bit for bit, as that of one render of all of these samples with
-    /// --samples. It is also that of one render with --spp, if they are 2.1 million or more, all pixels together: the pilot of
-    /// fewer is shorter. Those
-    /// with other pixels (--crop) are put side by side; they must cover the image and not overlap.
+    /// The parts are checkpoints of the same scene, options and seed. Parts with other samples of the same pixels (--samples)
+    /// are added up. The image is the same, bit for bit, as that of one render of all these samples with --samples. From 2.1
+    /// million samples on, over all pixels, it is also that of one render with --spp; the pilot of fewer samples is shorter.
+    /// Parts with other pixels (--crop) are put side by side. They must cover the image and not overlap.
     Merge(merge::Merge),
     /// Print a summary of a scene without rendering it
     ///
-    /// Of an image or sums, print how they were made; of a volume file (.vdb, .nvdb, .vol), the grids in it, and which
-    /// of them the plugin smoke takes by itself.
+    /// For an image or a checkpoint, print how it was made. For a volume file (.vdb, .nvdb, .vol), print its grids, and which
+    /// of them the plugin smoke chooses by default.
     Info(Info),
     /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML; an image to a PNG; a volume file to .vol
     ///

@@ -1,7 +1,7 @@
 //! What a pilot foretells of all that it may choose: for `info --pilot`.
 
 use super::{plan, provenance};
-use crate::learning::pilot::{Foretold, Report};
+use crate::learning::pilot::{Foretold, LEARNT, Report, WORTHWHILE};
 use serde_json::{Value, json};
 
 /// How many are shown.
@@ -25,7 +25,9 @@ pub fn table(report: &Report) -> String {
     lines.push(
         "            It is time x error, with the same allowance for rare bright paths in all.".to_owned(),
     );
-    lines.push("            Longer walks and equiangular sampling must be 1.1 times better, learnt starts 1.6 times.".to_owned());
+    lines.push(format!(
+        "            Longer walks and equiangular sampling must be {WORTHWHILE} times better, learnt starts {LEARNT} times."
+    ));
     lines.join("\n")
 }
 

@@ -53,7 +53,7 @@ pub struct Info {
     #[arg(long)]
     pub pilot: bool,
 
-    /// Samples per pixel of the render to come, by which the pilot is sized [default: the scene's sample_count]
+    /// Samples per pixel of the render that the pilot chooses for [default: the scene's sample_count]
     #[arg(long, value_name = "N", value_parser = positive_u32, allow_negative_numbers = true)]
     pub spp: Option<u32>,
 

@@ -21,7 +21,7 @@ use crate::{
         profile::Profile,
     },
 };
-use std::cell::Cell;
+use std::{cell::Cell, ops::Range};
 
 /// An estimator of profile `P` with all it takes to use it.
 pub struct Ready<'a, P: Profile> {
@@ -98,9 +98,9 @@ impl<'a, P: Profile> Ready<'a, P> {
     }
 
     /// Numbers of the light subpaths of `block`, if they have something to do.
-    fn light_paths(&self, block: usize) -> impl Iterator<Item = u64> {
-        let needed = self.estimator.needs_light_walks();
-        self.blocks.light_paths(block).filter(move |_| needed)
+    fn light_paths(&self, block: usize) -> Range<u64> {
+        let all = self.blocks.light_paths(block);
+        if self.estimator.needs_light_walks() { all } else { all.start..all.start }
     }
 
     /// What a sample of `pixel` adds up to without contributions that are no finite numbers: it is made again, and looked at

@@ -205,7 +205,8 @@ impl Forecast {
         Error { usual, few }
     }
 
-    /// The same over the tiles that light was seen in: where few samples find any, the others look free of noise. Infinite where no light was seen at all.
+    /// The same over the tiles that light was seen in: where few samples find any, the others look free of noise. Infinite
+    /// where no light was seen at all.
     pub fn error_where_lit(&self, choice: &Choice) -> f64 {
         let is_lit = |(_, tile): &(usize, &Tile)| tile.mean > 0.0;
         let pixels: f64 = self.seen().filter(is_lit).map(|(_, tile)| tile.pixels).sum();

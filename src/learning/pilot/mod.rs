@@ -35,11 +35,11 @@ const PASSES: usize = 4;
 /// Longest path. Where walks hardly ever end, what comes later would be most of the time and little of the light.
 const DEEPEST: u32 = 256;
 /// Whatever is not common must be so much better: pilots are noisy, and some do not see that light subpaths are spread less evenly.
-const WORTHWHILE: f64 = 1.1;
+pub const WORTHWHILE: f64 = 1.1;
 /// By how much learnt starts must be better. Light subpaths that reach the image, and connections to them, take longer than counts
 /// say, and a pilot that has learnt its starts finds the others somewhat too noisy. Measured: in 35 scenes drawn at random, the
 /// truth was 0.7 of what was foretold where that was above 1.1, training apart.
-const LEARNT: f64 = 1.6;
+pub const LEARNT: f64 = 1.6;
 /// Starts are learnt if no more than this part of the light subpaths is seen. Measured in the same scenes: starts paid where 0 to
 /// 0.09 were seen.
 const REMOTE: f64 = 0.1;
