@@ -18,7 +18,7 @@ pub fn check(place: impl Display, what: &str, size: &str, bytes: Option<u64>, re
     Err(Error::new(place, expected, format!("{size}, which may need {needed}"), remedy))
 }
 
-/// What this process may still take [bytes]: the least of what the machine and its container have left.
+/// What this process may still take (bytes): the least of what the machine and its container have left.
 fn available() -> u64 {
     let mut system = System::new();
     system.refresh_memory();

@@ -44,14 +44,14 @@ enum Cause {
     Nothing,
 }
 
-/// A cause, with optical thickness and length [m] of what is in the way.
+/// A cause, with optical thickness and length (m) of what is in the way.
 type Found = (Cause, f32, f32);
 
 /// How a ray through boundaries ends.
 struct End {
     /// Of the clearest channel.
     depth: f32,
-    /// Of what extinguishes light [m].
+    /// Of what extinguishes light (m).
     length: f32,
     surface: Option<SurfacePoint>,
 }

@@ -79,7 +79,7 @@ pub struct Comparison {
     pub ratio: Vec<f64>,
     /// Where they differ most.
     pub largest: Largest,
-    /// Pixels that differ in some channel by more than the tolerance [%].
+    /// Pixels that differ in some channel by more than the tolerance (%).
     pub beyond: f64,
 }
 

@@ -36,20 +36,20 @@ pub enum Shape {
 pub struct Experiment {
     /// Its form.
     pub shape: Shape,
-    /// Thickness of the slab, or side length of the cube [m].
+    /// Thickness of the slab, or side length of the cube (m).
     pub size: f64,
     /// What it is, cell by cell; layers in a slab.
     pub cells: Cells,
     /// How it scatters.
     pub phase: Phase,
-    /// Angle between the direction of entry and the normal of the face [rad], in [0, pi/2).
+    /// Angle between the direction of entry and the normal of the face (rad), in [0, pi/2).
     pub angle: f64,
 }
 
 /// How far photons fly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// In steps of this length [m], scattered at the end of a step with probability 1 - exp(-sigma_s step), where sigma_s
+    /// In steps of this length (m), scattered at the end of a step with probability 1 - exp(-sigma_s step), where sigma_s
     /// varies 1 - exp of its integral over the step, absorbed along the way (CDS; Blasi et al.). What leaves within a step
     /// is not scattered in it.
     Constant(f64),
@@ -107,7 +107,7 @@ pub struct Found {
     pub photons: u64,
     /// False if its error was to be reached and was not.
     pub reached: bool,
-    /// Time they took [s].
+    /// Time they took (s).
     pub seconds: f64,
     /// One for each of [`QUANTITIES`], in their order.
     pub estimates: Vec<Judged>,
@@ -129,7 +129,7 @@ pub struct Judged {
     pub bias: f64,
     /// That in standard errors of both; where no two photons differ, 1 / photons replaces the method's.
     pub z: f64,
-    /// Variance of the mean times seconds: the lower the better, however many photons [s].
+    /// Variance of the mean times seconds: the lower the better, however many photons (s).
     pub variance_seconds: f64,
 }
 
@@ -155,7 +155,7 @@ pub struct Study {
 /// The probability of a false alarm in a whole study.
 const SIGNIFICANCE: f64 = 0.01;
 
-/// Runs all methods: constant steps of the lengths `steps` [m], and those without steps.
+/// Runs all methods: constant steps of the lengths `steps` (m), and those without steps.
 pub fn study(experiment: &Experiment, steps: &[f64], effort: Effort) -> Study {
     let random = [Method::ByExtinction, Method::ByScattering, Method::Forced];
     let constant = steps.iter().map(|step| Method::Constant(*step));

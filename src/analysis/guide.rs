@@ -28,7 +28,7 @@ use std::{
 pub const FILES: [&str; 3] = ["guide.json", "cells.png", "directions.png"];
 /// Cells whose directions are shown; emitters that are named.
 const SHOWN: usize = 8;
-/// Side of the pictures of directions [pixels].
+/// Side of the pictures of directions (pixels).
 const SIDE: usize = 128;
 /// The least and the most of their densities over an even one, powers of ten.
 const LEAST: f32 = -2.0;
@@ -40,9 +40,9 @@ const WALKS: [(Transport, &str); 2] = [(Transport::Radiance, "camera"), (Transpo
 /// The numbers of a guide.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Time that learning took [s].
+    /// Time that learning took (s).
     pub seconds: f64,
-    /// Memory that what was learnt takes [bytes].
+    /// Memory that what was learnt takes (bytes).
     pub bytes: usize,
     /// What the last guide but one, which walks followed to learn the last, left of the second moment of what they bring: the less,
     /// the better.
@@ -73,7 +73,7 @@ pub struct Cells {
 pub struct Portal {
     /// In the scene's coordinates.
     pub centre: [f64; 3],
-    /// Of the smallest of the spheres around it that walks aim at; that of the widest is 2.8 times as large. Above 0 [m].
+    /// Of the smallest of the spheres around it that walks aim at; that of the widest is 2.8 times as large. Above 0 (m).
     pub radius: f32,
 }
 

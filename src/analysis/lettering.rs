@@ -2,18 +2,18 @@
 
 use font8x8::{BASIC_FONTS, UnicodeFonts};
 
-/// Height of a line [pixels of the font].
-pub const HEIGHT: usize = 8;
-/// From one letter to the next [pixels of the font].
+/// Height of a line (pixels of the font).
+pub(super) const HEIGHT: usize = 8;
+/// From one letter to the next (pixels of the font).
 const ADVANCE: usize = 8;
 
 /// Pixels of the font that `text` takes across.
-pub fn width(text: &str) -> usize {
+pub(super) fn width(text: &str) -> usize {
     text.chars().count() * ADVANCE
 }
 
 /// The pixels of the font that `text` inks, from its left and top.
-pub fn ink(text: &str) -> impl Iterator<Item = [usize; 2]> {
+pub(super) fn ink(text: &str) -> impl Iterator<Item = [usize; 2]> {
     let letters = text.chars().enumerate().flat_map(|(index, letter)| {
         let lines = glyph(letter).into_iter().enumerate();
         lines.map(move |(y, bits)| (index * ADVANCE, y, bits))

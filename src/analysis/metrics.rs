@@ -11,9 +11,9 @@ const TRIMMED: f64 = 0.001;
 /// Where a value of either is not finite every measure is NaN: such an image is broken, not noisy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measures {
-    /// mean((x - r)^2) [radiance^2].
+    /// mean((x - r)^2) (radiance^2).
     pub mse: f64,
-    /// Square root of the mean squared error [radiance].
+    /// Square root of the mean squared error (radiance).
     pub rmse: f64,
     /// mean((x - r)^2 / (r^2 + 0.01 m^2)), m the mean luminance of r.
     pub relmse: f64,

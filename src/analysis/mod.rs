@@ -13,7 +13,7 @@
 //! - `study.json`: per scene, contender and budget the time, MSE, relMSE, relMSE without the worst 0.1 %, MAPE, SMAPE and
 //!   the difference of means, each with its interval over the seeds; per contender the slope of relMSE over time, the
 //!   efficiency 1 / (relMSE x seconds), and its ratio to the first contender's; notes on what a contender leaves out, on
-//!   signs of bias, and on errors that are the reference's own ([`outcome`] documents every field);
+//!   signs of bias, and on errors that are the reference's own ([`study::outcome`] documents every field);
 //! - `study.csv`: one row per scene, contender, budget and seed;
 //! - `images/`: references, an image for every budget, variance over the seeds;
 //! - `runs/`: what is needed to resume. A study that was stopped, in whatever way, is resumed by the same command, to the

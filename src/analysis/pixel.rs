@@ -39,7 +39,7 @@ pub struct Sample {
     pub sample: u64,
     /// What the pass adds to the pixel: the sum of the values of all contributions and splats.
     pub value: [f32; 3],
-    /// Where on the film the camera subpath starts [pixels].
+    /// Where on the film the camera subpath starts (pixels).
     pub film: [f32; 2],
     /// Through which point of the aperture, as the sensor samples it.
     pub aperture: [f32; 2],
@@ -109,8 +109,8 @@ pub struct ShapeText {
 pub struct Onward {
     /// Unit direction.
     pub direction: [f32; 3],
-    /// Density of the direction, survival included [1/sr]; the probability of a Dirac lobe; of a light subpath that
-    /// starts at infinity the density on its disk of starts [1/m^2].
+    /// Density of the direction, survival included (1/sr); the probability of a Dirac lobe; of a light subpath that
+    /// starts at infinity the density on its disk of starts (1/m^2).
     pub density: f32,
     /// It is that of a Dirac lobe.
     pub dirac: bool,
@@ -139,7 +139,7 @@ pub struct VertexText {
     pub medium: String,
     /// On a surface, what it is.
     pub surface: Option<SurfaceText>,
-    /// In a medium, its extinction coefficient here [1/m].
+    /// In a medium, its extinction coefficient here (1/m).
     pub sigma_t: Option<[f32; 3]>,
     /// In a medium, its albedo here.
     pub albedo: Option<[f32; 3]>,
@@ -228,7 +228,7 @@ pub struct SplatText {
     pub walk: u64,
     /// Number of its vertex, 0 for the emitter.
     pub vertex: u32,
-    /// Where it came down [pixels].
+    /// Where it came down (pixels).
     pub film: [f32; 2],
     /// The share that the filter gives this pixel.
     pub share: f32,

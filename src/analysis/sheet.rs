@@ -9,9 +9,9 @@ use crate::{
 };
 use std::path::Path;
 
-/// Cells are made smaller by a whole factor until they are no wider or higher than this [pixels].
+/// Cells are made smaller by a whole factor until they are no wider or higher than this (pixels).
 const LARGEST: usize = 256;
-/// Between cells [pixels].
+/// Between cells (pixels).
 const GAP: usize = 4;
 /// What lies between cells.
 const GROUND: f32 = 0.2;
@@ -20,11 +20,11 @@ const CUT: f64 = 0.005;
 
 /// Light of captions.
 const INK: f32 = 0.9;
-/// Images at least so wide have captions of twice the size [pixels].
+/// Images at least so wide have captions of twice the size (pixels).
 const WIDE: usize = 96;
 
 /// Images of equal size, those of a row under one exposure.
-pub struct Row {
+pub(super) struct Row {
     /// What stands at its left.
     pub caption: String,
     /// Factor on radiance.
@@ -34,7 +34,7 @@ pub struct Row {
 }
 
 /// The exposure that shows all but the brightest pixels of `image`; 1 where it is black.
-pub fn exposure(image: &[Spectrum]) -> f64 {
+pub(super) fn exposure(image: &[Spectrum]) -> f64 {
     let mut lit: Vec<f32> =
         image.iter().map(|pixel| pixel.luminance()).filter(|l| l.is_finite() && *l > 0.0).collect();
     lit.sort_by(f32::total_cmp);
@@ -43,7 +43,7 @@ pub fn exposure(image: &[Spectrum]) -> f64 {
 }
 
 /// Writes `rows` of images of `width` x `height` pixels to the PNG `path`, each row centred.
-pub fn write(path: &Path, width: usize, height: usize, rows: &[Row]) -> Result<()> {
+pub(super) fn write(path: &Path, width: usize, height: usize, rows: &[Row]) -> Result<()> {
     let layout = Layout::new(width, height, rows);
     let mut sheet = Sheet::new(layout.size());
     for (index, row) in rows.iter().enumerate() {
@@ -61,7 +61,7 @@ pub fn write(path: &Path, width: usize, height: usize, rows: &[Row]) -> Result<(
     film::png::write(path, sheet.size[0], sheet.size[1], &sheet.pixels)
 }
 
-/// Where everything is [pixels].
+/// Where everything is (pixels).
 struct Layout {
     /// By which images are made smaller.
     factor: usize,

@@ -50,7 +50,7 @@ pub struct Report {
     pub luminance: f64,
     /// Variance of one pass by luminance, summed over pixels; none of a single pass.
     pub variance: Option<f64>,
-    /// Time of one pass, summed over threads [s].
+    /// Time of one pass, summed over threads (s).
     pub seconds: f64,
     /// Share of time of camera subpaths, without connections.
     pub eye_walks: f64,

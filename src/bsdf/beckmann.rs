@@ -18,7 +18,7 @@ const MOST_STEPS: usize = 8;
 
 /// A direction, stretched so that the roughness is 1: its z > 0 and its `width` >= 0 across that.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
+pub(super) struct View {
     pub z: f32,
     pub width: f32,
 }
@@ -26,7 +26,7 @@ pub struct View {
 impl View {
     /// The projected area of all facets that are seen, per area of the surface.
     #[inline]
-    pub fn area(self) -> f32 {
+    pub(super) fn area(self) -> f32 {
         let cotangent = self.z / self.width;
         if cotangent > ALL_SEEN {
             return self.z;
@@ -42,7 +42,7 @@ impl View {
 
     /// A slope that is seen, towards the direction and across.
     #[inline]
-    pub fn sample(self, u: Vec2) -> Vec2 {
+    pub(super) fn sample(self, u: Vec2) -> Vec2 {
         vec2(self.towards(u.x), erf_inv(2.0 * u.y - 1.0))
     }
 

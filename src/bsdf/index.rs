@@ -35,16 +35,16 @@ const NAMED: &[(&str, f64)] = &[
 ];
 
 /// The row of the index within, `material` where not given.
-pub const fn inside(material: &'static str) -> Parameter {
+pub(super) const fn inside(material: &'static str) -> Parameter {
     parameter::number_or_name("int_ior", LIMITS, material, "Index of refraction inside, or a material.")
 }
 
 /// The row of the index outside.
-pub const OUTSIDE: Parameter =
+pub(super) const OUTSIDE: Parameter =
     parameter::number_or_name("ext_ior", LIMITS, "air", "Index of refraction outside, or a material.");
 
 /// `int_ior` and `ext_ior`.
-pub fn interfaces(params: &Params<'_>) -> Result<Interfaces> {
+pub(super) fn interfaces(params: &Params<'_>) -> Result<Interfaces> {
     Ok(Interfaces::new(index(params, "int_ior")?, index(params, "ext_ior")?))
 }
 

@@ -52,7 +52,7 @@ const NAMED: &[(&str, [f32; 3], [f32; 3])] = &[
 ];
 
 /// eta and k of the material called `name`.
-pub fn named(params: &Params<'_>, name: &str) -> Result<(Spectrum, Spectrum)> {
+pub(super) fn named(params: &Params<'_>, name: &str) -> Result<(Spectrum, Spectrum)> {
     let found = NAMED.iter().find(|row| row.0.split(' ').any(|known| known == name));
     found.map(|(_, eta, k)| (Spectrum::from(*eta), Spectrum::from(*k))).ok_or_else(|| {
         let names: Vec<_> = NAMED.iter().flat_map(|row| row.0.split(' ')).collect();

@@ -17,7 +17,7 @@ const GREATEST_ALPHA: f64 = 10.0;
 
 /// How the slopes of the facets are distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(super) enum Kind {
     /// Normally.
     Beckmann,
     /// With the long tails of Trowbridge & Reitz.
@@ -26,7 +26,7 @@ pub enum Kind {
 
 /// Roughness as given in a scene: per direction of the shading frame, over the surface.
 #[derive(Clone, Debug)]
-pub struct Roughness {
+pub(super) struct Roughness {
     kind: Kind,
     alpha: [Texture; 2],
     /// The distribution, where it is the same everywhere.
@@ -35,7 +35,7 @@ pub struct Roughness {
 
 /// A distribution at one point of a surface.
 #[derive(Clone, Copy, Debug)]
-pub struct Microfacets {
+pub(super) struct Microfacets {
     kind: Kind,
     alpha_u: f32,
     alpha_v: f32,
@@ -55,7 +55,7 @@ pub(super) const ANISOTROPY: &[Parameter] = rows! {
 };
 
 impl Roughness {
-    pub fn build(params: &Params<'_>) -> Result<Self> {
+    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
         let kinds = [("beckmann", Kind::Beckmann), ("ggx", Kind::Ggx)];
         let kind = params.choice("distribution", &kinds)?;
         if !params.boolean("sample_visible")? {
@@ -85,7 +85,7 @@ impl Roughness {
     }
 
     /// The same for a model that takes one number for the whole surface.
-    pub fn build_even(params: &Params<'_>) -> Result<Microfacets> {
+    pub(super) fn build_even(params: &Params<'_>) -> Result<Microfacets> {
         let Self { kind, alpha: [u, v], .. } = Self::build(params)?;
         match (&u, &v) {
             (Texture::Uniform(along), Texture::Uniform(across)) if along.0 == across.0 => {
@@ -102,13 +102,13 @@ impl Roughness {
     }
 
     /// The largest roughness anywhere.
-    pub fn max(&self) -> f32 {
+    pub(super) fn max(&self) -> f32 {
         self.alpha[0].max().max(self.alpha[1].max()).max_element().max(LEAST_ALPHA)
     }
 
     /// The distribution at texture position `uv`.
     #[inline]
-    pub fn at(&self, uv: Uv) -> Microfacets {
+    pub(super) fn at(&self, uv: Uv) -> Microfacets {
         let alpha = |i: usize| number(&self.alpha[i], uv);
         self.even.unwrap_or_else(|| Microfacets::new(self.kind, alpha(0), alpha(1)))
     }
@@ -125,13 +125,13 @@ impl Roughness {
 impl Microfacets {
     /// Roughnesses along the tangent and the bitangent; those below Mitsuba's least are raised to it.
     #[inline]
-    pub fn new(kind: Kind, alpha_u: f32, alpha_v: f32) -> Self {
+    pub(super) fn new(kind: Kind, alpha_u: f32, alpha_v: f32) -> Self {
         Self { kind, alpha_u: alpha_u.max(LEAST_ALPHA), alpha_v: alpha_v.max(LEAST_ALPHA) }
     }
 
-    /// D(m) [1/sr] of the unit normal `m`; 0 unless m.z > 0.
+    /// D(m) (1/sr) of the unit normal `m`; 0 unless m.z > 0.
     #[inline]
-    pub fn distribution(&self, m: Vec3) -> f32 {
+    pub(super) fn distribution(&self, m: Vec3) -> f32 {
         if m.z <= 0.0 {
             return 0.0;
         }
@@ -148,7 +148,7 @@ impl Microfacets {
 
     /// Smith's masking G1 divided by the cosine v.z, which has a limit at grazing; v.z > 0 and `m` in front.
     #[inline]
-    pub fn masking_over_cosine(&self, v: Vec3) -> f32 {
+    pub(super) fn masking_over_cosine(&self, v: Vec3) -> f32 {
         match self.kind {
             Kind::Ggx => 2.0 / (v.z + self.stretched_length(v)),
             Kind::Beckmann => self.beckmann_masking_over_cosine(v),
@@ -187,16 +187,16 @@ impl Microfacets {
         }
     }
 
-    /// Density [1/sr] of `sample_visible` at the normal `m` seen from `v`, divided by their cosine v.m
+    /// Density (1/sr) of `sample_visible` at the normal `m` seen from `v`, divided by their cosine v.m
     /// (Heitz 2018, eq. 3).
     #[inline]
-    pub fn visible_pdf_over_cosine(&self, v: Vec3, m: Vec3) -> f32 {
+    pub(super) fn visible_pdf_over_cosine(&self, v: Vec3, m: Vec3) -> f32 {
         self.distribution(m) / self.visible_area(v)
     }
 
     /// A normal that `v` (z > 0) sees.
     #[inline]
-    pub fn sample_visible(&self, v: Vec3, u: Vec2) -> Vec3 {
+    pub(super) fn sample_visible(&self, v: Vec3, u: Vec2) -> Vec3 {
         let stretched = vec3(self.alpha_u * v.x, self.alpha_v * v.y, v.z).normalize();
         let across = vec3(-stretched.y, stretched.x, 0.0).try_normalize().unwrap_or(Vec3::X);
         let normal = match self.kind {

@@ -2,7 +2,7 @@
 //!
 //! Conventions. Directions are unit vectors in the shading frame, z the shading normal, both pointing away
 //! from the surface. `wi` is where the walk came from, `wo` where it goes on to. Densities are per solid
-//! angle [1/sr]: `pdf_fwd` is that of `wo` given `wi`, `pdf_rev` that of `wi` given `wo`. For a Dirac lobe
+//! angle (1/sr): `pdf_fwd` is that of `wo` given `wi`, `pdf_rev` that of `wi` given `wo`. For a Dirac lobe
 //! they are the discrete probabilities of choosing that lobe.
 
 mod beckmann;
@@ -71,11 +71,11 @@ impl Transport {
 /// The non-Dirac part of a BSDF for one pair of directions.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfValue {
-    /// f(wi, wo) [1/sr], without any cosine.
+    /// f(wi, wo) (1/sr), without any cosine.
     pub value: Spectrum,
-    /// Density of `wo` given `wi` [1/sr].
+    /// Density of `wo` given `wi` (1/sr).
     pub pdf_fwd: f32,
-    /// Density of `wi` given `wo` [1/sr].
+    /// Density of `wi` given `wo` (1/sr).
     pub pdf_rev: f32,
 }
 
@@ -99,9 +99,9 @@ pub struct BsdfSample {
     pub wo: Vec3,
     /// f |cos wo| / forward; for a Dirac lobe its coefficient / its probability.
     pub weight: Spectrum,
-    /// Density of `wo` given `wi` [1/sr], or the probability of the Dirac lobe.
+    /// Density of `wo` given `wi` (1/sr), or the probability of the Dirac lobe.
     pub pdf_fwd: f32,
-    /// Density of `wi` given `wo` [1/sr], or the probability of the Dirac lobe on the way back.
+    /// Density of `wi` given `wo` (1/sr), or the probability of the Dirac lobe on the way back.
     pub pdf_rev: f32,
     /// True where a Dirac lobe was sampled.
     pub dirac: bool,

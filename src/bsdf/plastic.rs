@@ -44,7 +44,7 @@ const HIGHEST_RATIO: f32 = 20.0;
 pub(super) struct Shares {
     /// The tint of the coat's reflection.
     pub(super) specular: Spectrum,
-    /// f of the base over the transmittances of the coat on both ways [1/sr].
+    /// f of the base over the transmittances of the coat on both ways (1/sr).
     pub(super) base: Spectrum,
     /// Largest channel of the albedos of coat (as if all were reflected) and base (as if all got in).
     of_coat: f32,

@@ -16,7 +16,7 @@ pub struct RoughDielectric {
     roughness: Roughness,
 }
 
-/// Below this spread [rad] of the refracted lobe, f32 directions cannot resolve which microfacet refracted.
+/// Below this spread (rad) of the refracted lobe, f32 directions cannot resolve which microfacet refracted.
 const LEAST_SPREAD: f32 = 1e-5;
 
 /// A pair of directions as the microfacets see it, in the frame turned so that wi.z > 0.

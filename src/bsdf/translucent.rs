@@ -65,7 +65,7 @@ impl Translucent {
         }
     }
 
-    /// Density of the lobe at `wo` [1/sr], the turned-over part included. It is the same for `wi` given `wo`.
+    /// Density of the lobe at `wo` (1/sr), the turned-over part included. It is the same for `wi` given `wo`.
     #[inline]
     fn lobe(&self, n: f32, wi: Vec3, wo: Vec3) -> f32 {
         let turned = vec3(wo.x, wo.y, -wo.z);

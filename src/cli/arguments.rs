@@ -91,7 +91,7 @@ pub enum Command {
     /// active ones and one more on every side; a gridvolume with use_grid_bbox shows the same of both files.
     ///
     /// Plugins, names, ids, references, order, the exact value of every number, colours, spectra, the steps of
-    /// transforms, and parameters with their defaults are preserved (<default> in XML is "$defaults" in JSON).
+    /// transforms, and parameters with their defaults are preserved (`<default>` in XML is `$defaults` in JSON).
     /// Included files and the values of spectrum files are written into the new file; aliases are replaced by the
     /// ids that they refer to. Comments and layout are not kept. Paths of other files are adjusted so that they
     /// still refer to the same files, which are not moved. Where the new format does not allow a parameter, its

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 const SHOWN: usize = 12;
 
 /// In a table, the best first.
-pub fn table(report: &Report) -> String {
+pub(super) fn table(report: &Report) -> String {
     let Report { candidates, samples, choice } = report;
     if candidates.is_empty() {
         return "pilot       none: nothing emits light, or too few samples are to come".to_owned();
@@ -42,7 +42,7 @@ fn name(Foretold { choice, .. }: &Foretold) -> String {
 }
 
 /// The same for scripts.
-pub fn json(report: &Report) -> Value {
+pub(super) fn json(report: &Report) -> Value {
     let one = |Foretold { choice, error, time, judgement }: &Foretold| {
         let mut one = provenance::by_pilot(*choice);
         one["error"] = error.all().into();

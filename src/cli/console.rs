@@ -62,14 +62,14 @@ static LINES: AtomicBool = AtomicBool::new(false);
 
 /// From here on nothing is said but warnings, errors and what was asked for as data (`quiet`), or JSON takes the place
 /// of text on standard output (`json`). `progress` is asked for as data where it is JSON.
-pub fn set(quiet: bool, json: bool, progress: ProgressForm) {
+pub(super) fn set(quiet: bool, json: bool, progress: ProgressForm) {
     TEXT.store(!quiet && !json, Relaxed);
     PROGRESS.store(!quiet, Relaxed);
     LINES.store(progress == ProgressForm::Json, Relaxed);
 }
 
 /// A result or summary for people, to standard output, unless --quiet or --json.
-pub fn say(text: &str) {
+pub(super) fn say(text: &str) {
     if TEXT.load(Relaxed) {
         print(text);
     }
@@ -77,7 +77,7 @@ pub fn say(text: &str) {
 
 /// What was asked for as data, to standard output, unless a file is written there. Work goes on where that fails, so that
 /// nothing is lost; [`heard`] tells in the end.
-pub fn print(text: &str) {
+pub(super) fn print(text: &str) {
     if STDOUT_IS_TAKEN.load(Relaxed) {
         return complain(text);
     }
@@ -85,7 +85,7 @@ pub fn print(text: &str) {
 }
 
 /// Standard output is one of the files that are written: what is said goes to standard error.
-pub fn take_stdout() {
+pub(super) fn take_stdout() {
     STDOUT_IS_TAKEN.store(true, Relaxed);
 }
 
@@ -95,14 +95,14 @@ static STDOUT_IS_TAKEN: AtomicBool = AtomicBool::new(false);
 static UNHEARD: OnceLock<io::Error> = OnceLock::new();
 
 /// Remembers a failure of writing to standard output.
-pub fn note(said: io::Result<()>) {
+pub(super) fn note(said: io::Result<()>) {
     if let Err(error) = said {
         let _ = UNHEARD.set(error);
     }
 }
 
 /// An error unless all that was said was written, or nobody reads any more.
-pub fn heard() -> Result<()> {
+pub(super) fn heard() -> Result<()> {
     match UNHEARD.get() {
         Some(error) if error.kind() != ErrorKind::BrokenPipe => {
             let remedy = "redirect it elsewhere; all files were written";
@@ -113,19 +113,19 @@ pub fn heard() -> Result<()> {
 }
 
 /// What is about to be done or has been done so far, to standard error, unless --quiet.
-pub fn announce(text: &str) {
+pub(super) fn announce(text: &str) {
     if PROGRESS.load(Relaxed) {
         complain(text);
     }
 }
 
 /// Warnings and errors, to standard error.
-pub fn complain(text: &str) {
+pub(super) fn complain(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
 /// A progress bar of `length` steps, on standard error, unless --quiet or --progress json.
-pub fn bar(length: u64) -> ProgressBar {
+pub(super) fn bar(length: u64) -> ProgressBar {
     let is_shown = PROGRESS.load(Relaxed) && !LINES.load(Relaxed);
     if is_shown { ProgressBar::new(length) } else { ProgressBar::hidden() }
 }
@@ -137,7 +137,7 @@ static UPDATED: Mutex<Option<Instant>> = Mutex::new(None);
 
 /// An update of the progress for --progress json, to standard error; the last one is never left out. Where nobody reads
 /// it any more, whoever asked for the render is gone: it ends.
-pub fn update(is_last: bool, progress: impl FnOnce() -> Value) {
+pub(super) fn update(is_last: bool, progress: impl FnOnce() -> Value) {
     if !LINES.load(Relaxed) {
         return;
     }

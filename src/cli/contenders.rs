@@ -22,7 +22,7 @@ struct Words {
 }
 
 /// What `words` request; `place` is where they are.
-pub fn parse(place: &str, words: &str) -> Result<Estimator> {
+pub(super) fn parse(place: &str, words: &str) -> Result<Estimator> {
     let parsed = Words::try_parse_from(words.split_whitespace());
     parsed.map(|words| words.estimator).map_err(|error| {
         let text = error.to_string();
@@ -34,7 +34,7 @@ pub fn parse(place: &str, words: &str) -> Result<Estimator> {
 }
 
 /// All contenders of the command line: the explicit ones, then the product of the axes.
-pub fn all(arguments: &Study) -> Result<Vec<Contender>> {
+pub(super) fn all(arguments: &Study) -> Result<Vec<Contender>> {
     let mut contenders = Vec::new();
     for text in &arguments.contenders {
         let (name, words) = named("--contender", text, "joins: --integrator bdpt --strategies hit,join")?;
@@ -172,7 +172,7 @@ fn product(axes: &[Axis]) -> Vec<Contender> {
 /// Who may make a reference, best first, each with every bound on the depth of paths that one of `contenders` has, with flights
 /// that are sampled without bias, and with the light that they all speak of. Light tracing is not among them: what it rarely
 /// finds makes a bad truth.
-pub fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
+pub(super) fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
     let mut requested = Vec::new();
     for Contender { name, how } in contenders {
         if let How::Options(words) = how {
@@ -221,7 +221,7 @@ fn same_light(requested: &[Estimator]) -> String {
 }
 
 /// Names for scenes out of their files' names, each its own.
-pub fn scene_names(files: &[std::path::PathBuf]) -> Vec<String> {
+pub(super) fn scene_names(files: &[std::path::PathBuf]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for file in files {
         let stem = slug(&file.file_stem().unwrap_or_default().to_string_lossy());

@@ -47,7 +47,7 @@ pub struct Convert {
 }
 
 /// Runs the command.
-pub fn run(arguments: &Convert) -> Result<()> {
+pub(super) fn run(arguments: &Convert) -> Result<()> {
     let Convert { definitions, fill, grid, display, input, output } = arguments;
     let of_scenes = [(!definitions.is_empty(), "-D"), (*fill, "--fill")];
     let of_images = [(display.exposure.is_some(), "--exposure"), (display.view.is_some(), "--view")];

@@ -49,7 +49,7 @@ const KEYFRAMES: &str = "keyframes";
 const PROGRESS: &str = "progress";
 
 /// Prints what was asked for.
-pub fn run(arguments: &Explain) -> Result<()> {
+pub(super) fn run(arguments: &Explain) -> Result<()> {
     let text = match &arguments.topic {
         _ if arguments.schema => format!("{:#}", schema::of_scenes()),
         None => {
@@ -64,7 +64,7 @@ pub fn run(arguments: &Explain) -> Result<()> {
 }
 
 /// All plugins of the kind `tag`, each with its parameters.
-pub fn listing(tag: &str) -> String {
+pub(super) fn listing(tag: &str) -> String {
     text::listing(tag)
 }
 

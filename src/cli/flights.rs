@@ -34,11 +34,11 @@ pub struct Flights {
     #[arg(value_name = "name=value")]
     pub parameters: Vec<String>,
 
-    /// Absorption [1/m]; of a subdivided medium one for each cell, separated by commas: x first, then y, then depth
+    /// Absorption (1/m); of a subdivided medium one for each cell, separated by commas: x first, then y, then depth
     #[arg(long, value_name = "LIST", required = true, value_delimiter = ',', num_args = 1, value_parser = coefficient, allow_negative_numbers = true)]
     pub sigma_a: Vec<f64>,
 
-    /// Scattering [1/m], in the same way; one number is that of all cells
+    /// Scattering (1/m), in the same way; one number is that of all cells
     #[arg(long, value_name = "LIST", required = true, value_delimiter = ',', num_args = 1, value_parser = coefficient, allow_negative_numbers = true)]
     pub sigma_s: Vec<f64>,
 
@@ -50,15 +50,15 @@ pub struct Flights {
     #[arg(long, value_enum, value_name = "NAME", default_value_t = Shape::Slab)]
     pub shape: Shape,
 
-    /// Thickness of the slab, or side length of the cube [m]
+    /// Thickness of the slab, or side length of the cube (m)
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = length, allow_negative_numbers = true)]
     pub size: f64,
 
-    /// Angle between the light and the normal of the face it enters [degrees]
+    /// Angle between the light and the normal of the face it enters (degrees)
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = angle, allow_negative_numbers = true)]
     pub angle: f64,
 
-    /// Lengths of constant steps [m], separated by commas [default: 1, 1/2, 1/4 and 1/8 of the mean free path]
+    /// Lengths of constant steps (m), separated by commas [default: 1, 1/2, 1/4 and 1/8 of the mean free path]
     #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1, value_parser = length, allow_negative_numbers = true)]
     pub steps: Vec<f64>,
 

@@ -48,7 +48,7 @@ pub struct Arguments {
 }
 
 /// Runs the command.
-pub fn run(arguments: &Arguments) -> Result<()> {
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
     arguments.answer.check()?;
     let mut settings = arguments.estimator.guided_settings(&setup, Budget::ENDLESS)?;

@@ -63,7 +63,7 @@ pub struct Info {
 }
 
 /// Runs the command.
-pub fn run(arguments: &Info) -> Result<()> {
+pub(super) fn run(arguments: &Info) -> Result<()> {
     inputs::note(&arguments.scene.file, Reader::Command);
     arguments.answer.check()?;
     if let Some(made) = picture::made(&arguments.scene.file)? {

@@ -17,7 +17,7 @@ const SIGNALS: [(i32, &str); 2] = [(consts::SIGINT, "Ctrl-C"), (consts::SIGTERM,
 static CAME: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
 /// From here on signals are kept for [`signal`]. Where the machine allows no handlers, they end the program as before.
-pub fn listen() {
+pub(super) fn listen() {
     let came = CAME.get_or_init(|| Arc::new(AtomicUsize::new(0)));
     let ignored = ignored();
     for (signal, _) in SIGNALS.into_iter().filter(|(signal, _)| ignored >> (signal - 1) & 1 == 0) {
@@ -38,7 +38,7 @@ fn ignored() -> u64 {
 }
 
 /// From here on as if the terminal had gone.
-pub fn hang_up() {
+pub(super) fn hang_up() {
     #[cfg(unix)]
     const GONE: i32 = consts::SIGHUP;
     #[cfg(not(unix))]
@@ -49,12 +49,12 @@ pub fn hang_up() {
 }
 
 /// True once a signal came.
-pub fn came() -> bool {
+pub(super) fn came() -> bool {
     signal().is_some()
 }
 
 /// The signal that came, by name, with the exit code that it gives.
-pub fn signal() -> Option<(&'static str, u8)> {
+pub(super) fn signal() -> Option<(&'static str, u8)> {
     let came = CAME.get()?.load(Ordering::Relaxed);
     let found = SIGNALS.iter().find(|(signal, _)| *signal as usize == came);
     found.map(|(signal, name)| (*name, exit_code(*signal)))

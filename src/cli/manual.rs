@@ -29,7 +29,7 @@ pub struct Manual {
 }
 
 /// Prints the completions of a shell.
-pub fn complete(arguments: &Completions) -> Result<()> {
+pub(super) fn complete(arguments: &Completions) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command(), "tyndall", &mut script);
     console::print(String::from_utf8_lossy(&script).trim_end());
@@ -37,7 +37,7 @@ pub fn complete(arguments: &Completions) -> Result<()> {
 }
 
 /// Prints the manual page of the program, or writes those of all its commands to a folder.
-pub fn run(arguments: &Manual) -> Result<()> {
+pub(super) fn run(arguments: &Manual) -> Result<()> {
     match &arguments.folder {
         None => console::print(page(&command()).trim_end()),
         Some(folder) => write(folder)?,

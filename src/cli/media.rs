@@ -21,7 +21,7 @@ pub struct Media {
     #[arg(long, value_name = "NAME", value_parser = one_of(&DistanceMethod::NAMES))]
     pub tracker: Option<DistanceMethod>,
 
-    /// Ray-march heterogeneous media by intervals of at most this length [m] [default: the setting of each medium]
+    /// Ray-march heterogeneous media by intervals of at most this length (m) [default: the setting of each medium]
     ///
     /// Implies --tracker march. `tyndall study SCENE --vary step=0.4,0.2,0.1` measures the bias of each step.
     #[arg(long, value_name = "METRES", value_parser = step, allow_negative_numbers = true)]
@@ -64,7 +64,7 @@ impl Media {
 }
 
 /// What of `overrides` makes no difference to a scene, and why.
-pub fn idle(overrides: &Overrides, scene: &Scene) -> Option<String> {
+pub(super) fn idle(overrides: &Overrides, scene: &Scene) -> Option<String> {
     let MediumOverrides { tracker, step, march_error, .. } = overrides.media;
     let given = [("--step", step.is_some()), ("--march-error", march_error.is_some())];
     let marching = given.into_iter().find_map(|(flag, is_given)| is_given.then_some(flag));
@@ -84,7 +84,7 @@ pub fn idle(overrides: &Overrides, scene: &Scene) -> Option<String> {
 }
 
 /// Warns of what makes no difference to `setup`.
-pub fn warn_of_idle(overrides: &Overrides, setup: &Setup) {
+pub(super) fn warn_of_idle(overrides: &Overrides, setup: &Setup) {
     if let Some(text) = idle(overrides, &setup.scene) {
         complain(&format!("warning: {text}"));
     }

@@ -5,7 +5,7 @@ use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 
 /// Where the viewer tev listens.
-pub const VIEWER: &str = "127.0.0.1:14158";
+pub(super) const VIEWER: &str = "127.0.0.1:14158";
 
 /// Samples of every pixel, the last one excluded.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -50,7 +50,7 @@ impl From<Size> for (u32, u32) {
 /// No film needs more pixels on a side; a size beyond is a slip of the finger.
 const LARGEST_SIDE: u32 = 65_536;
 
-pub fn positive_u32(text: &str) -> Result<u32, String> {
+pub(super) fn positive_u32(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(0) => Err("it must be at least 1".into()),
         Ok(number) => Ok(number),
@@ -58,12 +58,12 @@ pub fn positive_u32(text: &str) -> Result<u32, String> {
     }
 }
 
-pub fn batches(text: &str) -> Result<u32, String> {
+pub(super) fn batches(text: &str) -> Result<u32, String> {
     let number = text.parse().ok().filter(|batches| (2..=1000).contains(batches));
     number.ok_or_else(|| "expected a number of images from 2 to 1000, such as 16".to_owned())
 }
 
-pub fn frames(text: &str) -> Result<Frames, String> {
+pub(super) fn frames(text: &str) -> Result<Frames, String> {
     let expected = || "expected frames from 0 to 99999999, such as 0..47, or one, such as 12".to_owned();
     let frame = |text: &str| text.parse().ok().filter(|n| *n <= 99_999_999).ok_or_else(expected);
     let (first, last) = text.split_once("..").unwrap_or((text, text));
@@ -74,7 +74,7 @@ pub fn frames(text: &str) -> Result<Frames, String> {
     Ok(Frames { first, last })
 }
 
-pub fn samples(text: &str) -> Result<Samples, String> {
+pub(super) fn samples(text: &str) -> Result<Samples, String> {
     let pair = text.split_once("..").and_then(|(first, end)| Some((first.parse().ok()?, end.parse().ok()?)));
     let pair = pair.filter(|(first, end)| first < end && u64::from(*end) <= MOST_PASSES);
     let (first, end) = pair.ok_or_else(|| {
@@ -83,28 +83,28 @@ pub fn samples(text: &str) -> Result<Samples, String> {
     Ok(Samples { first, end })
 }
 
-pub fn address(text: &str) -> Result<String, String> {
+pub(super) fn address(text: &str) -> Result<String, String> {
     let port =
         text.rsplit_once(':').and_then(|(host, port)| port.parse::<u16>().ok().filter(|_| !host.is_empty()));
     port.map(|_| text.to_owned()).ok_or_else(|| format!("expected a host and a port, such as {}", VIEWER))
 }
 
-pub fn fps(text: &str) -> Result<f64, String> {
+pub(super) fn fps(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|fps: &f64| (1e-6..=1e9).contains(fps));
     number.ok_or_else(|| "expected frames per second from 1e-6 to 1e9, such as 24 or 29.97".to_owned())
 }
 
-pub fn relative_error(text: &str) -> Result<f64, String> {
+pub(super) fn relative_error(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|error: &f64| (1e-5..=1.0).contains(error));
     number.ok_or_else(|| "expected a relative error from 1e-5 to 1, such as 0.02".to_owned())
 }
 
-pub fn confidence(text: &str) -> Result<f64, String> {
+pub(super) fn confidence(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|confidence: &f64| (0.5..=0.9999).contains(confidence));
     number.ok_or_else(|| "expected a probability from 0.5 to 0.9999, such as 0.95".to_owned())
 }
 
-pub fn threads(text: &str) -> Result<NonZeroUsize, String> {
+pub(super) fn threads(text: &str) -> Result<NonZeroUsize, String> {
     let threads = positive_u32(text)?;
     NonZeroUsize::new(threads as usize)
         .filter(|threads| threads.get() <= 4096)
@@ -112,7 +112,7 @@ pub fn threads(text: &str) -> Result<NonZeroUsize, String> {
 }
 
 /// Reads a name of a table as the value that it refers to.
-pub fn one_of<T: Copy + Send + Sync + 'static>(
+pub(super) fn one_of<T: Copy + Send + Sync + 'static>(
     table: &'static [(&'static str, T)],
 ) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(table.iter().map(|(name, _)| *name)).try_map(|name| {
@@ -121,7 +121,7 @@ pub fn one_of<T: Copy + Send + Sync + 'static>(
     })
 }
 
-pub fn size(text: &str) -> Result<Size, String> {
+pub(super) fn size(text: &str) -> Result<Size, String> {
     let expected = || format!("expected WIDTHxHEIGHT in pixels from 1 to {LARGEST_SIDE}, such as 640x480");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
     let side =
@@ -129,7 +129,7 @@ pub fn size(text: &str) -> Result<Size, String> {
     Ok(Size { width: side(width)?, height: side(height)? })
 }
 
-pub fn crop(text: &str) -> Result<Crop, String> {
+pub(super) fn crop(text: &str) -> Result<Crop, String> {
     let parts = text.split_once('+').and_then(|(pixels, corner)| {
         let (x, y) = corner.split_once('+')?;
         let Size { width, height } = size(pixels).ok()?;
@@ -138,7 +138,7 @@ pub fn crop(text: &str) -> Result<Crop, String> {
     parts.ok_or_else(|| "expected WIDTHxHEIGHT+X+Y in pixels, such as 320x240+640+0".to_owned())
 }
 
-pub fn duration(text: &str) -> Result<Duration, String> {
+pub(super) fn duration(text: &str) -> Result<Duration, String> {
     let expected = || "expected a time above 0, such as 90, 90s, 5m or 1.5h".to_owned();
     let (number, seconds) = match text.char_indices().next_back() {
         Some((at, 's')) => (&text[..at], 1.0),
@@ -151,7 +151,7 @@ pub fn duration(text: &str) -> Result<Duration, String> {
     if duration.is_zero() { Err(expected()) } else { Ok(duration) }
 }
 
-pub fn definition(text: &str) -> Result<(String, String), String> {
+pub(super) fn definition(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected name=value, such as -D res=512")?;
     if name.is_empty() || name.contains(char::is_whitespace) {
         return Err("expected a name without spaces before \"=\"".into());
@@ -160,12 +160,12 @@ pub fn definition(text: &str) -> Result<(String, String), String> {
 }
 
 /// The path of a scene; - is that of standard input.
-pub fn scene_file() -> impl TypedValueParser<Value = PathBuf> {
+pub(super) fn scene_file() -> impl TypedValueParser<Value = PathBuf> {
     let named = |path: PathBuf| if path.as_os_str() == "-" { format::STANDARD_INPUT.into() } else { path };
     PathBufValueParser::new().map(named)
 }
 
-pub fn image_file(text: &str) -> Result<PathBuf, String> {
+pub(super) fn image_file(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     match extension.as_deref() {

@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// What the file at `path` says of itself, if it is sums by its content, or a picture or sums by its name.
-pub fn made(path: &Path) -> Result<Option<Value>> {
+pub(super) fn made(path: &Path) -> Result<Option<Value>> {
     let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let text = match end.as_str() {
         _ if file::is_one(path) => return of_sums(path).map(Some),
@@ -45,7 +45,7 @@ fn of_sums(path: &Path) -> Result<Value> {
 }
 
 /// Prints it.
-pub fn show(made: &Value, answer: &Answer) -> Result<()> {
+pub(super) fn show(made: &Value, answer: &Answer) -> Result<()> {
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
     let mut lines = Vec::new();
     let all =

@@ -56,7 +56,7 @@ pub struct Arguments {
 }
 
 /// Runs the command.
-pub fn run(arguments: &Arguments) -> Result<()> {
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
     check_short(&arguments.output)?;
     let budget = Budget::samples(setup.samples_per_pixel);

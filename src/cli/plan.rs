@@ -14,7 +14,7 @@ use crate::{
 use serde_json::{Value, json};
 
 /// What a render will do.
-pub struct Plan {
+pub(super) struct Plan {
     /// Name of the integrator, some of whose strategies may be left out.
     pub integrator: &'static str,
     strategies: Vec<&'static str>,
@@ -33,7 +33,7 @@ pub struct Plan {
 
 impl Plan {
     /// That of a render of `setup` by `settings`, as a pilot has `chosen` if there was one.
-    pub fn new(setup: &Setup, settings: Settings, chosen: Option<Choice>, error: Option<f64>) -> Self {
+    pub(super) fn new(setup: &Setup, settings: Settings, chosen: Option<Choice>, error: Option<f64>) -> Self {
         let Options { algorithm, strategies, .. } = settings.options;
         Self {
             integrator: algorithm.name(),
@@ -49,12 +49,12 @@ impl Plan {
     }
 
     /// The same of a progressive picture.
-    pub fn of_pixels(self, progressive: Option<Progressive>) -> Self {
+    pub(super) fn of_pixels(self, progressive: Option<Progressive>) -> Self {
         Self { progressive, ..self }
     }
 
     /// In one line: integrator and strategies, sampler, free flights, size, limits, profile.
-    pub fn line(&self) -> String {
+    pub(super) fn line(&self) -> String {
         let integrator = match self.strategies.as_slice() {
             [] => format!("{}, a preview of first surfaces", self.integrator),
             strategies => format!("{} ({}{})", self.integrator, strategies.join(", "), self.effort()),
@@ -94,7 +94,7 @@ impl Plan {
     }
 
     /// Says it, to standard error. What is missing from the image is said even when little else is.
-    pub fn announce(&self) {
+    pub(super) fn announce(&self) {
         console::announce(&self.line());
         self.unreached().iter().for_each(|line| console::complain(line));
     }
@@ -109,7 +109,7 @@ impl Plan {
     }
 
     /// Light that does not reach the image, a line each.
-    pub fn unreached(&self) -> Vec<String> {
+    pub(super) fn unreached(&self) -> Vec<String> {
         let Options { algorithm, strategies, .. } = self.settings.options;
         let whole = algorithm.strategies() == strategies;
         let by = if whole { self.integrator } else { "these strategies" };
@@ -125,7 +125,7 @@ impl Plan {
     }
 
     /// The same facts for scripts.
-    pub fn json(&self) -> Value {
+    pub(super) fn json(&self) -> Value {
         let Settings { options, sampler: points, budget, seed, profile } = self.settings;
         let Options { effort, connections, heuristic, max_depth, .. } = options;
         let Options { hide_emitters, forced_interaction, .. } = options;
@@ -177,7 +177,7 @@ fn flights(media: &[Medium]) -> Vec<DistanceMethod> {
 }
 
 /// How free flights are sampled in `medium`.
-pub fn flight(medium: &Medium) -> DistanceMethod {
+pub(super) fn flight(medium: &Medium) -> DistanceMethod {
     medium.heterogeneous().map_or(DistanceMethod::ClosedForm, |varying| varying.tracker().choice())
 }
 
@@ -194,7 +194,7 @@ fn in_words(method: DistanceMethod) -> &'static str {
 }
 
 /// What is out of the common in `effort`.
-pub fn efforts(effort: Effort) -> Vec<String> {
+pub(super) fn efforts(effort: Effort) -> Vec<String> {
     let Effort { survival, light_walks, connections, learnt_starts, .. } = effort;
     let parts = [
         (connections != 1, format!("{connections} connections a vertex")),

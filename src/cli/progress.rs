@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
 /// A progress bar that shows the nearest of the limits.
-pub struct Bar {
+pub(super) struct Bar {
     bar: ProgressBar,
     settings: Settings,
     precision: Option<Precision>,
@@ -22,7 +22,12 @@ const STEPS: f64 = 1e6;
 
 impl Bar {
     /// That of an image of so many `pixels`; `label` says which one.
-    pub fn new(settings: Settings, precision: Option<Precision>, pixels: usize, label: Option<&str>) -> Self {
+    pub(super) fn new(
+        settings: Settings,
+        precision: Option<Precision>,
+        pixels: usize,
+        label: Option<&str>,
+    ) -> Self {
         let bar = console::bar(STEPS as u64);
         if let Ok(style) = ProgressStyle::with_template("{prefix}{bar:30} {percent:>3} %  {msg}  {eta} left")
         {
@@ -33,7 +38,7 @@ impl Bar {
     }
 
     /// Shows how far the render is.
-    pub fn show(&self, progress: &Progress) {
+    pub(super) fn show(&self, progress: &Progress) {
         let state = match (self.precision, progress.noise) {
             (Some(Precision { error, .. }), _) => {
                 let share = 100.0 * progress.within.unwrap_or(0.0);
@@ -46,7 +51,7 @@ impl Bar {
     }
 
     /// The same of a progressive picture of so many `pixels`.
-    pub fn show_pixels(&self, progress: &Progress, pixels: usize) {
+    pub(super) fn show_pixels(&self, progress: &Progress, pixels: usize) {
         let shaded = progress.samples as f64 / (progress.passes.max(1) as f64 * pixels as f64);
         self.tell(progress, &format!("{:.1} % of the pixels", 100.0 * shaded));
     }
@@ -80,13 +85,13 @@ impl Bar {
     }
 
     /// Removes it.
-    pub fn finish(&self) {
+    pub(super) fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
 /// A number of samples per pixel, with two decimal places unless it is whole.
-pub fn samples_text(samples: f64) -> String {
+pub(super) fn samples_text(samples: f64) -> String {
     match samples {
         _ if samples.fract() == 0.0 => samples.to_string(),
         _ if samples < 0.01 => "less than 0.01".to_owned(),
@@ -95,7 +100,7 @@ pub fn samples_text(samples: f64) -> String {
 }
 
 /// The noise of an image, and how far to trust it where that is not far.
-pub fn noise_text(noise: Noise) -> String {
+pub(super) fn noise_text(noise: Noise) -> String {
     let error = percent(noise.error);
     match noise.uncertainty() {
         fine if fine < WELL_KNOWN => format!("noise {error}"),
@@ -109,7 +114,7 @@ const WELL_KNOWN: f64 = 0.1;
 const HARDLY_KNOWN: f64 = 0.25;
 
 /// A relative error, in percent with two digits.
-pub fn percent(relative: f64) -> String {
+pub(super) fn percent(relative: f64) -> String {
     let digits = if relative >= 0.1 {
         0
     } else if relative >= 0.01 {

@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// All that decides about the samples of an image.
-pub fn settings(
+pub(super) fn settings(
     scene: &Scene,
     setup: &Setup,
     settings: &Settings,
@@ -92,7 +92,7 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
 }
 
 /// What a pilot chose; learnt starts are named where there are any, so that earlier sums without them can go on.
-pub fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
+pub(super) fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
     let mut chosen = json!({
         "strategies": strategies.names(),
         "survival": effort.survival.name(),
@@ -106,19 +106,19 @@ pub fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
 }
 
 /// This program and its version.
-pub fn program() -> String {
+pub(super) fn program() -> String {
     format!("tyndall {}", env!("CARGO_PKG_VERSION"))
 }
 
 /// `settings` with the command that is running: enough to make the image again.
-pub fn made(settings: Value) -> Value {
+pub(super) fn made(settings: Value) -> Value {
     let command: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let folder = std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default();
     json!({ "settings": settings, "command": command, "folder": folder })
 }
 
 /// The same with what became of it, as files hold it: ASCII.
-pub fn metadata(made: &Value, image: &Image) -> String {
+pub(super) fn metadata(made: &Value, image: &Image) -> String {
     let mut all = made.clone();
     all["samples_per_pixel"] = image.samples().into();
     all["render_seconds"] = image.elapsed.as_secs_f64().into();
@@ -128,7 +128,7 @@ pub fn metadata(made: &Value, image: &Image) -> String {
 }
 
 /// The same for a PNG, with how it shows the image.
-pub fn shown(metadata: &str, display: Display) -> String {
+pub(super) fn shown(metadata: &str, display: Display) -> String {
     let mut all: Value = serde_json::from_str(metadata).unwrap_or_else(|_| json!({}));
     all["view"] = display.view.name().into();
     all["exposure"] = display.stops.into();
@@ -151,7 +151,7 @@ fn machine() -> String {
 }
 
 /// The same of any part of the image.
-pub fn without_window(made: &Value) -> Value {
+pub(super) fn without_window(made: &Value) -> Value {
     let mut made = made.clone();
     made["settings"]["film"]["window"].take();
     made
@@ -168,7 +168,7 @@ fn of_image(settings: &Value) -> Value {
 }
 
 /// Refuses sums in `file` whose image is made otherwise.
-pub fn must_equal(file: &Path, found: &Value, wanted: &Value) -> Result<()> {
+pub(super) fn must_equal(file: &Path, found: &Value, wanted: &Value) -> Result<()> {
     let none = Value::Null;
     let (found, wanted) = [found, wanted].map(|made| made.get("settings").unwrap_or(&none)).into();
     let kind =

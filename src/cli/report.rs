@@ -17,7 +17,7 @@ pub struct Report {
 }
 
 /// Runs the command.
-pub fn run(arguments: &Report) -> Result<()> {
+pub(super) fn run(arguments: &Report) -> Result<()> {
     let mut paths = vec![page::write(&arguments.folder)?];
     if let Some(to) = &arguments.record {
         paths.extend(page::record(&arguments.folder, to)?);

@@ -66,13 +66,13 @@ impl Scene {
 }
 
 /// Reads and builds a scene; warnings go to standard error.
-pub fn load(scene: &Scene, overrides: Overrides) -> Result<Setup> {
+pub(super) fn load(scene: &Scene, overrides: Overrides) -> Result<Setup> {
     let overrides = Overrides { strict: scene.strict, ..overrides };
     built(&scene.read()?, overrides)
 }
 
 /// Builds what was read; warnings go to standard error.
-pub fn built(root: &Object, overrides: Overrides) -> Result<Setup> {
+pub(super) fn built(root: &Object, overrides: Overrides) -> Result<Setup> {
     let setup = build::build(root, overrides)?;
     for warning in &setup.warnings {
         complain(&format!("warning: {warning}"));
@@ -82,7 +82,7 @@ pub fn built(root: &Object, overrides: Overrides) -> Result<Setup> {
 }
 
 /// The threads that render.
-pub fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
+pub(super) fn threads(wanted: Option<NonZeroUsize>) -> Result<rayon::ThreadPool> {
     let threads = wanted.map_or(0, usize::from);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| {
         Error::new("--threads", "a number of threads this machine can start", error.to_string(), "use fewer")

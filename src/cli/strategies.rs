@@ -63,7 +63,7 @@ pub struct Arguments {
 }
 
 /// Runs the command.
-pub fn run(arguments: &Arguments) -> Result<()> {
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let setup = load(&arguments.scene, arguments.estimator.overrides(arguments.size))?;
     arguments.answer.check()?;
     let budget = Budget::ENDLESS;

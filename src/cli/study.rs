@@ -164,7 +164,7 @@ pub struct Study {
     pub answer: Answer,
 }
 
-/// Time of the largest budget [s].
+/// Time of the largest budget (s).
 const SECONDS: f64 = 8.0;
 
 fn error(text: &str) -> std::result::Result<f64, String> {
@@ -173,7 +173,7 @@ fn error(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// Runs the command.
-pub fn run(arguments: &Study) -> Result<()> {
+pub(super) fn run(arguments: &Study) -> Result<()> {
     check_files(&arguments.scenes)?;
     let contenders = contenders::all(arguments)?;
     let pool = threads(arguments.threads)?;
@@ -323,7 +323,7 @@ impl<'a> Stage<'a> {
         Ok(self.setup(scene, Overrides { size, ..Overrides::default() })?.0)
     }
 
-    /// The scene with `overrides`, and the time that reading and building it took [s].
+    /// The scene with `overrides`, and the time that reading and building it took (s).
     fn setup(&mut self, scene: usize, overrides: Overrides) -> Result<(Arc<Setup>, f64)> {
         let started = Instant::now();
         let (root, reading) = match self.scene.take() {

@@ -17,13 +17,13 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// True if the file at `path` is one by its name.
-pub fn is_one(path: &Path) -> bool {
+pub(super) fn is_one(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default();
     ["vdb", "nvdb", "vol"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
 /// Lists the grids of the file at `path`.
-pub fn run(path: &Path, answer: &Answer) -> Result<()> {
+pub(super) fn run(path: &Path, answer: &Answer) -> Result<()> {
     let mut file = Catalogue::open(path)?;
     let (mut lines, mut figures) = (vec![], vec![]);
     for number in 0..file.labels.len() {
@@ -134,7 +134,7 @@ fn figures_of(label: &Label, contents: Option<&Contents>) -> Value {
 }
 
 /// What smoke of a scene was made of, for scripts.
-pub fn taken(taken: &Taken) -> Value {
+pub(super) fn taken(taken: &Taken) -> Value {
     json!({
         "name": taken.name,
         "file": taken.file.display().to_string(),

@@ -13,7 +13,7 @@ pub struct Keyframes {
 /// A value at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
-    /// When [s].
+    /// When (s).
     pub time: f64,
     /// The value, and where it is.
     pub value: Property,
@@ -72,12 +72,12 @@ impl Keyframes {
         self.interpolation
     }
 
-    /// The value at `time` [s].
+    /// The value at `time` (s).
     pub fn at(&self, time: f64) -> Value {
         self.value(|curve| curve.at(time))
     }
 
-    /// The mean of the value from the time 0 to `time` [s].
+    /// The mean of the value from the time 0 to `time` (s).
     pub fn mean(&self, time: f64) -> Value {
         self.value(|curve| match time == 0.0 {
             true => curve.at(0.0),

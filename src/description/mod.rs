@@ -113,7 +113,7 @@ pub enum Value {
     String(String),
     /// A linear-sRGB colour.
     Rgb([f64; 3]),
-    /// Wavelength [nm] and value pairs in order of wavelength; a single pair has its value at all wavelengths.
+    /// Wavelength (nm) and value pairs in order of wavelength; a single pair has its value at all wavelengths.
     Spectrum(Vec<(f64, f64)>),
     /// A point or vector.
     Vector([f64; 3]),

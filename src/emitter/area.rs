@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 /// Emits `radiance`, which may vary over the surface and, by a profile, with the angle to the normal.
 #[derive(Clone, Debug)]
 pub struct Area {
-    /// Radiance along the normal [W/(m^2 sr)].
+    /// Radiance along the normal (W/(m^2 sr)).
     radiance: Texture,
     /// Beyond Mitsuba: radiance relative to that, by angle.
     profile: Option<Profile>,

@@ -8,7 +8,7 @@ use crate::{
 };
 use std::f64::consts::PI;
 
-/// World radii from one to the other [m]: within these, f32 holds the disk's area and 1 over it.
+/// World radii from one to the other (m): within these, f32 holds the disk's area and 1 over it.
 const RADII: [f64; 2] = [1e-15, 1e15];
 
 /// A collimated beam. The disk itself is no surface: it is not seen, blocks nothing and bounds no medium.
@@ -17,9 +17,9 @@ pub struct Collimated {
     centre: DVec3,
     /// Unit direction in which the light travels.
     direction: Vec3,
-    /// Of the disk [m].
+    /// Of the disk (m).
     radius: f32,
-    /// Irradiance across the beam [W/m^2].
+    /// Irradiance across the beam (W/m^2).
     irradiance: Spectrum,
 }
 
@@ -81,7 +81,7 @@ impl BeamModel for Collimated {
     }
 }
 
-/// Stated as such, or as the `power` of the whole beam [W].
+/// Stated as such, or as the `power` of the whole beam (W).
 fn irradiance(params: &Params<'_>, radius: f64) -> Result<Spectrum> {
     let Some(power) = params.optional_color("power")? else {
         return params.color("irradiance");
@@ -97,7 +97,7 @@ fn irradiance(params: &Params<'_>, radius: f64) -> Result<Spectrum> {
     Err(params.complain("power", expected, power.max_element().to_string()))
 }
 
-/// Of a disk [m^2].
+/// Of a disk (m^2).
 fn area(radius: f64) -> f64 {
     PI * radius * radius
 }

@@ -12,7 +12,7 @@ use std::f32::consts::PI;
 /// A constant environment.
 #[derive(Clone, Debug)]
 pub struct Constant {
-    /// Radiance [W/(m^2 sr)].
+    /// Radiance (W/(m^2 sr)).
     radiance: Spectrum,
 }
 

@@ -13,7 +13,7 @@ use crate::{
 pub struct Directional {
     /// Unit direction in which the light travels.
     direction: Vec3,
-    /// Irradiance on a surface facing the light [W/m^2].
+    /// Irradiance on a surface facing the light (W/m^2).
     irradiance: Spectrum,
 }
 

@@ -32,7 +32,7 @@ pub struct EnvMap {
     /// Orthogonal; may mirror.
     to_local: Mat3,
     scale: f32,
-    /// Integral of radiance over all directions [W/m^2].
+    /// Integral of radiance over all directions (W/m^2).
     fluence: DVec3,
 }
 
@@ -47,7 +47,7 @@ struct Map {
 #[derive(Debug)]
 struct Aim {
     cells: Grid,
-    /// One over the integral of [`Self::at`], [1/sr]; 0 where that is black.
+    /// One over the integral of what it is proportional to (1/sr); 0 where that is black.
     scale: f32,
     /// How much less than its luminance a pixel counts.
     spared: f32,
@@ -188,7 +188,7 @@ impl Aim {
         aim
     }
 
-    /// Density within a cell [1/sr], of whose corners the `luminance` is given.
+    /// Density within a cell (1/sr), of whose corners the `luminance` is given.
     #[inline]
     fn pdf_sr(&self, luminance: &Corners<f32>, x: f32, descent: f32) -> f32 {
         between(&each(luminance, |luminance| self.of(*luminance)), x, descent) * self.scale
@@ -247,7 +247,7 @@ impl Map {
         [pixels[left], pixels[right], pixels[left + width], pixels[right + width]]
     }
 
-    /// Solid angle of a cell between `row` and the next [sr].
+    /// Solid angle of a cell between `row` and the next (sr).
     #[inline]
     fn solid_angle(&self, row: usize) -> f64 {
         2.0 * PI / self.image.width as f64 * (self.cosines[row] - self.cosines[row + 1])

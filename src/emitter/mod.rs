@@ -53,31 +53,31 @@ pub struct Emitter {
 /// The ways to emit, by where light starts: each has a measure of its own for the density of that.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// A shape [1/m^2].
+    /// A shape (1/m^2).
     Surface(SurfaceEmitter),
     /// A point.
     Point(PointEmitter),
-    /// Infinity [1/sr].
+    /// Infinity (1/sr).
     Infinite(InfiniteEmitter),
     /// A disk that parallel rays leave: a point of it is as the single direction of an emitter at infinity.
     Beam(BeamEmitter),
-    /// An emissive medium [1/m^3]. Its description is the medium's own.
+    /// An emissive medium (1/m^3). Its description is the medium's own.
     Medium(VolumeEmitter),
 }
 
 /// What every emitter on a shape can do.
 pub trait SurfaceModel {
-    /// Radiance that leaves texture position `uv` at `cosine` to the normal of the side that emits [W/(m^2 sr)]: none
+    /// Radiance that leaves texture position `uv` at `cosine` to the normal of the side that emits (W/(m^2 sr)): none
     /// behind. Of a Dirac emitter 0.
     fn radiance(&self, uv: Uv, cosine: f32) -> Spectrum;
 
-    /// Density of [`Self::sample`] [1/sr]. Of a Dirac emitter 0.
+    /// Density of [`Self::sample`] (1/sr). Of a Dirac emitter 0.
     fn pdf_sr(&self, cosine: f32) -> f32;
 
-    /// A direction for light to leave `point` in, which was sampled with density `pdf_area` [1/m^2].
+    /// A direction for light to leave `point` in, which was sampled with density `pdf_area` (1/m^2).
     fn sample(&self, point: &SurfacePoint, pdf_area: f32, stream: &mut Stream) -> SurfaceEmission;
 
-    /// Emitted power per area [W/m^2]; for textured shapes an estimate from the mean of the texture.
+    /// Emitted power per area (W/m^2); for textured shapes an estimate from the mean of the texture.
     fn exitance(&self) -> DVec3;
 
     /// True if each point emits in a single direction: no camera subpath hits that by chance, and no point can be
@@ -94,7 +94,7 @@ pub struct SurfaceEmission {
     pub direction: Vec3,
     /// |cos| to the normal; 1 of a Dirac emitter.
     pub cosine: f32,
-    /// Density of the direction [1/sr]; 1 of a Dirac emitter.
+    /// Density of the direction (1/sr); 1 of a Dirac emitter.
     pub pdf_sr: f32,
     /// Radiance x cosine over the densities of direction and point.
     pub throughput: Spectrum,
@@ -105,16 +105,16 @@ pub trait PointModel {
     /// Its position in the file's coordinates.
     fn position(&self) -> DVec3;
 
-    /// Intensity towards unit `direction` [W/sr].
+    /// Intensity towards unit `direction` (W/sr).
     fn intensity(&self, direction: Vec3) -> Spectrum;
 
     /// A direction for light to leave in; 0 where there is none.
     fn sample(&self, stream: &mut Stream) -> Vec3;
 
-    /// Density of [`Self::sample`] [1/sr].
+    /// Density of [`Self::sample`] (1/sr).
     fn pdf_sr(&self, direction: Vec3) -> f32;
 
-    /// Emitted power [W].
+    /// Emitted power (W).
     fn power(&self) -> DVec3;
 }
 
@@ -125,19 +125,19 @@ pub struct Seen {
     pub radiance: Spectrum,
     /// See [`InfiniteModel::pdf_sr`].
     pub pdf_sr: f32,
-    /// Density of [`InfiniteModel::aim`] [1/sr]; 1 of the only direction there is.
+    /// Density of [`InfiniteModel::aim`] (1/sr); 1 of the only direction there is.
     pub aimed_sr: f32,
 }
 
 /// What every emitter at infinity can do.
 pub trait InfiniteModel {
-    /// Radiance from the unit direction `towards` it [W/(m^2 sr)]; from a single direction irradiance [W/m^2].
+    /// Radiance from the unit direction `towards` it (W/(m^2 sr)); from a single direction irradiance (W/m^2).
     fn radiance(&self, towards: Vec3) -> Spectrum;
 
     /// A unit direction for a light subpath to come from.
     fn sample(&self, stream: &mut Stream) -> Vec3;
 
-    /// Density of [`Self::sample`] [1/sr]; 1 of the only direction there is.
+    /// Density of [`Self::sample`] (1/sr); 1 of the only direction there is.
     fn pdf_sr(&self, towards: Vec3) -> f32;
 
     /// A unit direction for next-event estimation to take, and what there is.
@@ -152,7 +152,7 @@ pub trait InfiniteModel {
         Seen { radiance: self.radiance(towards), pdf_sr, aimed_sr: pdf_sr }
     }
 
-    /// The integral of radiance over all directions [W/m^2].
+    /// The integral of radiance over all directions (W/m^2).
     fn fluence(&self) -> DVec3;
 
     /// The only direction towards it; none where it surrounds the scene.
@@ -174,13 +174,13 @@ pub trait BeamModel {
     /// The unit direction in which the light travels, a normal of the disk.
     fn direction(&self) -> Vec3;
 
-    /// Radius of the disk [m].
+    /// Radius of the disk (m).
     fn radius(&self) -> f32;
 
-    /// Irradiance on a surface that faces the light [W/m^2].
+    /// Irradiance on a surface that faces the light (W/m^2).
     fn irradiance(&self) -> Spectrum;
 
-    /// Emitted power [W].
+    /// Emitted power (W).
     fn power(&self) -> DVec3;
 }
 
@@ -326,7 +326,7 @@ impl Emitter {
         }
     }
 
-    /// Emitted power [W], luminance-weighted; `area` [m^2] of the emitting shape, `radius` [m] of the scene.
+    /// Emitted power (W), luminance-weighted; `area` (m^2) of the emitting shape, `radius` (m) of the scene.
     pub fn power(&self, area: f32, radius: f32) -> f64 {
         let power = match &self.kind {
             Kind::Surface(e) => e.exitance() * f64::from(area),

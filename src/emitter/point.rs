@@ -13,7 +13,7 @@ use std::f32::consts::PI;
 #[derive(Clone, Debug)]
 pub struct Point {
     position: DVec3,
-    /// Intensity on the axis [W/sr].
+    /// Intensity on the axis (W/sr).
     intensity: Spectrum,
     /// Beyond Mitsuba: intensity relative to that by angle, and the axis, local +z.
     profile: Option<(Profile, Frame)>,

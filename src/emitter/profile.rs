@@ -10,8 +10,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Values at angles in [0, 180] degrees, linear between them and constant beyond the first and last.
 #[derive(Clone, Debug)]
-pub struct Profile {
-    /// Angle to the axis [rad] and value, by increasing angle.
+pub(super) struct Profile {
+    /// Angle to the axis (rad) and value, by increasing angle.
     points: Vec<(f64, f64)>,
     /// All around the axis, uniform in cos within each ring.
     around: Rings,
@@ -24,7 +24,7 @@ pub struct Profile {
 /// Rings of angles, chosen in proportion to what leaves through each.
 #[derive(Clone, Debug)]
 struct Rings {
-    /// Angles between the rings [rad], from 0 on.
+    /// Angles between the rings (rad), from 0 on.
     edges: Vec<f64>,
     chosen: Discrete,
 }
@@ -49,7 +49,7 @@ impl Profile {
         if profile.integral > 0.0 { Ok(Some(profile)) } else { Err(wrong()) }
     }
 
-    /// From angles [degrees] and values.
+    /// From angles (degrees) and values.
     fn new(points: &[(f64, f64)]) -> Self {
         let points: Vec<(f64, f64)> = points.iter().map(|(a, v)| (a.to_radians(), *v)).collect();
         let value = |angle: f64| interpolated(&points, angle);
@@ -62,39 +62,39 @@ impl Profile {
 
     /// The value at an angle of `cosine` to the axis.
     #[inline]
-    pub fn value(&self, cosine: f32) -> f32 {
+    pub(super) fn value(&self, cosine: f32) -> f32 {
         interpolated(&self.points, f64::from(cosine).clamp(-1.0, 1.0).acos()) as f32
     }
 
-    /// Integral over all directions [sr].
-    pub fn integral(&self) -> f32 {
+    /// Integral over all directions (sr).
+    pub(super) fn integral(&self) -> f32 {
         self.integral as f32
     }
 
-    /// Integral of value x cosine over the hemisphere around the axis [sr].
-    pub fn projected_integral(&self) -> f32 {
+    /// Integral of value x cosine over the hemisphere around the axis (sr).
+    pub(super) fn projected_integral(&self) -> f32 {
         self.projected_integral as f32
     }
 
     /// A direction around local +z, nearly in proportion to the value.
     #[inline]
-    pub fn sample_around(&self, stream: &mut Stream) -> Vec3 {
+    pub(super) fn sample_around(&self, stream: &mut Stream) -> Vec3 {
         let (low, high) = self.around.sample(stream);
         let u = stream.square();
         let (low, high) = (one_minus_cos(low), one_minus_cos(high));
         warp::near_pole((low + f64::from(u.x) * (high - low)) as f32, std::f32::consts::TAU * u.y)
     }
 
-    /// Density of `sample_around` [1/sr].
+    /// Density of `sample_around` (1/sr).
     #[inline]
-    pub fn pdf_sr_around(&self, cosine: f32) -> f32 {
+    pub(super) fn pdf_sr_around(&self, cosine: f32) -> f32 {
         let (low, high, probability) = self.around.ring(cosine);
         (probability / (2.0 * PI * (one_minus_cos(high) - one_minus_cos(low)))) as f32
     }
 
     /// A direction above local z = 0, nearly in proportion to value x cosine.
     #[inline]
-    pub fn sample_from_surface(&self, stream: &mut Stream) -> Vec3 {
+    pub(super) fn sample_from_surface(&self, stream: &mut Stream) -> Vec3 {
         let (low, high) = self.surface.sample(stream);
         let u = stream.square();
         let (s, c) = (std::f32::consts::TAU * u.y).sin_cos();
@@ -107,9 +107,9 @@ impl Profile {
         Vec3::new(sine * c, sine * s, between(low.cos(), high.cos()))
     }
 
-    /// Density of `sample_from_surface` [1/sr].
+    /// Density of `sample_from_surface` (1/sr).
     #[inline]
-    pub fn pdf_sr_from_surface(&self, cosine: f32) -> f32 {
+    pub(super) fn pdf_sr_from_surface(&self, cosine: f32) -> f32 {
         if cosine <= 0.0 || self.surface.chosen.is_empty() {
             return 0.0;
         }

@@ -14,12 +14,12 @@ use std::f32::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct Spot {
     position: DVec3,
-    /// Intensity on the axis [W/sr].
+    /// Intensity on the axis (W/sr).
     intensity: Spectrum,
     axis: Frame,
-    /// Half angle of the full cone [rad].
+    /// Half angle of the full cone (rad).
     cutoff: f32,
-    /// Half angle within which the intensity is constant [rad].
+    /// Half angle within which the intensity is constant (rad).
     beam: f32,
     /// A factor that varies over the cone.
     slide: Option<Slide>,

@@ -17,7 +17,7 @@ fn direction(band: f32, sector: f32) -> Vec3 {
     warp::spherical(1.0 - 2.0 * band / BANDS as f32, std::f32::consts::TAU * sector / BANDS as f32)
 }
 
-/// Integrals of `f` over all cells [times sr].
+/// Integrals of `f` over all cells (times sr).
 fn integrals(f: impl Fn(Vec3) -> f32) -> Vec<f64> {
     let area = 4.0 * std::f64::consts::PI / (BANDS * BANDS * FINE * FINE) as f64;
     let place = |cell: usize, i: usize| cell as f32 + (i as f32 + 0.5) / FINE as f32;

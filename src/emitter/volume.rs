@@ -16,10 +16,10 @@ pub struct VolumeEmitter {
 }
 
 impl VolumeEmitter {
-    /// Density of directions [1/sr].
+    /// Density of directions (1/sr).
     pub const PDF_SR: f32 = warp::SPHERE_PDF;
 
-    /// Emitted power [W].
+    /// Emitted power (W).
     pub fn power(&self) -> DVec3 {
         self.emission.power() * self.filled
     }

@@ -18,12 +18,12 @@ pub enum Filter {
     Box,
     /// Falls linearly to 0 at `radius`.
     Tent {
-        /// Where it ends [pixels].
+        /// Where it ends (pixels).
         radius: f32,
     },
     /// A Gaussian less its value at four standard deviations, 0 beyond.
     Gaussian {
-        /// Standard deviation [pixels].
+        /// Standard deviation (pixels).
         stddev: f32,
     },
     /// The cubic splines of Mitchell and Netravali 1988 (eq. 8), which end at 2 pixels; Catmull and Rom's is
@@ -36,7 +36,7 @@ pub enum Filter {
     },
     /// sinc(x) sinc(x / lobes), sinc(x) = sin(pi x) / (pi x).
     Lanczos {
-        /// Where it ends [pixels], from 1.
+        /// Where it ends (pixels), from 1.
         lobes: u32,
     },
 }
@@ -87,7 +87,7 @@ const LANCZOS: Table = table! {
 };
 
 impl Filter {
-    /// Distance from its centre beyond which it is 0 [pixels].
+    /// Distance from its centre beyond which it is 0 (pixels).
     pub fn radius(&self) -> f32 {
         match self {
             Self::Box => 0.5,
@@ -224,7 +224,7 @@ enum Plain {
 }
 
 impl Plain {
-    /// A distance [pixels].
+    /// A distance (pixels).
     #[inline]
     fn sample(self, stream: &mut Stream) -> f32 {
         match self {

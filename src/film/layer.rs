@@ -8,9 +8,9 @@ use crate::description::Registry;
 pub enum Quantity {
     /// pi times the BSDF towards the normal; of a diffuse surface its reflectance.
     Albedo,
-    /// Distance from the near clip plane along the ray [m].
+    /// Distance from the near clip plane along the ray (m).
     Depth,
-    /// World position [m].
+    /// World position (m).
     Position,
     /// Texture coordinates.
     Uv,
@@ -18,9 +18,9 @@ pub enum Quantity {
     GeometricNormal,
     /// Shading normal, world space.
     ShadingNormal,
-    /// Change of position with the first texture coordinate [m].
+    /// Change of position with the first texture coordinate (m).
     DpDu,
-    /// Change of position with the second texture coordinate [m].
+    /// Change of position with the second texture coordinate (m).
     DpDv,
     /// Change of the texture coordinates with a step across the film of 1 / sqrt(samples per pixel) pixels,
     /// to where the ray from the lens hits the tangent plane (Mitsuba starts that ray at the near clip plane).

@@ -9,7 +9,7 @@ const STEPS: u32 = 128;
 /// Draws positions distributed by the magnitude of a filter: under a staircase that nowhere lies below it,
 /// then by rejection, so exactly.
 #[derive(Clone, Debug)]
-pub struct Lobes {
+pub(super) struct Lobes {
     filter: Filter,
     steps: Discrete,
     heights: Vec<f32>,
@@ -17,7 +17,7 @@ pub struct Lobes {
 
 impl Lobes {
     /// Builds the staircase above `filter`, whose radius is a whole number.
-    pub fn new(filter: Filter) -> Self {
+    pub(super) fn new(filter: Filter) -> Self {
         let count = 2 * filter.radius().round() as u32 * STEPS;
         // No point of a step is further than half its width from the nearer end.
         let rise = filter.steepness() * 0.5 / STEPS as f32;
@@ -26,9 +26,9 @@ impl Lobes {
         Self { filter, steps: Discrete::new(heights.iter().map(|h| f64::from(*h))), heights }
     }
 
-    /// A position [pixels] and the sign of the filter there.
+    /// A position (pixels) and the sign of the filter there.
     #[inline]
-    pub fn sample(&self, stream: &mut Stream) -> (f32, f32) {
+    pub(super) fn sample(&self, stream: &mut Stream) -> (f32, f32) {
         loop {
             let (step, _) = self.steps.sample(stream.uniform());
             let within = stream.square();
@@ -42,7 +42,7 @@ impl Lobes {
 }
 
 /// Integrals of `filter` from `low` to `high` over each of its pieces of one sign.
-pub fn integrals(filter: &Filter, low: f64, high: f64) -> Vec<f64> {
+pub(super) fn integrals(filter: &Filter, low: f64, high: f64) -> Vec<f64> {
     let knots = filter.knots();
     let mirrored = knots.iter().rev().map(|knot| -knot);
     let all: Vec<f64> = mirrored.chain(knots.iter().skip(1).copied()).collect();
@@ -54,7 +54,7 @@ pub fn integrals(filter: &Filter, low: f64, high: f64) -> Vec<f64> {
 }
 
 /// Simpson's rule, exact for cubics; for a lobe of a Lanczos filter to 1e-9.
-pub fn simpson(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn simpson(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     const PANELS: u32 = 64;
     let h = (high - low) / f64::from(2 * PANELS);
     let weight = |i: u32| match i {

@@ -68,7 +68,7 @@ pub struct Film {
     /// The same filter along both axes.
     pub filter: Filter,
     /// Also sampled this far beyond the window, where the filter still reaches its pixels: left and right, above and
-    /// below [pixels].
+    /// below (pixels).
     pub border: [[u32; 2]; 2],
     /// What is written.
     pub format: Format,
@@ -156,7 +156,7 @@ impl Film {
     }
 }
 
-/// How far beyond a pixel its filter is not 0 [pixels].
+/// How far beyond a pixel its filter is not 0 (pixels).
 fn reach(filter: Filter) -> u32 {
     (filter.radius() - 0.5).ceil() as u32
 }

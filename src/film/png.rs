@@ -85,7 +85,7 @@ const MADE: &str = "tyndall";
 /// How radiance becomes what a screen shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToneCurve {
-    /// The curve of this page, with its white point [luminance].
+    /// The curve of this page, with its white point (luminance).
     White(f32),
     /// This many times the radiance, cut off at 1.
     Scale(f32),

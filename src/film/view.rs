@@ -21,7 +21,7 @@ pub enum View {
     /// [`ToneCurve::White`]: an image without highlights is shown as it is; highlights keep their hue.
     #[default]
     Standard,
-    /// [`Agx`]: a filmic curve over 16.5 stops; what is bright loses colour, as on film.
+    /// [`agx`]: a filmic curve over 16.5 stops; what is bright loses colour, as on film.
     Agx,
     /// The fit by Narkowicz (2015) of the curve of ACES, each channel by itself: more contrast than AgX.
     Aces,

@@ -23,12 +23,12 @@ pub struct Sources {
     /// The scene file, the files that it includes, and those there are of the ones that its plugins name (meshes, images,
     /// grids), each once.
     pub files: Vec<PathBuf>,
-    /// Spectra, which may come from files that the tree no longer names: pairs of wavelength [nm] and value.
+    /// Spectra, which may come from files that the tree no longer names: pairs of wavelength (nm) and value.
     pub spectra: Vec<Vec<(f64, f64)>>,
 }
 
-/// The sources of the scene at `path`, read with the user's `definitions` as by [`super::read`]. Of numbered files, the
-/// one that is shown at `time` [s]; where that is not given, at the scene's own.
+/// The sources of the scene at `path`, read with the user's `definitions` as by [`super::read()`]. Of numbered files, the
+/// one that is shown at `time` (s); where that is not given, at the scene's own.
 pub fn sources(path: &Path, definitions: &[(String, String)], time: Option<f64>) -> Result<Sources> {
     let (root, origins) = read_with_origins(path, definitions)?;
     let mut sources = Sources { files: vec![path.to_owned()], spectra: Vec::new() };
@@ -122,7 +122,7 @@ pub(super) fn note(object: &Object) {
     }
 }
 
-/// The file that `path` is at `time` [s] for a plugin, which may show numbered ones.
+/// The file that `path` is at `time` (s) for a plugin, which may show numbered ones.
 fn shown(object: &Object, path: PathBuf, time: f64) -> PathBuf {
     let sequence = Sequence::new(&path, Clock::of(object)).and_then(|sequence| sequence.at(time).ok());
     sequence.unwrap_or(path)

@@ -51,22 +51,22 @@ pub(super) struct Origins {
 
 impl Origins {
     /// Remembers that `text` is at the attribute `name` of what is at `place`.
-    pub fn record(&mut self, place: Location, name: &str, text: &str) {
+    pub(super) fn record(&mut self, place: Location, name: &str, text: &str) {
         self.texts.entry(place).or_default().push((name.to_owned(), text.to_owned()));
     }
 
     /// Remembers where the steps of the transform at `place` are.
-    pub fn record_steps(&mut self, place: Location, steps: Vec<Location>) {
+    pub(super) fn record_steps(&mut self, place: Location, steps: Vec<Location>) {
         self.steps.insert(place, steps);
     }
 
     /// Remembers that the file named at `place` lies elsewhere than it says.
-    pub fn record_found(&mut self, place: Location) {
+    pub(super) fn record_found(&mut self, place: Location) {
         self.found.insert(place);
     }
 
     /// Remembers a parameter; one already known keeps its value.
-    pub fn declare(&mut self, name: &str, value: &str, text: &str, kind: Option<Kind>) {
+    pub(super) fn declare(&mut self, name: &str, value: &str, text: &str, kind: Option<Kind>) {
         if self.declarations.iter().all(|known| known.name != name) {
             let [name, value, text] = [name, value, text].map(str::to_owned);
             self.declarations.push(Declaration { name, text, value, kind });
@@ -74,18 +74,18 @@ impl Origins {
     }
 
     /// Forgets all parameters: every value is its own text.
-    pub fn fill(&mut self) {
+    pub(super) fn fill(&mut self) {
         self.texts.clear();
         self.declarations.clear();
     }
 
     /// True if the file named at `place` lies elsewhere than it says.
-    pub fn was_found_elsewhere(&self, place: &Location) -> bool {
+    pub(super) fn was_found_elsewhere(&self, place: &Location) -> bool {
         self.found.contains(place)
     }
 
     /// The text with `$` at the attribute `name` (in JSON: the key) of what is at `place`.
-    pub fn attribute(&self, place: &Location, name: &str) -> Option<&str> {
+    pub(super) fn attribute(&self, place: &Location, name: &str) -> Option<&str> {
         match &place.position {
             Position::Text { .. } => self.at(place, name),
             Position::Path(_) => self.at(&below(place, &super::json::key(name)), "value"),
@@ -93,12 +93,12 @@ impl Origins {
     }
 
     /// The text with `$` that is the value at `place` itself.
-    pub fn value(&self, place: &Location) -> Option<&str> {
+    pub(super) fn value(&self, place: &Location) -> Option<&str> {
         self.at(place, "value")
     }
 
     /// The text with `$` that is item `index` of the list at `place`; in JSON only.
-    pub fn item(&self, place: &Location, index: usize) -> Option<&str> {
+    pub(super) fn item(&self, place: &Location, index: usize) -> Option<&str> {
         match &place.position {
             Position::Text { .. } => None,
             Position::Path(_) => self.at(&below(place, &super::json::index(index)), "value"),
@@ -106,7 +106,7 @@ impl Origins {
     }
 
     /// Where step `index` of the transform at `place` is.
-    pub fn step(&self, place: &Location, index: usize) -> Option<Location> {
+    pub(super) fn step(&self, place: &Location, index: usize) -> Option<Location> {
         match &place.position {
             Position::Text { .. } => self.steps.get(place)?.get(index).cloned(),
             Position::Path(_) => Some(below(place, &super::json::index(index))),

@@ -50,7 +50,7 @@ pub(super) fn escaped(text: &str) -> String {
 
 impl Parameters {
     /// What the user gave; a name twice is an error.
-    pub fn new(definitions: &[(String, String)]) -> Result<Self> {
+    pub(super) fn new(definitions: &[(String, String)]) -> Result<Self> {
         let mut parameters = Self { entries: Vec::new(), origins: Origins::default() };
         for (name, value) in definitions {
             if name.is_empty() || parameters.get(name).is_some() {
@@ -64,7 +64,7 @@ impl Parameters {
     }
 
     /// The scene's own default for `name`, which it writes as `text`; a value already given is kept.
-    pub fn declare(&mut self, name: &str, default: &str, text: &str, kind: Option<Kind>) {
+    pub(super) fn declare(&mut self, name: &str, default: &str, text: &str, kind: Option<Kind>) {
         if self.get(name).is_none() {
             self.insert(name, default, false);
             self.origins.declare(name, default, text, kind);
@@ -76,7 +76,7 @@ impl Parameters {
 
     /// Everything known when reading has ended; what only the user gave is declared too, as a scene needs it to
     /// be read without the user's word.
-    pub fn into_origins(mut self) -> Origins {
+    pub(super) fn into_origins(mut self) -> Origins {
         for Entry { name, value, .. } in &self.entries {
             self.origins.declare(name, value, &escaped(value), None);
         }
@@ -84,7 +84,7 @@ impl Parameters {
     }
 
     /// What a scene was read with, to read more of it.
-    pub fn of(declarations: &[Declaration]) -> Self {
+    pub(super) fn of(declarations: &[Declaration]) -> Self {
         let mut parameters = Self { entries: Vec::new(), origins: Origins::default() };
         for Declaration { name, value, .. } in declarations {
             parameters.insert(name, value, false);
@@ -97,7 +97,7 @@ impl Parameters {
     }
 
     /// True if a parameter is called exactly `name`.
-    pub fn is_name(&self, name: &str) -> bool {
+    pub(super) fn is_name(&self, name: &str) -> bool {
         self.get(name).is_some()
     }
 
@@ -109,7 +109,7 @@ impl Parameters {
     }
 
     /// [`Self::substitute`], remembering that `text` is at the attribute `name` of what is at `place`.
-    pub fn substitute_at(
+    pub(super) fn substitute_at(
         &mut self,
         text: &str,
         place: &Location,
@@ -122,7 +122,7 @@ impl Parameters {
     }
 
     /// `text` with every `$name` replaced; `\$` is a dollar sign.
-    pub fn substitute(&mut self, text: &str) -> std::result::Result<String, Unfit> {
+    pub(super) fn substitute(&mut self, text: &str) -> std::result::Result<String, Unfit> {
         let mut result = String::new();
         let mut rest = text;
         while let Some(at) = rest.find('$') {
@@ -145,7 +145,7 @@ impl Parameters {
     }
 
     /// The names of all parameters in `text`, each as often as it occurs.
-    pub fn names_in(&self, text: &str) -> Vec<&str> {
+    pub(super) fn names_in(&self, text: &str) -> Vec<&str> {
         let mut names = Vec::new();
         let mut rest = text;
         while let Some(at) = rest.find('$') {
@@ -177,7 +177,7 @@ impl Parameters {
     }
 
     /// Everything the user gave must have been used.
-    pub fn finish(&self) -> Result<()> {
+    pub(super) fn finish(&self) -> Result<()> {
         let Some(idle) = self.entries.iter().find(|entry| entry.by_user && !entry.used) else {
             return Ok(());
         };

@@ -131,7 +131,7 @@ fn hex(digits: &str) -> Parsed<[f64; 3]> {
 pub(super) enum Spectrum {
     /// The same at all wavelengths.
     Constant(f64),
-    /// Wavelength [nm] and value, in increasing order of wavelength.
+    /// Wavelength (nm) and value, in increasing order of wavelength.
     Sampled(Vec<(f64, f64)>),
 }
 

@@ -26,7 +26,7 @@ const FEWEST: u32 = 5;
 const PARALLEL: f32 = 1e-3;
 
 /// The portals of `lessons`, the most telling first. Each of their folds has to show it.
-pub fn find(lessons: &[Lesson]) -> Vec<Portal> {
+pub(super) fn find(lessons: &[Lesson]) -> Vec<Portal> {
     let (low, high) = lessons.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), lesson| {
         (low.min(lesson.position), high.max(lesson.position))
     });

@@ -14,7 +14,7 @@ use crate::{
 /// a vertex, at most, and the choice looks at one vertex at a time.
 const BSDF_FRACTIONS: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
 /// Directions, as [`effective`] counts them, that tell nothing if there are fewer.
-pub const ENOUGH: f64 = 32.0;
+pub(super) const ENOUGH: f64 = 32.0;
 /// The part of the directions of any cell that aims at each portal, at least: where few have been seen to go through it, those few
 /// would weigh as much as without a guide.
 const LEAST_AIMED: f32 = 0.05;
@@ -23,7 +23,7 @@ const MOST_AIMED: f32 = 0.5;
 
 /// The directions of a cell: shares that are 1 together.
 #[derive(Clone, Debug)]
-pub struct Directions {
+pub(super) struct Directions {
     /// That of the BSDF or the phase function.
     pub unguided: f32,
     /// Those that aim at portals.
@@ -34,7 +34,7 @@ pub struct Directions {
 
 impl Directions {
     /// None where directions are better left to the BSDF or the phase function.
-    pub fn learn(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> Option<Self> {
+    pub(super) fn learn(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> Option<Self> {
         let aimed = aimed(lessons, portals);
         let rest = 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>();
         let is_aimed = |lesson: &&Lesson| portals.iter().any(|portal| portal.outermost().is_crossed(lesson));
@@ -46,9 +46,9 @@ impl Directions {
         (known.unguided < 1.0).then_some(known)
     }
 
-    /// Density of unit `direction` from `position` among the guided ones, times their share [1/sr].
+    /// Density of unit `direction` from `position` among the guided ones, times their share (1/sr).
     #[inline]
-    pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
+    pub(super) fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         let aimed = self.aimed.iter().map(|(share, portal)| share * portal.pdf(position, direction));
         let tabled = self.tabled.as_ref().map_or(0.0, |(share, table)| share * pdf(table, direction));
         tabled + aimed.sum::<f32>()
@@ -56,7 +56,7 @@ impl Directions {
 
     /// A unit direction from `position`; none where it is left to the BSDF or the phase function.
     #[inline]
-    pub fn sample(&self, position: Vec3, stream: &mut Stream) -> Option<Vec3> {
+    pub(super) fn sample(&self, position: Vec3, stream: &mut Stream) -> Option<Vec3> {
         let mut u = stream.uniform();
         if u < self.unguided {
             return None;
@@ -71,8 +71,8 @@ impl Directions {
         self.tabled.as_ref().map(|(_, table)| warp::to_sphere(table.sample(stream.square())))
     }
 
-    /// Memory that it takes [bytes].
-    pub fn bytes(&self) -> usize {
+    /// Memory that it takes (bytes).
+    pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.aimed[..]) + self.tabled.as_ref().map_or(0, |(_, table)| table.bytes())
     }
 }

@@ -43,7 +43,7 @@ pub struct Learnt {
 }
 
 impl Learnt {
-    /// Memory that all of it takes [bytes].
+    /// Memory that all of it takes (bytes).
     pub fn bytes(&self) -> usize {
         let starts = self.starts.as_deref().map_or(0, Starts::bytes);
         let guide = self.guide.as_deref().map_or(0, Guide::bytes);
@@ -51,7 +51,7 @@ impl Learnt {
     }
 }
 
-/// Half of the directions, as [`effective`] counts them, from which on a cell is divided.
+/// Half of the directions, as [`quadtree::effective`](crate::sampling::quadtree::effective) counts them, from which on a cell is divided.
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root: there are 4,096 of surfaces, and as many of media.
 const LEVELS: u32 = 12;
@@ -71,7 +71,7 @@ pub struct Lesson {
     pub direction: Vec3,
     /// How much it counts, at least 0, finite.
     pub weight: f32,
-    /// Density of the direction by the BSDF or the phase function [1/sr].
+    /// Density of the direction by the BSDF or the phase function (1/sr).
     pub unguided: f32,
     /// To which of two independent parts of all lessons it belongs.
     pub fold: usize,
@@ -100,7 +100,7 @@ struct Cell([Option<Directions>; 2]);
 pub struct Guidance {
     /// [`NOWHERE`] if it knows nothing.
     cell: u32,
-    /// (1 - a) G' of the direction to the vertex before [1/sr].
+    /// (1 - a) G' of the direction to the vertex before (1/sr).
     reverse: f32,
 }
 
@@ -210,7 +210,7 @@ impl Guide {
         self.directions(cell, transport).map_or(0.0, |known| 1.0 - known.unguided)
     }
 
-    /// G: the density of unit `direction` among those from `position`, which lies in `cell` [1/sr]; none where there is none.
+    /// G: the density of unit `direction` among those from `position`, which lies in `cell` (1/sr); none where there is none.
     pub fn density(&self, cell: u32, transport: Transport, position: Vec3, direction: Vec3) -> Option<f32> {
         let known = self.directions(cell, transport)?;
         Some(known.pdf(position, direction) / (1.0 - known.unguided))
@@ -222,7 +222,7 @@ impl Guide {
     }
 
     /// How often walks by `transport` leave `position`, which lies in `cell`, in unit `direction`, over how often they do without
-    /// the guide: with the density `unguided` [1/sr], 0 for mirrors.
+    /// the guide: with the density `unguided` (1/sr), 0 for mirrors.
     pub fn ratio(
         &self,
         cell: u32,
@@ -235,7 +235,7 @@ impl Guide {
         known.unguided + guided
     }
 
-    /// Memory that it takes [bytes].
+    /// Memory that it takes (bytes).
     pub fn bytes(&self) -> usize {
         let tables = self.cells.iter().flat_map(|cell| cell.0.iter().flatten());
         let tables: usize = tables.map(|known| known.bytes()).sum();
@@ -247,7 +247,7 @@ impl Guide {
         self.cells.get(cell as usize)?.0[index(transport)].as_ref()
     }
 
-    /// Densities of `outgoing` from `position`, and of the way back, which are `unguided` without the guide [1/sr].
+    /// Densities of `outgoing` from `position`, and of the way back, which are `unguided` without the guide (1/sr).
     #[inline]
     pub fn pdfs(
         &self,

@@ -8,15 +8,15 @@ const OPPOSITE: f32 = 0.5;
 
 /// What places are measured against.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Places {
+pub(super) struct Places {
     centre: Vec3,
-    /// 1 over the greatest extent [1/m].
+    /// 1 over the greatest extent (1/m).
     scale: f32,
 }
 
 impl Places {
     /// The box around `positions`.
-    pub fn around(positions: impl Iterator<Item = Vec3>) -> Self {
+    pub(super) fn around(positions: impl Iterator<Item = Vec3>) -> Self {
         let nothing = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (low, high) = positions.fold(nothing, |(low, high), at| (low.min(at), high.max(at)));
         let scale = 1.0 / (high - low).max_element().max(f32::MIN_POSITIVE);
@@ -25,13 +25,13 @@ impl Places {
 
     /// By position.
     #[inline]
-    pub fn at(&self, position: Vec3) -> [f32; 3] {
+    pub(super) fn at(&self, position: Vec3) -> [f32; 3] {
         ((position - self.centre) * self.scale).to_array()
     }
 
     /// By position, and by a direction of length 1 or less.
     #[inline]
-    pub fn facing(&self, position: Vec3, direction: Vec3) -> [f32; 6] {
+    pub(super) fn facing(&self, position: Vec3, direction: Vec3) -> [f32; 6] {
         let ([x, y, z], [i, j, k]) = (self.at(position), (0.5 * OPPOSITE * direction).to_array());
         [x, y, z, i, j, k]
     }

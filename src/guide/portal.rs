@@ -64,7 +64,7 @@ impl Portal {
         std::array::from_fn(|index| Sphere { centre, radius_squared: radius_squared * (1 << index) as f32 })
     }
 
-    /// Density of unit `direction` from `position` among those that aim at each of its spheres [1/sr].
+    /// Density of unit `direction` from `position` among those that aim at each of its spheres (1/sr).
     #[inline]
     fn parts(&self, position: Vec3, direction: Vec3) -> [f32; SPHERES] {
         let spheres = self.spheres();
@@ -74,7 +74,7 @@ impl Portal {
         spheres.map(|sphere| sphere.pdf(position, direction))
     }
 
-    /// Density of unit `direction` among those that aim at it from `position` [1/sr].
+    /// Density of unit `direction` among those that aim at it from `position` (1/sr).
     #[inline]
     pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         let parts = self.parts(position, direction);
@@ -99,7 +99,7 @@ impl Portal {
 pub struct Sphere {
     /// World position.
     pub centre: Vec3,
-    /// Above 0 [m^2].
+    /// Above 0 (m^2).
     pub radius_squared: f32,
 }
 
@@ -111,7 +111,7 @@ impl Sphere {
         (self.radius_squared < WITHIN * squared).then(|| warp::one_minus_cos(self.radius_squared / squared))
     }
 
-    /// Squared distance at which the ray in unit `direction` passes `centre` [m^2]; none if that is behind it.
+    /// Squared distance at which the ray in unit `direction` passes `centre` (m^2); none if that is behind it.
     #[inline]
     pub fn passes(centre: Vec3, position: Vec3, direction: Vec3) -> Option<f32> {
         let to = centre - position;
@@ -136,7 +136,7 @@ impl Sphere {
         Self::passes(self.centre, position, direction).is_some_and(|miss| miss <= self.radius_squared)
     }
 
-    /// Density of unit `direction` among those that aim at it from `position` [1/sr].
+    /// Density of unit `direction` among those that aim at it from `position` (1/sr).
     #[inline]
     pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         match self.cone(position) {

@@ -24,7 +24,7 @@ pub struct Seen {
     /// mean cosine of scattering.
     facing: Vec3,
     is_surface: bool,
-    /// What is scattered to where it is seen from [W/(m^2 sr)].
+    /// What is scattered to where it is seen from (W/(m^2 sr)).
     pub radiance: Spectrum,
 }
 
@@ -53,7 +53,7 @@ impl Seen {
 /// A place that a walk came to.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
-    /// The place, and what it scatters by itself [W/(m^2 sr)].
+    /// The place, and what it scatters by itself (W/(m^2 sr)).
     pub seen: Seen,
     /// A later look that the walk came to next, and the part of its radiance that this place scatters as well.
     pub onward: Option<(u32, Spectrum)>,
@@ -138,12 +138,12 @@ impl Radiance {
         radiance
     }
 
-    /// Memory that it takes [bytes].
+    /// Memory that it takes (bytes).
     pub fn bytes(&self) -> usize {
         self.surfaces.bytes() + self.media.bytes() + size_of_val(&self.values[..])
     }
 
-    /// At a place [W/(m^2 sr)]; 0 where nothing was seen of its kind.
+    /// At a place (W/(m^2 sr)); 0 where nothing was seen of its kind.
     #[inline]
     pub fn at(&self, place: &Seen) -> Spectrum {
         self.cell(place).map_or(Spectrum::ZERO, |cell| self.values[cell as usize])

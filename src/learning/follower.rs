@@ -32,7 +32,7 @@ pub(super) struct Followed {
 }
 
 impl<'a> Follower<'a> {
-    pub fn new(lights: &'a Lights, starts: Option<&'a Starts>, heroes: usize) -> Self {
+    pub(super) fn new(lights: &'a Lights, starts: Option<&'a Starts>, heroes: usize) -> Self {
         Self {
             lights,
             starts,
@@ -45,16 +45,16 @@ impl<'a> Follower<'a> {
     }
 
     /// Camera subpaths follow, which begin at no emitter.
-    pub fn leave_light(&mut self) {
+    pub(super) fn leave_light(&mut self) {
         self.current = None;
     }
 
     /// A camera subpath of channel `hero` follows.
-    pub fn begin(&mut self, hero: usize) {
+    pub(super) fn begin(&mut self, hero: usize) {
         self.hero = hero;
     }
 
-    pub fn emit(&mut self, sample: &EmissionSample, hero: usize) {
+    pub(super) fn emit(&mut self, sample: &EmissionSample, hero: usize) {
         self.hero = hero;
         let start = sample.start();
         let learnt = Densities { point: sample.pdf, direction: sample.pdf_direction };
@@ -63,25 +63,25 @@ impl<'a> Follower<'a> {
         self.current = Some(Followed { start, unlearnt: ratio(sample.unlearnt, learnt), walk });
     }
 
-    pub fn depart(&mut self, leg: &Leg) {
+    pub(super) fn depart(&mut self, leg: &Leg) {
         self.last = leg.position;
     }
 
-    pub fn arrive(&mut self, event: &Event<'_>) {
+    pub(super) fn arrive(&mut self, event: &Event<'_>) {
         self.last = event.position();
     }
 
-    pub fn keep(&mut self) {
+    pub(super) fn keep(&mut self) {
         self.kept[self.hero].extend(self.current);
     }
 
     /// How often light subpaths start like the one at hand without what was learnt, over how often they do.
-    pub fn unlearnt(&self) -> f32 {
+    pub(super) fn unlearnt(&self) -> f32 {
         self.current.map_or(1.0, |followed| followed.unlearnt)
     }
 
     /// Where the light of a contribution starts; none where it comes straight from the emitter to the lens.
-    pub fn start(&self, s: u32, t: u32, meeting: &Meeting<'_>) -> Option<Followed> {
+    pub(super) fn start(&self, s: u32, t: u32, meeting: &Meeting<'_>) -> Option<Followed> {
         match meeting {
             _ if s + t < 3 => None,
             Meeting::Light(index, _) => Some(self.kept[self.hero][*index]),

@@ -42,7 +42,7 @@ impl Site {
     }
 }
 
-/// Densities without a guide: of the camera's walk towards the light, and of the light's towards the camera [1/sr]; 0 where they
+/// Densities without a guide: of the camera's walk towards the light, and of the light's towards the camera (1/sr); 0 where they
 /// are not known.
 type Onward = [f32; 2];
 
@@ -84,16 +84,16 @@ pub(super) struct Track {
 }
 
 impl Tracks {
-    pub fn new(heroes: usize) -> Self {
+    pub(super) fn new(heroes: usize) -> Self {
         Self { kept: vec![Vec::new(); heroes], ..Self::default() }
     }
 
     /// A walk sets out.
-    pub fn begin(&mut self) {
+    pub(super) fn begin(&mut self) {
         (self.last, self.at) = (None, None);
     }
 
-    pub fn arrive(&mut self, scene: &Scene, transport: Transport, event: &Event<'_>) {
+    pub(super) fn arrive(&mut self, scene: &Scene, transport: Transport, event: &Event<'_>) {
         if let (Some(last), Some((before, incoming))) = (self.last, self.at) {
             let outgoing = -event.arrival.incoming;
             self.sites[last as usize].onward = onward(scene, &before, incoming, outgoing, transport);
@@ -114,12 +114,12 @@ impl Tracks {
     }
 
     /// The last vertex was added to the cache of `hero`.
-    pub fn keep(&mut self, hero: usize) {
+    pub(super) fn keep(&mut self, hero: usize) {
         self.kept[hero].extend(self.last);
     }
 
     /// The path that walks of `hero` made; none where nothing is to be learnt from it.
-    pub fn track(&self, scene: &Scene, meeting: &Meeting<'_>, hero: usize) -> Option<Track> {
+    pub(super) fn track(&self, scene: &Scene, meeting: &Meeting<'_>, hero: usize) -> Option<Track> {
         let (camera, (here, incoming)) = (self.last, self.at?);
         let from = here.position();
         let towards_light = match meeting {
@@ -152,7 +152,7 @@ impl Tracks {
 
     /// What a path tells that counts for `weight`, shared between `strategies` as `shares` say, as one of the lessons of `fold`:
     /// `take` sees how much each lesson counts, and the lesson if it asks.
-    pub fn lessons(
+    pub(super) fn lessons(
         &self,
         track: &Track,
         shares: &Shares,
@@ -180,7 +180,7 @@ impl Tracks {
 
     /// For each vertex that a walk went on from, how often `strategies` would go that way without `guide`, over how often they do
     /// with it.
-    pub fn known<'a>(&self, guide: &'a Guide, strategies: Strategies) -> Known<'a> {
+    pub(super) fn known<'a>(&self, guide: &'a Guide, strategies: Strategies) -> Known<'a> {
         let by_camera = strategies.emitter_hit || strategies.next_event || strategies.connection;
         let walks = [by_camera, strategies.connection || strategies.lens];
         let mut known = Known { guide, walks, ratios: Vec::new() };
@@ -194,7 +194,7 @@ impl Tracks {
 
     /// How often strategies make a path without a guide, over how often they do with the one that is `known`, as `shares` of them
     /// say.
-    pub fn unguided(&self, track: &Track, shares: &Shares, known: &Known<'_>) -> f64 {
+    pub(super) fn unguided(&self, track: &Track, shares: &Shares, known: &Known<'_>) -> f64 {
         let ratios = |at: u32| {
             let index = at as usize;
             if track.ends_at(at) {
@@ -283,7 +283,7 @@ pub(super) struct Shares {
 
 impl Shares {
     /// Those of `strategies` among `shares` in the weights; none where they make nothing of it.
-    pub fn of(shares: &[f32; StrategyKind::ALL.len()], strategies: Strategies) -> Option<Self> {
+    pub(super) fn of(shares: &[f32; StrategyKind::ALL.len()], strategies: Strategies) -> Option<Self> {
         let of = |kind| if strategies.has(kind) { shares[kind as usize] } else { 0.0 };
         let [hit, next_event, connection, lens, _] = StrategyKind::each(of);
         let sum = hit + next_event + connection + lens;

@@ -12,19 +12,19 @@ pub(super) struct Tiles {
 
 impl Tiles {
     /// At most so `many` across and down.
-    pub fn of(film: &Film, many: u32) -> Self {
+    pub(super) fn of(film: &Film, many: u32) -> Self {
         let (width, height) = (film.width, film.height);
         Self { width, height, across: width.min(many), down: height.min(many) }
     }
 
     /// That of a pixel.
-    pub fn at(&self, pixel: u32) -> usize {
+    pub(super) fn at(&self, pixel: u32) -> usize {
         let Self { width, height, across, down } = *self;
         (pixel / width * down / height * across + pixel % width * across / width) as usize
     }
 
     /// How many pixels each has.
-    pub fn pixels(&self) -> Vec<f64> {
+    pub(super) fn pixels(&self) -> Vec<f64> {
         let mut pixels = vec![0.0; (self.across * self.down) as usize];
         (0..self.width * self.height).for_each(|pixel| pixels[self.at(pixel)] += 1.0);
         pixels

@@ -68,7 +68,7 @@ pub(super) struct Trial {
 impl Trial {
     /// Some blocks of some passes, numbered over all of them; what it finds is for a guide too or is not. None if it `is_over`
     /// before.
-    pub fn run(
+    pub(super) fn run(
         compiled: &dyn Compiled,
         tasks: Range<usize>,
         for_guide: bool,
@@ -109,7 +109,7 @@ impl Trial {
     }
 
     /// What starts count for; shares in the weights do where they `compete` with other strategies.
-    pub fn weights(&self, compete: bool) -> Vec<(Start, f32)> {
+    pub(super) fn weights(&self, compete: bool) -> Vec<(Start, f32)> {
         let value = self.values();
         let weight = |found: &Found| value(found) * if compete { found.by_light() } else { 1.0 };
         let mut all: Vec<(Start, f32)> = Vec::new();
@@ -130,7 +130,7 @@ impl Trial {
     }
 
     /// What `guide`, which the samples followed, left of the second moment of what `strategies` bring.
-    pub fn second_moment(&self, strategies: Strategies, guide: &Guide) -> f64 {
+    pub(super) fn second_moment(&self, strategies: Strategies, guide: &Guide) -> f64 {
         let value = self.values();
         let mut tiles = vec![[0.0; 2]; self.pixels.len()];
         for (tile, moments) in self.moments(strategies, Some(guide), value).into_iter().flatten() {
@@ -166,7 +166,7 @@ impl Trial {
 
     /// Where walks by `strategies` should go, from so many `samples`; if there are too many lessons, some of those with little
     /// weight stand for others.
-    pub fn lessons(&self, strategies: Strategies, samples: f64) -> Vec<Lesson> {
+    pub(super) fn lessons(&self, strategies: Strategies, samples: f64) -> Vec<Lesson> {
         let value = self.values();
         let each = |part: usize, take: &mut dyn FnMut(f32, &dyn Fn() -> Lesson)| {
             for found in &self.found[part] {

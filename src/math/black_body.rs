@@ -6,16 +6,16 @@ use super::{
 };
 use std::sync::OnceLock;
 
-/// Below this a body is black to any eye [K]: at 250 K its luminance is 1e-37 of that at 2000 K.
+/// Below this a body is black to any eye (K): at 250 K its luminance is 1e-37 of that at 2000 K.
 const COLDEST: f64 = 250.0;
 /// Intervals of the table, even in 1/T.
 const INTERVALS: usize = 1024;
-/// h c / (k 600 nm) [K]: exp(x) - 1 of this over T takes most of the dependence on T out of what is tabulated.
+/// h c / (k 600 nm) (K): exp(x) - 1 of this over T takes most of the dependence on T out of what is tabulated.
 const MIDDLE: f64 = 23_979.6;
 /// What Planck's law is evaluated at in place of 1/T = 0 [1/K].
 const HOTTEST: f64 = 1e-12;
 
-/// Radiance [W/(m^2 sr nm)] of a black body of `temperature` [K] as linear sRGB, the same as that of the colour
+/// Radiance (W/(m^2 sr nm)) of a black body of `temperature` (K) as linear sRGB, the same as that of the colour
 /// plugin `blackbody`: none where it is too cold to be seen, infinite where no f32 holds it.
 pub fn radiance(temperature: f32) -> Spectrum {
     static TABLE: OnceLock<Vec<Entry>> = OnceLock::new();

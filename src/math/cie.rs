@@ -1,12 +1,12 @@
 //! Tables of the International Commission on Illumination, every 5 nm.
 
-/// The wavelength of the first entry of each table [nm].
+/// The wavelength of the first entry of each table (nm).
 pub const FIRST: f64 = 360.0;
 
-/// From entry to entry [nm].
+/// From entry to entry (nm).
 pub const STEP: f64 = 5.0;
 
-/// The wavelength of the last entry of each table [nm].
+/// The wavelength of the last entry of each table (nm).
 pub const LAST: f64 = FIRST + STEP * (OBSERVER.len() - 1) as f64;
 
 /// Colour matching functions x, y, z of the 2 degree standard observer of 1931 (CIE 018:2019).

@@ -31,13 +31,13 @@ pub enum Illuminant {
     D65,
 }
 
-/// The integral of y over all wavelengths [nm], as Mitsuba rounds it: luminance per unit of a spectrum.
+/// The integral of y over all wavelengths (nm), as Mitsuba rounds it: luminance per unit of a spectrum.
 const Y_INTEGRAL: f64 = 106.750_259_399_414_06;
 
 /// The luminance of the table of D65 over that of 1 at all wavelengths, as Mitsuba rounds it.
 const D65_LUMINANCE: f64 = 98.997_417_518_762_55;
 
-/// Linear sRGB of the spectrum that has `value` at each wavelength [nm]; outside the gamut, negative.
+/// Linear sRGB of the spectrum that has `value` at each wavelength (nm); outside the gamut, negative.
 ///
 /// The quadrature is Mitsuba's, one part in 1000 short of the whole: 1000 points with both ends among them,
 /// each for a 1000th of the range.
@@ -86,7 +86,7 @@ pub fn interpolated(pairs: &[(f64, f64)], wavelength: f64) -> f64 {
     v0 * (1.0 - t) + v1 * t
 }
 
-/// Spectral radiance of a black body [W/(m^2 sr nm)] at `wavelength` [nm] and `temperature` [K]: Planck's law
+/// Spectral radiance of a black body (W/(m^2 sr nm)) at `wavelength` (nm) and `temperature` (K): Planck's law
 /// with the constants of the SI (2019).
 pub fn black_body(temperature: f64, wavelength: f64) -> f64 {
     const H: f64 = 6.626_070_15e-34;

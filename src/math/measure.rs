@@ -3,7 +3,7 @@
 use super::Vec3;
 
 /// Geometry factor from solid angle to the measure of the reached vertex (LW96 eq. 13):
-/// |cos|/d^2 [1/m^2] on a surface, 1/d^2 in a medium (`cosine` = 1). `distance_squared` in m^2.
+/// |cos|/d^2 (1/m^2) on a surface, 1/d^2 in a medium (`cosine` = 1). `distance_squared` in m^2.
 #[inline]
 pub fn solid_angle_to_vertex(cosine: f32, distance_squared: f32) -> f32 {
     cosine.abs() / distance_squared

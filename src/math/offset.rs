@@ -11,7 +11,7 @@ pub const fn gamma(n: u32) -> f32 {
     e / (1.0 - e)
 }
 
-/// Geometry must stay within this [m] of the recentring point: squares of lengths and areas then fit into f32
+/// Geometry must stay within this (m) of the recentring point: squares of lengths and areas then fit into f32
 /// with room for the sums and products that hierarchies and samplers make of them.
 pub const LARGEST_COORDINATE: f32 = 1e15;
 
@@ -20,20 +20,20 @@ pub const LARGEST_COORDINATE: f32 = 1e15;
 /// space of albedo 0.9 is too dark by 0.4 % at this, by 6.5 % at a tenth of it.
 pub const RESOLVED_STEPS: f32 = 100.0;
 
-/// The angle [rad] at which a ray passes an emitter, as seen from its start, that positions tell from none: distances are
+/// The angle (rad) at which a ray passes an emitter, as seen from its start, that positions tell from none: distances are
 /// sampled as if no ray passed at less. At this, densities are off by the rounding of positions by a ten-thousandth, and it
 /// is no more than a pixel is wide.
 pub const RESOLVED_ANGLE: f32 = 1e-3;
 
-/// Least mean free path [m] that densities hold: those of vertices in a medium are up to its inverse cubed [1/m^3], and
+/// Least mean free path (m) that densities hold: those of vertices in a medium are up to its inverse cubed (1/m^3), and
 /// their products with others must stay below the largest number of f32.
 pub const LEAST_MEAN_FREE_PATH: f32 = 5e-11;
 
-/// Least mean free path [m] that has a use: what a medium gains over a shorter one, and transmittances over parts of it, leave
+/// Least mean free path (m) that has a use: what a medium gains over a shorter one, and transmittances over parts of it, leave
 /// the normal numbers of f32.
 pub const SHORTEST_MEAN_FREE_PATH: f32 = 1e-30;
 
-/// Least sigma_t over the squared size of a scene [1/m^3]: a density of that size times a transmittance of 1e-5 is the
+/// Least sigma_t over the squared size of a scene (1/m^3): a density of that size times a transmittance of 1e-5 is the
 /// smallest normal number of f32.
 pub const LEAST_VOLUME_DENSITY: f64 = 1e-33;
 
@@ -48,7 +48,7 @@ pub const BOX_WIDENING: f32 = 1.0 + 2.0 * gamma(3);
 /// over any distance in a scene they move the ray by less than a rounding error.
 pub const LEAST_COMPONENT: f32 = 1e-18;
 
-/// Solid angles [sr] below this are sampled by area: the spherical map would lose its digits (f64: 1e-16
+/// Solid angles (sr) below this are sampled by area: the spherical map would lose its digits (f64: 1e-16
 /// over this), and over so small an angle both densities are nearly the same.
 pub const LEAST_SOLID_ANGLE: f64 = 1e-6;
 

@@ -10,7 +10,7 @@ pub struct RaySegment {
     pub origin: Vec3,
     /// Change of position per metre.
     pub direction: Vec3,
-    /// Largest t [m], may be infinite.
+    /// Largest t (m), may be infinite.
     pub length: f32,
 }
 

@@ -3,7 +3,7 @@
 use super::{Vec2, Vec3, vec2, vec3};
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
-/// Density of `to_sphere` [1/sr].
+/// Density of `to_sphere` (1/sr).
 pub const SPHERE_PDF: f32 = FRAC_1_PI * 0.25;
 
 /// Uniform on the unit disc, by concentric squares (Shirley & Chiu 1997). Density 1/pi.
@@ -38,20 +38,20 @@ pub fn from_disk(p: Vec2) -> Vec2 {
     (0.5 * (p + Vec2::ONE)).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON))
 }
 
-/// Cosine-weighted on the upper hemisphere; density cos/pi [1/sr].
+/// Cosine-weighted on the upper hemisphere; density cos/pi (1/sr).
 #[inline]
 pub fn to_cosine_hemisphere(u: Vec2) -> Vec3 {
     let d = to_disk(u);
     d.extend((1.0 - d.length_squared()).max(0.0).sqrt())
 }
 
-/// Density of `to_cosine_hemisphere` [1/sr]; 0 below the horizon.
+/// Density of `to_cosine_hemisphere` (1/sr); 0 below the horizon.
 #[inline]
 pub fn cosine_hemisphere_pdf(cosine: f32) -> f32 {
     cosine.max(0.0) * FRAC_1_PI
 }
 
-/// Unit vector with the given cosine to z and azimuth [rad].
+/// Unit vector with the given cosine to z and azimuth (rad).
 #[inline]
 pub fn spherical(cosine: f32, azimuth: f32) -> Vec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
@@ -59,7 +59,7 @@ pub fn spherical(cosine: f32, azimuth: f32) -> Vec3 {
     vec3(sine * c, sine * s, cosine)
 }
 
-/// Unit vector with the given 1 - cos (in [0, 2]) to z and azimuth [rad]: narrow angles keep their precision.
+/// Unit vector with the given 1 - cos (in [0, 2]) to z and azimuth (rad): narrow angles keep their precision.
 #[inline]
 pub fn near_pole(one_minus_cos: f32, azimuth: f32) -> Vec3 {
     let sine = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
@@ -67,7 +67,7 @@ pub fn near_pole(one_minus_cos: f32, azimuth: f32) -> Vec3 {
     vec3(sine * c, sine * s, 1.0 - one_minus_cos)
 }
 
-/// Uniform on the unit sphere; density 1/(4 pi) [1/sr].
+/// Uniform on the unit sphere; density 1/(4 pi) (1/sr).
 #[inline]
 pub fn to_sphere(u: Vec2) -> Vec3 {
     spherical(1.0 - 2.0 * u.x, TAU * u.y)
@@ -94,7 +94,7 @@ pub fn to_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
     near_pole(u.x * one_minus_cos, TAU * u.y)
 }
 
-/// Density of `to_cone` inside the cone [1/sr].
+/// Density of `to_cone` inside the cone (1/sr).
 #[inline]
 pub fn cone_pdf(one_minus_cos: f32) -> f32 {
     1.0 / (2.0 * PI * one_minus_cos)

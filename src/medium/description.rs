@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// How the parameters of a medium are read.
-pub type BuildMedium = fn(&Params<'_>, &Place) -> Result<MediumDescription>;
+pub(super) type BuildMedium = fn(&Params<'_>, &Place) -> Result<MediumDescription>;
 
 /// Every kind of medium.
 pub const ROWS: Registry<Plugin<BuildMedium>> = Registry::new(
@@ -39,7 +39,7 @@ pub struct MediumDescription {
 /// Where a medium lies.
 #[derive(Clone, Copy, Debug)]
 pub struct MediumBounds {
-    /// The box's corner with the smallest coordinates [m].
+    /// The box's corner with the smallest coordinates (m).
     pub low: Vec3,
     /// The one with the largest.
     pub high: Vec3,

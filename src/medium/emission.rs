@@ -17,11 +17,11 @@ use std::f64::consts::PI;
 /// What the volume of an emission gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Quantity {
-    /// Radiance gained per metre [W/(m^3 sr)].
+    /// Radiance gained per metre (W/(m^3 sr)).
     Gain,
-    /// Radiance of an opaque layer [W/(m^2 sr)].
+    /// Radiance of an opaque layer (W/(m^2 sr)).
     Radiance,
-    /// Temperature of a black body [K].
+    /// Temperature of a black body (K).
     Temperature,
 }
 
@@ -99,7 +99,7 @@ impl EmissionDescription {
         self.volume.domain().is_none() && (self.quantity == Quantity::Gain || !varies)
     }
 
-    /// The same at `time` [s]; none where it is the same at all times.
+    /// The same at `time` (s); none where it is the same at all times.
     pub(super) fn at_time(&self, time: f64) -> Option<Self> {
         let volume = self.volume.at_time(time)?;
         Some(Self { volume, ..self.clone() })
@@ -158,7 +158,7 @@ impl Within {
     }
 }
 
-/// How much of what arrives a medium absorbs per metre [1/m].
+/// How much of what arrives a medium absorbs per metre (1/m).
 fn absorption(properties: MediumProperties) -> Spectrum {
     properties.sigma_t * (Spectrum::ONE - properties.albedo).max(Spectrum::ZERO)
 }
@@ -304,7 +304,7 @@ impl Emission {
         })
     }
 
-    /// Power emitted in the whole box [W].
+    /// Power emitted in the whole box (W).
     pub fn power(&self) -> DVec3 {
         self.power
     }
@@ -314,7 +314,7 @@ impl Emission {
         [self.field.low, self.field.high]
     }
 
-    /// Radiance gained per metre at `position` [W/(m^3 sr)].
+    /// Radiance gained per metre at `position` (W/(m^3 sr)).
     #[inline]
     pub fn at(&self, position: Vec3) -> Spectrum {
         self.field.at(position)
@@ -354,25 +354,25 @@ impl Emission {
         self.cells.probability_precisely(cell as usize)
     }
 
-    /// Mean squared distance of a cell's points from its centre [m^2].
+    /// Mean squared distance of a cell's points from its centre (m^2).
     pub fn cell_variance(&self) -> f64 {
         self.coarse.cell_variance()
     }
 
-    /// Density of `sample_in` [1/m^3].
+    /// Density of `sample_in` (1/m^3).
     #[inline]
     pub fn pdf_vol_in_cell(&self) -> f32 {
         (1.0 / self.coarse.cell_volume()) as f32
     }
 
-    /// Density of `sample` [1/m^3].
+    /// Density of `sample` (1/m^3).
     #[inline]
     pub fn pdf_vol(&self, position: Vec3) -> f32 {
         let chosen = |cell| self.cells.probability_precisely(cell as usize) / self.coarse.cell_volume();
         self.coarse.cell_at(position).map_or(0.0, |cell| chosen(cell) as f32)
     }
 
-    /// Rate at which a camera subpath that passes `position` is taken to sample emission there [1/m]: the
+    /// Rate at which a camera subpath that passes `position` is taken to sample emission there (1/m): the
     /// density that the weights use, per channel of extinction.
     ///
     /// A walk really samples one point on each of its flights, which have random lengths. In thin matter
@@ -384,8 +384,8 @@ impl Emission {
         self.field.within.at(position).sigma_t + self.per_line * most
     }
 
-    /// A point of `segment`, in proportion to the maxima of the cells it crosses: t [m] and the density
-    /// [1/m]; none where nothing emits.
+    /// A point of `segment`, in proportion to the maxima of the cells it crosses: t (m) and the density
+    /// (1/m); none where nothing emits.
     #[inline]
     pub fn sample_along(&self, segment: &RaySegment, stream: &mut Stream) -> Option<(f32, f32)> {
         let most = |piece: &volume::Piece| self.coarse.cell(piece.cell).most;

@@ -18,17 +18,17 @@ use crate::{
 pub struct Fields {
     /// Extinction before `scale`.
     pub sigma_t: Volume,
-    /// Factor on it [1/m].
+    /// Factor on it (1/m).
     pub scale: f32,
     /// sigma_s / sigma_t.
     pub albedo: Volume,
     /// As requested.
     pub tracker: DistanceMethod,
-    /// Longest interval of ray marching [m], if requested.
+    /// Longest interval of ray marching (m), if requested.
     pub step: Option<f64>,
     /// Error of transmittance that ray marching may make where no step is requested.
     pub march_error: f64,
-    /// The origin of positions in the file's coordinates [m].
+    /// The origin of positions in the file's coordinates (m).
     pub recentre: DVec3,
     /// Where the medium is in the file.
     pub location: Location,
@@ -57,7 +57,7 @@ impl Fields {
         (absorbed, scale, Volume::constant(0.0, &Place::new(self.recentre, 0.0)))
     }
 
-    /// The fields at `time` [s]; none where they are the same at all times.
+    /// The fields at `time` (s); none where they are the same at all times.
     fn at_time(&self, time: f64) -> Option<Self> {
         let (sigma_t, albedo) = (self.sigma_t.at_time(time), self.albedo.at_time(time));
         if sigma_t.is_none() && albedo.is_none() {
@@ -108,13 +108,13 @@ impl Heterogeneous {
         Ok(Self { extinction, albedo, tracker, fields, around, overrides })
     }
 
-    /// The same at `time` [s]; none where it is the same at all times.
+    /// The same at `time` (s); none where it is the same at all times.
     pub fn at_time(&self, time: f64) -> Result<Option<Self>> {
         let fields = self.fields.at_time(time);
         fields.map(|fields| Self::new(fields, self.around, self.overrides)).transpose()
     }
 
-    /// Bounds on extinction [1/m] and albedo.
+    /// Bounds on extinction (1/m) and albedo.
     pub fn bounds(&self) -> (Spectrum, Spectrum) {
         let Extinction { low, high, .. } = self.extinction;
         (self.extinction.bound(), self.albedo.range(low, high)[1].min(Spectrum::ONE))

@@ -5,7 +5,7 @@ use crate::math::{Channels, Spectrum};
 
 /// Coefficients that are the same everywhere.
 #[derive(Clone, Copy, Debug)]
-pub struct Homogeneous(pub MediumProperties);
+pub(super) struct Homogeneous(pub MediumProperties);
 
 impl Homogeneous {
     #[inline]
@@ -13,11 +13,11 @@ impl Homogeneous {
         L::from_spectrum(self.0.sigma_t)
     }
 
-    /// Optical depth of a distance [m] that may be infinite: 0 times infinity counts as 0.
+    /// Optical depth of a distance (m) that may be infinite: 0 times infinity counts as 0.
     ///
     /// LW96 eq. 7: kappa d, whose e^-(kappa d) is P_surface.
     #[inline]
-    pub fn optical_depth<L: Channels>(&self, distance: f32) -> L {
+    pub(super) fn optical_depth<L: Channels>(&self, distance: f32) -> L {
         if distance < f32::INFINITY {
             return self.sigma_t::<L>().scaled(distance);
         }
@@ -25,16 +25,16 @@ impl Homogeneous {
         L::from_spectrum(self.0.sigma_t.map(channel))
     }
 
-    /// Where the `hero` channel's optical depth is `remaining` [m from the start of the medium].
+    /// Where the `hero` channel's optical depth is `remaining` (m from the start of the medium).
     #[inline]
-    pub fn free_path<L: Channels>(&self, hero: usize, remaining: f32) -> f32 {
+    pub(super) fn free_path<L: Channels>(&self, hero: usize, remaining: f32) -> f32 {
         remaining / self.sigma_t::<L>().hero(hero)
     }
 
     /// The same, from where the ray starts. A collision in what was `skipped` happens there: nearer to the surface it
     /// might be behind it.
     #[inline]
-    pub fn collision<L: Channels>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
+    pub(super) fn collision<L: Channels>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
         let path = self.free_path::<L>(hero, remaining);
         if path < skipped { 0.0 } else { path - skipped }
     }
@@ -43,7 +43,7 @@ impl Homogeneous {
     ///
     /// LW96 eq. 6: p_medium, inverted.
     #[inline]
-    pub fn sample_distance<L: Channels>(
+    pub(super) fn sample_distance<L: Channels>(
         &self,
         interval: &MediumInterval,
         hero: usize,
@@ -60,7 +60,7 @@ impl Homogeneous {
     /// A collision where the `hero` channel's optical depth is `remaining`, which is no more than that of the
     /// interval.
     #[inline]
-    pub fn force_collision<L: Channels>(
+    pub(super) fn force_collision<L: Channels>(
         &self,
         interval: &MediumInterval,
         hero: usize,
@@ -72,7 +72,7 @@ impl Homogeneous {
     }
 
     /// What remains of light that comes from infinitely far through the medium.
-    pub fn transmittance_from_infinity(&self) -> Spectrum {
+    pub(super) fn transmittance_from_infinity(&self) -> Spectrum {
         self.0.sigma_t.map(|sigma_t| if sigma_t > 0.0 { 0.0 } else { 1.0 })
     }
 }

@@ -12,11 +12,11 @@ use std::sync::Arc;
 
 /// Media that overlap.
 #[derive(Clone, Debug)]
-pub struct Mixture(pub Arc<[Medium]>);
+pub(super) struct Mixture(pub Arc<[Medium]>);
 
 impl Mixture {
     /// Bounds: sigma_t of all together, and the largest albedo.
-    pub fn bound(&self) -> (Spectrum, Spectrum) {
+    pub(super) fn bound(&self) -> (Spectrum, Spectrum) {
         let sum = |all: Spectrum, medium: &Medium| all + medium.bound().sigma_t;
         let largest = |most: Spectrum, medium: &Medium| most.max(medium.bound().albedo);
         (self.0.iter().fold(Spectrum::ZERO, sum), self.0.iter().fold(Spectrum::ZERO, largest))
@@ -25,14 +25,18 @@ impl Mixture {
     /// What the medium that collides is like at `position`.
     #[cold]
     #[inline(never)]
-    pub fn properties_at<M: MediaProfile>(&self, component: usize, position: Vec3) -> MediumProperties {
+    pub(super) fn properties_at<M: MediaProfile>(
+        &self,
+        component: usize,
+        position: Vec3,
+    ) -> MediumProperties {
         self.0[component].properties_at::<M>(0, position)
     }
 
     /// See [`Medium::optical_depth`].
     #[cold]
     #[inline(never)]
-    pub fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Channels {
+    pub(super) fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Channels {
         let add = |sum: M::Channels, medium: &Medium| sum + medium.optical_depth::<M>(interval);
         self.0.iter().fold(M::Channels::splat(0.0), add)
     }
@@ -40,7 +44,7 @@ impl Mixture {
     /// See [`Medium::attenuation`].
     #[cold]
     #[inline(never)]
-    pub fn attenuation<M: MediaProfile>(
+    pub(super) fn attenuation<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
         stream: &mut Stream,
@@ -70,7 +74,7 @@ impl Mixture {
     /// See [`Medium::transmittance_ratio`].
     #[cold]
     #[inline(never)]
-    pub fn transmittance_ratio<M: MediaProfile>(
+    pub(super) fn transmittance_ratio<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
         hero: usize,
@@ -99,7 +103,7 @@ impl Mixture {
     /// the flight came with is left for the media behind these.
     #[cold]
     #[inline(never)]
-    pub fn sample_distance<M: MediaProfile>(
+    pub(super) fn sample_distance<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
         hero: usize,
@@ -125,14 +129,14 @@ impl Mixture {
     /// See [`Medium::forced_depth`].
     #[cold]
     #[inline(never)]
-    pub fn forced_depth<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
+    pub(super) fn forced_depth<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
         self.0.iter().map(|medium| medium.forced_depth::<M>(interval, hero)).sum()
     }
 
     /// See [`Medium::unforced`].
     #[cold]
     #[inline(never)]
-    pub fn unforced<M: MediaProfile>(
+    pub(super) fn unforced<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
         hero: usize,
@@ -155,7 +159,7 @@ impl Mixture {
     /// the same part of its own depth as `remaining` is of all: the density of both is exp(-`remaining`) sigma_t.
     #[cold]
     #[inline(never)]
-    pub fn force_collision<M: MediaProfile>(
+    pub(super) fn force_collision<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
         hero: usize,
@@ -179,7 +183,7 @@ impl Mixture {
     }
 
     /// See [`Medium::quick_depth`].
-    pub fn quick_depth(&self, segment: &RaySegment) -> Spectrum {
+    pub(super) fn quick_depth(&self, segment: &RaySegment) -> Spectrum {
         self.0.iter().map(|medium| medium.quick_depth(segment)).sum()
     }
 }

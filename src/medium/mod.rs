@@ -80,7 +80,7 @@ pub trait MediaProfile: Copy + Send + Sync + 'static {
 /// The properties of a medium at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct MediumProperties {
-    /// Extinction coefficient [1/m].
+    /// Extinction coefficient (1/m).
     pub sigma_t: Spectrum,
     /// sigma_s / sigma_t, in [0, 1].
     pub albedo: Spectrum,
@@ -110,7 +110,7 @@ impl MediumProperties {
 pub struct MediumInterval {
     /// The stretch.
     pub segment: RaySegment,
-    /// How far before it the medium begins [m], 0 but behind a boundary: a ray starts a rounding error off the surface.
+    /// How far before it the medium begins (m), 0 but behind a boundary: a ray starts a rounding error off the surface.
     /// In a homogeneous medium that counts, for a mean free path may be as short. Where coefficients vary it does not.
     pub skipped: f32,
 }
@@ -171,7 +171,7 @@ impl Medium {
         Self { bound, ..self }
     }
 
-    /// The medium as it is at `time` [s]; none where it is the same at all times.
+    /// The medium as it is at `time` (s); none where it is the same at all times.
     pub fn at_time(&self, time: f64) -> Result<Option<Self>> {
         let varying = self.heterogeneous().map(|varying| varying.at_time(time)).transpose()?.flatten();
         let given = self.given.as_ref().and_then(|given| given.0.at_time(time));
@@ -302,7 +302,7 @@ impl Medium {
         }
     }
 
-    /// How far along a ray [m] that left a boundary `skipped` metres before a distance of the optical depth `remaining`
+    /// How far along a ray (m) that left a boundary `skipped` metres before a distance of the optical depth `remaining`
     /// may lie: no need to look for surfaces beyond. Infinite where that has to be searched for.
     #[inline(always)]
     pub fn reach<M: MediaProfile>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {

@@ -7,7 +7,7 @@ use super::DistanceMethod;
 pub struct MediumOverrides {
     /// The tracker of those that vary, in place of their own choice.
     pub tracker: Option<DistanceMethod>,
-    /// The longest interval of ray marching [m], in place of their own.
+    /// The longest interval of ray marching (m), in place of their own.
     pub step: Option<f64>,
     /// The error of transmittance that ray marching may make, in place of their own steps and errors.
     pub march_error: Option<f64>,

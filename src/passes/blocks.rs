@@ -33,9 +33,9 @@ pub struct CameraStart {
     pub stream: Stream,
     /// The channel that samples distances.
     pub hero: usize,
-    /// Where on the film [pixels].
+    /// Where on the film (pixels).
     pub position: Vec2,
-    /// Through which point of the aperture [m].
+    /// Through which point of the aperture (m).
     pub aperture: Vec2,
     /// What it counts for.
     pub weight: f32,

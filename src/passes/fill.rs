@@ -3,7 +3,7 @@
 use crate::math::Spectrum;
 
 /// Sets the pixels of a row-major image that are not `known` to means of known ones nearby; black where none is known.
-pub fn fill(pixels: &mut [Spectrum], known: &[bool], width: usize) {
+pub(super) fn fill(pixels: &mut [Spectrum], known: &[bool], width: usize) {
     let sums = pixels.iter().zip(known);
     let sums =
         sums.map(|(pixel, known)| if *known { (*pixel, 1.0) } else { (Spectrum::ZERO, 0.0) }).collect();

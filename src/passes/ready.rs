@@ -24,7 +24,7 @@ use crate::{
 use std::{cell::Cell, ops::Range};
 
 /// An estimator of profile `P` with all it takes to use it.
-pub struct Ready<'a, P: Profile> {
+pub(super) struct Ready<'a, P: Profile> {
     estimator: Estimator<'a, P>,
     blocks: Blocks,
     scene: &'a Scene,
@@ -41,7 +41,7 @@ struct Sight {
 
 impl<'a, P: Profile> Ready<'a, P> {
     /// By what was `learnt`, with blocks of so many pixels.
-    pub fn prepare(
+    pub(super) fn prepare(
         scene: &'a Scene,
         film: &'a Film,
         settings: &Settings,

@@ -156,7 +156,7 @@ impl Phase {
         blend.varying.is_some() || blend.parts.iter().any(Self::varies)
     }
 
-    /// It at `time` [s]; none where it is the same at all times.
+    /// It at `time` (s); none where it is the same at all times.
     pub fn at_time(&self, time: f64) -> Option<Self> {
         let Self::Blend(blend) = self else { return None };
         let varying = blend.varying.as_ref().and_then(|weight| weight.at_time(time)).map(Arc::new);

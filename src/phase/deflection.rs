@@ -32,7 +32,7 @@ impl Deflection {
         (0.5 * (self.after - sign * self.before).length_squared()).min(2.0)
     }
 
-    /// The angle [rad], in [0, pi] (Kahan: twice the arc tangent of |a - b| / |a + b|).
+    /// The angle (rad), in [0, pi] (Kahan: twice the arc tangent of |a - b| / |a + b|).
     #[inline]
     pub fn angle(&self) -> f32 {
         2.0 * (self.after - self.before).length().atan2((self.after + self.before).length())

@@ -10,9 +10,9 @@ use std::f64::consts::PI;
 /// exp(-gamma theta^2), normalised to 1 over the sphere by quadrature.
 #[derive(Clone, Copy, Debug)]
 pub struct Gaussian {
-    /// [1/rad^2].
+    /// (1/rad^2).
     gamma: f32,
-    /// The value straight on [1/sr].
+    /// The value straight on (1/sr).
     peak: f32,
     mean_cosine: f32,
 }
@@ -21,7 +21,7 @@ pub struct Gaussian {
 const LARGEST: f64 = 1e9;
 
 impl Gaussian {
-    /// `gamma` >= 0 [1/rad^2] narrows the lobe: 1 / (2 gamma) is the variance of the angle along any plane.
+    /// `gamma` >= 0 (1/rad^2) narrows the lobe: 1 / (2 gamma) is the variance of the angle along any plane.
     pub fn new(gamma: f64) -> Self {
         let [total, moment] = [0, 1].map(|power| integral(gamma, power));
         let peak = 1.0 / (2.0 * PI * total);

@@ -46,7 +46,7 @@ use crate::volume::Place;
 
 /// What every phase function can do.
 pub trait PhaseModel {
-    /// Value and sampling density [1/sr] of a turn from an old to a new direction of flight.
+    /// Value and sampling density (1/sr) of a turn from an old to a new direction of flight.
     fn pdf_sr(&self, turn: Deflection) -> f32;
 
     /// A new direction of flight after `direction`, with exactly `pdf`.

@@ -15,7 +15,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct SpecularSphere {
     interface: Interface,
-    /// 1 / (4 pi rho_h) [1/sr].
+    /// 1 / (4 pi rho_h) (1/sr).
     scale: f32,
     mean_cosine: f32,
     envelope: Arc<Envelope>,

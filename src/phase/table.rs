@@ -14,7 +14,7 @@ pub struct Table(Arc<Entries>);
 
 #[derive(Debug)]
 struct Entries {
-    /// Normalised to 1 over the sphere [1/sr].
+    /// Normalised to 1 over the sphere (1/sr).
     values: Vec<f32>,
     /// The sections between neighbouring entries, by their share.
     sections: Discrete,

@@ -25,7 +25,7 @@ pub(super) struct Adaptive<'a, 's> {
 
 impl Adaptive<'_, '_> {
     /// Goes on from `halves` until every pixel has converged or the budget is spent.
-    pub fn run(mut self, halves: &mut Halves) {
+    pub(super) fn run(mut self, halves: &mut Halves) {
         let before = halves.elapsed + self.instrument.settings.budget.spent;
         while halves.active.contains(&true) {
             if !self.advance(halves, before) {

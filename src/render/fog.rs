@@ -22,7 +22,7 @@ const LIGHTS_PER_POINT: usize = 16;
 const PILOT_RAYS: usize = 1024;
 
 /// A scene in fog of one radiance.
-pub struct Preview<'a> {
+pub(super) struct Preview<'a> {
     scene: &'a Scene,
     hide_emitters: bool,
     threshold: f32,
@@ -64,13 +64,18 @@ enum End {
 
 impl<'a> Preview<'a> {
     /// Prepares to show what `compiled` shows.
-    pub fn of(compiled: &'a dyn Compiled, fog: &FogSettings, settings: &Settings) -> Self {
+    pub(super) fn of(compiled: &'a dyn Compiled, fog: &FogSettings, settings: &Settings) -> Self {
         let Settings { seed, options, .. } = settings;
         Self::new(compiled.scene(), fog, options.hide_emitters, pilot_rays(compiled, *seed))
     }
 
     /// One sample of each of `pixels`, as the camera subpaths of `compiled` begin.
-    pub fn show(&self, compiled: &dyn Compiled, pass: usize, pixels: impl Iterator<Item = usize>) -> Outcome {
+    pub(super) fn show(
+        &self,
+        compiled: &dyn Compiled,
+        pass: usize,
+        pixels: impl Iterator<Item = usize>,
+    ) -> Outcome {
         let show = |pixel| {
             let mut start = compiled.camera_start(pass, pixel);
             let ray = self.scene.sensor.ray(start.position, start.aperture).ray;
@@ -113,7 +118,7 @@ impl<'a> Preview<'a> {
     }
 
     /// Radiance along a primary ray.
-    pub fn radiance(&self, ray: Ray, stream: &mut Stream) -> Spectrum {
+    pub(super) fn radiance(&self, ray: Ray, stream: &mut Stream) -> Spectrum {
         let Sight { through, veiled, emitted, end } = self.follow(ray, stream);
         let behind = match end {
             End::Radiance(radiance) => radiance,

@@ -30,7 +30,7 @@ pub(super) struct Known<'a> {
 
 impl Known<'_> {
     /// The channels of all `layers`; those that contributions are sorted into are planes in their order, from 1 on.
-    pub fn channels(&self, layers: &[Layer], plane: impl Fn(usize) -> Vec<Spectrum>) -> Vec<Channel> {
+    pub(super) fn channels(&self, layers: &[Layer], plane: impl Fn(usize) -> Vec<Spectrum>) -> Vec<Channel> {
         let mut sorted = 0;
         let mut channels = Vec::new();
         for layer in layers {

@@ -31,7 +31,7 @@ use std::cell::Cell;
 
 /// Which plane contributions belong to, besides the image.
 #[derive(Clone, Debug)]
-pub struct Sorter {
+pub(super) struct Sorter {
     /// That of each component of each emitter's light; none where no layer has it.
     of_emitters: Vec<[Option<usize>; Component::ALL.len()]>,
     /// How many there are, the image among them.
@@ -40,7 +40,7 @@ pub struct Sorter {
 
 impl Sorter {
     /// What `layers` of `scene` request; none where that is nothing. No two of them have the same light.
-    pub fn new(scene: &Scene, layers: &[Layer]) -> Option<Self> {
+    pub(super) fn new(scene: &Scene, layers: &[Layer]) -> Option<Self> {
         let part = |layer: &Layer| if let Content::Part(part) = layer.content { Some(part) } else { None };
         let parts: Vec<Part> = layers.iter().filter_map(part).collect();
         let names = scene.lights.groups();

@@ -19,13 +19,13 @@ pub(super) struct Monitor<'a> {
 impl Monitor<'_> {
     /// `wanted` tasks (blocks of `per_pass` each pass), cut at the next mark after `done` passes: the time of a mark
     /// must not hold work beyond it.
-    pub fn limit_tasks(&self, wanted: usize, done: u64, per_pass: usize) -> usize {
+    pub(super) fn limit_tasks(&self, wanted: usize, done: u64, per_pass: usize) -> usize {
         let next = self.marks.iter().find(|mark| **mark > done);
         next.map_or(wanted, |mark| wanted.min((*mark as usize).saturating_mul(per_pass)))
     }
 
     /// True if the image is requested after `passes`.
-    pub fn is_mark(&self, passes: u64) -> bool {
+    pub(super) fn is_mark(&self, passes: u64) -> bool {
         self.marks.contains(&passes)
     }
 }
@@ -38,17 +38,17 @@ pub(super) struct Stopwatch {
 
 impl Stopwatch {
     /// Starts now.
-    pub fn start() -> Self {
+    pub(super) fn start() -> Self {
         Self { started: Instant::now(), held: Duration::ZERO }
     }
 
     /// Time since the start, less that of what did not count.
-    pub fn elapsed(&self) -> Duration {
+    pub(super) fn elapsed(&self) -> Duration {
         self.started.elapsed().saturating_sub(self.held)
     }
 
     /// Does something; its time does not count.
-    pub fn hold(&mut self, work: impl FnOnce()) {
+    pub(super) fn hold(&mut self, work: impl FnOnce()) {
         let started = Instant::now();
         work();
         self.held += started.elapsed();

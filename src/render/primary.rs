@@ -18,13 +18,13 @@ use crate::{
 use rayon::prelude::*;
 
 /// What is requested of primary rays.
-pub struct Pass {
+pub(super) struct Pass {
     alpha: bool,
     quantities: Vec<Quantity>,
 }
 
 /// What they saw.
-pub struct Seen {
+pub(super) struct Seen {
     /// The part of each pixel that the scene covers; empty where it was not requested.
     pub alpha: Vec<f32>,
     /// Per quantity, one plane per channel.
@@ -33,14 +33,14 @@ pub struct Seen {
 
 impl Seen {
     /// The planes of a quantity.
-    pub fn of(&self, quantity: Quantity) -> Vec<Vec<f32>> {
+    pub(super) fn of(&self, quantity: Quantity) -> Vec<Vec<f32>> {
         self.planes.iter().find(|(q, _)| *q == quantity).map_or(Vec::new(), |(_, planes)| planes.clone())
     }
 }
 
 impl Pass {
     /// What `film` and `layers` request.
-    pub fn new(film: &Film, layers: &[Layer]) -> Self {
+    pub(super) fn new(film: &Film, layers: &[Layer]) -> Self {
         let mut quantities: Vec<Quantity> = Vec::new();
         for layer in layers {
             if let Content::Surface(quantity) = layer.content
@@ -58,7 +58,7 @@ impl Pass {
     }
 
     /// Traces as many primary rays per pixel as there were `passes`, or fewer once `is_over`, but one at least.
-    pub fn run(&self, instrument: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
+    pub(super) fn run(&self, instrument: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
         let Instrument { scene, film, compiled, .. } = instrument;
         let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
@@ -105,7 +105,7 @@ struct View<'a, 's> {
     hit: Option<(Hit, SurfacePoint)>,
     /// There is an environment emitter, in every direction at infinity.
     environment: bool,
-    /// Step across the film that `duv_dx` refers to [pixels].
+    /// Step across the film that `duv_dx` refers to (pixels).
     step: f32,
 }
 

@@ -18,12 +18,12 @@ pub(super) struct Seen<'a, 's> {
 
 impl<'a, 's> Seen<'a, 's> {
     /// None yet.
-    pub fn new(instrument: &'a Instrument<'s>) -> Self {
+    pub(super) fn new(instrument: &'a Instrument<'s>) -> Self {
         Self { instrument, known: RefCell::default() }
     }
 
     /// The luminance of what `pixel` sees of emitters, not scattered but by smooth surfaces.
-    pub fn of(&self, pixel: usize) -> f64 {
+    pub(super) fn of(&self, pixel: usize) -> f64 {
         *self.known.borrow_mut().entry(pixel).or_insert_with(|| self.look(pixel))
     }
 

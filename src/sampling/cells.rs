@@ -76,7 +76,7 @@ impl<const D: usize, T> Cells<D, T> {
         })
     }
 
-    /// Memory that the cells take [bytes], without what else their contents point at.
+    /// Memory that the cells take (bytes), without what else their contents point at.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.all[..])
     }

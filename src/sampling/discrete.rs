@@ -9,7 +9,7 @@ pub struct Discrete {
 }
 
 impl Discrete {
-    /// Memory that it takes [bytes].
+    /// Memory that it takes (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&self.cumulative[..])
     }

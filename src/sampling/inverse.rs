@@ -13,7 +13,7 @@ fn nearer_end(bits: u64) -> (f64, bool) {
 }
 
 /// Exponential with mean 1: -ln(1 - u), rising with `bits`.
-pub fn exponential(bits: u64) -> f64 {
+pub(super) fn exponential(bits: u64) -> f64 {
     match nearer_end(bits) {
         (rest, true) => -rest.ln(),
         (u, false) => -(-u).ln_1p(),
@@ -21,7 +21,7 @@ pub fn exponential(bits: u64) -> f64 {
 }
 
 /// Standard normal, rising with `bits`.
-pub fn normal(bits: u64) -> f64 {
+pub(super) fn normal(bits: u64) -> f64 {
     let (rest, high) = nearer_end(bits);
     let size = std::f64::consts::SQRT_2 * erfc_inv(2.0 * rest);
     if high { size } else { -size }

@@ -22,7 +22,7 @@ const SIDE: usize = 1 << BINS;
 const TO_DIVIDE_BINS: f64 = 24.0;
 /// Parts into which a point is spread.
 const PARTS: usize = 4;
-/// How far they are spread [sizes of its leaf] where samples follow the tree alone. By 1 the relative error in a room with a small
+/// How far they are spread (sizes of its leaf) where samples follow the tree alone. By 1 the relative error in a room with a small
 /// opening is 1.2 times as large, by 4 1.7 times; not at all 2 to 5 times, most of it in a hundredth of the pixels.
 const ALONE: f32 = 2.0;
 /// The same where other densities are mixed with the tree's: by 1 path tracing in rooms lit indirectly or through a door has 0.9 of
@@ -230,7 +230,7 @@ impl Quadtree {
         }
     }
 
-    /// Memory that it takes [bytes].
+    /// Memory that it takes (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + size_of_val(&self.bins[..])
     }

@@ -103,7 +103,7 @@ impl Geometry {
         hit.primitive - self.first[self.shape_of(hit) as usize]
     }
 
-    /// How position changes with the texture coordinates u and v [m] at `point`, the surface at `hit`.
+    /// How position changes with the texture coordinates u and v (m) at `point`, the surface at `hit`.
     pub fn partials(&self, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
         let index = self.local_primitive(hit) as usize;
         self.shapes[point.shape as usize].partials(index, ray, hit, point)
@@ -114,19 +114,19 @@ impl Geometry {
         self.tree.bounds()
     }
 
-    /// Area of a shape [m^2].
+    /// Area of a shape (m^2).
     pub fn area(&self, shape: u32) -> f32 {
         self.shapes[shape as usize].area()
     }
 
-    /// A point on `shape`, uniform by area: density 1 / `area` [1/m^2].
+    /// A point on `shape`, uniform by area: density 1 / `area` (1/m^2).
     #[inline]
     pub fn sample_area(&self, shape: u32, stream: &mut Stream) -> SurfacePoint {
         let point = self.shapes[shape as usize].sample_area(stream);
         SurfacePoint { shape, ..point }
     }
 
-    /// A point on `shape` for light to come from to `reference`, and its density per area [1/m^2]; none where
+    /// A point on `shape` for light to come from to `reference`, and its density per area (1/m^2); none where
     /// that is useless (the point is seen edge-on).
     pub fn sample_toward(
         &self,
@@ -138,7 +138,7 @@ impl Geometry {
         (pdf > 0.0 && pdf.is_finite()).then_some((SurfacePoint { shape, ..point }, pdf))
     }
 
-    /// The density with which `sample_toward` gives `point` [1/m^2].
+    /// The density with which `sample_toward` gives `point` (1/m^2).
     pub fn pdf_area_toward(&self, shape: u32, reference: Vec3, point: &SurfacePoint) -> f32 {
         self.shapes[shape as usize].pdf_area_toward(reference, point)
     }

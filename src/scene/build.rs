@@ -62,7 +62,7 @@ pub struct Setup {
     pub shape_names: Vec<String>,
     /// The same of each BSDF.
     pub bsdf_names: Vec<String>,
-    /// When the scene is seen [s].
+    /// When the scene is seen (s).
     pub time: f64,
     /// Shapes that were set apart as they touched.
     pub apart: Apart,
@@ -202,7 +202,7 @@ struct Placed<'a> {
     location: &'a Location,
 }
 
-/// What a primitive takes while the hierarchy is built [bytes]: measured 380, and some more.
+/// What a primitive takes while the hierarchy is built (bytes): measured 380, and some more.
 const MEMORY_PER_PRIMITIVE: u64 = 440;
 
 struct Builder<'a> {

@@ -60,7 +60,7 @@ pub struct Scene {
     pub sensor: Sensor,
     /// Its image.
     pub crop: Crop,
-    /// Where the origin of all positions lies in the file's coordinates [m].
+    /// Where the origin of all positions lies in the file's coordinates (m).
     pub recentre: DVec3,
 }
 

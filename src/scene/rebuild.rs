@@ -15,11 +15,11 @@ use crate::{
 use std::{cell::RefCell, collections::HashMap};
 
 /// Numbers by where what has them is described.
-pub type Numbers = HashMap<Location, usize>;
+pub(super) type Numbers = HashMap<Location, usize>;
 
 /// What a scene was built from, and what became of it.
 #[derive(Debug, Default)]
-pub struct Parts {
+pub(super) struct Parts {
     /// The number of each shape in the geometry,
     pub shapes: Numbers,
     /// of each BSDF in the scene,
@@ -31,7 +31,7 @@ pub struct Parts {
 }
 
 /// What was built before.
-pub struct Before<'a> {
+pub(super) struct Before<'a> {
     setup: &'a Setup,
     /// What it was built from.
     objects: HashMap<Key<'a>, &'a Object>,
@@ -68,7 +68,7 @@ fn own(object: &Object) -> impl Iterator<Item = (&String, &Value)> {
 
 impl<'a> Before<'a> {
     /// `setup` was built before.
-    pub fn new(setup: &'a Setup) -> Result<Self> {
+    pub(super) fn new(setup: &'a Setup) -> Result<Self> {
         let library = Library::new(&setup.root)?;
         let mut objects = HashMap::new();
         collect(&setup.root, &mut objects);
@@ -76,13 +76,13 @@ impl<'a> Before<'a> {
     }
 
     /// The geometry of then, if it has `shapes` shapes, and what was set apart in it.
-    pub fn geometry(&self, shapes: usize) -> Option<(&'a Geometry, &'a Apart)> {
+    pub(super) fn geometry(&self, shapes: usize) -> Option<(&'a Geometry, &'a Apart)> {
         let geometry = &self.setup.scene.geometry;
         (geometry.shapes().len() == shapes).then_some((geometry, &self.setup.apart))
     }
 
     /// The shape that `object` describes, whatever its surface and the media beside it.
-    pub fn shape(&self, object: &Object, recentre: DVec3) -> Option<&'a Shape> {
+    pub(super) fn shape(&self, object: &Object, recentre: DVec3) -> Option<&'a Shape> {
         let before = self.objects.get(&key(object))?;
         let index = *self.setup.parts.shapes.get(&object.location)?;
         let is_same = self.setup.scene.recentre == recentre && own(before).eq(own(object));
@@ -91,20 +91,20 @@ impl<'a> Before<'a> {
     }
 
     /// The BSDF that it describes.
-    pub fn bsdf(&self, object: &Object, library: &Library) -> Option<&'a Bsdf> {
+    pub(super) fn bsdf(&self, object: &Object, library: &Library) -> Option<&'a Bsdf> {
         let index = *self.setup.parts.bsdfs.get(&object.location)?;
         self.is_same(object, library).then(|| self.setup.scene.bsdfs.get(index))?
     }
 
     /// The emitter.
-    pub fn emitter(&self, object: &Object, library: &Library) -> Option<&'a Emitter> {
+    pub(super) fn emitter(&self, object: &Object, library: &Library) -> Option<&'a Emitter> {
         let index = *self.setup.parts.emitters.get(&object.location)?;
         let light = self.is_same(object, library).then(|| self.setup.scene.lights.all.get(index))?;
         light.map(|light| &light.emitter)
     }
 
     /// The medium.
-    pub fn medium(
+    pub(super) fn medium(
         &self,
         object: &Object,
         library: &Library,

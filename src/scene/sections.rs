@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// The scene's children by kind.
-pub struct Sections<'a> {
+pub(super) struct Sections<'a> {
     /// Who renders it, if the file says.
     pub integrator: Option<&'a Object>,
     /// The one that is rendered: the first.
@@ -24,7 +24,7 @@ pub struct Sections<'a> {
     pub shapes: Vec<Child<'a>>,
     /// Those beside the shapes, in file order.
     pub emitters: Vec<Child<'a>>,
-    /// When it is seen [s]: what drifts in a wind has drifted since 0.
+    /// When it is seen (s): what drifts in a wind has drifted since 0.
     #[allow(dead_code, reason = "read where volumes are built")]
     pub time: f64,
 }
@@ -59,7 +59,7 @@ fn is_shape(object: &Object) -> bool {
 
 impl<'a> Sections<'a> {
     /// Sorts the children of `root`; one that no scene can hold is an error.
-    pub fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
+    pub(super) fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
         let params = Params::new(root, library, &TABLE);
         let time = params.float("time")?;
         let shapes = params.children("shape", |child| is_shape(child.object))?;
@@ -92,7 +92,7 @@ impl<'a> Sections<'a> {
 
     /// The camera's position in the file's coordinates: it becomes the origin, so that f32 geometry is most
     /// precise where it is seen from nearest, however far from the file's origin that is.
-    pub fn viewpoint(&self, library: &Library) -> Result<DVec3> {
+    pub(super) fn viewpoint(&self, library: &Library) -> Result<DVec3> {
         sensor::viewpoint(self.sensor, library)
     }
 }

@@ -7,7 +7,7 @@ use super::{
 use crate::{emitter::Kind, error::Result, medium::Medium};
 
 impl Scene {
-    /// Moves the scene to `time` [s]; false where nothing in it depends on time. Media that change are
+    /// Moves the scene to `time` (s); false where nothing in it depends on time. Media that change are
     /// examined again, and so are the emitters, as the extent and the emission of media may have changed.
     pub fn set_time(&mut self, time: f64) -> Result<bool> {
         let mut changed = false;

@@ -17,7 +17,12 @@ use crate::{
 };
 
 /// The scene at `location` has no light; a preview needs none, nor do layers without an image.
-pub fn warn_of_darkness(lights: &Lights, integrator: &Integrator, location: &Location, library: &Library) {
+pub(super) fn warn_of_darkness(
+    lights: &Lights,
+    integrator: &Integrator,
+    location: &Location,
+    library: &Library,
+) {
     let options = &integrator.options;
     if lights.is_empty() && options.algorithm != Algorithm::Fog && options.max_depth != Some(0) {
         let found = if lights.all.is_empty() { "no emitter" } else { "no emitter with power above 0" };
@@ -30,7 +35,7 @@ pub fn warn_of_darkness(lights: &Lights, integrator: &Integrator, location: &Loc
 }
 
 /// What decides whether something is shut in by an opaque shape.
-pub struct Unseen<'a> {
+pub(super) struct Unseen<'a> {
     /// All shapes.
     pub geometry: &'a Geometry,
     /// Their properties.
@@ -45,7 +50,7 @@ pub struct Unseen<'a> {
 
 impl Unseen<'_> {
     /// Says of every closed opaque shape what it hides; the camera is at `camera` in the file.
-    pub fn warn(&self, names: &Names<'_>, camera: &Location) {
+    pub(super) fn warn(&self, names: &Names<'_>, camera: &Location) {
         let shapes =
             (0..self.surfaces.len() as u32).filter(|shape| !self.surfaces[*shape as usize].transmits);
         for shape in shapes {
@@ -59,7 +64,7 @@ impl Unseen<'_> {
 
     /// For each of `media`, whether all that lies in it is shut in with it, as in frosted glass: nothing there emits, and light comes
     /// and goes by scattering at a closed surface only. `elsewhere` are media that also lie somewhere else.
-    pub fn shut_in(&self, media: &[Medium], elsewhere: &[MediumIndex]) -> Vec<bool> {
+    pub(super) fn shut_in(&self, media: &[Medium], elsewhere: &[MediumIndex]) -> Vec<bool> {
         let mut shut_in: Vec<bool> = media.iter().map(|medium| medium.emission.is_none()).collect();
         let lit = self.lights.all.iter().map(|light| light.medium);
         elsewhere.iter().copied().chain(lit).for_each(|medium| shut_in[medium.0 as usize] = false);

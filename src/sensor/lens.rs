@@ -36,7 +36,7 @@ pub(crate) const FIELD_OF_VIEW: &[Parameter] = rows! {
 
 impl Lens {
     /// Reads Mitsuba's parameters of projective cameras.
-    pub fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
+    pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {
         let to_world = DMat4::from_translation(-recentre) * params.transform("to_world")?;
         if !similarity::is_rigid(to_world) {
             let expected = "a transform made of rotations, translations and mirrors";
@@ -61,39 +61,39 @@ impl Lens {
 
     /// The point of the film plane (camera space, z = 1 left out) that corresponds to a film position.
     #[inline(always)]
-    pub fn plane(&self, film: Vec2) -> Vec2 {
+    pub(super) fn plane(&self, film: Vec2) -> Vec2 {
         (self.centre - film) / self.scale
     }
 
     /// The film position that corresponds to a point of the film plane.
     #[inline(always)]
-    pub fn film(&self, plane: Vec2) -> Vec2 {
+    pub(super) fn film(&self, plane: Vec2) -> Vec2 {
         self.centre - plane * self.scale
     }
 
     /// Density per solid angle of directions whose film positions have density 1 per pixel area
-    /// [pixels/sr]: scale^2 / cos^3. It holds through any point of a lens: what a lens in focus at distance F
+    /// (pixels/sr): scale^2 / cos^3. It holds through any point of a lens: what a lens in focus at distance F
     /// spreads over F^2 times the area lies F^2 times further away.
     #[inline(always)]
-    pub fn pdf(&self, cosine: f32) -> f32 {
+    pub(super) fn pdf(&self, cosine: f32) -> f32 {
         self.scale * self.scale / (cosine * cosine * cosine)
     }
 
     /// `point` in camera space.
     #[inline(always)]
-    pub fn to_local(&self, point: Vec3) -> Vec3 {
+    pub(super) fn to_local(&self, point: Vec3) -> Vec3 {
         self.frame.to_local(point - self.position)
     }
 
     /// A point of the aperture in the world.
     #[inline(always)]
-    pub fn at(&self, aperture: Vec2) -> Vec3 {
+    pub(super) fn at(&self, aperture: Vec2) -> Vec3 {
         self.position + self.frame.tangent * aperture.x + self.frame.bitangent * aperture.y
     }
 
     /// Camera direction through a point of the film plane.
     #[inline(always)]
-    pub fn through(plane: Vec2) -> Vec3 {
+    pub(super) fn through(plane: Vec2) -> Vec3 {
         vec3(plane.x, plane.y, 1.0).normalize()
     }
 }

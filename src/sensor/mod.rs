@@ -42,9 +42,9 @@ pub enum Sensor {
 /// The image that a sensor makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crop {
-    /// Width and height of the whole film [pixels].
+    /// Width and height of the whole film (pixels).
     pub film: [u32; 2],
-    /// The top left corner of the part of it that is the image [pixels].
+    /// The top left corner of the part of it that is the image (pixels).
     pub offset: [u32; 2],
 }
 
@@ -55,20 +55,20 @@ pub struct SensorRay {
     pub position: Vec3,
     /// From the near to the far clip distance.
     pub ray: Ray,
-    /// Density of the direction per film area of a pixel [pixels/sr]; of parallel rays that of their positions
-    /// [pixels/m^2].
+    /// Density of the direction per film area of a pixel (pixels/sr); of parallel rays that of their positions
+    /// (pixels/m^2).
     pub pdf: f32,
 }
 
 /// A point as a sensor sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Projection {
-    /// Where on the film [pixels]; may lie outside the image.
+    /// Where on the film (pixels); may lie outside the image.
     pub film: Vec2,
     /// The ray that sees it, from the near clip distance on; it ends at the far one, not at the point.
     pub ray: Ray,
     /// 1 over this turns a density per solid angle at the sensor into one per area across the ray at the point
-    /// [m^2]; 1 for points at infinity and for parallel rays.
+    /// (m^2); 1 for points at infinity and for parallel rays.
     pub distance_squared: f32,
     /// As in [`SensorRay::pdf`].
     pub pdf: f32,
@@ -123,7 +123,7 @@ pub fn viewpoint(object: &Object, library: &Library) -> Result<DVec3> {
 }
 
 impl Sensor {
-    /// A point of the aperture for one walk or connection, uniform by area, in the lens's own axes [m].
+    /// A point of the aperture for one walk or connection, uniform by area, in the lens's own axes (m).
     #[inline(always)]
     pub fn sample_aperture(&self, stream: &mut Stream) -> Vec2 {
         match self {
@@ -187,7 +187,7 @@ impl Sensor {
     }
 }
 
-/// Distances along the axis between which things are seen [m]: 0 <= near < far.
+/// Distances along the axis between which things are seen (m): 0 <= near < far.
 #[derive(Clone, Copy, Debug)]
 struct Clip {
     near: f32,

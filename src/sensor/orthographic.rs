@@ -20,9 +20,9 @@ pub struct Orthographic {
     direction: Vec3,
     /// From a point relative to `corner` to film position and distance along `direction`.
     to_film: Mat3,
-    /// Distance from the near to the far clip plane along `direction` [m].
+    /// Distance from the near to the far clip plane along `direction` (m).
     reach: f32,
-    /// Pixels per area across the rays [pixels/m^2].
+    /// Pixels per area across the rays (pixels/m^2).
     pdf: f32,
     /// The middle of the film.
     position: Vec3,

@@ -13,9 +13,9 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct ThinLens {
     lens: Lens,
-    /// Radius of the lens [m].
+    /// Radius of the lens (m).
     radius: f32,
-    /// Distance of the plane of focus, along the axis [m].
+    /// Distance of the plane of focus, along the axis (m).
     focus: f32,
 }
 

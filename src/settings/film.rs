@@ -11,7 +11,7 @@ use crate::{
     settings::{Crop, Overrides, only_one},
 };
 
-/// The size of a film that says nothing [pixels].
+/// The size of a film that says nothing (pixels).
 const DEFAULT_SIZE: [u32; 2] = [768, 576];
 /// A larger image would take more than 10 GB while it is rendered.
 const MOST_PIXELS: u64 = 1 << 28;

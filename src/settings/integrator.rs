@@ -26,7 +26,7 @@ pub enum Restriction {
     None,
     /// It is scattered once at most, in media that vary found by ray marching (P03 eq. 18-19).
     SingleScattering {
-        /// The longest interval [m], in place of the media's own.
+        /// The longest interval (m), in place of the media's own.
         step: Option<f64>,
         /// The error of transmittance, in place of the media's own steps and errors.
         march_error: Option<f64>,
@@ -73,13 +73,13 @@ impl Restriction {
 /// How the preview `fog` looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FogSettings {
-    /// L_fog: radiance of the fog [W/(m^2 sr)]; where none is given, the mean radiance of the surroundings, else the
+    /// L_fog: radiance of the fog (W/(m^2 sr)); where none is given, the mean radiance of the surroundings, else the
     /// mean of the surfaces that are seen.
     pub color: Option<Spectrum>,
-    /// Radiance that surfaces are lit by from everywhere, besides the emitters [W/(m^2 sr)]; where none is given, that
+    /// Radiance that surfaces are lit by from everywhere, besides the emitters (W/(m^2 sr)); where none is given, that
     /// of the fog where nothing surrounds the scene, else 0.
     pub ambient: Option<Spectrum>,
-    /// What is further than this is fog alone [m]; none for no limit.
+    /// What is further than this is fog alone (m); none for no limit.
     pub threshold: Option<f32>,
 }
 
@@ -288,7 +288,7 @@ fn build_fog(params: &Params<'_>) -> Result<Integrator> {
     Ok(Integrator { options, fog, ..Integrator::default() })
 }
 
-/// `single_scattering`: path tracing of at most two segments, with marching by `step` [m] or within `march_error`.
+/// `single_scattering`: path tracing of at most two segments, with marching by `step` (m) or within `march_error`.
 fn build_single_scattering(params: &Params<'_>) -> Result<Integrator> {
     let is_integer = |property: &Property| matches!(property.value, Value::Integer(_));
     params.integer("max_depth").map_err(|error| match params.given("max_depth").is_some_and(is_integer) {

@@ -18,7 +18,7 @@ use serde_json::{Map, Value};
 /// Settings of the command line that override those of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Overrides {
-    /// Width and height [pixels].
+    /// Width and height (pixels).
     pub size: Option<(u32, u32)>,
     /// The only part of the image to render.
     pub crop: Option<Crop>,
@@ -50,7 +50,7 @@ impl Overrides {
     }
 }
 
-/// A part of an image [pixels].
+/// A part of an image (pixels).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crop {
     /// Its top left corner.

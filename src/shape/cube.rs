@@ -18,12 +18,12 @@ const FACES: [ObjectFace; 6] = [
 ];
 
 /// Its parameters.
-pub const TABLE: Table = table! {
+pub(super) const TABLE: Table = table! {
     "A box: [-1, 1]^3, facing outwards.";
     ignored("face_normals", "its faces are flat");
     COMMON
 };
 
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Parallelograms> {
+pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Parallelograms> {
     Parallelograms::build(params, recentre, &FACES)
 }

@@ -25,9 +25,9 @@ pub struct Cylinder {
     base: DVec3,
     /// Unit vector.
     axis: DVec3,
-    /// The greatest z [m].
+    /// The greatest z (m).
     length: f64,
-    /// Its radius [m].
+    /// Its radius (m).
     radius: f64,
     /// Unit vectors across the axis; with it left-handed where the transform mirrors.
     across: [DVec3; 2],
@@ -36,7 +36,7 @@ pub struct Cylinder {
 }
 
 /// Its parameters.
-pub const TABLE: Table = table! {
+pub(super) const TABLE: Table = table! {
     "An analytic cylinder, open at both ends.";
     vector("p0", "m", At([0.0; 3]), "Start of the axis."),
     vector("p1", "m", At([0.0, 0.0, 1.0]), "End of the axis."),
@@ -44,7 +44,7 @@ pub const TABLE: Table = table! {
     COMMON
 };
 
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Cylinder> {
+pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Cylinder> {
     let p0 = params.vector("p0")?;
     let p1 = params.vector("p1")?;
     let radius = params.float("radius")?;
@@ -110,7 +110,7 @@ impl Cylinder {
             .map(|(z, facing)| Disk::spanned(base + axis * z, x * radius, y * radius, axis * facing))
     }
 
-    /// The same with a radius greater by `by` [m].
+    /// The same with a radius greater by `by` (m).
     pub fn widened(&self, by: f64) -> Self {
         Self { radius: self.radius + by, ..*self }
     }
@@ -130,7 +130,7 @@ impl Cylinder {
         self.point(z.clamp(0.0, length), out)
     }
 
-    /// The surface point at height `z` [m] in the unit direction `out` from the axis.
+    /// The surface point at height `z` (m) in the unit direction `out` from the axis.
     #[inline]
     fn point(&self, z: f64, out: DVec3) -> SurfacePoint {
         let Self { base, axis, length, radius, .. } = *self;

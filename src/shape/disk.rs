@@ -30,17 +30,17 @@ pub struct Disk {
     normal: Vec3,
     /// Reciprocal to the edges: x of a point relative to the centre, and y.
     axes: [Vec3; 2],
-    /// Greatest length of the reciprocal axes [1/m].
+    /// Greatest length of the reciprocal axes (1/m).
     reach: f32,
     area: f32,
 }
 
 /// Its parameters.
-pub const TABLE: Table = table! {
+pub(super) const TABLE: Table = table! {
     "An analytic disk of radius 1 around the origin, facing +z."; ; COMMON
 };
 
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Disk> {
+pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Disk> {
     let placement = Placement::read(params, recentre)?;
     let disk = Disk::place(&placement);
     if disk.fits() {
@@ -81,7 +81,7 @@ impl Disk {
             && [self.center, self.edge_u, self.edge_v, self.normal].into_iter().all(is_in_range)
     }
 
-    /// The same, moved along its normal by `by` [m].
+    /// The same, moved along its normal by `by` (m).
     pub fn lifted(&self, by: f64) -> Self {
         let center = (self.center.as_dvec3() + self.normal.as_dvec3() * by).as_vec3();
         Self { center, ..*self }

@@ -134,7 +134,7 @@ impl Mesh {
         (!lid.triangles.is_empty() && holds_space).then_some(lid)
     }
 
-    /// What it adds to the volume that a closed mesh holds, of which it is a part [m^3].
+    /// What it adds to the volume that a closed mesh holds, of which it is a part (m^3).
     pub fn volume(&self) -> f64 {
         let corners = |t: &[u32; 3]| t.map(|vertex| self.positions[vertex as usize].as_dvec3());
         self.triangles.iter().map(corners).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()

@@ -49,14 +49,14 @@ pub struct Ray {
     pub origin: Vec3,
     /// Unit vector.
     pub direction: Vec3,
-    /// Where it ends [m], itself excluded.
+    /// Where it ends (m), itself excluded.
     pub t_max: f32,
 }
 
 /// Where a ray met a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance [m].
+    /// Distance (m).
     pub t: f32,
     /// Which primitive of the geometry.
     pub primitive: u32,
@@ -117,7 +117,7 @@ pub enum Primitive {
     Ball {
         /// Its centre.
         center: Vec3,
-        /// Its radius [m].
+        /// Its radius (m).
         radius: f32,
     },
     /// One that is tested against rays by itself: too rare for lanes.
@@ -183,7 +183,7 @@ pub trait CurvedModel {
     /// The nearest hit with t in (0, `t_max`): t, u and v of [`Hit`].
     fn closest(&self, ray: &Ray, t_max: f32) -> Option<[f32; 3]>;
 
-    /// Distance of `p` from the surface that it is a part of [m].
+    /// Distance of `p` from the surface that it is a part of (m).
     fn distance(&self, p: DVec3) -> f64;
 }
 
@@ -210,7 +210,7 @@ pub trait ShapeModel {
     /// disks those of the unit disk; spheres and cylinders use `hit.t`.
     fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint;
 
-    /// How position changes with the texture coordinates u and v [m] at `point`, where `ray` met primitive `index`.
+    /// How position changes with the texture coordinates u and v (m) at `point`, where `ray` met primitive `index`.
     fn partials(&self, index: usize, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
         let Frame { tangent, bitangent, .. } = point.shading;
         let Primitive::Flat(flat) = self.primitive(index) else { return (tangent, bitangent) };
@@ -226,18 +226,18 @@ pub trait ShapeModel {
         (du, dv)
     }
 
-    /// Area [m^2].
+    /// Area (m^2).
     fn area(&self) -> f32;
 
-    /// Uniform by area, density 1/area [1/m^2].
+    /// Uniform by area, density 1/area (1/m^2).
     fn sample_area(&self, stream: &mut Stream) -> SurfacePoint;
 
-    /// A point for light to come from to `reference`, and its density [1/m^2].
+    /// A point for light to come from to `reference`, and its density (1/m^2).
     fn sample_toward(&self, _reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
         (self.sample_area(stream), 1.0 / self.area())
     }
 
-    /// Density of [`Self::sample_toward`] at `point` [1/m^2].
+    /// Density of [`Self::sample_toward`] at `point` (1/m^2).
     fn pdf_area_toward(&self, _reference: Vec3, _point: &SurfacePoint) -> f32 {
         1.0 / self.area()
     }
@@ -330,7 +330,7 @@ impl Shape {
         if let Self::Mesh(mesh) = self { mesh.volume().signum() } else { 1.0 }
     }
 
-    /// The same shape with its primitives moved along their normals, by number [m]; the radius of a round one grows by
+    /// The same shape with its primitives moved along their normals, by number (m); the radius of a round one grows by
     /// that. What shares corners with those stays connected.
     pub fn displaced(&self, moves: &BTreeMap<usize, f64>) -> Self {
         let first = moves.values().next().copied().unwrap_or(0.0);
@@ -352,7 +352,7 @@ impl Shape {
     }
 }
 
-/// How a corner moves so that the planes through it, each a unit normal and a distance [m], move by these: exactly where at
+/// How a corner moves so that the planes through it, each a unit normal and a distance (m), move by these: exactly where at
 /// most three are independent, else as far as the planes allow.
 fn shift(planes: &[(DVec3, f64)]) -> DVec3 {
     const SWEEPS: usize = 64;

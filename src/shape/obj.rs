@@ -13,14 +13,14 @@ use crate::{
 use std::{collections::HashMap, path::Path};
 
 /// Its parameters.
-pub const TABLE: Table = table! {
+pub(super) const TABLE: Table = table! {
     "A mesh from a Wavefront file (.obj).";
     file("filename", "The file."),
     boolean("flip_tex_coords", true, "True: flips the texture coordinate v.");
     FACE_NORMALS, COMMON
 };
 
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
+pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords")?;
     let unread = |e| Error::io(&file, "read", &e);

@@ -8,7 +8,7 @@ type Use = (usize, bool);
 /// Of every triangle, whether it has to be turned over so that each runs along a shared edge the other way than its
 /// neighbour; in each connected part the fewer are turned. None where all agree. Edges of more than two triangles connect
 /// nothing.
-pub fn turned_over<V: Copy + Ord + std::hash::Hash>(triangles: &[[V; 3]]) -> Option<Vec<bool>> {
+pub(super) fn turned_over<V: Copy + Ord + std::hash::Hash>(triangles: &[[V; 3]]) -> Option<Vec<bool>> {
     let mut edges: HashMap<[V; 2], Vec<Use>> = HashMap::new();
     for (index, [a, b, c]) in triangles.iter().enumerate() {
         for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {

@@ -98,7 +98,7 @@ impl Parallelogram {
 /// apart, per axis: one rounding of the sum against `corner`; of the rest, two roundings here, one in each
 /// edge, one in the plane's normal, and five in the ray tracer's normal . (origin - corner).
 #[inline]
-pub fn flat_error(corner: Vec3, along_u: Vec3, along_v: Vec3) -> Vec3 {
+pub(super) fn flat_error(corner: Vec3, along_u: Vec3, along_v: Vec3) -> Vec3 {
     gamma(2) * corner.abs() + gamma(12) * (along_u.abs() + along_v.abs())
 }
 
@@ -153,7 +153,7 @@ pub struct Parallelograms {
 }
 
 /// A face in object space: corner, edges along growing u and v, normal.
-pub type ObjectFace = [[f64; 3]; 4];
+pub(super) type ObjectFace = [[f64; 3]; 4];
 
 impl Parallelograms {
     /// Places `faces` by the parameters `to_world` and `flip_normals`.
@@ -238,7 +238,7 @@ impl ShapeModel for Parallelograms {
         self.faces[index].point(at.x, at.y)
     }
 
-    /// Uniform in solid angle from `reference` where that is precise, else by area; with its density [1/m^2].
+    /// Uniform in solid angle from `reference` where that is precise, else by area; with its density (1/m^2).
     fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
         let Some(seen) = self.seen_from(reference) else {
             return (self.sample_area(stream), 1.0 / self.area());
@@ -256,7 +256,7 @@ impl ShapeModel for Parallelograms {
     }
 }
 
-/// Uniform in solid angle, as a density per area [1/m^2].
+/// Uniform in solid angle, as a density per area (1/m^2).
 fn pdf_area_from_solid_angle(seen: &Seen, reference: Vec3, point: &SurfacePoint) -> f32 {
     let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
     measure::solid_angle_to_vertex(direction.dot(point.normal), squared) * seen.pdf_sr()

@@ -13,14 +13,14 @@ pub enum Patch {
     Ball {
         /// Its centre.
         center: DVec3,
-        /// Its radius [m].
+        /// Its radius (m).
         radius: f64,
     },
     /// The side of a round cylinder.
     Tube {
         /// The ends of its axis.
         ends: [DVec3; 2],
-        /// Its radius [m].
+        /// Its radius (m).
         radius: f64,
     },
 }
@@ -50,7 +50,7 @@ impl Patch {
         if let Self::Flat(polygon) = self { Some(polygon.normal) } else { None }
     }
 
-    /// What the rounding of a point of it is in proportion to, along the normal [m]: nothing for a rectangle along the axes.
+    /// What the rounding of a point of it is in proportion to, along the normal (m): nothing for a rectangle along the axes.
     pub fn skew(&self) -> f64 {
         match self {
             Self::Flat(Polygon { corners, normal }) => {
@@ -75,7 +75,7 @@ impl Patch {
         }
     }
 
-    /// How far `other` lies from here along the normal [m], if both lie in one surface up to `reach` metres and have more
+    /// How far `other` lies from here along the normal (m), if both lie in one surface up to `reach` metres and have more
     /// than an edge in common.
     pub fn height_of(&self, other: &Self, reach: f64) -> Option<f64> {
         match (self, other) {

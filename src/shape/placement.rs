@@ -8,7 +8,7 @@ use crate::{
 
 /// `to_world` with the recentring point taken off, in f64.
 #[derive(Clone, Copy, Debug)]
-pub struct Placement {
+pub(super) struct Placement {
     /// Object to recentred world space.
     pub matrix: DMat4,
     /// True if `flip_normals` is set.
@@ -17,33 +17,33 @@ pub struct Placement {
 
 impl Placement {
     /// Reads `to_world` and `flip_normals`.
-    pub fn read(params: &Params<'_>, recentre: DVec3) -> Result<Self> {
+    pub(super) fn read(params: &Params<'_>, recentre: DVec3) -> Result<Self> {
         let matrix = DMat4::from_translation(-recentre) * params.transform("to_world")?;
         Ok(Self { matrix, flip_normals: params.boolean("flip_normals")? })
     }
 
     /// The transform turns right hands into left hands.
-    pub fn is_mirrored(&self) -> bool {
+    pub(super) fn is_mirrored(&self) -> bool {
         self.matrix.determinant() < 0.0
     }
 
     /// Points, as such.
-    pub fn point(&self, p: DVec3) -> DVec3 {
+    pub(super) fn point(&self, p: DVec3) -> DVec3 {
         self.matrix.project_point3(p)
     }
 
     /// Differences of points.
-    pub fn vector(&self, v: DVec3) -> DVec3 {
+    pub(super) fn vector(&self, v: DVec3) -> DVec3 {
         self.matrix.transform_vector3(v)
     }
 
     /// Normals: what stays perpendicular to transformed vectors.
-    pub fn normal(&self, n: DVec3) -> DVec3 {
+    pub(super) fn normal(&self, n: DVec3) -> DVec3 {
         self.matrix.inverse().transpose().transform_vector3(n).normalize_or_zero()
     }
 }
 
 /// Finite, and not so far away that squares of distances overflow.
-pub fn is_in_range(p: Vec3) -> bool {
+pub(super) fn is_in_range(p: Vec3) -> bool {
     p.abs().max_element() < LARGEST_COORDINATE && p.is_finite()
 }

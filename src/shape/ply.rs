@@ -16,14 +16,14 @@ use ply_rs_bw::{
 use std::{fs::File, io::BufReader, path::Path};
 
 /// Its parameters.
-pub const TABLE: Table = table! {
+pub(super) const TABLE: Table = table! {
     "A mesh from a PLY file.";
     file("filename", "The file."),
     boolean("flip_tex_coords", false, "True: flips the texture coordinate v.");
     FACE_NORMALS, COMMON
 };
 
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
+pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords")?;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;

@@ -10,12 +10,12 @@ use crate::{
 const FACE: ObjectFace = [[-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Its parameters.
-pub const TABLE: Table = table! {
+pub(super) const TABLE: Table = table! {
     "A rectangle: [-1, 1]^2 in the xy plane, facing +z.";
     ignored("face_normals", "its faces are flat");
     COMMON
 };
 
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Parallelograms> {
+pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Parallelograms> {
     Parallelograms::build(params, recentre, &[FACE])
 }

@@ -18,14 +18,14 @@ use std::{
 };
 
 /// Its parameters.
-pub const TABLE: Table = table! {
+pub(super) const TABLE: Table = table! {
     "A mesh from a file in Mitsuba's compressed format (.serialized).";
     file("filename", "The file."),
     integer("shape_index", within(0.0, u32::MAX as f64), Is(0.0), "Index of the mesh in the file, from 0.");
     FACE_NORMALS, COMMON
 };
 
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
+pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     let file = params.file("filename")?;
     let index = params.integer("shape_index")? as u32;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
@@ -52,7 +52,7 @@ const DOUBLE: u32 = 0x2000;
 
 const FORMAT: u16 = 0x041c;
 
-/// No mesh has a longer name [bytes].
+/// No mesh has a longer name (bytes).
 const LONGEST_NAME: usize = 1 << 16;
 
 /// What is wrong with a file.

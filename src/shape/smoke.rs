@@ -8,7 +8,7 @@ use crate::{
 /// The name of the plugin.
 pub const SMOKE: &str = "smoke";
 
-/// Brightness [1/m]: flames look like flames beside lights of about 1.
+/// Brightness (1/m): flames look like flames beside lights of about 1.
 const EMISSION: f64 = 0.01;
 
 /// What may be given to it.

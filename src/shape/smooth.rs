@@ -4,7 +4,7 @@ use crate::math::{DVec3, Vec3};
 
 /// Face normals around each vertex, weighted by the angle of the face there, as Mitsuba does (Thuermer &
 /// Wuethrich 1998). Null for vertices of no face.
-pub fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+pub(super) fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; positions.len()];
     for triangle in triangles {
         let p = triangle.map(|i| positions[i as usize].as_dvec3());

@@ -28,14 +28,14 @@ pub struct Sphere {
 }
 
 /// Its parameters.
-pub const TABLE: Table = table! {
+pub(super) const TABLE: Table = table! {
     "An analytic sphere.";
     vector("center", "m", At([0.0; 3]), "Centre."),
     number("radius", "m", ANY, Is(1.0), "Radius, not 0; if negative, the normals face inwards.");
     COMMON
 };
 
-pub fn build(params: &Params<'_>, recentre: DVec3) -> Result<Sphere> {
+pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Sphere> {
     let center = params.vector("center")?;
     let radius = params.float("radius")?;
     let mut placement = Placement::read(params, recentre)?;
@@ -80,7 +80,7 @@ impl Sphere {
         (fits && !uneven && !sheared).then_some(sphere)
     }
 
-    /// The same with a radius greater by `by` [m].
+    /// The same with a radius greater by `by` (m).
     pub fn widened(&self, by: f64) -> Self {
         Self { radius: (f64::from(self.radius) + by) as f32, ..*self }
     }
@@ -121,7 +121,7 @@ impl Sphere {
         (sine_squared < 1.0 - ON_SPHERE).then(|| warp::one_minus_cos(sine_squared))
     }
 
-    /// Uniform in the cone, as a density per area [1/m^2]; 0 on the far side.
+    /// Uniform in the cone, as a density per area (1/m^2); 0 on the far side.
     fn cone_pdf_area(&self, one_minus_cos: f32, reference: Vec3, point: &SurfacePoint) -> f32 {
         let Some((direction, _, squared)) = measure::between(point.position, reference) else { return 0.0 };
         let cosine = direction.dot(point.normal) * self.facing;
@@ -159,7 +159,7 @@ impl ShapeModel for Sphere {
         self.point(warp::to_sphere(stream.square()))
     }
 
-    /// Uniform in the visible cone from outside, by area from inside; with its density [1/m^2].
+    /// Uniform in the visible cone from outside, by area from inside; with its density (1/m^2).
     fn sample_toward(&self, reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
         let Some(one_minus_cos) = self.cone(reference) else {
             return (self.sample_area(stream), 1.0 / self.area());

@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 /// A rectangle in its own frame.
 #[derive(Clone, Copy, Debug)]
-pub struct SphericalRectangle {
+pub(super) struct SphericalRectangle {
     corner: DVec3,
     x: DVec3,
     y: DVec3,
@@ -22,7 +22,7 @@ pub struct SphericalRectangle {
 
 /// A rectangle as one reference point sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub(super) struct Seen {
     x0: f64,
     x1: f64,
     y0: f64,
@@ -47,7 +47,7 @@ fn from_cosine(c: f64) -> [f64; 2] {
 
 impl SphericalRectangle {
     /// None where the edges are not at right angles.
-    pub fn new(corner: Vec3, edge_u: Vec3, edge_v: Vec3) -> Option<Self> {
+    pub(super) fn new(corner: Vec3, edge_u: Vec3, edge_v: Vec3) -> Option<Self> {
         let (edge_u, edge_v) = (edge_u.as_dvec3(), edge_v.as_dvec3());
         let (width, height) = (edge_u.length(), edge_v.length());
         let (x, y) = (edge_u / width, edge_v / height);
@@ -60,7 +60,7 @@ impl SphericalRectangle {
 
     /// None where the reference lies (nearly) in the plane or the solid angle is tiny.
     #[inline]
-    pub fn seen_from(&self, reference: Vec3) -> Option<Seen> {
+    pub(super) fn seen_from(&self, reference: Vec3) -> Option<Seen> {
         let d = self.corner - reference.as_dvec3();
         let z = d.dot(self.z);
         if z.abs() < IN_PLANE * self.width.max(self.height) {
@@ -86,14 +86,14 @@ impl Seen {
         Self { x0, x1, y0, y1, z0, b0: n0, b1: n2, k: [g23[0], -g23[1]], solid_angle }
     }
 
-    /// Density of the directions to the samples [1/sr].
-    pub fn pdf_sr(&self) -> f32 {
+    /// Density of the directions to the samples (1/sr).
+    pub(super) fn pdf_sr(&self) -> f32 {
         (1.0 / self.solid_angle) as f32
     }
 
     /// From the unit square to (u, v) on the rectangle.
     #[inline]
-    pub fn sample(&self, u: Vec2) -> Vec2 {
+    pub(super) fn sample(&self, u: Vec2) -> Vec2 {
         let (x, y) = self.sample_plane(f64::from(u.x), f64::from(u.y));
         let fraction = |t: f64, low: f64, high: f64| (((t - low) / (high - low)) as f32).clamp(0.0, 1.0);
         vec2(fraction(x, self.x0, self.x1), fraction(y, self.y0, self.y1))

@@ -28,13 +28,13 @@ pub struct Image {
     pub pixels: Vec<Spectrum>,
 }
 
-/// The longest side of an image [pixels].
+/// The longest side of an image (pixels).
 pub const LONGEST_SIDE: u32 = 1 << 16;
 
 /// An image has at most this many pixels (16384 x 8192): a few bytes of header must not allocate all memory.
 pub const MOST_PIXELS: usize = 1 << 27;
 
-/// What a decoder may allocate [bytes]: the most pixels, in four channels of 32 bits.
+/// What a decoder may allocate (bytes): the most pixels, in four channels of 32 bits.
 const MOST_BYTES: u64 = 16 * MOST_PIXELS as u64;
 
 /// Reads an image file of any known format. Integer formats hold sRGB and are made linear unless `raw`; float

@@ -16,7 +16,7 @@ impl Uniform {
     pub(super) const TABLE: Table = colour::UNIFORM;
 
     /// Of any plugin that represents one colour. As light, for that has the widest range; where a plugin is
-    /// nested in another, [`super::parameter`] reads it as what it is there.
+    /// nested in another, [`super::parameter()`] reads it as what it is there.
     pub(super) fn build(params: &Params<'_>, _: f32) -> Result<Self> {
         colour::of_plugin(params, Role::Light).map(Self)
     }

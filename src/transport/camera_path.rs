@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// Gathers the radiance of one pixel sample.
-pub struct CameraPath<'a, P: Profile, R> {
+pub(super) struct CameraPath<'a, P: Profile, R> {
     pub(super) estimator: &'a Estimator<'a, P>,
     light: Partners<'a, P::MisSums>,
     hero: usize,
@@ -37,9 +37,9 @@ pub struct CameraPath<'a, P: Profile, R> {
     pub(super) observer: R,
 }
 
-/// One camera subpath through `film` [pixels] and a point of the aperture, connected to vertices of `light` subpaths; its
+/// One camera subpath through `film` (pixels) and a point of the aperture, connected to vertices of `light` subpaths; its
 /// radiance goes to `observer`.
-pub fn sample<P: Profile, R: Observer>(
+pub(super) fn sample<P: Profile, R: Observer>(
     estimator: &Estimator<'_, P>,
     light: Partners<'_, P::MisSums>,
     film: Vec2,
@@ -59,7 +59,11 @@ pub fn sample<P: Profile, R: Observer>(
 /// Leaves the sensor through a film position and a point of its aperture. No strategy connects before the
 /// sensor: its sums are zero.
 #[inline]
-pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, film: Vec2, aperture: Vec2) -> Departure<P::MisSums> {
+pub(super) fn depart<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    film: Vec2,
+    aperture: Vec2,
+) -> Departure<P::MisSums> {
     let sensor = &estimator.scene.sensor;
     let SensorRay { position, ray, pdf } = sensor.ray(film, aperture);
     Departure {
@@ -147,7 +151,7 @@ impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
 
 impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
     /// Its contributions go to `observer`.
-    pub fn new(
+    pub(super) fn new(
         estimator: &'a Estimator<'a, P>,
         light: Partners<'a, P::MisSums>,
         hero: usize,
@@ -158,14 +162,14 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
 
     /// What else there is along the primary ray, once the walk is done: it comes to the evenly spread numbers first.
     #[inline]
-    pub fn beside_walk(&mut self, departure: &Departure<P::MisSums>, stream: &mut Stream) {
+    pub(super) fn beside_walk(&mut self, departure: &Departure<P::MisSums>, stream: &mut Stream) {
         if P::MEDIA && self.estimator.counts.equiangular > 0.0 && self.estimator.max_edges >= 2 {
             self.sample_equiangular(departure, stream);
         }
     }
 
     /// What was gathered.
-    pub fn into_observer(self) -> R {
+    pub(super) fn into_observer(self) -> R {
         self.observer
     }
 
@@ -221,7 +225,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         }
     }
 
-    /// s = 0 in a medium that is the emitter `light`, at the distance that was `sampled`, and its density [1/m].
+    /// s = 0 in a medium that is the emitter `light`, at the distance that was `sampled`, and its density (1/m).
     fn emission_along(
         &mut self,
         departure: &Departure<P::MisSums>,
@@ -246,7 +250,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
     }
 
     /// The end of a walk at a point of an emissive medium, as the emitter `light`; none where it is dark there.
-    pub fn meet(
+    pub(super) fn meet(
         &self,
         departure: &Departure<P::MisSums>,
         part: &FlightPart<P::Channels>,
@@ -266,7 +270,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
     ///
     /// LW96 eq. 3: the term L_e, weighted by eq. 14.
     #[inline]
-    pub fn emitter_hit(
+    pub(super) fn emitter_hit(
         &self,
         subpath: &Subpath<P::MisSums>,
         sample: &EmitterSample,
@@ -329,7 +333,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
 
     /// The connection with an emitter point picked by next-event estimation.
     #[inline]
-    pub fn join_emitter(
+    pub(super) fn join_emitter(
         &self,
         vertex: &Vertex<P::MisSums>,
         sample: &EmitterSample,
@@ -376,7 +380,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
 
     /// The connection with a vertex of a light subpath.
     #[inline]
-    pub fn connect_with(
+    pub(super) fn connect_with(
         &self,
         vertex: &Vertex<P::MisSums>,
         other: &Vertex<P::MisSums>,

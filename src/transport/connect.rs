@@ -24,7 +24,7 @@ use std::ops::{Div, Mul};
 
 /// The end of a walk at `vertex`, looking in unit direction `towards`; none where nothing scatters that way.
 #[inline]
-pub fn vertex_end<P: Profile>(
+pub(super) fn vertex_end<P: Profile>(
     estimator: &Estimator<'_, P>,
     vertex: &Vertex<P::MisSums>,
     towards: Vec3,
@@ -56,7 +56,7 @@ pub fn vertex_end<P: Profile>(
 /// The end at an emitter point picked for a connection of one light vertex, s = 1, to `reference` in `medium`, in unit
 /// direction `towards`. In units of the density of s = 1, a light subpath starts so as densely as it does over `sample`'s.
 #[inline]
-pub fn emitter_end<P: Profile>(
+pub(super) fn emitter_end<P: Profile>(
     estimator: &Estimator<'_, P>,
     sample: &EmitterSample,
     medium: MediumIndex,
@@ -85,7 +85,7 @@ pub fn emitter_end<P: Profile>(
 /// What replaces sigma_t at an emitter's point: the rate at which emission is sampled in a medium, 1
 /// elsewhere.
 #[inline]
-pub fn rate_at<P: Profile>(point: &EmitterPoint) -> P::Channels {
+pub(super) fn rate_at<P: Profile>(point: &EmitterPoint) -> P::Channels {
     match point {
         EmitterPoint::Volume { rate, .. } if P::EMISSIVE => P::Channels::from_spectrum(*rate),
         _ => P::Channels::splat(1.0),
@@ -144,7 +144,7 @@ impl Div<f32> for Contribution {
 
 /// The segment of a connection.
 #[derive(Clone, Copy, Debug)]
-pub struct Span {
+pub(super) struct Span {
     /// From the first end, to just before the second.
     pub ray: Ray,
     /// How much further away the second end lies.
@@ -158,7 +158,7 @@ pub struct Span {
 /// Connects `a` and `b` by `strategy`; none where the segment is blocked; emitters that are `hidden` do not
 /// block it. The caller divides by the number of samples it took.
 #[inline(always)]
-pub fn connect<P: Profile>(
+pub(super) fn connect<P: Profile>(
     scene: &Scene,
     a: &End<P::MisSums>,
     b: &End<P::MisSums>,
@@ -180,7 +180,7 @@ pub fn connect<P: Profile>(
 ///
 /// LW96 eq. 10 over eq. 11, times eq. 14: each end holds what its own walk contributed over its density.
 #[inline(always)]
-pub fn connect_along<P: Profile>(
+pub(super) fn connect_along<P: Profile>(
     scene: &Scene,
     span: &Span,
     a: &End<P::MisSums>,

@@ -4,8 +4,8 @@
 //!
 //! # Its density
 //! It makes paths y, x, o of two segments: an emitter's point, a point of a medium, the lens. The primary ray from o has
-//! the density p_o [1/sr] that camera subpaths give it. An emitter j is chosen with probability P_j, whatever the ray;
-//! the distance t of x has the density e_j(t) of [`crate::scene::lights::Pivot`] [1/m], which knows the centre of the
+//! the density p_o (1/sr) that camera subpaths give it. An emitter j is chosen with probability P_j, whatever the ray;
+//! the distance t of x has the density e_j(t) of [`crate::scene::lights::Pivot`] (1/m), which knows the centre of the
 //! emitter and nothing of the medium or of where the ray ends: x fails behind a surface. Then y is a point of the same
 //! emitter as next-event estimation picks it from x, so that no path can come from another emitter's distance:
 //!
@@ -72,9 +72,9 @@ pub struct FirstCollision {
     position: Vec3,
     /// Unit, of the primary ray.
     direction: Vec3,
-    /// From the lens [m].
+    /// From the lens (m).
     distance: f32,
-    /// 1 over the density of the flight by the hero channel [m].
+    /// 1 over the density of the flight by the hero channel (m).
     inv_flight: f32,
 }
 
@@ -129,7 +129,7 @@ impl<P: Profile> Estimator<'_, P> {
 
 impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
     /// One sample along the primary ray of `departure`.
-    pub fn sample_equiangular(&mut self, departure: &Departure<P::MisSums>, stream: &mut Stream) {
+    pub(super) fn sample_equiangular(&mut self, departure: &Departure<P::MisSums>, stream: &mut Stream) {
         self.observer.start();
         if let Some((vertex, sample)) = self.pick_equiangular(departure, stream) {
             let contribution = self.join_equiangular(&vertex, &sample, stream);
@@ -141,7 +141,7 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
 
     /// A vertex on the ray of `departure`, its density that of the distance instead of the flight's, and a point of the
     /// emitter that it was chosen for; none where it lies in no medium or behind a surface.
-    pub fn pick_equiangular(
+    pub(super) fn pick_equiangular(
         &self,
         departure: &Departure<P::MisSums>,
         stream: &mut Stream,
@@ -164,8 +164,8 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         Some((vertex, sample))
     }
 
-    /// The vertex at `position`, `distance` metres along the ray of `departure`, which has the density `pdf` [1/m].
-    pub fn along(
+    /// The vertex at `position`, `distance` metres along the ray of `departure`, which has the density `pdf` (1/m).
+    pub(super) fn along(
         &self,
         departure: &Departure<P::MisSums>,
         between: &SegmentTransmittance<P::Channels>,
@@ -205,7 +205,7 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
     }
 
     /// The connection of `vertex` with the emitter point picked for it.
-    pub fn join_equiangular(
+    pub(super) fn join_equiangular(
         &self,
         vertex: &Vertex<P::MisSums>,
         sample: &EmitterSample,

@@ -27,7 +27,7 @@ pub struct Leg {
     pub edges: u32,
     /// The direction is that of a Dirac lobe.
     pub dirac: bool,
-    /// Density of the direction, survival included [1/sr] (or of the start on the disk [1/m^2]).
+    /// Density of the direction, survival included (1/sr) (or of the start on the disk (1/m^2)).
     pub density: f32,
     /// Contribution over density so far.
     pub throughput: Spectrum,
@@ -44,8 +44,8 @@ pub struct Arrival {
     pub incoming: Vec3,
     /// Segments since the start of the walk, from 1.
     pub edges: u32,
-    /// Density of the point by the hero channel: per volume in media [1/m^3], per area on surfaces [1/m^2], per solid
-    /// angle at infinity [1/sr].
+    /// Density of the point by the hero channel: per volume in media (1/m^3), per area on surfaces (1/m^2), per solid
+    /// angle at infinity (1/sr).
     pub density: f32,
     /// Contribution over density of all before its own scattering.
     pub throughput: Spectrum,

@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// One camera sample with a forced interaction; the rest as in [`super::camera_path::sample`].
-pub fn sample<P: Profile, R: Observer>(
+pub(super) fn sample<P: Profile, R: Observer>(
     estimator: &Estimator<'_, P>,
     light: Partners<'_, P::MisSums>,
     film: Vec2,
@@ -63,7 +63,7 @@ pub fn sample<P: Profile, R: Observer>(
 
 /// The factor by which forcing raises the density of the first vertex from the camera in a medium, per
 /// channel, where primary ray `ray` sees it.
-pub fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Channels {
+pub(super) fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Channels {
     let Estimator { scene, hide_emitters, .. } = *estimator;
     gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.media_map.sensor, hide_emitters)))
 }

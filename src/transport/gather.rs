@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// One camera subpath; the rest as in [`super::camera_path::sample`].
-pub fn sample<P: Profile, R: Observer>(
+pub(super) fn sample<P: Profile, R: Observer>(
     estimator: &Estimator<'_, P>,
     radiance: &Radiance,
     [film, aperture]: [Vec2; 2],

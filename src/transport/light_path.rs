@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// One light subpath on its way.
-pub struct LightPath<'a, P: Profile, R> {
+pub(super) struct LightPath<'a, P: Profile, R> {
     estimator: &'a Estimator<'a, P>,
     cache: &'a mut LightCache<P::MisSums>,
     observer: &'a mut R,
@@ -33,7 +33,7 @@ pub struct LightPath<'a, P: Profile, R> {
 }
 
 /// One light subpath: its vertices go to `cache`, its connections to the lens to `observer`.
-pub fn trace<P: Profile>(
+pub(super) fn trace<P: Profile>(
     estimator: &Estimator<'_, P>,
     cache: &mut LightCache<P::MisSums>,
     observer: &mut impl Observer,
@@ -66,7 +66,7 @@ pub fn trace<P: Profile>(
 }
 
 /// Where a light subpath starts; none where nothing leaves.
-pub fn begin<P: Profile>(estimator: &Estimator<'_, P>, stream: &mut Stream) -> Option<EmissionSample> {
+pub(super) fn begin<P: Profile>(estimator: &Estimator<'_, P>, stream: &mut Stream) -> Option<EmissionSample> {
     let scene = estimator.scene;
     let start = scene.lights.sample_emission(&scene.geometry, estimator.starts.as_deref(), stream)?;
     // Points are sampled in the box around an emissive medium: not all lie in it.
@@ -76,7 +76,10 @@ pub fn begin<P: Profile>(estimator: &Estimator<'_, P>, stream: &mut Stream) -> O
 }
 
 /// Leaves the emitter. Before it there is only the camera subpath that hits it.
-pub fn depart<P: Profile>(estimator: &Estimator<'_, P>, start: &EmissionSample) -> Departure<P::MisSums> {
+pub(super) fn depart<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    start: &EmissionSample,
+) -> Departure<P::MisSums> {
     let scene = estimator.scene;
     let emitter = &scene.lights.all[start.light as usize].emitter;
     let emitter_hits = if emitter.is_hittable() { estimator.counts.emitter_hit } else { 0.0 };
@@ -149,7 +152,7 @@ impl<P: Profile, R: Observer> Visitor<P> for LightPath<'_, P, R> {
 
 impl<'a, P: Profile, R: Observer> LightPath<'a, P, R> {
     /// The walk that begins with `start`.
-    pub fn new(
+    pub(super) fn new(
         estimator: &'a Estimator<'a, P>,
         cache: &'a mut LightCache<P::MisSums>,
         observer: &'a mut R,
@@ -168,9 +171,9 @@ impl<'a, P: Profile, R: Observer> LightPath<'a, P, R> {
         self.observer.stop(StrategyKind::Lens, s, 1);
     }
 
-    /// t = 1: a vertex as the sensor sees it through a point of its aperture, and where on the film [pixels].
+    /// t = 1: a vertex as the sensor sees it through a point of its aperture, and where on the film (pixels).
     #[inline]
-    pub fn connect_to_lens(
+    pub(super) fn connect_to_lens(
         &self,
         vertex: &Vertex<P::MisSums>,
         aperture: Vec2,
@@ -201,7 +204,11 @@ impl<'a, P: Profile, R: Observer> LightPath<'a, P, R> {
     }
 
     /// s = 1, t = 1: the emitter itself as the sensor sees it, where a camera subpath could hit it but none does.
-    pub fn connect_start_to_lens(&self, aperture: Vec2, stream: &mut Stream) -> Option<(Vec2, Contribution)> {
+    pub(super) fn connect_start_to_lens(
+        &self,
+        aperture: Vec2,
+        stream: &mut Stream,
+    ) -> Option<(Vec2, Contribution)> {
         let (estimator, start) = (self.estimator, &self.start);
         let scene = estimator.scene;
         let hidden = estimator.hide_emitters && !(P::EMISSIVE && start.point.is_volume());

@@ -10,10 +10,10 @@ mod power;
 mod sums;
 mod uniform;
 
-pub use balance::Balance;
-pub use by_kind::ByKind;
-pub use compared::Compared;
-pub use cutoff::Cutoff;
+pub(super) use balance::Balance;
+pub(super) use by_kind::ByKind;
+pub(super) use compared::Compared;
+pub(super) use cutoff::Cutoff;
 use maximum::Maximum;
 #[cfg(test)]
 pub use maximum::TIE;
@@ -41,7 +41,7 @@ pub struct End<S: MisSums> {
     pub within: bool,
     /// Throughput times scattering towards the other end.
     pub value: Spectrum,
-    /// Density of the direction to the other end [1/sr].
+    /// Density of the direction to the other end (1/sr).
     pub pdf_fwd: f32,
     /// |cos| on a surface, 1 elsewhere.
     pub cosine: f32,
@@ -49,7 +49,7 @@ pub struct End<S: MisSums> {
     pub inv_pdf: f32,
     /// sigma_t per channel in a medium, [`crate::medium::Emission::rate`] where that emits, 1 elsewhere.
     pub sigma_t: S::Channels,
-    /// See [`super::vertex::Vertex::pdf_over_hero`].
+    /// See [`super::vertex::Subpath::pdf_over_hero`].
     pub pdf_over_hero: S::Channels,
     /// See [`super::vertex::Vertex::others_before`].
     pub others_before: S,
@@ -70,7 +70,7 @@ impl<S: MisSums> End<S> {
 
 /// A strategy as the weights use it.
 #[derive(Clone, Copy, Debug)]
-pub struct Strategy {
+pub(super) struct Strategy {
     /// Of which kind it is.
     pub kind: StrategyKind,
     /// Expected samples.
@@ -81,7 +81,7 @@ pub struct Strategy {
 
 /// The weight of a strategy's sample of a path.
 #[derive(Clone, Copy, Debug)]
-pub struct Weight {
+pub(super) struct Weight {
     /// Times the number of channels; for the balance heuristic n p^h / ((1/C) sum_c sum_j n_j p_j^c).
     pub value: f32,
     /// See [`MisSums::shares`].
@@ -91,7 +91,7 @@ pub struct Weight {
 impl Strategy {
     /// n p^c of its own over n p^h, where the walks have `pdf_over_hero` at both ends. Equiangular sampling has no flight.
     #[inline]
-    pub fn own<P: Profile>(&self, pdf_over_hero: P::Channels) -> P::Channels {
+    pub(super) fn own<P: Profile>(&self, pdf_over_hero: P::Channels) -> P::Channels {
         if P::MEDIA && self.kind == StrategyKind::Equiangular {
             P::Channels::splat(1.0)
         } else {
@@ -103,7 +103,7 @@ impl Strategy {
     ///
     /// LW96 eq. 14.
     #[inline]
-    pub fn weight<S: MisSums>(&self, others: S, own: S::Channels) -> Weight {
+    pub(super) fn weight<S: MisSums>(&self, others: S, own: S::Channels) -> Weight {
         Weight { value: others.weight(self.heuristic, own), shares: others.shares(self.kind, own) }
     }
 }
@@ -112,7 +112,7 @@ impl Strategy {
 ///
 /// LW96 eq. 14, all densities in units of the strategy's own.
 #[inline]
-pub fn connection_weight<P: Profile>(
+pub(super) fn connection_weight<P: Profile>(
     a: &End<P::MisSums>,
     b: &End<P::MisSums>,
     pdf: P::Channels,
@@ -134,6 +134,6 @@ pub fn connection_weight<P: Profile>(
 /// `pdf_over_hero` is the product of both ends'. The weight among all strategies is that of
 /// [`Strategy::weight`] over this one.
 #[inline]
-pub fn weight_alone<L: Channels>(pdf_over_hero: L) -> f32 {
+pub(super) fn weight_alone<L: Channels>(pdf_over_hero: L) -> f32 {
     L::COUNT as f32 / pdf_over_hero.sum()
 }

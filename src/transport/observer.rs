@@ -115,7 +115,7 @@ pub enum Meeting<'a> {
     Emitter(&'a EmitterSample),
     /// s >= 2: a vertex of a light subpath, and its place in the pool of the hero channel.
     Light(usize, Event<'a>),
-    /// t = 1: the lens, through this film position [pixels].
+    /// t = 1: the lens, through this film position (pixels).
     Lens(Vec2),
     /// Equiangular sampling: a vertex on the primary ray, which is none of the walk, and a point of an emitter.
     Pivot(Leg, Event<'a>, &'a EmitterSample),
@@ -138,7 +138,7 @@ pub trait Observer {
     /// where it is blocked or nothing scatters along it. The sum of all values is the estimate.
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>);
 
-    /// True if a contribution at `film` [pixels] can count.
+    /// True if a contribution at `film` (pixels) can count.
     #[inline]
     fn covers(&self, _film: Vec2) -> bool {
         true

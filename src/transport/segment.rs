@@ -6,11 +6,12 @@ mod forced;
 mod free_flight;
 mod transmittance;
 
-pub use forced::{ForcedEnd, force, sure_depth};
-pub use free_flight::{
-    EmitterCrossing, FlightPart, FlightState, FreeFlight, Interaction, Passed, sample_free_flight,
+pub(super) use forced::{ForcedEnd, force, sure_depth};
+pub use free_flight::Interaction;
+pub(super) use free_flight::{
+    EmitterCrossing, FlightPart, FlightState, FreeFlight, Passed, sample_free_flight,
 };
-pub use transmittance::{SegmentTransmittance, transmittance};
+pub(super) use transmittance::{SegmentTransmittance, transmittance};
 
 use crate::{
     math::{RaySegment, Spectrum, Vec3, measure, offset},
@@ -27,7 +28,7 @@ pub struct Segment<'a> {
     ray: Ray,
     /// The medium that the ray starts in.
     medium: MediumIndex,
-    /// How far behind the boundary the ray starts [m]: the distance skipped to be clear of the surface still
+    /// How far behind the boundary the ray starts (m): the distance skipped to be clear of the surface still
     /// counts as distance through a homogeneous medium there. In media whose mean free path is some hundreds
     /// of rounding errors, light would otherwise always start too deep.
     skipped: f32,
@@ -59,13 +60,13 @@ impl<'a> Segment<'a> {
         self.hidden
     }
 
-    /// The next surface within `pdf_over_hero` metres, and what lies before it in the medium; all that is left of
+    /// The next surface within `reach` (m), and what lies before it in the medium; all that is left of
     /// the segment where there is none. Where media overlap, it finds out which of them that is.
     #[inline(always)]
-    pub fn next<P: MediaProfile>(&mut self, pdf_over_hero: f32) -> (MediumInterval, Option<Hit>) {
+    pub fn next<P: MediaProfile>(&mut self, reach: f32) -> (MediumInterval, Option<Hit>) {
         let Ray { origin, direction, t_max } = self.ray;
         let overlaps = if P::HETEROGENEOUS { self.scene.media_map.overlaps.as_deref() } else { None };
-        let reach = if overlaps.is_some() { t_max } else { pdf_over_hero.min(t_max) };
+        let reach = if overlaps.is_some() { t_max } else { reach.min(t_max) };
         let hit = self.scene.geometry.closest(&Ray { t_max: reach, ..self.ray });
         let segment = RaySegment { origin, direction, length: hit.map_or(t_max, |hit| hit.t) };
         if let Some(overlaps) = overlaps {

@@ -25,9 +25,9 @@ pub struct Scattering {
     /// in a medium (sigma_t is a factor of the flight), BSDF x cosine on a surface, shading normals accounted
     /// for.
     pub value: Spectrum,
-    /// Density of the outgoing direction given the incoming one, survival included [1/sr].
+    /// Density of the outgoing direction given the incoming one, survival included (1/sr).
     pub pdf_fwd: f32,
-    /// Density of the incoming direction given the outgoing one, survival included [1/sr].
+    /// Density of the incoming direction given the outgoing one, survival included (1/sr).
     pub pdf_rev: f32,
 }
 
@@ -198,7 +198,7 @@ impl<S: MisSums> Vertex<S> {
 /// The correction of a light subpath's scattering where the shading normal is not the geometric one (Veach
 /// 1997, eq. 5.19): |wi.ns| |wo.ng| / (|wi.ng| |wo.ns|). Camera subpaths and media have no such factor.
 #[inline]
-pub fn shading_correction(
+pub(super) fn shading_correction(
     point: &SurfacePoint,
     incoming: Vec3,
     outgoing: Vec3,

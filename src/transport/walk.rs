@@ -24,7 +24,7 @@ use crate::{
 
 /// A walk about to fly: everything known before the next vertex is.
 #[derive(Clone, Copy, Debug)]
-pub struct Departure<S: MisSums> {
+pub(super) struct Departure<S: MisSums> {
     /// The vertex left behind.
     pub position: Vec3,
     /// The ray out of it.
@@ -41,7 +41,7 @@ pub struct Departure<S: MisSums> {
     pub dirac: bool,
     /// Contribution over density, this vertex's scattering included.
     pub throughput: Spectrum,
-    /// Density of the direction, survival included [1/sr] (or of the start on the disk [1/m^2]).
+    /// Density of the direction, survival included (1/sr) (or of the start on the disk (1/m^2)).
     pub pdf_fwd: f32,
     /// This vertex's D without what the next segment completes: others_before x sigma_t x |cos| / p>^h.
     pub others_before_segment: S,
@@ -54,7 +54,7 @@ pub struct Departure<S: MisSums> {
 impl<S: MisSums> Departure<S> {
     /// What observers see of it.
     #[inline]
-    pub fn leg(&self) -> Leg {
+    pub(super) fn leg(&self) -> Leg {
         let Self { position, ray, medium, edges, dirac, pdf_fwd, throughput, pending, .. } = *self;
         let (direction, density, by_albedo) = (ray.direction, pdf_fwd, pending.by_albedo());
         Leg { position, direction, medium, edges, dirac, density, throughput, by_albedo }
@@ -62,13 +62,13 @@ impl<S: MisSums> Departure<S> {
 
     /// The segment ahead, which has no end yet.
     #[inline(always)]
-    pub fn segment<'a>(&self, scene: &'a Scene) -> Segment<'a> {
+    pub(super) fn segment<'a>(&self, scene: &'a Scene) -> Segment<'a> {
         Segment::along(scene, self.ray, self.medium, self.hidden)
     }
 }
 
 /// What happens at the vertices of a walk.
-pub trait Visitor<P: Profile> {
+pub(super) trait Visitor<P: Profile> {
     /// Of which kind the strategy is that connects across segment `edges` of the walk.
     fn kind(edges: u32) -> StrategyKind;
 
@@ -103,7 +103,7 @@ pub trait Visitor<P: Profile> {
 
 /// Which walk this is and how far it may go.
 #[derive(Clone, Copy, Debug)]
-pub struct Kind<'a> {
+pub(super) struct Kind<'a> {
     /// Camera or light.
     pub transport: Transport,
     /// The channel that samples distances.
@@ -119,7 +119,7 @@ pub struct Kind<'a> {
 impl<'a> Kind<'a> {
     /// A camera subpath of channel `hero`.
     #[inline]
-    pub fn of_camera<P: Profile>(estimator: &'a Estimator<'_, P>, hero: usize) -> Self {
+    pub(super) fn of_camera<P: Profile>(estimator: &'a Estimator<'_, P>, hero: usize) -> Self {
         let Estimator { max_edges, roulette, .. } = *estimator;
         Self { transport: Transport::Radiance, hero, max_edges, roulette, guide: estimator.guide.as_deref() }
     }
@@ -129,7 +129,7 @@ impl<'a> Kind<'a> {
 ///
 /// LW96 eq. 4: the recursion by which L is estimated.
 #[inline(always)]
-pub fn walk<P: Profile>(
+pub(super) fn walk<P: Profile>(
     scene: &Scene,
     kind: Kind<'_>,
     mut departure: Departure<P::MisSums>,
@@ -148,7 +148,7 @@ pub fn walk<P: Profile>(
 
 /// Shows the end of a flight to `visitor`, the subpath as `adjusted`; how the walk goes on from there, if it does.
 #[inline(always)]
-pub fn go_on<P: Profile>(
+pub(super) fn go_on<P: Profile>(
     scene: &Scene,
     kind: Kind<'_>,
     departure: &Departure<P::MisSums>,
@@ -196,7 +196,7 @@ fn thinned<S: MisSums>(scene: &Scene, next: Departure<S>, stream: &mut Stream) -
 }
 
 /// Where a flight arrives, as far as densities depend on it.
-pub struct Arrival<L> {
+pub(super) struct Arrival<L> {
     /// World position; none at infinity.
     pub position: Option<Vec3>,
     /// |cos| on a surface, 1 elsewhere.
@@ -215,7 +215,7 @@ impl<L: Channels> Arrival<L> {
 
 /// The vertex at the end of a flight; none if its density is not finite and positive.
 #[inline(always)]
-pub fn land<P: Profile, V: Visitor<P>>(
+pub(super) fn land<P: Profile, V: Visitor<P>>(
     scene: &Scene,
     kind: Kind<'_>,
     departure: &Departure<P::MisSums>,
@@ -248,7 +248,7 @@ pub fn land<P: Profile, V: Visitor<P>>(
 /// LW96 eq. 13: p' p'' / d^2, the density of the direction (`departure.pdf_fwd`), that of the flight (eq. 6 in a
 /// medium, eq. 7 on a surface) and the geometry; its inverse is what weights need.
 #[inline]
-pub fn arrive<P: Profile>(
+pub(super) fn arrive<P: Profile>(
     departure: &Departure<P::MisSums>,
     state: &FlightState<P::Channels>,
     medium: MediumIndex,
@@ -295,7 +295,7 @@ pub fn arrive<P: Profile>(
 }
 
 /// The subpath to a point of an emitter that a flight passes.
-pub fn cross<P: Profile>(
+pub(super) fn cross<P: Profile>(
     departure: &Departure<P::MisSums>,
     crossing: &EmitterCrossing<P::Channels>,
     hero: usize,
@@ -329,12 +329,12 @@ fn squared_distance(a: Vec3, b: Vec3) -> f32 {
 }
 
 /// A direction after scattering.
-pub struct ScatterSample {
+pub(super) struct ScatterSample {
     /// Where the walk goes on to, unit.
     pub direction: Vec3,
     /// Factor on the throughput.
     pub weight: Spectrum,
-    /// Density of `direction`, survival included [1/sr], or the probability of the Dirac lobe.
+    /// Density of `direction`, survival included (1/sr), or the probability of the Dirac lobe.
     pub pdf_fwd: f32,
     /// The same for the way back.
     pub pdf_rev: f32,
@@ -412,7 +412,11 @@ fn guided<P: Profile>(
 ///
 /// LW96 eq. 12: the densities of the subpath, with p'(x_i+1) of the next vertex.
 #[inline]
-pub fn set_out<S: MisSums>(scene: &Scene, vertex: &Vertex<S>, scattered: &ScatterSample) -> Departure<S> {
+pub(super) fn set_out<S: MisSums>(
+    scene: &Scene,
+    vertex: &Vertex<S>,
+    scattered: &ScatterSample,
+) -> Departure<S> {
     let subpath = &vertex.subpath;
     let (origin, medium) = vertex.depart(scene, scattered.direction);
     let others_before = if scattered.dirac {

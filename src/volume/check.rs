@@ -11,7 +11,7 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 /// Where a density is below 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Negative {
-    /// Recentred [m].
+    /// Recentred (m).
     pub position: Vec3,
     /// The value there.
     pub value: Spectrum,

@@ -11,7 +11,7 @@ const CELLS: f32 = 32.0;
 const FEWEST: f32 = 8.0;
 /// Points along each side of a cell whose average is taken for its mean.
 const POINTS: u32 = 3;
-/// What lies so little outside a lattice is taken for its border [cells].
+/// What lies so little outside a lattice is taken for its border (cells).
 const ROUNDING: f32 = 1e-3;
 
 /// Something per cell of a lattice: of volumes a [`Summary`].
@@ -108,12 +108,12 @@ impl<T> Coarse<T> {
         &self.cells[cell as usize]
     }
 
-    /// Volume of a cell [m^3]; all are alike.
+    /// Volume of a cell (m^3); all are alike.
     pub fn cell_volume(&self) -> f64 {
         f64::from(self.to_world.matrix3.determinant().abs())
     }
 
-    /// Mean squared distance of a cell's points from its centre [m^2].
+    /// Mean squared distance of a cell's points from its centre (m^2).
     pub fn cell_variance(&self) -> f64 {
         let edges = self.to_world.matrix3;
         let squares = [edges.x_axis, edges.y_axis, edges.z_axis].map(|edge| edge.as_dvec3().length_squared());

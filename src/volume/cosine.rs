@@ -27,9 +27,9 @@ pub struct Waves {
 #[derive(Clone, Copy, Debug)]
 struct Wave {
     amplitude: f64,
-    /// [rad/m]
+    /// (rad/m)
     vector: DVec3,
-    /// At the origin [rad].
+    /// At the origin (rad).
     phase: f64,
 }
 

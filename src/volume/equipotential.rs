@@ -1,6 +1,6 @@
 //! `equipotential`: fog that thickens around a thing, strength / (c + d r^2) (BMA02 3.2.3).
 //!
-//! `shape` says what the thing is, and what r [m of own coordinates] is with it:
+//! `shape` says what the thing is, and what r (m of own coordinates) is with it:
 //! - `point`: the distance to `center`;
 //! - `line`: the distance to the endless line through `p0` and `p1`;
 //! - `segment`: the distance to the nearest point between `p0` and `p1`;

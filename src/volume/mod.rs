@@ -45,16 +45,16 @@ use std::sync::Arc;
 /// Where and when volumes are built.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// What becomes the origin of all positions, in the file's coordinates [m].
+    /// What becomes the origin of all positions, in the file's coordinates (m).
     pub recentre: DVec3,
-    /// The scene's time [s].
+    /// The scene's time (s).
     pub time: f64,
     /// The most that a value may be, where that is less than anything: 1 for a share of light.
     pub most: f32,
 }
 
 impl Place {
-    /// At `time` [s], for values of any size.
+    /// At `time` (s), for values of any size.
     pub const fn new(recentre: DVec3, time: f64) -> Self {
         Self { recentre, time, most: f32::INFINITY }
     }
@@ -107,12 +107,12 @@ pub trait VolumeModel {
     /// `has_integral` is true.
     fn integral<L: Channels>(&self, segment: &RaySegment) -> L;
 
-    /// The same volume, moved by `by` [m].
+    /// The same volume, moved by `by` (m).
     fn moved(&self, by: DVec3) -> Self
     where
         Self: Sized;
 
-    /// The volume as it is at `time` [s]; none where it is the same at all times.
+    /// The volume as it is at `time` (s); none where it is the same at all times.
     fn at_time(&self, _time: f64) -> Option<Self>
     where
         Self: Sized,

@@ -36,7 +36,7 @@ struct Octave {
     frequency: f64,
     /// All sum to 1.
     weight: f64,
-    /// [cells] All octaves are 0 at the corners of their cells; those must not fall together.
+    /// (cells) All octaves are 0 at the corners of their cells; those must not fall together.
     shift: DVec3,
 }
 

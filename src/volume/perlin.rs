@@ -107,18 +107,18 @@ fn blossom(a: f64, b: f64, index: usize) -> [f64; COUNT] {
 
 /// The noise of a seed. It repeats after 256 cells.
 #[derive(Clone, Debug)]
-pub struct Perlin([u8; 256]);
+pub(super) struct Perlin([u8; 256]);
 
 impl Perlin {
     /// The same for the same seed, always.
-    pub fn new(seed: u32) -> Self {
+    pub(super) fn new(seed: u32) -> Self {
         let table = PermutationTable::new(seed);
         Self(std::array::from_fn(|i| table.hash(&[i as isize]) as u8))
     }
 
     /// The value, from -1 to 1, at a position in cells.
     #[inline]
-    pub fn at(&self, position: DVec3) -> f64 {
+    pub(super) fn at(&self, position: DVec3) -> f64 {
         let corner = position.floor();
         let from = position - corner;
         let to = from - 1.0;
@@ -139,7 +139,7 @@ impl Perlin {
     }
 
     /// Bounds of the value in the box from `low` to `high`, in cells: of all cubes that it touches, if they are few.
-    pub fn range(&self, low: DVec3, high: DVec3) -> [f64; 2] {
+    pub(super) fn range(&self, low: DVec3, high: DVec3) -> [f64; 2] {
         if !(high.floor() - low.floor()).cmplt(DVec3::splat(MOST_CUBES as f64)).all() {
             return [-1.0, 1.0];
         }

@@ -1,5 +1,5 @@
-//! `wind`: a nested volume that drifts with `velocity` [m/s], from where it is at the time 0 to where it is at the
-//! scene's `time` [s] (BMA02 5). What is added to it, in a sum, stays. Of a velocity that changes in time this sees the
+//! `wind`: a nested volume that drifts with `velocity` (m/s), from where it is at the time 0 to where it is at the
+//! scene's `time` (s) (BMA02 5). What is added to it, in a sum, stays. Of a velocity that changes in time this sees the
 //! mean since 0, which takes it as far.
 
 use super::{Place, Volume, VolumeModel, nested};
@@ -16,9 +16,9 @@ pub struct Wind {
     now: Arc<Volume>,
     /// As it was built.
     built: Arc<Volume>,
-    /// When that was [s].
+    /// When that was (s).
     built_at: f64,
-    /// [m/s]
+    /// (m/s)
     velocity: DVec3,
 }
 

@@ -13,7 +13,7 @@ const ROUNDING: f64 = 16.0 * f32::EPSILON as f64 / 2.0;
 
 /// What is compared of an image, one value per seed: its mean per channel and the means of its quarters.
 #[derive(Clone, Debug)]
-pub struct Sample {
+pub(crate) struct Sample {
     /// Per figure, per seed.
     figures: Vec<Vec<f64>>,
 }
@@ -22,7 +22,7 @@ const NAMES: [&str; 7] = ["red", "green", "blue", "top left", "top right", "bott
 
 impl Sample {
     /// Figures of `images`, independent estimates of one image of `width` pixels in a row.
-    pub fn of(images: &[Vec<Spectrum>], width: usize) -> Self {
+    pub(crate) fn of(images: &[Vec<Spectrum>], width: usize) -> Self {
         let mut figures = vec![Vec::new(); NAMES.len()];
         for image in images {
             let height = image.len() / width;
@@ -42,12 +42,12 @@ impl Sample {
     }
 
     /// Every figure times `factor`.
-    pub fn scaled(&self, factor: f64) -> Self {
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
         self.map(|figure| figure.iter().map(|v| v * factor).collect())
     }
 
     /// Sum seed by seed.
-    pub fn plus(&self, other: &Self) -> Self {
+    pub(crate) fn plus(&self, other: &Self) -> Self {
         self.with(other, |a, b| a + b)
     }
 
@@ -88,18 +88,18 @@ struct Claim {
 /// Claims to be judged together: at least one true claim among them fails with probability [`SIGNIFICANCE`]
 /// (Sidak's correction), however many there are.
 #[derive(Default)]
-pub struct Claims {
+pub(crate) struct Claims {
     claims: Vec<Claim>,
 }
 
 impl Claims {
     /// Nothing claimed yet.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self::default()
     }
 
     /// `a` and `b` estimate the same image (Welch's t-test).
-    pub fn equal(&mut self, what: &str, a: &Sample, b: &Sample) {
+    pub(crate) fn equal(&mut self, what: &str, a: &Sample, b: &Sample) {
         for (name, (a, b)) in NAMES.iter().zip(a.figures.iter().zip(&b.figures)) {
             let (a, b) = (Moments::of(a), Moments::of(b));
             let variance = a.variance + b.variance;
@@ -110,7 +110,7 @@ impl Claims {
     }
 
     /// `a` and `b` estimate the same image from the same random numbers (t-test of their differences).
-    pub fn equal_in_pairs(&mut self, what: &str, a: &Sample, b: &Sample) {
+    pub(crate) fn equal_in_pairs(&mut self, what: &str, a: &Sample, b: &Sample) {
         let differences = a.with(b, |a, b| a - b);
         for (name, (difference, b)) in NAMES.iter().zip(differences.figures.iter().zip(&b.figures)) {
             let (difference, b) = (Moments::of(difference), Moments::of(b));
@@ -120,20 +120,20 @@ impl Claims {
     }
 
     /// Every figure of `a` is `expected` (t-test).
-    pub fn equal_to(&mut self, what: &str, a: &Sample, expected: f64) {
+    pub(crate) fn equal_to(&mut self, what: &str, a: &Sample, expected: f64) {
         for (name, figure) in NAMES.iter().zip(&a.figures) {
             self.mean(&format!("{what} ({name})"), figure, expected);
         }
     }
 
     /// The mean of `values` is `expected` (t-test).
-    pub fn mean(&mut self, what: &str, values: &[f64], expected: f64) {
+    pub(crate) fn mean(&mut self, what: &str, values: &[f64], expected: f64) {
         let found = Moments::of(values);
         self.add(what.to_owned(), found.mean, expected, found.variance, found.freedom);
     }
 
     /// Every pixel of `images` is `expected` in mean, in every channel.
-    pub fn every_pixel(&mut self, what: &str, images: &[Vec<Spectrum>], expected: f64) {
+    pub(crate) fn every_pixel(&mut self, what: &str, images: &[Vec<Spectrum>], expected: f64) {
         for pixel in 0..images[0].len() {
             for channel in 0..3 {
                 let values: Vec<f64> = images.iter().map(|image| f64::from(image[pixel][channel])).collect();
@@ -152,7 +152,7 @@ impl Claims {
     }
 
     /// Fails, naming every claim that cannot be held.
-    pub fn settle(self) {
+    pub(crate) fn settle(self) {
         assert!(!self.claims.is_empty(), "nothing was claimed");
         let level = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / self.claims.len() as f64);
         let mut failures = String::new();

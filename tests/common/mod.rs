@@ -2,9 +2,9 @@
 #![allow(dead_code, reason = "every test program uses its own part of this")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on stops loudly")]
 
-pub mod claims;
-pub mod pieces;
-pub mod studies;
+pub(crate) mod claims;
+pub(crate) mod pieces;
+pub(crate) mod studies;
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -23,7 +23,7 @@ use tyndall::{
 };
 
 /// A scene that is loaded and ready to be rendered again and again.
-pub struct Stage {
+pub(crate) struct Stage {
     /// What the library made of it.
     pub setup: Setup,
     /// The code that renders it.
@@ -32,28 +32,28 @@ pub struct Stage {
 
 impl Stage {
     /// Loads a scene given as JSON.
-    pub fn new(scene: &Value) -> Self {
+    pub(crate) fn new(scene: &Value) -> Self {
         Self::with_files(scene, &[])
     }
 
     /// The same, with layers of its groups of emitters.
-    pub fn with_groups(scene: &Value) -> Self {
+    pub(crate) fn with_groups(scene: &Value) -> Self {
         Self::overridden(scene, &[], Overrides { groups: true, ..Overrides::default() })
     }
 
     /// The same, with layers of the components of radiance.
-    pub fn with_components(scene: &Value) -> Self {
+    pub(crate) fn with_components(scene: &Value) -> Self {
         Self::overridden(scene, &[], Overrides { components: true, ..Overrides::default() })
     }
 
     /// The same, with those of each group of emitters.
-    pub fn with_groups_and_components(scene: &Value) -> Self {
+    pub(crate) fn with_groups_and_components(scene: &Value) -> Self {
         let overrides = Overrides { groups: true, components: true, ..Overrides::default() };
         Self::overridden(scene, &[], overrides)
     }
 
     /// Loads a scene given as JSON, with the files it names beside it.
-    pub fn with_files(scene: &Value, files: &[(&str, &str)]) -> Self {
+    pub(crate) fn with_files(scene: &Value, files: &[(&str, &str)]) -> Self {
         Self::overridden(scene, files, Overrides::default())
     }
 
@@ -71,17 +71,17 @@ impl Stage {
     }
 
     /// The same with the code that has everything.
-    pub fn with_everything(self) -> Self {
+    pub(crate) fn with_everything(self) -> Self {
         Self { profile: ProfileName::Everything, ..self }
     }
 
     /// Renders an image; depth and visibility of emitters are the scene's.
-    pub fn render(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Vec<Spectrum> {
+    pub(crate) fn render(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Vec<Spectrum> {
         self.render_layers(strategies, samples_per_pixel, seed).pixels
     }
 
     /// The same with all layers that the scene's integrator asks for.
-    pub fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
+    pub(crate) fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
         let Setup { scene, film, integrator, .. } = &self.setup;
         let settings = self.settings(strategies, samples_per_pixel, seed);
         let image = render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {});
@@ -90,7 +90,7 @@ impl Stage {
     }
 
     /// How it is rendered.
-    pub fn settings(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Settings {
+    pub(crate) fn settings(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Settings {
         let options = Options { strategies, ..self.setup.integrator.options };
         // Tests of means want batches whose errors are what their own variance says.
         let sampler = self.setup.sampler.unwrap_or(Sampler::Independent);
@@ -99,7 +99,7 @@ impl Stage {
     }
 
     /// Renders one image per seed.
-    pub fn renders(
+    pub(crate) fn renders(
         &self,
         strategies: Strategies,
         samples_per_pixel: u64,
@@ -109,18 +109,23 @@ impl Stage {
     }
 
     /// Pixels in a row.
-    pub fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.setup.film.width as usize
     }
 }
 
 /// Renders one image of a scene given as JSON.
-pub fn render(scene: &Value, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Vec<Spectrum> {
+pub(crate) fn render(
+    scene: &Value,
+    strategies: Strategies,
+    samples_per_pixel: u64,
+    seed: u64,
+) -> Vec<Spectrum> {
     Stage::new(scene).render(strategies, samples_per_pixel, seed)
 }
 
 /// The strategies named in `names`, such as "hit+lens".
-pub fn strategies(names: &str) -> Strategies {
+pub(crate) fn strategies(names: &str) -> Strategies {
     let has = |name| names.split('+').any(|n| n == name);
     let chosen = Strategies {
         emitter_hit: has("hit"),
@@ -134,7 +139,7 @@ pub fn strategies(names: &str) -> Strategies {
 }
 
 /// The reverse of [`strategies`].
-pub fn name_of(strategies: Strategies) -> String {
+pub(crate) fn name_of(strategies: Strategies) -> String {
     let Strategies { emitter_hit, next_event, connection, lens, equiangular } = strategies;
     let all = [
         (emitter_hit, "hit"),

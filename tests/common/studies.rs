@@ -14,7 +14,7 @@ const WIDTH: usize = 12;
 const HEIGHT: usize = 8;
 
 /// A study in a folder of its own.
-pub struct Study {
+pub(crate) struct Study {
     /// Where it lies.
     pub folder: TempDir,
     /// What its `study.json` says.
@@ -23,7 +23,7 @@ pub struct Study {
 
 impl Study {
     /// Every scene with every contender, at as many doubling budgets, all converging.
-    pub fn new(scenes: &[&str], contenders: &[&str], budgets: usize) -> Self {
+    pub(crate) fn new(scenes: &[&str], contenders: &[&str], budgets: usize) -> Self {
         let scenes = scenes.iter().enumerate().map(|(index, name)| scene(index, name, contenders, budgets));
         let outcome = Outcome {
             made_by: "tyndall 0.0.0".into(),
@@ -39,13 +39,13 @@ impl Study {
     }
 
     /// Writes `study.json` as the outcome now is.
-    pub fn rewrite(&self) {
+    pub(crate) fn rewrite(&self) {
         let text = serde_json::to_string(&self.outcome).unwrap();
         std::fs::write(self.folder.path().join("study.json"), text).unwrap();
     }
 
     /// Makes every number of every contender `value`.
-    pub fn set_all(&mut self, value: f64) {
+    pub(crate) fn set_all(&mut self, value: f64) {
         let same = Interval { mean: value, low: value, high: value };
         for contender in self.outcome.scenes.iter_mut().flat_map(|scene| &mut scene.contenders) {
             (contender.efficiency, contender.slope) = (same, Some(same));
@@ -78,7 +78,7 @@ impl Study {
 }
 
 /// An image of the size of all, pixel by pixel.
-pub fn write_image(path: &Path, light: impl Fn(usize) -> f32) {
+pub(crate) fn write_image(path: &Path, light: impl Fn(usize) -> f32) {
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     let pixels: Vec<Spectrum> = (0..WIDTH * HEIGHT).map(light).map(|l| vec3(l, 0.8 * l, 0.6 * l)).collect();
     let format = Format::default();

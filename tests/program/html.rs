@@ -11,7 +11,7 @@ const BLOCKS: &str = "address article aside blockquote details dialog dir div dl
     form h1 h2 h3 h4 h5 h6 header hgroup hr main menu nav ol p pre search section summary table ul";
 
 /// The tree of a page; panics if a parser would have to repair anything.
-pub fn parse(page: &str) -> Document<'static> {
+pub(crate) fn parse(page: &str) -> Document<'static> {
     assert!(page.starts_with("<!DOCTYPE html>"), "{page:.80}");
     let mut emitter = DefaultEmitter::default();
     emitter.naively_switch_states(true);
@@ -78,20 +78,20 @@ fn is_misplaced(node: &Node) -> bool {
 }
 
 /// All elements that a list of selectors matches.
-pub fn all<'a>(page: &'a Document, query: &str) -> Vec<Node<'a, 'a>> {
+pub(crate) fn all<'a>(page: &'a Document, query: &str) -> Vec<Node<'a, 'a>> {
     let selectors: Vec<_> = query.split(',').map(|part| Selector::parse(part.trim()).unwrap()).collect();
     let is_match = |node: &Node| selectors.iter().any(|selector| selector.matches(&Element(*node)));
     page.descendants().filter(|node| node.is_element() && is_match(node)).collect()
 }
 
 /// Those of them that are not hidden.
-pub fn shown<'a>(page: &'a Document, query: &str) -> Vec<Node<'a, 'a>> {
+pub(crate) fn shown<'a>(page: &'a Document, query: &str) -> Vec<Node<'a, 'a>> {
     let is_shown = |node: &Node| !node.ancestors().any(|outer| outer.has_attribute("hidden"));
     all(page, query).into_iter().filter(is_shown).collect()
 }
 
 /// Their texts.
-pub fn texts(page: &Document, query: &str) -> Vec<String> {
+pub(crate) fn texts(page: &Document, query: &str) -> Vec<String> {
     let text = |node: &Node| {
         node.descendants().filter(Node::is_text).filter_map(|part| part.text()).collect::<String>()
     };

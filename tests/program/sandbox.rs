@@ -10,21 +10,21 @@ use std::{
 use tempfile::TempDir;
 
 /// A folder in which the program runs.
-pub struct Sandbox(TempDir);
+pub(crate) struct Sandbox(TempDir);
 
 impl Sandbox {
     /// An empty one.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(TempDir::new().unwrap())
     }
 
     /// One with `scene.json` in it.
-    pub fn with_scene(scene: &serde_json::Value) -> Self {
+    pub(crate) fn with_scene(scene: &serde_json::Value) -> Self {
         Self::with_files(&[("scene.json", &scene.to_string())])
     }
 
     /// One with these files in it, folders made as their names say.
-    pub fn with_files(files: &[(&str, &str)]) -> Self {
+    pub(crate) fn with_files(files: &[(&str, &str)]) -> Self {
         let sandbox = Self::new();
         for (name, text) in files {
             let path = sandbox.path(name);
@@ -35,18 +35,18 @@ impl Sandbox {
     }
 
     /// Where a file of this name lies.
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
     /// Runs the program with `words` as its arguments.
-    pub fn run(&self, words: &str) -> Run {
+    pub(crate) fn run(&self, words: &str) -> Run {
         let words: Vec<&str> = words.split_whitespace().collect();
         self.run_words(&words)
     }
 
     /// The same with arguments that may hold spaces.
-    pub fn run_words(&self, words: &[&str]) -> Run {
+    pub(crate) fn run_words(&self, words: &[&str]) -> Run {
         let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"));
         let output = program.current_dir(self.0.path()).args(words).output().unwrap();
         Run { words: words.join(" "), output }
@@ -54,7 +54,7 @@ impl Sandbox {
 
     /// Runs a script of the shell, in which `$TYNDALL` is the program.
     #[cfg(unix)]
-    pub fn shell(&self, script: &str) -> Run {
+    pub(crate) fn shell(&self, script: &str) -> Run {
         let mut shell = Command::new("bash");
         let shell = shell.env("TYNDALL", env!("CARGO_BIN_EXE_tyndall")).current_dir(self.0.path());
         let output = shell.args(["-c", script]).output().unwrap();
@@ -62,7 +62,7 @@ impl Sandbox {
     }
 
     /// The same as [`Self::run`] with `input` on standard input.
-    pub fn run_with(&self, words: &str, input: &str) -> Run {
+    pub(crate) fn run_with(&self, words: &str, input: &str) -> Run {
         let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"));
         program.current_dir(self.0.path()).args(words.split_whitespace());
         program.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -73,29 +73,29 @@ impl Sandbox {
     }
 
     /// A file.
-    pub fn bytes(&self, name: &str) -> Vec<u8> {
+    pub(crate) fn bytes(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap()
     }
 
     /// The channels of an OpenEXR image.
-    pub fn channels(&self, name: &str) -> BTreeMap<String, Vec<f32>> {
+    pub(crate) fn channels(&self, name: &str) -> BTreeMap<String, Vec<f32>> {
         let layer = read_first_flat_layer_from_file(self.path(name)).unwrap().layer_data;
         let list = layer.channel_data.list.into_iter();
         list.map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect())).collect()
     }
 
     /// A text file.
-    pub fn text(&self, name: &str) -> String {
+    pub(crate) fn text(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).unwrap()
     }
 
     /// A JSON file.
-    pub fn json(&self, name: &str) -> serde_json::Value {
+    pub(crate) fn json(&self, name: &str) -> serde_json::Value {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
     /// Names of all files, hidden ones too.
-    pub fn files(&self) -> Vec<String> {
+    pub(crate) fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).unwrap();
         let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
@@ -104,41 +104,41 @@ impl Sandbox {
 }
 
 /// What came of it.
-pub struct Run {
+pub(crate) struct Run {
     words: String,
     output: Output,
 }
 
 impl Run {
     /// Exit code, standard output, standard error.
-    pub fn reported(&self) -> (Option<i32>, String, String) {
+    pub(crate) fn reported(&self) -> (Option<i32>, String, String) {
         (self.output.status.code(), self.out(), self.err())
     }
 
     /// Exit code; none of a program that was killed.
-    pub fn code(&self) -> Option<i32> {
+    pub(crate) fn code(&self) -> Option<i32> {
         self.output.status.code()
     }
 
     /// Standard output.
-    pub fn out(&self) -> String {
+    pub(crate) fn out(&self) -> String {
         String::from_utf8(self.output.stdout.clone()).unwrap()
     }
 
     /// Standard error.
-    pub fn err(&self) -> String {
+    pub(crate) fn err(&self) -> String {
         String::from_utf8(self.output.stderr.clone()).unwrap()
     }
 
     /// It ends with this code, without a panic.
-    pub fn ends(self, code: i32) -> Self {
+    pub(crate) fn ends(self, code: i32) -> Self {
         assert_eq!(self.output.status.code(), Some(code), "{}: {}{}", self.words, self.out(), self.err());
         assert!(!self.err().contains("panicked"), "{}: {}", self.words, self.err());
         self
     }
 
     /// It ends with code 2, having said all of `hints`.
-    pub fn refuses(self, hints: &[&str]) {
+    pub(crate) fn refuses(self, hints: &[&str]) {
         let run = self.ends(2);
         for hint in hints {
             assert!(run.err().contains(hint), "{}: no \"{hint}\" in: {}", run.words, run.err());

@@ -11,7 +11,7 @@ use std::{
 
 impl Sandbox {
     /// Adds the file `sample` of src/volume/files/samples, unpacked, as `name`.
-    pub fn with_sample(self, sample: &str, name: &str) -> Self {
+    pub(crate) fn with_sample(self, sample: &str, name: &str) -> Self {
         let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/volume/files/samples");
         let mut bytes = vec![];
         let file = File::open(samples.join(format!("{sample}.gz"))).unwrap();

@@ -14,7 +14,7 @@ const SEEDS: u64 = 12;
 const METHODS: [(&str, Strategies); 3] =
     [("pt", Strategies::PT), ("lt", Strategies::LT), ("bdpt", Strategies::BDPT)];
 
-/// Half the height of what [`facing_wall`] sees of the wall [m].
+/// Half the height of what [`facing_wall`] sees of the wall (m).
 const HALF: f64 = 2.0;
 const ALBEDO: f64 = 0.6;
 
@@ -34,7 +34,7 @@ fn facing_wall(more: &[(&str, Value)]) -> Value {
     scene(&parts)
 }
 
-/// A direction at `angle` [rad] to -z.
+/// A direction at `angle` (rad) to -z.
 fn tilted(angle: f64) -> [f64; 3] {
     [angle.sin(), 0.0, -angle.cos()]
 }
@@ -59,7 +59,7 @@ fn a_wall_within_a_beam_has_the_radiance_of_its_irradiance() {
     claims.settle();
 }
 
-/// All light that a wall sends back, over its albedo, is what the beam emits [W].
+/// All light that a wall sends back, over its albedo, is what the beam emits (W).
 fn power_of(image: &[Spectrum]) -> f64 {
     let pixel = (2.0 * HALF / 16.0).powi(2);
     image.iter().map(|radiance| f64::from(radiance.y)).sum::<f64>() * pixel * PI / ALBEDO

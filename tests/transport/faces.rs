@@ -16,7 +16,7 @@ use tyndall::{
 const METHODS: [(&str, Strategies); 3] =
     [("pt", Strategies::PT), ("lt", Strategies::LT), ("bdpt", Strategies::BDPT)];
 const ANGLES: [f64; 3] = [0.0, 10.0, 33.0];
-/// Of the scenes that faces in one place are compared with [m].
+/// Of the scenes that faces in one place are compared with (m).
 const GAP: f64 = 1e-4;
 
 /// Every part with a place turned about an axis through the origin.

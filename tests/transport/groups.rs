@@ -15,7 +15,7 @@ use tyndall::{
     transport::Strategies,
 };
 
-pub const SETS: [&str; 5] = [
+pub(crate) const SETS: [&str; 5] = [
     "hit+next-event",
     "lens",
     "hit+next-event+join+lens",
@@ -24,7 +24,7 @@ pub const SETS: [&str; 5] = [
 ];
 
 /// A room of `fog`, which may emit, with lamps of several kinds; the one called `name` is `changed`.
-pub fn room_with(fog: Value, name: &str, changed: &[(&str, Value)]) -> Value {
+pub(crate) fn room_with(fog: Value, name: &str, changed: &[(&str, Value)]) -> Value {
     let grouped = |lamp: Value, group: &str| with(lamp, &[("group", json!(group))]);
     let ball = json!({"type": "area", "radiance": rgb(2.0, 3.0, 1.0), "group": "warm"});
     let searchlight = beam([-0.8, 0.6, -0.6], [0.8, -0.5, 0.6], 0.25, rgb(6.0, 4.0, 2.0));
@@ -49,7 +49,7 @@ pub fn room_with(fog: Value, name: &str, changed: &[(&str, Value)]) -> Value {
     ])
 }
 
-pub fn fogs() -> [(&'static str, Value); 4] {
+pub(crate) fn fogs() -> [(&'static str, Value); 4] {
     let grey = medium(1.0, 0.8, 0.3);
     let colours = medium(rgb(0.2, 1.0, 3.0), rgb(0.9, 0.7, 0.8), -0.2);
     let glow = [("radiance", json!(0.2)), ("group", json!("glow"))];
@@ -70,7 +70,7 @@ fn layer(image: &Image, group: &str) -> Vec<Spectrum> {
 }
 
 /// The layer with that name.
-pub fn layer_named(image: &Image, layer: &str) -> Vec<Spectrum> {
+pub(crate) fn layer_named(image: &Image, layer: &str) -> Vec<Spectrum> {
     let channel = |end: &str| {
         let name = format!("{layer}.{end}");
         let found = image.layers.iter().find(|channel| channel.name == name);
@@ -81,7 +81,7 @@ pub fn layer_named(image: &Image, layer: &str) -> Vec<Spectrum> {
 }
 
 /// Pixel by pixel, `found` is what `expected` says, up to the rounding of sums of many.
-pub fn assert_close(what: &str, found: &[Spectrum], expected: impl Fn(usize) -> Spectrum) {
+pub(crate) fn assert_close(what: &str, found: &[Spectrum], expected: impl Fn(usize) -> Spectrum) {
     let most = found.iter().map(|pixel| pixel.max_element()).fold(0.0, f32::max);
     for (pixel, found) in found.iter().enumerate() {
         let error = (*found - expected(pixel)).abs().max_element();

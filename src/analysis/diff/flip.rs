@@ -20,11 +20,11 @@ const COLOUR_EXPONENT: f32 = 0.7;
 const LOW_PART: f32 = 0.4;
 /// See [`LOW_PART`].
 const LOW_RANGE: f32 = 0.95;
-/// Width of the edges and points that the eye detects [degrees] (sec. 4.2).
+/// Width of the edges and points that the eye detects (degrees) (sec. 4.2).
 const FEATURE_WIDTH: f32 = 0.082;
 /// Exponent of feature differences (sec. 4.2).
 const FEATURE_EXPONENT: f32 = 0.5;
-/// The widest Gaussian of the contrast sensitivity functions, as b of [`Gaussian`] [degrees^2].
+/// The widest Gaussian of the contrast sensitivity functions, as b of [`Gaussian`] (degrees^2).
 const WIDEST: f32 = 0.04;
 
 /// A Gaussian of a contrast sensitivity function (sec. 4.1.1, table 1): a sqrt(pi / b) exp(-pi^2 x^2 / b).
@@ -128,7 +128,7 @@ impl Features {
     }
 }
 
-/// `of` the distances from the centre [pixels].
+/// `of` the distances from the centre (pixels).
 fn kernel(radius: i32, of: impl Fn(f32) -> f32) -> Vec<f32> {
     (-radius..=radius).map(|x| of(x as f32)).collect()
 }

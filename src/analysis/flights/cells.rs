@@ -3,7 +3,7 @@
 use crate::math::DVec3;
 use serde::Serialize;
 
-/// Coefficients [1/m], both >= 0.
+/// Coefficients (1/m), both >= 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Matter {
     /// Absorption.
@@ -13,7 +13,7 @@ pub struct Matter {
 }
 
 impl Matter {
-    /// Extinction [1/m].
+    /// Extinction (1/m).
     pub fn sigma_t(self) -> f64 {
         self.sigma_a + self.sigma_s
     }
@@ -37,7 +37,7 @@ pub struct Cells {
 pub struct Section {
     /// Index of the cell.
     pub cell: usize,
-    /// Distance of its start along the way [m].
+    /// Distance of its start along the way (m).
     pub start: f64,
     /// And of its end.
     pub end: f64,
@@ -69,7 +69,7 @@ impl Cells {
         self.matter.iter().all(|matter| *matter == self.matter[0]).then_some(self.matter[0])
     }
 
-    /// The mean extinction over the volume [1/m].
+    /// The mean extinction over the volume (1/m).
     pub fn mean_extinction(&self) -> f64 {
         self.matter.iter().map(|matter| matter.sigma_t()).sum::<f64>() / self.matter.len() as f64
     }
@@ -161,7 +161,7 @@ impl Iterator for Way {
     }
 }
 
-/// What `sigma` [1/m] makes over `length` [m]; nothing makes nothing however far.
+/// What `sigma` (1/m) makes over `length` (m); nothing makes nothing however far.
 pub fn depth(sigma: f64, length: f64) -> f64 {
     if sigma > 0.0 { sigma * length } else { 0.0 }
 }

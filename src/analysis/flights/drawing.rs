@@ -32,7 +32,7 @@ const COLOURS: [RGBColor; 6] = [
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = std::result::Result<(), String>;
 
-/// The plot as the text of an SVG file; `laws` are not empty and of one `sigma_s` [1/m].
+/// The plot as the text of an SVG file; `laws` are not empty and of one `sigma_s` (1/m).
 pub fn svg(laws: &[Law], sigma_s: f64) -> Result<String> {
     let mut text = String::new();
     draw(&mut text, laws, sigma_s).map_err(|error| {

@@ -8,15 +8,15 @@ use serde::Serialize;
 /// The law and a measurement of it, for one length of step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Law {
-    /// Length of a step [m].
+    /// Length of a step (m).
     pub step: f64,
     /// Flights that were measured.
     pub flights: u64,
-    /// Mean length of flights until they are scattered [m].
+    /// Mean length of flights until they are scattered (m).
     pub measured: Estimate,
-    /// The same by the law [m].
+    /// The same by the law (m).
     pub expected: f64,
-    /// The law less the mean free path [m].
+    /// The law less the mean free path (m).
     pub error: f64,
     /// How many standard errors the measured length is above the law.
     pub z: f64,
@@ -29,16 +29,16 @@ pub struct Law {
 pub struct FreePath {
     /// The method that flies so.
     pub method: &'static str,
-    /// Mean length [m].
+    /// Mean length (m).
     pub measured: Estimate,
-    /// 1 / sigma [m].
+    /// 1 / sigma (m).
     pub expected: f64,
     /// How many standard errors the measured length is above that.
     pub z: f64,
 }
 
 impl FreePath {
-    /// Flies `flights` times by `sigma` [1/m] without a border; none in nothing.
+    /// Flies `flights` times by `sigma` (1/m) without a border; none in nothing.
     pub fn measure(method: &'static str, sigma: f64, flights: u64, seed: u64, index: u64) -> Option<Self> {
         if sigma <= 0.0 {
             return None;
@@ -66,12 +66,12 @@ fn mean(values: impl Iterator<Item = f64>) -> Estimate {
 /// Steps that one measurement may take.
 const MOST_STEPS: f64 = 5e7;
 
-/// Mean length of a flight in steps of `step` [m] with scattering `sigma_s` [1/m], both > 0.
+/// Mean length of a flight in steps of `step` (m) with scattering `sigma_s` (1/m), both > 0.
 pub fn mean_length(step: f64, sigma_s: f64) -> f64 {
     -step / (-sigma_s * step).exp_m1()
 }
 
-/// By how much that is above 1 / sigma_s [m].
+/// By how much that is above 1 / sigma_s (m).
 pub fn error(step: f64, sigma_s: f64) -> f64 {
     let x = sigma_s * step;
     // Where the difference would cancel, its series: x/2 + x^2/12 mean free paths.

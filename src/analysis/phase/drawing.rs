@@ -15,10 +15,10 @@ use plotters::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Sides of each of the two plots [pixels].
+/// Sides of each of the two plots (pixels).
 const SIDE: i32 = 520;
 
-/// What a logarithmic radius shows at most [decades].
+/// What a logarithmic radius shows at most (decades).
 const DECADES: f64 = 4.0;
 
 const DENSITY: RGBColor = RGBColor(20, 60, 160);
@@ -116,7 +116,7 @@ fn pdf_line(phase: &Phase) -> Vec<(f64, f64)> {
     places.iter().map(|t| (quadrature::angle_at(*t), quadrature::pdf_at(phase, *t))).collect()
 }
 
-/// Where each bar begins [rad], and its height [1/sr].
+/// Where each bar begins (rad), and its height (1/sr).
 fn histogram(check: &Check) -> Vec<(f64, f64)> {
     let width = PI / check.histogram.len() as f64;
     let samples: u64 = check.histogram.iter().sum();

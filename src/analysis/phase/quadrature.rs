@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 pub struct Turn {
     /// Cosine of the angle.
     pub cosine: f64,
-    /// The angle [rad].
+    /// The angle (rad).
     pub angle: f64,
     /// Where it lies from straight on (0) to straight back (1), stretched at both ends.
     pub place: f64,
@@ -28,13 +28,13 @@ impl Turn {
     }
 }
 
-/// The angle at a place [rad].
+/// The angle at a place (rad).
 pub fn angle_at(place: f64) -> f64 {
     let angle = |place: f64| 2.0 * (0.5 * one_minus_cos(place)).sqrt().asin();
     if place < 0.5 { angle(place) } else { std::f64::consts::PI - angle(1.0 - place) }
 }
 
-/// The density at a place [1/sr].
+/// The density at a place (1/sr).
 pub fn pdf_at(phase: &Phase, place: f64) -> f64 {
     let turn = match place < 0.5 {
         true => Deflection::of(one_minus_cos(place), 1.0),
@@ -43,7 +43,7 @@ pub fn pdf_at(phase: &Phase, place: f64) -> f64 {
     f64::from(phase.pdf_sr(turn))
 }
 
-/// The solid angle between the places `low` < `high`, all around [sr].
+/// The solid angle between the places `low` < `high`, all around (sr).
 pub fn solid_angle(low: f64, high: f64) -> f64 {
     let height = match (low < 0.5, high <= 0.5) {
         (true, true) => one_minus_cos(high) - one_minus_cos(low),

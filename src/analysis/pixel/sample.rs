@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// What one pass adds to one pixel, and how.
 #[derive(Clone, Debug)]
 pub struct PixelSample {
-    /// Where on the film the camera subpath starts [pixels].
+    /// Where on the film the camera subpath starts (pixels).
     pub film: Vec2,
     /// Through which point of the aperture, as the sensor samples it.
     pub aperture: Vec2,
@@ -112,7 +112,7 @@ pub struct Splat {
     pub walk: u64,
     /// Light vertices; t = 1.
     pub s: u32,
-    /// Where it landed on the film [pixels].
+    /// Where it landed on the film (pixels).
     pub film: Vec2,
     /// The share of it that the filter gives the pixel.
     pub share: f32,

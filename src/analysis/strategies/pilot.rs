@@ -20,7 +20,7 @@ pub struct Turn {
     /// relMSE of one pass: mean over pixels and channels of the variance between passes over (r^2 + 0.01 m^2), as
     /// [`crate::analysis::study::outcome::Point::relmse`].
     pub relmse: f64,
-    /// Time of one pass [s].
+    /// Time of one pass (s).
     pub seconds: f64,
 }
 

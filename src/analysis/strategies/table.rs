@@ -104,7 +104,7 @@ fn subset(subset: &SubsetReport) -> String {
 }
 
 /// One row a strategy.
-pub fn csv(report: &Report) -> String {
+pub(super) fn csv(report: &Report) -> String {
     let mut lines = vec!["name,length,s,t,kind,energy,alone,variance,variance_alone,time,tries".to_owned()];
     lines.extend(report.cells.iter().map(|cell| {
         let whole = |n: Option<u32>| n.map_or(String::new(), |n| n.to_string());

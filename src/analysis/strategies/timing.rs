@@ -15,14 +15,14 @@ use std::time::Instant;
 
 /// Time of passes, summed over threads.
 #[derive(Clone, Debug)]
-pub struct Times {
-    /// Of the connections of every cell [s].
+pub(super) struct Times {
+    /// Of the connections of every cell (s).
     pub connections: Vec<f64>,
     /// How often each was tried.
     pub tries: Vec<u64>,
-    /// Of camera subpaths without their connections [s].
+    /// Of camera subpaths without their connections (s).
     pub camera_paths: f64,
-    /// Of light subpaths without their connections [s].
+    /// Of light subpaths without their connections (s).
     pub light_paths: f64,
     /// Vertices of camera subpaths at which light may scatter on.
     pub camera_vertices: u64,
@@ -46,19 +46,19 @@ impl Times {
         self.light_vertices += other.light_vertices;
     }
 
-    /// All of it [s].
-    pub fn total(&self) -> f64 {
+    /// All of it (s).
+    pub(super) fn total(&self) -> f64 {
         self.connections.iter().sum::<f64>() + self.camera_paths + self.light_paths
     }
 }
 
 /// A span longer than this, and than [`OUTLIER`] medians of its kind, held an interruption: other programs
-/// take the processor for milliseconds, connections take microseconds [s].
+/// take the processor for milliseconds, connections take microseconds (s).
 const INTERRUPTION: f32 = 1e-3;
 /// See [`INTERRUPTION`].
 const OUTLIER: f32 = 50.0;
 
-/// Sum of `spans` [s], a look at the clock taken off each. In place of interrupted ones count as many mean ones.
+/// Sum of `spans` (s), a look at the clock taken off each. In place of interrupted ones count as many mean ones.
 fn total(spans: &[f32], look: f64) -> f64 {
     let mut sorted = spans.to_vec();
     sorted.sort_by(f32::total_cmp);
@@ -75,11 +75,11 @@ struct TimingObserver<'a> {
     table: StrategyTable,
     /// The last look.
     last: Instant,
-    /// What a look takes [s].
+    /// What a look takes (s).
     look: f64,
-    /// Spans of the connections of every cell [s].
+    /// Spans of the connections of every cell (s).
     connections: Vec<Vec<f32>>,
-    /// Spans between them, of light subpaths and of camera subpaths [s].
+    /// Spans between them, of light subpaths and of camera subpaths (s).
     between: [Vec<f32>; 2],
     /// Where they may scatter on.
     vertices: [u64; 2],
@@ -141,7 +141,7 @@ impl BlockObserver for TimingObserver<'_> {
     }
 }
 
-/// What a look at the clock takes, undisturbed [s].
+/// What a look at the clock takes, undisturbed (s).
 fn look() -> f64 {
     const LOOKS: u32 = 16;
     let once = |_| {
@@ -175,7 +175,7 @@ impl Observer for TimingObserver<'_> {
 
 impl Times {
     /// Those of `passes` passes.
-    pub fn of(
+    pub(super) fn of(
         instrument: &Instrument<'_>,
         table: StrategyTable,
         passes: usize,

@@ -62,7 +62,7 @@ pub enum Renderer {
     Own {
         /// How; the study sets budget and seed.
         settings: Settings,
-        /// Time of reading and building the scene [s].
+        /// Time of reading and building the scene (s).
         load_seconds: f64,
     },
     /// Another one.
@@ -70,7 +70,7 @@ pub enum Renderer {
 }
 
 impl Entry {
-    /// Width and height of its images [pixels].
+    /// Width and height of its images (pixels).
     pub fn size(&self) -> (usize, usize) {
         (self.setup.film.width as usize, self.setup.film.height as usize)
     }

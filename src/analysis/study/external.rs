@@ -4,7 +4,7 @@
 //!
 //! | `{scene}` | the scene file, absolute |
 //! | `{definitions}` | as a word of its own: `-D name=value` for each parameter of the study |
-//! | `{size}`, `{width}`, `{height}` | of the image [pixels], such as 96x64 |
+//! | `{size}`, `{width}`, `{height}` | of the image (pixels), such as 96x64 |
 //! | `{threads}`, `{seed}` | threads to render with; a seed of 64 bits, of which no two may give the same image |
 //! | `{spp}`, `{out}` | samples per pixel, and the file to write |
 //! | `{budgets}`, `{folder}` | or all budgets, separated by commas, and a folder where each is to be written as `SPP.exr` |
@@ -40,7 +40,7 @@ pub struct External {
 pub struct Rendered {
     /// One a budget.
     pub snapshots: Vec<Snapshot>,
-    /// Time of starting, loading and compiling [s], where it is reported.
+    /// Time of starting, loading and compiling (s), where it is reported.
     pub load_seconds: Option<f64>,
     /// The times are those of the whole command: none were reported.
     pub is_timed_outside: bool,
@@ -101,7 +101,7 @@ impl External {
         Ok(Self { words: expanded.collect(), size, is_at_once })
     }
 
-    /// Renders with `seed` at all `budgets` [samples per pixel], in growing order.
+    /// Renders with `seed` at all `budgets` (samples per pixel), in growing order.
     pub fn render(&self, seed: u64, budgets: &[u64]) -> Result<Rendered> {
         let mut rendered = Rendered { snapshots: Vec::new(), load_seconds: None, is_timed_outside: false };
         for budgets in budgets.chunks(if self.is_at_once { budgets.len().max(1) } else { 1 }) {

@@ -75,9 +75,9 @@ pub struct ContenderOutcome {
 pub struct Point {
     /// Samples per pixel.
     pub samples: u64,
-    /// Time of rendering [s], loading and compiling left out.
+    /// Time of rendering (s), loading and compiling left out.
     pub seconds: Interval,
-    /// Mean squared error [radiance^2].
+    /// Mean squared error (radiance^2).
     pub mse: Interval,
     /// mean((x - r)^2 / (r^2 + 0.01 m^2)), m the mean luminance of r.
     pub relmse: Interval,
@@ -113,12 +113,12 @@ pub(super) mod number {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     /// Writes one.
-    pub fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
         Some(*value).filter(|value| value.is_finite()).serialize(to)
     }
 
     /// Reads one.
-    pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
+    pub(crate) fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
         Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
     }
 }

@@ -13,7 +13,7 @@ pub struct Question {
     pub scenes: Vec<SceneQuestion>,
     /// `name=value` pairs for all scenes.
     pub definitions: Vec<(String, String)>,
-    /// Width and height in place of the scenes' own [pixels].
+    /// Width and height in place of the scenes' own (pixels).
     pub size: Option<[u32; 2]>,
     /// Everybody, in the order of their turns.
     pub contenders: Vec<Contender>,
@@ -46,7 +46,7 @@ pub struct SceneQuestion {
 pub enum Effort {
     /// Samples per pixel.
     Samples(u64),
-    /// Time [s].
+    /// Time (s).
     Seconds(f64),
 }
 

@@ -84,7 +84,7 @@ fn last_of(units: &[Unit]) -> Vec<&Measured> {
     units.iter().filter_map(|unit| unit.points.last()).collect()
 }
 
-/// Mean relMSE times mean time [s] at the last budget, of the seeds `picks`.
+/// Mean relMSE times mean time (s) at the last budget, of the seeds `picks`.
 fn cost(units: &[Unit], picks: &[usize]) -> f64 {
     let last = |pick: &usize| units[*pick].points.last();
     let sum =

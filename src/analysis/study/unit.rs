@@ -39,7 +39,7 @@ pub struct Unit {
 pub struct Measured {
     /// Samples per pixel.
     pub samples: u64,
-    /// Time of rendering [s].
+    /// Time of rendering (s).
     pub seconds: f64,
     /// Mean squared error.
     #[serde(with = "number")]

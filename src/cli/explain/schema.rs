@@ -22,7 +22,7 @@ const STEPS: [(&str, &[&str]); 5] = [
 ];
 
 /// The schema of a scene file.
-pub fn of_scenes() -> Value {
+pub(super) fn of_scenes() -> Value {
     let mut definitions = Map::new();
     for (tag, plugin, table) in everything() {
         definitions.insert(key(tag, plugin), plugin_of(plugin, table));

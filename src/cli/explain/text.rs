@@ -7,10 +7,11 @@ use crate::description::{
 };
 
 /// What keyframes are.
-pub const KEYFRAMES: &str = "In place of any value of numbers: what it is at some times [s]. Not in Mitsuba.";
+pub(super) const KEYFRAMES: &str =
+    "In place of any value of numbers: what it is at some times [s]. Not in Mitsuba.";
 
 /// What `--progress json` prints.
-pub const PROGRESS: &str = "\
+pub(super) const PROGRESS: &str = "\
 the lines of JSON that --progress json prints on standard error, ten a second at most and one at the end
   {\"done\": 0.25, \"samples_per_pixel\": 16, \"noise\": 0.031, \"within\": null, \"seconds\": 2.1, \"image\": null}
   done               the part of the way to the nearest limit, from 0 to 1
@@ -22,7 +23,7 @@ the lines of JSON that --progress json prints on standard error, ten a second at
   study says what it is doing (\"doing\") in place of samples and noise; strategies prints \"done\" alone.
   With --quiet, all other lines are warnings and errors. If standard error is closed, the render ends as on Ctrl-C.";
 /// How they are written, and what they mean.
-pub const KEYFRAMES_WRITTEN: &str = r#"
+pub(super) const KEYFRAMES_WRITTEN: &str = r#"
 JSON: "radiance": { "type": "keyframes", "value": [[0, 1], [2.5, 3]], "interpolation": "smooth" }
 XML:  <keyframes name="radiance"> <float time="0" value="1"/> <float time="2.5" value="3"/> </keyframes>
 
@@ -38,14 +39,14 @@ numbers: a rotation by 0 and then by 720 degrees turns twice. Names of files, co
 "#;
 
 /// One line a plugin.
-pub fn kind(tag: &str) -> String {
+pub(super) fn kind(tag: &str) -> String {
     let heading = KINDS.iter().find(|(known, _)| *known == tag).map_or(tag, |(_, heading)| heading);
     let names = plugins(tag).into_iter().map(|(name, table)| (marked(tag, name), table.about));
     format!("{heading} ({tag}, * not in Mitsuba)\n{}", columns(names.collect()))
 }
 
 /// All plugins of a kind, each with its parameters.
-pub fn listing(tag: &str) -> String {
+pub(super) fn listing(tag: &str) -> String {
     let of = |(name, table): (&'static str, &'static Table)| {
         let used = columns(rows(table).0.into_iter().map(line).collect());
         format!("{}\n  {}\n{used}", marked(tag, name), wrapped(table.about, 2))
@@ -54,7 +55,7 @@ pub fn listing(tag: &str) -> String {
 }
 
 /// A plugin and all of its parameters.
-pub fn plugin(tag: &str, name: &str, table: &'static Table) -> String {
+pub(super) fn plugin(tag: &str, name: &str, table: &'static Table) -> String {
     let (used, ignored) = rows(table);
     let kind = if tag == name { String::new() } else { format!(" ({tag})") };
     let mut text = format!(
@@ -74,7 +75,7 @@ pub fn plugin(tag: &str, name: &str, table: &'static Table) -> String {
 }
 
 /// All plugins that have a parameter, if any has.
-pub fn parameter(name: &str) -> Option<String> {
+pub(super) fn parameter(name: &str) -> Option<String> {
     let holders = everything().filter_map(|(tag, plugin, table)| {
         let row = table.find(name)?;
         let text = match row.is_ignored() {
@@ -128,7 +129,7 @@ fn wrapped(text: &str, indent: usize) -> String {
 }
 
 /// What may be given.
-pub fn allowed(row: &Parameter) -> String {
+pub(super) fn allowed(row: &Parameter) -> String {
     let range = row.range();
     let bounded = if range.is_bounded() { range.to_string() } else { String::new() };
     let text = match row.kind {
@@ -154,7 +155,7 @@ pub fn allowed(row: &Parameter) -> String {
 }
 
 /// What counts where it is not given.
-pub fn default(row: &Parameter) -> String {
+pub(super) fn default(row: &Parameter) -> String {
     match row.default {
         Default::Required => "required".into(),
         Default::Optional => "optional".into(),
@@ -172,7 +173,7 @@ fn rounded(x: f64) -> f64 {
 }
 
 /// The plugin as JSON.
-pub fn example(name: &str, table: &Table) -> String {
+pub(super) fn example(name: &str, table: &Table) -> String {
     let value = |row: &Parameter| match (row.default, row.kind) {
         (Default::Is(x), _) => Some(plain(rounded(x))),
         (Default::Yes(b), _) => Some(b.to_string()),

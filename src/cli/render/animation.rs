@@ -15,7 +15,7 @@ use crate::{
 const FPS: f64 = 24.0;
 
 /// A scene file as it is read for one frame or many.
-pub struct Clip<'a> {
+pub(super) struct Clip<'a> {
     arguments: &'a Render,
     root: Object,
     /// True if the scene is built again for each frame: its description changes, or frames show different files.
@@ -24,14 +24,14 @@ pub struct Clip<'a> {
 
 impl<'a> Clip<'a> {
     /// Reads the scene file.
-    pub fn read(arguments: &'a Render) -> Result<Self> {
+    pub(super) fn read(arguments: &'a Render) -> Result<Self> {
         let root = arguments.scene.read()?;
         let changes = smoke::has_sequence(&root) || keyframes::has_any(&root);
         Ok(Self { arguments, root, rebuilds: arguments.frames.is_some() && changes })
     }
 
     /// Builds the scene at its own time, or where it is built for each frame, as the first shows it.
-    pub fn first(&self) -> Result<Setup> {
+    pub(super) fn first(&self) -> Result<Setup> {
         match self.arguments.frames.filter(|_| self.rebuilds) {
             None => built(&self.root, self.arguments.overrides()),
             Some(frames) => {
@@ -44,19 +44,19 @@ impl<'a> Clip<'a> {
 
     /// Builds the scene as `frame` shows it, from what of the frame `before` has not changed. What the user should know has
     /// been said of the first.
-    pub fn frame(&self, frame: u32, before: &Setup) -> Result<Setup> {
+    pub(super) fn frame(&self, frame: u32, before: &Setup) -> Result<Setup> {
         let root = self.at(self.time(frame));
         let built = build::build_again(&root, self.arguments.overrides(), Some(before));
         built.map_err(|error| self.explain(frame, error))
     }
 
-    /// When a frame is [s].
-    pub fn time(&self, frame: u32) -> f64 {
+    /// When a frame is (s).
+    pub(super) fn time(&self, frame: u32) -> f64 {
         smoke::time_of(&self.root) + f64::from(frame) / self.arguments.fps.unwrap_or(FPS)
     }
 
     /// `error` in a frame.
-    pub fn explain(&self, frame: u32, error: Error) -> Error {
+    pub(super) fn explain(&self, frame: u32, error: Error) -> Error {
         Error { place: format!("frame {frame}, at {} s: {}", self.time(frame), error.place), ..error }
     }
 
@@ -67,7 +67,7 @@ impl<'a> Clip<'a> {
         missing.map_or(Ok(()), |error| Err(self.explain(frame, error)))
     }
 
-    /// The scene at `time` [s].
+    /// The scene at `time` (s).
     fn at(&self, time: f64) -> Object {
         let mut root = self.root.clone();
         let (value, location) = (Value::Float(time), root.location.clone());

@@ -62,7 +62,7 @@ fn warn(what: &str, done: Option<Result<()>>) {
 }
 
 /// Shows what there is while a render goes on.
-pub struct Shown<'a> {
+pub(super) struct Shown<'a> {
     task: &'a Task<'a>,
     picture: Option<Turn>,
     /// Writes the picture so far.
@@ -72,13 +72,13 @@ pub struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     /// With --preview, has the picture so far drawn; with --tev, shows it.
-    pub fn new(task: &'a Task<'a>, draw: &'a dyn Fn(&dyn Picture) -> Result<()>) -> Self {
+    pub(super) fn new(task: &'a Task<'a>, draw: &'a dyn Fn(&dyn Picture) -> Result<()>) -> Self {
         let picture = task.arguments.preview.then(|| Turn::new(PICTURE_EVERY));
         Self { task, picture, draw, view: Turn::new(VIEW_EVERY) }
     }
 
     /// Called now and then while rendering, and at the end of it.
-    pub fn watch(&mut self, progress: &Progress, picture: &dyn Picture) {
+    pub(super) fn watch(&mut self, progress: &Progress, picture: &dyn Picture) {
         if progress.is_last {
             return self.task.show(picture);
         }
@@ -89,7 +89,7 @@ impl<'a> Shown<'a> {
 }
 
 /// Writes what there is while a render goes on.
-pub struct Keeper<'a> {
+pub(super) struct Keeper<'a> {
     /// Where the sums go; none where a render cannot go on from them.
     file: Option<SumsFile>,
     task: &'a Task<'a>,
@@ -103,7 +103,7 @@ pub struct Keeper<'a> {
 
 impl<'a> Keeper<'a> {
     /// Keeps the sums of `task` in `file`; with --preview, has the picture so far drawn; with --tev, shows it.
-    pub fn new(
+    pub(super) fn new(
         file: Option<SumsFile>,
         task: &'a Task<'a>,
         draw: &'a dyn Fn(&dyn Picture) -> Result<()>,
@@ -121,7 +121,7 @@ impl<'a> Keeper<'a> {
 
     /// Called now and then while rendering, and at the end of it: what is rendered of alpha and layers after that can be
     /// rendered again, samples cannot.
-    pub fn watch(&mut self, progress: &Progress, sums: &dyn Kept) {
+    pub(super) fn watch(&mut self, progress: &Progress, sums: &dyn Kept) {
         let Self { file, task, .. } = self;
         let is_done = is_done(task, progress, sums);
         let mut replace = || file.as_mut().map(|file| file.replace(sums, &task.made));
@@ -138,7 +138,7 @@ impl<'a> Keeper<'a> {
     }
 
     /// What is left of the sums.
-    pub fn finish(self) -> Result<Left> {
+    pub(super) fn finish(self) -> Result<Left> {
         match (self.file, self.last) {
             (Some(file), Some(written)) => written.map(|()| Left::Kept(file.finish())),
             (Some(file), None) if file.is_ours || file.is_resumed => Ok(Left::Spent(file)),
@@ -148,7 +148,7 @@ impl<'a> Keeper<'a> {
 }
 
 /// What a render leaves of its sums.
-pub enum Left {
+pub(super) enum Left {
     /// No file.
     Nothing,
     /// A file, from which it goes on.
@@ -158,7 +158,7 @@ pub enum Left {
 }
 
 /// The samples that `task` is to take, where it is said which.
-pub fn wanted(task: &Task<'_>) -> Option<Samples> {
+pub(super) fn wanted(task: &Task<'_>) -> Option<Samples> {
     let Budget { first_sample: first, samples_per_pixel, .. } = task.settings.budget;
     samples_per_pixel.map(|spp| Samples::from(first..first + spp))
 }
@@ -172,7 +172,7 @@ fn is_done(task: &Task<'_>, progress: &Progress, sums: &dyn Kept) -> bool {
 }
 
 /// A file of sums and the one before it, which is kept while the last may still be damaged.
-pub struct SumsFile {
+pub(super) struct SumsFile {
     path: PathBuf,
     /// What is there is whole, and of this render.
     is_ours: bool,
@@ -181,7 +181,7 @@ pub struct SumsFile {
 }
 
 /// Where the sums go: none where a render does not go on, or has no name to put them beside.
-pub fn sums_file(arguments: &Render, target: &Target) -> Option<SumsFile> {
+pub(super) fn sums_file(arguments: &Render, target: &Target) -> Option<SumsFile> {
     if arguments.batches.is_some() || arguments.frames.is_some() {
         return None;
     }
@@ -191,7 +191,7 @@ pub fn sums_file(arguments: &Render, target: &Target) -> Option<SumsFile> {
 
 impl SumsFile {
     /// A file at `path`, links followed, for new sums.
-    pub fn new(path: &Path) -> Self {
+    pub(super) fn new(path: &Path) -> Self {
         let path = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         Self { path, is_ours: false, is_resumed: false }
     }
@@ -211,7 +211,7 @@ impl SumsFile {
     }
 
     /// All files that may be written or replaced.
-    pub fn names(&self) -> [PathBuf; 3] {
+    pub(super) fn names(&self) -> [PathBuf; 3] {
         [self.path.clone(), self.previous(), self.before()]
     }
 
@@ -244,13 +244,13 @@ impl SumsFile {
     }
 
     /// Removes it.
-    pub fn remove(self) {
+    pub(super) fn remove(self) {
         let _ = std::fs::remove_file(self.finish());
     }
 
     /// The sums in it, or, where that is damaged or missing, in the one before it; of an image that is `made` so. None where
     /// no render has begun.
-    pub fn resume(&mut self, made: &Value) -> Result<Option<AnySums>> {
+    pub(super) fn resume(&mut self, made: &Value) -> Result<Option<AnySums>> {
         let previous = self.previous();
         if !self.path.is_file() && !previous.is_file() {
             complain(&format!(

@@ -30,7 +30,7 @@ const NUMBERS_OF_SORTED: usize = 60;
 const NUMBERS_OF_BATCH: usize = 7;
 
 /// Memory for the film of a render, its files, and room for them.
-pub fn check(arguments: &Render, setup: &Setup, target: &Target) -> Result<()> {
+pub(super) fn check(arguments: &Render, setup: &Setup, target: &Target) -> Result<()> {
     let Setup { film, integrator, .. } = setup;
     let batches = arguments.batches.map_or(0, |batches| batches as usize);
     let layers: usize = integrator.layers.iter().map(|layer| layer.suffixes().len()).sum();

@@ -1,13 +1,13 @@
 //! `tyndall render`: a scene file in, an image and its PNG preview out.
 
 mod animation;
-pub mod arguments;
+pub(super) mod arguments;
 mod checkpoint;
 mod files;
-pub mod precision;
+pub(super) mod precision;
 mod preview;
 mod progressive;
-pub mod target;
+pub(super) mod target;
 mod task;
 mod viewer;
 
@@ -47,7 +47,7 @@ use task::Task;
 use viewer::Viewer;
 
 /// Runs the command.
-pub fn run(arguments: &Render) -> Result<()> {
+pub(super) fn run(arguments: &Render) -> Result<()> {
     let started = Instant::now();
     let clip = Clip::read(arguments)?;
     let mut setup = clip.first()?;

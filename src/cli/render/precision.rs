@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// What every pixel is to be known with.
-pub fn precision(arguments: &Render, setup: &Setup, settings: &Settings) -> Result<Option<Precision>> {
+pub(crate) fn precision(arguments: &Render, setup: &Setup, settings: &Settings) -> Result<Option<Precision>> {
     let Some(error) = arguments.error else { return Ok(None) };
     let refuse = |found: &str, remedy: &str| {
         let expected = "an image without layers of moments";

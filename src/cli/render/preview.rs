@@ -11,17 +11,17 @@ use clap::Args;
 /// How the preview looks.
 #[derive(Args, Clone, Copy, Debug, PartialEq)]
 pub struct Preview {
-    /// Radiance of the fog in the preview of --integrator fog [W/(m^2 sr)]: one number, or red, green and blue [default: the
+    /// Radiance of the fog in the preview of --integrator fog (W/(m^2 sr)): one number, or red, green and blue [default: the
     /// scene's fog_color, or the mean of the sky, or that of the lit surfaces]
     #[arg(long, value_name = "R,G,B", value_parser = radiance, allow_negative_numbers = true)]
     pub fog_color: Option<Spectrum>,
 
-    /// Radiance from all directions, besides the emitters, in the preview of --integrator fog [W/(m^2 sr)]: one number, or red,
+    /// Radiance from all directions, besides the emitters, in the preview of --integrator fog (W/(m^2 sr)): one number, or red,
     /// green and blue [default: the scene's, or 0 under a sky, or that of the fog]
     #[arg(long, value_name = "R,G,B", value_parser = radiance, allow_negative_numbers = true)]
     pub ambient: Option<Spectrum>,
 
-    /// Distance beyond which the preview of --integrator fog shows fog alone [m] [default: the scene's, or no limit]
+    /// Distance beyond which the preview of --integrator fog shows fog alone (m) [default: the scene's, or no limit]
     #[arg(long, value_name = "METRES", value_parser = distance, allow_negative_numbers = true)]
     pub threshold: Option<f32>,
 }

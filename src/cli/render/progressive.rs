@@ -35,7 +35,7 @@ fn fraction(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// The estimator that makes progressive pictures of `setup`: `given` without the strategy lens.
-pub fn estimator(given: &Estimator, setup: &Setup) -> Result<Estimator> {
+pub(super) fn estimator(given: &Estimator, setup: &Setup) -> Result<Estimator> {
     if given.strategies.contains(&StrategyKind::Lens) {
         let expected =
             "strategies that shade single pixels, for --progressive: hit, next-event, join, equiangular";
@@ -62,7 +62,7 @@ pub fn estimator(given: &Estimator, setup: &Setup) -> Result<Estimator> {
 }
 
 /// An error where the image cannot be interpolated, or layers are of all of its samples.
-pub fn check(setup: &Setup) -> Result<()> {
+pub(super) fn check(setup: &Setup) -> Result<()> {
     let (width, height) = (setup.film.width, setup.film.height);
     if width.min(height) < 2 {
         let found = format!("{width} x {height} pixels");
@@ -90,17 +90,17 @@ pub fn check(setup: &Setup) -> Result<()> {
 }
 
 /// What files say of a picture that is not finished.
-pub fn begun(method: Method) -> Value {
+pub(super) fn begun(method: Method) -> Value {
     format!("{}, a biased preview that is not finished", method.name()).into()
 }
 
 /// True if the picture lacks what light subpaths that the lens sees would bring.
-pub fn is_without_lens(given: &Estimator, setup: &Setup) -> bool {
+pub(super) fn is_without_lens(given: &Estimator, setup: &Setup) -> bool {
     given.strategies.is_empty() && given.algorithm(setup).strategies().lens
 }
 
 /// The same of one that is finished, with or without the strategy lens.
-pub fn text(shaded: &Shaded, is_without_lens: bool) -> String {
+pub(super) fn text(shaded: &Shaded, is_without_lens: bool) -> String {
     let share = percent(shaded.pixels as f64 / shaded.of as f64);
     let lens = if is_without_lens { "; without the strategy lens" } else { "" };
     let method = shaded.method.name();
@@ -108,7 +108,7 @@ pub fn text(shaded: &Shaded, is_without_lens: bool) -> String {
 }
 
 /// The same for scripts.
-pub fn json(shaded: &Shaded) -> Value {
+pub(super) fn json(shaded: &Shaded) -> Value {
     json!({
         "method": shaded.method.name(),
         "pixels_shaded": shaded.pixels,

@@ -16,7 +16,7 @@ use serde_json::Value;
 use std::path::PathBuf;
 
 /// The image file: where, and what is in it. The PNG is beside it.
-pub struct Target {
+pub(crate) struct Target {
     pub path: PathBuf,
     pub format: Format,
     /// How the PNG shows it.
@@ -25,7 +25,7 @@ pub struct Target {
 
 impl Target {
     /// The kind of file is that of the output's name, else that of the scene's film.
-    pub fn new(arguments: &Render, setup: &Setup) -> Result<Self> {
+    pub(crate) fn new(arguments: &Render, setup: &Setup) -> Result<Self> {
         let scene = setup.film.format;
         let named = arguments.output.as_deref().and_then(|path| Some((path, path.extension()?)));
         let named =
@@ -58,24 +58,24 @@ impl Target {
     }
 
     /// The PNG; none beside a device or pipe.
-    pub fn preview(&self) -> Option<PathBuf> {
+    pub(crate) fn preview(&self) -> Option<PathBuf> {
         (!film::output::is_stream(&self.path)).then(|| self.path.with_extension("png"))
     }
 
     /// Chooses an exposure for `pixels`, where that is to be done; says which.
-    pub fn expose(&mut self, pixels: &[Spectrum]) -> Option<String> {
+    pub(crate) fn expose(&mut self, pixels: &[Spectrum]) -> Option<String> {
         self.preview().and_then(|_| self.display.choose(pixels))
     }
 
     /// Where its sums are, unless the user wants them elsewhere: no other image has the same.
-    pub fn sums(&self) -> PathBuf {
+    pub(crate) fn sums(&self) -> PathBuf {
         let mut name = self.path.as_os_str().to_owned();
         name.push(".sums");
         name.into()
     }
 
     /// The same for one frame of an animation: its number before the ending.
-    pub fn numbered(&self, frame: u32, digits: usize) -> Self {
+    pub(crate) fn numbered(&self, frame: u32, digits: usize) -> Self {
         let end = self.path.extension().unwrap_or_default().to_string_lossy();
         let path = self.path.with_extension(format!("{frame:0digits$}.{end}"));
         Self { path, format: self.format, display: self.display }
@@ -83,7 +83,7 @@ impl Target {
 
     /// Writes the image, and the layers that it then no longer has; and its PNG.
     /// Files that can say how they were `made` do.
-    pub fn write(&self, film: &Film, image: &mut Image, made: &Value) -> Result<()> {
+    pub(crate) fn write(&self, film: &Film, image: &mut Image, made: &Value) -> Result<()> {
         let made = provenance::metadata(made, image);
         let (width, height) = (film.width as usize, film.height as usize);
         let mut channels = self.format.channels(&image.pixels, &image.alpha);
@@ -103,7 +103,7 @@ impl Target {
     }
 
     /// Writes the image so far: without alpha and layers, which are rendered at the end.
-    pub fn draw(&self, film: &Film, picture: &dyn Picture, made: &Value) -> Result<()> {
+    pub(crate) fn draw(&self, film: &Film, picture: &dyn Picture, made: &Value) -> Result<()> {
         let format = Format { alpha: false, ..self.format };
         let target = Self { path: self.path.clone(), format, display: self.display };
         target.write(film, &mut picture.image(), made)

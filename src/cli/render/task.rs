@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::{sync::Mutex, time::Instant};
 
 /// What is to be rendered.
-pub struct Task<'a> {
+pub(super) struct Task<'a> {
     /// How, and for how long.
     pub settings: Settings,
     /// That is asked for.
@@ -29,7 +29,7 @@ pub struct Task<'a> {
 
 impl<'a> Task<'a> {
     /// That of `setup`, and what a pilot chose.
-    pub fn new(
+    pub(super) fn new(
         arguments: &'a Render,
         setup: &Setup,
         viewer: &'a Mutex<Option<Viewer>>,
@@ -43,7 +43,7 @@ impl<'a> Task<'a> {
     }
 
     /// Shows what there is in the viewer, if there is one; it goes when it fails.
-    pub fn show(&self, picture: &dyn Picture) {
+    pub(super) fn show(&self, picture: &dyn Picture) {
         let Ok(mut viewer) = self.viewer.lock() else { return };
         if let Some(Err(error)) = viewer.as_mut().map(|viewer| viewer.show(picture)) {
             complain(&format!("warning: lost the connection to tev: {error}"));
@@ -67,7 +67,7 @@ fn settings(arguments: &Render, setup: &Setup) -> Result<(Settings, Option<Choic
 
 /// The budget by which a pilot judges. Parts of one image, which need not know how many there are, choose alike, as for an image
 /// without end.
-pub fn to_come(arguments: &Render, setup: &Setup) -> Budget {
+pub(super) fn to_come(arguments: &Render, setup: &Setup) -> Budget {
     match arguments.samples {
         None => budget(arguments, setup, false),
         Some(_) => Budget::ENDLESS,

@@ -19,7 +19,7 @@ const NAME: &str = "tyndall";
 const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 /// A connection to tev.
-pub struct Viewer {
+pub(super) struct Viewer {
     client: TevClient,
     address: String,
     is_new: bool,
@@ -27,13 +27,13 @@ pub struct Viewer {
 
 impl Viewer {
     /// Connects to `address`, a host and port.
-    pub fn connect(address: &str) -> Result<Self> {
+    pub(super) fn connect(address: &str) -> Result<Self> {
         let socket = connected(address).map_err(|error| explain(address, &error))?;
         Ok(Self { client: TevClient::wrap(socket), address: address.to_owned(), is_new: true })
     }
 
     /// Shows a picture.
-    pub fn show(&mut self, picture: &dyn Picture) -> Result<()> {
+    pub(super) fn show(&mut self, picture: &dyn Picture) -> Result<()> {
         self.send(picture).map_err(|error| explain(&self.address, &error))
     }
 

@@ -105,7 +105,7 @@ fn device(_: &Path) -> u64 {
     0
 }
 
-/// What this user may still write to the disk of `folder` [bytes]; none where it does not tell.
+/// What this user may still write to the disk of `folder` (bytes); none where it does not tell.
 #[cfg(unix)]
 fn free(folder: &Path) -> Option<u64> {
     let disk = rustix::fs::statvfs(folder).ok().filter(|disk| disk.f_blocks > 0)?;

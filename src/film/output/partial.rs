@@ -16,7 +16,7 @@ pub(super) struct Partial(NamedTempFile);
 const RANDOM: usize = 12;
 /// How the name of every partial file ends.
 const ENDING: &str = ".partial";
-/// Of the goal's name, to leave room for the rest in 255 bytes [characters].
+/// Of the goal's name, to leave room for the rest in 255 bytes (characters).
 const LONGEST_STEM: usize = 56;
 /// Times to begin again where others take a new file for an abandoned one.
 const ATTEMPTS: usize = 100;

@@ -37,18 +37,18 @@ const OUTSET: Mat3 = Mat3::from_cols(
 );
 
 /// The transform: its matrices.
-pub struct Agx {
+pub(super) struct Agx {
     inset: Mat3,
     back: Mat3,
 }
 
 impl Agx {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { inset: INSET * TO_REC2020, back: TO_REC2020.inverse() }
     }
 
     /// Linear sRGB for a screen, of finite channels from 0. What a screen's primaries cannot show is below 0 or above 1.
-    pub fn map(&self, pixel: Spectrum) -> Spectrum {
+    pub(super) fn map(&self, pixel: Spectrum) -> Spectrum {
         let inset = self.inset * pixel;
         let curved = Spectrum::from_array(inset.to_array().map(curve));
         self.back * (OUTSET * curved).max(Spectrum::ZERO).powf(GAMMA)

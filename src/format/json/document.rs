@@ -224,7 +224,7 @@ impl Json {
     }
 
     /// What it is, for error messages.
-    pub fn describe(&self) -> String {
+    pub(super) fn describe(&self) -> String {
         match self {
             Self::Null => "null".into(),
             Self::Boolean(b) => b.to_string(),

@@ -44,24 +44,24 @@ pub(in super::super) fn below(location: &Location, steps: &str) -> Location {
 
 impl<'j> Node<'j> {
     /// The outermost value of a file.
-    pub fn root(file: Arc<PathBuf>, json: &'j Json) -> Self {
+    pub(super) fn root(file: Arc<PathBuf>, json: &'j Json) -> Self {
         Self { location: Location { file, position: Position::Path("$".into()) }, json }
     }
 
     /// The value behind `name` in this one.
-    pub fn child<'k>(&self, name: &str, json: &'k Json) -> Node<'k> {
+    pub(super) fn child<'k>(&self, name: &str, json: &'k Json) -> Node<'k> {
         Node { location: below(&self.location, &key(name)), json }
     }
 
     /// The error for a value that is not as `expected`.
-    pub fn wrong(&self, expected: impl Into<String>) -> Error {
+    pub(super) fn wrong(&self, expected: impl Into<String>) -> Error {
         let expected = expected.into();
         let remedy = format!("change it to {expected}");
         Error::new(&self.location, expected, self.json.describe(), remedy)
     }
 
     /// What a reader of text or numbers makes of it.
-    pub fn check<T>(&self, parsed: Parsed<T>) -> Result<T> {
+    pub(super) fn check<T>(&self, parsed: Parsed<T>) -> Result<T> {
         parsed.map_err(|m| {
             let remedy = format!("change it to {}", m.expected);
             Error::new(&self.location, m.expected, m.found, remedy)
@@ -69,7 +69,7 @@ impl<'j> Node<'j> {
     }
 
     /// Everything in an object. Keys with a dot are errors, as in Mitsuba.
-    pub fn entries(&self) -> Result<Vec<Entry<'j>>> {
+    pub(super) fn entries(&self) -> Result<Vec<Entry<'j>>> {
         let Json::Object(entries) = self.json else { return Err(self.wrong("an object in braces")) };
         let entry = |(name, json): &'j (String, Json)| {
             let node = self.child(name, json);
@@ -84,13 +84,13 @@ impl<'j> Node<'j> {
     }
 
     /// The value behind `name`.
-    pub fn get(&self, name: &str) -> Option<Node<'j>> {
+    pub(super) fn get(&self, name: &str) -> Option<Node<'j>> {
         let Json::Object(entries) = self.json else { return None };
         entries.iter().find(|(key, _)| key == name).map(|(_, json)| self.child(name, json))
     }
 
     /// The value behind `name`, which must be there.
-    pub fn require(&self, name: &str) -> Result<Node<'j>> {
+    pub(super) fn require(&self, name: &str) -> Result<Node<'j>> {
         self.get(name).ok_or_else(|| {
             let remedy = format!("add \"{name}\"");
             Error::new(&self.location, format!("an object with \"{name}\""), self.keys(), remedy)
@@ -108,7 +108,7 @@ impl<'j> Node<'j> {
     }
 
     /// Keys other than `type` and these are errors.
-    pub fn allow(&self, names: &[&str]) -> Result<()> {
+    pub(super) fn allow(&self, names: &[&str]) -> Result<()> {
         for entry in self.entries()? {
             let name = entry.name.as_str();
             if name != "type" && !names.contains(&name) {
@@ -121,12 +121,12 @@ impl<'j> Node<'j> {
     }
 
     /// The `type` of an object.
-    pub fn type_name(&self) -> Result<&'j str> {
+    pub(super) fn type_name(&self) -> Result<&'j str> {
         self.require("type")?.string()
     }
 
     /// Text, not empty.
-    pub fn string(&self) -> Result<&'j str> {
+    pub(super) fn string(&self) -> Result<&'j str> {
         match self.json {
             Json::String(text) if !text.is_empty() => Ok(text),
             _ => Err(self.wrong("a string that is not empty")),
@@ -134,7 +134,7 @@ impl<'j> Node<'j> {
     }
 
     /// A number.
-    pub fn number(&self) -> Result<f64> {
+    pub(super) fn number(&self) -> Result<f64> {
         match self.json {
             Json::Integer(i) => Ok(*i as f64),
             Json::Float(x) => Ok(*x),
@@ -143,24 +143,24 @@ impl<'j> Node<'j> {
     }
 
     /// Everything in a list.
-    pub fn items(&self) -> Result<Vec<Node<'j>>> {
+    pub(super) fn items(&self) -> Result<Vec<Node<'j>>> {
         let Json::Array(items) = self.json else { return Err(self.wrong("a list in brackets")) };
         let item = |(i, json)| Node { location: below(&self.location, &index(i)), json };
         Ok(items.iter().enumerate().map(item).collect())
     }
 
     /// A list of numbers.
-    pub fn numbers(&self) -> Result<Vec<f64>> {
+    pub(super) fn numbers(&self) -> Result<Vec<f64>> {
         self.items()?.iter().map(Self::number).collect()
     }
 
     /// Three numbers.
-    pub fn vector(&self) -> Result<[f64; 3]> {
+    pub(super) fn vector(&self) -> Result<[f64; 3]> {
         self.check(triple(&self.numbers()?))
     }
 
     /// One number or several.
-    pub fn one_or_more(&self) -> Result<Vec<f64>> {
+    pub(super) fn one_or_more(&self) -> Result<Vec<f64>> {
         match self.json {
             Json::Array(_) => self.numbers(),
             _ => Ok(vec![self.number().map_err(|_| self.wrong("a number or a list of numbers"))?]),

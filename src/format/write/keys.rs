@@ -19,7 +19,7 @@ pub(super) struct Keys {
 
 impl Keys {
     /// At the top, `ids` are names too, and mean what has them.
-    pub fn new(node: &Node, ids: HashSet<String>) -> Result<Self> {
+    pub(super) fn new(node: &Node, ids: HashSet<String>) -> Result<Self> {
         let (mut taken, mut values) = (ids.clone(), HashSet::new());
         for entry in node.entries.iter().filter(|entry| !entry.name.is_empty()) {
             if !is_key(&entry.name) {
@@ -36,7 +36,7 @@ impl Keys {
     }
 
     /// The key of `entry`, which is in the scene itself if `outermost`.
-    pub fn of(&mut self, entry: &Entry, outermost: bool) -> String {
+    pub(super) fn of(&mut self, entry: &Entry, outermost: bool) -> String {
         let id = match &entry.item {
             Item::Object(Node { id: Some(Leaf { value, text: None }), .. }) if outermost => Some(value),
             _ => None,

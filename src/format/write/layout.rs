@@ -19,12 +19,12 @@ pub(super) fn quoted(text: &str) -> String {
 
 impl Json {
     /// A string.
-    pub fn string(text: &str) -> Self {
+    pub(super) fn string(text: &str) -> Self {
         Self::Word(quoted(text))
     }
 
     /// The text of a file that holds it, which is spread over lines whatever its width.
-    pub fn file(&self) -> String {
+    pub(super) fn file(&self) -> String {
         let mut text = String::new();
         self.open(&mut text, 0);
         text.push('\n');

@@ -19,7 +19,7 @@ pub(super) struct Numbers {
 
 impl Numbers {
     /// One number for three that are the same, where that is what the reader makes of one.
-    pub fn shortened(self) -> Self {
+    pub(super) fn shortened(self) -> Self {
         match (&self.text, self.values.as_slice()) {
             (Texts::None, [x, y, z]) if x.to_bits() == y.to_bits() && y.to_bits() == z.to_bits() => {
                 Self { values: vec![*x], text: Texts::None }

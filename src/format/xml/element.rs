@@ -34,7 +34,7 @@ pub(super) struct Attribute<'s> {
 
 impl<'s> Element<'s> {
     /// The element at `node`; an undefined `$name` in an attribute is an error.
-    pub fn new(source: &'s Source, node: Node<'s, 's>, parameters: &mut Parameters) -> Result<Self> {
+    pub(super) fn new(source: &'s Source, node: Node<'s, 's>, parameters: &mut Parameters) -> Result<Self> {
         let location = source.location(node.range().start);
         let tag = node.tag_name().name();
         if node.tag_name().namespace().is_some() || node.namespaces().len() > 0 {
@@ -54,12 +54,12 @@ impl<'s> Element<'s> {
     }
 
     /// The attribute called `name`.
-    pub fn get(&self, name: &str) -> Option<&Attribute<'s>> {
+    pub(super) fn get(&self, name: &str) -> Option<&Attribute<'s>> {
         self.attributes.iter().find(|attribute| attribute.name == name)
     }
 
     /// The attribute called `name`, which must be there.
-    pub fn require(&self, name: &str) -> Result<&Attribute<'s>> {
+    pub(super) fn require(&self, name: &str) -> Result<&Attribute<'s>> {
         self.get(name).ok_or_else(|| {
             let expected = format!("the attribute \"{name}\" of <{}>", self.tag);
             let remedy = format!("write <{} {name}=\"...\">", self.tag);
@@ -73,12 +73,12 @@ impl<'s> Element<'s> {
     }
 
     /// The attribute called `name`, where given; if so, not empty.
-    pub fn optional_name(&self, name: &str) -> Result<Option<String>> {
+    pub(super) fn optional_name(&self, name: &str) -> Result<Option<String>> {
         self.get(name).map(|attribute| attribute.nonempty().map(str::to_owned)).transpose()
     }
 
     /// Attributes other than these are errors.
-    pub fn allow(&self, names: &[&str]) -> Result<()> {
+    pub(super) fn allow(&self, names: &[&str]) -> Result<()> {
         let Some(odd) = self.attributes.iter().find(|a| !names.contains(&a.name)) else { return Ok(()) };
         let expected = format!("an attribute of <{}>", self.tag);
         let mut remedy = format!("{}known here: {}", nearest(odd.name, names), names.join(", "));
@@ -90,7 +90,7 @@ impl<'s> Element<'s> {
     }
 
     /// The elements in this one. Text between them means nothing, so it is an error.
-    pub fn children(&self) -> Result<Vec<Node<'s, 's>>> {
+    pub(super) fn children(&self) -> Result<Vec<Node<'s, 's>>> {
         let text = |node: &Node| node.is_text() && node.text().is_some_and(|text| !text.trim().is_empty());
         if let Some(stray) = self.node.children().find(text) {
             let blank = |t: &str| t.len() - t.trim_start().len();
@@ -103,7 +103,7 @@ impl<'s> Element<'s> {
     }
 
     /// An element in this one is an error.
-    pub fn childless(&self) -> Result<()> {
+    pub(super) fn childless(&self) -> Result<()> {
         let Some(child) = self.children()?.first().copied() else { return Ok(()) };
         let expected = format!("nothing in <{}>", self.tag);
         let found = format!("<{}>", child.tag_name().name());
@@ -111,17 +111,17 @@ impl<'s> Element<'s> {
     }
 
     /// A `spectrum` with a `type` is a plugin, not a value.
-    pub fn is_spectrum_plugin(&self) -> bool {
+    pub(super) fn is_spectrum_plugin(&self) -> bool {
         self.tag == "spectrum" && self.get("type").is_some()
     }
 
     /// The kind of plugin it holds: its tag, but spectra are textures.
-    pub fn object_tag(&self) -> &'s str {
+    pub(super) fn object_tag(&self) -> &'s str {
         if self.is_spectrum_plugin() { "texture" } else { self.tag }
     }
 
     /// A mistake in the element as a whole.
-    pub fn check<T>(&self, parsed: Parsed<T>) -> Result<T> {
+    pub(super) fn check<T>(&self, parsed: Parsed<T>) -> Result<T> {
         parsed.map_err(|m| {
             let remedy = format!("give <{}> {}", self.tag, m.expected);
             Error::new(&self.location, m.expected, m.found, remedy)
@@ -131,7 +131,7 @@ impl<'s> Element<'s> {
 
 impl Attribute<'_> {
     /// Its value, which must not be empty.
-    pub fn nonempty(&self) -> Result<&str> {
+    pub(super) fn nonempty(&self) -> Result<&str> {
         if self.value.is_empty() {
             return Err(self.wrong("some text", format!("fill or remove \"{}\"", self.name)));
         }
@@ -139,7 +139,7 @@ impl Attribute<'_> {
     }
 
     /// Its value as `parse` reads it.
-    pub fn parse<T>(&self, parse: impl FnOnce(&str) -> Parsed<T>) -> Result<T> {
+    pub(super) fn parse<T>(&self, parse: impl FnOnce(&str) -> Parsed<T>) -> Result<T> {
         let quoted = quoted(&self.value);
         parse(&self.value).map_err(|m| {
             let found = if m.found == quoted { quoted } else { format!("{} in {quoted}", m.found) };
@@ -154,7 +154,7 @@ impl Attribute<'_> {
     }
 
     /// The error for a value that is not as `expected`.
-    pub fn wrong(&self, expected: impl Into<String>, remedy: impl Into<String>) -> Error {
+    pub(super) fn wrong(&self, expected: impl Into<String>, remedy: impl Into<String>) -> Error {
         Error::new(&self.location, expected, format!("{}={}", self.name, quoted(&self.value)), remedy)
     }
 }

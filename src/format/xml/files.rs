@@ -34,7 +34,7 @@ pub(super) fn identity(path: &Path) -> PathBuf {
 
 impl Source {
     /// Reads the file at `path`.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub(super) fn read(path: &Path) -> Result<Self> {
         let text = text::of_file(path)?;
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         let inner = (0..text.len()).filter(|at| !text.is_char_boundary(*at)).collect();
@@ -42,7 +42,7 @@ impl Source {
     }
 
     /// The file as XML. Document types are refused, and with them entities that expand without end.
-    pub fn parse(&self) -> Result<roxmltree::Document<'_>> {
+    pub(super) fn parse(&self) -> Result<roxmltree::Document<'_>> {
         roxmltree::Document::parse(&self.text).map_err(|error| {
             let roxmltree::TextPos { row, col } = error.pos();
             let place = Location {
@@ -55,7 +55,7 @@ impl Source {
     }
 
     /// The place of the byte at `offset`.
-    pub fn location(&self, offset: usize) -> Location {
+    pub(super) fn location(&self, offset: usize) -> Location {
         let line = self.lines.partition_point(|start| *start <= offset);
         let start = self.lines[line - 1];
         let inner = |end: usize| self.inner.partition_point(|at| *at < end);
@@ -112,13 +112,13 @@ pub(super) struct Folders {
 
 impl Folders {
     /// Starts a file: its own folder comes first.
-    pub fn enter(&mut self, file: &Path) {
+    pub(super) fn enter(&mut self, file: &Path) {
         self.own = file.parent().unwrap_or(Path::new("")).to_owned();
         self.folders.insert(0, self.own.clone());
     }
 
     /// A `path` element.
-    pub fn add(&mut self, element: &Element) -> Result<()> {
+    pub(super) fn add(&mut self, element: &Element) -> Result<()> {
         element.allow(&["value"])?;
         element.childless()?;
         let attribute = element.require("value")?;
@@ -130,12 +130,12 @@ impl Folders {
     }
 
     /// The file called `name`.
-    pub fn find(&self, name: &str) -> Option<PathBuf> {
+    pub(super) fn find(&self, name: &str) -> Option<PathBuf> {
         self.folders.iter().map(|folder| folder.join(name)).find(|path| path.is_file())
     }
 
     /// The error for a file that is in none of the folders.
-    pub fn missing(&self, name: &Attribute) -> Error {
+    pub(super) fn missing(&self, name: &Attribute) -> Error {
         name.wrong("the name of an existing file", self.looked_in())
     }
 
@@ -150,7 +150,7 @@ impl Folders {
 
     /// Makes names of files that `file` gives absolute where they lie in a folder other than its own, so that
     /// later stages need not know of folders. Such names are strings called `filename` or `..._filename`.
-    pub fn settle(&self, object: &mut Object, file: &Arc<PathBuf>, origins: &mut Origins) {
+    pub(super) fn settle(&self, object: &mut Object, file: &Arc<PathBuf>, origins: &mut Origins) {
         if self.folders.len() < 2 {
             return;
         }

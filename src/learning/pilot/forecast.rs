@@ -38,11 +38,11 @@ pub(crate) const PIXELS_PER_BLOCK: usize = 256;
 /// random, times of choices were off by 14 % (one standard deviation), and by 13 % with these numbers fitted to them.
 mod time {
     /// Setting out from the sensor or an emitter.
-    pub const START: f64 = 0.5;
+    pub(super) const START: f64 = 0.5;
     /// The part of it that is spent on light subpaths which do not set out.
-    pub const DROPPED: f64 = 0.1;
+    pub(super) const DROPPED: f64 = 0.1;
     /// A connection tried, by kind of strategy.
-    pub const TRY: [f64; 5] = [0.1, 1.3, 0.7, 0.4, 2.0];
+    pub(super) const TRY: [f64; 5] = [0.1, 1.3, 0.7, 0.4, 2.0];
 }
 
 /// A set of pixels that lie together.
@@ -99,7 +99,7 @@ pub(crate) struct Forecast {
 
 impl Forecast {
     /// Gathers the samples of so many passes of `compiled`, whose walks end by `survival`, of this number of pixels at least.
-    pub fn fly(compiled: &dyn Compiled, survival: Survival, passes: usize, pixels: usize) -> Self {
+    pub(super) fn fly(compiled: &dyn Compiled, survival: Survival, passes: usize, pixels: usize) -> Self {
         let blocks = pixels.div_ceil(PIXELS_PER_BLOCK).clamp(1, compiled.blocks().count());
         let mut parts: Vec<Part> = Vec::new();
         for pass in 0..passes {
@@ -157,18 +157,18 @@ impl Forecast {
 
     /// The part of the light subpaths that is seen; none of none. Where it is small, it may be worth learning where light should
     /// start.
-    pub fn seen_subpaths(&self) -> Option<f64> {
+    pub(super) fn seen_subpaths(&self) -> Option<f64> {
         let [Work { reaching, walks, .. }, ..] = self.light;
         (walks > 0.0).then(|| reaching / walks)
     }
 
     /// How many there are.
-    pub fn samples(&self) -> f64 {
+    pub(super) fn samples(&self) -> f64 {
         self.camera[0].walks
     }
 
     /// Time of a pixel sample, in segments.
-    pub fn time(&self, choice: &Choice) -> f64 {
+    pub(super) fn time(&self, choice: &Choice) -> f64 {
         let Choice { strategies, effort, .. } = choice;
         let camera = &self.camera[index(self.end(choice))];
         let light = self.light_work(effort);
@@ -185,7 +185,7 @@ impl Forecast {
     }
 
     /// Errors of these choices, in their order.
-    pub fn judge(&self, choices: &[Choice]) -> Vec<Error> {
+    pub(super) fn judge(&self, choices: &[Choice]) -> Vec<Error> {
         let weighed = WALKS_END.map(|end| {
             let is_asked = choices.iter().any(|choice| self.end(choice) == end);
             if is_asked { self.weighed(end) } else { Vec::new() }
@@ -207,7 +207,7 @@ impl Forecast {
 
     /// The same over the tiles that light was seen in: where few samples find any, the others look free of noise. Infinite
     /// where no light was seen at all.
-    pub fn error_where_lit(&self, choice: &Choice) -> f64 {
+    pub(super) fn error_where_lit(&self, choice: &Choice) -> f64 {
         let is_lit = |(_, tile): &(usize, &Tile)| tile.mean > 0.0;
         let pixels: f64 = self.seen().filter(is_lit).map(|(_, tile)| tile.pixels).sum();
         let errors = || self.errors(choice, &self.weighed(self.end(choice)));

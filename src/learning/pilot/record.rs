@@ -53,7 +53,7 @@ impl Ends {
     }
 
     /// How often walks would get by, if they ended so, over how often they do by the survival `before`.
-    pub fn passed(self, now: End, before: Survival) -> f32 {
+    pub(super) fn passed(self, now: End, before: Survival) -> f32 {
         let now = match now {
             End::AtOnce(survival) => survival.exponent() * self.albedo,
             End::Late if self.vertices == 0 => 0.0,
@@ -64,7 +64,7 @@ impl Ends {
     }
 
     /// How often walks get by one vertex more, if they end so and did by the survival `before`, over how often they do.
-    pub fn passed_one(self, now: End, before: Survival) -> f32 {
+    pub(super) fn passed_one(self, now: End, before: Survival) -> f32 {
         let now = match now {
             End::AtOnce(survival) => survival.exponent(),
             End::Late => 0.0,
@@ -93,7 +93,7 @@ pub(super) struct Work {
 }
 
 impl Work {
-    pub fn and(mut self, other: &Self) -> Self {
+    pub(super) fn and(mut self, other: &Self) -> Self {
         self.walks += other.walks;
         self.begun += other.begun;
         self.segments += other.segments;
@@ -274,7 +274,7 @@ pub(super) struct Part {
 
 impl Part {
     /// Segments of all walks, which ended by this one of [`WALKS_END`].
-    pub fn segments(&self, run: usize) -> f64 {
+    pub(super) fn segments(&self, run: usize) -> f64 {
         self.camera.work[run].segments + self.light.work[run].segments
     }
 }

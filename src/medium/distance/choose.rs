@@ -120,7 +120,7 @@ fn longest_step(medium: &Extinction, error: f64) -> f32 {
     step
 }
 
-/// The least step that is considered [m]: a flat box is sampled as finely as it is thin, where that costs little, for
+/// The least step that is considered (m): a flat box is sampled as finely as it is thin, where that costs little, for
 /// there is an integral to compare with.
 fn finest(medium: &Extinction, diagonal: f32) -> f32 {
     let shortest = (medium.high - medium.low).min_element();

@@ -8,7 +8,7 @@ const STEPS: u32 = 48;
 
 /// Optical depth along `segment`.
 #[inline]
-pub fn depth<L: Channels>(medium: &Extinction, segment: &RaySegment) -> L {
+pub(super) fn depth<L: Channels>(medium: &Extinction, segment: &RaySegment) -> L {
     match medium.clip(segment) {
         None => L::splat(0.0),
         Some([first, last]) => medium.depth_between(segment, first, last),
@@ -17,7 +17,7 @@ pub fn depth<L: Channels>(medium: &Extinction, segment: &RaySegment) -> L {
 
 /// A flight to where the `hero` channel's depth is `remaining`.
 #[inline]
-pub fn sample_distance<L: Channels>(
+pub(super) fn sample_distance<L: Channels>(
     medium: &Extinction,
     segment: &RaySegment,
     hero: usize,

@@ -22,7 +22,7 @@ use crate::{
 /// A distance sampled along a segment: where it ended in a collision, or that it passed.
 #[derive(Clone, Copy, Debug)]
 pub struct DistanceSample<L> {
-    /// Where it collided [m]; none where it passed the segment.
+    /// Where it collided (m); none where it passed the segment.
     pub collision: Option<f32>,
     /// Which of several media that overlap has collided; 0 where there is one.
     pub component: usize,

@@ -20,7 +20,7 @@ pub struct NullCollision {
     covers: bool,
 }
 
-/// What is known of extinction in a cell [1/m].
+/// What is known of extinction in a cell (1/m).
 #[derive(Clone, Copy, Debug)]
 struct Cell {
     /// The rate of tentative collisions of flights: no channel is more anywhere.
@@ -228,7 +228,7 @@ fn survivor<L: Channels>(estimate: L, stream: &mut Stream) -> Option<L> {
 const LEAST: f32 = 0.05;
 
 impl Cell {
-    /// The rate at which forced collisions are drawn [1/m]: the mean, as in the stand-in.
+    /// The rate at which forced collisions are drawn (1/m): the mean, as in the stand-in.
     #[inline]
     fn forced<L: Channels>(&self, hero: usize) -> f32 {
         L::from_spectrum(self.mean).hero(hero).max(LEAST * self.majorant)

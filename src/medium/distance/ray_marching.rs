@@ -9,10 +9,10 @@
 use super::{DistanceSample, Extinction};
 use crate::math::{Channels, RaySegment, Vec3, boxes};
 
-/// Intervals of at most this length [m].
+/// Intervals of at most this length (m).
 #[derive(Clone, Copy, Debug)]
 pub struct RayMarching {
-    /// The longest interval [m].
+    /// The longest interval (m).
     pub step: f32,
 }
 
@@ -20,7 +20,7 @@ pub struct RayMarching {
 struct Intervals {
     /// t where the chord begins, possibly behind the segment's origin.
     start: f32,
-    /// Length of an interval [m].
+    /// Length of an interval (m).
     width: f32,
     /// The part of the segment in the box.
     first: f32,

@@ -8,13 +8,13 @@ use crate::{
 
 /// Optical depth along `segment`: the grid computes where it ends.
 #[inline]
-pub fn depth<L: Channels>(medium: &Extinction, segment: &RaySegment) -> L {
+pub(super) fn depth<L: Channels>(medium: &Extinction, segment: &RaySegment) -> L {
     medium.volume.integral::<L>(segment).scaled(medium.scale)
 }
 
 /// A flight to where the `hero` channel's depth is `remaining`.
 #[inline]
-pub fn sample_distance<L: Channels>(
+pub(super) fn sample_distance<L: Channels>(
     medium: &Extinction,
     segment: &RaySegment,
     hero: usize,

@@ -7,22 +7,22 @@ use crate::math::Vec3;
 /// Differences that make a conductance of 1/e.
 mod unit {
     /// Of normals: their distance, 17 degrees.
-    pub const NORMAL: f32 = 0.3;
+    pub(super) const NORMAL: f32 = 0.3;
     /// Of a point from the tangent plane of another, over their distance from the camera.
-    pub const DEPTH: f32 = 0.02;
+    pub(super) const DEPTH: f32 = 0.02;
     /// Of albedos.
-    pub const ALBEDO: f32 = 0.1;
+    pub(super) const ALBEDO: f32 = 0.1;
     /// Of what media hide: they fade, and take few pixels. A tenth of this took four times the error among cubes in fog.
-    pub const OPACITY: f32 = 0.5;
+    pub(super) const OPACITY: f32 = 0.5;
     /// Of where they do, relative.
-    pub const NEARNESS: f32 = 0.5;
+    pub(super) const NEARNESS: f32 = 0.5;
 }
 
 /// The resistance between things that have nothing in common.
 const APART: f32 = 100.0;
 
 /// What pixels show, and the resistances between neighbours.
-pub struct Maps {
+pub(super) struct Maps {
     width: usize,
     sights: Vec<Sight>,
     /// Between a pixel and that on its right; 0 at the border.
@@ -33,7 +33,7 @@ pub struct Maps {
 
 impl Maps {
     /// Those of an image of `width` pixels across.
-    pub fn new(width: usize, sights: Vec<Sight>) -> Self {
+    pub(super) fn new(width: usize, sights: Vec<Sight>) -> Self {
         let between = |step: usize, has: &dyn Fn(usize) -> bool| -> Vec<f32> {
             let next = |pixel: usize| {
                 if has(pixel) { resistance(&sights[pixel], &sights[pixel + step]) } else { 0.0 }
@@ -46,22 +46,22 @@ impl Maps {
     }
 
     /// Pixels across.
-    pub fn width(&self) -> usize {
+    pub(super) fn width(&self) -> usize {
         self.width
     }
 
     /// Pixels.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.sights.len()
     }
 
     /// The conductance between any two pixels, whatever lies between them.
-    pub fn likeness(&self, a: usize, b: usize) -> f32 {
+    pub(super) fn likeness(&self, a: usize, b: usize) -> f32 {
         (-resistance(&self.sights[a], &self.sights[b])).exp()
     }
 
     /// The resistance between neighbours, the second on the right of the first or below it.
-    pub fn step(&self, from: usize, to: usize) -> f32 {
+    pub(super) fn step(&self, from: usize, to: usize) -> f32 {
         let (first, second) = (from.min(to), from.max(to));
         if second - first == 1 && second % self.width != 0 { self.across[first] } else { self.down[first] }
     }
@@ -69,7 +69,7 @@ impl Maps {
     /// Shows `visit` the pixels that the line between the middles of two pixels passes, the first one left out, each with the
     /// resistance of the step to it. Where the line passes a corner, it is the greater one of the two ways around
     /// (P03T fig. 6.5).
-    pub fn walk(&self, from: usize, to: usize, mut visit: impl FnMut(usize, f32)) {
+    pub(super) fn walk(&self, from: usize, to: usize, mut visit: impl FnMut(usize, f32)) {
         let place = |pixel: usize| [pixel % self.width, pixel / self.width].map(|x| x as i64);
         let ([x, y], [to_x, to_y]) = (place(from), place(to));
         let [wide, high] = [(to_x - x).abs(), (to_y - y).abs()];
@@ -94,7 +94,7 @@ impl Maps {
     }
 
     /// The conductance along the line between two pixels: the product of those of its steps.
-    pub fn along(&self, from: usize, to: usize) -> f32 {
+    pub(super) fn along(&self, from: usize, to: usize) -> f32 {
         let mut sum = 0.0;
         self.walk(from, to, |_, resistance| sum += resistance);
         (-sum).exp()

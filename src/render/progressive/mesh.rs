@@ -27,7 +27,7 @@ impl HasPosition for Shaded {
 type Vertex<'a> = VertexHandle<'a, Shaded, (), spade::CdtEdge<()>, ()>;
 
 /// Shaded pixels, and the triangles between them.
-pub struct Mesh {
+pub(super) struct Mesh {
     width: usize,
     triangles: ConstrainedDelaunayTriangulation<Shaded>,
     /// Of every pixel its vertex, if it is shaded.
@@ -35,31 +35,31 @@ pub struct Mesh {
 }
 
 /// Two shaded pixels, the first one first.
-pub type Edge = [u32; 2];
+pub(super) type Edge = [u32; 2];
 
 impl Mesh {
     /// Nothing is shaded, of an image of these sizes.
-    pub fn new(width: usize, pixels: usize) -> Self {
+    pub(super) fn new(width: usize, pixels: usize) -> Self {
         Self { width, triangles: ConstrainedDelaunayTriangulation::new(), vertices: vec![None; pixels] }
     }
 
     /// Number of shaded pixels.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.triangles.num_vertices()
     }
 
     /// The radiance of a pixel, if it is shaded.
-    pub fn at(&self, pixel: usize) -> Option<Spectrum> {
+    pub(super) fn at(&self, pixel: usize) -> Option<Spectrum> {
         self.vertices[pixel].map(|vertex| self.triangles.vertex(vertex).data().radiance)
     }
 
     /// The radiances of all shaded pixels.
-    pub fn radiances(&self) -> impl Iterator<Item = Spectrum> + '_ {
+    pub(super) fn radiances(&self) -> impl Iterator<Item = Spectrum> + '_ {
         self.triangles.vertices().map(|vertex| vertex.data().radiance)
     }
 
     /// Adds a pixel that was not there, as found near `hint` if that is there.
-    pub fn insert(&mut self, pixel: usize, radiance: Spectrum, hint: Option<usize>) {
+    pub(super) fn insert(&mut self, pixel: usize, radiance: Spectrum, hint: Option<usize>) {
         let place = [pixel % self.width, pixel / self.width].map(|x| x as i64);
         let shaded = Shaded { pixel, place, radiance };
         let added = match hint.and_then(|hint| self.vertices[hint]) {
@@ -71,13 +71,13 @@ impl Mesh {
     }
 
     /// True if the edge is there.
-    pub fn has(&self, [a, b]: Edge) -> bool {
+    pub(super) fn has(&self, [a, b]: Edge) -> bool {
         let ends = self.vertices[a as usize].zip(self.vertices[b as usize]);
         ends.is_some_and(|(a, b)| self.triangles.get_edge_from_neighbors(a, b).is_some())
     }
 
     /// All edges.
-    pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
+    pub(super) fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
         self.triangles.undirected_edges().map(|edge| {
             let [a, b] = edge.vertices();
             edge_of(a, b)
@@ -85,14 +85,14 @@ impl Mesh {
     }
 
     /// The edges at a shaded pixel.
-    pub fn edges_at(&self, pixel: usize) -> impl Iterator<Item = Edge> + '_ {
+    pub(super) fn edges_at(&self, pixel: usize) -> impl Iterator<Item = Edge> + '_ {
         let vertex = self.vertices[pixel].map(|vertex| self.triangles.vertex(vertex));
         vertex.into_iter().flat_map(|vertex| vertex.out_edges().map(|edge| edge_of(edge.from(), edge.to())))
     }
 
     /// Makes an edge between two shaded pixels, which stays; nothing where it would cross one that stays. The pixels whose
     /// edges may be others now.
-    pub fn constrain(&mut self, [a, b]: Edge) -> Vec<usize> {
+    pub(super) fn constrain(&mut self, [a, b]: Edge) -> Vec<usize> {
         let Some((from, to)) = self.vertices[a as usize].zip(self.vertices[b as usize]) else {
             return Vec::new();
         };
@@ -108,7 +108,7 @@ impl Mesh {
 
     /// The picture: shaded pixels as they are, others as the corners of their triangle, by Gouraud's weights (P03T sec. 6.4)
     /// times how alike they are: edges of what is seen stay sharp where triangles reach across.
-    pub fn paint(&self, maps: &Maps) -> Vec<Spectrum> {
+    pub(super) fn paint(&self, maps: &Maps) -> Vec<Spectrum> {
         let faces: Vec<[Shaded; 3]> =
             self.triangles.inner_faces().map(|face| face.vertices().map(|vertex| *vertex.data())).collect();
         let painted: Vec<Vec<(usize, Spectrum)>> =

@@ -41,7 +41,7 @@ impl PartialOrd for Entry {
 }
 
 /// The edges of a mesh, the worst first.
-pub struct Queue {
+pub(super) struct Queue {
     heap: BinaryHeap<Entry>,
     queued: HashSet<Edge>,
     /// The luminance that is taken as white.
@@ -52,13 +52,13 @@ pub struct Queue {
 
 impl Queue {
     /// No edges.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { heap: BinaryHeap::new(), queued: HashSet::new(), white: 1.0, found_from: 0 }
     }
 
     /// Adds `edges` of `mesh` that are not there yet. Whenever twice as many pixels are shaded, white is found anew, and all
     /// edges are measured by it.
-    pub fn add(&mut self, mesh: &Mesh, maps: &Maps, edges: impl Iterator<Item = Edge>) {
+    pub(super) fn add(&mut self, mesh: &Mesh, maps: &Maps, edges: impl Iterator<Item = Edge>) {
         if mesh.len() >= 2 * self.found_from {
             let mean = mesh.radiances().map(|radiance| radiance.luminance().max(0.0)).sum::<f32>()
                 / mesh.len() as f32;
@@ -93,7 +93,7 @@ impl Queue {
     }
 
     /// Takes the worst edge that is still there.
-    pub fn pop(&mut self, mesh: &Mesh) -> Option<Edge> {
+    pub(super) fn pop(&mut self, mesh: &Mesh) -> Option<Edge> {
         loop {
             let Entry { edge, .. } = self.heap.pop()?;
             self.queued.remove(&edge);
@@ -111,7 +111,7 @@ fn lab_over(radiance: Spectrum, white: f32) -> Vec3 {
 
 /// The pixel that divides an edge: halfway between its middle and where it is crossed by the greatest resistance
 /// (P03T sec. 6.4), or the nearest to that which is not `taken`; none where all of them are.
-pub fn division(maps: &Maps, [a, b]: Edge, taken: impl Fn(usize) -> bool) -> Option<usize> {
+pub(super) fn division(maps: &Maps, [a, b]: Edge, taken: impl Fn(usize) -> bool) -> Option<usize> {
     let mut pixels = Vec::new();
     let (mut worst, mut at) = (0.0, None);
     maps.walk(a as usize, b as usize, |pixel, resistance| {

@@ -10,7 +10,7 @@ const BREAK: f32 = std::f32::consts::LN_2;
 const LEAST_AREA: usize = 24;
 /// Pixels that one piece of an outline replaces, at most.
 const LONGEST_PIECE: usize = 64;
-/// How far a piece may be from the pixels that it replaces [pixels].
+/// How far a piece may be from the pixels that it replaces (pixels).
 const TOLERANCE: f64 = 0.75;
 
 /// Steps to the right, down, left, up.
@@ -18,7 +18,7 @@ const STEPS: [[i64; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 
 /// The outlines of regions.
 #[derive(Default)]
-pub struct Outlines {
+pub(super) struct Outlines {
     /// Their corners, those that stand for most of the picture first.
     pub corners: Vec<usize>,
     /// Their pieces, each from a corner to the next.
@@ -27,7 +27,7 @@ pub struct Outlines {
 
 impl Outlines {
     /// Those of the regions of an image.
-    pub fn of(maps: &Maps) -> Self {
+    pub(super) fn of(maps: &Maps) -> Self {
         let regions = Regions::of(maps);
         let mut polygons: Vec<(usize, Vec<usize>)> = Vec::new();
         let mut lengths = vec![0; regions.areas.len()];

@@ -19,7 +19,7 @@ const HALVINGS: u32 = 10;
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub(super) struct Sight {
     /// The first surface, smooth ones included; none where there is none.
     pub first: Option<FirstSurface>,
     /// Shading normal of the surface that the ray ends at, behind mirrors and panes; 0 where there is none.
@@ -30,25 +30,25 @@ pub struct Sight {
     pub emitter: Option<u32>,
     /// 1 - exp(-optical depth), the mean of the channels.
     pub opacity: f32,
-    /// 1 over the distance at which the optical depth is 1, or where the last medium ends if it never is [1/m]; 0 without
+    /// 1 over the distance at which the optical depth is 1, or where the last medium ends if it never is (1/m); 0 without
     /// media.
     pub nearness: f32,
 }
 
 /// A surface as a ray from the lens meets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FirstSurface {
+pub(super) struct FirstSurface {
     /// Where.
     pub position: Vec3,
     /// Shading normal.
     pub normal: Vec3,
-    /// From the near clip plane, along the ray [m].
+    /// From the near clip plane, along the ray (m).
     pub distance: f32,
 }
 
 impl Sight {
     /// Nothing at all.
-    pub const NOTHING: Self = Self {
+    pub(super) const NOTHING: Self = Self {
         first: None,
         last_normal: Vec3::ZERO,
         albedo: Spectrum::ZERO,
@@ -57,9 +57,9 @@ impl Sight {
         nearness: 0.0,
     };
 
-    /// What `scene` shows at a film position [pixels], through the middle of the lens. Where surfaces or the program choose
+    /// What `scene` shows at a film position (pixels), through the middle of the lens. Where surfaces or the program choose
     /// at random, all pixels choose by the same numbers.
-    pub fn of(scene: &Scene, film: Vec2, hide_emitters: bool) -> Self {
+    pub(super) fn of(scene: &Scene, film: Vec2, hide_emitters: bool) -> Self {
         let ray = scene.sensor.ray(film, Vec2::ZERO).ray;
         let mut stream = Stream::new(0, 0, 0, Purpose::Pilot);
         let mut segment = Segment::along(scene, ray, scene.media_map.sensor, hide_emitters);
@@ -109,11 +109,11 @@ impl Sight {
 /// The media that a ray has passed.
 #[derive(Default)]
 struct Veil {
-    /// How far it came [m].
+    /// How far it came (m).
     length: f32,
     /// Optical depth, the mean of the channels.
     depth: f32,
-    /// How far the last medium reached, or the depth 1 in it [m].
+    /// How far the last medium reached, or the depth 1 in it (m).
     reach: f32,
 }
 

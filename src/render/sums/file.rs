@@ -55,7 +55,7 @@ fn header(state: &str, arrays: &[Array]) -> String {
     format!("{text:width$}", width = text.len().next_multiple_of(8))
 }
 
-/// True if a file begins as [`write`] begins one.
+/// True if a file begins as [`write()`] begins one.
 pub fn is_one(path: &Path) -> bool {
     let mut begin = [0; 8 + BEGIN.len()];
     path.is_file()
@@ -63,7 +63,7 @@ pub fn is_one(path: &Path) -> bool {
         && begin.ends_with(BEGIN)
 }
 
-/// Reads what [`write`] wrote: the sums, and how their image is made.
+/// Reads what [`write()`] wrote: the sums, and how their image is made.
 pub fn read(path: &Path) -> Result<(AnySums, Value)> {
     let bytes = std::fs::read(path).map_err(|error| Error::io(path, "read", &error))?;
     let refuse = |found: &str| {

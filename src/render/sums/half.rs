@@ -35,7 +35,7 @@ pub(in crate::render) struct Half {
 
 impl Half {
     /// No pass yet over so many `planes`.
-    pub fn new(pixels: usize, planes: usize) -> Self {
+    pub(crate) fn new(pixels: usize, planes: usize) -> Self {
         let zeros = || vec![DVec3::ZERO; pixels * planes];
         Self {
             passes: 0,
@@ -51,7 +51,7 @@ impl Half {
     }
 
     /// Adds what a pass contributed.
-    pub fn add(&mut self, camera: &[Spectrum], light: &[Spectrum], active: &[bool]) {
+    pub(crate) fn add(&mut self, camera: &[Spectrum], light: &[Spectrum], active: &[bool]) {
         self.passes += 1;
         for (index, (camera, light)) in camera.iter().zip(light).enumerate() {
             let (camera, light) = (camera.as_dvec3(), light.as_dvec3());
@@ -73,7 +73,7 @@ impl Half {
     }
 
     /// Examines the samples of the active pixels.
-    pub fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
+    pub(crate) fn judge(&mut self, active: &[bool], width: usize, limits: &Limits) {
         if self.mean == 0.0 {
             let luminances = (0..active.len()).map(|pixel| luminance(self.moments(pixel).0));
             // One broken sample must not decide for all pixels.
@@ -140,7 +140,7 @@ impl Half {
     }
 
     /// Ends the means of this half where `other` has converged.
-    pub fn end(&mut self, other: &Self) {
+    pub(crate) fn end(&mut self, other: &Self) {
         let n = self.passes as f64;
         for (index, ended) in self.ended.iter_mut().enumerate() {
             if ended.is_none() && other.content[index % other.content.len()] {
@@ -153,7 +153,7 @@ impl Half {
     }
 
     /// The half's estimate of a pixel, of the image or of a layer.
-    pub fn value(&self, pixel: usize) -> DVec3 {
+    pub(crate) fn value(&self, pixel: usize) -> DVec3 {
         let n = self.passes as f64;
         let light = self.ended_light.as_ref().map_or(self.light[pixel] / n, |light| light[pixel]);
         self.ended[pixel].unwrap_or(self.camera[pixel] / n) + light
@@ -170,7 +170,7 @@ pub(in crate::render) struct Limits {
 
 impl Limits {
     /// Student's t makes up for variances that are estimates themselves (P03T A.2.3).
-    pub fn after(passes: u64, precision: Precision) -> Self {
+    pub(crate) fn after(passes: u64, precision: Precision) -> Self {
         let Precision { error, confidence } = precision;
         let tail = 0.5 * (1.0 - confidence);
         let t = StudentsT::new(0.0, 1.0, (passes - 1) as f64).map_or(f64::INFINITY, |t| -t.inverse_cdf(tail));

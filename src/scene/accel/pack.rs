@@ -26,7 +26,7 @@ impl Lanes {
 
 /// A ray spread over four lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct WideRay {
+pub(super) struct WideRay {
     pub(super) origin: [Vec4; 3],
     pub(super) direction: [Vec4; 3],
 }
@@ -43,14 +43,14 @@ impl WideRay {
 
 /// Up to four flat primitives, each as a plane and two reciprocal axes. Empty lanes are never hit.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct FlatPack {
+pub(super) struct FlatPack {
     corner: Lanes,
     normal: Lanes,
     axis_u: Lanes,
     axis_v: Lanes,
     /// 1 for triangles, 0 for parallelograms.
     fold: Vec4,
-    /// Greatest length of the reciprocal axes [1/m]: how fast errors in position become errors in u and v.
+    /// Greatest length of the reciprocal axes (1/m): how fast errors in position become errors in u and v.
     reach: Vec4,
     primitive: [u32; 4],
 }
@@ -125,10 +125,10 @@ impl FlatPack {
 
 /// One sphere.
 #[derive(Clone, Copy, Debug)]
-pub struct Ball {
+pub(super) struct Ball {
     /// Its centre.
     pub center: Vec3,
-    /// Its radius [m].
+    /// Its radius (m).
     pub radius: f32,
     /// Its number.
     pub primitive: u32,

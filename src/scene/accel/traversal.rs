@@ -57,7 +57,7 @@ const SHALLOW: usize = 64;
 impl Tree {
     /// The nearest hit with t in (0, `t_max`).
     #[inline]
-    pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+    pub(super) fn closest(&self, ray: &Ray) -> Option<Hit> {
         match self.stack_need() {
             0 => self.closest_of_list(ray),
             1..=SHALLOW => self.closest_below::<false>(ray, &mut [(0.0, 0); SHALLOW]),
@@ -67,7 +67,7 @@ impl Tree {
 
     /// True if anything is hit with t in (0, `t_max`).
     #[inline]
-    pub fn occluded(&self, ray: &Ray) -> bool {
+    pub(super) fn occluded(&self, ray: &Ray) -> bool {
         match self.stack_need() {
             0 => self.occluded_by_list(ray),
             1..=SHALLOW => self.occluded_below::<false>(ray, &mut [0; SHALLOW]),

@@ -19,24 +19,24 @@ use std::time::Duration;
 const LIST_LIMIT: usize = 12;
 
 /// What a child reference points to, in its top two bits; the index is below them.
-pub const INNER: u32 = 0;
+pub(super) const INNER: u32 = 0;
 /// A `FlatPack`.
-pub const FLATS: u32 = 1 << 30;
+pub(super) const FLATS: u32 = 1 << 30;
 /// A `Ball`; or, with [`BEYOND`], a `Curved`. No kind of its own: scenes without these rare ones should not
 /// pay for the test.
-pub const ROUND: u32 = 2 << 30;
+pub(super) const ROUND: u32 = 2 << 30;
 /// Marks the index of a `Curved`.
-pub const BEYOND: u32 = 1 << 29;
+pub(super) const BEYOND: u32 = 1 << 29;
 /// The bits of the kind.
-pub const KIND: u32 = 3 << 30;
+pub(super) const KIND: u32 = 3 << 30;
 
 /// Added to the depth where there are curved primitives. Deeper than any tree, so that the rare ones are
 /// tested last.
-pub const RARE: usize = usize::MAX / 8;
+pub(super) const RARE: usize = usize::MAX / 8;
 
 /// Four boxes and what is in them. Empty slots have empty boxes.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub(super) struct Node {
     /// Least x, y, z of the boxes, and greatest.
     pub planes: [[Vec4; 3]; 2],
     /// Kind and index of each child.
@@ -45,7 +45,7 @@ pub struct Node {
 
 /// Primitives and the hierarchy over them; no nodes where a plain list is faster.
 #[derive(Clone, Debug)]
-pub struct Tree {
+pub(super) struct Tree {
     pub(super) nodes: Vec<Node>,
     pub(super) packs: Vec<FlatPack>,
     pub(super) balls: Vec<Ball>,
@@ -58,7 +58,7 @@ pub struct Tree {
 
 impl Tree {
     /// Primitives are numbered by their place in the slice.
-    pub fn build(primitives: &[Primitive]) -> Self {
+    pub(super) fn build(primitives: &[Primitive]) -> Self {
         if primitives.len() <= LIST_LIMIT {
             Self::build_list(primitives)
         } else {
@@ -93,7 +93,7 @@ impl Tree {
     }
 
     /// Least and greatest corner.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
+    pub(super) fn bounds(&self) -> (Vec3, Vec3) {
         (self.bounds.min.into(), self.bounds.max.into())
     }
 

@@ -59,13 +59,13 @@ impl Nature {
 pub struct Contact {
     /// The one that was moved, and the other.
     pub shapes: [u32; 2],
-    /// The farthest that a face was moved [m].
+    /// The farthest that a face was moved (m).
     pub by: f64,
     /// Nothing but the order of the file says which of them comes first.
     pub is_tie: bool,
 }
 
-/// A move of one primitive along its patch's normal [m].
+/// A move of one primitive along its patch's normal (m).
 struct Move {
     shape: u32,
     primitive: usize,

@@ -19,11 +19,11 @@ const BEYOND: f64 = 100.0;
 const SKEW: f64 = gamma(48) as f64;
 
 /// Two faces in one place.
-pub struct Pair {
+pub(super) struct Pair {
     pub shapes: [u32; 2],
     pub primitives: [usize; 2],
     pub patches: [Patch; 2],
-    /// Nearer than this, along the normal, rays may step over one of them [m].
+    /// Nearer than this, along the normal, rays may step over one of them (m).
     pub reach: f64,
 }
 
@@ -32,11 +32,11 @@ struct Near<'a> {
     shapes: [&'a Shape; 2],
     /// What their boxes have in common.
     common: Aabb,
-    /// By how much boxes are widened [m].
+    /// By how much boxes are widened (m).
     slack: Vec3,
-    /// How near faces may come, per axis [m].
+    /// How near faces may come, per axis (m).
     reach: DVec3,
-    /// The size of the smaller shape [m].
+    /// The size of the smaller shape (m).
     smaller: f64,
 }
 
@@ -48,7 +48,7 @@ struct Boxed {
 
 /// All pairs of faces of different shapes, in their `bounds`, that are nearer than they may be: `closeness` is that of two
 /// shapes over the coordinates between which rays run to them, and `farthest` the largest of the whole scene.
-pub fn pairs(
+pub(super) fn pairs(
     shapes: &[Shape],
     bounds: &[(Vec3, Vec3)],
     farthest: DVec3,
@@ -71,7 +71,7 @@ pub fn pairs(
 }
 
 /// The largest coordinate per axis.
-pub fn far((low, high): &(Vec3, Vec3)) -> DVec3 {
+pub(super) fn far((low, high): &(Vec3, Vec3)) -> DVec3 {
     low.abs().max(high.abs()).as_dvec3()
 }
 
@@ -123,7 +123,7 @@ impl<'a> Near<'a> {
         all.filter(|boxed| boxed.bounds.intersect_aabb(&self.common)).collect()
     }
 
-    /// How near two patches may come along their normal [m]; round ones have all normals. No more than a thousandth of the
+    /// How near two patches may come along their normal (m); round ones have all normals. No more than a thousandth of the
     /// smaller shape, so that nothing thin is turned inside out, but more than rounding.
     fn along_normal(&self, [one, other]: &[Patch; 2]) -> f64 {
         let along =

@@ -15,7 +15,7 @@ use crate::{
 const CELLS: f32 = 64.0;
 /// Connected parts that are located: the largest.
 const MOST: usize = 64;
-/// Surfaces reach this far beyond themselves [cells]: more than positions are rounded by.
+/// Surfaces reach this far beyond themselves (cells): more than positions are rounded by.
 const SLACK: f32 = 1e-3;
 
 /// Whether cells of the box around a medium lie in it; none where surfaces are, or it is not certain.

@@ -15,7 +15,7 @@ pub struct Disk {
     frame: Frame,
     /// In metres.
     radius: f32,
-    /// How far it lies from `centre` along local z [m].
+    /// How far it lies from `centre` along local z (m).
     lift: f32,
 }
 
@@ -40,7 +40,7 @@ impl Disk {
         }
     }
 
-    /// Density of its points if all are as likely [1/m^2].
+    /// Density of its points if all are as likely (1/m^2).
     #[inline]
     pub fn pdf_area(&self) -> f32 {
         1.0 / (PI * self.radius * self.radius)
@@ -52,7 +52,7 @@ impl Disk {
         -self.frame.normal
     }
 
-    /// Radius [m].
+    /// Radius (m).
     #[inline]
     pub fn radius(&self) -> f32 {
         self.radius
@@ -86,7 +86,7 @@ impl Disk {
 }
 
 impl Disk {
-    /// The first and last distance [m] at which the ray in unit `direction` is in the beam from this disk; at `position`
+    /// The first and last distance (m) at which the ray in unit `direction` is in the beam from this disk; at `position`
     /// it is `distance` from its start. None where it is not in the beam, or for ever.
     #[inline]
     pub fn lit_part(&self, position: Vec3, direction: Vec3, distance: f32) -> Option<[f32; 2]> {

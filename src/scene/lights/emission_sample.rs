@@ -25,10 +25,10 @@ pub struct EmissionSample {
     pub ray: Ray,
     /// |cos| at the emitter; 1 where it is not a shape.
     pub cosine: f32,
-    /// Density of the point: per area of a shape [1/m^2], per volume of a medium [1/m^3], per solid angle at infinity
-    /// [1/sr]; a probability where the emitter is a point or a direction.
+    /// Density of the point: per area of a shape (1/m^2), per volume of a medium (1/m^3), per solid angle at infinity
+    /// (1/sr); a probability where the emitter is a point or a direction.
     pub pdf: f32,
-    /// Density of the direction [1/sr], or, of parallel light, that of the origin on the disk [1/m^2]; 1 of the only direction there is.
+    /// Density of the direction (1/sr), or, of parallel light, that of the origin on the disk (1/m^2); 1 of the only direction there is.
     pub pdf_direction: f32,
     /// Both densities without what was learnt.
     pub unlearnt: Densities,
@@ -39,9 +39,9 @@ pub struct EmissionSample {
 /// What leaves an emitter point in a given direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Emitted {
-    /// Radiance x cosine [W/(m^2 sr)], or radiance gained per metre [W/(m^3 sr)].
+    /// Radiance x cosine (W/(m^2 sr)), or radiance gained per metre (W/(m^3 sr)).
     pub value: Spectrum,
-    /// Density of the direction by a light subpath [1/sr] ([1/m^2] at infinity).
+    /// Density of the direction by a light subpath (1/sr) ((1/m^2) at infinity).
     pub pdf_direction: f32,
     /// |cos| at the emitter; 1 at infinity.
     pub cosine: f32,

@@ -23,12 +23,12 @@ pub struct EmitterSample {
     pub value: Spectrum,
     /// |cos| at the emitter; 1 where it is not a shape.
     pub cosine: f32,
-    /// Density of this point by next-event estimation from the reference: per area of a shape [1/m^2], per volume of a
-    /// medium [1/m^3], per solid angle at infinity [1/sr]; a probability where the emitter is a point or a direction.
+    /// Density of this point by next-event estimation from the reference: per area of a shape (1/m^2), per volume of a
+    /// medium (1/m^3), per solid angle at infinity (1/sr); a probability where the emitter is a point or a direction.
     pub pdf: f32,
     /// Density of this point as the start of a light subpath without learnt starts, in the same measure.
     pub pdf_start: f32,
-    /// Density of the direction to the reference by a light subpath [1/sr] ([1/m^2] of parallel light).
+    /// Density of the direction to the reference by a light subpath (1/sr) ((1/m^2) of parallel light).
     pub pdf_direction: f32,
 }
 

@@ -8,7 +8,7 @@ use crate::{
     medium::Emission,
     sampling::{Discrete, Stream},
 };
-pub use leaves::Extent;
+pub(super) use leaves::Extent;
 
 /// How often an emitter is taken whatever the reference: the tree knows nothing of what stands in the way, and may think
 /// far too little of an emitter.
@@ -16,7 +16,7 @@ const REGARDLESS: f64 = 0.2;
 
 /// The distribution.
 #[derive(Clone, Debug, Default)]
-pub struct LightSampler {
+pub(super) struct LightSampler {
     /// The emitter that there is no other beside.
     only: Option<usize>,
     /// Half by power, half uniform, whatever the reference.
@@ -38,7 +38,7 @@ struct Cells {
 
 /// What was taken.
 #[derive(Clone, Copy, Debug)]
-pub enum Taken {
+pub(super) enum Taken {
     /// An emitter, with this probability.
     Emitter(usize, f32),
     /// An emissive medium; of it a cell, or any part of it.
@@ -47,7 +47,7 @@ pub enum Taken {
 
 impl LightSampler {
     /// Over `all` emitters that can be connected to, of the given powers.
-    pub fn new(all: &[Light], powers: &[f64], extent: &Extent<'_>) -> Self {
+    pub(super) fn new(all: &[Light], powers: &[f64], extent: &Extent<'_>) -> Self {
         let joinable =
             |(light, power): (&Light, &f64)| if light.emitter.is_connectible() { *power } else { 0.0 };
         let powers: Vec<f64> = all.iter().zip(powers).map(joinable).collect();
@@ -59,13 +59,13 @@ impl LightSampler {
     }
 
     /// True where nothing can be connected to.
-    pub fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.regardless.is_empty()
     }
 
     /// One for `reference`; of a single one no number is drawn.
     #[inline]
-    pub fn sample(&self, reference: Vec3, stream: &mut Stream) -> Taken {
+    pub(super) fn sample(&self, reference: Vec3, stream: &mut Stream) -> Taken {
         if let Some(index) = self.only {
             return Taken::Emitter(index, 1.0);
         }
@@ -91,7 +91,7 @@ impl LightSampler {
 
     /// Probability of the emitter `index`, which is no medium of several leaves, for `reference`.
     #[inline]
-    pub fn probability(&self, index: usize, reference: Vec3) -> f32 {
+    pub(super) fn probability(&self, index: usize, reference: Vec3) -> f32 {
         if let Some(only) = self.only {
             return if index == only { 1.0 } else { 0.0 };
         }
@@ -102,9 +102,9 @@ impl LightSampler {
         }
     }
 
-    /// Density of `position` in the emissive medium `index` for `reference`, the choice of the medium included [1/m^3].
+    /// Density of `position` in the emissive medium `index` for `reference`, the choice of the medium included (1/m^3).
     #[inline]
-    pub fn pdf_vol(&self, index: usize, emission: &Emission, position: Vec3, reference: Vec3) -> f32 {
+    pub(super) fn pdf_vol(&self, index: usize, emission: &Emission, position: Vec3, reference: Vec3) -> f32 {
         let by_power = emission.pdf_vol(position);
         let (Some(tree), Some(cells)) = (&self.tree, self.cells_of(index)) else {
             return self.probability(index, reference) * by_power;
@@ -122,7 +122,7 @@ impl LightSampler {
 
 /// Half by power, half uniform among those that have any: a distant strong emitter cannot keep a near weak one from being
 /// found.
-pub fn regardless(powers: impl Iterator<Item = f64> + Clone) -> Discrete {
+pub(super) fn regardless(powers: impl Iterator<Item = f64> + Clone) -> Discrete {
     let total: f64 = powers.clone().sum();
     let count = powers.clone().filter(|power| *power > 0.0).count() as f64;
     Discrete::new(powers.map(|power| if power > 0.0 { power / total + 1.0 / count } else { 0.0 }))

@@ -12,7 +12,7 @@ mod moments;
 #[cfg(test)]
 mod tests;
 
-pub use moments::Moments;
+pub(super) use moments::Moments;
 
 use crate::math::{Vec3, axes};
 use glam::Vec4;
@@ -28,7 +28,7 @@ const LEAF: u32 = 1 << 31;
 
 /// A distribution over leaves 0 .. n-1 that depends on a reference point.
 #[derive(Clone, Debug)]
-pub struct LightTree {
+pub(super) struct LightTree {
     /// The root first.
     nodes: Vec<Node>,
     /// Per leaf: which child to take at every level, the root's in the lowest bits.
@@ -41,7 +41,7 @@ struct Node {
     centre: [Vec4; 3],
     /// Where the light goes, on average: the mean of its unit directions.
     lobe: [Vec4; 3],
-    /// Added to the squared distance [m^2]: from within a cluster, its centre is not near.
+    /// Added to the squared distance (m^2): from within a cluster, its centre is not near.
     softening: Vec4,
     /// Power as a part of all, times 1 - |lobe|^2.
     peak: Vec4,
@@ -71,7 +71,7 @@ impl Node {
 impl LightTree {
     /// The leaf that `u` in [0, 1) falls on for `reference`, and its probability.
     #[inline]
-    pub fn sample(&self, reference: Vec3, mut u: f64) -> (u32, f32) {
+    pub(super) fn sample(&self, reference: Vec3, mut u: f64) -> (u32, f32) {
         let (mut node, mut probability) = (0, 1.0);
         loop {
             let here = &self.nodes[node as usize];
@@ -88,7 +88,7 @@ impl LightTree {
 
     /// Probability of `leaf` for `reference`.
     #[inline]
-    pub fn probability(&self, leaf: u32, reference: Vec3) -> f32 {
+    pub(super) fn probability(&self, leaf: u32, reference: Vec3) -> f32 {
         let (mut node, mut probability) = (0, 1.0);
         let mut path = self.paths[leaf as usize];
         while node & LEAF == 0 {

@@ -3,8 +3,8 @@
 //! The same emitter point has two densities: that by which light subpaths begin there, and that by
 //! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
 //! emitter: of starts by its power, of next-event estimation by what it is estimated to give the reference. They
-//! are per area [1/m^2] for shapes, discrete for points and single directions, per solid angle [1/sr] for
-//! emitters at infinity, whose "point" is a direction (discrete for a beam, which has one), and per volume [1/m^3] for emissive media.
+//! are per area (1/m^2) for shapes, discrete for points and single directions, per solid angle (1/sr) for
+//! emitters at infinity, whose "point" is a direction (discrete for a beam, which has one), and per volume (1/m^3) for emissive media.
 //! For how camera subpaths sample a point of those, and so the density of s = 0, see [`Emission::rate`].
 
 mod clearings;
@@ -74,7 +74,7 @@ pub struct Lights {
     pub environment: Option<u32>,
     /// Centre of a sphere around the scene.
     centre: Vec3,
-    /// Its radius [m].
+    /// Its radius (m).
     radius: f32,
     /// What remains of light from infinity where it enters the scene: 1, or 0 in fog without end.
     from_infinity: Spectrum,

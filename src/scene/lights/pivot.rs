@@ -26,15 +26,15 @@ pub enum Pivot {
 pub struct Place {
     /// The point, or the centre of the shape.
     pub position: Vec3,
-    /// How far from it light comes from, root mean square [m].
+    /// How far from it light comes from, root mean square (m).
     pub radius: f32,
 }
 
 /// Distances along a ray, from its start to infinity.
 struct Distances {
-    /// That of the point closest to the emitter [m].
+    /// That of the point closest to the emitter (m).
     closest: f32,
-    /// How far the emitter is from there, at least [m].
+    /// How far the emitter is from there, at least (m).
     apart: f32,
     /// The angle at which it sees the ray.
     angle: f32,
@@ -61,7 +61,7 @@ impl Pivot {
         }
     }
 
-    /// A distance along the ray from `origin` in unit `direction`, and its density [1/m]; none where there is none.
+    /// A distance along the ray from `origin` in unit `direction`, and its density (1/m); none where there is none.
     pub fn sample(&self, origin: Vec3, direction: Vec3, u: f32) -> Option<(f32, f32)> {
         let (distance, pdf) = match self {
             Self::Around(place) => place.sample(origin, direction, u)?,
@@ -73,7 +73,7 @@ impl Pivot {
         (distance > 0.0 && distance < f32::INFINITY && pdf > 0.0).then_some((distance, pdf))
     }
 
-    /// Density of `position` [1/m], `distance` metres from the start of a ray in unit `direction`.
+    /// Density of `position` (1/m), `distance` metres from the start of a ray in unit `direction`.
     #[inline]
     pub fn pdf(&self, position: Vec3, direction: Vec3, distance: f32) -> f32 {
         match self {

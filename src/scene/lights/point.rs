@@ -16,7 +16,7 @@ pub enum EmitterPoint {
     Volume {
         /// World position.
         position: Vec3,
-        /// Rate at which camera subpaths sample emission there [1/m], see [`crate::medium::Emission::rate`].
+        /// Rate at which camera subpaths sample emission there (1/m), see [`crate::medium::Emission::rate`].
         rate: Spectrum,
     },
     /// The unit direction towards an emitter at infinity.

@@ -151,7 +151,7 @@ impl Starts {
         Densities { point, direction }
     }
 
-    /// Memory that they take [bytes].
+    /// Memory that they take (bytes).
     pub fn bytes(&self) -> usize {
         let learnt: usize = self.learnt.iter().flatten().map(Learnt::bytes).sum();
         self.emitters.bytes() + size_of_val(&self.learnt[..]) + learnt

@@ -15,7 +15,7 @@ const POINTS: u32 = 4096;
 
 /// The emissive ones among `media`, which may overlap or contradict each other; `outside` is the medium of points about
 /// which nothing is known.
-pub fn emissive<'a>(
+pub(crate) fn emissive<'a>(
     media: &'a [Medium],
     locator: Locator<'a>,
     overlaps: Option<&'a Overlaps>,

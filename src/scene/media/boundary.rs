@@ -59,7 +59,7 @@ pub struct Side {
 
 /// What a ray hits that has to do with media. Surfaces that light passes and that separate no media do not count.
 #[derive(Clone, Copy, Debug)]
-pub enum Met {
+pub(super) enum Met {
     /// A side of which the medium is known.
     Side(Side),
     /// An opaque surface of which this side's medium is not known.
@@ -74,7 +74,7 @@ pub enum Met {
 }
 
 /// The first thing that `ray` hits. Where `through_walls`, opaque surfaces are passed if they say nothing.
-pub fn first(geometry: &Geometry, surfaces: &[Surface], ray: Ray, through_walls: bool) -> Met {
+pub(super) fn first(geometry: &Geometry, surfaces: &[Surface], ray: Ray, through_walls: bool) -> Met {
     let met = geometry.march(ray).find_map(|point| {
         let Surface { boundary, transmits, .. } = surfaces[point.shape as usize];
         let (shape, position) = (point.shape, point.position);
@@ -88,10 +88,10 @@ pub fn first(geometry: &Geometry, surfaces: &[Surface], ray: Ray, through_walls:
 }
 
 /// Directions of [`direction`], spread evenly over the sphere.
-pub const DIRECTIONS: u32 = 32;
+pub(super) const DIRECTIONS: u32 = 32;
 
 /// Direction `index` of a golden-angle spiral.
-pub fn direction(index: u32) -> Vec3 {
+pub(crate) fn direction(index: u32) -> Vec3 {
     let turn = (index as f32 * 0.618_034).fract();
     warp::to_sphere(vec2((index as f32 + 0.5) / DIRECTIONS as f32, turn))
 }

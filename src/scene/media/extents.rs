@@ -13,7 +13,7 @@ use crate::{
 const MARGIN: f32 = 1e-3;
 
 /// Boxes around the media of a scene.
-pub struct Extents<'a> {
+pub(crate) struct Extents<'a> {
     /// All shapes.
     pub geometry: &'a Geometry,
     /// Their properties.
@@ -28,7 +28,7 @@ pub struct Extents<'a> {
 
 impl Extents<'_> {
     /// Finishes all media.
-    pub fn finish(
+    pub(crate) fn finish(
         &self,
         media: Vec<MediumDescription>,
         medium_overrides: &MediumOverrides,
@@ -45,7 +45,7 @@ impl Extents<'_> {
     }
 
     /// The box around the shapes that hold `medium`; around the whole scene where it also lies outside of some: false.
-    pub fn of(&self, medium: MediumIndex) -> (bool, [Vec3; 2]) {
+    pub(crate) fn of(&self, medium: MediumIndex) -> (bool, [Vec3; 2]) {
         let boundaries = || self.surfaces.iter().zip(self.geometry.shapes());
         let holds = |surface: &Surface| surface.boundary.interior == Some(medium);
         let leaks = |surface: &Surface| surface.boundary.exterior == Some(medium);
@@ -63,7 +63,7 @@ impl Extents<'_> {
     }
 
     /// The box around everything, the camera too.
-    pub fn scene(&self) -> [Vec3; 2] {
+    pub(crate) fn scene(&self) -> [Vec3; 2] {
         let (low, high) = self.geometry.bounds();
         let camera = (self.viewpoint, self.viewpoint);
         widened(if low.is_finite() && high.is_finite() { union((low, high), camera) } else { camera })

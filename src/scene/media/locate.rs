@@ -191,7 +191,7 @@ impl Survey {
 
 /// How well the medium of a point is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Certainty {
+pub(crate) enum Certainty {
     /// All evidence along unblocked segments agrees.
     Seen,
     /// It does not; a shape that speaks for the medium, and one against it.
@@ -206,7 +206,7 @@ pub enum Certainty {
 
 /// The medium of a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Located {
+pub(crate) struct Located {
     /// Which.
     pub medium: MediumIndex,
     /// How well it is known.
@@ -215,7 +215,7 @@ pub struct Located {
 
 /// Locates points among the shapes of a scene.
 #[derive(Clone, Copy, Debug)]
-pub struct Locator<'a> {
+pub(crate) struct Locator<'a> {
     /// All shapes.
     pub geometry: &'a Geometry,
     /// Their properties.
@@ -385,7 +385,7 @@ impl Locator<'_> {
     }
 
     /// The medium around `point`, which lies on no surface.
-    pub fn locate(&self, point: Vec3, stream: &mut Stream) -> Option<Located> {
+    pub(crate) fn locate(&self, point: Vec3, stream: &mut Stream) -> Option<Located> {
         if let Some(medium) = self.known.only {
             return Some(Located { medium, certainty: Certainty::Seen });
         }
@@ -404,7 +404,7 @@ impl Locator<'_> {
     }
 
     /// The medium of a ray that leaves `origin` in `direction`; always the same for the same ray.
-    pub fn along(&self, origin: Vec3, direction: Vec3) -> Option<MediumIndex> {
+    pub(crate) fn along(&self, origin: Vec3, direction: Vec3) -> Option<MediumIndex> {
         if let Some(medium) = self.known.only {
             return Some(medium);
         }
@@ -424,7 +424,7 @@ impl Locator<'_> {
     }
 
     /// What light from infinity that starts at `origin` in `direction` is in.
-    pub fn at_infinity(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
+    pub(crate) fn at_infinity(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
         match boundary::first(self.geometry, self.surfaces, ray, false) {
             Met::Side(side) => side.medium,

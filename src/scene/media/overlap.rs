@@ -253,7 +253,7 @@ impl Overlaps {
 }
 
 /// The open boundaries that contradict others by a `survey`, and that lids can close.
-pub fn open(geometry: &Geometry, surfaces: &[Surface], survey: &Survey) -> Vec<u32> {
+pub(crate) fn open(geometry: &Geometry, surfaces: &[Surface], survey: &Survey) -> Vec<u32> {
     let closable = |shape: &u32| {
         let (Surface { transmits, .. }, model) =
             (&surfaces[*shape as usize], &geometry.shapes()[*shape as usize]);
@@ -346,7 +346,7 @@ fn follow_on(steps: &mut Vec<(MediumIndex, MediumIndex)>, first: usize) -> bool 
 }
 
 /// True if `medium` is at `position`, where `base` lies without the boundaries that overlap.
-pub fn lies_in(
+pub(crate) fn lies_in(
     overlaps: Option<&Overlaps>,
     base: MediumIndex,
     medium: MediumIndex,

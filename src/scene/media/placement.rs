@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 const POINTS: u32 = 64;
 
 /// What messages call things by.
-pub struct Names<'a> {
+pub(crate) struct Names<'a> {
     /// Takes the warnings.
     pub library: &'a Library,
     /// Id (or plugin name) of each medium after vacuum.
@@ -30,7 +30,7 @@ pub struct Names<'a> {
     pub shapes: &'a [String],
     /// Where each shape is in the file.
     pub locations: &'a [Location],
-    /// Origin of all positions in the file's coordinates [m].
+    /// Origin of all positions in the file's coordinates (m).
     pub recentre: DVec3,
 }
 
@@ -85,7 +85,7 @@ impl Names<'_> {
     }
 
     /// Shapes whose openings were closed.
-    pub fn warn_of_lids(&self, open: &[u32]) {
+    pub(crate) fn warn_of_lids(&self, open: &[u32]) {
         for &shape in open {
             let text = format!(
                 "{} bounds a medium and is open: its openings are taken to be closed by flat lids",
@@ -96,7 +96,7 @@ impl Names<'_> {
     }
 
     /// Shapes that are open, or overlap, in a way that nothing can put in order.
-    pub fn warn_of_contradictions(&self, survey: &Survey) {
+    pub(crate) fn warn_of_contradictions(&self, survey: &Survey) {
         let found = survey.proven();
         let Some((Contradiction { from, medium, at }, _)) = found.first() else { return };
         let place = at.position.as_dvec3() + self.recentre;
@@ -117,7 +117,7 @@ impl Names<'_> {
     }
 
     /// Faces in one place, of which nothing but the file says which is before the other: each pair of shapes once.
-    pub fn warn_of_ties(&self, contacts: &[Contact]) {
+    pub(crate) fn warn_of_ties(&self, contacts: &[Contact]) {
         let by = contacts.iter().map(|contact| contact.by).fold(0.0, f64::max);
         let ties = contacts.iter().filter(|contact| contact.is_tie);
         let pairs: BTreeSet<[u32; 2]> =
@@ -133,7 +133,7 @@ impl Names<'_> {
     }
 
     /// No light gets to a camera at `location`.
-    pub fn warn_of_camera_shut_in(&self, shape: u32, location: &Location) {
+    pub(crate) fn warn_of_camera_shut_in(&self, shape: u32, location: &Location) {
         let text = format!(
             "the camera is inside the closed opaque shape {}, and no emitter is: the image will be black. Move the \
              camera or an emitter, or give the shape a bsdf that light passes",
@@ -143,7 +143,7 @@ impl Names<'_> {
     }
 
     /// No camera sees `medium` in `shape`.
-    pub fn warn_of_medium_shut_in(&self, medium: MediumIndex, shape: u32) {
+    pub(crate) fn warn_of_medium_shut_in(&self, medium: MediumIndex, shape: u32) {
         let text = format!(
             "the medium {} inside this closed shape is never seen: no light gets through its opaque surface. Give it \
              a \"null\" or \"dielectric\" bsdf, or remove the medium",
@@ -163,7 +163,12 @@ impl Names<'_> {
     }
 
     /// Of the medium around everything, light has to end somewhere, and none comes in from infinity.
-    pub fn warn_of_endless(&self, outside: MediumIndex, media: &[MediumDescription], sky: Option<&Location>) {
+    pub(crate) fn warn_of_endless(
+        &self,
+        outside: MediumIndex,
+        media: &[MediumDescription],
+        sky: Option<&Location>,
+    ) {
         let description = &media[outside.0 as usize];
         if let Some(location) = description.endless_emission() {
             let text = "this medium surrounds the whole scene and emits everywhere; emission is limited to the box around all shapes and the camera. Bound the medium by a shape to limit its emission yourself";
@@ -184,7 +189,7 @@ impl Names<'_> {
 }
 
 /// Finds the media of camera and emitters.
-pub struct Placement<'a> {
+pub(crate) struct Placement<'a> {
     /// Finds media.
     pub locator: Locator<'a>,
     /// For warnings.
@@ -195,7 +200,7 @@ pub struct Placement<'a> {
 
 /// The medium of a camera whose ray through the middle of the image starts at `start`, and which states none;
 /// if it is a guess, it also serves as evidence for others.
-pub fn place_camera(
+pub(crate) fn place_camera(
     geometry: &Geometry,
     surfaces: &[super::Surface],
     known: &mut Known,
@@ -224,7 +229,7 @@ impl Placement<'_> {
     }
 
     /// The medium of an emitter at a point.
-    pub fn of_point(&self, position: Vec3, location: &Location) -> MediumIndex {
+    pub(crate) fn of_point(&self, position: Vec3, location: &Location) -> MediumIndex {
         let mut stream = Stream::new(4, 0, 0, Purpose::Pilot);
         let located = self.locator.locate(position, &mut stream).unwrap_or_else(|| self.assumed());
         self.names.warn(located, "an emitter", location);
@@ -232,7 +237,7 @@ impl Placement<'_> {
     }
 
     /// The medium on the emitting side of a shape, and whether light of different points starts in different ones.
-    pub fn of_shape(&self, shape: u32, location: &Location) -> (MediumIndex, bool) {
+    pub(crate) fn of_shape(&self, shape: u32, location: &Location) -> (MediumIndex, bool) {
         let mut stream = Stream::new(5, u64::from(shape), 0, Purpose::Pilot);
         let located = (0..POINTS).map(|_| {
             let point = self.locator.geometry.sample_area(shape, &mut stream);
@@ -242,7 +247,7 @@ impl Placement<'_> {
     }
 
     /// The medium that a beam leaves `disk` in, and whether that of different points differs.
-    pub fn of_disk(&self, disk: &Disk, location: &Location) -> (MediumIndex, bool) {
+    pub(crate) fn of_disk(&self, disk: &Disk, location: &Location) -> (MediumIndex, bool) {
         let mut stream = Stream::new(7, 0, 0, Purpose::Pilot);
         let located = (0..POINTS).map(|_| {
             let point = disk.sample(&mut stream);
@@ -292,7 +297,7 @@ impl Placement<'_> {
     }
 
     /// The medium that light from infinity comes through, and whether that differs by direction.
-    pub fn of_infinite(&self, emitter: &Emitter) -> (MediumIndex, bool) {
+    pub(crate) fn of_infinite(&self, emitter: &Emitter) -> (MediumIndex, bool) {
         let infinity = &self.locator.known.infinity;
         let direction = if let Kind::Infinite(sky) = &emitter.kind { sky.direction() } else { None };
         let medium = direction.map_or(infinity.most(), |direction| infinity.towards(direction));

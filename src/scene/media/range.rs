@@ -15,7 +15,7 @@ use crate::{
 };
 
 /// Reports every one of `media` (all but vacuum) that is too dense, or too thin for the size of the scene.
-pub fn check(
+pub(crate) fn check(
     media: &[Medium],
     locations: &[Location],
     extents: &Extents<'_>,
@@ -42,12 +42,12 @@ pub fn check(
     Ok(())
 }
 
-/// The largest coordinate of a box [m from the camera].
+/// The largest coordinate of a box (m from the camera).
 fn farthest(low: Vec3, high: Vec3) -> f32 {
     low.abs().max(high.abs()).max_element()
 }
 
-/// A mean free path [m] against the steps of positions where the medium reaches `farthest` metres from the camera.
+/// A mean free path (m) against the steps of positions where the medium reaches `farthest` metres from the camera.
 fn check_mean_free_path(
     medium: &Medium,
     free_path: f32,

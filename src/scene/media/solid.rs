@@ -9,7 +9,7 @@ use crate::{
 
 /// A closed shape by itself.
 #[derive(Clone, Debug)]
-pub struct Solid {
+pub(crate) struct Solid {
     geometry: Geometry,
     /// Its normals point away from what it holds.
     outward: bool,
@@ -17,29 +17,29 @@ pub struct Solid {
 
 impl Solid {
     /// `shape`, closed by `lids` if it is open.
-    pub fn new(shape: &Shape, lids: &[Shape]) -> Self {
+    pub(crate) fn new(shape: &Shape, lids: &[Shape]) -> Self {
         let geometry = Geometry::build(std::iter::once(shape).chain(lids).cloned().collect());
         let outward = is_outward(&geometry);
         Self { geometry, outward }
     }
 
     /// True if the normals point away from what it holds.
-    pub fn is_outward(&self) -> bool {
+    pub(crate) fn is_outward(&self) -> bool {
         self.outward
     }
 
     /// Least and greatest corner of the box around it.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
+    pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
         self.geometry.bounds()
     }
 
     /// A point on it, its lids left out, uniform by area.
-    pub fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+    pub(crate) fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
         self.geometry.sample_area(0, stream)
     }
 
     /// True if `position`, which is not on it, lies within. `direction` is where to look for its surface: any does.
-    pub fn holds(&self, position: Vec3, direction: Vec3) -> bool {
+    pub(crate) fn holds(&self, position: Vec3, direction: Vec3) -> bool {
         let (low, high) = self.geometry.bounds();
         if position.cmplt(low).any() || position.cmpgt(high).any() {
             return false;

@@ -37,7 +37,7 @@ pub fn has_sequence(root: &Object) -> bool {
     })
 }
 
-/// When the scene is seen, as it says itself [s].
+/// When the scene is seen, as it says itself (s).
 pub fn time_of(root: &Object) -> f64 {
     root.number("time").unwrap_or(0.0)
 }

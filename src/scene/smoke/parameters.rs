@@ -25,9 +25,9 @@ pub struct Parameters<'a> {
     pub wanted: Wanted<'a>,
     /// Size and place: from the file's world to the scene's.
     pub to_world: Vec<TransformStep>,
-    /// Extinction of a density of 1 [1/m].
+    /// Extinction of a density of 1 (1/m).
     pub density_scale: f64,
-    /// Brightness: 1 m of fire radiates so much of what a black body of its temperature does [1/m].
+    /// Brightness: 1 m of fire radiates so much of what a black body of its temperature does (1/m).
     pub emission_scale: f64,
     /// Fraction of light that is scattered, not absorbed; where a grid gives a colour, a factor of that.
     pub albedo: Option<Spectrum>,
@@ -52,15 +52,15 @@ pub struct Shown {
 /// Temperatures above this are in kelvin, not in thousands of it.
 const LARGEST_UNIT: f32 = 100.0;
 
-/// Temperature of what is barely fire, and what a flame of 1 adds [K]; Blender's defaults for its flames.
+/// Temperature of what is barely fire, and what a flame of 1 adds (K); Blender's defaults for its flames.
 const IGNITION: f64 = 1500.0;
 const FLAME: f64 = 1500.0;
 
-/// What a temperature of 1 is, where 2 is hot [K]; Blender's and Houdini's shaders have the same default.
+/// What a temperature of 1 is, where 2 is hot (K); Blender's and Houdini's shaders have the same default.
 const UNIT: f64 = 1000.0;
 
 impl<'a> Parameters<'a> {
-    /// Reads all of them; the scene is seen at `time` [s].
+    /// Reads all of them; the scene is seen at `time` (s).
     pub fn read(params: &Params<'a>, time: f64) -> Result<Self> {
         let file = read_file(params, time)?;
         let location = params.given("filename").map_or(params.location(), |property| &property.location);

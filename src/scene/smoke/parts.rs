@@ -15,7 +15,7 @@ struct Maker<'a> {
 
 /// The boundary around the box from `low` to `high` of the file's world; and the medium in it, where that has a name by
 /// which the boundary and others may refer to it.
-pub fn container(
+pub(super) fn container(
     smoke: &Object,
     given: &Parameters<'_>,
     taken: &Taken,

@@ -40,11 +40,11 @@ pub struct Taken {
 pub struct Glow {
     /// Its name.
     pub grid: String,
-    /// Temperature that a number of 1 adds [K].
+    /// Temperature that a number of 1 adds (K).
     pub scale: f64,
-    /// Temperature of what is barely above nothing [K].
+    /// Temperature of what is barely above nothing (K).
     pub offset: f64,
-    /// The highest temperature [K].
+    /// The highest temperature (K).
     pub most: f64,
 }
 
@@ -74,7 +74,7 @@ impl Taken {
 }
 
 impl Taken {
-    /// The file that is shown at `time` [s].
+    /// The file that is shown at `time` (s).
     pub fn at(&self, time: f64) -> Result<PathBuf> {
         let Some(sequence) = &self.sequence else { return Ok(self.file.clone()) };
         sequence.at(time).map_err(|problem| problem.at(&self.location))

@@ -6,7 +6,7 @@ use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer:
 /// Root of the sum of (n p)^2 over strategies: with the root it grows as n p does, and no path is too long or too
 /// dense for it that is not for the balance heuristic too.
 #[derive(Clone, Copy, Debug)]
-pub struct Power<L>(L);
+pub(super) struct Power<L>(L);
 
 impl<L: Channels> MisSums for Power<L> {
     type Channels = L;

@@ -10,7 +10,7 @@ use std::marker::PhantomData;
 
 /// How many strategies can make a path.
 #[derive(Clone, Copy, Debug)]
-pub struct Uniform<L> {
+pub(super) struct Uniform<L> {
     strategies: f32,
     channels: PhantomData<L>,
 }

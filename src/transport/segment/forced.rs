@@ -11,7 +11,7 @@ use crate::{
 
 /// One way in which a forced flight ends.
 #[derive(Clone, Copy, Debug)]
-pub struct ForcedEnd<L> {
+pub(crate) struct ForcedEnd<L> {
     /// As the weights see it: like one that was sampled without forcing.
     pub flight: FreeFlight<L>,
     /// Contribution over the density by which it was really sampled.
@@ -19,7 +19,7 @@ pub struct ForcedEnd<L> {
 }
 
 /// A forced flight.
-pub struct Forced<L> {
+pub(crate) struct Forced<L> {
     /// In the media, where there is something to collide with, and on what lies behind.
     pub ends: [Option<ForcedEnd<L>>; 2],
     /// See [`sure_depth`].
@@ -70,7 +70,7 @@ impl<L: Channels> Unforced<L> {
 
 /// Follows `segment` to the first surface that stops it, and forces a collision of the `hero` channel on the
 /// way. `along` as in [`super::sample_free_flight`].
-pub fn force<P: Profile>(
+pub(crate) fn force<P: Profile>(
     segment: Segment<'_>,
     hero: usize,
     stream: &mut Stream,
@@ -83,7 +83,7 @@ pub fn force<P: Profile>(
 
 /// Optical depth per channel of the media that `segment` crosses before the first surface that holds anything
 /// back: what a forced flight always follows. Never random: the same for all strategies.
-pub fn sure_depth<P: Profile>(mut segment: Segment<'_>) -> P::Channels {
+pub(crate) fn sure_depth<P: Profile>(mut segment: Segment<'_>) -> P::Channels {
     let mut depth = P::Channels::splat(0.0);
     loop {
         let (interval, hit) = segment.next::<P>(f32::INFINITY);

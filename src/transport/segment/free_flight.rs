@@ -104,7 +104,7 @@ impl Interaction {
 
 /// A sampled segment.
 #[derive(Clone, Copy, Debug)]
-pub struct FreeFlight<L> {
+pub(crate) struct FreeFlight<L> {
     /// Where it ended; none where it left the scene.
     pub interaction: Option<Interaction>,
     /// The medium at its end.
@@ -115,7 +115,7 @@ pub struct FreeFlight<L> {
 
 /// What a flight has passed, for its contribution and for the weights.
 #[derive(Clone, Copy, Debug)]
-pub struct FlightState<L> {
+pub(crate) struct FlightState<L> {
     /// Optical depth per channel, the logarithms of null-passing probabilities included: the flight density
     /// in the weights is exp(-depth), times sigma_t at a collision.
     pub depth: L,
@@ -129,13 +129,13 @@ pub struct FlightState<L> {
 impl<L: Channels> FlightState<L> {
     /// For a flight that has not begun.
     #[inline]
-    pub fn none() -> Self {
+    pub(crate) fn none() -> Self {
         Self { depth: L::splat(0.0), ratio: L::splat(1.0), tint: Spectrum::ONE }
     }
 
     /// Applies a surface; true if the flight goes on.
     #[inline]
-    pub fn cross(&mut self, crossing: &NullCrossing) -> bool {
+    pub(crate) fn cross(&mut self, crossing: &NullCrossing) -> bool {
         match *crossing {
             NullCrossing::Stopped(probability) => self.tint /= probability,
             NullCrossing::Passed(through, probability) => {
@@ -149,7 +149,7 @@ impl<L: Channels> FlightState<L> {
 
 /// What a flight passes on its way, as far as walks may want to see it.
 #[derive(Clone, Copy, Debug)]
-pub enum Passed<L> {
+pub(crate) enum Passed<L> {
     /// A part in one medium. Only profiles with emissive media show it.
     Medium(FlightPart<L>),
     /// A point of a shape that emits: the flight reaches it whether it goes on or ends. Only profiles with nulls show
@@ -159,7 +159,7 @@ pub enum Passed<L> {
 
 /// The arrival of a flight at a shape that emits.
 #[derive(Clone, Copy, Debug)]
-pub struct EmitterCrossing<L> {
+pub(crate) struct EmitterCrossing<L> {
     /// The emitter.
     pub light: u32,
     /// Its point.
@@ -174,7 +174,7 @@ pub struct EmitterCrossing<L> {
 
 /// A part of a flight that lies in one medium.
 #[derive(Clone, Copy, Debug)]
-pub struct FlightPart<L> {
+pub(crate) struct FlightPart<L> {
     /// The medium.
     pub medium: MediumIndex,
     /// The part, as long as it was really flown; infinite where it was never left.
@@ -188,7 +188,7 @@ pub struct FlightPart<L> {
 impl<L: Channels> FlightPart<L> {
     /// The part as far as `medium` can emit there. In a homogeneous medium the distance skipped behind a boundary counts: where mean
     /// free paths are as short, the light of that distance would be lost.
-    pub fn emitting(&self, medium: &Medium) -> RaySegment {
+    pub(crate) fn emitting(&self, medium: &Medium) -> RaySegment {
         let MediumInterval { segment, skipped } = self.interval;
         match medium.heterogeneous() {
             Some(_) => segment,
@@ -197,7 +197,7 @@ impl<L: Channels> FlightPart<L> {
     }
 
     /// The state of a flight that would have ended `t` metres into this part.
-    pub fn until<P: Profile<Channels = L>>(
+    pub(crate) fn until<P: Profile<Channels = L>>(
         &self,
         scene: &Scene,
         t: f32,
@@ -225,7 +225,7 @@ impl<L: Channels> FlightPart<L> {
 /// LW96 eq. 4: the distance is that of a free flight; its density is eq. 6 in a medium, and that it reaches a surface
 /// has the probability of eq. 7.
 #[inline(always)]
-pub fn sample_free_flight<P: Profile>(
+pub(crate) fn sample_free_flight<P: Profile>(
     mut segment: Segment<'_>,
     hero: usize,
     stream: &mut Stream,

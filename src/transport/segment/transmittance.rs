@@ -12,9 +12,9 @@ use crate::{
 
 /// A given segment that nothing blocks.
 #[derive(Clone, Copy, Debug)]
-pub struct SegmentTransmittance<L> {
+pub(crate) struct SegmentTransmittance<L> {
     /// exp(-depth) per channel as the weights use it: the density of a flight that ends on a surface (LW96
-    /// eq. 7), see [`super::FreeFlight::depth`].
+    /// eq. 7), see [`super::free_flight::FlightPart`].
     pub pdf: L,
     /// The fraction of radiance that arrives; where a medium's tracker is random, an unbiased estimate of it.
     pub transmittance: Spectrum,
@@ -28,7 +28,7 @@ pub struct SegmentTransmittance<L> {
 ///
 /// LW96 eq. 10: T and the visibility in g(x, y).
 #[inline]
-pub fn transmittance<P: Profile>(
+pub(crate) fn transmittance<P: Profile>(
     scene: &Scene,
     ray: Ray,
     cut: f32,

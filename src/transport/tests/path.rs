@@ -155,7 +155,7 @@ pub struct Path {
     pub rounding: f64,
 }
 
-/// How far off f32 may leave a position, relative [ulp].
+/// How far off f32 may leave a position, relative (ulp).
 const SHAKEN: f32 = 4.0;
 
 /// What lies between two vertices.
@@ -219,7 +219,7 @@ impl Way {
                 (None, Place::Sky(_)) => f64::INFINITY,
                 (None, _) => (end - left).dot(direction),
             };
-            way.add_leg(scene, medium, left, direction, reached, pdf_over_hero(from, to));
+            way.add_leg(scene, medium, left, direction, reached, reach(from, to));
             let Some(point) = point else { return Some(way) };
             let passed = hidden && scene.surface(point.shape).emitter.is_some();
             let null = scene.null_transmission(&point, ray.direction).max_element();
@@ -242,16 +242,16 @@ impl Way {
         left: DVec3,
         direction: DVec3,
         distance: f64,
-        pdf_over_hero: f64,
+        reach: f64,
     ) {
         let medium = &scene.media[medium.0 as usize];
         let sigma_t = medium.bound().sigma_t;
-        self.rounding += ULP * pdf_over_hero * f64::from(sigma_t.max_element());
+        self.rounding += ULP * reach * f64::from(sigma_t.max_element());
         if let Some(varying) = medium.heterogeneous() {
             // Ends that are rounded sideways shift the whole leg to where extinction differs.
             let extent = f64::from((varying.extinction().high - varying.extinction().low).length());
             let shifted = STEEPNESS * distance.clamp(0.0, extent);
-            self.rounding += ULP * pdf_over_hero * f64::from(sigma_t.max_element()) * shifted;
+            self.rounding += ULP * reach * f64::from(sigma_t.max_element()) * shifted;
             let depth = depth_of(varying, left, direction, distance);
             self.depth = std::array::from_fn(|channel| self.depth[channel] + depth[channel]);
             return;
@@ -289,7 +289,7 @@ fn depth_of(varying: &Heterogeneous, left: DVec3, direction: DVec3, distance: f6
     (0..POINTS).map(|i| medium.at::<Spectrum>(point(i).as_vec3()).as_dvec3()).sum::<DVec3>() * step
 }
 
-/// How fast the media of the scenes vary, relative to their maximum [1/m].
+/// How fast the media of the scenes vary, relative to their maximum (1/m).
 const STEEPNESS: f64 = 6.0;
 
 /// Points of the quadrature of an optical depth.
@@ -300,7 +300,7 @@ pub fn properties(scene: &Scene, medium: MediumIndex, position: Vec3) -> MediumP
     scene.media[medium.0 as usize].properties_at::<Everything>(0, position)
 }
 
-/// How often a camera subpath that passes `position` samples what the emitter `light` emits there [1/m].
+/// How often a camera subpath that passes `position` samples what the emitter `light` emits there (1/m).
 pub fn rate(scene: &Scene, light: u32, position: Vec3) -> Spectrum {
     match &scene.lights.all[light as usize].emitter.kind {
         Kind::Medium(glow) => glow.emission.rate(position),
@@ -311,7 +311,7 @@ pub fn rate(scene: &Scene, light: u32, position: Vec3) -> Spectrum {
 const ULP: f64 = f32::EPSILON as f64;
 
 /// The largest coordinate of either end.
-fn pdf_over_hero(a: &Node, b: &Node) -> f64 {
+fn reach(a: &Node, b: &Node) -> f64 {
     let of = |node: &Node| match node.place {
         Place::Sky(_) => 0.0,
         _ => f64::from(node.position().abs().max_element()),
@@ -326,7 +326,7 @@ fn aim(a: &Node, b: &Node, direction: DVec3) -> f64 {
         (_, Place::Sky(_)) | (Place::Sky(_), _) => return ULP / cosine,
         _ => a.position().as_dvec3().distance(b.position().as_dvec3()),
     };
-    ULP * (1.0 + pdf_over_hero(a, b) / distance) / cosine
+    ULP * (1.0 + reach(a, b) / distance) / cosine
 }
 
 /// The ray from one vertex to just before another, and the medium it starts in.

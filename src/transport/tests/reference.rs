@@ -232,7 +232,7 @@ impl<'a> Reference<'a> {
         seen.map_or(0.0, |seen| f64::from(seen.pdf))
     }
 
-    /// Density of directions that leave an emitter [1/sr]; of parallel light, of starts on its disk [1/m^2].
+    /// Density of directions that leave an emitter (1/sr); of parallel light, of starts on its disk (1/m^2).
     fn emission(&self, light: u32, node: &Node, direction: DVec3) -> f64 {
         match &self.scene.lights.all[light as usize].emitter.kind {
             Kind::Surface(surface) if surface.is_dirac() => 1.0,
@@ -245,7 +245,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Density of going on from `here` to `after`, coming from `before`, survival included [1/sr]; the probability
+    /// Density of going on from `here` to `after`, coming from `before`, survival included (1/sr); the probability
     /// of the lobe where that is a Dirac lobe.
     fn scatter(&self, before: &Node, here: &Node, after: &Node, transport: Transport) -> f64 {
         let (back, on) = (here.towards(before), here.towards(after));
@@ -305,7 +305,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// Density of the distance to `x` from the `lens` by equiangular sampling of what lies around `place` [1/m].
+/// Density of the distance to `x` from the `lens` by equiangular sampling of what lies around `place` (1/m).
 fn along_place(place: &lights::Place, lens: DVec3, x: DVec3) -> f64 {
     let (to_x, to_place) = (x - lens, place.position.as_dvec3() - lens);
     let closest = to_place.dot(to_x.normalize());

@@ -3,7 +3,7 @@
 
 use super::{Problem, Result, value::array};
 
-/// Length of a frame's header [bytes].
+/// Length of a frame's header (bytes).
 const HEADER: usize = 16;
 
 /// Flags: bytes are shuffled; they are as they were; bits are shuffled; blocks are in one piece.
@@ -36,7 +36,7 @@ fn damaged(found: impl Into<String>) -> Problem {
 }
 
 /// Unpacks a frame that holds `count` bytes into `out`.
-pub fn unpack(bytes: &[u8], count: usize, out: &mut Vec<u8>) -> Result<()> {
+pub(super) fn unpack(bytes: &[u8], count: usize, out: &mut Vec<u8>) -> Result<()> {
     let (frame, length) = Frame::new(bytes)?;
     if length != count || count / LARGEST_RATIO > bytes.len() {
         return Err(damaged(format!("{length} bytes in {}, not {count}", bytes.len())));

@@ -7,12 +7,12 @@ use crate::description::nearest;
 const USUAL: &str = "density";
 
 /// The class of grids whose values are distances to a surface.
-pub const LEVEL_SET: &str = "level set";
+pub(super) const LEVEL_SET: &str = "level set";
 
 /// No more grids than these are listed.
 const LISTED: usize = 24;
 
-/// No more of a name is shown [characters].
+/// No more of a name is shown (characters).
 const SHOWN: usize = 80;
 
 /// What a file says of a grid before its values.
@@ -45,12 +45,12 @@ impl Label {
 }
 
 /// A file's text as a message may quote it.
-pub fn shown(text: &str) -> String {
+pub(super) fn shown(text: &str) -> String {
     text.chars().flat_map(char::escape_debug).take(SHOWN).collect()
 }
 
 /// The number of the grid called `wanted` or, if none is, of "density" or the only one there is.
-pub fn choose(grids: &[Label], wanted: Option<&str>) -> Result<usize> {
+pub(super) fn choose(grids: &[Label], wanted: Option<&str>) -> Result<usize> {
     let find = |name: &str| grids.iter().position(|grid| grid.is_called(name));
     let only = || (grids.len() == 1).then_some(0);
     match wanted {
@@ -60,7 +60,7 @@ pub fn choose(grids: &[Label], wanted: Option<&str>) -> Result<usize> {
 }
 
 /// Names and types, as a message may quote them.
-pub fn list(grids: &[Label]) -> String {
+pub(super) fn list(grids: &[Label]) -> String {
     let one = |grid: &Label| format!("\"{}\" ({})", shown(&grid.name), shown(&grid.kind));
     let names: Vec<_> = grids.iter().take(LISTED).map(one).collect();
     let more = grids.len().saturating_sub(LISTED);

@@ -8,7 +8,7 @@ use std::io::Read;
 const LARGEST_RATIO: u64 = 1032;
 
 /// Unpacks `count` bytes into `out`.
-pub fn unpack(bytes: &[u8], count: u64, out: &mut Vec<u8>) -> Result<()> {
+pub(super) fn unpack(bytes: &[u8], count: u64, out: &mut Vec<u8>) -> Result<()> {
     let damaged = |found: String| Problem::damage(format!("{count} bytes packed by zlib"), found);
     if count / LARGEST_RATIO > bytes.len() as u64 {
         return Err(damaged(format!("{} packed ones, which cannot hold them", bytes.len())));

@@ -3,11 +3,11 @@
 use super::{Problem, Result};
 use std::io::{Read, Seek, SeekFrom};
 
-/// No name or type is longer [bytes].
+/// No name or type is longer (bytes).
 const LONGEST_TEXT: u32 = 1 << 12;
 
 /// A file that is read. All numbers are little-endian.
-pub struct Input<R> {
+pub(super) struct Input<R> {
     source: R,
     length: u64,
     position: u64,
@@ -15,19 +15,19 @@ pub struct Input<R> {
 
 impl<R: Read + Seek> Input<R> {
     /// At the start of `source`.
-    pub fn new(mut source: R) -> Result<Self> {
+    pub(super) fn new(mut source: R) -> Result<Self> {
         let length = source.seek(SeekFrom::End(0))?;
         source.rewind()?;
         Ok(Self { source, length, position: 0 })
     }
 
-    /// Offset of the next byte [bytes].
-    pub fn position(&self) -> u64 {
+    /// Offset of the next byte (bytes).
+    pub(super) fn position(&self) -> u64 {
         self.position
     }
 
     /// How many bytes there are from here on.
-    pub fn left(&self) -> u64 {
+    pub(super) fn left(&self) -> u64 {
         self.length - self.position
     }
 
@@ -40,7 +40,7 @@ impl<R: Read + Seek> Input<R> {
     }
 
     /// Goes to `position`.
-    pub fn seek(&mut self, position: u64) -> Result<()> {
+    pub(super) fn seek(&mut self, position: u64) -> Result<()> {
         if position > self.length {
             let expected = format!("a place within the file, of {} bytes", self.length);
             return Err(Problem::damage(expected, format!("{position}")));
@@ -51,7 +51,7 @@ impl<R: Read + Seek> Input<R> {
     }
 
     /// Passes over `count` bytes.
-    pub fn skip(&mut self, count: u64) -> Result<()> {
+    pub(super) fn skip(&mut self, count: u64) -> Result<()> {
         self.need(count)?;
         // A file is never longer than this type can represent.
         self.source.seek_relative(count.cast_signed())?;
@@ -60,7 +60,7 @@ impl<R: Read + Seek> Input<R> {
     }
 
     /// Fills `bytes`.
-    pub fn fill(&mut self, bytes: &mut [u8]) -> Result<()> {
+    pub(super) fn fill(&mut self, bytes: &mut [u8]) -> Result<()> {
         self.need(bytes.len() as u64)?;
         self.source.read_exact(bytes)?;
         self.position += bytes.len() as u64;
@@ -68,42 +68,42 @@ impl<R: Read + Seek> Input<R> {
     }
 
     /// Makes `bytes` the next `count` bytes.
-    pub fn load(&mut self, bytes: &mut Vec<u8>, count: u64) -> Result<()> {
+    pub(super) fn load(&mut self, bytes: &mut Vec<u8>, count: u64) -> Result<()> {
         self.need(count)?;
         bytes.resize(count as usize, 0);
         self.fill(bytes)
     }
 
     /// The next `N` bytes.
-    pub fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
+    pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
         let mut bytes = [0; N];
         self.fill(&mut bytes)?;
         Ok(bytes)
     }
 
     /// The next number of 32 bits.
-    pub fn u32(&mut self) -> Result<u32> {
+    pub(super) fn u32(&mut self) -> Result<u32> {
         self.array().map(u32::from_le_bytes)
     }
 
     /// The next number of 64 bits.
-    pub fn u64(&mut self) -> Result<u64> {
+    pub(super) fn u64(&mut self) -> Result<u64> {
         self.array().map(u64::from_le_bytes)
     }
 
     /// The next signed number of 64 bits.
-    pub fn i64(&mut self) -> Result<i64> {
+    pub(super) fn i64(&mut self) -> Result<i64> {
         self.array().map(i64::from_le_bytes)
     }
 
     /// The next three signed numbers of 32 bits.
-    pub fn coordinates(&mut self) -> Result<[i32; 3]> {
+    pub(super) fn coordinates(&mut self) -> Result<[i32; 3]> {
         let mut read = || self.array().map(i32::from_le_bytes);
         Ok([read()?, read()?, read()?])
     }
 
     /// A text after its length.
-    pub fn text(&mut self) -> Result<String> {
+    pub(super) fn text(&mut self) -> Result<String> {
         let length = self.u32()?;
         if length > LONGEST_TEXT {
             return Err(Problem::damage(

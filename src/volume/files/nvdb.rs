@@ -18,20 +18,20 @@ use leaf::Leaf;
 use std::io::{Read, Seek};
 
 /// First bytes of every segment: until version 32.5, of a memory dump since, and of a segment since.
-pub const MAGICS: [[u8; 8]; 3] = [*b"NanoVDB0", DUMP, *b"NanoVDB2"];
+pub(super) const MAGICS: [[u8; 8]; 3] = [*b"NanoVDB0", DUMP, *b"NanoVDB2"];
 
 const DUMP: [u8; 8] = *b"NanoVDB1";
 
 /// The layout that is read.
 const LAYOUT: u32 = 32;
 
-/// Length of what a segment says of a grid before its name [bytes].
+/// Length of what a segment says of a grid before its name (bytes).
 const NOTES: usize = 176;
 
-/// Grids are packed by pieces of this length before that [bytes].
+/// Grids are packed by pieces of this length before that (bytes).
 const PIECE: u64 = 1 << 30;
 
-/// Places within a grid's image [bytes]: its map and the type of its values.
+/// Places within a grid's image (bytes): its map and the type of its values.
 const MAP_MATRIX: usize = 296 + 88;
 const MAP_SHIFT: usize = MAP_MATRIX + 2 * 72;
 const CLASS: usize = 632;
@@ -72,18 +72,18 @@ const KINDS: [&str; 27] = [
 ];
 
 /// A grid of the file.
-pub struct Entry {
+pub(super) struct Entry {
     /// What is said of it.
     pub label: Label,
     codec: u16,
     /// Where it is.
     start: u64,
-    /// Its length in the file, and that of its image [bytes].
+    /// Its length in the file, and that of its image (bytes).
     lengths: [u64; 2],
 }
 
 /// All grids; the input is positioned after the first magic bytes.
-pub fn entries<R: Read + Seek>(input: &mut Input<R>) -> Result<Vec<Entry>> {
+pub(super) fn entries<R: Read + Seek>(input: &mut Input<R>) -> Result<Vec<Entry>> {
     input.seek(0)?;
     let mut entries = vec![];
     while input.left() > 0 {
@@ -93,7 +93,7 @@ pub fn entries<R: Read + Seek>(input: &mut Input<R>) -> Result<Vec<Entry>> {
 }
 
 /// Reads the grid of `entry`.
-pub fn source<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Result<Source> {
+pub(super) fn source<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Result<Source> {
     input.seek(entry.start)?;
     grid(&entry.label, &Image::new(load(input, entry.codec, entry.lengths)?)?)
 }

@@ -92,7 +92,7 @@ impl Sequence {
         (self.name(frame) == name).then_some(frame)
     }
 
-    /// The file that is shown at `time` [s]: that of the nearest frame.
+    /// The file that is shown at `time` (s): that of the nearest frame.
     pub fn at(&self, time: f64) -> Result<PathBuf> {
         let Clock { fps, first } = self.clock;
         let shift = (time * fps).round();

@@ -7,7 +7,7 @@ use crate::volume::Samples;
 use std::collections::HashMap;
 
 /// Values of a block.
-pub const BLOCK: usize = 512;
+pub(super) const BLOCK: usize = 512;
 
 /// Sides of a block, of a tile that could be 16^3 blocks, and of one that could be 32^3 of these: powers of two.
 const LEVELS: [u32; 3] = [3, 7, 12];
@@ -75,7 +75,7 @@ impl<V: Copy> Sparse<V> {
         self.tree.background
     }
 
-    /// Memory that the values take, as they are held while they are read [bytes].
+    /// Memory that the values take, as they are held while they are read (bytes).
     pub fn bytes(&self) -> u64 {
         let tiles: usize = self.tree.tiles.iter().map(HashMap::len).sum();
         ((self.tree.blocks.len() * BLOCK + tiles) * size_of::<V>()) as u64
@@ -165,18 +165,18 @@ impl<V: Value> Samples<V> for Sparse<V> {
 }
 
 /// True if bit number `n` of a file's mask is set.
-pub fn is_set(mask: &[u8], n: usize) -> bool {
+pub(super) fn is_set(mask: &[u8], n: usize) -> bool {
     mask.get(n >> 3).is_some_and(|byte| byte >> (n & 7) & 1 == 1)
 }
 
 /// The place, within a node of `2^bits` children along each side, of child number `n`.
-pub fn unpack(n: usize, bits: u32) -> [i32; 3] {
+pub(super) fn unpack(n: usize, bits: u32) -> [i32; 3] {
     let side = (1 << bits) - 1;
     [n >> (2 * bits), (n >> bits) & side, n & side].map(|i| i as i32)
 }
 
 /// Takes the nodes of a tree in any order.
-pub struct Builder<V> {
+pub(super) struct Builder<V> {
     tree: Tree<V>,
     /// The box of active samples, both included; the wrong way round where there are none.
     active: [[i64; 3]; 2],
@@ -186,14 +186,14 @@ pub struct Builder<V> {
 
 impl<V: Value> Builder<V> {
     /// `background` everywhere.
-    pub fn new(background: V) -> Self {
+    pub(super) fn new(background: V) -> Self {
         let tree =
             Tree { background, blocks: HashMap::new(), tiles: std::array::from_fn(|_| HashMap::new()) };
         Self { tree, active: [[i64::MAX; 3], [i64::MIN; 3]], count: 0, range: None }
     }
 
     /// The value of what no file names.
-    pub fn background(&self) -> V {
+    pub(super) fn background(&self) -> V {
         self.tree.background
     }
 
@@ -208,7 +208,7 @@ impl<V: Value> Builder<V> {
     }
 
     /// One value in a cube at `origin`: of level 0, 1 or 2, as long as a block, 16 blocks, or 512.
-    pub fn tile(&mut self, level: usize, origin: [i32; 3], value: V, active: bool) {
+    pub(super) fn tile(&mut self, level: usize, origin: [i32; 3], value: V, active: bool) {
         let origin = origin.map(i64::from);
         if active {
             let side = 1 << LEVELS[level];
@@ -220,7 +220,7 @@ impl<V: Value> Builder<V> {
     }
 
     /// The values of the block at `origin`, those that are active marked in `mask`.
-    pub fn block(&mut self, origin: [i32; 3], values: &[V; BLOCK], mask: &[u8]) {
+    pub(super) fn block(&mut self, origin: [i32; 3], values: &[V; BLOCK], mask: &[u8]) {
         let start = origin.map(i64::from);
         for n in (0..BLOCK).filter(|&n| is_set(mask, n)) {
             let offset = unpack(n, LEVELS[0]);
@@ -235,7 +235,7 @@ impl<V: Value> Builder<V> {
     }
 
     /// All nodes are there. A grid without active samples is empty wherever one looks.
-    pub fn finish(self) -> Result<Sparse<V>> {
+    pub(super) fn finish(self) -> Result<Sparse<V>> {
         let [mut low, mut high] = self.active;
         if low[0] > high[0] {
             if self.tree.background != V::ZERO {

@@ -6,7 +6,7 @@ use half::f16;
 
 /// How one number is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub(super) enum Format {
     /// 16 bits.
     Half,
     /// 32 bits.
@@ -16,8 +16,8 @@ pub enum Format {
 }
 
 impl Format {
-    /// Length of a number [bytes].
-    pub fn size(self) -> usize {
+    /// Length of a number (bytes).
+    pub(super) fn size(self) -> usize {
         match self {
             Self::Half => 2,
             Self::Float => 4,
@@ -35,13 +35,13 @@ impl Format {
     }
 
     /// The value number `index` of `bytes`.
-    pub fn value<V: Value>(self, bytes: &[u8], index: usize) -> V {
+    pub(super) fn value<V: Value>(self, bytes: &[u8], index: usize) -> V {
         V::from_numbers(|channel| self.number(bytes, V::CHANNELS * index + channel))
     }
 }
 
 /// The `N` bytes of `bytes` from `at`; zeros beyond its end.
-pub fn array<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
+pub(super) fn array<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
     bytes.get(at..at + N).and_then(|slice| slice.try_into().ok()).unwrap_or([0; N])
 }
 

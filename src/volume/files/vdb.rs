@@ -15,15 +15,15 @@ use super::{
 };
 use crate::math::Vec3;
 use archive::Metadata;
-pub use archive::{Entry, read as entries};
+pub(super) use archive::{Entry, read as entries};
 use std::io::{Read, Seek};
 use values::Coding;
 
 /// First bytes of every file.
-pub const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";
+pub(super) const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";
 
 /// What the file says of the grid of `entry`; of no class where its notes are damaged.
-pub fn label<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Label {
+pub(super) fn label<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Label {
     let mut notes = || {
         input.seek(entry.grid)?;
         input.u32()?;
@@ -34,7 +34,11 @@ pub fn label<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Label {
 }
 
 /// Reads the grid of `entry`, one of `entries`.
-pub fn source<R: Read + Seek>(input: &mut Input<R>, entries: &[Entry], entry: &Entry) -> Result<Source> {
+pub(super) fn source<R: Read + Seek>(
+    input: &mut Input<R>,
+    entries: &[Entry],
+    entry: &Entry,
+) -> Result<Source> {
     let (format, channels) = numbers(entry)?;
     input.seek(entry.grid)?;
     let mut packing = input.u32()?;

@@ -38,7 +38,7 @@ pub struct Contents {
     pub is_nothing: bool,
     /// The greatest finite value, at least 0.
     pub greatest: f32,
-    /// Memory that the values take when they have been read [bytes].
+    /// Memory that the values take when they have been read (bytes).
     pub bytes: u64,
 }
 

@@ -13,7 +13,7 @@ use crate::{
 
 /// What becomes of a file's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Convert {
+pub(super) enum Convert {
     /// They stay what they are.
     No,
     /// Distances to a surface become densities (OpenVDB's sdfToFogVolume): 0 on it and outside, 1 from the greatest
@@ -21,9 +21,9 @@ pub enum Convert {
     Fog,
     /// Numbers become the radiance of black bodies of the temperature `offset` + `scale` times the number.
     BlackBody {
-        /// Temperature that a number of 1 adds [K].
+        /// Temperature that a number of 1 adds (K).
         scale: f64,
-        /// Temperature of what is barely above nothing [K].
+        /// Temperature of what is barely above nothing (K).
         offset: f64,
     },
 }
@@ -31,12 +31,12 @@ pub enum Convert {
 /// Numbers up to this are no fire, whatever the offset: what simulations leave behind.
 const NOTHING: f32 = 0.01;
 
-/// The hottest that may be asked for [K].
+/// The hottest that may be asked for (K).
 pub const HOTTEST: f64 = 1e9;
 
 /// What `convert` may say.
 #[derive(Clone, Copy)]
-pub enum Kind {
+pub(super) enum Kind {
     No,
     Fog,
     BlackBody,
@@ -44,11 +44,11 @@ pub enum Kind {
 
 impl Convert {
     /// Names in scene files.
-    pub const NAMES: [(&'static str, Kind); 3] =
+    pub(super) const NAMES: [(&'static str, Kind); 3] =
         [("none", Kind::No), ("fog", Kind::Fog), ("blackbody", Kind::BlackBody)];
 
-    /// Reads `convert` and, for black bodies, `temperature_scale` and `temperature_offset` [K].
-    pub fn read(params: &Params<'_>) -> Result<Self> {
+    /// Reads `convert` and, for black bodies, `temperature_scale` and `temperature_offset` (K).
+    pub(super) fn read(params: &Params<'_>) -> Result<Self> {
         let kind = params.choice("convert", &Self::NAMES)?;
         let (scale, offset) = (params.float("temperature_scale")?, params.float("temperature_offset")?);
         Ok(match kind {
@@ -59,7 +59,7 @@ impl Convert {
     }
 
     /// What becomes of the grid `source` of a .vdb or .nvdb file.
-    pub fn of_source(self, source: Source) -> std::result::Result<Values, Problem> {
+    pub(super) fn of_source(self, source: Source) -> std::result::Result<Values, Problem> {
         let source = if self == Self::Fog { source } else { source.no_surface()? };
         let (class, name) = (source.label.class.clone(), source.label.name.clone());
         match source.samples {
@@ -79,7 +79,7 @@ impl Convert {
     }
 
     /// What becomes of `values`, which are no distances to a surface.
-    pub fn of(self, values: Values) -> std::result::Result<Values, Problem> {
+    pub(super) fn of(self, values: Values) -> std::result::Result<Values, Problem> {
         match (self, values) {
             (Self::No, values) => Ok(values),
             (Self::Fog, _) => Err(no_surface("the only grid", "no class")),
@@ -95,7 +95,7 @@ impl Convert {
     }
 }
 
-/// Light of the temperature that `number` stands for [W/(m^2 sr nm)].
+/// Light of the temperature that `number` stands for (W/(m^2 sr nm)).
 fn radiance(number: f32, scale: f64, offset: f64) -> Spectrum {
     if number <= NOTHING {
         return Spectrum::ZERO;

@@ -65,7 +65,7 @@ impl Source {
 }
 
 /// Shows `visit` the numbers of all samples.
-pub fn numbers<V, const N: usize>(
+pub(super) fn numbers<V, const N: usize>(
     samples: &(impl Samples<V> + ?Sized),
     split: impl Fn(V) -> [f32; N],
     visit: &mut dyn FnMut(Number),
@@ -89,14 +89,14 @@ fn mapped<V: 'static>(
 }
 
 /// True if the extension of `path` is one of the formats that hold several grids by name, each with a place in the world.
-pub fn is_vdb(path: &Path) -> bool {
+pub(super) fn is_vdb(path: &Path) -> bool {
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or("");
     ["vdb", "nvdb"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
 /// Opens a grid file; the format follows from the extension, and is Mitsuba's `.vol` for any not known. `grid` is the
 /// name of the one that is meant, for formats that hold several.
-pub fn open(path: &Path, grid: Option<&str>, convert: Convert) -> Result<Source> {
+pub(super) fn open(path: &Path, grid: Option<&str>, convert: Convert) -> Result<Source> {
     let explain = |problem: files::Problem| problem.at(path.display());
     if !is_vdb(path) {
         let source = vol::read(path)?;

@@ -6,7 +6,7 @@ use super::voxel::{SIDE, VALUES, Voxel, corners, weights};
 use crate::math::{Wrap, axes};
 
 /// Cells along a side of a brick.
-pub const BRICK: usize = 8;
+pub(super) const BRICK: usize = 8;
 
 /// How values between samples come about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum Filter {
 
 /// The part of the endless, wrapped lattice of samples that is kept.
 #[derive(Clone, Copy, Debug)]
-pub struct Extent {
+pub(super) struct Extent {
     /// Index of the sample at the first corner, negative before the file's first sample.
     pub first: [i64; 3],
     /// Cells along x, y and z, each at least 1.
@@ -30,14 +30,14 @@ pub struct Extent {
 
 impl Extent {
     /// Bricks along x, y and z.
-    pub fn size(&self) -> [usize; 3] {
+    pub(super) fn size(&self) -> [usize; 3] {
         self.cells.map(|cells| cells.div_ceil(BRICK))
     }
 }
 
 /// A cube of cells.
 #[derive(Clone, Debug)]
-pub struct Brick<V> {
+pub(super) struct Brick<V> {
     /// Values at the corners, x fastest; none where all are equal.
     pub values: Option<Box<[V; VALUES]>>,
     /// The mean over what counts of the brick; the value of all of it where there are no `values`.
@@ -50,7 +50,7 @@ pub struct Brick<V> {
 
 /// The bricks.
 #[derive(Clone)]
-pub struct Lattice<V> {
+pub(super) struct Lattice<V> {
     /// Cells along x, y and z.
     pub cells: [usize; 3],
     /// Bricks along x, y and z.
@@ -73,7 +73,7 @@ impl<V> std::fmt::Debug for Lattice<V> {
 
 impl<V: Voxel> Lattice<V> {
     /// The most bytes that [`Self::build`] may take: no brick of which the source knows that it is even needs values.
-    pub fn most_bytes<S: Samples<V> + ?Sized>(
+    pub(super) fn most_bytes<S: Samples<V> + ?Sized>(
         samples: &S,
         wrap: Wrap,
         filter: Filter,
@@ -89,7 +89,7 @@ impl<V: Voxel> Lattice<V> {
 
     /// Copies `samples` within `extent` into bricks. Bricks for which `is_needed` is false (called with their
     /// number along each axis) stay empty.
-    pub fn build<S: Samples<V> + ?Sized>(
+    pub(super) fn build<S: Samples<V> + ?Sized>(
         samples: &S,
         wrap: Wrap,
         filter: Filter,
@@ -111,13 +111,13 @@ impl<V: Voxel> Lattice<V> {
     }
 
     /// The same lattice of values made by `change`, which keeps order.
-    pub fn map<W: Voxel>(self, change: impl Fn(V) -> W + Copy) -> Lattice<W> {
+    pub(super) fn map<W: Voxel>(self, change: impl Fn(V) -> W + Copy) -> Lattice<W> {
         let bricks = self.bricks.into_iter().map(|brick| brick.map(change)).collect();
         Lattice { cells: self.cells, size: self.size, filter: self.filter, bricks }
     }
 
     /// All values kept.
-    pub fn values(&self) -> impl Iterator<Item = V> {
+    pub(super) fn values(&self) -> impl Iterator<Item = V> {
         self.bricks.iter().flat_map(|brick| {
             let all: &[V] = brick.values.as_deref().map_or(std::slice::from_ref(&brick.mean), |v| v);
             all.iter().copied()
@@ -126,13 +126,13 @@ impl<V: Voxel> Lattice<V> {
 
     /// Place of the brick `at` in `bricks`.
     #[inline]
-    pub fn index(&self, at: [usize; 3]) -> usize {
+    pub(super) fn index(&self, at: [usize; 3]) -> usize {
         at[0] + self.size[0] * (at[1] + self.size[1] * at[2])
     }
 
     /// The value at a point, in cells.
     #[inline]
-    pub fn eval(&self, at: [f64; 3]) -> V {
+    pub(super) fn eval(&self, at: [f64; 3]) -> V {
         let cell = axes(|i| (at[i] as usize).min(self.cells[i] - 1));
         let brick = &self.bricks[self.index(axes(|i| cell[i] / BRICK))];
         let Some(values) = &brick.values else { return brick.mean };
@@ -147,7 +147,7 @@ impl<V: Voxel> Lattice<V> {
 
     /// The least and the greatest value at the corners of all bricks that the box between two points
     /// overlaps, in cells.
-    pub fn range(&self, low: [f64; 3], high: [f64; 3]) -> [V; 2] {
+    pub(super) fn range(&self, low: [f64; 3], high: [f64; 3]) -> [V; 2] {
         let brick = |x: f64, i: usize| (x.max(0.0) as usize / BRICK).min(self.size[i] - 1);
         // A little wider than requested, as `eval` rounds its positions in its own way.
         let first = axes(|i| brick(low[i] - 1e-3, i));
@@ -173,7 +173,7 @@ impl<V: Voxel> Brick<V> {
     }
 
     /// What it is like from afar.
-    pub fn summary(&self) -> Summary {
+    pub(super) fn summary(&self) -> Summary {
         Summary {
             least: self.least.to_spectrum().min_element(),
             most: self.most.to_spectrum().max_element(),

@@ -44,11 +44,11 @@ pub use lattice::Filter;
 pub enum Reached<L> {
     /// Within the segment.
     Within {
-        /// The place [m].
+        /// The place (m).
         t: f32,
         /// The depth of every channel up to there.
         depth: L,
-        /// The extinction there, scaled [1/m]; that of the hero is not 0.
+        /// The extinction there, scaled (1/m); that of the hero is not 0.
         value: L,
     },
     /// Not at all.

@@ -44,7 +44,7 @@ struct Header {
 }
 
 /// Reads a whole file.
-pub fn read(path: &Path) -> Result<Source> {
+pub(super) fn read(path: &Path) -> Result<Source> {
     let io = |error| Error::io(path, "read", &error);
     let file = File::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len();

@@ -5,14 +5,14 @@ use crate::math::{DVec3, Spectrum, axes};
 use glam::Vec4;
 
 /// Values along x, y and z of a brick: 8 cells have 9 corners.
-pub const SIDE: usize = 9;
+pub(super) const SIDE: usize = 9;
 /// Values of a brick.
-pub const VALUES: usize = SIDE * SIDE * SIDE;
+pub(super) const VALUES: usize = SIDE * SIDE * SIDE;
 /// From the first corner of a cell to its last, both counted.
-pub const SPAN: usize = 1 + SIDE + SIDE * SIDE + 1;
+pub(super) const SPAN: usize = 1 + SIDE + SIDE * SIDE + 1;
 
 /// What a grid can hold at a point: a number or a colour.
-pub trait Voxel: Channels {
+pub(super) trait Voxel: Channels {
     /// Sums of many values, wide enough that none is lost.
     type Sum: Copy
         + std::ops::Add<Output = Self::Sum>
@@ -113,15 +113,15 @@ impl Voxel for Spectrum {
 /// those within the cell; a little beyond it counts as its border, so that no weight is negative. Each weight is as
 /// exact as an f32 can be, the small ones too: a voxel may be a million times its neighbour.
 #[inline]
-pub fn weights(at: [f64; 3]) -> [Vec4; 2] {
+pub(super) fn weights(at: [f64; 3]) -> [Vec4; 2] {
     let positive = |x: f64| (if x > 0.0 { x } else { 0.0 }) as f32;
     let [[x0, x1], [y0, y1], [z0, z1]] = axes(|i| [positive(1.0 - at[i]), positive(at[i])]);
     let plane = Vec4::new(x0, x1, x0, x1) * Vec4::new(y0, y0, y1, y1);
     [plane * z0, plane * z1]
 }
 
-/// The corners of the cell whose first corner is `values[index]`.
+/// The corners of the cell whose first corner is `values(index)`.
 #[inline]
-pub fn corners<V>(values: &[V; VALUES], index: usize) -> Option<&[V; SPAN]> {
+pub(super) fn corners<V>(values: &[V; VALUES], index: usize) -> Option<&[V; SPAN]> {
     values.get(index..)?.first_chunk()
 }

@@ -10,7 +10,7 @@ use crate::math::axes;
 
 /// A line in the coordinates of a lattice, in cells.
 #[derive(Clone, Copy, Debug)]
-pub struct Line {
+pub(super) struct Line {
     /// Where t = 0.
     pub origin: [f64; 3],
     /// Change of position per metre.
@@ -18,7 +18,7 @@ pub struct Line {
 }
 
 /// What a walk along a line found.
-pub struct Walk<V: Voxel> {
+pub(super) struct Walk<V: Voxel> {
     /// The integral up to `stop`, or over all.
     pub sum: V::Sum,
     /// Where the target was reached, and the value there.
@@ -27,7 +27,7 @@ pub struct Walk<V: Voxel> {
 
 /// Until where a walk goes.
 #[derive(Clone, Copy, Debug)]
-pub struct Target {
+pub(super) struct Target {
     /// The channel that is watched.
     pub hero: usize,
     /// Its integral at the end; infinite for none.
@@ -42,7 +42,7 @@ const MOST_STEPS: usize = 60;
 
 impl<V: Voxel> Lattice<V> {
     /// The integral from `first` to `last`, which lie within the lattice but for rounding.
-    pub fn integral(&self, line: &Line, first: f64, last: f64) -> V::Sum {
+    pub(super) fn integral(&self, line: &Line, first: f64, last: f64) -> V::Sum {
         let target = Target { hero: 0, value: f64::INFINITY };
         match self.filter {
             Filter::Trilinear => self.walk::<Smooth, false>(line, first, last, target).sum,
@@ -51,7 +51,7 @@ impl<V: Voxel> Lattice<V> {
     }
 
     /// The walk from `first` that ends where the target is reached, or else at `last`.
-    pub fn invert(&self, line: &Line, first: f64, last: f64, target: Target) -> Walk<V> {
+    pub(super) fn invert(&self, line: &Line, first: f64, last: f64, target: Target) -> Walk<V> {
         match self.filter {
             Filter::Trilinear => self.walk::<Smooth, true>(line, first, last, target),
             Filter::Nearest => self.walk::<Steps, true>(line, first, last, target),

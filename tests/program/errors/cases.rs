@@ -1,13 +1,13 @@
 //! The broken scenes, each by its name.
 
 /// A file beside the scene, or the scene itself.
-pub struct File {
+pub(super) struct File {
     pub name: &'static str,
     pub content: Vec<u8>,
 }
 
 /// A scene that is not as it should be.
-pub struct Case {
+pub(super) struct Case {
     pub name: &'static str,
     /// The scene first.
     pub files: Vec<File>,
@@ -57,12 +57,12 @@ impl Case {
     }
 
     /// The name of the file to read.
-    pub fn main(&self) -> &'static str {
+    pub(super) fn main(&self) -> &'static str {
         self.reads.unwrap_or(self.files[0].name.split('/').next().unwrap_or_default())
     }
 
     /// What is broken, on one line.
-    pub fn shown(&self) -> String {
+    pub(super) fn shown(&self) -> String {
         let text = String::from_utf8_lossy(&self.files[0].content).replace('\n', " ");
         let text = CAMERA.iter().fold(text, |text, camera| text.replace(camera, ""));
         let scene = ["<scene version=\"3.0.0\"> ", " </scene>", "{\"type\": \"scene\", ", ", }"];
@@ -75,7 +75,7 @@ impl Case {
 }
 
 /// All of them.
-pub fn all() -> Vec<Case> {
+pub(super) fn all() -> Vec<Case> {
     vec![
         Case::xml("unknown shape", r#"<shape type="shpere"/>"#),
         Case::json("unknown shape in JSON", r#""a": {"type": "shpere"}"#),

@@ -21,7 +21,7 @@ const COMMANDS: &[(&str, &str)] = &[
 ];
 
 /// The messages of all of them.
-pub fn messages() -> String {
+pub(super) fn messages() -> String {
     let lamp = r#""lamp": {"type": "point", "intensity": 1}"#;
     let film = r#""film": {"type": "hdrfilm", "width": 2, "height": 2}"#;
     let sensor = format!(r#""sensor": {{"type": "perspective", {film}}}"#);

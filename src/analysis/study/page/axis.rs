@@ -17,7 +17,7 @@ const MOST_LINES: f64 = 12.0;
 
 /// From `low` to `high`, 0 < low < high, both finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
+pub(super) struct Span {
     /// The lower end.
     pub low: f64,
     /// The upper end.
@@ -26,7 +26,7 @@ pub struct Span {
 
 impl Span {
     /// Around all `values` above 0; without any, from 0.1 to 1.
-    pub fn around(values: impl Iterator<Item = f64>) -> Self {
+    pub(super) fn around(values: impl Iterator<Item = f64>) -> Self {
         let shown = values.filter(|value| *value > 0.0 && value.is_finite());
         let ends = |span: Option<Self>, value: f64| {
             let span = span.unwrap_or(Self { low: value, high: value });
@@ -39,18 +39,18 @@ impl Span {
     }
 
     /// True for what the scale may be stretched to hold.
-    pub fn is_near(&self, value: f64) -> bool {
+    pub(super) fn is_near(&self, value: f64) -> bool {
         value > self.low / NEAR && value < self.high * NEAR
     }
 
     /// `value` on the scale; what is off it is put at its end, and what is no number at the high one: of errors and
     /// times that is the worst.
-    pub fn clamped(&self, value: f64) -> f64 {
+    pub(super) fn clamped(&self, value: f64) -> f64 {
         if value.is_nan() { self.high } else { value.clamp(self.low, self.high) }
     }
 
     /// For plotters.
-    pub fn coordinate(&self) -> WithKeyPoints<LogCoord<f64>> {
+    pub(super) fn coordinate(&self) -> WithKeyPoints<LogCoord<f64>> {
         (self.low..self.high).log_scale().with_key_points(self.ticks())
     }
 
@@ -78,7 +78,7 @@ impl Span {
     }
 
     /// A tick's number. Far from 1 the whole scale has powers of ten.
-    pub fn label(&self, value: f64) -> String {
+    pub(super) fn label(&self, value: f64) -> String {
         if self.is_plain() {
             return format!("{}", (value * 1e6).round() / 1e6);
         }
@@ -92,7 +92,7 @@ impl Span {
 
     /// Lines y = c x^slope across both scales, each for ten times (or a power of it, where they are many) as much x as
     /// the one before; slope < 0.
-    pub fn parallels(&self, up: &Self, slope: f64) -> Vec<[(f64, f64); 2]> {
+    pub(super) fn parallels(&self, up: &Self, slope: f64) -> Vec<[(f64, f64); 2]> {
         let crossing = |x: f64, y: f64| x.log10() - y.log10() / slope;
         let (first, last) = (crossing(self.low, up.low).ceil(), crossing(self.high, up.high).floor());
         let step = ((last - first) / MOST_LINES).ceil().max(1.0);

@@ -10,7 +10,7 @@ use crate::{
 type Curve = (String, Vec<(f64, Interval)>);
 
 /// A chart of bias over the values of one option.
-pub struct BiasView {
+pub(super) struct BiasView {
     /// The option.
     pub option: String,
     /// Of each curve, the rest of its contenders' names.
@@ -21,7 +21,7 @@ pub struct BiasView {
 
 impl BiasView {
     /// One for each option that has several numbers as its values.
-    pub fn all(scene: &SceneOutcome) -> Result<Vec<Self>> {
+    pub(super) fn all(scene: &SceneOutcome) -> Result<Vec<Self>> {
         let mut options: Vec<&str> = Vec::new();
         for (option, _) in scene.contenders.iter().flat_map(|contender| words(&contender.name)) {
             if !options.contains(&option) {
@@ -40,7 +40,7 @@ impl BiasView {
     }
 
     /// For the template.
-    pub fn view_box(&self) -> String {
+    pub(super) fn view_box(&self) -> String {
         format!("0 0 {} {}", chart::WIDTH, chart::HEIGHT)
     }
 }

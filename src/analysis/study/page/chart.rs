@@ -14,10 +14,10 @@ use plotters::{
     prelude::*,
 };
 
-/// Width of the drawing [units of its own].
-pub const WIDTH: u32 = 1600;
+/// Width of the drawing (units of its own).
+pub(super) const WIDTH: u32 = 1600;
 /// Height of the drawing.
-pub const HEIGHT: u32 = 1000;
+pub(super) const HEIGHT: u32 = 1000;
 /// Room for the numbers at the left and at the bottom.
 const LABELS: [u32; 2] = [130, 64];
 /// Room at the other sides.
@@ -30,7 +30,7 @@ type Plane<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Coordinate, Coordi
 type Drawn = std::result::Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
 /// Curves with their intervals.
-pub struct Chart {
+pub(super) struct Chart {
     /// Of each series, x and y of its points.
     curves: Vec<Vec<(f64, Interval)>>,
     /// Of the guiding lines.
@@ -43,7 +43,7 @@ pub struct Chart {
 
 impl Chart {
     /// Error over an axis, of all contenders of a scene; the reference's own error is the floor.
-    pub fn new(scene: &SceneOutcome, measure: &Measure, axis: &Axis) -> Self {
+    pub(super) fn new(scene: &SceneOutcome, measure: &Measure, axis: &Axis) -> Self {
         let point = |point: &Point| ((axis.of)(point), (measure.of)(point));
         let curve = |contender: &ContenderOutcome| contender.points.iter().map(point).collect();
         let curves = scene.contenders.iter().map(curve).collect();
@@ -52,7 +52,7 @@ impl Chart {
     }
 
     /// With scales that hold all of `curves`.
-    pub fn of(curves: Vec<Vec<(f64, Interval)>>, slope: Option<f64>, floor: Option<f64>) -> Self {
+    pub(super) fn of(curves: Vec<Vec<(f64, Interval)>>, slope: Option<f64>, floor: Option<f64>) -> Self {
         let points = || curves.iter().flatten();
         let across = Span::around(points().map(|(x, _)| *x));
         let means: Vec<f64> = points().map(|(_, interval)| interval.mean).collect();
@@ -66,7 +66,7 @@ impl Chart {
     }
 
     /// The inside of the SVG element.
-    pub fn svg(&self) -> Result<String> {
+    pub(super) fn svg(&self) -> Result<String> {
         let mut parts = vec![group("mesh", &self.layer(|plane| self.draw_mesh(plane))?)];
         parts.push(group("guide", &self.layer(|plane| self.draw_guide(plane))?));
         if let Some(floor) = self.floor {
@@ -177,7 +177,7 @@ fn of_series(class: &str, series: usize, inside: &str) -> String {
 }
 
 /// Which of the page's colours a contender has.
-pub fn hue(series: usize) -> usize {
+pub(super) fn hue(series: usize) -> usize {
     series % HUES
 }
 
@@ -186,7 +186,7 @@ const HUES: usize = 7;
 
 /// The corners of a contender's mark around its middle; none for a disc. With the colours of [`hue`], which repeat
 /// earlier than marks do, they distinguish 35 contenders, and the first five in black and white too.
-pub fn outline(series: usize) -> Option<Vec<(i32, i32)>> {
+pub(super) fn outline(series: usize) -> Option<Vec<(i32, i32)>> {
     let r = MARK;
     match series % 5 {
         0 => None,

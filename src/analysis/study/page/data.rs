@@ -11,7 +11,7 @@ use crate::{
 use serde_json::{Map, Value, json};
 
 /// JSON that may be put in a script element: nothing in it can end that.
-pub fn json(outcome: &Outcome) -> Result<String> {
+pub(super) fn json(outcome: &Outcome) -> Result<String> {
     let scene = |contenders: &Vec<ContenderOutcome>| contenders.iter().map(series).collect::<Vec<_>>();
     let scenes: Vec<_> = outcome.scenes.iter().map(|s| scene(&s.contenders)).collect();
     let measures: Map<String, Value> = MEASURES

@@ -3,7 +3,7 @@
 use crate::analysis::study::outcome::Interval;
 
 /// Three significant digits: 0.00123, 45.6, 1.23×10⁻⁵. What is no number is a dash, what is beyond all numbers ∞.
-pub fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
@@ -26,7 +26,7 @@ pub fn number(value: f64) -> String {
 }
 
 /// 10 with its exponent raised.
-pub fn power_of_ten(exponent: i32) -> String {
+pub(super) fn power_of_ten(exponent: i32) -> String {
     let raised = |digit| match digit {
         '-' => '⁻',
         '1' => '¹',
@@ -39,17 +39,17 @@ pub fn power_of_ten(exponent: i32) -> String {
 }
 
 /// A time with its unit.
-pub fn seconds(value: f64) -> String {
+pub(super) fn seconds(value: f64) -> String {
     format!("{} s", number(value))
 }
 
 /// The ends of an interval.
-pub fn ends(interval: Interval) -> String {
+pub(super) fn ends(interval: Interval) -> String {
     format!("[{}, {}]", number(interval.low), number(interval.high))
 }
 
 /// A count with its thousands apart.
-pub fn count(value: u64) -> String {
+pub(super) fn count(value: u64) -> String {
     let digits = value.to_string();
     let groups: Vec<&str> =
         digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();

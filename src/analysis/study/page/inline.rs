@@ -11,7 +11,7 @@ use image::{
 };
 
 /// `bytes`, three a pixel, as the value of `src`.
-pub fn uri(width: usize, height: usize, bytes: &[u8]) -> Result<String> {
+pub(super) fn uri(width: usize, height: usize, bytes: &[u8]) -> Result<String> {
     let unfit = |error: &dyn std::fmt::Display| {
         Error::new("study.html", "an image that fits into it", error.to_string(), "study smaller images")
     };
@@ -26,7 +26,7 @@ pub fn uri(width: usize, height: usize, bytes: &[u8]) -> Result<String> {
 
 /// A size that can be averaged down.
 #[derive(Clone, Copy, Debug)]
-pub struct Size {
+pub(super) struct Size {
     /// Pixels across, of what is read.
     pub width: usize,
     /// Pixels down.
@@ -37,7 +37,7 @@ pub struct Size {
 
 impl Size {
     /// Pixels across and down, of what is shown.
-    pub fn shown(self) -> [usize; 2] {
+    pub(super) fn shown(self) -> [usize; 2] {
         [self.width, self.height].map(|side| side.div_ceil(self.shrink))
     }
 
@@ -56,12 +56,12 @@ impl Size {
     }
 
     /// An image at the size that is shown.
-    pub fn colours(self, pixels: &[Spectrum]) -> Vec<Spectrum> {
+    pub(super) fn colours(self, pixels: &[Spectrum]) -> Vec<Spectrum> {
         self.averaged(pixels, |sum, count| sum / count as f32)
     }
 
     /// A map at the size that is shown.
-    pub fn values(self, values: &[f64]) -> Vec<f64> {
+    pub(super) fn values(self, values: &[f64]) -> Vec<f64> {
         self.averaged(values, |sum, count| sum / count as f64)
     }
 }

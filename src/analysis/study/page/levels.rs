@@ -10,8 +10,8 @@ const MOST_LEVELS: usize = 5;
 
 /// A time, and each contender's point nearest to it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Level {
-    /// What all have about [s].
+pub(super) struct Level {
+    /// What all have about (s).
     pub seconds: f64,
     /// An index into the points of each contender.
     pub picks: Vec<usize>,
@@ -19,7 +19,7 @@ pub struct Level {
 
 /// What is shown of a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub(super) struct Plan {
     /// In growing order, at least one.
     pub levels: Vec<Level>,
     /// Levels there are, shown or not.
@@ -29,7 +29,7 @@ pub struct Plan {
 }
 
 /// As many levels as fit into the scene's share of a page; first the levels give way to it, down to two, then the size.
-pub fn plan(outcome: &Outcome, scene: &SceneOutcome) -> Plan {
+pub(super) fn plan(outcome: &Outcome, scene: &SceneOutcome) -> Plan {
     let all = levels(&scene.contenders);
     let share = MOST_PIXELS / outcome.scenes.len();
     // A reference; of every contender its variance, and at each level its image and its error.
@@ -77,11 +77,11 @@ fn common_time(contenders: &[ContenderOutcome]) -> [f64; 2] {
     [start, end]
 }
 
-/// Shorter than what clocks resolve [s]; a logarithm needs more than 0.
+/// Shorter than what clocks resolve (s); a logarithm needs more than 0.
 const TICK: f64 = 1e-9;
 
-/// A time that has a logarithm [s].
-pub fn time(seconds: f64) -> f64 {
+/// A time that has a logarithm (s).
+pub(super) fn time(seconds: f64) -> f64 {
     seconds.max(TICK)
 }
 

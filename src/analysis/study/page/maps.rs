@@ -7,13 +7,13 @@ use crate::{
 };
 
 /// The squared error of each pixel over the reference's square: its mean over the image is relMSE.
-pub fn errors(image: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
+pub(super) fn errors(image: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
     let to = Relative::to(reference, 3);
     means(image, reference, |x, r| to.square((x - r).powi(2), r))
 }
 
 /// The variance of each pixel over the reference's square: what [`errors`] are in the mean, but for bias.
-pub fn variances(variance: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
+pub(super) fn variances(variance: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
     let to = Relative::to(reference, 3);
     means(variance, reference, |variance, r| to.square(variance, r))
 }
@@ -29,7 +29,7 @@ fn means(image: &[Spectrum], reference: &[Spectrum], of: impl Fn(f64, f64) -> f6
 
 /// A logarithmic scale of whole decades.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+pub(super) struct Scale {
     /// The power of ten that is black.
     pub low: i32,
     /// The power of ten that is brightest.
@@ -38,7 +38,7 @@ pub struct Scale {
 
 impl Scale {
     /// Of all `values` together: the least decades that 98 % of those above 0 lie in, from two to six.
-    pub fn of<'a>(values: impl Iterator<Item = &'a f64>) -> Self {
+    pub(super) fn of<'a>(values: impl Iterator<Item = &'a f64>) -> Self {
         let mut logs: Vec<f64> = values.filter(|v| **v > 0.0 && v.is_finite()).map(|v| v.log10()).collect();
         logs.sort_by(f64::total_cmp);
         let Some(last) = logs.len().checked_sub(1) else { return Self { low: -6, high: 0 } };
@@ -55,19 +55,19 @@ impl Scale {
     }
 
     /// Three bytes a pixel.
-    pub fn coloured(self, values: &[f64]) -> Vec<u8> {
+    pub(super) fn coloured(self, values: &[f64]) -> Vec<u8> {
         let share = |value: &f64| if *value <= 0.0 { 0.0 } else { self.share(*value) as f32 };
         picture::false_colour(&values.iter().map(share).collect::<Vec<_>>(), (0.0, 1.0))
     }
 
     /// The whole scale in a row of 256 pixels.
-    pub fn bar() -> Vec<u8> {
+    pub(super) fn bar() -> Vec<u8> {
         let shares: Vec<f32> = (0..=255u8).map(|k| f32::from(k) / 255.0).collect();
         picture::false_colour(&shares, (0.0, 1.0))
     }
 
-    /// What is written beside the bar: texts for some decades, both ends among them, and where [%].
-    pub fn ticks(self) -> Vec<(String, f64)> {
+    /// What is written beside the bar: texts for some decades, both ends among them, and where (%).
+    pub(super) fn ticks(self) -> Vec<(String, f64)> {
         let decades = f64::from(self.high - self.low);
         let place = |k: i32| 100.0 * f64::from(k - self.low) / decades;
         // More texts than three or four do not fit.

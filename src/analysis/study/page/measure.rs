@@ -3,7 +3,7 @@
 use crate::analysis::study::outcome::{Interval, Point};
 
 /// A measure of error.
-pub struct Measure {
+pub(super) struct Measure {
     /// In the page's own names.
     pub key: &'static str,
     /// As shown.
@@ -17,7 +17,7 @@ pub struct Measure {
 }
 
 /// All of them, the one to begin with first.
-pub const MEASURES: [Measure; 5] = [
+pub(super) const MEASURES: [Measure; 5] = [
     Measure {
         key: "relmse",
         name: "relMSE",
@@ -50,7 +50,7 @@ pub const MEASURES: [Measure; 5] = [
 ];
 
 /// What error is drawn over.
-pub struct Axis {
+pub(super) struct Axis {
     /// In the page's own names.
     pub key: &'static str,
     /// As shown.
@@ -60,7 +60,7 @@ pub struct Axis {
 }
 
 /// All of them, the one to begin with first.
-pub const AXES: [Axis; 2] = [
+pub(super) const AXES: [Axis; 2] = [
     Axis { key: "seconds", name: "seconds", of: |point| point.seconds.mean },
     Axis { key: "samples", name: "samples per pixel", of: |point| point.samples as f64 },
 ];

@@ -1,5 +1,5 @@
 //! `study.html`: a study on one page that needs nothing but itself. Curves, images, maps and numbers; by
-//! [`write`] from a folder with `study.json` and the images it names.
+//! [`write()`] from a folder with `study.json` and the images it names.
 
 mod axis;
 mod bias;

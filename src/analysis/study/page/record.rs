@@ -23,15 +23,15 @@ struct Strips<'a> {
 
 /// Panels side by side.
 const COLUMNS: usize = 2;
-/// Size of a panel without its legend [pixels].
+/// Size of a panel without its legend (pixels).
 const PANEL: [usize; 2] = [480, 330];
 /// Contenders side by side in a legend.
 const LEGEND_COLUMNS: usize = 2;
-/// Height of a line of text [pixels].
+/// Height of a line of text (pixels).
 const LINE: usize = 16;
-/// Width of an image [pixels].
+/// Width of an image (pixels).
 const IMAGE: usize = 160;
-/// Room between images [pixels].
+/// Room between images (pixels).
 const GAP: usize = 8;
 
 impl Curves<'_> {
@@ -84,7 +84,7 @@ impl Strips<'_> {
 }
 
 /// Names and contents of all files.
-pub fn files(outcome: &Outcome, page: &Page<'_>) -> Result<[(&'static str, String); 3]> {
+pub(super) fn files(outcome: &Outcome, page: &Page<'_>) -> Result<[(&'static str, String); 3]> {
     let drawn = |drawing: std::result::Result<String, askama::Error>| {
         drawing.map_err(|error| {
             Error::new(

@@ -15,7 +15,7 @@ use crate::{
 use std::path::Path;
 
 /// An image of the page.
-pub struct Picture {
+pub(super) struct Picture {
     /// A data URI.
     pub uri: String,
     /// What it shows, in words.
@@ -23,7 +23,7 @@ pub struct Picture {
 }
 
 /// A contender at a level.
-pub struct Shot {
+pub(super) struct Shot {
     /// The contender's name.
     pub name: String,
     /// Its colour.
@@ -43,7 +43,7 @@ pub struct Shot {
 }
 
 /// Images of about the same time.
-pub struct Strip {
+pub(super) struct Strip {
     /// That time.
     pub seconds: String,
     /// One of each contender.
@@ -51,7 +51,7 @@ pub struct Strip {
 }
 
 /// A contender's variance.
-pub struct Spread {
+pub(super) struct Spread {
     /// The contender's name.
     pub name: String,
     /// Its colour.
@@ -61,7 +61,7 @@ pub struct Spread {
 }
 
 /// All images of a scene.
-pub struct Strips {
+pub(super) struct Strips {
     /// Pixels across, of what is shown.
     pub width: usize,
     /// Pixels down, of what is shown.
@@ -74,7 +74,7 @@ pub struct Strips {
     pub spreads: Vec<Spread>,
     /// The colours of all errors and variances, as a data URI.
     pub bar: String,
-    /// Texts beside that, with their places [%].
+    /// Texts beside that, with their places (%).
     pub ticks: Vec<(String, f64)>,
     /// What is not shown, or not as it is.
     pub left_out: Vec<String>,
@@ -88,7 +88,7 @@ struct Shown {
 
 impl Strips {
     /// Reads the images that `outcome` names.
-    pub fn new(folder: &Path, outcome: &Outcome, scene: &SceneOutcome) -> Result<Self> {
+    pub(super) fn new(folder: &Path, outcome: &Outcome, scene: &SceneOutcome) -> Result<Self> {
         let plan = levels::plan(outcome, scene);
         let size = Size { width: scene.width, height: scene.height, shrink: plan.shrink };
         let reference = read::image(&folder.join(&scene.reference.image), scene)?;
@@ -118,7 +118,7 @@ impl Strips {
 
 impl Strips {
     /// How many images are shown side by side, the reference among them.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         1 + self.levels.first().map_or(0, |strip| strip.shots.len())
     }
 }

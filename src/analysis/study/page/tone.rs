@@ -10,7 +10,7 @@ use crate::math::{
 };
 
 /// What an image can hold of light, in whites.
-pub const HEADROOM: f64 = 4.0;
+pub(super) const HEADROOM: f64 = 4.0;
 
 /// The share of pixels that are not brighter than white.
 const BELOW_WHITE: f64 = 0.95;
@@ -20,13 +20,13 @@ const BROKEN: [u8; 3] = [255, 0, 255];
 
 /// The radiance that is shown as white: 95 % of the pixels are not brighter. Where that many are black, the brightest
 /// decides.
-pub fn white(reference: &[Spectrum]) -> f64 {
+pub(super) fn white(reference: &[Spectrum]) -> f64 {
     let levels = [BELOW_WHITE, 1.0].into_iter().filter_map(|share| srgb::white(reference, share));
     levels.map(f64::from).find(|level| *level > 0.0).unwrap_or(1.0)
 }
 
 /// Three bytes a pixel.
-pub fn encoded(pixels: &[Spectrum], white: f64) -> Vec<u8> {
+pub(super) fn encoded(pixels: &[Spectrum], white: f64) -> Vec<u8> {
     pixels.iter().flat_map(|pixel| encoded_pixel(*pixel, white)).collect()
 }
 
@@ -41,7 +41,7 @@ fn encoded_pixel(pixel: Spectrum, white: f64) -> [u8; 3] {
 }
 
 /// What the filter makes of each byte, as SVG's `tableValues`.
-pub fn table() -> String {
+pub(super) fn table() -> String {
     let entries: Vec<String> = (0..=255u8).map(|byte| format!("{:.4}", displayed(byte))).collect();
     entries.join(" ")
 }

@@ -18,7 +18,7 @@ use std::path::Path;
 /// The page.
 #[derive(Template)]
 #[template(path = "page.html", config = "src/analysis/study/page/askama.toml")]
-pub struct Page<'a> {
+pub(super) struct Page<'a> {
     outcome: &'a Outcome,
     pub(super) scenes: Vec<SceneView<'a>>,
     contenders: Vec<&'a str>,
@@ -30,7 +30,7 @@ pub struct Page<'a> {
 
 impl<'a> Page<'a> {
     /// Of the study in `folder`.
-    pub fn new(folder: &Path, outcome: &'a Outcome) -> Result<Self> {
+    pub(super) fn new(folder: &Path, outcome: &'a Outcome) -> Result<Self> {
         let scenes = outcome.scenes.iter().enumerate();
         Ok(Self {
             outcome,
@@ -44,7 +44,7 @@ impl<'a> Page<'a> {
     }
 
     /// The whole file.
-    pub fn html(&self) -> Result<String> {
+    pub(super) fn html(&self) -> Result<String> {
         self.render().map_err(|error| {
             Error::new(
                 "study.html",

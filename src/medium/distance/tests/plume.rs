@@ -6,7 +6,7 @@
 use super::*;
 use std::{hint::black_box, path::PathBuf, time::Instant};
 
-/// Extinction where the plume is densest [1/m].
+/// Extinction where the plume is densest (1/m).
 const SCALE: f32 = 12.0;
 /// Of so many connections one is timed: marching is slow.
 const EVERY: usize = 16;

@@ -47,7 +47,7 @@ struct State {
     layers: usize,
     /// Blocks done of the unfinished pass.
     blocks: usize,
-    /// Time spent [s].
+    /// Time spent (s).
     seconds: f64,
     /// What went wrong on the way.
     faults: Faults,

@@ -7,7 +7,7 @@ use crate::{
 use safetensors::SafeTensors;
 
 /// A named array.
-pub struct Array {
+pub(super) struct Array {
     pub(super) name: String,
     /// The type of its numbers, as safetensors calls it.
     pub(super) kind: &'static str,
@@ -53,32 +53,32 @@ impl Array {
 pub(super) struct Arrays<'a>(SafeTensors<'a>);
 
 impl<'a> Arrays<'a> {
-    pub fn of(all: SafeTensors<'a>) -> Self {
+    pub(super) fn of(all: SafeTensors<'a>) -> Self {
         Self(all)
     }
 
     /// Their bytes as they stand in the file.
-    pub fn in_order(&self) -> impl Iterator<Item = &'a [u8]> {
+    pub(super) fn in_order(&self) -> impl Iterator<Item = &'a [u8]> {
         let mut all: Vec<&'a [u8]> = self.0.iter().map(|(_, array)| array.data()).collect();
         all.sort_by_key(|bytes| bytes.as_ptr());
         all.into_iter()
     }
 
     /// The numbers of an array.
-    pub fn row<T, const N: usize>(&self, name: &str, number: fn([u8; N]) -> T) -> Option<Vec<T>> {
+    pub(super) fn row<T, const N: usize>(&self, name: &str, number: fn([u8; N]) -> T) -> Option<Vec<T>> {
         let bytes = self.0.tensor(name).ok()?.data();
         Some(bytes.as_chunks().0.iter().map(|bytes| number(*bytes)).collect())
     }
 
     /// As many vectors as there are `pixels`.
-    pub fn vectors(&self, name: &str, pixels: usize) -> Option<Vec<DVec3>> {
+    pub(super) fn vectors(&self, name: &str, pixels: usize) -> Option<Vec<DVec3>> {
         let numbers = self.row(name, f64::from_le_bytes)?;
         let vectors = numbers.as_chunks().0.iter().map(|vector| DVec3::from_array(*vector));
         Some(vectors.collect()).filter(|vectors: &Vec<_>| vectors.len() == pixels)
     }
 
     /// An unfinished pass over so many `pixels`.
-    pub fn pass(&self, pixels: usize, has_begun: bool) -> Option<Pass> {
+    pub(super) fn pass(&self, pixels: usize, has_begun: bool) -> Option<Pass> {
         if !has_begun {
             return Some(Pass::new(pixels));
         }

@@ -36,7 +36,7 @@ struct State {
     layers: usize,
     /// Number of the unfinished sample, and how many of its blocks are done.
     unfinished: (u64, usize),
-    /// Time spent [s].
+    /// Time spent (s).
     seconds: f64,
     /// What went wrong on the way.
     faults: Faults,

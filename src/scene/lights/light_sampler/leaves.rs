@@ -17,11 +17,11 @@ use crate::{
 use std::f64::consts::PI;
 
 /// What a sampler needs to know of a scene.
-pub struct Extent<'a> {
+pub(crate) struct Extent<'a> {
     pub geometry: &'a Geometry,
     /// Centre of a sphere around it.
     pub centre: Vec3,
-    /// Its radius [m].
+    /// Its radius (m).
     pub radius: f32,
 }
 

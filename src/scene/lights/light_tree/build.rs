@@ -8,7 +8,7 @@ use std::ops::Range;
 /// Levels that are split where it is best; those below in the middle, so that paths fit in 64 bits.
 const FREE_LEVELS: u32 = DEEPEST / 2;
 
-/// The least power of a child, as a part of all, and the least squared distance [m^2]: their ratio is finite in f32.
+/// The least power of a child, as a part of all, and the least squared distance (m^2): their ratio is finite in f32.
 const LEAST: f64 = 1e-30;
 
 struct Leaf {
@@ -22,7 +22,7 @@ struct Builder {
     paths: Vec<u64>,
     /// Of all leaves.
     power: f64,
-    /// The least softening [m^2].
+    /// The least softening (m^2).
     least: f64,
 }
 
@@ -35,8 +35,8 @@ struct Cluster {
 
 impl LightTree {
     /// Over the leaves that emit, each with its number below `count`: those `far` away, which are a cluster of their own
-    /// at the root, and those `near`. None without two leaves. Distances below `least` [m] make no difference.
-    pub fn new(
+    /// at the root, and those `near`. None without two leaves. Distances below `least` (m) make no difference.
+    pub(crate) fn new(
         far: Vec<(u32, Moments)>,
         near: Vec<(u32, Moments)>,
         count: usize,

@@ -5,7 +5,7 @@ use std::ops::Add;
 
 /// Power, and its moments over where light leaves and in which directions.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Moments {
+pub(crate) struct Moments {
     /// Power, in any unit that is common to all.
     pub power: f64,
     /// Power times position.
@@ -18,28 +18,28 @@ pub struct Moments {
 
 /// The squared distance to a cluster's centre is taken to be more by this part of its variance. In the middle of a ball
 /// that is full of lamps the mean of 1/d^2 is 3/R^2, and the variance 3/5 R^2.
-pub const SOFTNESS: f64 = 0.55;
+pub(super) const SOFTNESS: f64 = 0.55;
 
 /// The longest lobe: of light within some 15 degrees. What is narrower gets no narrower estimate.
 const LONGEST_LOBE: f64 = 0.97;
 
 impl Moments {
     /// Light from `position` in unit `direction`.
-    pub fn ray(power: f64, position: DVec3, direction: DVec3) -> Self {
+    pub(crate) fn ray(power: f64, position: DVec3, direction: DVec3) -> Self {
         let second = power * position.length_squared();
         Self { power, first: power * position, second, direction: power * direction }
     }
 
-    /// Light of irradiance `fluence` [W/m^2] wherever one is, as far as `reach` [m] around `centre`: that of a cluster
+    /// Light of irradiance `fluence` (W/m^2) wherever one is, as far as `reach` (m) around `centre`: that of a cluster
     /// of such an extent that distance has no say.
-    pub fn everywhere(fluence: f64, centre: DVec3, reach: f64) -> Self {
+    pub(crate) fn everywhere(fluence: f64, centre: DVec3, reach: f64) -> Self {
         let power = 4.0 * std::f64::consts::PI * fluence * SOFTNESS * reach.powi(2);
         let second = power * (centre.length_squared() + reach.powi(2));
         Self { power, first: power * centre, second, direction: DVec3::ZERO }
     }
 
     /// The same with `power`, where there is any.
-    pub fn of_power(self, power: f64) -> Self {
+    pub(crate) fn of_power(self, power: f64) -> Self {
         let factor = power / self.power;
         Self {
             power,
@@ -49,28 +49,28 @@ impl Moments {
         }
     }
 
-    /// The same with light from around as well: mean squared distances are more by `variance` [m^2].
-    pub fn spread_by(self, variance: f64) -> Self {
+    /// The same with light from around as well: mean squared distances are more by `variance` (m^2).
+    pub(crate) fn spread_by(self, variance: f64) -> Self {
         Self { second: self.second + self.power * variance, ..self }
     }
 
     /// Where its light comes from, on average.
-    pub fn centre(&self) -> DVec3 {
+    pub(crate) fn centre(&self) -> DVec3 {
         self.first / self.power
     }
 
-    /// Mean squared distance from the centre [m^2].
-    pub fn variance(&self) -> f64 {
+    /// Mean squared distance from the centre (m^2).
+    pub(crate) fn variance(&self) -> f64 {
         (self.second / self.power - self.centre().length_squared()).max(0.0)
     }
 
     /// Power times the mean squared distance from the centre.
-    pub fn spread(&self) -> f64 {
+    pub(crate) fn spread(&self) -> f64 {
         (self.second - self.first.length_squared() / self.power).max(0.0)
     }
 
     /// The mean of its directions, shorter than 1.
-    pub fn lobe(&self) -> DVec3 {
+    pub(crate) fn lobe(&self) -> DVec3 {
         (self.direction / self.power).clamp_length_max(LONGEST_LOBE)
     }
 }

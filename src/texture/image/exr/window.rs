@@ -5,7 +5,7 @@ use exr::{
     meta::header::ImageAttributes,
 };
 
-/// Where the samples of a layer lie in the picture [pixels].
+/// Where the samples of a layer lie in the picture (pixels).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// Columns and rows of the picture.

@@ -11,7 +11,7 @@ use super::{
 
 /// How a block's values are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Leaf {
+pub(super) enum Leaf {
     /// As they are.
     Plain,
     /// As codes of so many bits.
@@ -20,17 +20,17 @@ pub enum Leaf {
     AnyBits,
 }
 
-/// Places within a block [bytes]: its flags, the mask of active values, and what follows that.
+/// Places within a block (bytes): its flags, the mask of active values, and what follows that.
 const FLAGS: usize = 15;
 const MASK: usize = 16;
 const REST: usize = MASK + BLOCK / 8;
 
-/// Where codes start; before them are the least value and the step between codes [bytes].
+/// Where codes start; before them are the least value and the step between codes (bytes).
 const CODES: usize = 96;
 
 impl Leaf {
-    /// The least length of a block [bytes].
-    pub fn shortest<V: Value>(self) -> usize {
+    /// The least length of a block (bytes).
+    pub(super) fn shortest<V: Value>(self) -> usize {
         match self {
             Self::Plain => plain_start::<V>() + BLOCK * V::CHANNELS * 4,
             Self::Bits(bits) => CODES + BLOCK * bits / 8,
@@ -39,7 +39,7 @@ impl Leaf {
     }
 
     /// The mask and the values of the block at `at`.
-    pub fn read<V: Value>(self, image: &Image, at: usize) -> Result<(&[u8], [V; BLOCK])> {
+    pub(super) fn read<V: Value>(self, image: &Image, at: usize) -> Result<(&[u8], [V; BLOCK])> {
         let head = image.bytes(at, CODES)?;
         let values = match self {
             Self::Plain => {

@@ -11,23 +11,23 @@ use super::{
     leaf::Leaf,
 };
 
-/// Where the tree starts, after what is said of the grid [bytes].
+/// Where the tree starts, after what is said of the grid (bytes).
 const TREE: usize = 672;
 
-/// Where the tree says how far the root is from it [bytes].
+/// Where the tree says how far the root is from it (bytes).
 const ROOT: usize = TREE + 24;
 
-/// Places within the root [bytes]: the number of its children and tiles, and the background.
+/// Places within the root (bytes): the number of its children and tiles, and the background.
 const TABLE_SIZE: usize = 24;
 const BACKGROUND: usize = 28;
 
-/// A row of the root's table, and places within [bytes]: distance to the child, state, value.
+/// A row of the root's table, and places within (bytes): distance to the child, state, value.
 const ROW: usize = 32;
 const ROW_CHILD: usize = 8;
 const ROW_STATE: usize = 16;
 const ROW_VALUE: usize = 20;
 
-/// Where the masks of an inner node start: of active values, then of children [bytes].
+/// Where the masks of an inner node start: of active values, then of children (bytes).
 const MASKS: usize = 32;
 
 /// Inner nodes, from those below the root: log2 of how many children they have along a side, and of the side of one.
@@ -38,17 +38,17 @@ fn aligned(length: usize) -> usize {
     length.next_multiple_of(32)
 }
 
-/// Length of a value [bytes].
+/// Length of a value (bytes).
 fn size<V: Value>() -> usize {
     V::CHANNELS * Format::Float.size()
 }
 
-/// Length of the least and the greatest value, and two numbers about them [bytes].
+/// Length of the least and the greatest value, and two numbers about them (bytes).
 fn statistics<V: Value>() -> usize {
     2 * size::<V>() + 2 * 4
 }
 
-/// An inner node's measures [bytes].
+/// An inner node's measures (bytes).
 #[derive(Clone, Copy)]
 struct Measures {
     /// Of a mask.
@@ -81,7 +81,7 @@ struct Reader<'a, V> {
 }
 
 /// Reads the tree of `image`, whose blocks are written as `leaf` says.
-pub fn read<V: Value>(image: &Image, leaf: Leaf) -> Result<Builder<V>> {
+pub(super) fn read<V: Value>(image: &Image, leaf: Leaf) -> Result<Builder<V>> {
     let root = image.follow(TREE, ROOT)?;
     let background = Format::Float.value(image.bytes(root + BACKGROUND, size::<V>())?, 0);
     let inner = NODES.map(|(bits, _)| Measures::new::<V>(bits));

@@ -12,11 +12,11 @@ const SEPARATOR: char = '\x1e';
 /// Ends the type of a grid whose numbers are saved as half.
 const HALF: &str = "_HalfFloat";
 
-/// Length of a file's identifier [bytes].
+/// Length of a file's identifier (bytes).
 const IDENTIFIER: u64 = 36;
 
 /// A row of the table of grids.
-pub struct Entry {
+pub(crate) struct Entry {
     /// Name with its number, as the file has it.
     name: String,
     /// Name of the grid whose tree this one shares; empty if none.
@@ -33,7 +33,7 @@ pub struct Entry {
 
 impl Entry {
     /// The name as users give it, and the type.
-    pub fn label(&self) -> Label {
+    pub(crate) fn label(&self) -> Label {
         let name = match self.name.split_once(SEPARATOR) {
             Some((name, number)) => format!("{name}[{number}]"),
             None => self.name.clone(),
@@ -44,7 +44,7 @@ impl Entry {
 }
 
 /// Reads the table of grids; the input is positioned after the magic bytes.
-pub fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<Vec<Entry>> {
+pub(crate) fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<Vec<Entry>> {
     let version = input.u32()?;
     if !VERSIONS.contains(&version) {
         let expected = format!("OpenVDB file version {} to {}", VERSIONS.start(), VERSIONS.end());
@@ -80,7 +80,7 @@ fn entry<R: Read + Seek>(input: &mut Input<R>) -> Result<Entry> {
 }
 
 /// The entry whose tree `entry` shares, if it has none of its own.
-pub fn parent<'a>(entries: &'a [Entry], entry: &Entry) -> Result<Option<&'a Entry>> {
+pub(super) fn parent<'a>(entries: &'a [Entry], entry: &Entry) -> Result<Option<&'a Entry>> {
     if entry.parent.is_empty() {
         return Ok(None);
     }
@@ -91,7 +91,7 @@ pub fn parent<'a>(entries: &'a [Entry], entry: &Entry) -> Result<Option<&'a Entr
 
 /// What is noted of a grid, as far as it matters here.
 #[derive(Default)]
-pub struct Metadata {
+pub(super) struct Metadata {
     /// What the values are meant for.
     pub class: String,
     /// True if numbers are saved as half.
@@ -100,7 +100,7 @@ pub struct Metadata {
 
 impl Metadata {
     /// Reads all of a grid's notes, or a file's.
-    pub fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<Self> {
+    pub(super) fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<Self> {
         let mut metadata = Self::default();
         for _ in 0..input.u32()? {
             let (name, kind) = (input.text()?, input.text()?);

@@ -5,7 +5,7 @@ use crate::math::{DAffine3, DMat3, DVec3};
 use std::io::{Read, Seek};
 
 /// Reads a map. What a file holds beside scales and shifts follows from these.
-pub fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<DAffine3> {
+pub(super) fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<DAffine3> {
     let kind = input.text()?;
     let map = match kind.as_str() {
         "UniformScaleMap" | "ScaleMap" => {

@@ -15,7 +15,7 @@ const TOP: u32 = 12;
 /// Inner nodes, from those below the root: log2 of how many children they have along a side, and of the side of one.
 const NODES: [(u32, u32); 2] = [(5, 7), (4, 3)];
 
-/// Length of the mask of a block [bytes].
+/// Length of the mask of a block (bytes).
 const MASK: usize = BLOCK / 8;
 
 struct Reader<'a, V, R> {
@@ -28,7 +28,7 @@ struct Reader<'a, V, R> {
 }
 
 /// Reads a tree; the values of its blocks start at `start`.
-pub fn read<V: Value, R: Read + Seek>(
+pub(super) fn read<V: Value, R: Read + Seek>(
     input: &mut Input<R>,
     coding: Coding,
     start: u64,

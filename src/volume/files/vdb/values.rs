@@ -15,7 +15,7 @@ const BLOSC: u32 = 4;
 
 /// How a grid's values are written.
 #[derive(Clone, Copy, Debug)]
-pub struct Coding {
+pub(super) struct Coding {
     packing: u32,
     /// Of single values: the background, tiles at the root, inactive values.
     pub whole: Format,
@@ -25,7 +25,7 @@ pub struct Coding {
 
 impl Coding {
     /// From the grid's flags, and whether its numbers are saved as half.
-    pub fn new(packing: u32, half: bool, whole: Format) -> Result<Self> {
+    pub(super) fn new(packing: u32, half: bool, whole: Format) -> Result<Self> {
         if packing & !(ZIP | ACTIVE_ONLY | BLOSC) != 0 {
             return Err(Problem::damage("known flags of compression", format!("{packing:#x}")));
         }
@@ -35,7 +35,7 @@ impl Coding {
 
 /// Buffers that are used again from node to node.
 #[derive(Default)]
-pub struct Scratch {
+pub(super) struct Scratch {
     packed: Vec<u8>,
     plain: Vec<u8>,
 }
@@ -51,7 +51,7 @@ struct Omission<V> {
 }
 
 /// Reads a single value.
-pub fn single<V: Value, R: Read + Seek>(input: &mut Input<R>, coding: Coding) -> Result<V> {
+pub(super) fn single<V: Value, R: Read + Seek>(input: &mut Input<R>, coding: Coding) -> Result<V> {
     let mut bytes = [0; 24];
     let bytes = &mut bytes[..V::CHANNELS * coding.whole.size()];
     input.fill(bytes)?;
@@ -59,7 +59,7 @@ pub fn single<V: Value, R: Read + Seek>(input: &mut Input<R>, coding: Coding) ->
 }
 
 /// Reads the values of a node, those that are active marked in `mask`, into `out`: one for every bit.
-pub fn read<V: Value, R: Read + Seek>(
+pub(super) fn read<V: Value, R: Read + Seek>(
     input: &mut Input<R>,
     coding: Coding,
     background: V,
