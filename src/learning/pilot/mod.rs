@@ -43,14 +43,14 @@ pub const LEARNT: f64 = 1.6;
 /// Starts are learnt if no more than this part of the light subpaths is seen. Measured in the same scenes: starts paid where 0 to
 /// 0.09 were seen.
 const REMOTE: f64 = 0.1;
-/// Parts of an image's time that the first rounds of training may take, for starts and for a guide, which takes longer to learn
-/// and pays more rarely.
+/// The part of an image's time that the first rounds of training may take, for starts.
 const STARTS_SHARE: f64 = 0.2;
-const GUIDE_SHARE: f64 = 0.1;
-/// Squared relative error of a pixel sample, where light is seen, above which it is asked whether a guide pays: where it is less,
-/// asking takes longer than a guide could gain. Measured: 61 in a room lit through its keyhole and 40 under a skylight, where one
-/// pays for all strategies; 4 to 27 in others lit through openings and round corners, where none does; 0.1 to 1.2 elsewhere.
-const NOISY: f64 = 2.0;
+/// Squared relative errors of a pixel sample where light is seen, and the part of an image's time that the first rounds of a guide
+/// may take where the error is greater. Below the first, asking takes longer than a guide could gain; above the second, one that
+/// pays gains tenfold. Measured: 61 in a room lit through its keyhole, 40 under a skylight and 15 to 30 in two rooms drawn at
+/// random that are lit by a sky through a hole, where one pays for all strategies; 4 to 160 in others lit through openings and
+/// round corners, where none does; 0.1 to 4 elsewhere.
+const GUIDE_SHARES: [(f64, f64); 2] = [(2.0, 0.1), (15.0, 0.4)];
 
 /// When walks end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -146,9 +146,8 @@ impl Pilots<'_> {
     /// The best choice; with a guide if one `asks` for it and it pays.
     fn choose(&self, asks: bool) -> Report {
         let pilot = self.fly(self.base.effort.learnt_starts);
-        let asks = asks && training::is_worth(self.work, GUIDE_SHARE);
-        let is_noisy = || pilot.error_where_lit(&self.base) > NOISY;
-        if asks && is_noisy() && training::guide_pays(self.scene, self.film, self.settings.options) {
+        let asks = asks && self.may_guide(pilot.error_where_lit(&self.base));
+        if asks && training::guide_pays(self.scene, self.film, self.settings.options) {
             let effort = Effort { guide: Guiding::Always, ..self.base.effort };
             return Self { base: Choice { effort, ..self.base }, ..*self }.choose(false);
         }
@@ -159,6 +158,12 @@ impl Pilots<'_> {
         } else {
             report
         }
+    }
+
+    /// True if learning a guide is a small part of the time of an image with such an `error` of a pixel sample.
+    fn may_guide(&self, error: f64) -> bool {
+        let is_worth = |(noisy, share): &(f64, f64)| error > *noisy && training::is_worth(self.work, *share);
+        GUIDE_SHARES.iter().any(is_worth)
     }
 
     /// A few samples of all strategies.
