@@ -16,7 +16,7 @@ pub(super) use compared::Compared;
 pub(super) use cutoff::Cutoff;
 use maximum::Maximum;
 #[cfg(test)]
-pub use maximum::TIE;
+pub(in crate::transport) use maximum::TIE;
 use power::Power;
 pub use sums::MisSums;
 use uniform::Uniform;

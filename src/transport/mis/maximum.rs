@@ -7,7 +7,7 @@ use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer:
 /// not depend on rounding: each strategy rounds differently, so both could claim the path, or neither. Ties
 /// do happen: channels of equal extinction have equal densities, and so have all connections within a hollow
 /// diffuse sphere.
-pub(super) const TIE: f32 = 1e-3;
+pub(in crate::transport) const TIE: f32 = 1e-3;
 
 /// The greatest n p of some strategies, and how many have it.
 #[derive(Clone, Copy, Debug)]
