@@ -215,7 +215,7 @@ impl Forecast {
     }
 
     /// When walks of `choice` end: the estimator puts roulette off where camera subpaths are alone and that is worth it.
-    fn end(&self, choice: &Choice) -> End {
+    pub(super) fn end(&self, choice: &Choice) -> End {
         let survival = choice.effort.survival;
         let is_alone = !choice.strategies.need_light_walks() && self.survival == Survival::FourthRoot;
         let segments = |end| self.camera[index(end)].segments / self.samples().max(1.0);

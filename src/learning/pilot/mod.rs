@@ -199,7 +199,8 @@ impl Pilots<'_> {
 
     /// What `pilot` makes of all that may be chosen.
     fn report(&self, pilot: &Forecast) -> Report {
-        let choices = self.candidates(pilot.is_learnt);
+        let mut choices = self.candidates(pilot.is_learnt);
+        choices.retain(|choice| !self.is_second(pilot, choice));
         let errors = pilot.judge(&choices);
         let foretell = |(choice, error): (Choice, Error)| Foretold {
             choice,
@@ -219,6 +220,13 @@ impl Pilots<'_> {
         let cost = |one: &Foretold| one.error.all() * one.time;
         let gain = base.map_or(1.0, |base| cost(&base) / cost(&best));
         Report { choice: Choice { gain, ..best.choice }, candidates, samples: pilot.samples() }
+    }
+
+    /// True if walks of `choice` end as by the survival that is common.
+    fn is_second(&self, pilot: &Forecast, choice: &Choice) -> bool {
+        let survival = self.base.effort.survival;
+        let common = Choice { effort: Effort { survival, ..choice.effort }, ..*choice };
+        *choice != common && pilot.end(choice) == pilot.end(&common)
     }
 
     /// Error x time. What few tiles have of the error is chance, and more of it comes than a short pilot sees, whatever is chosen:
