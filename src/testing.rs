@@ -7,12 +7,12 @@ use crate::{
 use std::sync::Arc;
 
 /// A place for objects that come from no file.
-pub fn nowhere() -> Location {
+pub(crate) fn nowhere() -> Location {
     Location { file: Arc::new("test.json".into()), position: Position::Path("$".into()) }
 }
 
 /// An object of `plugin` with the given properties.
-pub fn object(plugin: &str, properties: &[(&str, Value)]) -> Object {
+pub(crate) fn object(plugin: &str, properties: &[(&str, Value)]) -> Object {
     let property = |(name, value): &(&str, Value)| Property {
         name: (*name).into(),
         value: value.clone(),
@@ -28,12 +28,12 @@ pub fn object(plugin: &str, properties: &[(&str, Value)]) -> Object {
 }
 
 /// The p-value of Pearson's chi-square test, see [`chi_square::chi_square`].
-pub fn chi_square(observed: &[u64], expected: &[f64]) -> f64 {
+pub(crate) fn chi_square(observed: &[u64], expected: &[f64]) -> f64 {
     chi_square::chi_square(observed, expected).p_value
 }
 
 /// The significance level of each of `tests` tests that makes 0.01 for all of them together (Sidak).
-pub fn significance(tests: usize) -> f64 {
+pub(crate) fn significance(tests: usize) -> f64 {
     1.0 - 0.99f64.powf(1.0 / tests as f64)
 }
 

@@ -114,7 +114,7 @@ impl Roughness {
     }
 
     #[cfg(test)]
-    pub fn examples() -> Vec<Self> {
+    pub(super) fn examples() -> Vec<Self> {
         let alphas = [(0.5, 0.5), (0.12, 0.12), (0.2, 0.6), (1.0, 1.0)];
         let texture = |x| Texture::constant(crate::math::Spectrum::splat(x));
         let with = |kind| alphas.map(|(u, v)| Self::of(kind, [texture(u), texture(v)]));

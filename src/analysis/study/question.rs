@@ -123,7 +123,7 @@ pub fn differ(place: &str, old: &Value, new: &Value) -> Option<(String, String, 
 pub(super) mod tests {
     use super::*;
 
-    pub fn question() -> Question {
+    pub(crate) fn question() -> Question {
         let contender =
             |name: &str| Contender { name: name.into(), how: How::Options(format!("--integrator {name}")) };
         Question {

@@ -2,7 +2,6 @@
 //! both directions of a segment are worth the same.
 
 mod grids;
-mod plume;
 
 use super::*;
 use crate::{

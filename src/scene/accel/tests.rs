@@ -10,7 +10,6 @@ use std::sync::Arc;
 mod facts;
 mod leaving;
 mod meshes;
-mod timing;
 mod toward;
 mod tracing;
 

@@ -26,7 +26,7 @@ use crate::{
 };
 
 /// A path, and the weight that the fast code gave it.
-pub struct Case {
+pub(super) struct Case {
     /// None where the reference cannot determine what lies along it.
     pub path: Option<Path>,
     pub strategy: usize,
@@ -35,7 +35,7 @@ pub struct Case {
 }
 
 /// A film that reaches a little further than the image.
-pub struct WideFilm;
+pub(super) struct WideFilm;
 
 impl Observer for WideFilm {
     fn covers(&self, film: Vec2) -> bool {
@@ -45,7 +45,7 @@ impl Observer for WideFilm {
 }
 
 /// Remembers where a walk went.
-pub struct Trail<V, S: MisSums> {
+pub(super) struct Trail<V, S: MisSums> {
     visitor: V,
     pub vertices: Vec<Vertex<S>>,
     pub escaped: Option<Subpath<S>>,
@@ -79,7 +79,7 @@ impl<P: Profile, V: Visitor<P>> Visitor<P> for Trail<V, P::MisSums> {
 }
 
 /// A camera subpath through `film`.
-pub fn camera_walk<'a, P: Profile>(
+pub(super) fn camera_walk<'a, P: Profile>(
     estimator: &'a Estimator<'a, P>,
     film: Vec2,
     hero: usize,
@@ -111,7 +111,7 @@ fn light_walk<'a, P: Profile>(
 }
 
 /// Every path that one camera subpath through `film` and one light subpath make, with its fast weight.
-pub fn cases<P: Profile>(
+pub(super) fn cases<P: Profile>(
     estimator: &Estimator<'_, P>,
     film: Vec2,
     hero: usize,
@@ -131,7 +131,11 @@ pub fn cases<P: Profile>(
 }
 
 /// Paths of at least `length` vertices: one by next-event estimation, one by a connection, one by the lens.
-pub fn long_cases<P: Profile>(estimator: &Estimator<'_, P>, length: usize, stream: &mut Stream) -> Vec<Case> {
+pub(super) fn long_cases<P: Profile>(
+    estimator: &Estimator<'_, P>,
+    length: usize,
+    stream: &mut Stream,
+) -> Vec<Case> {
     let scene = estimator.scene;
     let mut kept = LightCache::new(P::Channels::COUNT);
     let camera = camera_walk(estimator, vec2(8.0, 6.0), 0, stream);

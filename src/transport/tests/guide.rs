@@ -14,7 +14,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 /// A guide that has little to do with what reaches the image: directions that depend on the place, some of them a hundred
 /// times as likely as others, a portal that many of them aim at, and places of which only one kind of walk knows.
-pub fn arbitrary() -> Arc<Guide> {
+pub(super) fn arbitrary() -> Arc<Guide> {
     let mut stream = Stream::new(23, 0, 0, Purpose::Study);
     let lessons = (0..60_000).map(|index| {
         let [a, b, c] = [stream.square(), stream.square(), stream.square()];

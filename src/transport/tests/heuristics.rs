@@ -3,7 +3,7 @@
 use crate::{settings::heuristic::Heuristic, transport::mis::TIE};
 
 /// Weights by strategy and hero for these ln(n_s p_s^c), each in [0, 1]: they sum to one.
-pub fn weights(heuristic: Heuristic, logs: &[Vec<f64>]) -> Vec<Vec<f64>> {
+pub(super) fn weights(heuristic: Heuristic, logs: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let most = most(logs);
     match heuristic {
         Heuristic::Balance => shares(logs, |log| (log - most).exp()),
@@ -18,7 +18,7 @@ pub fn weights(heuristic: Heuristic, logs: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// True if some n p lies so close to where `heuristic` jumps that errors of `slack`, relative, may decide.
-pub fn is_close(heuristic: Heuristic, logs: &[Vec<f64>], slack: f64) -> bool {
+pub(super) fn is_close(heuristic: Heuristic, logs: &[Vec<f64>], slack: f64) -> bool {
     let most = most(logs);
     let below = || logs.iter().flatten().map(|log| most - log);
     match heuristic {

@@ -13,7 +13,7 @@ mod path;
 mod reference;
 mod replay;
 mod report;
-pub mod scenes;
+pub(super) mod scenes;
 mod shut_in;
 mod starts;
 

@@ -12,7 +12,7 @@ use crate::{
 
 /// What a vertex lies on or in.
 #[derive(Clone, Copy, Debug)]
-pub enum Place {
+pub(super) enum Place {
     /// The point of a point light or spotlight.
     Point(Vec3),
     /// A point on a surface.
@@ -31,7 +31,7 @@ pub enum Place {
 
 impl Place {
     /// That of a point of the emitter `light`.
-    pub fn of(light: u32, point: &EmitterPoint) -> Self {
+    pub(super) fn of(light: u32, point: &EmitterPoint) -> Self {
         match *point {
             EmitterPoint::Point(position) => Self::Point(position),
             EmitterPoint::Surface(point) => Self::Surface(point),
@@ -43,11 +43,11 @@ impl Place {
 }
 
 /// The one point of the aperture that the reference looks through: which one it is cancels in every weight.
-pub const APERTURE: Vec2 = vec2(0.01, -0.02);
+pub(super) const APERTURE: Vec2 = vec2(0.01, -0.02);
 
 /// A vertex of a path.
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub(super) struct Node {
     /// Where.
     pub place: Place,
     /// The medium around it (of a surface that separates media, either).
@@ -58,18 +58,18 @@ pub struct Node {
 
 impl Node {
     /// The end of every path.
-    pub fn lens(scene: &Scene) -> Self {
+    pub(super) fn lens(scene: &Scene) -> Self {
         let position = scene.sensor.ray(Vec2::ZERO, APERTURE).position;
         Self { place: Place::Lens(position), medium: scene.media_map.sensor, dirac: false }
     }
 
     /// A vertex of an emitter.
-    pub fn emitter(scene: &Scene, light: u32, place: Place) -> Self {
+    pub(super) fn emitter(scene: &Scene, light: u32, place: Place) -> Self {
         Self { place, medium: scene.lights.all[light as usize].medium, dirac: false }
     }
 
     /// World position, or the direction to an emitter at infinity.
-    pub fn position(&self) -> Vec3 {
+    pub(super) fn position(&self) -> Vec3 {
         match self.place {
             Place::Point(p)
             | Place::Volume(p)
@@ -82,7 +82,7 @@ impl Node {
     }
 
     /// Unit direction from here to `other`.
-    pub fn towards(&self, other: &Self) -> DVec3 {
+    pub(super) fn towards(&self, other: &Self) -> DVec3 {
         match (self.place, other.place) {
             (_, Place::Sky(direction)) => direction.as_dvec3(),
             (Place::Sky(direction), _) => -direction.as_dvec3(),
@@ -93,7 +93,7 @@ impl Node {
     }
 
     /// 1/d^2 to `other`, 1 for parallel light.
-    pub fn inverse_distance_squared(&self, other: &Self) -> f64 {
+    pub(super) fn inverse_distance_squared(&self, other: &Self) -> f64 {
         match (self.place, other.place) {
             (_, Place::Sky(_) | Place::Disk(..)) | (Place::Sky(_) | Place::Disk(..), _) => 1.0,
             _ => 1.0 / self.position().as_dvec3().distance_squared(other.position().as_dvec3()),
@@ -101,7 +101,7 @@ impl Node {
     }
 
     /// |cos| to the geometric normal of a surface; 1 elsewhere.
-    pub fn cosine(&self, direction: DVec3) -> f64 {
+    pub(super) fn cosine(&self, direction: DVec3) -> f64 {
         match self.place {
             Place::Surface(point) => point.normal.as_dvec3().dot(direction).abs(),
             _ => 1.0,
@@ -109,7 +109,7 @@ impl Node {
     }
 
     /// sigma_t of `channel` in a medium, what replaces it where that emits; 1 elsewhere.
-    pub fn sigma_t(&self, scene: &Scene, channel: usize) -> f64 {
+    pub(super) fn sigma_t(&self, scene: &Scene, channel: usize) -> f64 {
         match self.place {
             Place::Volume(p) => f64::from(properties(scene, self.medium, p).sigma_t[channel]),
             Place::VolumeEmitter(p, light) => f64::from(rate(scene, light, p)[channel]),
@@ -143,7 +143,7 @@ impl Node {
 
 /// A path.
 #[derive(Clone, Debug)]
-pub struct Path {
+pub(super) struct Path {
     /// The emitter.
     pub light: u32,
     /// From the emitter to the lens.
@@ -167,7 +167,7 @@ struct Way {
 impl Path {
     /// Finds the depths; none where something blocks it.
     /// The lens does not see emitters that are `hidden`.
-    pub fn through(scene: &Scene, hidden: bool, light: u32, nodes: Vec<Node>) -> Option<Self> {
+    pub(super) fn through(scene: &Scene, hidden: bool, light: u32, nodes: Vec<Node>) -> Option<Self> {
         let way = |pair: &[Node]| Way::both(scene, hidden, &pair[1], &pair[0]);
         let ways = nodes.windows(2).map(way).collect::<Option<Vec<Way>>>()?;
         let rounding = ways.iter().map(|way| way.rounding).sum();
@@ -175,7 +175,7 @@ impl Path {
     }
 
     /// The same but for positions on surfaces and in media, each coordinate of which is off by up to some ulp of the largest.
-    pub fn shaken(&self, stream: &mut Stream) -> Self {
+    pub(super) fn shaken(&self, stream: &mut Stream) -> Self {
         let mut path = self.clone();
         for node in &mut path.nodes {
             let (Place::Surface(SurfacePoint { position, .. }) | Place::Volume(position)) = &mut node.place
@@ -296,12 +296,12 @@ const STEEPNESS: f64 = 6.0;
 const POINTS: u32 = 4_000;
 
 /// The properties of a medium at `position`.
-pub fn properties(scene: &Scene, medium: MediumIndex, position: Vec3) -> MediumProperties {
+pub(super) fn properties(scene: &Scene, medium: MediumIndex, position: Vec3) -> MediumProperties {
     scene.media[medium.0 as usize].properties_at::<Everything>(0, position)
 }
 
 /// How often a camera subpath that passes `position` samples what the emitter `light` emits there (1/m).
-pub fn rate(scene: &Scene, light: u32, position: Vec3) -> Spectrum {
+pub(super) fn rate(scene: &Scene, light: u32, position: Vec3) -> Spectrum {
     match &scene.lights.all[light as usize].emitter.kind {
         Kind::Medium(glow) => glow.emission.rate(position),
         _ => Spectrum::ZERO,

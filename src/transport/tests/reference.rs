@@ -32,7 +32,7 @@ const NEVER: f64 = 1e-30;
 const SHAKES: u32 = 16;
 
 /// What the reference knows of an estimator.
-pub struct Reference<'a> {
+pub(super) struct Reference<'a> {
     pub scene: &'a Scene,
     pub counts: Counts,
     pub heuristic: Heuristic,
@@ -53,7 +53,7 @@ struct Written {
 
 impl<'a> Reference<'a> {
     /// Gathers what is needed of the emitters.
-    pub fn new<P: Profile>(estimator: &Estimator<'a, P>) -> Self {
+    pub(super) fn new<P: Profile>(estimator: &Estimator<'a, P>) -> Self {
         let Estimator { scene, counts, heuristic, roulette, .. } = *estimator;
         let mut starts = vec![None; scene.lights.all.len()];
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
@@ -71,26 +71,26 @@ impl<'a> Reference<'a> {
     }
 
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
-    pub fn weights(&self, path: &Path) -> Vec<Vec<f64>> {
+    pub(super) fn weights(&self, path: &Path) -> Vec<Vec<f64>> {
         heuristics::weights(self.heuristic, &self.counted(path))
     }
 
     /// The weights of paths with vertices like those of `path`, but for what f32 may leave uncertain of where they are.
-    pub fn shaken(&self, path: &Path) -> impl Iterator<Item = Vec<Vec<f64>>> {
+    pub(super) fn shaken(&self, path: &Path) -> impl Iterator<Item = Vec<Vec<f64>>> {
         let mut stream = Stream::new(19, 0, 0, Purpose::Study);
         (0..SHAKES).map(move |_| self.weights(&path.shaken(&mut stream)))
     }
 
     /// True by strategy and hero where walks come along the path so rarely, beside other strategies, that f32 need not
     /// hold how rarely.
-    pub fn never(&self, path: &Path) -> Vec<Vec<bool>> {
+    pub(super) fn never(&self, path: &Path) -> Vec<Vec<bool>> {
         let logs = self.counted(path);
         let most = logs.iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
         logs.iter().map(|strategy| strategy.iter().map(|log| *log < most + NEVER.ln()).collect()).collect()
     }
 
     /// True if densities that are off by `slack`, relative, could make all the difference to the weights.
-    pub fn is_close(&self, path: &Path, slack: f64) -> bool {
+    pub(super) fn is_close(&self, path: &Path, slack: f64) -> bool {
         heuristics::is_close(self.heuristic, &self.counted(path), slack)
     }
 
@@ -107,7 +107,7 @@ impl<'a> Reference<'a> {
     }
 
     /// n p of equiangular sampling; none where it cannot make the path.
-    pub fn equiangular(&self, path: &Path) -> Option<f64> {
+    pub(super) fn equiangular(&self, path: &Path) -> Option<f64> {
         let [y, x, o] = path.nodes.as_slice() else { return None };
         let Place::Volume(position) = x.place else { return None };
         let (pivot, over_connect) = self.scene.lights.pivot(path.light, position)?;
@@ -124,7 +124,7 @@ impl<'a> Reference<'a> {
 
     /// Expected samples of strategy `s`; 0 where it cannot make this path, as it would have to connect to a
     /// vertex that scatters by a Dirac lobe.
-    pub fn count(&self, path: &Path, s: usize) -> f64 {
+    pub(super) fn count(&self, path: &Path, s: usize) -> f64 {
         let (length, hittable) = (path.nodes.len(), self.emitter(path).is_hittable());
         let count = match s {
             0 if hittable => self.counts.emitter_hit,
@@ -154,7 +154,7 @@ impl<'a> Reference<'a> {
     }
 
     /// Densities of the emitter's vertex and of the direction as the start of a light subpath.
-    pub fn densities(&self, path: &Path) -> Densities {
+    pub(super) fn densities(&self, path: &Path) -> Densities {
         let (node, unlearnt) = (&path.nodes[0], self.unlearnt(path));
         let Some(learnt) = &self.learnt else { return unlearnt };
         let position = if let Place::Sky(_) = node.place { &path.nodes[1] } else { node }.position();
@@ -164,7 +164,7 @@ impl<'a> Reference<'a> {
     }
 
     /// The same if nothing was learnt.
-    pub fn unlearnt(&self, path: &Path) -> Densities {
+    pub(super) fn unlearnt(&self, path: &Path) -> Densities {
         let towards = path.nodes[0].towards(&path.nodes[1]);
         let direction = self.emission(path.light, &path.nodes[0], towards) as f32;
         Densities { point: self.start(path) as f32, direction }
@@ -223,7 +223,7 @@ impl<'a> Reference<'a> {
     }
 
     /// Density of directions that leave the lens, per film area of a pixel.
-    pub fn lens(&self, seen: &Node) -> f64 {
+    pub(super) fn lens(&self, seen: &Node) -> f64 {
         let sensor = &self.scene.sensor;
         let seen = match seen.place {
             Place::Sky(direction) => sensor.project_direction(direction, APERTURE),
@@ -277,7 +277,7 @@ impl<'a> Reference<'a> {
     }
 
     /// The emitter's vertex as next-event estimation finds it from the next vertex.
-    pub fn emitter_sample(&self, path: &Path) -> Option<EmitterSample> {
+    pub(super) fn emitter_sample(&self, path: &Path) -> Option<EmitterSample> {
         let (lights, geometry) = (&self.scene.lights, &self.scene.geometry);
         let reference = path.nodes[1].position();
         match (&self.emitter(path).kind, path.nodes[0].place) {
@@ -344,7 +344,7 @@ fn rest(written: &Written, s: usize, channel: usize) -> f64 {
 }
 
 /// Density of the direction `on` given `back`, survival included.
-pub fn reflect(
+pub(super) fn reflect(
     reference: &Reference<'_>,
     point: &SurfacePoint,
     back: DVec3,

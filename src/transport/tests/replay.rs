@@ -46,7 +46,7 @@ struct Led<S: MisSums> {
 
 /// The fast weights (over the number of channels) of all strategies of `path` by channel `hero`: none where the way
 /// is blocked, 0 where a strategy cannot make the path.
-pub fn weights<P: Profile>(
+pub(super) fn weights<P: Profile>(
     estimator: &Estimator<'_, P>,
     reference: &Reference<'_>,
     path: &Path,

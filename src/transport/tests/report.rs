@@ -63,7 +63,7 @@ fn describe(path: &Path) -> String {
 
 /// What came out for one scene.
 #[derive(Default)]
-pub struct Report {
+pub(super) struct Report {
     name: &'static str,
     pub paths: usize,
     /// By strategy: emitter hit, next-event estimation, connection, lens.
@@ -98,12 +98,17 @@ pub struct Report {
 }
 
 impl Report {
-    pub fn new(name: &'static str) -> Self {
+    pub(super) fn new(name: &'static str) -> Self {
         Self { name, ..Self::default() }
     }
 
     /// Compares what a real walk gave, and what walks led along its path give for all strategies.
-    pub fn take<P: Profile>(&mut self, estimator: &Estimator<'_, P>, reference: &Reference<'_>, case: &Case) {
+    pub(super) fn take<P: Profile>(
+        &mut self,
+        estimator: &Estimator<'_, P>,
+        reference: &Reference<'_>,
+        case: &Case,
+    ) {
         let Case { path, strategy, hero, weight } = case;
         let Some(path) = path else {
             self.unclear += 1;
@@ -146,7 +151,7 @@ impl Report {
     }
 
     /// Compares the weights of all strategies by walks led along `path`; gives back the slow ones.
-    pub fn lead<P: Profile>(
+    pub(super) fn lead<P: Profile>(
         &mut self,
         estimator: &Estimator<'_, P>,
         reference: &Reference<'_>,
@@ -194,7 +199,7 @@ impl Report {
     }
 
     /// Prints the numbers and holds them to what they have to be.
-    pub fn check(&self) {
+    pub(super) fn check(&self) {
         let Self { name, paths, strategies, exact, blocked, unclear, longest, deepest, .. } = self;
         let Self { real, led, fast_sum, slow_sum, close, .. } = self;
         eprintln!(

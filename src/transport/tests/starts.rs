@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Learnt starts that have little to do with what reaches the image: those above a plane count for a hundred times as much,
 /// and of the second emitter nothing is known.
-pub fn lessons(setup: &Setup) -> Arc<Starts> {
+pub(super) fn lessons(setup: &Setup) -> Arc<Starts> {
     let lights = &setup.scene.lights;
     let mut stream = Stream::new(9, 0, 0, Purpose::Study);
     let starts = (0..20_000).filter_map(|_| {

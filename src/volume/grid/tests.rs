@@ -13,7 +13,7 @@ use crate::{
 
 /// Samples in memory, x fastest.
 #[derive(Clone)]
-pub struct Table<V> {
+pub(super) struct Table<V> {
     pub size: [usize; 3],
     pub values: Vec<V>,
 }
@@ -61,7 +61,7 @@ fn askew() -> DAffine3 {
 
 const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
 
-pub fn examples() -> Vec<Grid> {
+pub(super) fn examples() -> Vec<Grid> {
     let mut all = Vec::new();
     for (index, wrap) in (0..).zip(WRAPS) {
         for to_world in [DAffine3::IDENTITY, moved(), askew()] {
@@ -496,59 +496,6 @@ fn colours_that_are_all_grey_collapse() {
     }
     table.values[50].z += 0.1;
     assert!(!chromatic(table, Filter::Trilinear, Wrap::Clamp, askew()).is_grey());
-}
-
-/// A plume of 256^3 voxels, made as it is requested.
-struct Plume;
-
-impl Samples<f32> for Plume {
-    fn size(&self) -> [usize; 3] {
-        [256; 3]
-    }
-    fn at(&self, index: [usize; 3]) -> f32 {
-        let p = vec3(index[0] as f32, index[1] as f32, index[2] as f32) / 256.0;
-        let axis = vec3(0.5 + 0.1 * (7.0 * p.z).sin(), 0.5 + 0.08 * (9.0 * p.z + 1.0).cos(), p.z);
-        let curl = (23.0 * p.x).sin() * (29.0 * p.y).cos() * (31.0 * p.z).sin();
-        (10.0 * (1.0 - p.distance(axis) / (0.06 + 0.22 * p.z) + 0.35 * curl)).max(0.0)
-    }
-    fn uniform(&self, _: [usize; 3], _: [usize; 3]) -> Option<f32> {
-        None
-    }
-}
-
-#[test]
-#[ignore = "a measurement: cargo test --lib times_of_a_plume -- --ignored --nocapture"]
-#[expect(clippy::print_stdout, reason = "what is measured is told")]
-fn times_of_a_plume() {
-    let start = std::time::Instant::now();
-    let values = Values::Grey(Box::new(Plume));
-    let grid =
-        Grid::new(Path::new("plume"), values, Filter::Trilinear, Wrap::Clamp, DAffine3::IDENTITY).unwrap();
-    let [dense, _] = grid.counts();
-    println!("built in {:?}; {dense} bricks hold values", start.elapsed());
-    let chords: Vec<RaySegment> = (0..20_000)
-        .map(|index| {
-            let mut stream = Stream::new(1, index, 0, Purpose::Study);
-            let mut point = || vec3(stream.uniform(), stream.uniform(), stream.uniform());
-            between(point(), point())
-        })
-        .collect();
-    let best = |name: &str, run: &dyn Fn(&RaySegment) -> f32| {
-        let time = || {
-            let start = std::time::Instant::now();
-            let sum: f32 = chords.iter().map(run).sum();
-            assert!(sum.is_finite());
-            start.elapsed().as_nanos() as f64 / chords.len() as f64
-        };
-        let best = (0..5).map(|_| time()).fold(f64::INFINITY, f64::min);
-        println!("{name}: {best:.0} ns");
-    };
-    best("integral", &|segment| grid.integral(segment));
-    best("inversion", &|segment| match grid.invert(segment, 1.0, 0, 0.5) {
-        Reached::Within { t, .. } => t,
-        Reached::Beyond { depth } => depth,
-    });
-    best("eval", &|segment| grid.eval(segment.origin));
 }
 
 #[test]
