@@ -9,7 +9,7 @@ use crate::{
     sampling::{Stream, stream::Purpose},
     scene::{Scene, build::Setup, lights::Light},
     shape::{Ray, SurfacePoint},
-    transport::{Options, Segment, Strategies, profile::Everything},
+    transport::{Options, Segment, Strategies, profiles::Everything},
 };
 use std::{cmp::Ordering, f32::consts::PI};
 

@@ -31,7 +31,7 @@ fn glyph(letter: char) -> [u8; HEIGHT] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transport::observer::StrategyKind;
+    use crate::transport::strategy::StrategyKind;
 
     #[test]
     fn all_that_captions_are_made_of_has_letters() {

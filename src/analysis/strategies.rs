@@ -17,7 +17,7 @@ use crate::{
     memory,
     render::{Settings, instrument::Instrument},
     scene::build::Setup,
-    transport::{Options, Strategies, coverage::Traits, observer::StrategyKind},
+    transport::{Options, Strategies, coverage::Traits, strategy::StrategyKind},
 };
 use images::{CellImages, StrategyCell, StrategyImages, StrategyTable};
 use serde::Serialize;

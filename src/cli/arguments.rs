@@ -168,7 +168,7 @@ mod tests {
     use crate::{
         medium::DistanceMethod,
         sampling::Sampler,
-        transport::{Algorithm, observer::StrategyKind},
+        transport::{Algorithm, strategy::StrategyKind},
     };
     use clap::CommandFactory;
     use std::{num::NonZeroUsize, time::Duration};

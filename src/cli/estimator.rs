@@ -19,8 +19,8 @@ use crate::{
     settings::{Overrides, integrator::Restriction},
     transport::{
         Algorithm, Connections, Effort, Guiding, Heuristic, Options, Strategies, equiangular_applies,
-        observer::StrategyKind,
-        profile::{Needs, ProfileName},
+        profiles::{Needs, ProfileName},
+        strategy::StrategyKind,
     },
 };
 use clap::{Args, ValueEnum};

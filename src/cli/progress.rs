@@ -131,7 +131,7 @@ mod tests {
     use crate::{
         passes::budget::Budget,
         sampling::Sampler,
-        transport::{Options, profile::ProfileName},
+        transport::{Options, profiles::ProfileName},
     };
     use std::time::Duration;
 

@@ -5,10 +5,7 @@ use crate::{
     guide::{Guide, Lesson},
     math::{Vec2, Vec3},
     scene::Scene,
-    transport::{
-        Event, Interaction, Scattering, Strategies,
-        observer::{Meeting, StrategyKind},
-    },
+    transport::{Event, Interaction, Scattering, Strategies, observer::Meeting, strategy::StrategyKind},
 };
 
 /// The camera's, which go towards the light, and the light's.

@@ -17,8 +17,9 @@ use crate::{
     scene::Scene,
     transport::{
         Arrival, Contribution, Event, Leg, Options, Strategies,
-        observer::{Meeting, Observer, StrategyKind},
-        profile::Needs,
+        observer::{Meeting, Observer},
+        profiles::Needs,
+        strategy::StrategyKind,
     },
 };
 use rayon::prelude::*;

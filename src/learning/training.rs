@@ -23,7 +23,7 @@ use crate::{
     sampling::Sampler,
     scene::{Scene, lights::Starts},
     settings::options::{Effort, Guiding},
-    transport::{Algorithm, Connections, Heuristic, Options, Strategies, profile::ProfileName},
+    transport::{Algorithm, Connections, Heuristic, Options, Strategies, profiles::ProfileName},
 };
 use std::sync::Arc;
 

@@ -19,7 +19,8 @@ use crate::{
     },
     transport::{
         Contribution, Event, Leg, Strategies,
-        observer::{Meeting, Observer, StrategyKind},
+        observer::{Meeting, Observer},
+        strategy::StrategyKind,
     },
 };
 use rayon::prelude::*;

@@ -5,7 +5,7 @@ use crate::{
     math::Vec2,
     sampling::{Sampler, Stream, stream::Purpose},
     scene::Scene,
-    transport::{Estimator, LightCache, observer::Observer, profile::Profile},
+    transport::{Estimator, LightCache, Profile, observer::Observer},
 };
 use std::ops::Range;
 

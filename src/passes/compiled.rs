@@ -18,7 +18,7 @@ use crate::{
     transport::{
         Algorithm, Heuristic, Interaction, Options,
         observer::Observer,
-        profile::{
+        profiles::{
             Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, ProfileName,
             Smoke, Vacuum,
         },

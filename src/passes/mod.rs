@@ -13,7 +13,7 @@ mod ready;
 
 use crate::{
     sampling::Sampler,
-    transport::{Options, profile::ProfileName},
+    transport::{Options, profiles::ProfileName},
 };
 use budget::Budget;
 

@@ -16,9 +16,8 @@ use crate::{
     scene::{Scene, lights::Starts},
     shape::Ray,
     transport::{
-        Connections, Contribution, Estimator, Interaction, LightCache, Options,
+        Connections, Contribution, Estimator, Interaction, LightCache, Options, Profile,
         observer::{Meeting, Observer, Sum},
-        profile::Profile,
     },
 };
 use std::{cell::Cell, ops::Range};

@@ -10,7 +10,7 @@ use crate::{
     scene::{Scene, lights::EmitterSample},
     settings::integrator::FogSettings,
     shape::{Ray, SurfacePoint},
-    transport::{NullCrossing, Segment, profile::Everything},
+    transport::{NullCrossing, Segment, profiles::Everything},
 };
 use std::f32::consts::PI;
 

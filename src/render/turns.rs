@@ -49,7 +49,7 @@ mod tests {
         settings::Overrides,
         transport::{
             Options, Strategies,
-            profile::{Needs, ProfileName},
+            profiles::{Needs, ProfileName},
         },
     };
     use std::{

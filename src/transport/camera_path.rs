@@ -2,15 +2,17 @@
 //! connections to light subpaths (s >= 2).
 
 use super::{
-    Estimator,
     cache::Partners,
-    connect::{self, Contribution, Span},
+    connect::{self, Span},
     equiangular::FirstCollision,
+    estimator::Estimator,
+    interaction::Interaction,
     mis::{self, MisSums, Weight},
-    observer::{Meeting, Observer, StrategyKind},
+    observer::{Contribution, Meeting, Observer},
     profile::Profile,
     roulette::Pending,
-    segment::{FlightPart, Interaction, Passed},
+    segment::{FlightPart, Passed},
+    strategy::StrategyKind,
     vertex::{Subpath, Vertex},
     walk::{Arrival, Departure, Kind, Visitor, arrive, cross, walk},
 };

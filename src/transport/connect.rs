@@ -2,16 +2,17 @@
 //! contribution (LW96 eq. 10) and weight (eq. 14).
 
 use super::{
-    Estimator,
+    estimator::Estimator,
     mis::{self, End, MisSums, Strategy, Weight},
-    observer::StrategyKind,
+    observer::Contribution,
     profile::Profile,
     segment,
+    strategy::StrategyKind,
     vertex::Vertex,
 };
 use crate::{
     bsdf::Transport,
-    math::{Channels, Spectrum, Vec3, measure, offset::Lift},
+    math::{Channels, Vec3, measure, offset::Lift},
     medium::MediumIndex,
     sampling::Stream,
     scene::{
@@ -20,7 +21,6 @@ use crate::{
     },
     shape::Ray,
 };
-use std::ops::{Div, Mul};
 
 /// The end of a walk at `vertex`, looking in unit direction `towards`; none where nothing scatters that way.
 #[inline]
@@ -98,47 +98,6 @@ fn lift(point: &EmitterPoint, towards: Vec3) -> Lift {
     match point {
         EmitterPoint::Surface(point) => point.lift(towards),
         _ => Lift::NONE,
-    }
-}
-
-/// The contribution of a strategy to one path.
-#[derive(Clone, Copy, Debug)]
-pub struct Contribution {
-    /// The weighted contribution of one sample; the caller may take several.
-    pub value: Spectrum,
-    /// The weight in it, times the number of channels.
-    pub weight: f32,
-    /// What the strategy would contribute if it ran alone: [`Self::share`] of it is `value`.
-    pub alone: Spectrum,
-    /// The weight that it would have then.
-    pub weight_alone: f32,
-    /// What remains of radiance along the connecting segment; 1 where there is none.
-    pub transmittance: Spectrum,
-    /// See [`MisSums::shares`].
-    pub shares: [f32; StrategyKind::ALL.len()],
-}
-
-impl Contribution {
-    /// The weight among all strategies, in [0, 1]: over those that run the weights of one path sum to 1.
-    #[inline]
-    pub fn share(&self) -> f32 {
-        self.weight / self.weight_alone
-    }
-}
-
-impl Mul<f32> for Contribution {
-    type Output = Self;
-    #[inline]
-    fn mul(self, factor: f32) -> Self {
-        Self { value: self.value * factor, alone: self.alone * factor, ..self }
-    }
-}
-
-impl Div<f32> for Contribution {
-    type Output = Self;
-    #[inline]
-    fn div(self, divisor: f32) -> Self {
-        Self { value: self.value / divisor, alone: self.alone / divisor, ..self }
     }
 }
 

@@ -3,7 +3,7 @@
 //! What decides is how a path scatters, not where: an emitter of some kind, then vertices that scatter by a Dirac lobe
 //! or not. Five vertices show all there is to see of the ends and of two neighbours between them.
 
-use super::{Options, Strategies, observer::StrategyKind};
+use super::{Options, Strategies, strategy::StrategyKind};
 use crate::{
     bsdf::{Bsdf, BsdfModel},
     emitter::Kind,

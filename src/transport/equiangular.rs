@@ -35,14 +35,16 @@
 //! than the lens it costs 1.3 to 1.5 times the time and gains less, everywhere; it is left out there.
 
 use super::{
-    Estimator,
     camera_path::CameraPath,
-    connect::{self, Contribution},
+    connect,
+    estimator::Estimator,
     forced,
+    interaction::Interaction,
     mis::{End, MisSums},
-    observer::{Meeting, Observer, StrategyKind},
+    observer::{Contribution, Meeting, Observer},
     profile::Profile,
-    segment::{self, Interaction, SegmentTransmittance},
+    segment::{self, SegmentTransmittance},
+    strategy::StrategyKind,
     vertex::{Subpath, Vertex},
     walk::Departure,
 };

@@ -1,6 +1,6 @@
 //! What observers see of walks: where they go, where they arrive, and what is there.
 
-use super::segment::Interaction;
+use super::interaction::Interaction;
 use crate::{
     bsdf::Transport,
     guide::Seen,

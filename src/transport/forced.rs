@@ -9,12 +9,13 @@
 //! surfaces and where media emit the factor is left at 1: the weights there are not optimal, but correct.
 
 use super::{
-    Estimator,
     cache::Partners,
     camera_path::{CameraPath, depart},
+    estimator::Estimator,
+    interaction::Interaction,
     observer::Observer,
     profile::Profile,
-    segment::{self, ForcedEnd, Interaction, Passed, Segment},
+    segment::{self, ForcedEnd, Passed, Segment},
     walk::{Kind, Visitor, go_on, walk},
 };
 use crate::{

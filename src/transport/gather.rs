@@ -4,13 +4,14 @@
 //! over cells.
 
 use super::{
-    Estimator,
     cache::Partners,
     camera_path::{CameraPath, depart},
+    estimator::Estimator,
     mis,
-    observer::{Observer, StrategyKind},
+    observer::Observer,
     profile::Profile,
     segment::{Passed, sample_free_flight},
+    strategy::StrategyKind,
     vertex::{Subpath, Vertex},
     walk::{Departure, Kind, Visitor, go_on},
 };

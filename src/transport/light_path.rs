@@ -2,15 +2,16 @@
 //! subpaths.
 
 use super::{
-    Estimator,
     cache::LightCache,
-    connect::{self, Contribution, Span},
+    connect::{self, Span},
+    estimator::Estimator,
     forced,
+    interaction::Interaction,
     mis::{End, MisSums},
-    observer::{Meeting, Observer, StrategyKind},
+    observer::{Contribution, Meeting, Observer},
     profile::Profile,
     roulette::Pending,
-    segment::Interaction,
+    strategy::StrategyKind,
     vertex::Vertex,
     walk::{Departure, Kind, Visitor, walk},
 };

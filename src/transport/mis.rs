@@ -14,14 +14,11 @@ pub(super) use balance::Balance;
 pub(super) use by_kind::ByKind;
 pub(super) use compared::Compared;
 pub(super) use cutoff::Cutoff;
-use maximum::Maximum;
 #[cfg(test)]
 pub(in crate::transport) use maximum::TIE;
-use power::Power;
 pub use sums::MisSums;
-use uniform::Uniform;
 
-use super::{observer::StrategyKind, profile::Profile};
+use super::{profile::Profile, strategy::StrategyKind};
 use crate::{
     math::{Channels, Spectrum, Vec3, offset::Lift},
     medium::MediumIndex,

@@ -67,28 +67,35 @@ mod camera_path;
 mod connect;
 pub mod coverage;
 mod equiangular;
+mod estimator;
 mod event;
 mod forced;
 mod gather;
+mod interaction;
+pub mod lengths;
 mod light_path;
 mod mis;
 pub mod observer;
-pub mod profile;
+mod profile;
+pub mod profiles;
 pub mod roulette;
 mod segment;
+pub mod strategy;
 #[cfg(test)]
 mod tests;
 mod vertex;
 mod walk;
 
 pub use cache::LightCache;
-use cache::Partners;
-pub use connect::Contribution;
 pub use equiangular::applies as equiangular_applies;
+pub use estimator::Estimator;
 pub use event::{Arrival, Event, Leg};
+pub use interaction::{Interaction, Scattering};
 pub use mis::MisSums;
-pub use segment::{Interaction, NullCrossing, Segment};
-pub use vertex::{Scattering, Vertex};
+pub use observer::Contribution;
+pub use profile::Profile;
+pub use segment::{NullCrossing, Segment};
+pub use vertex::Vertex;
 
 pub use crate::{
     settings::heuristic::Heuristic,
@@ -96,60 +103,20 @@ pub use crate::{
 };
 
 use crate::{
-    guide::{Guide, Learnt, Radiance},
-    math::{Channels, Spectrum, Vec2, Vec3},
+    guide::Learnt,
+    math::{Channels, Spectrum, Vec2},
     sampling::{Stream, stream::Purpose},
-    scene::{
-        Scene,
-        lights::{Densities, EmitterSample, Start, Starts},
-    },
+    scene::Scene,
     shape::Ray,
 };
-use mis::Strategy;
-use observer::{Meeting, Observer, StrategyKind};
-use profile::Profile;
+use estimator::Counts;
+use observer::{Meeting, Observer};
 use roulette::Roulette;
-use std::sync::Arc;
-
-/// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
-#[derive(Clone, Copy, Debug)]
-pub struct Counts {
-    emitter_hit: f32,
-    next_event: f32,
-    connection: f32,
-    lens: f32,
-    equiangular: f32,
-}
 
 /// Vertices that the cache of a block should hold at most, on average: it has to fit the processor's caches.
 const CACHE_VERTICES: f32 = 16_384.0;
 /// Light subpaths that measure how many vertices a light subpath leaves.
 const PILOT_WALKS: u64 = 2_048;
-
-/// The estimator for one scene, compiled for profile `P`.
-pub struct Estimator<'a, P: Profile> {
-    scene: &'a Scene,
-    counts: Counts,
-    heuristic: Heuristic,
-    /// When walks end, as was asked,
-    survival: Survival,
-    /// and as they do.
-    roulette: Roulette,
-    connections_per_vertex: u32,
-    connections: Connections,
-    /// Probability that a light vertex is kept for connections.
-    keep: f32,
-    max_edges: u32,
-    hide_emitters: bool,
-    forced_interaction: bool,
-    /// Which starts of light subpaths reach the image; none if they start as their emitters would have it.
-    starts: Option<Arc<Starts>>,
-    /// What walks follow.
-    guide: Option<Arc<Guide>>,
-    /// What camera subpaths end in.
-    radiance: Option<Arc<Radiance>>,
-    profile: std::marker::PhantomData<P>,
-}
 
 impl<'a, P: Profile> Estimator<'a, P> {
     /// Prepares to render `scene` with `walks_per_pass` light subpaths for each sample of all pixels together and
@@ -225,55 +192,6 @@ impl<'a, P: Profile> Estimator<'a, P> {
         self.counts.connection = per_vertex as f32 / per_walk;
     }
 
-    /// The strategies of `kind`, as the weights use them.
-    #[inline]
-    fn strategy(&self, kind: StrategyKind) -> Strategy {
-        let count = match kind {
-            StrategyKind::EmitterHit => self.counts.emitter_hit,
-            StrategyKind::NextEvent => self.counts.next_event,
-            StrategyKind::Connection => self.counts.connection,
-            StrategyKind::Lens => self.counts.lens,
-            StrategyKind::Equiangular => self.counts.equiangular,
-        };
-        Strategy { kind, count, heuristic: self.heuristic }
-    }
-
-    /// Density of a light subpath's start at `sample` along the segment from there to `other`, in unit `direction`.
-    #[inline]
-    fn pdf_start(&self, sample: &EmitterSample, other: Vec3, direction: Vec3) -> f32 {
-        let unlearnt = Densities { point: sample.pdf_start, direction: sample.pdf_direction };
-        self.learnt(|| Start::towards(sample.light, &sample.point, other, direction), unlearnt).both()
-    }
-
-    /// Densities of a start, which are `unlearnt` without what was learnt.
-    #[inline]
-    fn learnt(&self, start: impl FnOnce() -> Start, unlearnt: Densities) -> Densities {
-        match &self.starts {
-            None => unlearnt,
-            Some(starts) => starts.densities(&self.scene.lights, &start(), unlearnt),
-        }
-    }
-
-    /// When walks end.
-    pub fn survival(&self) -> Survival {
-        self.survival
-    }
-
-    /// The starts that light subpaths were given.
-    pub fn starts(&self) -> Option<&Starts> {
-        self.starts.as_deref()
-    }
-
-    /// True if light subpaths have something to do.
-    pub fn needs_light_walks(&self) -> bool {
-        self.counts.connection > 0.0 || self.counts.lens > 0.0
-    }
-
-    /// True if the first vertex of a light subpath is connected to the lens, see [`Strategies::runs`].
-    fn starts_seen(&self) -> bool {
-        self.counts.lens > 0.0 && self.counts.emitter_hit <= 0.0
-    }
-
     /// Traces one light subpath of channel `hero` into `cache`; what it contributes goes to `observer`.
     pub fn trace_light(
         &self,
@@ -300,22 +218,6 @@ impl<'a, P: Profile> Estimator<'a, P> {
         let medium = self.scene.media_map.sensor;
         let ahead = Segment::along(self.scene, primary, medium, self.hide_emitters);
         segment::sample_free_flight::<P>(ahead, 0, stream, &mut |_, _| ()).interaction
-    }
-
-    /// The light vertices for a camera subpath of channel `hero`, which may have light subpath number `walk` of the cache for
-    /// itself.
-    #[inline]
-    fn partners<'c>(
-        &self,
-        cache: &'c LightCache<P::MisSums>,
-        hero: usize,
-        walk: usize,
-    ) -> Partners<'c, P::MisSums> {
-        match self.connections {
-            Connections::Cached => cache.drawn(hero, self.connections_per_vertex),
-            Connections::All if self.counts.connection > 0.0 => cache.all_of(walk),
-            Connections::All => Partners::NONE,
-        }
     }
 
     /// One camera subpath of channel `hero` through `film` (pixels) and a point of the aperture; what it

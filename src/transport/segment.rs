@@ -7,7 +7,6 @@ mod free_flight;
 mod transmittance;
 
 pub(super) use forced::{ForcedEnd, force, sure_depth};
-pub use free_flight::Interaction;
 pub(super) use free_flight::{
     EmitterCrossing, FlightPart, FlightState, FreeFlight, Passed, sample_free_flight,
 };
@@ -166,7 +165,7 @@ mod tests {
     use crate::{
         sampling::{Stream, stream::Purpose},
         scene::build::Setup,
-        transport::{profile::Bounded, tests::scenes},
+        transport::{interaction::Interaction, profiles::Bounded, tests::scenes},
     };
 
     /// A cube of the mean free path 1e-6, its face one metre from the camera, which is the origin: 16 steps

@@ -2,11 +2,11 @@
 
 use super::{
     event::{Arrival, Event},
+    interaction::{Interaction, Scattering},
     mis::MisSums,
-    observer::StrategyKind,
     profile::Profile,
     roulette::Pending,
-    segment::Interaction,
+    strategy::StrategyKind,
 };
 use crate::{
     bsdf::Transport,
@@ -15,21 +15,7 @@ use crate::{
     medium::MediumIndex,
     sampling::Stream,
     scene::Scene,
-    shape::SurfacePoint,
 };
-
-/// Scattering at a vertex between two given directions.
-#[derive(Clone, Copy, Debug)]
-pub struct Scattering {
-    /// The factor of the path's contribution (LW96 eq. 10, g without the other vertex's cosine): albedo x phase
-    /// in a medium (sigma_t is a factor of the flight), BSDF x cosine on a surface, shading normals accounted
-    /// for.
-    pub value: Spectrum,
-    /// Density of the outgoing direction given the incoming one, survival included (1/sr).
-    pub pdf_fwd: f32,
-    /// Density of the incoming direction given the outgoing one, survival included (1/sr).
-    pub pdf_rev: f32,
-}
 
 /// All that is known of a camera or light subpath when it reaches its i-th point after the start, before anything happens there.
 ///
@@ -193,22 +179,4 @@ impl<S: MisSums> Vertex<S> {
         }
         Scattering { value, pdf_fwd: pdf_fwd * self.survival, pdf_rev: pdf_rev * self.survival }
     }
-}
-
-/// The correction of a light subpath's scattering where the shading normal is not the geometric one (Veach
-/// 1997, eq. 5.19): |wi.ns| |wo.ng| / (|wi.ng| |wo.ns|). Camera subpaths and media have no such factor.
-#[inline]
-pub(super) fn shading_correction(
-    point: &SurfacePoint,
-    incoming: Vec3,
-    outgoing: Vec3,
-    wi: Vec3,
-    wo: Vec3,
-    transport: Transport,
-) -> f32 {
-    if transport == Transport::Radiance || point.shading.normal == point.normal {
-        return 1.0;
-    }
-    let bottom = point.normal.dot(incoming) * wo.z;
-    if bottom == 0.0 { 0.0 } else { (wi.z * point.normal.dot(outgoing) / bottom).abs() }
 }

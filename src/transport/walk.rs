@@ -2,14 +2,15 @@
 //! running sums of the weights.
 
 use super::{
-    Estimator,
+    estimator::Estimator,
     event::Leg,
+    interaction::{Interaction, Scattering, shading_correction},
     mis::MisSums,
-    observer::StrategyKind,
     profile::Profile,
     roulette::{Pending, Roulette},
-    segment::{EmitterCrossing, FlightState, FreeFlight, Interaction, Passed, Segment, sample_free_flight},
-    vertex::{Scattering, Subpath, Vertex, shading_correction},
+    segment::{EmitterCrossing, FlightState, FreeFlight, Passed, Segment, sample_free_flight},
+    strategy::StrategyKind,
+    vertex::{Subpath, Vertex},
 };
 use crate::{
     bsdf::{BsdfModel, Transport},

@@ -11,7 +11,7 @@ use tyndall::{
     sampling::Sampler,
     scene::build::{self, Setup},
     settings::Overrides,
-    transport::profile::{Needs, ProfileName},
+    transport::profiles::{Needs, ProfileName},
 };
 
 fn main() {

@@ -18,7 +18,7 @@ use tyndall::{
     settings::Overrides,
     transport::{
         Options, Strategies,
-        profile::{Needs, ProfileName},
+        profiles::{Needs, ProfileName},
     },
 };
 

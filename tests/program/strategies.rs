@@ -15,7 +15,7 @@ use tyndall::{
     analysis::strategies::images::{StrategyCell, StrategyImages, StrategyTable},
     math::Spectrum,
     render::instrument::Instrument,
-    transport::{Strategies, observer::StrategyKind},
+    transport::{Strategies, strategy::StrategyKind},
 };
 
 fn foggy_room(fog: Value) -> Value {

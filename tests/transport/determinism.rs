@@ -9,7 +9,7 @@ use crate::common::{
 use serde_json::{Value, json};
 use tyndall::{
     math::Spectrum,
-    transport::{Strategies, profile::ProfileName},
+    transport::{Strategies, profiles::ProfileName},
 };
 
 /// A room with a lamp, filled with `fog`.

@@ -2,7 +2,7 @@
 
 use crate::common::{Stage, claims::Claims, name_of, pieces::*, strategies};
 use serde_json::{Value, json};
-use tyndall::transport::{Strategies, profile::ProfileName};
+use tyndall::transport::{Strategies, profiles::ProfileName};
 
 /// A slab 1 m thick, seen by parallel rays that cross it straight.
 fn slab(medium: Value) -> Value {

@@ -10,7 +10,7 @@ use crate::common::{
 use serde_json::{Value, json};
 use tyndall::{
     settings::heuristic::Heuristic,
-    transport::{Strategies, profile::ProfileName},
+    transport::{Strategies, profiles::ProfileName},
 };
 
 const SEEDS: u64 = 12;

@@ -8,7 +8,8 @@ use crate::{
     scene::lights::{EmissionSample, EmitterSample, Lights, Starts},
     transport::{
         Arrival, Contribution, Event, Interaction, Leg,
-        observer::{Meeting, Observer, StrategyKind},
+        observer::{Meeting, Observer},
+        strategy::StrategyKind,
     },
 };
 use std::collections::BTreeMap;

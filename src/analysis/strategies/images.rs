@@ -8,7 +8,8 @@ use crate::{
     render::instrument::Instrument,
     transport::{
         Contribution, Strategies,
-        observer::{Meeting, Observer, StrategyKind},
+        observer::{Meeting, Observer},
+        strategy::StrategyKind,
     },
 };
 

@@ -8,7 +8,8 @@ use crate::{
     render::instrument::Instrument,
     transport::{
         Contribution, Event,
-        observer::{Meeting, Observer, StrategyKind},
+        observer::{Meeting, Observer},
+        strategy::StrategyKind,
     },
 };
 use std::time::Instant;
@@ -205,7 +206,7 @@ mod tests {
         settings::Overrides,
         transport::{
             Options, Strategies,
-            profile::{Needs, ProfileName},
+            profiles::{Needs, ProfileName},
         },
     };
     use std::path::Path;

@@ -6,7 +6,7 @@ use crate::{
     film::layer::Layer,
     render::progressive::{Method, Shaded},
     scene::build::Setup,
-    transport::{Algorithm, observer::StrategyKind},
+    transport::{Algorithm, strategy::StrategyKind},
 };
 use clap::Args;
 use serde_json::{Value, json};

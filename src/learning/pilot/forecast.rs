@@ -17,7 +17,7 @@ use crate::{
     learning::tiles::Tiles,
     passes::{blocks::Blocks, compiled::Compiled},
     settings::options::{Effort, Survival},
-    transport::{observer::StrategyKind, roulette},
+    transport::{lengths, strategy::StrategyKind},
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -220,7 +220,7 @@ impl Forecast {
         let is_alone = !choice.strategies.need_light_walks() && self.survival == Survival::FourthRoot;
         let segments = |end| self.camera[index(end)].segments / self.samples().max(1.0);
         let usual = segments(End::AtOnce(Survival::Albedo));
-        let is_late = survival == Survival::FourthRoot || roulette::is_worth_it(segments(End::Late), usual);
+        let is_late = survival == Survival::FourthRoot || lengths::is_worth_it(segments(End::Late), usual);
         if is_alone && is_late { End::Late } else { End::AtOnce(survival) }
     }
 

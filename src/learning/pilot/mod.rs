@@ -15,7 +15,7 @@ use crate::{
     sampling::Sampler,
     scene::Scene,
     settings::options::{Effort, Guiding, Survival},
-    transport::{Options, Strategies, coverage, equiangular_applies, observer::StrategyKind},
+    transport::{Options, Strategies, coverage, equiangular_applies, strategy::StrategyKind},
 };
 use forecast::{Forecast, PIXELS_PER_BLOCK};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -308,7 +308,7 @@ mod tests {
         render::instrument::Instrument,
         scene::build::{self, Setup},
         settings::Overrides,
-        transport::profile::ProfileName,
+        transport::profiles::ProfileName,
     };
     use std::path::Path;
 

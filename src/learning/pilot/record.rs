@@ -10,8 +10,9 @@ use crate::{
     settings::options::Survival,
     transport::{
         Contribution, Event, Leg,
-        observer::{Meeting, Observer, StrategyKind},
+        observer::{Meeting, Observer},
         roulette,
+        strategy::StrategyKind,
     },
 };
 

@@ -9,7 +9,7 @@ use crate::{
     sampling::{Stream, stream::Purpose},
     scene::Scene,
     shape::SurfacePoint,
-    transport::{NullCrossing, Segment, profile::Everything},
+    transport::{NullCrossing, Segment, profiles::Everything},
 };
 
 /// Surfaces that a ray passes, or is mirrored or refracted by, before it gives up.

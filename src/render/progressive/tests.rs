@@ -7,7 +7,7 @@ use crate::{
     sampling::Sampler,
     scene::build::{self, Setup},
     settings::Overrides,
-    transport::{Connections, Options, Strategies, observer::StrategyKind, profile::ProfileName},
+    transport::{Connections, Options, Strategies, profiles::ProfileName, strategy::StrategyKind},
 };
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The balance heuristic (LW96 eq. 14): plain sums.
 
-use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
+use super::sums::MisSums;
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 
 /// Sum of n p over strategies.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,8 @@
 //! The balance heuristic with its sum split by kinds of strategies: from the samples of one set of counts, pilots tell how
 //! any other would do.
 
-use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
+use super::sums::MisSums;
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 
 /// Sum of n p over the strategies of each kind.
 #[derive(Clone, Copy, Debug)]

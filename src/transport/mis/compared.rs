@@ -1,8 +1,8 @@
 //! The sums of several heuristics side by side. Those that are there to be compared share one compiled estimator: the
 //! build takes less time, and they have less to keep of a strategy than the estimator has to do.
 
-use super::{Maximum, MisSums, Power, Uniform};
-use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
+use super::{maximum::Maximum, power::Power, sums::MisSums, uniform::Uniform};
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 
 /// Sums for the power, the maximum and the uniform heuristic.
 #[derive(Clone, Copy, Debug)]

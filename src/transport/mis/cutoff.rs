@@ -1,7 +1,7 @@
 //! The cutoff heuristic (Veach 1997, sec. 9.2): the balance heuristic without strategies that hardly ever make the path.
 
-use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
+use super::sums::MisSums;
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 
 /// As many strategies as the longest path has, besides the one at hand.
 const CAPACITY: usize = Heuristic::CUTOFF_EDGES as usize;

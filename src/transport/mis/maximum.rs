@@ -1,7 +1,7 @@
 //! The maximum heuristic (Veach 1997, sec. 9.2): a path belongs to the strategy that makes it most often.
 
-use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
+use super::sums::MisSums;
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 
 /// Strategies whose n p lie this close together, relative, share a path equally. Which one is greater must
 /// not depend on rounding: each strategy rounds differently, so both could claim the path, or neither. Ties

@@ -1,7 +1,7 @@
 //! The power heuristic with exponent 2 (Veach 1997, sec. 9.2).
 
-use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
+use super::sums::MisSums;
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 
 /// Root of the sum of (n p)^2 over strategies: with the root it grows as n p does, and no path is too long or too
 /// dense for it that is not for the balance heuristic too.

@@ -1,6 +1,6 @@
 //! The sum over the strategies that connect elsewhere along a path, for each heuristic.
 
-use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 use std::fmt::Debug;
 
 /// n_j p_j^c of some strategies j and all channels c, in units of the density of the walk that carries them,

@@ -4,8 +4,8 @@
 //! Channels are not strategies: the share of a strategy is divided among the heroes in proportion to their
 //! densities. A hero that is very unlikely to sample a path could not compensate for an equal share of it.
 
-use super::MisSums;
-use crate::{math::Channels, settings::heuristic::Heuristic, transport::observer::StrategyKind};
+use super::sums::MisSums;
+use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 use std::marker::PhantomData;
 
 /// How many strategies can make a path.

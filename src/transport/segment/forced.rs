@@ -1,12 +1,12 @@
 //! The forced flight (P03T sec. A.2.2): a segment that ends in two ways at once, at a collision within the media that
 //! the ray crosses and on what lies behind them, each with its share of radiance.
 
-use super::{FlightPart, FlightState, FreeFlight, Interaction, NullCrossing, Passed, Segment};
+use super::{FlightPart, FlightState, FreeFlight, NullCrossing, Passed, Segment};
 use crate::{
     math::{Channels, Spectrum},
     medium::{Medium, MediumInterval, distance::collision_ratio},
     sampling::Stream,
-    transport::profile::Profile,
+    transport::{interaction::Interaction, profile::Profile},
 };
 
 /// One way in which a forced flight ends.

@@ -2,105 +2,13 @@
 
 use super::{NullCrossing, Segment};
 use crate::{
-    bsdf::{BsdfModel, Transport},
-    math::{Channels, RaySegment, Spectrum, Vec3},
-    medium::{Medium, MediumIndex, MediumInterval, MediumProperties, distance::collision_ratio},
-    phase::Deflection,
+    math::{Channels, RaySegment, Spectrum},
+    medium::{Medium, MediumIndex, MediumInterval, distance::collision_ratio},
     sampling::Stream,
     scene::Scene,
     shape::SurfacePoint,
-    transport::profile::Profile,
-    transport::{Scattering, vertex::shading_correction},
+    transport::{interaction::Interaction, profile::Profile},
 };
-
-/// What scatters, or absorbs, at the end of a free flight.
-#[derive(Clone, Copy, Debug)]
-pub enum Interaction {
-    /// A surface.
-    Surface(SurfacePoint),
-    /// The medium, by a collision at this point, and its properties there.
-    Medium(Vec3, MediumProperties),
-}
-
-impl Interaction {
-    /// World position.
-    #[inline]
-    pub fn position(&self) -> Vec3 {
-        match self {
-            Self::Surface(point) => point.position,
-            Self::Medium(position, _) => *position,
-        }
-    }
-
-    /// sigma_t per channel in a medium, 1 on a surface.
-    #[inline]
-    pub fn sigma_t<L: Channels>(&self) -> L {
-        match self {
-            Self::Surface(_) => L::splat(1.0),
-            Self::Medium(_, properties) => L::from_spectrum(properties.sigma_t),
-        }
-    }
-
-    /// The largest channel of the albedo, or a bound on it, where the walk came from `incoming`.
-    #[inline]
-    pub fn albedo_bound(&self, scene: &Scene, incoming: Vec3) -> f32 {
-        match self {
-            Self::Surface(point) => {
-                scene.bsdf(point.shape).survival(point.uv, point.shading.to_local(incoming))
-            }
-            Self::Medium(_, properties) => properties.survival(),
-        }
-    }
-
-    /// Scattering between unit `incoming`, where a walk by `transport` came from, and unit `outgoing`; densities without survival
-    /// and without a guide.
-    ///
-    /// LW96 eq. 10: g, without the cosine that the density of the vertex contains.
-    #[inline]
-    pub fn scatter(&self, scene: &Scene, incoming: Vec3, outgoing: Vec3, transport: Transport) -> Scattering {
-        match self {
-            Self::Medium(position, properties) => {
-                let medium = &scene.media[properties.medium.0 as usize];
-                let phase = medium.phase.pdf_sr_at(*position, Deflection::between(-incoming, outgoing));
-                Scattering { value: properties.albedo * phase, pdf_fwd: phase, pdf_rev: phase }
-            }
-            Self::Surface(point) => {
-                let bsdf = scene.bsdf(point.shape);
-                let (wi, wo) = (point.shading.to_local(incoming), point.shading.to_local(outgoing));
-                let f = bsdf.evaluate(point.uv, wi, wo, transport);
-                let cosine = wo.z.abs() * shading_correction(point, incoming, outgoing, wi, wo, transport);
-                Scattering { value: f.value * cosine, pdf_fwd: f.pdf_fwd, pdf_rev: f.pdf_rev }
-            }
-        }
-    }
-
-    /// Unit geometric normal of a surface.
-    #[inline]
-    pub fn normal(&self) -> Option<Vec3> {
-        match self {
-            Self::Surface(point) => Some(point.normal),
-            Self::Medium(..) => None,
-        }
-    }
-
-    /// True if something of its scattering is not Dirac.
-    #[inline]
-    pub fn is_connectible(&self, scene: &Scene) -> bool {
-        match self {
-            Self::Surface(point) => scene.surface(point.shape).connectible,
-            Self::Medium(..) => true,
-        }
-    }
-
-    /// |cos| to the geometric normal on a surface, 1 in a medium.
-    #[inline]
-    pub fn cosine(&self, direction: Vec3) -> f32 {
-        match self {
-            Self::Surface(point) => point.normal.dot(direction).abs(),
-            Self::Medium(..) => 1.0,
-        }
-    }
-}
 
 /// A sampled segment.
 #[derive(Clone, Copy, Debug)]

@@ -19,9 +19,9 @@ mod starts;
 
 use super::{
     Connections, Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
-    profile::{
-        Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, Profile, Smoke,
-        Vacuum,
+    profile::Profile,
+    profiles::{
+        Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, Smoke, Vacuum,
     },
 };
 use crate::{

@@ -7,7 +7,7 @@ use crate::{
     sampling::Stream,
     scene::{Scene, lights::EmitterPoint},
     shape::{Ray, SurfacePoint},
-    transport::profile::Everything,
+    transport::profiles::Everything,
 };
 
 /// What a vertex lies on or in.

@@ -1,0 +1,124 @@
+//! What an estimator knows of its scene, of its strategies, and of what was learnt.
+
+use super::{
+    cache::{LightCache, Partners},
+    mis::Strategy,
+    profile::Profile,
+    roulette::Roulette,
+    strategy::StrategyKind,
+};
+use crate::{
+    guide::{Guide, Radiance},
+    math::Vec3,
+    scene::{
+        Scene,
+        lights::{Densities, EmitterSample, Start, Starts},
+    },
+    settings::{
+        heuristic::Heuristic,
+        options::{Connections, Survival},
+    },
+};
+use std::sync::Arc;
+
+/// Expected samples of each kind of strategy per pixel sample: n in the balance heuristic.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counts {
+    pub(super) emitter_hit: f32,
+    pub(super) next_event: f32,
+    pub(super) connection: f32,
+    pub(super) lens: f32,
+    pub(super) equiangular: f32,
+}
+
+/// The estimator for one scene, compiled for profile `P`.
+pub struct Estimator<'a, P: Profile> {
+    pub(super) scene: &'a Scene,
+    pub(super) counts: Counts,
+    pub(super) heuristic: Heuristic,
+    /// When walks end, as was asked,
+    pub(super) survival: Survival,
+    /// and as they do.
+    pub(super) roulette: Roulette,
+    pub(super) connections_per_vertex: u32,
+    pub(super) connections: Connections,
+    /// Probability that a light vertex is kept for connections.
+    pub(super) keep: f32,
+    pub(super) max_edges: u32,
+    pub(super) hide_emitters: bool,
+    pub(super) forced_interaction: bool,
+    /// Which starts of light subpaths reach the image; none if they start as their emitters would have it.
+    pub(super) starts: Option<Arc<Starts>>,
+    /// What walks follow.
+    pub(super) guide: Option<Arc<Guide>>,
+    /// What camera subpaths end in.
+    pub(super) radiance: Option<Arc<Radiance>>,
+    pub(super) profile: std::marker::PhantomData<P>,
+}
+
+impl<P: Profile> Estimator<'_, P> {
+    /// The strategies of `kind`, as the weights use them.
+    #[inline]
+    pub(super) fn strategy(&self, kind: StrategyKind) -> Strategy {
+        let count = match kind {
+            StrategyKind::EmitterHit => self.counts.emitter_hit,
+            StrategyKind::NextEvent => self.counts.next_event,
+            StrategyKind::Connection => self.counts.connection,
+            StrategyKind::Lens => self.counts.lens,
+            StrategyKind::Equiangular => self.counts.equiangular,
+        };
+        Strategy { kind, count, heuristic: self.heuristic }
+    }
+
+    /// Density of a light subpath's start at `sample` along the segment from there to `other`, in unit `direction`.
+    #[inline]
+    pub(super) fn pdf_start(&self, sample: &EmitterSample, other: Vec3, direction: Vec3) -> f32 {
+        let unlearnt = Densities { point: sample.pdf_start, direction: sample.pdf_direction };
+        self.learnt(|| Start::towards(sample.light, &sample.point, other, direction), unlearnt).both()
+    }
+
+    /// Densities of a start, which are `unlearnt` without what was learnt.
+    #[inline]
+    pub(super) fn learnt(&self, start: impl FnOnce() -> Start, unlearnt: Densities) -> Densities {
+        match &self.starts {
+            None => unlearnt,
+            Some(starts) => starts.densities(&self.scene.lights, &start(), unlearnt),
+        }
+    }
+
+    /// When walks end.
+    pub fn survival(&self) -> Survival {
+        self.survival
+    }
+
+    /// The starts that light subpaths were given.
+    pub fn starts(&self) -> Option<&Starts> {
+        self.starts.as_deref()
+    }
+
+    /// True if light subpaths have something to do.
+    pub fn needs_light_walks(&self) -> bool {
+        self.counts.connection > 0.0 || self.counts.lens > 0.0
+    }
+
+    /// True if the first vertex of a light subpath is connected to the lens, see [`Strategies::runs`].
+    pub(super) fn starts_seen(&self) -> bool {
+        self.counts.lens > 0.0 && self.counts.emitter_hit <= 0.0
+    }
+
+    /// The light vertices for a camera subpath of channel `hero`, which may have light subpath number `walk` of the cache for
+    /// itself.
+    #[inline]
+    pub(super) fn partners<'c>(
+        &self,
+        cache: &'c LightCache<P::MisSums>,
+        hero: usize,
+        walk: usize,
+    ) -> Partners<'c, P::MisSums> {
+        match self.connections {
+            Connections::Cached => cache.drawn(hero, self.connections_per_vertex),
+            Connections::All if self.counts.connection > 0.0 => cache.all_of(walk),
+            Connections::All => Partners::NONE,
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! What a path meets at the end of a segment, and how that scatters.
+
+use crate::{
+    bsdf::{BsdfModel, Transport},
+    math::{Channels, Spectrum, Vec3},
+    medium::MediumProperties,
+    phase::Deflection,
+    scene::Scene,
+    shape::SurfacePoint,
+};
+
+/// Scattering at a vertex between two given directions.
+#[derive(Clone, Copy, Debug)]
+pub struct Scattering {
+    /// The factor of the path's contribution (LW96 eq. 10, g without the other vertex's cosine): albedo x phase
+    /// in a medium (sigma_t is a factor of the flight), BSDF x cosine on a surface, shading normals accounted
+    /// for.
+    pub value: Spectrum,
+    /// Density of the outgoing direction given the incoming one, survival included (1/sr).
+    pub pdf_fwd: f32,
+    /// Density of the incoming direction given the outgoing one, survival included (1/sr).
+    pub pdf_rev: f32,
+}
+
+/// What scatters, or absorbs, at the end of a free flight.
+#[derive(Clone, Copy, Debug)]
+pub enum Interaction {
+    /// A surface.
+    Surface(SurfacePoint),
+    /// The medium, by a collision at this point, and its properties there.
+    Medium(Vec3, MediumProperties),
+}
+
+impl Interaction {
+    /// World position.
+    #[inline]
+    pub fn position(&self) -> Vec3 {
+        match self {
+            Self::Surface(point) => point.position,
+            Self::Medium(position, _) => *position,
+        }
+    }
+
+    /// sigma_t per channel in a medium, 1 on a surface.
+    #[inline]
+    pub fn sigma_t<L: Channels>(&self) -> L {
+        match self {
+            Self::Surface(_) => L::splat(1.0),
+            Self::Medium(_, properties) => L::from_spectrum(properties.sigma_t),
+        }
+    }
+
+    /// The largest channel of the albedo, or a bound on it, where the walk came from `incoming`.
+    #[inline]
+    pub fn albedo_bound(&self, scene: &Scene, incoming: Vec3) -> f32 {
+        match self {
+            Self::Surface(point) => {
+                scene.bsdf(point.shape).survival(point.uv, point.shading.to_local(incoming))
+            }
+            Self::Medium(_, properties) => properties.survival(),
+        }
+    }
+
+    /// Scattering between unit `incoming`, where a walk by `transport` came from, and unit `outgoing`; densities without survival
+    /// and without a guide.
+    ///
+    /// LW96 eq. 10: g, without the cosine that the density of the vertex contains.
+    #[inline]
+    pub fn scatter(&self, scene: &Scene, incoming: Vec3, outgoing: Vec3, transport: Transport) -> Scattering {
+        match self {
+            Self::Medium(position, properties) => {
+                let medium = &scene.media[properties.medium.0 as usize];
+                let phase = medium.phase.pdf_sr_at(*position, Deflection::between(-incoming, outgoing));
+                Scattering { value: properties.albedo * phase, pdf_fwd: phase, pdf_rev: phase }
+            }
+            Self::Surface(point) => {
+                let bsdf = scene.bsdf(point.shape);
+                let (wi, wo) = (point.shading.to_local(incoming), point.shading.to_local(outgoing));
+                let f = bsdf.evaluate(point.uv, wi, wo, transport);
+                let cosine = wo.z.abs() * shading_correction(point, incoming, outgoing, wi, wo, transport);
+                Scattering { value: f.value * cosine, pdf_fwd: f.pdf_fwd, pdf_rev: f.pdf_rev }
+            }
+        }
+    }
+
+    /// Unit geometric normal of a surface.
+    #[inline]
+    pub fn normal(&self) -> Option<Vec3> {
+        match self {
+            Self::Surface(point) => Some(point.normal),
+            Self::Medium(..) => None,
+        }
+    }
+
+    /// True if something of its scattering is not Dirac.
+    #[inline]
+    pub fn is_connectible(&self, scene: &Scene) -> bool {
+        match self {
+            Self::Surface(point) => scene.surface(point.shape).connectible,
+            Self::Medium(..) => true,
+        }
+    }
+
+    /// |cos| to the geometric normal on a surface, 1 in a medium.
+    #[inline]
+    pub fn cosine(&self, direction: Vec3) -> f32 {
+        match self {
+            Self::Surface(point) => point.normal.dot(direction).abs(),
+            Self::Medium(..) => 1.0,
+        }
+    }
+}
+
+/// The correction of a light subpath's scattering where the shading normal is not the geometric one (Veach
+/// 1997, eq. 5.19): |wi.ns| |wo.ng| / (|wi.ng| |wo.ns|). Camera subpaths and media have no such factor.
+#[inline]
+pub(super) fn shading_correction(
+    point: &SurfacePoint,
+    incoming: Vec3,
+    outgoing: Vec3,
+    wi: Vec3,
+    wo: Vec3,
+    transport: Transport,
+) -> f32 {
+    if transport == Transport::Radiance || point.shading.normal == point.normal {
+        return 1.0;
+    }
+    let bottom = point.normal.dot(incoming) * wo.z;
+    if bottom == 0.0 { 0.0 } else { (wi.z * point.normal.dot(outgoing) / bottom).abs() }
+}
