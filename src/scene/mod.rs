@@ -11,6 +11,7 @@ mod rebuild;
 mod sections;
 pub mod sensors;
 pub mod smoke;
+mod surface;
 mod time;
 mod unseen;
 
@@ -23,24 +24,10 @@ use crate::{
 };
 use accel::Geometry;
 use lights::Lights;
-use media::{Boundary, MediaMap};
+use media::MediaMap;
 pub use memo::Memo;
 pub(crate) use sections::TABLE;
-
-/// The properties of a shape: its BSDF, emitter and media.
-#[derive(Clone, Copy, Debug)]
-pub struct Surface {
-    /// Index of its BSDF.
-    pub bsdf: u32,
-    /// Index of its emitter.
-    pub emitter: Option<u32>,
-    /// The media on its sides.
-    pub boundary: Boundary,
-    /// Light can get to the other side.
-    pub transmits: bool,
-    /// Some of its scattering is not Dirac: the answer of its BSDF, stored because every vertex needs it.
-    pub connectible: bool,
-}
+pub use surface::Surface;
 
 /// Everything transport needs to know.
 pub struct Scene {

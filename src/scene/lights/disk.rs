@@ -1,6 +1,6 @@
 //! The disks that parallel light leaves: that of a beam, and for an emitter at infinity the one around the scene.
 
-use super::{Light, Lights};
+use super::light::Light;
 use crate::{
     emitter::{BeamEmitter, BeamModel, Kind},
     math::{Frame, Vec2, Vec3, vec3, warp},
@@ -23,6 +23,12 @@ impl Disk {
     /// Around `centre`, of light that travels in unit `direction`, with a radius in metres.
     pub fn new(centre: Vec3, direction: Vec3, radius: f32) -> Self {
         Self { centre, frame: Frame::around(-direction), radius, lift: 0.0 }
+    }
+
+    /// That of an emitter at infinity, outside the sphere around `centre` and facing unit `towards`.
+    #[inline]
+    pub(super) fn around(centre: Vec3, radius: f32, towards: Vec3) -> Self {
+        Self { centre, frame: Frame::around(towards), radius, lift: radius }
     }
 
     /// That of the beam `emitter`, whose centre lies at `centre`.
@@ -103,21 +109,5 @@ impl Disk {
         let (from, to) = ((distance + from).max(0.0), distance + to);
         let lit = ray.z != 0.0 || local.z < 0.0;
         (chord > 0.0 && lit && from < to && to < f32::INFINITY).then_some([from, to])
-    }
-}
-
-impl Lights {
-    /// The disk around the scene that faces `towards`, where light of an emitter at infinity starts.
-    #[inline]
-    pub(super) fn disk_towards(&self, towards: Vec3) -> Disk {
-        Disk { centre: self.centre, frame: Frame::around(towards), radius: self.radius, lift: self.radius }
-    }
-
-    /// The disk that light of the emitter `index`, which travels in unit `direction`, leaves in parallel; none where light
-    /// leaves points.
-    #[inline]
-    pub(super) fn disk(&self, index: usize, direction: Vec3) -> Option<Disk> {
-        let light = &self.all[index];
-        Disk::of(light).or_else(|| light.emitter.is_infinite().then(|| self.disk_towards(-direction)))
     }
 }

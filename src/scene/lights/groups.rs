@@ -1,6 +1,6 @@
 //! Groups of emitters, for images of what each contributes.
 
-use super::{Light, Lights};
+use super::{Lights, light::Light};
 
 /// The group of the emitters that name none.
 const REST: &str = "rest";

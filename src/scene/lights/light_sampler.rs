@@ -2,7 +2,7 @@
 
 mod leaves;
 
-use super::{Light, light_tree::LightTree};
+use super::{light::Light, light_tree::LightTree};
 use crate::{
     math::Vec3,
     medium::Emission,

@@ -12,6 +12,7 @@ mod disk;
 mod emission_sample;
 mod emitter_sample;
 mod groups;
+mod light;
 mod light_sampler;
 mod light_tree;
 mod pivot;
@@ -23,37 +24,20 @@ pub use clearings::Clearings;
 pub use disk::Disk;
 pub use emission_sample::{EmissionSample, Emitted};
 pub use emitter_sample::EmitterSample;
+pub use light::Light;
 pub use pivot::{Pivot, Place};
 pub use point::EmitterPoint;
 pub use starts::{Densities, Start, Starts};
 pub(super) use volume::emissive;
 
-use super::{Memo, accel::Geometry};
+use super::{accel::Geometry, memo::Memo};
 use crate::{
-    emitter::{Emitter, Kind},
+    emitter::Kind,
     math::{Spectrum, Vec3},
     medium::{Emission, Medium, MediumIndex},
     sampling::Discrete,
 };
 use light_sampler::{Extent, LightSampler};
-use std::sync::Arc;
-
-/// An emitter placed in its scene.
-#[derive(Clone, Debug)]
-pub struct Light {
-    /// How it emits.
-    pub emitter: Emitter,
-    /// Its position: a point, the centre of a disk, or nothing for shapes and emitters at infinity.
-    pub position: Vec3,
-    /// The shape that emits.
-    pub shape: Option<u32>,
-    /// The medium its light starts in.
-    pub medium: MediumIndex,
-    /// Its light starts in several media: that of each ray is located, and `medium` is where nothing is known.
-    pub straddles: bool,
-    /// Of an emissive medium, where its box is certainly filled; none where that is not known.
-    pub clearings: Option<Arc<Clearings>>,
-}
 
 /// All emitters.
 #[derive(Clone, Debug, Default)]
@@ -146,6 +130,20 @@ impl Lights {
         let index = self.of_media.get(medium.0 as usize).copied().flatten()?;
         let Kind::Medium(volume) = &self.all[index as usize].emitter.kind else { return None };
         Some((index, &volume.emission))
+    }
+
+    /// The disk around the scene that faces `towards`, where light of an emitter at infinity starts.
+    #[inline]
+    pub(super) fn disk_towards(&self, towards: Vec3) -> Disk {
+        Disk::around(self.centre, self.radius, towards)
+    }
+
+    /// The disk that light of the emitter `index`, which travels in unit `direction`, leaves in parallel; none where light
+    /// leaves points.
+    #[inline]
+    pub(super) fn disk(&self, index: usize, direction: Vec3) -> Option<Disk> {
+        let light = &self.all[index];
+        Disk::of(light).or_else(|| light.emitter.is_infinite().then(|| self.disk_towards(-direction)))
     }
 }
 

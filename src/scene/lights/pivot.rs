@@ -1,7 +1,7 @@
 //! Distances along a ray that are denser the nearer to an emitter (Kulla and Fajardo 2012, Importance Sampling Techniques
 //! for Path Tracing in Participating Media, sec. 4); of a beam, those within it.
 
-use super::{Disk, Geometry, Light, Lights};
+use super::{Geometry, Lights, disk::Disk, light::Light};
 use crate::{
     emitter::Kind,
     math::{Vec3, offset},

@@ -1,12 +1,15 @@
 //! Media that emit, as emitters of a scene.
 
-use super::{Clearings, Light};
+use super::{clearings::Clearings, light::Light};
 use crate::{
     emitter::{Emitter, VolumeEmitter},
     math::{SpectrumExt, Vec3, warp},
     medium::{Emission, Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
-    scene::media::{Certainty, Located, Locator, Overlaps, lies_in},
+    scene::media::{
+        locate::{Certainty, Located, Locator},
+        overlap::{Overlaps, lies_in},
+    },
 };
 use std::sync::Arc;
 

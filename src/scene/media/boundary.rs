@@ -4,7 +4,7 @@
 use crate::{
     math::{Vec3, vec2, warp},
     medium::MediumIndex,
-    scene::{Surface, accel::Geometry},
+    scene::{accel::Geometry, surface::Surface},
     shape::{Ray, SurfacePoint},
 };
 

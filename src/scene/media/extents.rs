@@ -1,12 +1,12 @@
 //! How far the media of a scene reach: the boxes in which coefficients that vary without bounds of their own
 //! are examined.
 
-use super::Survey;
+use super::locate::Survey;
 use crate::{
     error::Result,
     math::Vec3,
     medium::{Medium, MediumBounds, MediumDescription, MediumIndex, MediumOverrides},
-    scene::{Surface, accel::Geometry},
+    scene::{accel::Geometry, surface::Surface},
 };
 
 /// Boxes reach beyond shapes by this part of their size: the boundary itself lies within.

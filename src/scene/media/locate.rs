@@ -10,7 +10,7 @@ use crate::{
     math::{Frame, Vec3, measure, offset, warp},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
-    scene::{Surface, accel::Geometry},
+    scene::{accel::Geometry, surface::Surface},
     shape::{Ray, SurfacePoint},
 };
 use std::collections::BTreeSet;

@@ -5,10 +5,10 @@
 //! overlap, [`Overlaps`] says what is there. Faces in one place never reach this: they are set apart first (see
 //! [`super::contact`]).
 
-mod boundary;
+pub(super) mod boundary;
 mod extents;
-mod locate;
-mod overlap;
+pub(super) mod locate;
+pub(super) mod overlap;
 mod placement;
 mod range;
 mod solid;
@@ -17,7 +17,7 @@ pub use boundary::Boundary;
 pub(super) use boundary::direction;
 pub(super) use extents::Extents;
 pub use locate::Infinity;
-pub(super) use locate::{Certainty, Known, Located, Locator, Survey};
+pub(super) use locate::{Known, Locator, Survey};
 pub use overlap::Overlaps;
 pub(super) use overlap::{lies_in, open};
 pub(super) use placement::{Names, Placement, place_camera};
@@ -25,7 +25,7 @@ pub(super) use range::check;
 pub(super) use solid::Solid;
 
 use super::{
-    Scene, Surface,
+    Scene,
     lights::{EmitterSample, Light},
 };
 use crate::{

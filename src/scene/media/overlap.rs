@@ -10,12 +10,12 @@
 //! indices of media: what would be there without these boundaries (their base, which walks find as in other scenes),
 //! and the boundaries that hold the part of the ray at hand.
 
-use super::{Solid, locate::Survey};
+use super::{boundary::Boundary, locate::Survey, solid::Solid};
 use crate::{
     math::{RaySegment, Vec3, vec3, warp},
     medium::{Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
-    scene::{Surface, accel::Geometry},
+    scene::{accel::Geometry, surface::Surface},
     shape::{Shape, ShapeModel as _},
 };
 use std::collections::{BTreeSet, HashMap, VecDeque};
@@ -100,7 +100,7 @@ impl Overlaps {
     /// stand in where it is only a part of that.
     pub fn take_from(&self, surfaces: &mut [Surface]) {
         for boundary in &self.boundaries {
-            surfaces[boundary.shape as usize].boundary = super::Boundary::default();
+            surfaces[boundary.shape as usize].boundary = Boundary::default();
         }
         let added = self.added(None);
         let unless_added = |side: Option<MediumIndex>| side.filter(|medium| !added.contains(medium));

@@ -1,7 +1,7 @@
 //! Which media the camera and the emitters of a scene lie in, with a warning for everything that is a guess.
 
 use super::{
-    Boundary,
+    boundary::Boundary,
     locate::{Certainty, Contradiction, Known, Located, Locator, Survey},
 };
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
     math::{DVec3, Vec3},
     medium::{MediumDescription, MediumIndex},
     sampling::{Stream, stream::Purpose},
-    scene::{accel::Geometry, contact::Contact, lights::Disk},
+    scene::{accel::Geometry, contact::Contact, lights::Disk, surface::Surface},
     shape::SurfacePoint,
 };
 use std::collections::BTreeSet;
@@ -202,7 +202,7 @@ pub(crate) struct Placement<'a> {
 /// if it is a guess, it also serves as evidence for others.
 pub(crate) fn place_camera(
     geometry: &Geometry,
-    surfaces: &[super::Surface],
+    surfaces: &[Surface],
     known: &mut Known,
     start: Vec3,
     names: &Names<'_>,

@@ -9,7 +9,8 @@ use crate::{
     scene::{
         accel::Geometry,
         lights::{
-            Disk, Light,
+            disk::Disk,
+            light::Light,
             light_tree::{LightTree, Moments},
         },
     },
