@@ -90,12 +90,11 @@ pub enum Command {
     /// A grid of an OpenVDB or NanoVDB file (.vdb, .nvdb) becomes Mitsuba's .vol, of all voxels in the box around the
     /// active ones and one more on every side; a gridvolume with use_grid_bbox shows the same of both files.
     ///
-    /// Plugins, names, ids, references, order, the exact value of every number, colours, spectra, the steps of
-    /// transforms, and parameters with their defaults are preserved (`<default>` in XML is `$defaults` in JSON).
-    /// Included files and the values of spectrum files are written into the new file; aliases are replaced by the
-    /// ids that they refer to. Comments and layout are not kept. Paths of other files are adjusted so that they
-    /// still refer to the same files, which are not moved. Where the new format does not allow a parameter, its
-    /// value is written instead, and a note on standard error names the place.
+    /// Plugins, names, ids, references, order, the exact value of every number, colours, spectra and the steps of
+    /// transforms are preserved. Comments and layout are not kept. Nor are parameters: each `$name` is replaced by its
+    /// value, from -D, `<default>` (XML) or `$defaults` (JSON), and a note on standard error lists the values. Included
+    /// files and the values of spectrum files are written into the new file; aliases are replaced by the ids that they
+    /// refer to. Paths of other files are adjusted so that they still refer to the same files, which are not moved.
     Convert(Convert),
     /// Create the page of a study, study.html, again from its numbers and images
     Report(Report),
@@ -226,9 +225,9 @@ mod tests {
 
     #[test]
     fn a_scene_can_be_converted() {
-        let Ok(Command::Convert(convert)) = parse("convert a.xml b/c.json -D x=2 --fill") else { panic!() };
+        let Ok(Command::Convert(convert)) = parse("convert a.xml b/c.json -D x=2") else { panic!() };
         assert_eq!((convert.input, convert.output), ("a.xml".into(), "b/c.json".into()));
-        assert_eq!((convert.definitions, convert.fill), (vec![("x".to_owned(), "2".to_owned())], true));
+        assert_eq!(convert.definitions, [("x".to_owned(), "2".to_owned())]);
     }
 
     #[test]

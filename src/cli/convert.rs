@@ -10,8 +10,7 @@ use super::{
 use crate::{
     analysis::picture,
     error::{Error, Result},
-    film,
-    format::{self, Naming},
+    film, format,
     inputs::{self, Reader},
     volume::grid,
 };
@@ -29,12 +28,12 @@ pub struct Convert {
     #[arg(value_name = "OUT")]
     pub output: PathBuf,
 
-    /// Change the default of the parameter $name in OUT; may be repeated
+    /// Set the parameter $name of the scene instead of its default; may be repeated
     #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
 
-    /// Write the values of parameters instead of their names (mitsuba.load_dict does not support parameters)
-    #[arg(long)]
+    /// Accepted, as older scripts give it: values of parameters are always written instead of their names
+    #[arg(long, hide = true)]
     pub fill: bool,
 
     /// The grid that is meant in a file of several [default: the one named "density", else the only one]
@@ -48,8 +47,8 @@ pub struct Convert {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Convert) -> Result<()> {
-    let Convert { definitions, fill, grid, display, input, output } = arguments;
-    let of_scenes = [(!definitions.is_empty(), "-D"), (*fill, "--fill")];
+    let Convert { definitions, grid, display, input, output, .. } = arguments;
+    let of_scenes = [(!definitions.is_empty(), "-D")];
     let of_images = [(display.exposure.is_some(), "--exposure"), (display.view.is_some(), "--view")];
     let of_volumes = [(grid.is_some(), "--grid")];
     let is = |kind| output.extension().is_some_and(|end| end.eq_ignore_ascii_case(kind));
@@ -83,9 +82,8 @@ fn refuse(options: &[(bool, &str)], expected: &str, output: &Path) -> Result<()>
 }
 
 fn scene(arguments: &Convert) -> Result<()> {
-    let Convert { input, output, definitions, fill, .. } = arguments;
-    let naming = if *fill { Naming::Fill } else { Naming::Keep };
-    let conversion = format::convert(input, output, definitions, naming)?;
+    let Convert { input, output, definitions, .. } = arguments;
+    let conversion = format::convert(input, output, definitions)?;
     check_short([output])?;
     film::output::write(output, |file| file.write_all(conversion.text.as_bytes()))?;
     for note in &conversion.notes {

@@ -1,8 +1,8 @@
 //! What a scene is read from: its own file, and all that it includes and names.
 
 use super::{
+    draft::Draft,
     input::{bytes, is_standard_input},
-    read::read_with_origins,
 };
 use crate::{
     description::{Library, Object, Property, Value, keyframes::Key},
@@ -27,16 +27,6 @@ pub struct Sources {
     pub spectra: Vec<Vec<(f64, f64)>>,
 }
 
-/// The sources of the scene at `path`, read with the user's `definitions` as by [`super::read()`]. Of numbered files, the
-/// one that is shown at `time` (s); where that is not given, at the scene's own.
-pub fn sources(path: &Path, definitions: &[(String, String)], time: Option<f64>) -> Result<Sources> {
-    let (root, origins) = read_with_origins(path, definitions)?;
-    let mut sources = Sources { files: vec![path.to_owned()], spectra: Vec::new() };
-    sources.add_all(origins.included);
-    sources.walk(&root, time.or(root.number("time")).unwrap_or(0.0));
-    Ok(sources)
-}
-
 /// A fingerprint of `bytes`: XXH3, 128 bits.
 pub fn fingerprint(bytes: &[u8]) -> String {
     format!("{:032x}", xxh3_128(bytes))
@@ -54,6 +44,15 @@ pub fn file_fingerprint(path: &Path) -> Result<String> {
 }
 
 impl Sources {
+    /// Those of the scene `draft`, read from `path`. Of numbered files, the one that is shown at `time` (s), or else at the
+    /// scene's own.
+    pub(super) fn of(path: &Path, draft: Draft, time: Option<f64>) -> Self {
+        let mut sources = Self { files: vec![path.to_owned()], spectra: Vec::new() };
+        sources.add_all(draft.included);
+        sources.walk(&draft.root, time.or(draft.root.number("time")).unwrap_or(0.0));
+        sources
+    }
+
     /// Fingerprints of all files by their names, which are relative to the folder of the scene if they lie in it; and of
     /// the spectra.
     pub fn fingerprints(&self) -> Result<Vec<(String, String)>> {
@@ -130,7 +129,7 @@ fn shown(object: &Object, path: PathBuf, time: f64) -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::format::sources;
     use std::fs;
 
     #[test]

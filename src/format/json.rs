@@ -41,15 +41,23 @@ mod node;
 mod transform;
 mod values;
 
-use super::{parameters::Parameters, read::Draft, references::Alias, tags::TAGS, text};
+use super::{
+    draft::{Alias, Draft},
+    parameters::Parameters,
+    tags::TAGS,
+    text,
+};
 use crate::{
     description::{Object, Property, Value, nearest},
     error::{Error, Result},
 };
 use document::Json;
 use node::Node;
-pub(super) use node::{below, index, key};
-use std::{path::Path, sync::Arc};
+use std::{
+    collections::{BTreeSet, HashSet},
+    path::Path,
+    sync::Arc,
+};
 
 /// Reads the scene at `path`.
 pub(super) fn read(path: &Path, parameters: &mut Parameters) -> Result<Draft> {
@@ -80,7 +88,7 @@ fn scene(node: &Node) -> Result<Draft> {
             }
         }
     }
-    Ok(Draft { root, aliases })
+    Ok(Draft { root, aliases, included: BTreeSet::new(), found: HashSet::new() })
 }
 
 /// A plugin with all that is in it.

@@ -1,9 +1,9 @@
 //! Scene files: every reader and writer of them. JSON and Mitsuba's XML are two spellings of one description.
 
+mod draft;
 mod files;
 mod input;
 mod json;
-mod origins;
 mod parameters;
 pub mod plugins;
 mod read;
@@ -14,7 +14,7 @@ mod text;
 mod write;
 mod xml;
 
-pub use files::{Sources, file_fingerprint, fingerprint, sources};
+pub use files::{Sources, file_fingerprint, fingerprint};
 pub use input::{STANDARD_INPUT, bytes, is_standard_input};
-pub use read::{Spelling, read};
-pub use write::{Conversion, Naming, convert, write};
+pub use read::{Spelling, read, sources};
+pub use write::{Conversion, convert, write};

@@ -1,16 +1,13 @@
 //! `$name` parameters: declared with a default in the scene, overridden by the user, put in place of `$name`.
 
-use super::origins::{Declaration, Kind, Origins};
 use crate::{
-    description::{Location, nearest},
+    description::nearest,
     error::{Error, Result},
 };
 
 /// All parameters known so far and their values.
 pub(super) struct Parameters {
     entries: Vec<Entry>,
-    /// What reading replaces.
-    pub origins: Origins,
 }
 
 struct Entry {
@@ -51,7 +48,7 @@ pub(super) fn escaped(text: &str) -> String {
 impl Parameters {
     /// What the user gave; a name twice is an error.
     pub(super) fn new(definitions: &[(String, String)]) -> Result<Self> {
-        let mut parameters = Self { entries: Vec::new(), origins: Origins::default() };
+        let mut parameters = Self { entries: Vec::new() };
         for (name, value) in definitions {
             if name.is_empty() || parameters.get(name).is_some() {
                 let found = format!("-D {name}={value}");
@@ -63,33 +60,19 @@ impl Parameters {
         Ok(parameters)
     }
 
-    /// The scene's own default for `name`, which it writes as `text`; a value already given is kept.
-    pub(super) fn declare(&mut self, name: &str, default: &str, text: &str, kind: Option<Kind>) {
+    /// The scene's own default for `name`; a value already given is kept.
+    pub(super) fn declare(&mut self, name: &str, default: &str) {
         if self.get(name).is_none() {
             self.insert(name, default, false);
-            self.origins.declare(name, default, text, kind);
-        } else if let Some(entry) = self.get(name).filter(|entry| entry.by_user) {
-            let value = entry.value.clone();
-            self.origins.declare(name, &value, &escaped(&value), kind);
         }
     }
 
-    /// Everything known when reading has ended; what only the user gave is declared too, as a scene needs it to
-    /// be read without the user's word.
-    pub(super) fn into_origins(mut self) -> Origins {
-        for Entry { name, value, .. } in &self.entries {
-            self.origins.declare(name, value, &escaped(value), None);
-        }
-        self.origins
-    }
-
-    /// What a scene was read with, to read more of it.
-    pub(super) fn of(declarations: &[Declaration]) -> Self {
-        let mut parameters = Self { entries: Vec::new(), origins: Origins::default() };
-        for Declaration { name, value, .. } in declarations {
-            parameters.insert(name, value, false);
-        }
-        parameters
+    /// All names and values, in the order of the names.
+    pub(super) fn values(&self) -> Vec<(&str, &str)> {
+        let entries = self.entries.iter();
+        let mut values: Vec<_> = entries.map(|entry| (entry.name.as_str(), entry.value.as_str())).collect();
+        values.sort_unstable();
+        values
     }
 
     fn get(&self, name: &str) -> Option<&Entry> {
@@ -106,19 +89,6 @@ impl Parameters {
         let place = self.entries.partition_point(|entry| entry.name.len() >= name.len());
         let (name, value) = (name.to_owned(), value.to_owned());
         self.entries.insert(place, Entry { name, value, used: false, by_user });
-    }
-
-    /// [`Self::substitute`], remembering that `text` is at the attribute `name` of what is at `place`.
-    pub(super) fn substitute_at(
-        &mut self,
-        text: &str,
-        place: &Location,
-        name: &str,
-    ) -> std::result::Result<String, Unfit> {
-        if text.contains('$') {
-            self.origins.record(place.clone(), name, text);
-        }
-        self.substitute(text)
     }
 
     /// `text` with every `$name` replaced; `\$` is a dollar sign.
@@ -144,36 +114,16 @@ impl Parameters {
         Ok(result + rest)
     }
 
-    /// The names of all parameters in `text`, each as often as it occurs.
-    pub(super) fn names_in(&self, text: &str) -> Vec<&str> {
-        let mut names = Vec::new();
-        let mut rest = text;
-        while let Some(at) = rest.find('$') {
-            let after = &rest[at + 1..];
-            let is_escaped = rest[..at].ends_with('\\');
-            let entry = self.entries.iter().find(|entry| !is_escaped && after.starts_with(&entry.name));
-            names.extend(entry.map(|entry| entry.name.as_str()));
-            rest = &after[entry.map_or(0, |entry| entry.name.len())..];
-        }
-        names
-    }
-
     fn undefined(&self, after: &str) -> Unfit {
         let end = after.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(after.len());
         let name = after[..end].to_owned();
-        let known = self.names();
+        let known: Vec<_> = self.values().into_iter().map(|(name, _)| name).collect();
         let hint = nearest(&name, &known);
         let remedy = format!(
             "{hint}declare a default for it before this place, or give -D {name}=...; known: {}",
             if known.is_empty() { "none".into() } else { known.join(", ") }
         );
         Unfit { expected: "a defined parameter".into(), found: format!("${name}"), remedy }
-    }
-
-    fn names(&self) -> Vec<&str> {
-        let mut names: Vec<_> = self.entries.iter().map(|entry| entry.name.as_str()).collect();
-        names.sort_unstable();
-        names
     }
 
     /// Everything the user gave must have been used.
@@ -215,8 +165,8 @@ mod tests {
     #[test]
     fn users_override_defaults_and_hear_of_idle_ones() {
         let mut p = with(&[("a", "user")]);
-        p.declare("a", "scene", "scene", None);
-        p.declare("b", "idle defaults are fine", "", None);
+        p.declare("a", "scene");
+        p.declare("b", "idle defaults are fine");
         assert!(p.finish().unwrap_err().found.contains("-D a=user"));
         assert_eq!(substituted(&mut p, "$a"), "user");
         p.finish().unwrap();
@@ -228,7 +178,7 @@ mod tests {
         let grown = (1..10).find_map(|i| {
             let text = format!("$x{}", i - 1).repeat(10);
             let value = p.substitute(&text);
-            value.map(|value| p.declare(&format!("x{i}"), &value, &text, None)).err()
+            value.map(|value| p.declare(&format!("x{i}"), &value)).err()
         });
         assert!(grown.unwrap().expected.contains("at most"));
     }

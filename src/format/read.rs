@@ -1,7 +1,11 @@
 //! Reads a scene file of either format as a description in which every reference is resolved.
 
 use super::{
-    files, input, json, origins::Origins, parameters::Parameters, references, references::Alias, text, xml,
+    draft::Draft,
+    files::{self, Sources},
+    input, json,
+    parameters::Parameters,
+    references, text, xml,
 };
 use crate::{
     description::Object,
@@ -9,41 +13,36 @@ use crate::{
 };
 use std::path::Path;
 
-/// How deep objects may be nested, in the file or through references. Scenes need about ten; the
-/// limit keeps every later recursion over the tree within its stack.
-pub(super) const DEEPEST: usize = 100;
-
-/// What a reader returns: the tree as written, and the aliases of its objects.
-pub(super) struct Draft {
-    /// The scene.
-    pub root: Object,
-    /// Names that are aliases of other ids.
-    pub aliases: Vec<Alias>,
-}
-
 /// Reads the scene at `path`: Mitsuba XML (`.xml`) or JSON (`.json`). `definitions` are the user's
 /// `name=value` pairs, which override the scene's own defaults; one that the scene never uses is an error.
 ///
 /// In what comes back, ids are unique, every reference leads to an object, and none leads back to itself.
 pub fn read(path: &Path, definitions: &[(String, String)]) -> Result<Object> {
-    read_with_origins(path, definitions).map(|(root, _)| root)
+    read_whole(path, definitions).map(|(draft, _)| draft.root)
 }
 
-/// [`read`], and what it replaced.
-pub(super) fn read_with_origins(path: &Path, definitions: &[(String, String)]) -> Result<(Object, Origins)> {
+/// The sources of the scene at `path`, read with the user's `definitions` as by [`read`]. Of numbered files, the one that
+/// is shown at `time` (s); where that is not given, at the scene's own.
+pub fn sources(path: &Path, definitions: &[(String, String)], time: Option<f64>) -> Result<Sources> {
+    let (draft, _) = read_whole(path, definitions)?;
+    Ok(Sources::of(path, draft, time))
+}
+
+/// [`read`], with what the tree does not show.
+pub(super) fn read_whole(path: &Path, definitions: &[(String, String)]) -> Result<(Draft, Parameters)> {
     let mut parameters = Parameters::new(definitions)?;
     let found = match input::is_standard_input(path) {
         true => spelling_of(path, &text::of_file(path)?)?,
         false => spelling(path)?,
     };
-    let draft = match found {
+    let mut draft = match found {
         Spelling::Xml => xml::read(path, &mut parameters)?,
         Spelling::Json => json::read(path, &mut parameters)?,
     };
     parameters.finish()?;
-    let root = references::settle(draft)?;
-    files::note(&root);
-    Ok((root, parameters.into_origins()))
+    references::settle(&mut draft)?;
+    files::note(&draft.root);
+    Ok((draft, parameters))
 }
 
 /// How scenes are spelled.

@@ -1,6 +1,6 @@
 //! References in either format: aliases are resolved, every id refers to one object, and none to itself.
 
-use super::read::{DEEPEST, Draft};
+use super::draft::{Alias, DEEPEST, Draft};
 use crate::{
     description::{Library, Location, Object, Value, suggest},
     error::{Error, Result},
@@ -10,24 +10,13 @@ use std::collections::{HashMap, HashSet};
 /// More objects than this, every reference counted as a copy, is a scene that could never be built.
 const LARGEST: u64 = 100_000_000;
 
-/// A second name for an object.
-pub(super) struct Alias {
-    /// The second name.
-    pub name: String,
-    /// The id (or earlier second name) it refers to.
-    pub target: String,
-    /// Where it was given.
-    pub location: Location,
-}
-
 /// Replaces second names by ids in all references, then checks the whole tree.
-pub(super) fn settle(draft: Draft) -> Result<Object> {
-    let Draft { mut root, aliases } = draft;
-    let names = targets(&root, aliases)?;
-    rename(&mut root, &names);
-    let library = Library::new(&root)?;
-    Survey { library: &library, open: Vec::new(), extents: HashMap::new() }.object(&root)?;
-    Ok(root)
+pub(super) fn settle(draft: &mut Draft) -> Result<()> {
+    let names = targets(&draft.root, std::mem::take(&mut draft.aliases))?;
+    rename(&mut draft.root, &names);
+    let library = Library::new(&draft.root)?;
+    Survey { library: &library, open: Vec::new(), extents: HashMap::new() }.object(&draft.root)?;
+    Ok(())
 }
 
 /// What each second name finally refers to.

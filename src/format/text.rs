@@ -68,7 +68,7 @@ pub(super) fn boolean(text: &str) -> Parsed<bool> {
 }
 
 /// What commas and space divide.
-pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
+fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty())
 }
 

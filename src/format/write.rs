@@ -1,31 +1,25 @@
-//! Writes scenes in either format, from the tree and from what reading replaced.
+//! Writes scenes in either format, from the tree that the renderer reads.
 //!
 //! What is kept: plugins, names, ids, references, order, every number to the last bit (whole numbers and others
-//! apart), colours, spectra, transforms step by step, strings, parameters with their defaults, and which files
-//! are meant. What is not: comments and layout, the division into included files (their content is put in
-//! place), second names of objects (references lead straight to the ids), and names of spectrum files (their
-//! values are put in place). JSON gives a key to everything; a child without a name is called after its tag,
-//! and what is so called loses the name again on the way back.
+//! apart), colours, spectra, transforms step by step, strings, and which files are meant. What is not: comments and
+//! layout, parameters and their defaults (their values are put in place), the division into included files (their
+//! content is put in place), second names of objects (references lead straight to the ids), and names of spectrum
+//! files (their values are put in place). JSON gives a key to everything; a child without a name is called after its
+//! tag, and what is so called loses the name again on the way back.
 
-mod draw;
+mod arrange;
 mod json;
 mod keys;
-mod kinds;
 mod layout;
-mod outline;
 mod paths;
 mod xml;
 
-use super::{
-    origins::{Declaration, Origins},
-    parameters::Parameters,
-    read::{Spelling, read_with_origins, spelling},
-};
+use super::read::{Spelling, read_whole, spelling};
 use crate::{
-    description::{Location, Object},
+    description::{Location, Object, TransformStep},
     error::{Error, Result},
 };
-use std::path::Path;
+use std::{collections::HashSet, path::Path, slice};
 
 /// A scene converted: its text, and what its user should know.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,88 +30,61 @@ pub struct Conversion {
     pub notes: Vec<String>,
 }
 
-/// What becomes of a scene's parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Naming {
-    /// They stay parameters where the new format allows it.
-    Keep,
-    /// Their values are put in their places.
-    Fill,
-}
-
-/// The scene at `input` as the file `output` has to spell it (by its ending); nothing is written. `definitions`
-/// are `name=value` pairs that become the defaults of the scene's parameters.
-pub fn convert(
-    input: &Path,
-    output: &Path,
-    definitions: &[(String, String)],
-    naming: Naming,
-) -> Result<Conversion> {
-    let spelling = spelling(output)?;
-    let (root, mut origins) = read_with_origins(input, definitions)?;
-    if naming == Naming::Fill {
-        origins.fill();
+/// The scene at `input` as the file `output` has to spell it (by its ending); nothing is written. `definitions` are
+/// `name=value` pairs, which override the scene's own defaults.
+pub fn convert(input: &Path, output: &Path, definitions: &[(String, String)]) -> Result<Conversion> {
+    let (spelling, folder) = (spelling(output)?, paths::folder(output));
+    let (draft, parameters) = read_whole(input, definitions)?;
+    let (root, moved) = arrange::arrange(&draft.root, &draft.found, folder)?;
+    let (input, mut notes) = (input.display(), Vec::new());
+    if !draft.included.is_empty() {
+        let files: Vec<_> = draft.included.iter().map(|file| file.display().to_string()).collect();
+        let files = files.join(", ");
+        notes.push(format!("{input}: the contents of included files are written in place: {files}"));
     }
-    let mut conversion = spell(&root, &origins, spelling, paths::folder(output))?;
-    if !origins.included.is_empty() {
-        let files: Vec<_> = origins.included.iter().map(|file| file.display().to_string()).collect();
-        let note = format!(
-            "{}: the contents of included files are written in place: {}",
-            input.display(),
-            files.join(", ")
-        );
-        conversion.notes.insert(0, note);
+    let values = parameters.values().into_iter().map(|(name, value)| format!("${name} = {value}"));
+    let values = values.collect::<Vec<_>>().join(", ");
+    if !values.is_empty() {
+        notes.push(format!("{input}: parameters are not kept, only their values: {values}"));
     }
-    Ok(conversion)
+    if moved > 0 {
+        let folder = folder.display();
+        notes.push(format!("names of {moved} files now start at {folder}; the files stay where they are"));
+    }
+    Ok(Conversion { text: spell(&root, spelling)?, notes })
 }
 
 /// The tree `root` as a file in `folder` would spell it.
 pub fn write(root: &Object, spelling: Spelling, folder: &Path) -> Result<String> {
-    spell(root, &Origins::default(), spelling, folder).map(|conversion| conversion.text)
+    spell(&arrange::arrange(root, &HashSet::new(), folder)?.0, spelling)
 }
 
-fn spell(root: &Object, origins: &Origins, spelling: Spelling, folder: &Path) -> Result<Conversion> {
-    let (outline, moved) = draw::draw(root, origins, folder)?;
-    let mut known = Known::new(&origins.declarations);
-    if moved > 0 {
-        let folder = folder.display();
-        known
-            .notes
-            .push(format!("names of {moved} files now start at {folder}; the files stay where they are"));
+fn spell(root: &Object, spelling: Spelling) -> Result<String> {
+    match spelling {
+        Spelling::Xml => xml::file(root),
+        Spelling::Json => json::file(root),
     }
-    let text = match spelling {
-        Spelling::Xml => xml::file(&outline, &mut known)?,
-        Spelling::Json => json::file(&outline, &mut known)?,
-    };
-    Ok(Conversion { text, notes: known.notes })
 }
 
-/// The parameters of a scene, and the notes about them.
-struct Known<'a> {
-    declarations: &'a [Declaration],
-    parameters: Parameters,
-    notes: Vec<String>,
+/// The word for a step of a transform, and its parts by JSON's words for them.
+fn parts(step: &TransformStep) -> (&'static str, Vec<(&'static str, &[f64])>) {
+    match step {
+        TransformStep::Translate(value) => ("translate", vec![("value", value)]),
+        TransformStep::Scale(value) => ("scale", vec![("value", shortened(value))]),
+        TransformStep::Rotate { axis, angle } => {
+            ("rotate", vec![("axis", axis), ("angle", slice::from_ref(angle))])
+        }
+        TransformStep::LookAt { origin, target, up } => {
+            ("lookat", vec![("origin", origin), ("target", target), ("up", up)])
+        }
+        TransformStep::Matrix(rows) => ("matrix", vec![("value", rows)]),
+    }
 }
 
-impl<'a> Known<'a> {
-    fn new(declarations: &'a [Declaration]) -> Self {
-        Self { declarations, parameters: Parameters::of(declarations), notes: Vec::new() }
-    }
-
-    /// What `text` is with every parameter in place; none if that fails.
-    fn value_of(&mut self, text: &str) -> Option<String> {
-        self.parameters.substitute(text).ok()
-    }
-
-    /// The parameter whose name alone `text` is.
-    fn whole<'t>(&self, text: &'t str) -> Option<&'t str> {
-        text.trim().strip_prefix('$').filter(|name| self.parameters.is_name(name))
-    }
-
-    /// Says that the value replaces `text`.
-    fn note(&mut self, place: &Location, text: &str, why: &str) {
-        self.notes.push(format!("{place}: {text} is written as its value: {why}"));
-    }
+/// One number for three that are the same, where that is what the reader makes of one.
+fn shortened(values: &[f64; 3]) -> &[f64] {
+    let [x, y, z] = values.map(f64::to_bits);
+    if x == y && y == z { &values[..1] } else { values }
 }
 
 /// The value of a spectrum that has it at all wavelengths: a single pair, at no wavelength.

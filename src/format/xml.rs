@@ -15,19 +15,21 @@ mod upgrade;
 mod values;
 
 use super::{
+    draft::{Alias, DEEPEST, Draft},
     parameters::Parameters,
-    read::{DEEPEST, Draft},
-    references::Alias,
     tags::TAGS,
     text,
 };
 use crate::{
-    description::{Keyframes, Object, Property, TransformStep, Value, keyframes::Key, nearest},
+    description::{Keyframes, Location, Object, Property, TransformStep, Value, keyframes::Key, nearest},
     error::{Error, Result},
 };
 use element::Element;
 use files::{Folders, Source};
-use std::path::{Path, PathBuf};
+use std::{
+    collections::{BTreeSet, HashSet},
+    path::{Path, PathBuf},
+};
 
 /// Tags that direct the reading.
 const DIRECTIONS: [&str; 7] = ["ref", "transform", "keyframes", "include", "default", "alias", "path"];
@@ -40,7 +42,14 @@ const MOST_INCLUDES: usize = 10_000;
 
 /// Reads the scene at `path`.
 pub(super) fn read(path: &Path, parameters: &mut Parameters) -> Result<Draft> {
-    let mut reader = Reader { parameters, aliases: Vec::new(), open: Vec::new(), includes: 0 };
+    let mut reader = Reader {
+        parameters,
+        aliases: Vec::new(),
+        included: BTreeSet::new(),
+        found: HashSet::new(),
+        open: Vec::new(),
+        includes: 0,
+    };
     let root = reader.file(path, Folders::default())?;
     if root.tag.as_deref() != Some("scene") {
         let found = format!("<{}>", root.tag.unwrap_or_default());
@@ -51,13 +60,16 @@ pub(super) fn read(path: &Path, parameters: &mut Parameters) -> Result<Draft> {
             "wrap it in <scene>",
         ));
     }
-    Ok(Draft { root, aliases: reader.aliases })
+    let Reader { aliases, included, found, .. } = reader;
+    Ok(Draft { root, aliases, included, found })
 }
 
 /// What all files of one scene share.
 struct Reader<'p> {
     parameters: &'p mut Parameters,
     aliases: Vec<Alias>,
+    included: BTreeSet<PathBuf>,
+    found: HashSet<Location>,
     /// The files being read, outermost first, under names that no two spellings of a path share.
     open: Vec<PathBuf>,
     /// How many files have been included.
@@ -90,7 +102,7 @@ impl Reader<'_> {
         let root = self.element(&page, document.root_element())?;
         page.is_old = is_old(&root)?;
         let mut object = self.object(&mut page, &root, &["version"], 1)?;
-        page.folders.settle(&mut object, &source.file, &mut self.parameters.origins);
+        page.folders.settle(&mut object, &source.file, &mut self.found);
         Ok(object)
     }
 
@@ -187,23 +199,15 @@ impl Reader<'_> {
     }
 
     fn steps(&mut self, page: &Page, transform: &Element) -> Result<Vec<TransformStep>> {
-        let (mut steps, mut places) = (Vec::new(), Vec::new());
-        for node in transform.children()? {
-            let element = self.element(page, node)?;
-            steps.push(transform::step(&element, page.is_old)?);
-            places.push(element.location);
-        }
-        self.parameters.origins.record_steps(transform.location.clone(), places);
-        Ok(steps)
+        let step = |node| transform::step(&self.element(page, node)?, page.is_old);
+        transform.children()?.into_iter().map(step).collect()
     }
 
     fn default(&mut self, element: &Element) -> Result<()> {
         element.allow(&["name", "value"])?;
         element.childless()?;
         let name = element.require("name")?.nonempty()?;
-        let value = &element.require("value")?.value;
-        let text = self.parameters.origins.attribute(&element.location, "value").unwrap_or(value).to_owned();
-        self.parameters.declare(name, value, &text, None);
+        self.parameters.declare(name, &element.require("value")?.value);
         Ok(())
     }
 
@@ -236,7 +240,7 @@ impl Reader<'_> {
             return Err(name.wrong(expected, "include fewer files from included files"));
         }
         let included = self.file(&path, page.folders.clone())?;
-        self.parameters.origins.included.insert(path);
+        self.included.insert(path);
         self.open.pop();
         if included.tag.as_deref() == Some("scene") {
             return included.properties.into_iter().try_for_each(|property| add(parent, property));

@@ -172,6 +172,6 @@ fn a_grid_becomes_mitsubas_file() {
     assert_eq!(sandbox.channels("a.exr"), sandbox.channels("b.exr"));
     sandbox.run("convert a.vdb c.vol --grid fire").refuses(&["a.vdb", "fire"]);
     sandbox.run("convert a.vdb c.json --grid burn").refuses(&["--grid", "a .vol file to write"]);
-    sandbox.run("convert a.vdb c.vol --fill").refuses(&["--fill", "a scene file to write"]);
+    sandbox.run("convert a.vdb c.vol -D x=1").refuses(&["-D", "a scene file to write"]);
     sandbox.run("convert a.vdb a.vdb.vol --view agx").refuses(&["--view", "a PNG to write"]);
 }

@@ -1,7 +1,7 @@
 //! JSON text as a tree that keeps the order of keys, with parameters substituted.
 
 use super::{
-    super::{origins::Kind, parameters::Parameters, text::quoted},
+    super::{parameters::Parameters, text::quoted},
     Node,
 };
 use crate::{
@@ -123,12 +123,8 @@ fn declare(defaults: &Node, parameters: &mut Parameters, kinds: &mut Kinds) -> R
                 return Err(Error::new(place, "a number, a boolean or a string", found, remedy));
             }
         };
-        let written = match entry.node.json {
-            Json::String(written) => written,
-            _ => &text,
-        };
+        parameters.declare(&entry.name, &text);
         let kind = kind_of(entry.node.json, kinds);
-        parameters.declare(&entry.name, &text, written, kind.as_kind());
         kinds.push((entry.name, kind));
     }
     Ok(())
@@ -142,7 +138,7 @@ fn kind_of(default: &Json, kinds: &Kinds) -> Json {
 }
 
 fn filled(text: &str, location: &Location, parameters: &mut Parameters) -> Result<String> {
-    parameters.substitute_at(text, location, "value").map_err(|unfit| {
+    parameters.substitute(text).map_err(|unfit| {
         let remedy = format!("{} (defaults belong in \"{DEFAULTS}\" of the scene)", unfit.remedy);
         Error::new(location, unfit.expected, unfit.found, remedy)
     })
@@ -212,17 +208,6 @@ fn typed(text: &str, default: Option<&Json>) -> std::result::Result<Json, String
 }
 
 impl Json {
-    /// The kind of the parameters whose default it is.
-    fn as_kind(&self) -> Option<Kind> {
-        match self {
-            Self::Boolean(_) => Some(Kind::Boolean),
-            Self::Integer(_) => Some(Kind::Integer),
-            Self::Float(_) => Some(Kind::Float),
-            Self::String(_) => Some(Kind::String),
-            Self::Null | Self::Array(_) | Self::Object(_) => None,
-        }
-    }
-
     /// What it is, for error messages.
     pub(super) fn describe(&self) -> String {
         match self {

@@ -23,18 +23,18 @@ pub(super) struct Entry<'j> {
 }
 
 /// The step to `name` in a JSON path.
-pub(in super::super) fn key(name: &str) -> String {
+pub(super) fn key(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "_-$".contains(c);
     if !name.is_empty() && name.chars().all(plain) { format!(".{name}") } else { format!("[{name:?}]") }
 }
 
 /// The step to an item in a JSON path.
-pub(in super::super) fn index(i: usize) -> String {
+pub(super) fn index(i: usize) -> String {
     format!("[{i}]")
 }
 
 /// The place reached from `location` by `steps`.
-pub(in super::super) fn below(location: &Location, steps: &str) -> Location {
+pub(super) fn below(location: &Location, steps: &str) -> Location {
     let path = match &location.position {
         Position::Path(path) => format!("{path}{steps}"),
         Position::Text { .. } => steps.to_owned(),

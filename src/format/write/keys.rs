@@ -1,59 +1,120 @@
 //! Keys for what has no name: JSON gives one to everything.
 
-use super::{
-    outline::{Entry, Item, Leaf, Node, made_up},
-    unspeakable,
+use super::{super::references::referred, unspeakable};
+use crate::{
+    description::{Object, Property, Value},
+    error::Result,
 };
-use crate::error::Result;
 use std::collections::{HashMap, HashSet};
 
+/// The key that JSON gives to the unnamed child that `before` children of the same tag precede.
+fn made_up(tag: &str, before: usize) -> String {
+    if before == 0 { tag.to_owned() } else { format!("{tag}_{}", before + 1) }
+}
+
+/// The tags of all objects that have an id.
+pub(super) type Tags = HashMap<String, String>;
+
+/// Those of the objects in `root`, which all have their tags.
+pub(super) fn tags(root: &Object) -> Tags {
+    let mut tags = HashMap::new();
+    let mut open = vec![root];
+    while let Some(object) = open.pop() {
+        tags.extend(object.id.clone().zip(object.tag.clone()));
+        open.extend(object.properties.iter().filter_map(|property| match &property.value {
+            Value::Object(child) => Some(child),
+            _ => None,
+        }));
+    }
+    tags
+}
+
+/// The tag of what `value` is or refers to; none where it is neither.
+fn tag_in<'a>(value: &'a Value, tags: &'a Tags) -> Option<&'a str> {
+    match value {
+        Value::Object(child) => child.tag.as_deref(),
+        Value::Reference(id) => Some(tags.get(id).map_or("ref", String::as_str)),
+        _ => None,
+    }
+}
+
+/// Drops from the scene `root` what only JSON needs. What is called after its tag has no name, and at the top what is
+/// called after its id has none either.
+pub(super) fn drop_made_up(root: &mut Object) {
+    let tags = tags(root);
+    let referred = referred(root).into_iter().map(str::to_owned).collect();
+    drop_below(root, &tags, &referred, true);
+}
+
+fn drop_below(object: &mut Object, tags: &Tags, referred: &HashSet<String>, outermost: bool) {
+    let mut seen: HashMap<String, usize> = HashMap::new();
+    for Property { name, value, .. } in &mut object.properties {
+        let Some(tag) = tag_in(value, tags) else { continue };
+        let count = seen.entry(tag.to_owned()).or_default();
+        let is_made_up = *name == made_up(tag, *count);
+        let of_id = outermost && matches!(value, Value::Object(child) if child.id.as_ref() == Some(name));
+        let is_dropped = is_made_up && !(of_id && referred.contains(name));
+        *count += usize::from(is_dropped);
+        if is_dropped || of_id {
+            name.clear();
+        }
+        if let Value::Object(child) = value {
+            child.id = child.id.take().filter(|_| !(is_dropped && of_id));
+            drop_below(child, tags, referred, false);
+        }
+    }
+}
+
 /// Keys of one object's children.
-pub(super) struct Keys {
+pub(super) struct Keys<'t> {
     /// Names that are given, and ids.
     taken: HashSet<String>,
     /// Names given to what is not a plugin: no id can be a key that is one of them.
     values: HashSet<String>,
-    ids: HashSet<String>,
+    tags: &'t Tags,
+    outermost: bool,
     seen: HashMap<String, usize>,
 }
 
-impl Keys {
-    /// At the top, `ids` are names too, and mean what has them.
-    pub(super) fn new(node: &Node, ids: HashSet<String>) -> Result<Self> {
-        let (mut taken, mut values) = (ids.clone(), HashSet::new());
-        for entry in node.entries.iter().filter(|entry| !entry.name.is_empty()) {
-            if !is_key(&entry.name) {
-                let found = format!("the name \"{}\"", entry.name);
+impl<'t> Keys<'t> {
+    /// Keys in `object`. At the top, ids are names too, and mean what has them.
+    pub(super) fn new(object: &Object, tags: &'t Tags, outermost: bool) -> Result<Self> {
+        let (mut taken, mut values) = (HashSet::new(), HashSet::new());
+        if outermost {
+            taken.extend(tags.keys().cloned());
+        }
+        for Property { name, value, location } in object.properties.iter().filter(|p| !p.name.is_empty()) {
+            if !is_key(name) {
+                let found = format!("the name \"{name}\"");
                 let remedy = "rename it: without \".\" or \"$\", and neither \"type\" nor \"id\"";
-                return Err(unspeakable(&entry.location, "JSON", found, remedy));
+                return Err(unspeakable(location, "JSON", found, remedy));
             }
-            taken.insert(entry.name.clone());
-            if !matches!(entry.item, Item::Object(_)) {
-                values.insert(entry.name.clone());
+            taken.insert(name.clone());
+            if !matches!(value, Value::Object(_)) {
+                values.insert(name.clone());
             }
         }
-        Ok(Self { taken, values, ids, seen: HashMap::new() })
+        Ok(Self { taken, values, tags, outermost, seen: HashMap::new() })
     }
 
-    /// The key of `entry`, which is in the scene itself if `outermost`.
-    pub(super) fn of(&mut self, entry: &Entry, outermost: bool) -> String {
-        let id = match &entry.item {
-            Item::Object(Node { id: Some(Leaf { value, text: None }), .. }) if outermost => Some(value),
+    /// The key of `property`.
+    pub(super) fn of(&mut self, Property { name, value, .. }: &Property) -> String {
+        let id = match value {
+            Value::Object(child) if self.outermost => child.id.as_ref(),
             _ => None,
         };
-        let name = Some(&entry.name).filter(|name| !name.is_empty());
-        let is_own = |name: &&String| {
-            !self.ids.contains(*name) || id == Some(name) || !matches!(entry.item, Item::Object(_))
-        };
-        if let Some(name) = name.filter(is_own) {
+        let is_id = self.outermost && self.tags.contains_key(name);
+        let is_own = !is_id || id == Some(name) || !matches!(value, Value::Object(_));
+        if !name.is_empty() && is_own {
             return name.clone();
         }
         if let Some(id) = id.filter(|id| is_key(id) && !self.values.contains(*id)) {
             return id.clone();
         }
-        let count = self.seen.entry(entry.tag.clone()).or_default();
+        let tag = tag_in(value, self.tags).unwrap_or_default();
+        let count = self.seen.entry(tag.to_owned()).or_default();
         loop {
-            let key = made_up(&entry.tag, *count);
+            let key = made_up(tag, *count);
             *count += 1;
             if self.taken.insert(key.clone()) {
                 return key;
@@ -63,6 +124,6 @@ impl Keys {
 }
 
 /// True if `name` can be a key in JSON.
-pub(super) fn is_key(name: &str) -> bool {
+fn is_key(name: &str) -> bool {
     !name.is_empty() && !name.contains(['.', '$']) && !["type", "id"].contains(&name)
 }

@@ -1,52 +1,33 @@
 //! A scene as Mitsuba's XML.
 
-use super::{
-    Known, constant,
-    outline::{Entry, Item, Key, Leaf, Node, Numbers, Step, Texts},
-    plain, unspeakable,
-};
+use super::{constant, parts, plain, shortened, unspeakable};
 use crate::{
-    description::{Location, keyframes::Interpolation},
+    description::{
+        Keyframes, Location, Object, Property, TransformStep, Value,
+        keyframes::{Interpolation, Key},
+    },
     error::Result,
     format::parameters::escaped,
 };
 
-/// The text of a file that holds `root`.
-pub(super) fn file(root: &Node, known: &mut Known<'_>) -> Result<String> {
-    let mut writer = Writer { known, out: String::new() };
+/// The text of a file that holds `root`, in which all objects have their tags.
+pub(super) fn file(root: &Object) -> Result<String> {
+    let mut writer = Writer { out: String::new() };
     let mut attributes = vec![("version", "3.0.0".to_owned())];
-    if root.plugin.value != "scene" {
-        attributes.push(("type", spelled(&root.plugin)));
+    if root.plugin != "scene" {
+        attributes.push(("type", escaped(&root.plugin)));
     }
-    attributes.extend(root.id.as_ref().map(|id| ("id", spelled(id))));
-    let declarations = writer.known.declarations;
-    writer.element("scene", &attributes, &root.location, 0, |writer| {
-        for declaration in declarations {
-            let attributes = [("name", escaped(&declaration.name)), ("value", declaration.text.clone())];
-            writer.element("default", &attributes, &root.location, 1, |_| Ok(()))?;
-        }
-        root.entries.iter().try_for_each(|entry| writer.entry(entry, 1))
-    })?;
+    writer.object(root, attributes, None, 0)?;
     Ok(writer.out)
 }
 
-struct Writer<'k, 'a> {
-    known: &'k mut Known<'a>,
+struct Writer {
     out: String,
 }
 
 type Attribute<'a> = (&'a str, String);
 
-/// A string as an attribute spells it.
-fn spelled(leaf: &Leaf<String>) -> String {
-    leaf.text.clone().unwrap_or_else(|| escaped(&leaf.value))
-}
-
-fn written<T>(leaf: &Leaf<T>, literal: impl Fn(&T) -> String) -> String {
-    leaf.text.clone().unwrap_or_else(|| literal(&leaf.value))
-}
-
-impl Writer<'_, '_> {
+impl Writer {
     /// `inside` writes the contents of the element, if there are any.
     fn element(
         &mut self,
@@ -74,99 +55,97 @@ impl Writer<'_, '_> {
         Ok(())
     }
 
-    fn entry(&mut self, entry: &Entry, depth: usize) -> Result<()> {
-        let Entry { name, item, location, .. } = entry;
+    /// An object with these attributes, its id, and its name if it has one.
+    fn object<'a>(
+        &mut self,
+        object: &Object,
+        mut attributes: Vec<Attribute<'a>>,
+        name: Option<Attribute<'a>>,
+        depth: usize,
+    ) -> Result<()> {
+        attributes.extend(object.id.as_ref().map(|id| ("id", escaped(id))));
+        attributes.extend(name);
+        let tag = object.tag.as_deref().unwrap_or_default();
+        self.element(tag, &attributes, &object.location, depth, |writer| {
+            object.properties.iter().try_for_each(|property| writer.property(property, depth + 1))
+        })
+    }
+
+    fn property(&mut self, Property { name, value, location }: &Property, depth: usize) -> Result<()> {
         let attribute = (!name.is_empty()).then(|| ("name", escaped(name)));
-        self.item(item, attribute, vector_tag(name), (location, depth))
+        self.value(value, attribute, vector_tag(name), (location, depth))
     }
 
     /// `known` is the attribute by which it is known: its name, if it has one, or its time. Vectors are written with
     /// the tag `vector`.
-    fn item(
+    fn value(
         &mut self,
-        item: &Item,
+        value: &Value,
         known: Option<Attribute<'_>>,
         vector: &str,
         (location, depth): (&Location, usize),
     ) -> Result<()> {
-        let value = |writer: &mut Self, tag: &str, value: String| {
-            let attributes: Vec<_> = known.clone().into_iter().chain([("value", value)]).collect();
-            writer.element(tag, &attributes, location, depth, |_| Ok(()))
+        let (tag, text) = match value {
+            Value::Boolean(value) => ("boolean", value.to_string()),
+            Value::Integer(value) => ("integer", value.to_string()),
+            Value::Float(value) => ("float", plain(*value)),
+            Value::String(value) => ("string", escaped(value)),
+            Value::Spectrum(pairs) => ("spectrum", spectrum(pairs)),
+            Value::Rgb(values) => ("rgb", listed(shortened(values))),
+            Value::Vector(values) => (vector, listed(values)),
+            Value::Transform(steps) => return self.transform(steps, known, location, depth),
+            Value::Object(object) => {
+                return self.object(object, vec![("type", escaped(&object.plugin))], known, depth);
+            }
+            Value::Reference(id) => {
+                let attributes: Vec<_> = known.into_iter().chain([("id", escaped(id))]).collect();
+                return self.element("ref", &attributes, location, depth, |_| Ok(()));
+            }
+            Value::Keyframes(keyframes) => {
+                return self.keyframes(keyframes, known, vector, (location, depth));
+            }
         };
-        match item {
-            Item::Boolean(leaf) => value(self, "boolean", written(leaf, bool::to_string)),
-            Item::Integer(leaf) => value(self, "integer", written(leaf, i64::to_string)),
-            Item::Float(leaf) => value(self, "float", written(leaf, |x| plain(*x))),
-            Item::String(leaf) => value(self, "string", spelled(leaf)),
-            Item::Spectrum(leaf) => value(self, "spectrum", written(leaf, |pairs| spectrum(pairs))),
-            Item::Rgb(numbers) => {
-                let text = self.numbers(numbers, location);
-                value(self, "rgb", text)
-            }
-            Item::Vector(numbers) => {
-                let text = self.numbers(numbers, location);
-                value(self, vector, text)
-            }
-            Item::Transform(steps) => {
-                let attributes: Vec<_> = known.into_iter().collect();
-                self.element("transform", &attributes, location, depth, |writer| {
-                    steps.iter().try_for_each(|step| writer.step(step, location, depth + 1))
-                })
-            }
-            Item::Object(node) => self.node(node, known, depth),
-            Item::Reference(leaf) => {
-                let attributes: Vec<_> = known.into_iter().chain([("id", spelled(leaf))]).collect();
-                self.element("ref", &attributes, location, depth, |_| Ok(()))
-            }
-            Item::Keyframes(interpolation, keys) => {
-                let linear = *interpolation == Interpolation::default();
-                let how = (!linear).then(|| ("interpolation", interpolation.name().to_owned()));
-                let attributes: Vec<_> = known.into_iter().chain(how).collect();
-                self.element("keyframes", &attributes, location, depth, |writer| {
-                    keys.iter().try_for_each(|key| writer.key(key, vector, depth + 1))
-                })
-            }
-        }
+        let attributes: Vec<_> = known.into_iter().chain([("value", text)]).collect();
+        self.element(tag, &attributes, location, depth, |_| Ok(()))
     }
 
-    fn key(&mut self, Key { time, item, location }: &Key, vector: &str, depth: usize) -> Result<()> {
-        let time = written(time, |x| plain(*x));
-        self.item(item, Some(("time", time)), vector, (location, depth))
-    }
-
-    fn node(&mut self, node: &Node, name: Option<Attribute<'_>>, depth: usize) -> Result<()> {
-        let mut attributes = vec![("type", spelled(&node.plugin))];
-        attributes.extend(node.id.as_ref().map(|id| ("id", spelled(id))));
-        attributes.extend(name);
-        self.element(&node.tag, &attributes, &node.location, depth, |writer| {
-            node.entries.iter().try_for_each(|entry| writer.entry(entry, depth + 1))
+    fn keyframes(
+        &mut self,
+        keyframes: &Keyframes,
+        known: Option<Attribute<'_>>,
+        vector: &str,
+        (location, depth): (&Location, usize),
+    ) -> Result<()> {
+        let interpolation = keyframes.interpolation();
+        let linear = interpolation == Interpolation::default();
+        let how = (!linear).then(|| ("interpolation", interpolation.name().to_owned()));
+        let attributes: Vec<_> = known.into_iter().chain(how).collect();
+        self.element("keyframes", &attributes, location, depth, |writer| {
+            keyframes.keys().iter().try_for_each(|Key { time, value }| {
+                let time = Some(("time", plain(*time)));
+                writer.value(&value.value, time, vector, (&value.location, depth + 1))
+            })
         })
     }
 
-    fn step(&mut self, step: &Step, place: &Location, depth: usize) -> Result<()> {
-        let attributes: Vec<_> = step
-            .parts
-            .iter()
-            .map(|(name, numbers)| {
-                (if *name == "axis" { "value" } else { name }, self.numbers(numbers, place))
+    fn transform(
+        &mut self,
+        steps: &[TransformStep],
+        name: Option<Attribute<'_>>,
+        place: &Location,
+        depth: usize,
+    ) -> Result<()> {
+        let attributes: Vec<_> = name.into_iter().collect();
+        self.element("transform", &attributes, place, depth, |writer| {
+            steps.iter().try_for_each(|step| {
+                let (word, parts) = parts(step);
+                // What JSON calls the axis, XML calls the value.
+                let attribute =
+                    |(name, values)| (if name == "axis" { "value" } else { name }, listed(values));
+                let attributes: Vec<_> = parts.into_iter().map(attribute).collect();
+                writer.element(word, &attributes, place, depth + 1, |_| Ok(()))
             })
-            .collect();
-        self.element(step.word, &attributes, place, depth, |_| Ok(()))
-    }
-
-    fn numbers(&mut self, numbers: &Numbers, place: &Location) -> String {
-        match &numbers.text {
-            Texts::None => listed(&numbers.values),
-            Texts::Whole(text) => text.clone(),
-            Texts::Each(texts) => {
-                let word = |(x, text): (&f64, &Option<String>)| text.clone().unwrap_or_else(|| plain(*x));
-                numbers.values.iter().zip(texts).map(word).collect::<Vec<_>>().join(", ")
-            }
-            Texts::Lost(text) => {
-                self.known.note(place, text, "the numbers around it were completed with defaults");
-                listed(&numbers.values)
-            }
-        }
+        })
     }
 }
 

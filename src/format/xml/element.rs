@@ -1,8 +1,10 @@
 //! An XML element with its parameters substituted, its place, and its attributes by name.
 
 use super::{
-    super::text::{Parsed, quoted},
-    Parameters,
+    super::{
+        parameters::Parameters,
+        text::{Parsed, quoted},
+    },
     files::Source,
 };
 use crate::{
@@ -41,10 +43,9 @@ impl<'s> Element<'s> {
             let found = format!("<{tag}> in a namespace");
             return Err(Error::new(location, "an element without namespaces", found, "remove the xmlns"));
         }
-        let place = location.clone();
         let attributes = node.attributes().map(|a| {
             let location = source.location(a.range().start);
-            let value = match parameters.substitute_at(a.value(), &place, a.name()) {
+            let value = match parameters.substitute(a.value()) {
                 Ok(value) => value,
                 Err(unfit) => return Err(Error::new(location, unfit.expected, unfit.found, unfit.remedy)),
             };

@@ -1,15 +1,15 @@
 //! Files: the text of one with places in it, and the folders in which names of others are looked up.
 
 use super::{
-    super::{origins::Origins, text},
-    Element,
-    element::Attribute,
+    super::text,
+    element::{Attribute, Element},
 };
 use crate::{
     description::{Location, Object, Position, Value},
     error::{Error, Result},
 };
 use std::{
+    collections::HashSet,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -149,22 +149,23 @@ impl Folders {
     }
 
     /// Makes names of files that `file` gives absolute where they lie in a folder other than its own, so that
-    /// later stages need not know of folders. Such names are strings called `filename` or `..._filename`.
-    pub(super) fn settle(&self, object: &mut Object, file: &Arc<PathBuf>, origins: &mut Origins) {
+    /// later stages need not know of folders, and adds their places to `found`. Such names are strings called
+    /// `filename` or `..._filename`.
+    pub(super) fn settle(&self, object: &mut Object, file: &Arc<PathBuf>, found: &mut HashSet<Location>) {
         if self.folders.len() < 2 {
             return;
         }
         for property in &mut object.properties {
             match &mut property.value {
-                Value::Object(child) => self.settle(child, file, origins),
+                Value::Object(child) => self.settle(child, file, found),
                 Value::String(name)
                     if property.name.ends_with("filename") && Arc::ptr_eq(&property.location.file, file) =>
                 {
-                    let elsewhere = self.find(name).filter(|found| *found != self.own.join(&*name));
+                    let elsewhere = self.find(name).filter(|path| *path != self.own.join(&*name));
                     let path = elsewhere.and_then(|path| std::path::absolute(path).ok());
                     if let Some(path) = path.as_deref().and_then(Path::to_str) {
                         path.clone_into(name);
-                        origins.record_found(property.location.clone());
+                        found.insert(property.location.clone());
                     }
                 }
                 _ => {}

@@ -140,7 +140,7 @@ def load(scene: AnyScene, parameters: Mapping[str, object] | None = None) -> dic
         return changed(scene.dictionary(), lambda o: absolute(o, scene.folder))
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         target = Path(folder, "scene.json")
-        program.call([str(program.binary()), "convert", "--fill", *program.definitions(scene.parameters), str(scene.source.resolve()), str(target)])
+        program.call([str(program.binary()), "convert", *program.definitions(scene.parameters), str(scene.source.resolve()), str(target)])
         tree: dict[str, Any] = json.loads(target.read_text())
         return changed(tree, lambda o: absolute(o, target.parent))
 
