@@ -97,7 +97,7 @@ def tree(scene: Any) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         source, target = scene_file(scene, Path(folder)), Path(folder, "converted.json")
         given = program.definitions(scene.parameters)
-        program.call([str(program.binary()), "convert", "--fill", *given, str(source), str(target)])
+        program.call([str(program.binary()), "convert", *given, str(source), str(target)])
         return json.loads(target.read_text())
 
 

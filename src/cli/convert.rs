@@ -32,10 +32,6 @@ pub struct Convert {
     #[arg(short = 'D', value_name = "name=value", value_parser = definition)]
     pub definitions: Vec<(String, String)>,
 
-    /// Accepted, as older scripts give it: values of parameters are always written instead of their names
-    #[arg(long, hide = true)]
-    pub fill: bool,
-
     /// The grid that is meant in a file of several [default: the one named "density", else the only one]
     #[arg(long, value_name = "NAME")]
     pub grid: Option<String>,

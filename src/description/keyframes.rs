@@ -1,6 +1,9 @@
 //! Values that change in time (BMA02 sec. 5): what they are at a few times, and how those between follow.
 
-use super::{Location, Property, TransformStep, Value};
+use super::{
+    object::{Location, Property, Value},
+    transform::TransformStep,
+};
 use crate::error::{Error, Result};
 
 /// A value at several times. Before the first and after the last of them, theirs hold.

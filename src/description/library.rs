@@ -1,6 +1,9 @@
 //! What a description needs from around it: the objects that carry ids, files, and a place for warnings.
 
-use super::{Location, Object, Value, suggest};
+use super::{
+    object::{Location, Object, Value},
+    registry::suggest,
+};
 use crate::error::{Error, Result};
 use std::{
     cell::RefCell,

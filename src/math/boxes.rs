@@ -1,6 +1,6 @@
 //! Boxes along the axes, given by least and greatest corner, in f64.
 
-use super::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3};
 
 /// The part of `range` in which origin + t direction is in the box; its end is not after its beginning where there is
 /// none. Corners may be infinite.

@@ -1,6 +1,6 @@
 //! Orthonormal frames around a direction.
 
-use super::{Vec3, vec3};
+use glam::{Vec3, vec3};
 
 /// A right-handed orthonormal basis; local z is `normal`.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 //! A straight piece of a ray, as media see it.
 
-use super::{Affine3A, Vec3, boxes};
+use super::boxes;
+use glam::{Affine3A, Vec3};
 
 /// From `origin` along `direction` for `length`. The parameter t along it is in metres of the world whatever affine
 /// map it was seen through: `direction` is a unit vector in the world only.

@@ -1,6 +1,6 @@
 //! Linear sRGB colour triples: radiance, reflectance, extinction per channel.
 
-use super::{Vec3, vec3};
+use glam::{Vec3, vec3};
 
 /// One value per linear-sRGB channel.
 pub type Spectrum = Vec3;

@@ -1,6 +1,6 @@
 //! Texture coordinates, of which most surfaces make no use.
 
-use super::{Vec2, Vec3, vec2};
+use glam::{Vec2, Vec3, vec2};
 use std::f32::consts::FRAC_1_PI;
 
 /// Where on a shape a texture is looked up. What takes long to compute is computed where a texture varies.

@@ -1,6 +1,6 @@
 //! What an integrator or the command line sets for all media of a scene, whatever their descriptions say.
 
-use super::DistanceMethod;
+use super::distance::DistanceMethod;
 
 /// Changes to the media of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::{
     COMMON, Curved, CurvedModel, Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
-    parallelogram::flat_error,
+    flat::flat_error,
     placement::{Placement, is_in_range},
 };
 use crate::{

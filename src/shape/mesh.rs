@@ -3,8 +3,8 @@
 use super::{
     Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     area::AreaTable,
+    flat::flat_error,
     orientation::turned_over,
-    parallelogram::flat_error,
     placement::{Placement, is_in_range},
     shift, smooth,
 };

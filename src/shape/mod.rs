@@ -9,6 +9,7 @@ mod area;
 mod cube;
 mod cylinder;
 mod disk;
+mod flat;
 mod mesh;
 mod obj;
 mod orientation;
@@ -36,6 +37,7 @@ use std::collections::BTreeMap;
 
 pub use cylinder::Cylinder;
 pub use disk::Disk;
+pub use flat::Flat;
 pub use mesh::Mesh;
 pub use parallelogram::{Parallelogram, Parallelograms};
 pub use patch::Patch;
@@ -124,23 +126,19 @@ pub enum Primitive {
     Curved(Curved),
 }
 
-/// The points corner + u `edge_u` + v `edge_v`: u, v in [0, 1], and u + v <= 1 for a triangle.
-#[derive(Clone, Copy, Debug)]
-pub struct Flat {
-    /// u = v = 0.
-    pub corner: Vec3,
-    /// To u = 1.
-    pub edge_u: Vec3,
-    /// To v = 1.
-    pub edge_v: Vec3,
-    /// Unit normal, the very one (or its opposite) that surface points report: both must agree bit for bit on
-    /// which side a direction leaves to.
-    pub normal: Vec3,
-    /// Triangle or parallelogram.
-    pub triangle: bool,
-}
-
 impl Primitive {
+    /// As far as touching depends on it.
+    pub fn patch(&self) -> Patch {
+        match self {
+            Self::Flat(flat) => Patch::flat(flat),
+            Self::Ball { center, radius } => {
+                Patch::Ball { center: center.as_dvec3(), radius: f64::from(*radius) }
+            }
+            Self::Curved(Curved::Disk(disk)) => Patch::flat(&disk.square()),
+            Self::Curved(Curved::Cylinder(cylinder)) => cylinder.patch(),
+        }
+    }
+
     /// Least and greatest corner of the box around it.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         match self {

@@ -3,6 +3,7 @@
 use super::{
     Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     area::AreaTable,
+    flat::flat_error,
     placement::{Placement, is_in_range},
     shift,
     spherical_rectangle::{Seen, SphericalRectangle},
@@ -10,7 +11,7 @@ use super::{
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::{DMat3, DVec3, Frame, Vec3, measure, offset::gamma, vec2},
+    math::{DMat3, DVec3, Frame, Vec3, measure, vec2},
     sampling::Stream,
 };
 use std::collections::BTreeMap;
@@ -92,14 +93,6 @@ impl Parallelogram {
         (self.area as f32).is_normal()
             && [self.corner, self.edge_u, self.edge_v, self.normal].into_iter().all(is_in_range)
     }
-}
-
-/// Bound on how far corner + (`along_u` + `along_v`) and the ray tracer's idea of the plane there can be
-/// apart, per axis: one rounding of the sum against `corner`; of the rest, two roundings here, one in each
-/// edge, one in the plane's normal, and five in the ray tracer's normal . (origin - corner).
-#[inline]
-pub(super) fn flat_error(corner: Vec3, along_u: Vec3, along_v: Vec3) -> Vec3 {
-    gamma(2) * corner.abs() + gamma(12) * (along_u.abs() + along_v.abs())
 }
 
 /// Steps per axis in which all corners and edges of a shape are whole numbers: every corner is then exact

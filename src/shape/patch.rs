@@ -1,6 +1,6 @@
 //! Faces that touch: whether two primitives lie in one surface, and how far apart they are there.
 
-use super::{Curved, Flat, Primitive};
+use super::flat::Flat;
 use crate::math::DVec3;
 
 /// A primitive in f64, as far as touching depends on it. Its normal points where [`Flat::normal`] does, or away from the
@@ -33,16 +33,9 @@ pub struct Polygon {
 }
 
 impl Patch {
-    /// The patch of a primitive.
-    pub fn of(primitive: &Primitive) -> Self {
-        match primitive {
-            Primitive::Flat(flat) => Self::Flat(Polygon::of(flat)),
-            Primitive::Ball { center, radius } => {
-                Self::Ball { center: center.as_dvec3(), radius: f64::from(*radius) }
-            }
-            Primitive::Curved(Curved::Disk(disk)) => Self::Flat(Polygon::of(&disk.square())),
-            Primitive::Curved(Curved::Cylinder(cylinder)) => cylinder.patch(),
-        }
+    /// Of a flat primitive.
+    pub(super) fn flat(flat: &Flat) -> Self {
+        Self::Flat(Polygon::of(flat))
     }
 
     /// The unit normal of a flat patch.
@@ -161,7 +154,7 @@ mod tests {
 
     fn flat(corner: Vec3, edge_u: Vec3, edge_v: Vec3) -> Patch {
         let normal = edge_u.cross(edge_v).normalize();
-        Patch::of(&Primitive::Flat(Flat { corner, edge_u, edge_v, normal, triangle: false }))
+        Patch::flat(&Flat { corner, edge_u, edge_v, normal, triangle: false })
     }
 
     #[test]

@@ -71,7 +71,7 @@ fn check(module: &str, text: &str) -> Vec<Breach> {
 }
 
 /// Comments blanked out, lines kept.
-fn without_comments(text: &str) -> String {
+pub(crate) fn without_comments(text: &str) -> String {
     text.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n")
 }
 
@@ -117,7 +117,7 @@ fn names_in_braces(text: &str) -> Vec<(usize, String)> {
     names
 }
 
-fn sources(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
         if entry.is_dir() {
@@ -131,7 +131,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// True for files that only tests compile.
-fn is_test(file: &Path) -> bool {
+pub(crate) fn is_test(file: &Path) -> bool {
     file.components()
         .any(|part| ["tests", "tests.rs", "testing.rs"].iter().any(|name| part.as_os_str() == *name))
 }

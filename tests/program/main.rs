@@ -6,6 +6,7 @@ mod common;
 mod sandbox;
 
 mod animating;
+mod circles;
 mod command_line;
 mod converting;
 mod cropping;

@@ -105,7 +105,7 @@ impl<'a> Near<'a> {
     fn add_touching(&self, pair: [u32; 2], found: &mut Vec<Pair>) {
         let [one, other] = self.shapes;
         each_meeting(&self.within(one), &self.within(other), |a, b| {
-            let patches = [Patch::of(&one.primitive(a)), Patch::of(&other.primitive(b))];
+            let patches = [one.primitive(a).patch(), other.primitive(b).patch()];
             let reach = self.along_normal(&patches);
             if patches[0].height_of(&patches[1], reach).is_some() {
                 found.push(Pair { shapes: pair, primitives: [a, b], patches, reach });
