@@ -79,7 +79,7 @@ def line(options: argparse.Namespace, folder: Path) -> list[str]:
     scenes = [os.path.relpath(SCENES / "crosscheck" / f"{name}.json") for name in CLOUDS]
     march = [word for step in STEPS for word in ("--contender", f"step={step}: {PATHS} --step {step}")]
     effort = ["--spp", str(options.spp), "--doublings", "1", "--seeds", str(options.seeds), "--reference-spp", str(options.spp), "--threads", str(options.threads)]
-    return ["study", *scenes, "--contender", f"{EXACT}: {PATHS} --tracker auto", *march, *effort, "--restart", "-o", os.path.relpath(folder)]
+    return [*scenes, "--contender", f"{EXACT}: {PATHS} --tracker auto", *march, *effort, "--restart", "-o", os.path.relpath(folder)]
 
 
 def points(file: Path, scene: str) -> list[Point]:

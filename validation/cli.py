@@ -4,7 +4,6 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from tyndall import program
 from tyndall.failure import Failure
 from tyndall.scene import open_scene
 from validation import (
@@ -30,16 +29,26 @@ from validation import (
     reach,
     references,
     selftest,
-    studies,
     thresholds,
     truths,
 )
 from validation.cluster import cli as cluster
 from validation.compare import Effort
 from validation.made_by import made_by_command
-from validation.places import OUTPUT, REPORTS, SCENES
+from validation.places import OUTPUT
 
 Commands = argparse._SubParsersAction  # argparse gives it no public name
+MEASURES = {
+    "efficiency": (efficiency, "Time to equal error against Mitsuba and others of our own: by default on the scenes of scenes/efficiency."),
+    "models": (models, "Time to equal error of path tracing, model by model, against Mitsuba's."),
+    "gallery": (gallery, "Renders the scenes of scenes/gallery, and Mitsuba for the same seconds, for the table of scenes/README.md."),
+    "bias": (bias, "Bias of ray marching against its step, in a cosine cloud and a noise cloud."),
+    "progressive": (progressive, "Progressive pictures against as many pixels on a regular grid, on four scenes."),
+    "guide": (guide, "What --guide gives: time to equal error with it and without, in eighteen scenes."),
+    "thresholds": (thresholds, "P03T's tests A-F at its own thresholds: time with a guide and without, learning included."),
+    "lottery": (lottery, "The default choice of strategies against others, in scenes that nobody made."),
+}
+"""Commands whose modules know their options."""
 
 
 def main(arguments: list[str]) -> int:
@@ -55,23 +64,13 @@ def parser() -> argparse.ArgumentParser:
     add_compare(commands)
     add_matrix(commands)
     add_closed_forms(commands)
-    add_studies(commands)
-    add_efficiency(commands)
-    add_models(commands)
-    add_gallery(commands)
-    add_instructions(commands)
-    add_growth(commands)
-    add_bias(commands)
-    add_progressive(commands)
-    add_guide(commands)
-    add_thresholds(commands)
-    add_lottery(commands)
-    add_plume(commands)
+    for name, (module, text) in MEASURES.items():
+        module.add_options(add(commands, name, module.run, text))
+    add_recorded(commands)
     add_page(commands)
     add_stability(commands)
     add_cluster(commands)
     add_selftest(commands)
-    add_record(commands)
     add(commands, "rays", lambda _: rays.run(), "Nanoseconds per ray against Embree, on two meshes.")
     add(commands, "full", lambda _: full.run(), full.TEXT)
     add(commands, "test", lambda _: package_tests.run(), "The tests of this package itself.")
@@ -188,90 +187,11 @@ def run_closed_forms(options: argparse.Namespace) -> bool:
     return truths.run(effort_of(options), methods, options.only, options.quick)
 
 
-def add_studies(commands: Commands) -> None:
-    command = add(commands, "convergence", studies.convergence, "Error against run time of Tyndall and Mitsuba, side by side, by `tyndall study`.")
-    command.add_argument("scenes", nargs="*", type=Path, metavar="SCENE", help="default: six that show different things")
-    command.add_argument("--minutes", type=float, default=25, help="time for everything, roughly (default %(default)s)")
-    command.add_argument("--seeds", type=int, default=8, help="independent renders of each budget (default %(default)s)")
-    command.add_argument("--points", type=int, default=5, help="budgets, each twice the one before (default %(default)s)")
-    command.add_argument("--size", help="WxH instead of the scenes' own")
-    studies.add_options(command, "bdpt,pt and all of Mitsuba's", "convergence")
-    command = add(commands, "race", studies.race, "relMSE x seconds against Mitsuba's volpath.")
-    command.add_argument("scenes", nargs="*", type=Path, help="default: both lamp boxes at -D res=256")
-    studies.add_options(command, "llvm_ad_rgb,scalar_rgb,bdpt,pt", "race")
-    add_timing(command, seconds=5)
-    command = add(commands, "pane", studies.pane, "Light through frosted glass only (LW96 fig. 6): bdpt against pt.")
-    command.add_argument("scene", nargs="?", type=Path, default=SCENES / "church.json")
-    studies.add_options(command, "bdpt,pt", "pane")
-    add_timing(command, seconds=10)
-
-
-def add_efficiency(commands: Commands) -> None:
-    command = add(commands, "efficiency", efficiency.run, "Time to equal error against Mitsuba on the scenes of scenes/efficiency.")
-    efficiency.add_options(command)
-
-
-def add_models(commands: Commands) -> None:
-    command = add(commands, "models", models.run, "Variance and time of a sample, model by model, against Mitsuba's.")
-    models.add_options(command)
-
-
-def add_gallery(commands: Commands) -> None:
-    command = add(commands, "gallery", gallery.run, "Renders the scenes of scenes/gallery, and Mitsuba for the same seconds, for the table of scenes/README.md.")
-    gallery.add_options(command)
-
-
-def add_instructions(commands: Commands) -> None:
+def add_recorded(commands: Commands) -> None:
     command = add(commands, "instructions", lambda options: instructions.run(options.record), "Instructions per sample of three scenes, by valgrind, against those recorded.")
     command.add_argument("--record", action="store_true", help="record them anew")
-
-
-def add_growth(commands: Commands) -> None:
     command = add(commands, "growth", lambda options: growth.run(options.output), "How the cost of a sample grows with depth, triangles, voxels, lights, pixels and threads.")
     command.add_argument("--output", type=Path, help="folder for growth.md and .json (default: validation/reports)")
-
-
-def add_bias(commands: Commands) -> None:
-    command = add(commands, "bias", bias.run, "Bias of ray marching against its step, in a cosine cloud and a noise cloud.")
-    bias.add_options(command)
-
-
-def add_progressive(commands: Commands) -> None:
-    command = add(commands, "progressive", progressive.run, "Progressive pictures against as many pixels on a regular grid, on four scenes.")
-    progressive.add_options(command)
-
-
-def add_guide(commands: Commands) -> None:
-    command = add(commands, "guide", guide.run, "What --guide gives: error after the same time with it and without, in eighteen scenes.")
-    guide.add_options(command)
-
-
-def add_thresholds(commands: Commands) -> None:
-    command = add(commands, "thresholds", thresholds.run, "P03T's tests A-F at its own thresholds: time with a guide and without, learning included.")
-    thresholds.add_options(command)
-
-
-def add_lottery(commands: Commands) -> None:
-    command = add(commands, "lottery", lottery.run, "The default choice of strategies against others, in scenes that nobody made.")
-    lottery.add_options(command)
-
-
-def add_timing(command: argparse.ArgumentParser, seconds: float) -> None:
-    """How long to render."""
-    command.add_argument("--rounds", type=int, default=8, help="independent renders each (default %(default)s)")
-    command.add_argument("--seconds", type=float, default=seconds, help="time of each (default %(default)s)")
-
-
-def add_plume(commands: Commands) -> None:
-    command = add(commands, "plume", run_plume, "Nanoseconds per transmittance query on 256^3 voxels of smoke.")
-    command.add_argument("--rounds", type=int, default=8, help="repetitions (default %(default)s)")
-    command.add_argument("--spp", type=int, default=16, help="samples a pixel in each (default %(default)s)")
-
-
-def run_plume(options: argparse.Namespace) -> bool:
-    from validation import plume  # it needs Mitsuba
-
-    return plume.run(options.rounds, options.spp)
 
 
 def add_page(commands: Commands) -> None:
@@ -283,17 +203,6 @@ def add_page(commands: Commands) -> None:
 
 def run_page(options: argparse.Namespace) -> bool:
     return page.run(options.file, options.output, options.if_possible)
-
-
-def add_record(commands: Commands) -> None:
-    command = add(commands, "record", run_record, "A finished study's table, curves and images, for the repository.")
-    command.add_argument("folder", type=Path, help="of a study by `convergence` or `tyndall study`")
-    command.add_argument("--output", type=Path, default=REPORTS, help="folder for the three files (default %(default)s)")
-
-
-def run_record(options: argparse.Namespace) -> bool:
-    print(program.call([str(program.binary()), "report", str(options.folder), "--record", str(options.output)]).stdout.strip())
-    return True
 
 
 def add_stability(commands: Commands) -> None:

@@ -4,12 +4,13 @@
         --integrator volpath --variant llvm_ad_rgb --seed {seed} --spp {budgets} --folder {folder} --size {size} --threads {threads}"
 
 Writes an image for each number of samples, each going on from the one before, and reports on a line for each the seconds of
-rendering, and those of starting, loading and compiling."""
+rendering, and those of starting, loading and compiling. With `--tyndall OPTIONS` it is `tyndall render` by these, a process for
+each image: what that learns, and its pilot, are among the seconds."""
 
 import argparse
 import json
+import shlex
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -25,9 +26,11 @@ WAVEFRONT = 4_000_000
 def main(arguments: list[str]) -> None:
     """Renders one scene with one seed."""
     options = parser().parse_args(arguments)
+    if options.tyndall is not None:
+        return ours(options)
     import drjit as dr  # only importable inside the environment
 
-    from tyndall.scene import open_scene
+    from tyndall.scene import load, open_scene
     from validation import mitsuba
 
     dr.set_thread_count(options.threads)
@@ -35,7 +38,7 @@ def main(arguments: list[str]) -> None:
     loaded = mitsuba.load(scene, options.variant, options.size)
     import mitsuba as mi
 
-    integrator = mi.load_dict(integrator_like(tree(scene), options.integrator))
+    integrator = mi.load_dict(integrator_like(load(scene), options.integrator))
     if options.variant.startswith("llvm"):
         for spp in (2, 3):  # a kernel for powers of two, and one for other numbers
             mitsuba.image(loaded, spp, 0, integrator)
@@ -49,6 +52,7 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument("scene", type=Path)
     command.add_argument("--integrator", choices=INTEGRATORS, default=INTEGRATORS[0])
     command.add_argument("--variant", choices=VARIANTS, default=VARIANTS[0])
+    command.add_argument("--tyndall", metavar="OPTIONS", help="of `tyndall render`, which renders in Mitsuba's place")
     command.add_argument("--seed", type=int, required=True)
     command.add_argument("--spp", type=lambda text: [int(spp) for spp in text.split(",")], required=True, help="growing numbers, separated by commas")
     command.add_argument("--folder", type=Path, required=True, help="to write SPP.exr to")
@@ -56,6 +60,21 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument("--threads", type=int, default=1)
     command.add_argument("-D", metavar="NAME=VALUE", action="append", default=[], help="a parameter of the scene")
     return command
+
+
+def ours(options: argparse.Namespace) -> None:
+    """All numbers of samples by Tyndall."""
+    from tyndall import program
+
+    size = options.size and "x".join(map(str, options.size))
+    definitions = [word for pair in options.D for word in ("-D", pair)]
+    for spp in options.spp:
+        image = options.folder / f"{spp}.exr"
+        report = image.with_suffix(".json")
+        given = program.flags({"output": image, "report": report, "spp": spp, "seed": options.seed, "size": size, "threads": options.threads})
+        program.call([str(program.binary()), "--quiet", "render", str(options.scene), *definitions, *given, *shlex.split(options.tyndall)])
+        told = json.loads(report.read_text())
+        print(json.dumps({"spp": spp, "seconds": told["render_seconds"], "load_seconds": told["load_seconds"]}), flush=True)
 
 
 def render(loaded: Any, integrator: Any, options: argparse.Namespace) -> None:
@@ -87,18 +106,6 @@ def seed_of(seed: int, number: int) -> int:
     import numpy as np
 
     return int(np.random.SeedSequence([seed, number]).generate_state(1)[0])
-
-
-def tree(scene: Any) -> dict[str, Any]:
-    """The scene as one dictionary, parameters filled in, in whichever format it is written."""
-    from tyndall import program
-    from tyndall.scene import scene_file
-
-    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
-        source, target = scene_file(scene, Path(folder)), Path(folder, "converted.json")
-        given = program.definitions(scene.parameters)
-        program.call([str(program.binary()), "convert", *given, str(source), str(target)])
-        return json.loads(target.read_text())
 
 
 def objects(whole: Any) -> Iterator[dict[str, Any]]:

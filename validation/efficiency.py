@@ -1,22 +1,22 @@
-"""Time to equal error, relMSE x seconds, on the scenes of `scenes/efficiency/` and the lamp boxes: against the better of
-Mitsuba's `volpath` and `volpathmis`, and against Tyndall's own `pt`, `lt` and subsets of strategies. All contenders take turns
-in one `tyndall study`; the references are long renders that are kept."""
+"""Time to equal error, relMSE x seconds, as one number a scene: how many times as efficient Tyndall is as the better of Mitsuba's
+`volpath` and `volpathmis`, beside its own `pt`, `lt` and subsets of strategies. By default on `scenes/efficiency/` and the lamp
+boxes; the references are long renders that are kept."""
 
 import argparse
 import json
-import math
-import os
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, cast
-
-import numpy as np
+from typing import Any
 
 from tyndall.failure import Failure
-from tyndall.volume_file import vol
-from validation import studies
+from validation import studies, volumes
+from validation.contender import INTEGRATORS
+from validation.files import write_text
 from validation.made_by import made_by_command
 from validation.places import OUTPUT, REPORTS, SCENES
+from validation.statistics import Ratio
+from validation.studies import BDPT, MITSUBA, OURS, Effort, Found, Reference, Study
 
 FOLDER = SCENES / "efficiency"
 WANTED = {
@@ -42,11 +42,10 @@ WANTED = {
     FOLDER / "smoky_room.xml": 1,
 }
 """How many times as efficient as Mitsuba Tyndall shall be in each scene."""
-WANTED_OVER_PT = {"frosted_pane": 100, "small_opening": 100, "door_ajar": 100}
+WANTED_OVER_PT = {"frosted_pane": 100, "small_opening": 100, "door_ajar": 100, "church": 100}
 """How many times as efficient as its own `pt` where light hardly finds the way in."""
 WANTED_MEAN = 12
 """The geometric mean of all."""
-MITSUBA = ("volpath:llvm_ad_rgb", "volpathmis:llvm_ad_rgb")
 OWN = {
     "pt": "--integrator pt",
     "lt": "--integrator lt",
@@ -63,107 +62,81 @@ def add_options(command: argparse.ArgumentParser) -> None:
     """Those of the command line."""
     command.add_argument("scenes", nargs="*", type=Path, metavar="SCENE", help="default: the lamp boxes and all of scenes/efficiency")
     command.add_argument("--quick", action="store_true", help="3 seeds, short renders, and of our own only pt: ten minutes, into target/")
-    command.add_argument("--ours", metavar="OPTIONS", default="--integrator bdpt", help='the options of `tyndall render` to judge (default "%(default)s")')
+    command.add_argument("--ours", metavar="OPTIONS", default=BDPT, help='the options of `tyndall render` to judge (default "%(default)s")')
+    names = ", ".join((*OWN, *INTEGRATORS, *MITSUBA))
+    command.add_argument("--against", metavar="LIST", help=f"the others, separated by commas: any of {names} (default: all but the variants of Mitsuba's)")
+    command.add_argument("--contender", metavar="NAME: OPTIONS", action="append", default=[], help="another one, by options of `tyndall render`")
+    command.add_argument("--points", type=int, default=1, help="budgets, each twice the one before: curves of error against time (default %(default)s)")
     command.add_argument("--seeds", type=int, help="independent renders of each contender (default 10, quick 3)")
-    command.add_argument("--seconds", type=float, help="of each render (default 0.75, quick 0.4)")
+    command.add_argument("--seconds", type=float, help="of each contender's longest render (default 0.75, quick 0.4)")
     command.add_argument("--reference-seconds", type=float, help="of each reference that is not there yet (default 30, quick 6)")
-    command.add_argument("--size", help="of all images (default 96x96)")
+    command.add_argument("--reference", metavar="FILE", type=Path, action="append", default=[], help="image (.exr, .pfm) in its place, one a scene")
+    command.add_argument("--size", metavar="WxH", help="of all images (default: 96x96; with other scenes or -D, the scenes' own)")
     command.add_argument("--threads", type=int, default=2, help="of all contenders alike (default %(default)s)")
+    command.add_argument("-D", metavar="NAME=VALUE", action="append", default=[], help="a parameter of the scenes")
     command.add_argument("--resume", action="store_true", help="continue an interrupted measurement")
-    command.add_argument("--output", type=Path, help="folder for efficiency.md and .json (default: validation/reports if all is measured, else target/)")
+    command.add_argument("--output", type=Path, help="folder for the study, whose page has the curves, and for efficiency.md and .json (default: target/validation/efficiency and, if all is measured, validation/reports)")  # fmt: skip
     command.add_argument("--grids", action="store_true", help="only write the grids that the scenes name")
 
 
 def run(options: argparse.Namespace) -> bool:
     """Measures, writes and judges the table."""
-    volumes()
+    scenes, effort = options.scenes or list(WANTED), effort_of(options)
+    if options.grids or FOLDER in (scene.resolve().parent for scene in scenes):
+        volumes.write()
     if options.grids:
         return True
-    effort = Effort.of(options)
-    scenes = options.scenes or list(WANTED)
-    folder = OUTPUT / ("efficiency-quick" if options.quick else "efficiency")
-    references = [reference(scene, effort) for scene in scenes]
-    own = {"pt": OWN["pt"]} if options.quick else OWN
-    if not studies.run(line(scenes, {"tyndall": options.ours, **own}, effort, references, folder, options.resume)):
-        return False
-    study = json.loads((folder / "study.json").read_text())
-    rows = [row_of(scene) for scene in study["scenes"]]
-    output = options.output or (folder if options.quick or options.scenes else REPORTS)
-    output.mkdir(parents=True, exist_ok=True)
-    (output / "efficiency.json").write_text(json.dumps([asdict(row) for row in rows], indent=1) + "\n")
-    text = page(rows, study, made_by_command())
-    (output / "efficiency.md").write_text(text)
+    folder = options.output or OUTPUT / ("efficiency-quick" if options.quick else "efficiency")
+    given = [Reference(file) for file in options.reference]
+    study = studies.measured(scenes, contenders(options), effort, folder, given, restart=not options.resume and not options.output)
+    is_whole = not (options.quick or options.scenes or options.output or options.against)
+    return told(study, [folder, *([REPORTS] if is_whole else [])])
+
+
+def effort_of(options: argparse.Namespace) -> Effort:
+    """What was asked for, or else its default."""
+    seeds, seconds, reference = (3, 0.4, 6) if options.quick else (10, 0.75, 30)
+    size = "96x96" if {scene.resolve() for scene in options.scenes} <= WANTED.keys() and not options.D else None
+    return Effort(options.seeds or seeds, options.seconds or seconds, options.reference_seconds or reference, options.size or size,
+                  options.threads, options.points, tuple(options.D))  # fmt: skip
+
+
+def contenders(options: argparse.Namespace) -> dict[str, str]:
+    """Their names and options, ours first."""
+    usual = ("pt", *INTEGRATORS) if options.quick else (*OWN, *INTEGRATORS)
+    names = options.against.split(",") if options.against is not None else usual
+    known = {**OWN, **dict.fromkeys((*INTEGRATORS, *MITSUBA), "")}
+    wrong = next((name for name in names if name and name not in known), None)
+    if wrong:
+        raise Failure(f"--against {wrong}: no such contender", f"choose among {', '.join(known)}")
+    unnamed = next((text for text in options.contender if ": " not in text), None)
+    if unnamed:
+        raise Failure(f'--contender "{unnamed}": no name', 'write --contender "joins: --integrator bdpt --strategies hit,join"')
+    more = dict(text.split(": ", 1) for text in options.contender)
+    return {OURS: options.ours, **{name: known[name] for name in names if name}, **more}
+
+
+def told(study: Study, folders: Sequence[Path]) -> bool:
+    """Prints and writes the table; true if nobody is surely better."""
+    rows = [row_of(scene) for scene in study.scenes]
+    text = page(rows, study.told, made_by_command())
+    for folder in folders:
+        write_text(folder / "efficiency.json", json.dumps([asdict(row) for row in rows], indent=1) + "\n")
+        write_text(folder / "efficiency.md", text)
     print(text)
     return not any(row.is_beaten or row.is_outdone for row in rows)
 
 
 @dataclass(frozen=True)
-class Effort:
-    """How much is rendered."""
-
-    seeds: int
-    seconds: float
-    reference_seconds: float
-    size: str
-    threads: int
-
-    @staticmethod
-    def of(options: argparse.Namespace) -> "Effort":
-        """What was asked for, or else its default."""
-        usual = Effort(3, 0.4, 6, "96x96", 2) if options.quick else Effort(10, 0.75, 30, "96x96", 2)
-        return Effort(*(getattr(options, name) or getattr(usual, name) for name in asdict(usual)))
-
-
-def line(scenes: list[Path], own: dict[str, str], effort: Effort, references: list["Reference"], folder: Path, resume: bool) -> list[str]:
-    """The study's command line; ours come first: the others are compared with the first of all."""
-    ours = [word for name, words in own.items() for word in ("--contender", f"{name}: {words}")]
-    given = {"seconds": effort.seconds, "seeds": effort.seeds, "doublings": 1, "threads": effort.threads, "size": effort.size, "restart": not resume}
-    known = [word for one in references for word in ("--reference", str(one.image), "--reference-error", f"{one.relmse:.6g}")]
-    return studies.words(scenes, list(MITSUBA), given, [*ours, *known, "-o", os.path.relpath(folder)])
-
-
-@dataclass(frozen=True)
-class Reference:
-    """A scene's long render by all strategies, and its own relMSE."""
-
-    image: Path
-    relmse: float
-
-
-def reference(scene: Path, effort: Effort) -> Reference:
-    """A reference is made once, by a study of its own: it is made again when the scene changes or more time is given."""
-    folder = OUTPUT / "efficiency-references" / f"{scene.stem}-{effort.size}-{effort.reference_seconds:g}s"
-    given = {"quiet": True, "spp": 1, "seeds": 2, "doublings": 1, "size": effort.size, "threads": effort.threads,
-             "reference_by": "--integrator bdpt", "reference_seconds": effort.reference_seconds}  # fmt: skip
-    if not studies.run(studies.words([scene], ["bdpt"], given, ["-o", os.path.relpath(folder)])):
-        raise Failure(f"{scene}: no reference could be made", f"see the message above; if the scene is another one now, remove {folder}")
-    [found] = json.loads((folder / "study.json").read_text())["scenes"]
-    return Reference(folder / found["reference"]["image"], found["reference"]["own_relmse"])
-
-
-@dataclass(frozen=True)
-class Ratio:
-    """How many times as efficient as another contender Tyndall is, and the ends of the interval."""
-
-    other: str
-    low: float
-    mean: float
-    high: float
-
-    def __str__(self) -> str:
-        return f"{self.mean:.3g} [{self.low:.3g}, {self.high:.3g}]"
-
-
-@dataclass(frozen=True)
 class Row:
-    """What was found in a scene; products of relMSE and seconds."""
+    """What was found in a scene; products of relMSE and seconds, and how many times as efficient as others Tyndall is."""
 
     scene: str
     wanted: float | None
     ours: float
-    theirs: float
-    mitsuba: Ratio
-    of_sample: tuple[float, float]
+    theirs: tuple[str, Ratio] | None
+    """The better of Mitsuba's, where it can render the scene."""
+    of_sample: tuple[float, float] | None
     """relMSE and seconds of a sample, Mitsuba's over ours."""
     own: dict[str, Ratio]
     reference: float
@@ -171,37 +144,39 @@ class Row:
     notes: list[str]
 
     @property
-    def best(self) -> Ratio:
-        """Over the most efficient of our others."""
-        return min(self.own.values(), key=lambda ratio: ratio.mean)
+    def best(self) -> tuple[str, Ratio] | None:
+        """The most efficient of our others."""
+        return least(self.own)
 
     @property
     def is_beaten(self) -> bool:
         """Mitsuba is surely more efficient."""
-        return self.mitsuba.high < 1
+        return self.theirs is not None and self.theirs[1].high < 1
 
     @property
     def is_outdone(self) -> bool:
         """Another of ours surely is, by more than it may be."""
-        return self.best.high < 1 - WORSE
+        return self.best is not None and self.best[1].high < 1 - WORSE
 
 
-def row_of(scene: dict[str, Any]) -> Row:
-    """A scene's part of study.json."""
-    ours, *others = scene["contenders"]
-    ratios = {other["name"]: Ratio(other["name"], *(1 / other["ratio"][end] for end in ("high", "mean", "low"))) for other in others}
-    theirs = [ratio for name, ratio in ratios.items() if name.startswith("mitsuba ")]
-    if not theirs:
-        raise Failure(f"{scene['name']}: Mitsuba could not render it: {'; '.join(scene.get('notes', []))}", "measure without this scene")
-    mitsuba = min(theirs, key=lambda ratio: ratio.mean)
-    wanted = next((wanted for path, wanted in WANTED.items() if path.stem == scene["name"]), None)
-    share = scene["reference"]["own_relmse"] / ours["points"][-1]["relmse"]["mean"]
-    notes = [f"{one['name']}: {note}" for one in scene["contenders"] for note in one.get("notes", []) if "mean differs" in note]
-    own = {name: ratio for name, ratio in ratios.items() if name in OWN}
-    cost = 1 / ours["efficiency"]["mean"]
-    [best] = [other for other in others if other["name"] == mitsuba.other]
-    of_sample = cast(tuple[float, float], tuple(np.divide(per_sample(best), per_sample(ours)).tolist()))
-    return Row(scene["name"], wanted, cost, cost * mitsuba.mean, mitsuba, of_sample, own, share, [*scene.get("notes", []), *notes])
+def least(ratios: dict[str, Ratio]) -> tuple[str, Ratio] | None:
+    """The one over whom Tyndall's lead is least."""
+    return min(ratios.items(), key=lambda one: one[1].mean, default=None)
+
+
+def row_of(scene: Found) -> Row:
+    """Of what a study found in a scene."""
+    if OURS not in scene.costs:
+        raise Failure(f"{scene.name}: Tyndall could not render it: {'; '.join(scene.notes)}", "measure without this scene")
+    ratios = {name: scene.ratio(name) for name in scene.costs if name != OURS}
+    theirs = least({name: ratio for name, ratio in ratios.items() if name.startswith("mitsuba ")})
+    wanted = next((wanted for path, wanted in WANTED.items() if path.stem == scene.name), None)
+    samples = {one["name"]: per_sample(one) for one in scene.told["contenders"]}
+    (error, seconds), (other_error, other_seconds) = samples[OURS], samples[theirs[0] if theirs else OURS]
+    of_sample = (other_error / error, other_seconds / seconds) if theirs else None
+    own = {name: ratio for name, ratio in ratios.items() if not name.startswith("mitsuba ")}
+    share = scene.noise / scene.told["contenders"][0]["points"][-1]["relmse"]["mean"]
+    return Row(scene.name, wanted, scene.cost(), theirs, of_sample, own, share, scene.notes)
 
 
 def per_sample(contender: dict[str, Any]) -> tuple[float, float]:
@@ -210,73 +185,35 @@ def per_sample(contender: dict[str, Any]) -> tuple[float, float]:
     return last["relmse"]["mean"] * last["samples"], last["seconds"]["mean"] / last["samples"]
 
 
-def mean(ratios: list[Ratio]) -> Ratio:
-    """The geometric mean."""
-    middle = sum(math.log(ratio.mean) for ratio in ratios) / len(ratios)
-    off = math.sqrt(sum(math.log(ratio.high / ratio.low) ** 2 for ratio in ratios)) / 2 / len(ratios)
-    return Ratio("", *(math.exp(middle + sign * off) for sign in (-1, 0, 1)))
-
-
 def page(rows: list[Row], study: dict[str, Any], command: str) -> str:
     """The table and what follows from it, in Markdown."""
-    whole = mean([row.mitsuba for row in rows])
-    below = ", ".join(row.scene for row in rows if row.mitsuba.mean < 1) or "none"
-    outdone = ", ".join(f"{row.scene} ({row.best.other})" for row in rows if row.best.mean < 1 - WORSE) or "none"
+    ratios = [row.theirs[1] for row in rows if row.theirs]
+    below = ", ".join(row.scene for row in rows if row.theirs and row.theirs[1].mean < 1) or "none"
+    outdone = ", ".join(f"{row.scene} ({row.best[0]})" for row in rows if row.best and row.best[1].mean < 1 - WORSE) or "none"
+    wanted = f"; wanted: {WANTED_MEAN}" if all(row.wanted for row in rows) else ""
     size = study["scenes"][0]
     return "\n".join([
         "# Time to equal error", "",
-        f"relMSE x seconds, {size['width']} x {size['height']}; {study['made_by']}, Mitsuba 3.9.1 llvm_ad_rgb; {study['machine']}",
-        f"for each contender, which took turns; intervals hold {100 * study['confidence']:g} %.", "", f"    {command}", "",
+        f"relMSE x seconds, {size['width']} x {size['height']}; {study['made_by']}, Mitsuba 3.9.1; {study['machine']}",
+        "for each contender, which took turns; pilots and learning are among the seconds; intervals hold 95 %.", "", f"    {command}", "",
         "| scene | Tyndall | Mitsuba, the better | ratio | of a sample: error, time | wanted | over pt | over the best of our others | reference |",
         "|---|---|---|---|---|---|---|---|---|",
         *map(table_line, rows), "",
-        f"- Geometric mean of {len(rows)} ratios: {whole}; wanted: {WANTED_MEAN}.",
+        *([f"- Geometric mean of {len(ratios)} ratios: {Ratio.geometric(ratios)}{wanted}."] if ratios else []),
         f"- Scenes below 1: {below}.",
         f"- Scenes where another choice of strategies is more than {100 * WORSE:g} % more efficient: {outdone}.",
         "- of a sample: the relMSE and the seconds of a sample of each pixel, Mitsuba's over ours; their product is about the ratio.",
-        "- reference: its own relMSE over that of Tyndall's renders, of which it is a part: the ratio is too small by about so much.",
+        "- reference: its own relMSE over that of Tyndall's renders; it is subtracted from all.",
         *(f"- {row.scene}: {note}" for row in rows for note in row.notes), "",
     ])  # fmt: skip
 
 
 def table_line(row: Row) -> str:
     """A row in Markdown."""
-    kind = row.mitsuba.other.split()[1]
-    error, seconds = row.of_sample
+    theirs = f"{row.ours * row.theirs[1].mean:.3g} ({row.theirs[0].split()[1]}) | {row.theirs[1]}" if row.theirs else "none | "
+    of_sample = f"{row.of_sample[0]:.3g}, {row.of_sample[1]:.2g}" if row.of_sample else ""
     wanted = "" if row.wanted is None else f"{row.wanted:g}"
     over = f"; wanted: {WANTED_OVER_PT[row.scene]}" if row.scene in WANTED_OVER_PT else ""
-    return (f"| {row.scene} | {row.ours:.3g} | {row.theirs:.3g} ({kind}) | {row.mitsuba} | {error:.3g}, {seconds:.2g} | {wanted} | {row.own.get('pt', '')}{over} |"
-            f" {row.best.other} {row.best} | {100 * row.reference:.2g} % |")  # fmt: skip
-
-
-def volumes() -> None:
-    """Writes the grids that the scenes name, too large for the repository."""
-    folder = FOLDER / "assets"
-    folder.mkdir(exist_ok=True)
-    from validation import plume  # it needs Mitsuba
-
-    for name, samples in (("plume", plume.smoke), ("cloud", cloud)):
-        path = folder / f"{name}.vol"
-        if not path.is_file():
-            partial = path.with_suffix(".partial")
-            partial.write_bytes(vol(samples(VOXELS)))
-            partial.replace(path)
-
-
-VOXELS = 256
-
-
-def cloud(voxels: int) -> np.ndarray:
-    """Billows over a flat base, (z, y, x), from 0 to 1; what is around them is empty."""
-    at = (np.arange(voxels, dtype=np.float32) + 0.5) / voxels
-    z, y, x = np.meshgrid(at, at, at, indexing="ij", sparse=True)
-    random = np.random.default_rng(6)
-    body = np.full((voxels,) * 3, -1, np.float32)
-    for radius in (0.27, 0.22, 0.2, 0.18, 0.16, 0.15, 0.13, 0.12):
-        centre = random.uniform((0.3, 0.22, 0.3), (0.7, 0.75 - radius, 0.7))
-        distance = np.sqrt((z - centre[0]) ** 2 + (y - centre[1]) ** 2 + (x - centre[2]) ** 2)
-        body = np.maximum(body, 1 - distance / radius)
-    from validation import plume
-
-    billows = body + 0.9 * (plume.turbulence(voxels, 11) - 0.45)
-    return (np.clip(4 * billows, 0, 1) * np.clip(20 * (y - 0.12), 0, 1)).astype(np.float32)
+    best = "{} {}".format(*row.best) if row.best else ""
+    return (f"| {row.scene} | {row.ours:.3g} | {theirs} | {of_sample} | {wanted} | {row.own.get('pt', '')}{over} |"
+            f" {best} | {100 * row.reference:.2g} % |")  # fmt: skip

@@ -1,31 +1,26 @@
-"""Model by model against Mitsuba: the variance of a pixel sample and its time, by path tracing in small scenes that have a model
-each. What a whole scene's efficiency averages away shows here."""
+"""Time to equal error of path tracing, model by model against Mitsuba, in small scenes that have a model each. What a whole scene's
+efficiency averages away shows here."""
 
 import argparse
-import math
-import statistics
-import sys
-import time
+import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-import tyndall
 from tyndall import exr
 from tyndall.failure import Failure
 from tyndall.scene import Scene
-from validation import mitsuba
+from validation import efficiency, studies
 from validation.contender import VARIANTS
 from validation.made_by import made_by_command
 from validation.places import CROSSCHECK, OUTPUT
+from validation.studies import OURS, Effort
 
 Object = dict[str, Any]
 FOLDER = OUTPUT / "models"
 SIZE = (32, 24)
-ROUNDS = 4
-"""Turns that both take; of their times the median counts."""
+PATHS = "--integrator pt"
 ASSETS = CROSSCHECK / "assets"
 
 
@@ -145,96 +140,28 @@ def sun() -> None:
     exr.write_image(FOLDER / "sun.exr", sky)
 
 
-@dataclass(frozen=True)
-class Sampled:
-    """What independent images of a scene say of one sample a pixel."""
-
-    variance: float
-    """Of a value, averaged over pixels and channels."""
-    seconds: float
-    """Those of the pilot are among ours, those of compiling not among Mitsuba's."""
-    mean: float
-    error: float
-    """Of the mean."""
-
-    @staticmethod
-    def of(images: np.ndarray, seconds: list[float], spp: int) -> "Sampled":
-        """Images (image, height, width, 3), and the seconds that each took."""
-        means = images.mean(axis=(1, 2, 3))
-        each = statistics.median(seconds) / (spp * SIZE[0] * SIZE[1])
-        return Sampled(float(images.var(axis=0, ddof=1).mean() * spp), each, float(means.mean()), float(means.std(ddof=1) / math.sqrt(len(means))))
-
-
-@dataclass(frozen=True)
-class Row:
-    """A model in one light."""
-
-    name: str
-    theirs: Sampled
-    ours: Sampled
-
-    @property
-    def variance(self) -> float:
-        """Mitsuba's over ours."""
-        return self.theirs.variance / self.ours.variance
-
-    @property
-    def times(self) -> float:
-        """Mitsuba's seconds over ours."""
-        return self.theirs.seconds / self.ours.seconds
-
-    @property
-    def apart(self) -> float:
-        """The means, in standard errors."""
-        return (self.ours.mean - self.theirs.mean) / math.hypot(self.ours.error, self.theirs.error)
-
-    def __str__(self) -> str:
-        product = self.variance * self.times
-        return (f"| {self.name} | {self.theirs.variance:.3g} | {self.ours.variance:.3g} | {self.variance:.2f} | {1e9 * self.theirs.seconds:.0f} |"
-                f" {1e9 * self.ours.seconds:.0f} | {self.times:.2f} | {product:.2f} | {self.apart:+.1f} |")  # fmt: skip
-
-
-HEADER = "| model | Mitsuba's variance | ours | ratio | Mitsuba's ns | ours | ratio | product | means, se |\n" + "|---" * 9 + "|"
-
-
-def measured(case: Scene, options: argparse.Namespace) -> Row:
-    """Both take turns."""
-    import drjit as dr  # only importable inside the environment
-
-    print(case.name, file=sys.stderr, flush=True)
-    dr.set_thread_count(options.threads)
-    loaded = mitsuba.load(case, options.variant)
-    mitsuba.image(loaded, options.spp, 0)  # compiles
-    theirs, ours, taken, own = [], [], [], []
-    for first in range(0, ROUNDS * options.batches, options.batches):
-        start = time.perf_counter()
-        theirs += [mitsuba.image(loaded, options.spp, 1 + first + i) for i in range(options.batches)]
-        taken.append((time.perf_counter() - start) / options.batches)
-        found = tyndall.run(case, integrator="pt", batches=options.batches, spp=options.spp, seed=first, threads=options.threads)
-        ours += list(found.batches if found.batches is not None else [])
-        own.append(found.render_seconds / options.batches)
-    return Row(case.name, Sampled.of(np.stack(theirs), taken, options.spp), Sampled.of(np.stack(ours), own, options.spp))
-
-
 def add_options(command: argparse.ArgumentParser) -> None:
     """Those of the command line."""
     command.add_argument("--only", default="", help="only models whose name contains this, such as 'bsdf rough' or ', map'")
-    command.add_argument("--batches", type=int, default=4, help=f"images in each of {ROUNDS} turns (default %(default)s)")
-    command.add_argument("--spp", type=int, default=64, help="samples a pixel in each (default %(default)s)")
+    command.add_argument("--seeds", type=int, default=4, help="independent renders of both (default %(default)s)")
+    command.add_argument("--seconds", type=float, default=0.5, help="of each (default %(default)s)")
+    command.add_argument("--reference-seconds", type=float, default=10, help="of each reference (default %(default)s)")
     command.add_argument("--threads", type=int, default=2, help="of both alike (default %(default)s)")
     command.add_argument("--variant", choices=VARIANTS, default=VARIANTS[0], help="Mitsuba's; of scalar_rgb times say little (default %(default)s)")
 
 
 def run(options: argparse.Namespace) -> bool:
-    """Prints a row a model, where Mitsuba is furthest ahead first."""
+    """Prints the table of `efficiency`, a row a model, where Mitsuba is furthest ahead first."""
     sun()
     chosen = [case for case in scenes() if options.only in case.name]
     if not chosen:
         raise Failure(f"--only {options.only}: no model has this in its name", "name another part, such as bsdf, phase or map")
-    rows = [measured(case, options) for case in chosen]
-    rows.sort(key=lambda row: row.variance * row.times)
-    print(HEADER, *rows, sep="\n")
-    products, variances = ([value(row) for row in rows] for value in (lambda row: row.variance * row.times, lambda row: row.variance))
-    print(f"\nmedian of {len(rows)}: variance {statistics.median(variances):.2f}, variance x time {statistics.median(products):.2f} (Mitsuba's over ours)")
-    print(f"made by: {made_by_command()}")
+    files = [FOLDER / f"{case.name}.json" for case in chosen]
+    for case, file in zip(chosen, files):
+        file.write_text(json.dumps(case.source))
+    effort = Effort(options.seeds, options.seconds, options.reference_seconds, threads=options.threads)
+    contenders = {OURS: PATHS, f"volpath:{options.variant}": ""}
+    study = studies.measured(files, contenders, effort, FOLDER / "study", by=PATHS, quiet=True)
+    rows = sorted(map(efficiency.row_of, study.scenes), key=lambda row: row.theirs[1].mean if row.theirs else 0)
+    print(efficiency.page(rows, study.told, made_by_command()))
     return True

@@ -1,5 +1,7 @@
 """Means, their uncertainty, and the tests that decide. Arrays of any shape, the batches along the first axis."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +12,8 @@ SIGNIFICANCE = 0.01
 """Probability that one whole test refuses what is right."""
 ROUNDING = 1e-5
 """Relative difference that single precision may make where nothing is random."""
+CONFIDENCE = 0.95
+"""Of the interval of a ratio."""
 
 
 @dataclass(frozen=True)
@@ -62,3 +66,32 @@ def sidak_limit(tests: int, significance: float = SIGNIFICANCE) -> float:
     each = -np.expm1(np.log1p(-significance) / tests)
     return float(stats.norm.isf(each / 2))
 
+
+@dataclass(frozen=True)
+class Ratio:
+    """A ratio of means, and the ends of its interval."""
+
+    low: float
+    mean: float
+    high: float
+
+    @staticmethod
+    def of(above: Sequence[float], below: Sequence[float]) -> "Ratio":
+        """Of the means of independent numbers, by Student's t for the logarithm."""
+        a, b = (np.asarray(numbers, dtype=float) for numbers in (above, below))
+        spread = sum(values.var(ddof=1) / len(values) / values.mean() ** 2 for values in (a, b))
+        return Ratio.within(a.mean() / b.mean(), stats.t.ppf((1 + CONFIDENCE) / 2, len(a) + len(b) - 2) * math.sqrt(spread))
+
+    @staticmethod
+    def geometric(ratios: "Sequence[Ratio]") -> "Ratio":
+        """The geometric mean of independent ones."""
+        off = math.sqrt(sum(math.log(ratio.high / ratio.low) ** 2 for ratio in ratios)) / 2
+        return Ratio.within(math.exp(np.mean([math.log(ratio.mean) for ratio in ratios])), off / len(ratios))
+
+    @staticmethod
+    def within(mean: float, off: float) -> "Ratio":
+        """A ratio whose logarithm is known up to `off`."""
+        return Ratio(float(mean * math.exp(-off)), float(mean), float(mean * math.exp(off)))
+
+    def __str__(self) -> str:
+        return f"{self.mean:.3g} [{self.low:.3g}, {self.high:.3g}]"

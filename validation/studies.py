@@ -1,12 +1,16 @@
-"""Studies of error against run time with Mitsuba among the contenders: `tyndall study`, its command line assembled."""
+"""Time to equal error: relMSE x seconds of contenders that take turns in one `tyndall study`. Every render is a process of its own,
+so that its seconds hold all that precedes its first sample but reading and compiling: pilots, and what is learnt."""
 
-import argparse
+import csv
+import hashlib
 import json
-import math
 import os
 import shlex
+import statistics
 import subprocess
 import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,100 +18,145 @@ from tyndall import program
 from tyndall.failure import Failure
 from validation import mitsuba
 from validation.contender import INTEGRATORS, VARIANTS
-from validation.places import CROSSCHECK, OUTPUT, SCENES
+from validation.places import OUTPUT
+from validation.statistics import Ratio
 
-OURS = ("bdpt", "pt", "lt")
 MITSUBA = tuple(f"{kind}:{variant}" for kind in INTEGRATORS for variant in VARIANTS)
-SIX = (
-    SCENES / "lampbox_down.xml",  # a closed room of fog, lit directly
-    SCENES / "lampbox_up.xml",  # the same room, all light indirect
-    CROSSCHECK / "grid_sparse.json",  # puffs of smoke on a grid, lamp and sky
-    CROSSCHECK / "grid_dense_white.json",  # a dense cloud that absorbs nothing
-    CROSSCHECK / "fog_chromatic.json",  # extinction 1 : 3 : 10 between red, green and blue
-    SCENES / "foggy_room.json",  # a glass ball and gold in a foggy room, two lamps
-)
-SIX_SIZE = "96x96"
-REFERENCE = 4
-"""A reference takes as long as so many contenders."""
-USED = 0.8
-"""Of the minutes; the rest is for pilots, starting programs, and files."""
-CLAIM = 100
-"""What bdpt is worth against pt where light enters through frosted glass only, at least."""
+"""Contenders of Mitsuba's; the integrator alone is one by the faster variant that there is."""
+OURS = "tyndall"
+"""The contender that the others are compared with."""
+BDPT = "--integrator bdpt"
+NOBODY = "nobody"
+"""A study without a --contender would add two in its own process. A preview, which it leaves out, keeps them away."""
 
 
-def contender(name: str) -> list[str]:
-    """The options of `tyndall study` for a contender of Mitsuba's, KIND:VARIANT, or the variant of volpath alone."""
-    kind, variant = name.split(":") if ":" in name else ("volpath", name)
-    if kind not in INTEGRATORS or variant not in VARIANTS:
-        raise Failure(f"{name}: no such contender", f"choose among {', '.join(OURS + MITSUBA)}")
-    words = [os.path.relpath(sys.executable), "-m", "validation.contender", "{scene}", "{definitions}"]
-    words += ["--integrator", kind, "--variant", variant, "--size", "{size}", "--threads", "{threads}"]
-    words += ["--seed", "{seed}", "--spp", "{budgets}", "--folder", "{folder}"]
-    return ["--external", f"mitsuba {kind} {variant}: {shlex.join(words)}"]
+def command(name: str, words: str) -> list[str]:
+    """The options of `tyndall study` for a contender: of Mitsuba's by its name, else Tyndall's by the options `words`."""
+    kind, _, variant = name.partition(":")
+    is_theirs = kind in INTEGRATORS and not words
+    variant = variant or VARIANTS[mitsuba.libllvm() is None]
+    by = ["--integrator", kind, "--variant", variant] if is_theirs else [f"--tyndall={words}"]
+    line = [os.path.relpath(sys.executable), "-m", "validation.contender", "{scene}", "{definitions}", *by, "--size", "{size}"]
+    line += ["--threads", "{threads}", "--seed", "{seed}", "--spp", "{budgets}", "--folder", "{folder}"]
+    return ["--external", f"{f'mitsuba {kind} {variant}' if is_theirs else name}: {shlex.join(line)}"]
 
 
-def usual() -> list[str]:
-    """Contenders where none are named: compiled variants only where LLVM is."""
-    return [*OURS[:2], *(name for name in MITSUBA if mitsuba.libllvm() or "llvm" not in name)]
+def run(line: Sequence[object]) -> bool:
+    """Runs a study; it prints its table and says where its page is."""
+    words = [str(program.binary()), "study", *map(str, line)]
+    return subprocess.run(words, env={**os.environ, "TYNDALL_BINARY": str(program.binary())}).returncode == 0
 
 
-def words(scenes: list[Path], contenders: list[str], options: dict[str, Any], more: list[str]) -> list[str]:
-    """The command line. Mitsuba's come first: efficiencies are compared with that of the first contender."""
-    ours = [name for name in contenders if name in OURS]
-    theirs = [word for name in contenders if name not in OURS for word in contender(name)]
-    integrators = ["--integrators", ",".join(ours)] if ours else []
-    return ["study", *map(os.path.relpath, scenes), *theirs, *integrators, *program.flags(options), *more]
+@dataclass(frozen=True)
+class Effort:
+    """How much is rendered; without a size, the scene's own."""
+
+    seeds: int
+    seconds: float
+    """Of the longest render of each contender."""
+    reference_seconds: float
+    size: str | None = None
+    threads: int = 2
+    points: int = 1
+    """Budgets, each twice the one before."""
+    parameters: tuple[str, ...] = ()
+    """NAME=VALUE."""
+    first: int = 0
+    """Seed."""
+
+    def given(self) -> list[str]:
+        """What all studies of it have in common."""
+        return [*program.flags({"size": self.size, "threads": self.threads}), *(word for pair in self.parameters for word in ("-D", pair))]
 
 
-def run(line: list[str]) -> bool:
-    """Runs the study; it prints its table and says where its page is."""
-    return subprocess.run([str(program.binary()), *line], env={**os.environ, "TYNDALL_BINARY": str(program.binary())}).returncode == 0
+@dataclass(frozen=True)
+class Reference:
+    """A long render, and its own relMSE if it is known."""
+
+    image: Path
+    relmse: float | None = None
 
 
-def add_options(command: argparse.ArgumentParser, contenders: str, output: str) -> None:
-    """What all studies share."""
-    command.add_argument("--contenders", help=f"any of {', '.join(OURS + MITSUBA)} (default: {contenders})")
-    command.add_argument("--threads", type=int, default=2, help="of all contenders alike (default %(default)s)")
-    command.add_argument("--reference", type=Path, action="append", default=[], help="image (.exr, .pfm) to measure errors against, one a scene (default: one is made)")
-    command.add_argument("--output", type=Path, default=OUTPUT / output, help="the study's folder (default %(default)s)")
-    command.add_argument("-D", metavar="NAME=VALUE", action="append", default=[], help="a parameter of the scenes")
+def reference(scene: Path, effort: Effort, by: str = BDPT) -> Reference:
+    """A reference is made once, by a study of its own: it is made again when the scene changes or more time is given."""
+    told = [scene.read_bytes(), effort.size, effort.reference_seconds, effort.parameters, by]
+    folder = OUTPUT / "references" / f"{scene.stem}-{hashlib.sha256(repr(told).encode()).hexdigest()[:12]}"
+    little: dict[str, program.Option] = {"quiet": True, "spp": 1, "seeds": 2, "doublings": 1, "reference_by": by, "reference_seconds": effort.reference_seconds}
+    if not run([os.path.relpath(scene), "--contender", f"it: {by}", *program.flags(little), *effort.given(), "-o", os.path.relpath(folder)]):
+        raise Failure(f"{scene}: no reference could be made", f"see the message above; if files that the scene names are others now, remove {folder}")
+    [found] = json.loads((folder / "study.json").read_text())["scenes"]
+    return Reference(folder / found["reference"]["image"], found["reference"]["own_relmse"])
 
 
-def common(options: argparse.Namespace) -> list[str]:
-    """Those options as words."""
-    references = [word for file in options.reference for word in ("--reference", str(file))]
-    return [*references, *(word for pair in options.D for word in ("-D", pair)), "-o", os.path.relpath(options.output)]
+@dataclass(frozen=True)
+class Found:
+    """What a study says of a scene."""
+
+    name: str
+    told: dict[str, Any]
+    """Its part of study.json."""
+    costs: dict[str, list[float]]
+    """relMSE x seconds of independent renders by each contender, at the greatest budget. The reference's own relMSE is subtracted, as
+    far as that leaves a half."""
+
+    def ratio(self, other: str, ours: str = OURS) -> Ratio:
+        """How many times as efficient as another contender ours is."""
+        return Ratio.of(self.costs[other], self.costs[ours])
+
+    def cost(self, name: str = OURS) -> float:
+        """The mean of a contender's."""
+        return statistics.mean(self.costs[name])
+
+    @property
+    def noise(self) -> float:
+        """The reference's relMSE, 0 where it is not known."""
+        return self.told["reference"]["own_relmse"] or 0.0
+
+    @property
+    def notes(self) -> list[str]:
+        """Who could not render it and why, and whose image is another one."""
+        apart = [f"{one['name']}: {note}" for one in self.told["contenders"] for note in one.get("notes", []) if "mean differs" in note]
+        return [*(note for note in self.told.get("notes", []) if not note.startswith(NOBODY)), *apart]
 
 
-def convergence(options: argparse.Namespace) -> bool:
-    """Error against run time; without scenes, of six that show different things."""
-    contenders = options.contenders.split(",") if options.contenders else usual()
-    if not 0 < options.minutes < math.inf:
-        raise Failure(f"--minutes is {options.minutes}: nothing could be done", "give a positive number of minutes")
-    scenes = options.scenes or list(SIX)
-    renders = len(scenes) * options.seeds * (len(contenders) + (0 if options.reference else REFERENCE))
-    given = {"seconds": f"{USED * 60 * options.minutes / max(renders, 1):.3g}", "seeds": options.seeds, "doublings": options.points,
-             "threads": options.threads, "size": options.size or (None if options.scenes else SIX_SIZE)}  # fmt: skip
-    return run(words(scenes, contenders, given, common(options)))
+@dataclass(frozen=True)
+class Study:
+    """A whole one."""
+
+    told: dict[str, Any]
+    scenes: list[Found]
 
 
-def race(options: argparse.Namespace) -> bool:
-    """relMSE x seconds side by side with Mitsuba; without scenes, in both lamp boxes."""
-    contenders = options.contenders.split(",") if options.contenders else ["llvm_ad_rgb", "scalar_rgb", "bdpt", "pt"]
-    size = [] if options.scenes else ["-D", "res=256"]
-    given = {"seconds": options.seconds, "seeds": options.rounds, "doublings": 1, "threads": options.threads}
-    scenes = options.scenes or [SCENES / "lampbox_down.xml", SCENES / "lampbox_up.xml"]
-    return run(words(scenes, contenders, given, [*size, *common(options)]))
+def measured(
+    scenes: Sequence[Path], contenders: Mapping[str, str], effort: Effort, folder: Path,
+    references: Sequence[Reference] = (), by: str = BDPT, restart: bool = True, quiet: bool = False,
+) -> Study:  # fmt: skip
+    """All contenders in all scenes, against references that are given or else kept, rendered `by` these options. Contenders are named
+    with their options; Mitsuba's have none."""
+    everybody = ["--contender", f"{NOBODY}: --integrator fog", *(word for name, words in contenders.items() for word in command(name, words))]
+    much: dict[str, program.Option] = {"seconds": effort.seconds, "seeds": effort.seeds, "seed": effort.first, "doublings": effort.points, "restart": restart, "quiet": quiet}
+    references = references or [reference(scene, effort, by) for scene in scenes]
+    known = [word for one in references for word in ("--reference", one.image)]
+    known += [word for one in references if one.relmse is not None for word in ("--reference-error", f"{one.relmse:.6g}")]
+    if not run([*map(os.path.relpath, scenes), *everybody, *program.flags(much), *effort.given(), *known, "-o", os.path.relpath(folder)]):
+        raise Failure(f"{folder}: no study could be made", "see the message above")
+    return read(folder)
 
 
-def pane(options: argparse.Namespace) -> bool:
-    """LW96 fig. 6, light through frosted glass only: true if bdpt is at least CLAIM times as efficient as pt."""
-    given = {"seconds": options.seconds, "seeds": options.rounds, "doublings": 1, "threads": options.threads, "reference_by": "--integrator bdpt"}
-    if not run(words([options.scene], ["bdpt", "pt"], given, common(options))):
-        return False
-    [scene] = json.loads((options.output / "study.json").read_text())["scenes"]
-    pt = scene["contenders"][1]
-    low, mean, high = (1 / pt["ratio"][end] for end in ("high", "mean", "low"))
-    print(f"bdpt against pt, relMSE in equal time: x{mean:.0f} [{low:.0f}, {high:.0f}]; claimed: at least x{CLAIM}")
-    print(f"pt shows {100 * (1 + pt['points'][-1]['difference']['mean']):.1f} % of the light that there is")
-    return low >= CLAIM
+def read(folder: Path) -> Study:
+    """What a study has written."""
+    told = json.loads((folder / "study.json").read_text())
+    with (folder / "study.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    return Study(told, [found(scene, [row for row in rows if row["scene"] == scene["name"]]) for scene in told["scenes"]])
+
+
+def found(scene: dict[str, Any], rows: list[dict[str, str]]) -> Found:
+    """Of one scene."""
+    bare = Found(scene["name"], scene, {})
+    for contender in scene["contenders"]:
+        name, most = contender["name"], str(contender["points"][-1]["samples"])
+        last = [row for row in rows if row["contender"] == name and row["samples"] == most]
+        errors = [float(row["relmse"]) for row in last]
+        bare.costs[name] = [max(error - bare.noise, error / 2) * float(row["seconds"]) for error, row in zip(errors, last)]
+    return bare

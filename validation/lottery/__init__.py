@@ -3,22 +3,23 @@ multiple of what the best of others costs, `pt`, and all strategies alike."""
 
 import argparse
 import json
-import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+import tyndall
+from tyndall import program
 from tyndall.failure import Failure
 from tyndall.rendering import ALL_STRATEGIES
 from tyndall.scene import Scene, scene_file
-from validation.guide import Gain
-from validation.lottery.judge import Cost, Judge, Reference, Shot, shot, shots
+from validation import studies
 from validation.lottery.scenes import Drawn, drawn
 from validation.places import OUTPUT
+from validation.statistics import Ratio
+from validation.studies import BDPT, OURS, Effort
 
-OURS = "--integrator bdpt"
 PT = "--integrator pt"
 ALIKE = f"--strategies {ALL_STRATEGIES}"
 OTHERS = {
@@ -34,13 +35,12 @@ OTHERS = {
     "alike, starts": f"{ALIKE} --starts learnt",
     "alike, guide": f"{ALIKE} --guide auto",
     "LW96": f"{ALIKE} --connections all",
-    "no guide": f"{OURS} --guide never",
-    "no guide, starts": f"{OURS} --guide never --starts emitted",
+    "no guide": f"{BDPT} --guide never",
+    "no guide, starts": f"{BDPT} --guide never --starts emitted",
 }
 """The choices of which the best is looked for."""
-SEARCH = range(201, 203)
+SEARCH = range(200, 202)
 """Seeds of the search: the best is then measured with others, or it would be the luckiest."""
-REFERENCE = range(101, 109)
 ATTEMPTS = 20
 """Black scenes are drawn again so often."""
 BEARABLE = 1.2
@@ -51,8 +51,8 @@ def add_options(command: argparse.ArgumentParser) -> None:
     """Those of the command line."""
     command.add_argument("--seeds", type=interval, default=range(0, 20), metavar="A..B", help="of the scenes, both included (default 0..19)")
     command.add_argument("--renders", type=int, default=4, help="independent renders of each contender, at least 3 (default %(default)s)")
-    command.add_argument("--seconds", type=float, default=1.5, help="of the processor, for each (default %(default)s)")
-    command.add_argument("--reference", type=float, default=2, help=f"seconds of each of the {len(REFERENCE)} images of a reference (default %(default)s)")
+    command.add_argument("--seconds", type=float, default=1.5, help="of each (default %(default)s)")
+    command.add_argument("--reference-seconds", type=float, default=16, help="of each reference (default %(default)s)")
     command.add_argument("--output", type=Path, default=OUTPUT / "lottery", help="folder for the scenes and lottery.json (default %(default)s)")
 
 
@@ -69,18 +69,19 @@ class Row:
     seed: int
     words: str
     best: str
-    gains: dict[str, Gain]
+    gains: dict[str, Ratio]
     """Costs of the default over those of the best, of `pt` and of all alike; `pt` is left out where it does not reach all light."""
     search: dict[str, float]
     """Costs of all others as the search found them, relMSE x seconds."""
+    notes: list[str]
+    """What the study has to say: whose image is another one."""
     plan: dict[str, Any]
     """What the default chose."""
 
     @property
     def is_marked(self) -> bool:
         """Surely another choice would have been better."""
-        gain = self.gains["best"]
-        return gain.ratio * (1 - 2 * gain.error) > BEARABLE
+        return self.gains["best"].low > BEARABLE
 
 
 def run(options: argparse.Namespace) -> bool:
@@ -98,8 +99,7 @@ def run(options: argparse.Namespace) -> bool:
             failed += 1
             print(f"FAILED: seed {seed}: {failure}", flush=True)
     print(summary(rows))
-    found = [{**vars(row), "gains": {name: vars(gain) for name, gain in row.gains.items()}} for row in rows]
-    (options.output / "lottery.json").write_text(json.dumps(found, indent=1) + "\n")
+    (options.output / "lottery.json").write_text(json.dumps([asdict(row) for row in rows], indent=1) + "\n")
     return not failed and not any(row.is_marked for row in rows)
 
 
@@ -110,8 +110,8 @@ def ticket(seed: int, output: Path) -> tuple[Path, Drawn]:
     for attempt in range(ATTEMPTS):
         found = drawn(seed, attempt)
         path = scene_file(Scene(found.tree, f"{seed}"), folder.resolve())
-        first = shot(path, OURS, 64, 1)
-        for warning in first.warnings:
+        first = tyndall.run(path, spp=64, seed=1)
+        for warning in first.messages:
             print(f"note: seed {seed}, attempt {attempt}: {warning}", flush=True)
         if first.image.mean() > 0:
             return path, found
@@ -121,44 +121,46 @@ def ticket(seed: int, output: Path) -> tuple[Path, Drawn]:
 def judged(seed: int, options: argparse.Namespace) -> Row:
     """A scene drawn and measured."""
     path, found = ticket(seed, options.output)
-    images = shots(path, OURS, options.reference, REFERENCE)
-    judge = Judge(path, Reference.of(images), options.seconds)
-    reaching = {name: words for name, words in OTHERS.items() if shot(path, words, 1, 1).unreached() <= images[0].unreached()}
-    if "pt" in reaching:
-        cross_check(seed, judge, shots(path, PT, options.reference, REFERENCE))
-    search = {name: judge.cost(words, SEARCH).mean for name, words in reaching.items()}
-    best = min(search, key=lambda name: search[name])
-    return Row(seed, found.words, best, gains(judge, best, reaching, range(1, options.renders + 1)), search, images[0].report["plan"])
+    plan = plan_of(path, BDPT)
+    reaching = {name: words for name, words in OTHERS.items() if unreached(plan_of(path, words)) <= unreached(plan)}
+    search = measured(path, reaching, SEARCH, options)
+    costs = {name: search.cost(name) for name in reaching}
+    best = min(costs, key=lambda name: costs[name])
+    others = {"best": best} | {name: name for name in ("pt", "alike") if name in reaching}
+    final = measured(path, {name: reaching[name] for name in others.values()}, range(options.renders), options)
+    gains = {name: Ratio.of(final.costs[OURS], final.costs[other]) for name, other in others.items()}
+    return Row(seed, found.words, best, gains, costs, final.notes, plan)
 
 
-def gains(judge: Judge, best: str, reaching: dict[str, str], seeds: range) -> dict[str, Gain]:
-    """The default's costs over those of others."""
-    ours = judge.cost(OURS, seeds)
-    costs: dict[str, Cost] = {name: judge.cost(reaching[name], seeds) for name in {best, "pt", "alike"} if name in reaching}
-    return {"best": ours.over(costs[best])} | {name: ours.over(cost) for name, cost in costs.items() if name in ("pt", "alike")}
+def measured(path: Path, others: dict[str, str], seeds: range, options: argparse.Namespace) -> studies.Found:
+    """The default and others, one thread each."""
+    effort = Effort(len(seeds), options.seconds, options.reference_seconds, threads=1, first=seeds[0])
+    return studies.measured([path], {OURS: BDPT, **others}, effort, path.parent / f"study-{seeds[0]}", quiet=True).scenes[0]
 
 
-def cross_check(seed: int, judge: Judge, others: list[Shot]) -> None:
-    """Says so if `pt` makes another image."""
-    score = judge.reference.score(others)
-    if score > 1:
-        ratio = np.mean([one.image for one in others]) / judge.reference.mean.mean()
-        print(f"WARNING: seed {seed}: pt differs, {score:.1f} times what chance allows; its mean is {ratio:.4f} of the default's", flush=True)
+def plan_of(path: Path, words: str) -> dict[str, Any]:
+    """What these options choose."""
+    return json.loads(program.call([str(program.binary()), "info", "--json", str(path), *words.split()]).stdout)["plan"]
+
+
+def unreached(plan: dict[str, Any]) -> set[str]:
+    """Light that is left out."""
+    return {entry["light"] for entry in plan["unreached"]}
 
 
 def line(row: Row) -> str:
     """Of the table."""
     over = [str(row.gains[name]) if name in row.gains else "does not reach all light" for name in ("best", "pt", "alike")]
-    return f"| {row.seed} | {row.words} | {row.best} | {' | '.join(over)} | {'WORSE' if row.is_marked else ''} |"
+    return "\n".join([f"| {row.seed} | {row.words} | {row.best} | {' | '.join(over)} | {'WORSE' if row.is_marked else ''} |", *row.notes])
 
 
 def summary(rows: list[Row]) -> str:
     """How the ratios are distributed."""
     lines = [f"\n{len(rows)} scenes, {sum(row.is_marked for row in rows)} of them marked: surely above {BEARABLE} times the best of others."]
     for name in ("best", "pt", "alike"):
-        ratios = [row.gains[name].ratio for row in rows if name in row.gains and row.gains[name].ratio > 0]
+        ratios = [row.gains[name].mean for row in rows if name in row.gains]
         if ratios:
             low, middle, high = np.percentile(ratios, (25, 50, 75))
-            geometric = math.exp(np.mean(np.log(ratios)))
+            geometric = np.exp(np.mean(np.log(ratios)))
             lines.append(f"over {name}: geometric mean {geometric:.2f}, mean {np.mean(ratios):.2f}, quartiles {low:.2f} {middle:.2f} {high:.2f}, max {max(ratios):.2f}")
     return "\n".join(lines)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from validation.statistics import estimate, exact, sidak_limit, standard_score
+from validation.statistics import Ratio, estimate, exact, sidak_limit, standard_score
 
 
 def test_scores_have_the_tails_of_welchs_test() -> None:
@@ -32,3 +32,14 @@ def test_the_limit_of_many_tests_is_exceeded_as_rarely_as_it_says() -> None:
     inside = 1 - 2 * stats.norm.sf(sidak_limit(500, 0.01))
     assert inside**500 == pytest.approx(0.99)
 
+
+def test_the_interval_of_a_ratio_holds_the_truth_as_often_as_it_says() -> None:
+    random = np.random.default_rng(6)
+    found = [Ratio.of(*random.gamma(20, scale, (2, 6)).tolist()) for scale in np.full(500, 0.1)]
+    assert 0.92 < np.mean([ratio.low < 1 < ratio.high for ratio in found]) < 0.98
+    assert Ratio.of([2, 3], [1, 1]).mean == pytest.approx(2.5)
+
+
+def test_the_mean_of_ratios_is_geometric_and_its_interval_narrows() -> None:
+    found = Ratio.geometric([Ratio(1, 2, 4), Ratio(4, 8, 16)])
+    assert (found.mean, found.high) == (pytest.approx(4), pytest.approx(4 * 2 ** (1 / 2**0.5)))

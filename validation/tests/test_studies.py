@@ -10,9 +10,10 @@ import pytest
 
 from tyndall import exr, load_dict, program
 from tyndall.failure import Failure
-from tyndall.scene import Scene, open_scene
-from validation import cli, contender, mitsuba, studies
+from tyndall.scene import Scene, load, open_scene
+from validation import contender, mitsuba, studies
 from validation.places import CROSSCHECK, ROOT, SCENES
+from validation.studies import Effort
 
 ROOM = CROSSCHECK / "cube_in_room.json"
 
@@ -45,7 +46,7 @@ def test_no_two_passes_share_random_numbers() -> None:
 
 
 def test_mitsubas_integrators_have_the_depths_of_the_scenes_own() -> None:
-    lampbox = contender.tree(open_scene(SCENES / "lampbox_up.xml", {"res": "7"}))
+    lampbox = load(open_scene(SCENES / "lampbox_up.xml", {"res": "7"}))
     assert contender.integrator_like(lampbox, "volpathmis") == {"type": "volpathmis", "max_depth": 17, "rr_depth": 1000}
     assert lampbox["sensor"]["film"]["width"] == 7
     ours = {"type": "scene", "integrator": {"type": "bdpt", "max_depth": 5}}
@@ -54,49 +55,38 @@ def test_mitsubas_integrators_have_the_depths_of_the_scenes_own() -> None:
     assert contender.integrator_like(theirs, "volpath") == {"type": "volpath", "hide_emitters": True}
 
 
-def test_the_six_scenes_are_some_that_mitsuba_loads() -> None:
-    assert len(set(studies.SIX)) == 6
-    for path in studies.SIX:
-        assert mitsuba.load(open_scene(path), "scalar_rgb", (96, 96)) is not None
-
-
 def test_what_mitsuba_cannot_load_is_told() -> None:
     scene = Scene({"type": "scene", "thing": {"type": "unicorn"}}, "fable")
     with pytest.raises(Failure, match="Mitsuba cannot load fable .*unicorn"):
         mitsuba.load(scene)
 
 
-def test_minutes_become_the_seconds_of_a_render() -> None:
-    lines: list[list[str]] = []
-
-    def run(line: list[str]) -> bool:
-        lines.append(line)
-        return True
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(studies, "run", run)
-        assert cli.main(["convergence", "--minutes", "10", "--seeds", "4", "--contenders", "bdpt,pt,volpath:scalar_rgb", "-D", "res=8"]) == 0
-    [line] = lines
-    seconds = next(word for word in line if word.startswith("--seconds="))
-    assert float(seconds.partition("=")[2]) == pytest.approx(studies.USED * 600 / (6 * 4 * (3 + 4)), rel=0.01)
-    assert line[0] == "study" and len([word for word in line if word.endswith((".xml", ".json"))]) == 6
-    assert line[line.index("--external") + 1].startswith("mitsuba volpath scalar_rgb: ")
-    assert line[line.index("--integrators") + 1] == "bdpt,pt" and "res=8" in line
+def test_tyndall_is_a_process_for_each_number_of_samples(tmp_path: Path) -> None:
+    done = rendered(tmp_path, str(ROOM), "--tyndall=--integrator pt --guide auto")
+    first, last = map(json.loads, done.stdout.splitlines())
+    assert (first["spp"], last["spp"]) == (2, 4) and min(first["seconds"], last["seconds"], last["load_seconds"]) > 0
+    assert exr.read_image(tmp_path / "4.exr").shape == (3, 4, 3)
+    unknown = rendered(tmp_path, str(ROOM), "--tyndall=--integrator ptt")
+    assert unknown.returncode != 0 and "ptt" in unknown.stderr.strip().splitlines()[-1]
 
 
-@pytest.mark.parametrize(("words", "complaint"), [("--contenders volpth", "volpth: no such contender"), ("--minutes nan", "--minutes is nan")])
-def test_what_makes_no_sense_is_refused(words: str, complaint: str) -> None:
-    with pytest.raises(Failure, match=complaint):
-        cli.main(["convergence", *words.split()])
-
-
-def test_mitsuba_takes_part_in_a_study(tmp_path: Path) -> None:
-    line = studies.words([ROOM], ["bdpt", "volpath:scalar_rgb"], {"spp": 4, "doublings": 2, "seeds": 2, "reference_spp": 32, "size": "8x8"}, ["-o", str(tmp_path)])
-    assert studies.run(line)
-    [scene] = json.loads((tmp_path / "study.json").read_text())["scenes"]
-    theirs, ours = scene["contenders"]
-    assert (theirs["name"], ours["name"]) == ("mitsuba volpath scalar_rgb", "bdpt")
-    assert theirs["load_seconds"] > 0 and theirs["points"][1]["relmse"]["mean"] > 0 and ours["ratio"]["mean"] > 0
-    assert "mitsuba volpath scalar_rgb" in scene["reference"]["how"]
-    print(program.call([str(program.binary()), "report", str(tmp_path), "--record", str(tmp_path / "record")]).stdout)
+def test_all_take_turns_in_a_study_against_a_reference_that_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(studies, "OUTPUT", tmp_path)
+    effort = Effort(2, 0.02, 0.2, "8x8", 1, points=2)
+    study = studies.measured([ROOM], {"tyndall": studies.BDPT, "pt": "--integrator pt", "volpath:scalar_rgb": ""}, effort, tmp_path / "study")
+    [scene] = study.scenes
+    assert list(scene.costs) == ["tyndall", "pt", "mitsuba volpath scalar_rgb"] and not [note for note in scene.notes if "nobody" in note]
+    assert all(len(costs) == 2 and min(costs) > 0 for costs in scene.costs.values())
+    assert scene.told["contenders"][2]["load_seconds"] > 0 and scene.noise > 0
+    kept = studies.reference(ROOM, effort)
+    image = exr.read_image(kept.image)
+    assert image.shape == (8, 8, 3) and studies.reference(ROOM, effort) == kept and (exr.read_image(kept.image) == image).all()
+    program.call([str(program.binary()), "report", str(tmp_path / "study"), "--record", str(tmp_path / "record")])
     assert {path.name for path in (tmp_path / "record").iterdir()} == {"convergence.md", "convergence.svg", "convergence_strips.svg"}
+
+
+def test_the_references_own_error_is_no_error() -> None:
+    scene = {"name": "pool", "reference": {"own_relmse": 0.01}, "contenders": [{"name": "a", "points": [{"samples": 4}, {"samples": 8}]}]}
+    row = {"contender": "a", "seconds": "2"}
+    rows = [{**row, "samples": samples, "relmse": relmse} for samples, relmse in (("4", "9"), ("8", "0.03"), ("8", "0.012"))]
+    assert studies.found(scene, rows).costs == {"a": pytest.approx([0.04, 0.012])}
