@@ -6,32 +6,8 @@ from pathlib import Path
 
 from tyndall.failure import Failure
 from tyndall.scene import open_scene
-from validation import (
-    assets,
-    bias,
-    cells,
-    compare,
-    comparison_page,
-    coverage,
-    efficiency,
-    full,
-    gallery,
-    growth,
-    guide,
-    instructions,
-    lottery,
-    matrix,
-    models,
-    package_tests,
-    page,
-    progressive,
-    rays,
-    reach,
-    references,
-    selftest,
-    thresholds,
-    truths,
-)
+from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, full, gallery, growth, guide, instructions, lottery
+from validation import matrix, models, package_tests, page, progressive, rays, reach, references, selftest, thresholds, truths
 from validation.cluster import cli as cluster
 from validation.compare import Effort
 from validation.made_by import made_by_command
@@ -166,12 +142,8 @@ def run_matrix(options: argparse.Namespace) -> bool:
 
 
 def add_selftest(commands: Commands) -> None:
-    command = add(commands, "selftest", run_selftest, "The test of the test: Mitsuba against itself, and against 5 %% off.")
+    command = add(commands, "selftest", lambda options: selftest.run(effort_of(options)), "The test of the test: Mitsuba against itself, and against 5 %% off.")
     add_effort(command, Effort())
-
-
-def run_selftest(options: argparse.Namespace) -> bool:
-    return selftest.run(effort_of(options))
 
 
 def add_closed_forms(commands: Commands) -> None:
@@ -195,14 +167,10 @@ def add_recorded(commands: Commands) -> None:
 
 
 def add_page(commands: Commands) -> None:
-    command = add(commands, "page", run_page, "A study's page in a headless Chromium: it loads without errors or requests, and its controls work.")
+    command = add(commands, "page", lambda options: page.run(options.file, options.output, options.if_possible), "A study's page in a headless Chromium: it loads without errors or requests, and its controls work.")
     command.add_argument("file", type=Path, help="study.html")
     command.add_argument("--output", type=Path, default=OUTPUT / "page", help="folder for pictures of it")
     command.add_argument("--if-possible", action="store_true", help="no failure where no Chromium is found")
-
-
-def run_page(options: argparse.Namespace) -> bool:
-    return page.run(options.file, options.output, options.if_possible)
 
 
 def add_stability(commands: Commands) -> None:
@@ -229,9 +197,5 @@ def run_stability(options: argparse.Namespace) -> bool:
 
 def add_cluster(commands: Commands) -> None:
     text = "Renders and studies by many processes or machines, over Dask distributed; `python3 -m validation.cluster` too."
-    command = add(commands, "cluster", run_cluster, text)
+    command = add(commands, "cluster", lambda options: cluster.main(options.arguments or ["--help"]) == 0, text)
     command.add_argument("arguments", nargs=argparse.REMAINDER, metavar="...", help="render, commands or study, and their options; --help explains them")
-
-
-def run_cluster(options: argparse.Namespace) -> bool:
-    return cluster.main(options.arguments or ["--help"]) == 0

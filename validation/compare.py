@@ -195,10 +195,10 @@ def judge(scene: str, method: str, ours: Measured, theirs: Measured, seconds: fl
     )
 
 
-def tiled(batches: np.ndarray) -> np.ndarray:
-    """The batches as images of TILES x TILES means (what is left over at the right and below is dropped)."""
+def tiled(batches: np.ndarray, tiles: int = TILES) -> np.ndarray:
+    """The batches as images of tiles x tiles means (what is left over at the right and below is dropped)."""
     count, height, width, channels = batches.shape
-    tall, wide = max(1, height // TILES), max(1, width // TILES)
+    tall, wide = max(1, height // tiles), max(1, width // tiles)
     rows, columns = height // tall, width // wide
     cut = batches[:, : rows * tall, : columns * wide]
     return cut.reshape(count, rows, tall, columns, wide, channels).mean(axis=(2, 4))

@@ -1,15 +1,17 @@
 """What `compare` found as one HTML page that holds its pictures and needs no network."""
 
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+import tyndall
 from tyndall import display
 from tyndall.failure import Failure
 from tyndall.scene import Scene
-from validation import flip, picture
+from validation import picture
 from validation.compare import RETRY, Effort, Verdict
 from validation.files import write_text
 from validation.made_by import made_by_command
@@ -60,7 +62,10 @@ def section(method: str, verdict: Verdict) -> Section:
     if verdict.reference is None or verdict.found is None or verdict.map is None:
         raise ValueError("a page is made of verdicts that have their images")
     white = picture.white_of(verdict.reference)
-    differences, mean = flip.compared(verdict.reference, verdict.found)
+    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
+        map = Path(folder, "map.png")
+        mean = tyndall.diff(verdict.found, verdict.reference, map=map, map_of="flip")["flip"]
+        differences = map.read_bytes()
     shown = [
         ("Mitsuba", display.png(picture.displayed(verdict.reference, white))),
         ("Tyndall", display.png(picture.displayed(verdict.found, white))),

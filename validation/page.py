@@ -85,11 +85,19 @@ def of_picture(browser: Browser, file: Path, size: tuple[int, int], scheme: Sche
 
 def blank(picture: Path) -> str:
     """Why a picture cannot be a page with curves and images."""
+    seen = pixels(picture.read_bytes())[::3, ::3].astype(np.uint32)
+    colours = len(np.unique(seen @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)))
+    return f"only {colours} colours" if colours < 100 else ""
+
+
+def pixels(png: bytes) -> np.ndarray:
+    """Of a picture, 8 bits a channel."""
     mi = mitsuba.package()
     mi.set_variant("scalar_rgb")
-    pixels = np.array(mi.Bitmap(str(picture)))[::3, ::3, :3].astype(np.uint32)
-    colours = len(np.unique(pixels @ np.array([1 << 16, 1 << 8, 1], dtype=np.uint32)))
-    return f"only {colours} colours" if colours < 100 else ""
+    stream = mi.MemoryStream()
+    stream.write(png)
+    stream.seek(0)
+    return np.array(mi.Bitmap(stream))[:, :, :3]
 
 
 def of_scene(page: Page, scene: Locator) -> Iterator[Finding]:
@@ -205,18 +213,8 @@ def exposure(page: Page, scene: Locator) -> str:
     sums = []
     for stops in ("0", "3", "0"):
         slider.fill(stops)
-        sums.append(brightness(view.screenshot()))
+        sums.append(float(pixels(view.screenshot()).mean()))
     return "" if sums[0] == sums[2] and (sums[1] > sums[0] or sums[1] == 0) else str(sums)
-
-
-def brightness(png: bytes) -> float:
-    """The mean of a picture's bytes."""
-    mi = mitsuba.package()
-    mi.set_variant("scalar_rgb")
-    stream = mi.MemoryStream()
-    stream.write(png)
-    stream.seek(0)
-    return float(np.array(mi.Bitmap(stream))[:, :, :3].mean())
 
 
 def place(thing: Locator) -> FloatRect:

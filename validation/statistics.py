@@ -45,13 +45,17 @@ def exact(value: npt.ArrayLike) -> Estimate:
 def standard_score(a: Estimate, b: Estimate) -> np.ndarray:
     """The normal score z with the tail probability of Welch's t: few batches make t, not z, normal."""
     rounding = (ROUNDING * np.maximum(np.abs(a.mean), np.abs(b.mean))) ** 2
-    variance = a.variance + b.variance + rounding
     difference = a.mean - b.mean
     with np.errstate(invalid="ignore", divide="ignore"):
-        freedom = variance**2 / (a.variance**2 / a.freedom + b.variance**2 / b.freedom)
-        t = np.where(difference == 0, 0, difference / np.sqrt(variance))
-    log_tail = stats.t.logsf(np.abs(t), np.where(np.isfinite(freedom), freedom, 1e9))
-    return np.sign(t) * score_of_log_tail(log_tail)
+        t = np.where(difference == 0, 0, difference / np.sqrt(a.variance + b.variance + rounding))
+    return np.sign(t) * score_of_log_tail(stats.t.logsf(np.abs(t), freedom(a, b, rounding)))
+
+
+def freedom(a: Estimate, b: Estimate, rounding: np.ndarray | float = 0.0) -> np.ndarray:
+    """Welch's degrees of freedom of the difference."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found = (a.variance + b.variance + rounding) ** 2 / (a.variance**2 / a.freedom + b.variance**2 / b.freedom)
+    return np.where(np.isfinite(found), found, 1e9)
 
 
 def score_of_log_tail(log_tail: np.ndarray) -> np.ndarray:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from validation.statistics import SIGNIFICANCE, Estimate, estimate, standard_score
+from validation.compare import tiled
+from validation.statistics import SIGNIFICANCE, Estimate, estimate, freedom, standard_score
 
 SLACK = 5e-5
 """Relative difference that is not what the table is about: where nearly nothing is random, the few samples that are leave
@@ -65,7 +66,7 @@ def judge(batches: np.ndarray, single: np.ndarray, truth: Estimate, seconds: flo
     whole, whole_truth = estimate(batches.mean(axis=(1, 2))[:, channels]), pooled(truth, 1, channels)
     z = standard_score(whole, whole_truth)
     channel = int(np.nan_to_num(np.abs(z), nan=np.inf).argmax())
-    tiles, tiles_truth = estimate(tiled(batches)[..., channels]), pooled(truth, TILES, channels)
+    tiles, tiles_truth = estimate(tiled(batches, TILES)[..., channels]), pooled(truth, TILES, channels)
     # A tile that nothing fell into tells no error of its own: it has the average tile's at least.
     tiles = Estimate(tiles.mean, np.maximum(tiles.variance, TILES**2 * whole.variance), tiles.freedom)
     z_tiles = standard_score(tiles, tiles_truth)
@@ -78,7 +79,7 @@ def judge(batches: np.ndarray, single: np.ndarray, truth: Estimate, seconds: flo
         found=float(whole.mean[channel]),
         error=float(np.hypot(whole.error, whole_truth.error)[channel]),
         probability=0.0 if lost else min(1, 2 * min(chance(z), chance(z_tiles[normal]))),
-        freedom=freedom_of(whole, whole_truth, channel),
+        freedom=float(freedom(whole, whole_truth)[channel]),
         not_finite=lost,
         worst=float(worst),
         seconds=seconds,
@@ -91,22 +92,6 @@ def pooled(truth: Estimate, tiles: int, channels: slice) -> Estimate:
     mean, variance = (tiled(values[None], tiles)[0][..., channels] for values in (truth.mean, truth.variance))
     whole = Estimate(mean, variance, truth.freedom)
     return Estimate(whole.mean[0, 0], whole.variance[0, 0], whole.freedom) if tiles == 1 else whole
-
-
-def tiled(batches: np.ndarray, tiles: int = TILES) -> np.ndarray:
-    """Images as tiles x tiles means."""
-    count, height, width, channels = batches.shape
-    return batches.reshape(count, tiles, height // tiles, tiles, width // tiles, channels).mean(axis=(2, 4))
-
-
-def freedom_of(ours: Estimate, truth: Estimate, channel: int) -> float:
-    """Welch's degrees of freedom of the difference."""
-    a, b = float(ours.variance[channel]), float(truth.variance[channel])
-    if not np.isfinite(a) or a + b == 0:
-        return ours.freedom
-    share = a / (a + b)
-    inverse = share**2 / ours.freedom + (1 - share) ** 2 / truth.freedom
-    return 1 / inverse if inverse else np.inf
 
 
 def chance(z: np.ndarray) -> float:

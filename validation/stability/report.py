@@ -146,21 +146,11 @@ class Table:
         start = {"row": case.row, "case": case.name, "method": line.method, "truth": case.source, "verdict": verdict}
         if f is None:
             return {**start, "problem": line.problem}
-        resolution = f.resolution(len(self.lines))
-        return {
-            **start,
-            "expected": f.expected,
-            "found": number(f.found),
-            "standard_error": number(f.error),
-            "relative_difference": number(f.difference) if f.expected else None,
-            "chance": f.probability,
-            "resolution": number(resolution),
-            "required_resolution": case.required(line.method),
-            "why_coarse": case.coarse or None,
-            "known_flaw": case.flaw or None,
-            "not_finite": f.not_finite,
-            "worst_sample": f.worst,
-        }
+        figures = {"found": f.found, "standard_error": f.error, "relative_difference": f.difference if f.expected else math.nan}
+        figures["resolution"] = f.resolution(len(self.lines))
+        told = {"expected": f.expected, "chance": f.probability, "not_finite": f.not_finite, "worst_sample": f.worst}
+        asked = {"required_resolution": case.required(line.method), "why_coarse": case.coarse or None, "known_flaw": case.flaw or None}
+        return {**start, **told, **asked, **{name: number(value) for name, value in figures.items()}}
 
 
 def number(value: float) -> float | None:

@@ -6,9 +6,10 @@ from html.parser import HTMLParser
 import numpy as np
 from markupsafe import escape
 
+import tyndall
 from tyndall.failure import Failure
 from tyndall.scene import Scene
-from validation import comparison_page, flip
+from validation import comparison_page
 from validation.compare import Effort, Measured, Verdict, judge
 
 EVIL = "<script>alert('x')</script>\"><img src=http://evil.example/x.png>"
@@ -65,7 +66,7 @@ def test_numbers_stand_in_the_table() -> None:
 
 def test_flip_is_zero_for_equal_images_only_and_grows() -> None:
     image = np.random.default_rng(3).uniform(0, 3, (24, 32, 3))
-    none, some, more = (flip.compared(image, image * factor)[1] for factor in (1, 1.1, 1.5))
+    none, some, more = (tyndall.diff(image * factor, image)["flip"] for factor in (1, 1.1, 1.5))
     assert none == 0 < some < more < 1
 
 
@@ -73,5 +74,5 @@ def test_flip_survives_black_and_uniform_references() -> None:
     black, grey = np.zeros((8, 8, 3)), np.full((8, 8, 3), 0.5)
     half = np.where(np.arange(8)[:, None, None] < 6, 0, grey)
     for reference in (black, grey, half):
-        assert flip.compared(reference, reference)[1] == 0
-        assert flip.compared(reference, grey + 0.1)[1] > 0
+        assert tyndall.diff(reference, reference)["flip"] == 0
+        assert tyndall.diff(grey + 0.1, reference)["flip"] > 0
