@@ -6,8 +6,8 @@ from pathlib import Path
 
 from tyndall.failure import Failure
 from tyndall.scene import open_scene
-from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, full, gallery, growth, guide, instructions, lottery
-from validation import matrix, models, package_tests, page, progressive, rays, reach, references, selftest, thresholds, truths
+from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, full, gallery, growth, instructions, lottery
+from validation import matrix, package_tests, page, progressive, rays, reach, references, selftest, thresholds, truths
 from validation.cluster import cli as cluster
 from validation.compare import Effort
 from validation.made_by import made_by_command
@@ -15,12 +15,10 @@ from validation.places import OUTPUT
 
 Commands = argparse._SubParsersAction  # argparse gives it no public name
 MEASURES = {
-    "efficiency": (efficiency, "Time to equal error against Mitsuba and others of our own: by default on the scenes of scenes/efficiency."),
-    "models": (models, "Time to equal error of path tracing, model by model, against Mitsuba's."),
+    "efficiency": (efficiency, "Time to equal error against Mitsuba and others of our own, as one number a scene."),
     "gallery": (gallery, "Renders the scenes of scenes/gallery, and Mitsuba for the same seconds, for the table of scenes/README.md."),
     "bias": (bias, "Bias of ray marching against its step, in a cosine cloud and a noise cloud."),
     "progressive": (progressive, "Progressive pictures against as many pixels on a regular grid, on four scenes."),
-    "guide": (guide, "What --guide gives: time to equal error with it and without, in eighteen scenes."),
     "thresholds": (thresholds, "P03T's tests A-F at its own thresholds: time with a guide and without, learning included."),
     "lottery": (lottery, "The default choice of strategies against others, in scenes that nobody made."),
 }

@@ -10,10 +10,9 @@ from pathlib import Path
 import tyndall
 from tyndall import program
 from tyndall.scene import as_scene, scene_file
-from validation import efficiency
-from validation.places import CROSSCHECK, REPORTS, ROOT, SCENES
+from validation.places import CROSSCHECK, EFFICIENCY, REPORTS, ROOT, SCENES
 
-GUARDED = (SCENES / "lampbox_up.xml", efficiency.FOLDER / "glass_fog_sky.xml", CROSSCHECK / "grid_sparse.json")
+GUARDED = (SCENES / "lampbox_up.xml", EFFICIENCY / "glass_fog_sky.xml", CROSSCHECK / "grid_sparse.json")
 RECORD = REPORTS / "instructions.json"
 SIDE = 32
 SAMPLES = (2, 6)

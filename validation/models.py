@@ -1,26 +1,19 @@
-"""Time to equal error of path tracing, model by model against Mitsuba, in small scenes that have a model each. What a whole scene's
-efficiency averages away shows here."""
+"""Small scenes that have a model each. What a whole scene's efficiency averages away shows in them."""
 
-import argparse
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from tyndall import exr
-from tyndall.failure import Failure
 from tyndall.scene import Scene
-from validation import efficiency, studies
-from validation.contender import VARIANTS
-from validation.made_by import made_by_command
 from validation.places import CROSSCHECK, OUTPUT
-from validation.studies import OURS, Effort
 
 Object = dict[str, Any]
-FOLDER = OUTPUT / "models"
+FOLDER = OUTPUT / "models-scenes"
 SIZE = (32, 24)
-PATHS = "--integrator pt"
 ASSETS = CROSSCHECK / "assets"
 
 
@@ -106,7 +99,7 @@ def things() -> Iterator[tuple[str, Object]]:
     yield from ((f"medium {name}", cloud(model)) for name, model in GRIDS.items())
 
 
-def scenes() -> Iterator[Scene]:
+def cases() -> Iterator[Scene]:
     """Every model under every light, and every other emitter over a matt ball and over fog."""
     for name, thing in things():
         yield from (scene(f"{name}, {light}", thing, emitter) for light, emitter in LIGHTS.items())
@@ -140,28 +133,10 @@ def sun() -> None:
     exr.write_image(FOLDER / "sun.exr", sky)
 
 
-def add_options(command: argparse.ArgumentParser) -> None:
-    """Those of the command line."""
-    command.add_argument("--only", default="", help="only models whose name contains this, such as 'bsdf rough' or ', map'")
-    command.add_argument("--seeds", type=int, default=4, help="independent renders of both (default %(default)s)")
-    command.add_argument("--seconds", type=float, default=0.5, help="of each (default %(default)s)")
-    command.add_argument("--reference-seconds", type=float, default=10, help="of each reference (default %(default)s)")
-    command.add_argument("--threads", type=int, default=2, help="of both alike (default %(default)s)")
-    command.add_argument("--variant", choices=VARIANTS, default=VARIANTS[0], help="Mitsuba's; of scalar_rgb times say little (default %(default)s)")
-
-
-def run(options: argparse.Namespace) -> bool:
-    """Prints the table of `efficiency`, a row a model, where Mitsuba is furthest ahead first."""
+def scenes() -> list[Path]:
+    """The files of all."""
     sun()
-    chosen = [case for case in scenes() if options.only in case.name]
-    if not chosen:
-        raise Failure(f"--only {options.only}: no model has this in its name", "name another part, such as bsdf, phase or map")
-    files = [FOLDER / f"{case.name}.json" for case in chosen]
-    for case, file in zip(chosen, files):
-        file.write_text(json.dumps(case.source))
-    effort = Effort(options.seeds, options.seconds, options.reference_seconds, threads=options.threads)
-    contenders = {OURS: PATHS, f"volpath:{options.variant}": ""}
-    study = studies.measured(files, contenders, effort, FOLDER / "study", by=PATHS, quiet=True)
-    rows = sorted(map(efficiency.row_of, study.scenes), key=lambda row: row.theirs[1].mean if row.theirs else 0)
-    print(efficiency.page(rows, study.told, made_by_command()))
-    return True
+    files = {FOLDER / f"{case.name}.json": case.tree() for case in cases()}
+    for file, tree in files.items():
+        file.write_text(json.dumps(tree))
+    return list(files)

@@ -8,6 +8,7 @@ PYTHON = ROOT / "src" / "python"
 """The package `tyndall`."""
 SCENES = ROOT / "scenes"
 CROSSCHECK = SCENES / "crosscheck"
+EFFICIENCY = SCENES / "efficiency"
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")).resolve()
 ENVIRONMENT = TARGET / "validation-env"
 CACHE = TARGET / "validation-cache"

@@ -4,9 +4,9 @@ import numpy as np
 from scipy import ndimage
 
 from tyndall.volume_file import vol
-from validation.places import SCENES
+from validation.places import EFFICIENCY
 
-FOLDER = SCENES / "efficiency" / "assets"
+FOLDER = EFFICIENCY / "assets"
 VOXELS = 256
 
 

@@ -1,6 +1,7 @@
 """The table of time to equal error: what it concludes from a study, and that both renderers read its scenes."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,8 @@ import pytest
 import tyndall
 from tyndall.failure import Failure
 from tyndall.scene import open_scene
-from validation import cli, efficiency, mitsuba, studies, volumes
+from validation import cli, efficiency, guide, mitsuba, studies, volumes
+from validation.places import EFFICIENCY
 from validation.statistics import Ratio
 from validation.studies import Effort, Found, Reference, Study
 
@@ -33,7 +35,7 @@ def test_the_better_of_mitsubas_counts() -> None:
     row = efficiency.row_of(scene(pt=0.8, lt=0.1, **MITSUBA))
     assert row.ours == pytest.approx(0.02) and row.theirs and row.theirs[0] == "mitsuba volpath llvm"
     assert row.theirs[1].low < row.theirs[1].mean < row.theirs[1].high and row.theirs[1].mean == pytest.approx(2)
-    assert row.best and (row.best[0], row.best[1].mean, row.reference) == ("pt", pytest.approx(1.25), pytest.approx(0.05))
+    assert (row.own["pt"].mean, row.own["lt"].mean, row.reference) == (pytest.approx(1.25), pytest.approx(10), pytest.approx(0.05))
     assert row.of_sample == pytest.approx((0.06 * 16 / (0.04 * 8), (0.4 / 16) / (0.5 / 8)))
     assert not row.is_beaten and not row.is_outdone
 
@@ -56,7 +58,7 @@ def test_what_is_surely_better_is_said() -> None:
 def test_without_mitsuba_tyndalls_own_are_compared() -> None:
     row = efficiency.row_of(scene(pt=0.01))
     assert row.theirs is None and row.own["pt"].mean == pytest.approx(100) and not row.is_beaten
-    assert "| pool | 0.02 | none |" in efficiency.table_line(row)
+    assert "| pool | 0.02 | none |" in efficiency.table_line(row, ["pt"])
     with pytest.raises(Failure, match="pool: Tyndall could not render it"):
         efficiency.row_of(Found("pool", scene().told, {}))
 
@@ -87,14 +89,24 @@ def test_scenes_and_contenders_are_those_asked_for(tmp_path: Path, monkeypatch: 
     assert json.loads((tmp_path / "efficiency.json").read_text())[0]["theirs"][1]["mean"] == pytest.approx(2)
 
 
-@pytest.mark.parametrize(("words", "complaint"), [(["--against", "volpth"], "volpth: no such contender"), (["--contender", "joins"], "no name")])
+def test_suites_have_scenes_contenders_and_efforts_of_their_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scenes, contenders, effort = asked(monkeypatch, "--suite", "guide", "--only", "A", "--seconds", "1", "--output", str(tmp_path))
+    assert [scene.stem for scene in scenes] == ["A"] and list(contenders) == ["tyndall", *guide.OTHERS]
+    assert (effort.seconds, effort.reference_seconds, effort.size) == (1, 100, "96x72") and (tmp_path / "guide.md").is_file()
+    scenes, contenders, _ = asked(monkeypatch, "--suite", "models", "--only", "hg 0.9", "--output", str(tmp_path))
+    assert len(scenes) == 3 and contenders == {"tyndall": "--integrator pt", "volpath": ""}
+    boxes = efficiency.row_of(replace(scene(no_guide=0.5), name="A"))
+    assert "; wanted: 0.9 |" in efficiency.table_line(boxes, ["no guide"])
+
+
+@pytest.mark.parametrize(("words", "complaint"), [(["--against", "volpth"], "volpth: no such contender"), (["--contender", "joins"], "no name"), (["--only", "x"], "no scene has this")])
 def test_what_makes_no_sense_is_refused(words: list[str], complaint: str) -> None:
     with pytest.raises(Failure, match=complaint):
         cli.main(["efficiency", "my.xml", *words])
 
 
 def test_every_scene_is_measured_and_read_by_both() -> None:
-    assert set(efficiency.FOLDER.glob("*.xml")) < set(efficiency.WANTED)
+    assert set(EFFICIENCY.glob("*.xml")) < set(efficiency.WANTED)
     volumes.write()
     for path in efficiency.WANTED:
         assert mitsuba.load(open_scene(path), "scalar_rgb", (4, 4)) is not None
