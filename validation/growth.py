@@ -20,6 +20,7 @@ from tyndall import program
 from tyndall.failure import Failure
 from tyndall.volume_file import vol
 from validation import instructions
+from validation.closed_forms.case import diffuse, film, rgb
 from validation.made_by import made_by_command
 from validation.places import REPORTS, SCENES
 
@@ -104,7 +105,7 @@ def lights(_: Path) -> Curve:
 
     def cost(count: int) -> float:
         at = np.random.default_rng(1).uniform(-1, 1, (count, 3))
-        lamps = {f"lamp{i}": {"type": "point", "position": [float(x) for x in place], "intensity": colour(1 / count)} for i, place in enumerate(at)}
+        lamps = {f"lamp{i}": {"type": "point", "position": [float(x) for x in place], "intensity": rgb(1 / count)} for i, place in enumerate(at)}
         return instructions.per_sample(box_of_fog(lamps), MANY_SAMPLES, strategies=tyndall.ALL_STRATEGIES)
 
     return curve("lights", "instructions per sample", (1, 10, 100, 1_000, 10_000, 100_000), cost, "point lights all over a box of fog")
@@ -174,12 +175,8 @@ def starting() -> float:
     return min(found)
 
 
-def colour(value: float) -> dict[str, Any]:
-    return {"type": "rgb", "value": [value, value, value]}
-
-
 def grey(value: float) -> dict[str, Any]:
-    return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": colour(value)}}
+    return {"type": "twosided", "bsdf": diffuse(value)}
 
 
 def view(medium: str | None = None) -> dict[str, Any]:
@@ -187,8 +184,7 @@ def view(medium: str | None = None) -> dict[str, Any]:
     inside = {"medium": {"type": "ref", "id": medium}} if medium else {}
     origin = [0.2, 0.1, 0.9] if medium else [0.3, 0.4, 4]
     looking = [{"type": "lookat", "origin": origin, "target": [0, 0, 0], "up": [0, 1, 0]}]
-    film = {"type": "hdrfilm", "width": instructions.SIDE, "height": instructions.SIDE, "rfilter": {"type": "box"}}
-    return {"type": "perspective", "fov": 40, "to_world": looking, "film": film, "sampler": {"type": "independent"}, **inside}
+    return {"type": "perspective", "fov": 40, "to_world": looking, "film": film(instructions.SIDE, instructions.SIDE), "sampler": {"type": "independent"}, **inside}
 
 
 def white_room() -> dict[str, Any]:
@@ -200,7 +196,7 @@ def white_room() -> dict[str, Any]:
         "fog": {"type": "homogeneous", "id": "fog", "sigma_t": 1.0, "albedo": 1.0},
         "sensor": view("fog"),
         "room": {"type": "cube", "bsdf": grey(1.0), "interior": {"type": "ref", "id": "fog"}},
-        "lamp": {**lamp, "bsdf": grey(1.0), "emitter": {"type": "area", "radiance": colour(1.0)}},
+        "lamp": {**lamp, "bsdf": grey(1.0), "emitter": {"type": "area", "radiance": rgb(1.0)}},
     }
 
 
@@ -208,7 +204,7 @@ def box_of_fog(more: dict[str, Any]) -> dict[str, Any]:
     """A box of thin fog around what there is more, under a sky."""
     fog = {"type": "homogeneous", "id": "fog", "sigma_t": 0.5, "albedo": 0.9}
     box = {"type": "cube", "to_world": [{"type": "scale", "value": 1.2}], "bsdf": {"type": "null"}, "interior": fog}
-    sky = {"sky": {"type": "constant", "radiance": colour(0.2)}} if not any(o["type"] == "point" for o in more.values()) else {}
+    sky = {"sky": {"type": "constant", "radiance": rgb(0.2)}} if not any(o["type"] == "point" for o in more.values()) else {}
     return {"type": "scene", "integrator": {"type": "volpath", "max_depth": 8}, "sensor": view(), "box": box, **sky, **more}
 
 
@@ -218,8 +214,8 @@ def box_of_smoke(path: Path) -> dict[str, Any]:
     grid = {"type": "gridvolume", "filename": str(path), "to_world": to_world}
     smoke = {"type": "heterogeneous", "sigma_t": grid, "albedo": 0.9, "scale": 4.0}
     box = {"type": "cube", "bsdf": {"type": "null"}, "interior": smoke}
-    sun = {"type": "directional", "direction": [-1, -1, -0.5], "irradiance": colour(1.0)}
-    sky = {"type": "constant", "radiance": colour(0.2)}
+    sun = {"type": "directional", "direction": [-1, -1, -0.5], "irradiance": rgb(1.0)}
+    sky = {"type": "constant", "radiance": rgb(0.2)}
     return {"type": "scene", "integrator": {"type": "volpath", "max_depth": 8}, "sensor": view(), "box": box, "sun": sun, "sky": sky}
 
 

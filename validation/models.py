@@ -9,17 +9,13 @@ import numpy as np
 
 from tyndall import exr
 from tyndall.scene import Scene
+from validation.closed_forms.case import film, rgb
 from validation.places import CROSSCHECK, OUTPUT
 
 Object = dict[str, Any]
 FOLDER = OUTPUT / "models-scenes"
 SIZE = (32, 24)
 ASSETS = CROSSCHECK / "assets"
-
-
-def rgb(*value: float) -> Object:
-    """A colour."""
-    return {"type": "rgb", "value": list(value)}
 
 
 def at(origin: list[float], target: list[float]) -> list[Object]:
@@ -110,12 +106,11 @@ def cases() -> Iterator[Scene]:
 
 def scene(name: str, thing: Object, emitter: Object) -> Scene:
     """A thing over matt ground under a light."""
-    film = {"type": "hdrfilm", "width": SIZE[0], "height": SIZE[1], "pixel_format": "rgb", "rfilter": {"type": "box"}}
     flat = [{"type": "scale", "value": 4}, {"type": "rotate", "axis": [1, 0, 0], "angle": -90}, {"type": "translate", "value": [0, -1.01, 0]}]
     tree = {
         "type": "scene",
         "integrator": {"type": "bdpt"},
-        "sensor": {"type": "perspective", "fov": 36, "to_world": at([0, 1, 5], [0, 0, 0]), "film": film},
+        "sensor": {"type": "perspective", "fov": 36, "to_world": at([0, 1, 5], [0, 0, 0]), "film": film(*SIZE)},
         "ground": {"type": "rectangle", "to_world": flat, "bsdf": {"type": "diffuse", "reflectance": 0.5}},
         "thing": thing,
         "light": emitter,

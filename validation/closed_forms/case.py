@@ -38,20 +38,30 @@ def scene(name: str, max_depth: int = -1, **objects: Any) -> Scene:
 
 def camera(origin: Sequence[float], target: Sequence[float], fov: float, up: Sequence[float] = (0, 1, 0), **more: Any) -> dict[str, Any]:
     """A small square image, box filter."""
-    return {
-        "type": "perspective",
-        "fov": fov,
-        "to_world": [{"type": "lookat", "origin": list(origin), "target": list(target), "up": list(up)}],
-        "film": {
-            "type": "hdrfilm",
-            "width": SIZE,
-            "height": SIZE,
-            "pixel_format": "rgb",
-            "rfilter": {"type": "box"},
-        },
-        "sampler": {"type": "independent"},
-        **more,
-    }
+    to_world = [{"type": "lookat", "origin": list(origin), "target": list(target), "up": list(up)}]
+    return {"type": "perspective", "fov": fov, "to_world": to_world, "film": film(SIZE, SIZE), "sampler": {"type": "independent"}, **more}
+
+
+def orthographic(origin: Sequence[float], target: Sequence[float], half_width: float) -> dict[str, Any]:
+    """The same by parallel rays."""
+    view = camera(origin, target, 1)
+    step = {"type": "scale", "value": [half_width, half_width, 1]}
+    return {**{k: v for k, v in view.items() if k != "fov"}, "type": "orthographic", "to_world": [step, *view["to_world"]]}
+
+
+def film(width: int, height: int) -> dict[str, Any]:
+    """Pixels that hold what falls into them."""
+    return {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb", "rfilter": {"type": "box"}}
+
+
+def rgb(*value: float) -> dict[str, Any]:
+    """A colour, grey if one number is given."""
+    return {"type": "rgb", "value": [float(v) for v in (value if len(value) == 3 else 3 * value)]}
+
+
+def diffuse(*reflectance: float) -> dict[str, Any]:
+    """A matt surface."""
+    return {"type": "diffuse", "reflectance": rgb(*reflectance)}
 
 
 def medium(sigma_t: npt.ArrayLike, albedo: Any, phase: dict) -> dict:
@@ -67,4 +77,7 @@ def medium(sigma_t: npt.ArrayLike, albedo: Any, phase: dict) -> dict:
     }
 
 
-SKY = {"type": "constant", "radiance": {"type": "rgb", "value": [1, 1, 1]}}
+SKY = {"type": "constant", "radiance": rgb(1)}
+BLACK = diffuse(0)
+NULL = {"type": "null"}
+ISOTROPIC = {"type": "isotropic"}

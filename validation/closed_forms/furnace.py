@@ -3,13 +3,11 @@
 from typing import Any
 
 from tyndall.scene import Scene
-from validation.closed_forms.case import SKY, Case, camera, medium, scene
+from validation.closed_forms.case import ISOTROPIC, NULL, SKY, Case, camera, diffuse, medium, scene
 
-ISOTROPIC = {"type": "isotropic"}
 FORWARD = {"type": "hg", "g": 0.8}
-NULL = {"type": "null"}
 GLASS = {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}
-WHITE = {"type": "twosided", "material": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [1, 1, 1]}}}
+WHITE = {"type": "twosided", "material": diffuse(1)}
 
 
 def cases() -> list[Case]:

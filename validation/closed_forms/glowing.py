@@ -10,13 +10,13 @@ import numpy as np
 
 from tyndall.scene import Scene
 from validation.closed_forms import varying
-from validation.closed_forms.case import SKY, Case, camera, scene
+from validation.closed_forms.case import ISOTROPIC, NULL, SKY, Case, camera, rgb, scene
 from validation.closed_forms.case import medium as homogeneous
 from validation.closed_forms.slab import Slab, lit_slab
 
 ALL = ("pt", "lt", "bdpt")
 RADIANCE = np.array([1.0, 0.5, 0.2])
-COLOUR = {"type": "rgb", "value": RADIANCE.tolist()}
+COLOUR = rgb(*RADIANCE)
 DEPTH = np.array([0.4, 1.0, 2.5])
 GAIN = 0.7
 
@@ -29,7 +29,7 @@ def cases() -> list[Case]:
 def slabs() -> list[Case]:
     """Slabs of thickness 1, seen from straight above, before black."""
     stiff = varying.grid(varying.uneven((1, 16, 1), varying.CONTRAST), varying.STRETCH, filter_type="nearest")
-    chromatic = {**homogeneous(DEPTH, 0, varying.ISOTROPIC), "radiance": COLOUR}
+    chromatic = {**homogeneous(DEPTH, 0, ISOTROPIC), "radiance": COLOUR}
     empty = {"type": "homogeneous", "sigma_t": 0.0, "emission": GAIN}
     thick = 2.0
     truth = RADIANCE * -np.expm1(-thick)
@@ -71,5 +71,5 @@ def equilibria() -> list[Case]:
 
 def equilibrium(name: str, inside: dict) -> Case:
     """A unit sphere under the sky."""
-    ball = {"type": "sphere", "bsdf": varying.NULL, "interior": inside}
+    ball = {"type": "sphere", "bsdf": NULL, "interior": inside}
     return Case(scene(f"equilibrium {name}", sensor=camera((0, 0, 5), (0, 0, 0), 25), sky=SKY, ball=ball), 1)

@@ -7,7 +7,8 @@ import numpy as np
 from scipy.integrate import quad
 
 from tyndall.scene import Scene
-from validation.closed_forms.case import SIZE, Case, camera, medium, scene
+from validation.closed_forms.case import BLACK, Case, camera, medium, rgb, scene
+from validation.closed_forms.view import View, pixel_means
 
 SIGMA_T = (0.2, 0.5, 1.0)
 ALBEDO = 0.8
@@ -17,7 +18,7 @@ NEAR = 0.01
 """Camera rays start on the near clipping plane: the fog before it does not count."""
 LIGHT = np.array([0.0, 1.6, -3.0])
 """Outside of the view, so that the image has no peak; the camera stands at the origin and looks along -z."""
-SUBPIXELS = np.polynomial.legendre.leggauss(3)
+VIEW = View((0, 0, 0), (0, 0, -1), FOV, nodes=3)
 
 Phase = Callable[[float], float]
 """Per steradian, by the cosine; 1 is forward."""
@@ -36,19 +37,13 @@ def cases() -> list[Case]:
 def lit(name: str, phase: dict) -> Scene:
     """Fog everywhere, a point light, and behind the camera a speck that gives the scene a size."""
     fog = {"type": "ref", "id": "fog"}
-    black = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0, 0, 0]}}
     return scene(
         f"point light {name}",
         max_depth=2,
         fog=medium(SIGMA_T, ALBEDO, phase),
         sensor=camera((0, 0, 0), (0, 0, -1), FOV, medium=fog, near_clip=NEAR),
-        light={
-            "type": "point",
-            "position": LIGHT.tolist(),
-            "intensity": {"type": "rgb", "value": [INTENSITY] * 3},
-            "medium": fog,
-        },
-        speck={"type": "sphere", "center": [0, 0, 4], "radius": 0.01, "bsdf": black},
+        light={"type": "point", "position": LIGHT.tolist(), "intensity": rgb(INTENSITY), "medium": fog},
+        speck={"type": "sphere", "center": [0, 0, 4], "radius": 0.01, "bsdf": BLACK},
     )
 
 
@@ -59,20 +54,9 @@ def henyey_greenstein(cosine: float, g: float) -> float:
 
 def image(phase: Phase) -> np.ndarray:
     """Every pixel: the mean over its area, by Gauss-Legendre quadrature."""
-    nodes, weights = SUBPIXELS
-    pixels = np.zeros((SIZE, SIZE, 3))
-    for y, x in np.ndindex(SIZE, SIZE):
-        for (u, wu), (v, wv) in ((a, b) for a in zip(nodes, weights) for b in zip(nodes, weights)):
-            direction = ray(x + 0.5 + u / 2, y + 0.5 + v / 2)
-            pixels[y, x] += wu * wv / 4 * np.array([radiance(direction, s, phase) for s in SIGMA_T])
-    return pixels
-
-
-def ray(x: float, y: float) -> np.ndarray:
-    """The direction through a point of the film, in pixels from its upper left corner."""
-    slope = np.tan(np.radians(FOV) / 2)
-    direction = np.array([slope * (2 * x / SIZE - 1), slope * (1 - 2 * y / SIZE), -1.0])
-    return direction / np.linalg.norm(direction)
+    directions = VIEW.directions()
+    seen = np.array([[radiance(direction, s, phase) for s in SIGMA_T] for direction in directions.reshape(-1, 3)])
+    return np.concatenate([pixel_means(channel.reshape(directions.shape[:-1])) for channel in seen.T], axis=-1)
 
 
 def radiance(direction: np.ndarray, sigma_t: float, phase: Phase) -> float:

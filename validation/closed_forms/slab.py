@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import iadpython
 
 from tyndall.scene import Scene
-from validation.closed_forms.case import SKY, Case, camera, medium, scene
+from validation.closed_forms.case import BLACK, NULL, SKY, Case, camera, medium, scene
 
 QUADRATURE_POINTS = 16
 HALF_WIDTH = 200
@@ -59,7 +59,6 @@ def lit_slab(slab: Slab, name: str, blocker_height: float) -> Scene:
     """The slab from y = -1 to 0, the camera above it at 1; a black sheet shuts out the other half of the sky."""
     wide = {"type": "scale", "value": [HALF_WIDTH, HALF_WIDTH, 1]}
     upright = {"type": "rotate", "axis": [1, 0, 0], "angle": -90}
-    null = {"type": "null"}
     glass = {"type": "dielectric", "int_ior": slab.n, "ext_ior": 1.0}
     return scene(
         f"slab {slab.a:g} {slab.b:g} {slab.g:g} {slab.n:g} {name}",
@@ -71,12 +70,12 @@ def lit_slab(slab: Slab, name: str, blocker_height: float) -> Scene:
                 {"type": "scale", "value": [HALF_WIDTH, 0.5, HALF_WIDTH]},
                 {"type": "translate", "value": [0, -0.5, 0]},
             ],
-            "bsdf": null if slab.n == 1 else glass,
+            "bsdf": NULL if slab.n == 1 else glass,
             "interior": medium(slab.b, slab.a, {"type": "hg", "g": slab.g}),
         },
         blocker={
             "type": "rectangle",
             "to_world": [wide, upright, {"type": "translate", "value": [0, blocker_height, 0]}],
-            "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0, 0, 0]}},
+            "bsdf": BLACK,
         },
     )

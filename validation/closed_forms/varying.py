@@ -15,19 +15,17 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from tyndall.scene import Scene
 from tyndall.volume_file import vol
 from validation import densities
-from validation.closed_forms.case import SIZE, SKY, Case, camera, scene
+from validation.closed_forms.case import ISOTROPIC, NULL, SIZE, SKY, Case, camera, orthographic, rgb, scene
 from validation.closed_forms.slab import HALF_WIDTH, Slab, lit_slab
+from validation.closed_forms.view import View, pixel_means
 from validation.places import TARGET
 
 FOLDER = TARGET / "validation-volumes"
 CONTRAST = 1e6
-ISOTROPIC = {"type": "isotropic"}
-NULL = {"type": "null"}
 GRID = ("pt:exact", "pt:march", "pt:null_collision", "bdpt")
 FUNCTION = ("pt:closed_form", "pt:march", "pt:null_collision", "bdpt")
 
@@ -146,13 +144,10 @@ def rods() -> list[Case]:
 def block(name: str, samples: np.ndarray) -> Scene:
     """A block of nearest voxels from z = 0 to 1 under the sky, seen along z, a pixel for each row."""
     density = grid(samples, [], filter_type="nearest")
-    view = camera((0.5, 0.5, 3), (0.5, 0.5, 0), 1)
-    straight = {k: v for k, v in view.items() if k not in ("type", "fov")}
-    to_world = [{"type": "scale", "value": [0.5, 0.5, 1]}, *view["to_world"]]
     box = [{"type": "translate", "value": [1, 1, 1]}, {"type": "scale", "value": 0.5}]
     return scene(
         f"block {name}",
-        sensor={**straight, "type": "orthographic", "to_world": to_world},
+        sensor=orthographic((0.5, 0.5, 3), (0.5, 0.5, 0), 0.5),
         sky=SKY,
         block={"type": "cube", "to_world": box, "bsdf": NULL, "interior": medium(density, 0)},
     )
@@ -167,7 +162,8 @@ def image_of(samples: np.ndarray) -> np.ndarray:
 
 
 BOX = np.array([[-0.8, 0.0, -0.6], [0.8, 1.3, 0.6]])
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
+VIEW = View((0.4, 1.9, 3.0), (0.0, 0.6, 0.0), 17.0, nodes=6)
+"""The box fills it: of a pixel that it only grazes, hardly a sample would know of it."""
 STEPS = 1000
 
 
@@ -191,51 +187,27 @@ def cloud(name: str, density: dict) -> Scene:
     to_world = [{"type": "scale", "value": half.tolist()}, {"type": "translate", "value": middle.tolist()}]
     return scene(
         f"absorbing {name}",
-        sensor=camera(EYE, MIDDLE, FOV),
+        sensor=camera(VIEW.eye, VIEW.target, VIEW.fov),
         sky=SKY,
         cloud={"type": "cube", "to_world": to_world, "bsdf": NULL, "interior": medium(density, 0)},
     )
 
 
-EYE, MIDDLE, FOV = (0.4, 1.9, 3.0), (0.0, 0.6, 0.0), 17.0
-"""The box fills the view: of a pixel that it only grazes, hardly a sample would know of it."""
-
-
 @cache
 def seen(name: str) -> np.ndarray:
     """exp(-tau) of the box of a function, averaged over each pixel."""
-    density = FUNCTIONS[name]
-    centres = np.arange(SIZE) + 0.5
-    y, x, v, u = np.meshgrid(centres, centres, NODES / 2, NODES / 2, indexing="ij")
-    directions = rays(x + u, y + v)
-    weights = WEIGHTS[:, None] * WEIGHTS / 4
-    depths = np.array([[depth(density, row) for row in pixels] for pixels in directions.reshape(SIZE, SIZE, -1, 3)])
-    return (np.exp(-depths).reshape(SIZE, SIZE, len(NODES), -1) * weights).sum(axis=(2, 3))[..., None]
-
-
-def rays(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Directions through points of the film, in pixels from its upper left corner."""
-    forward = unit(np.subtract(MIDDLE, EYE))
-    left = unit(np.cross([0, 1, 0], forward))
-    up = np.cross(forward, left)
-    slope = np.tan(np.radians(FOV) / 2)
-    across, upwards = slope * (1 - 2 * x / SIZE), slope * (1 - 2 * y / SIZE)
-    return unit(forward + across[..., None] * left + upwards[..., None] * up)
-
-
-def unit(v: npt.ArrayLike) -> np.ndarray:
-    """The vectors at length 1."""
-    given = np.asarray(v, dtype=float)
-    return given / np.linalg.norm(given, axis=-1, keepdims=True)
+    directions = VIEW.directions()
+    depths = np.array([[depth(FUNCTIONS[name], row) for row in pixels] for pixels in directions.reshape(SIZE, SIZE, -1, 3)])
+    return pixel_means(np.exp(-depths).reshape(directions.shape[:-1]))
 
 
 def depth(density: dict, directions: np.ndarray) -> np.ndarray:
     """Optical depth of the box along rays from the eye, by the midpoint rule."""
-    ends = np.sort((BOX[:, None] - np.asarray(EYE)) / directions, axis=0)
+    ends = np.sort((BOX[:, None] - np.asarray(VIEW.eye)) / directions, axis=0)
     start, stop = np.maximum(ends[0].max(axis=-1), 0), ends[1].min(axis=-1)
     length = np.maximum(stop - start, 0)
     t = start + length * ((np.arange(STEPS) + 0.5) / STEPS)[:, None]
-    points = np.asarray(EYE) + t[..., None] * directions
+    points = np.asarray(VIEW.eye) + t[..., None] * directions
     return densities.value(density, points)[..., 0].mean(axis=0) * length
 
 
@@ -256,12 +228,11 @@ def sunlit_layer(number: int, sun: tuple[float, ...]) -> Scene:
     flat = lit_slab(Slab(LAYER_ALBEDO, LAYER_DEPTH, 0), "", -1.5).tree()
     # What marching gets wrong of so little light must stay below what the picture resolves.
     inside = {**medium(thinning(LAYER_SCALE), LAYER_ALBEDO, scale=LAYER_DEPTH), "march_error": 1e-4}
-    irradiance = {"type": "rgb", "value": [IRRADIANCE] * 3}
     return scene(
         f"single scattering in a layer, sun {number}",
         max_depth=2,
         sensor=flat["sensor"],
-        sun={"type": "directional", "direction": list(sun), "irradiance": irradiance},
+        sun={"type": "directional", "direction": list(sun), "irradiance": rgb(IRRADIANCE)},
         slab={**flat["slab"], "interior": inside},
     )
 

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from validation.closed_forms.case import film
+
 Point = tuple[float, float, float]
 Tree = dict[str, Any]
 CENTRE: Point = (0, 1, 0)
@@ -162,9 +164,8 @@ class Draw:
         within = self.around(origin, "medium")
         self.words.append("camera in fog" if within else "camera outside")
         target = [at + self.random.gauss(0, 0.2) for at in CENTRE]
-        film = {"type": "hdrfilm", "width": WIDTH, "height": HEIGHT, "pixel_format": "rgb", "rfilter": {"type": "box"}}
         return {"type": "perspective", "fov": self.random.uniform(50, 90) if near else self.random.uniform(25, 45),
-                "to_world": [aimed(origin, target)], "film": film, **within}  # fmt: skip
+                "to_world": [aimed(origin, target)], "film": film(WIDTH, HEIGHT), **within}  # fmt: skip
 
     def lights(self, stage: str) -> Tree:
         """Sky, sun and lamps, one at least that light can come in from."""

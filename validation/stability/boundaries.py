@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from tyndall.scene import Scene
-from validation.closed_forms.case import camera, scene
+from validation.closed_forms.case import BLACK, NULL, camera, scene
 from validation.closed_forms.slab import HALF_WIDTH, Slab, lit_slab
-from validation.stability.case import ALL, BLACK, EYE, NULL, Case, fog, lamp, methods, moved, oven, parallel
+from validation.stability.case import ALL, EYE, Case, fog, lamp, methods, moved, oven, parallel
 from validation.stability.thickness import AWAY
 
 CAMERA = "camera on a boundary"

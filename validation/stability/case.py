@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from tyndall.scene import Scene, derived
-from validation.closed_forms.case import SIZE, camera, medium, scene
+from validation.closed_forms.case import BLACK, ISOTROPIC, NULL, SIZE, camera, medium, orthographic, rgb, scene
 from validation.statistics import Estimate, exact
 
 Known = float | np.ndarray | Estimate
@@ -15,9 +15,6 @@ Known = float | np.ndarray | Estimate
 Truth = Known | Callable[[], Known]
 """What is known, or what makes it: for truths that take time."""
 
-BLACK = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0, 0, 0]}}
-NULL = {"type": "null"}
-ISOTROPIC = {"type": "isotropic"}
 EYE = {"pt": 1.0, "bdpt": 1.0}
 """Methods for scenes that light tracing sees next to nothing of: a view as narrow as a beam."""
 ALL = {"pt": 1.0, "bdpt": 1.0, "lt": 1.0}
@@ -71,16 +68,6 @@ def methods(*names: str, effort: float = 1) -> dict[str, float]:
     return dict.fromkeys(names, effort)
 
 
-def rgb(*value: float) -> dict:
-    """A colour, grey if one number is given."""
-    return {"type": "rgb", "value": [float(v) for v in (value if len(value) == 3 else 3 * value)]}
-
-
-def diffuse(reflectance: float) -> dict:
-    """A matt surface."""
-    return {"type": "diffuse", "reflectance": rgb(reflectance)}
-
-
 def lamp(radiance: float) -> dict:
     """An area light."""
     return {"type": "area", "radiance": rgb(radiance)}
@@ -108,10 +95,7 @@ def fog(sigma_t: float | tuple[float, ...], albedo: float, g: float = 0) -> dict
 
 def parallel(half_width: float) -> dict:
     """An orthographic view from z = 3 along -z."""
-    view = camera((0, 0, 3), (0, 0, 0), 1)
-    step = {"type": "scale", "value": [half_width, half_width, 1]}
-    straight = {k: v for k, v in view.items() if k != "fov"}
-    return {**straight, "type": "orthographic", "to_world": [step, *view["to_world"]]}
+    return orthographic((0, 0, 3), (0, 0, 0), half_width)
 
 
 SHAPES = ("sphere", "rectangle", "cube", "disk", "cylinder", "obj", "ply")

@@ -4,9 +4,9 @@ import numpy as np
 
 from tyndall.scene import Scene
 from validation.closed_forms import varying
-from validation.closed_forms.case import SIZE, scene
+from validation.closed_forms.case import BLACK, NULL, SIZE, scene
 from validation.closed_forms.slab import Slab, lit_slab
-from validation.stability.case import ALL, BLACK, EYE, NULL, Case, ball, fog, lamp, methods, moved, named, oven, parallel, with_object
+from validation.stability.case import ALL, EYE, Case, ball, fog, lamp, methods, moved, named, oven, parallel, with_object
 from validation.stability.thickness import AWAY
 
 CHANNELS = "extinction 1e-3 : 1 : 1e3 between channels"

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from validation.closed_forms.case import camera, scene
-from validation.stability.case import BLACK, EYE, NULL, Case, diffuse, fog, named
+from validation.closed_forms.case import BLACK, NULL, camera, diffuse, orthographic, scene
+from validation.stability.case import EYE, Case, fog, named
 from validation.stability.half_space import reflectance
 
 ROW = "grazing incidence 89.99 degrees"
@@ -32,9 +32,7 @@ def flat_view() -> dict:
     """Parallel rays that meet the plane y = 0 near the origin at the angle."""
     away = 10.0
     eye = [0, away * COSINE, away * float(np.sin(ANGLE))]
-    step = {"type": "scale", "value": [1e-5, 1e-5, 1]}
-    view = {k: v for k, v in camera(eye, (0, 0, 0), 1).items() if k != "fov"}
-    return {**view, "type": "orthographic", "to_world": [step, *view["to_world"]]}
+    return orthographic(eye, (0, 0, 0), 1e-5)
 
 
 def upwards(half_width: float, y: float, bsdf: dict) -> dict:

@@ -6,7 +6,7 @@ from validation.closed_forms.case import camera, scene
 from validation.closed_forms.slab import Slab, lit_slab
 from validation.stability.case import ALL, EYE, Case, ball, fog, lamp, moved, named, oven, with_object
 from validation.stability.thickness import AWAY
-from validation.stability.view import View, pixel_means
+from validation.closed_forms.view import View, pixel_means
 
 ROW = "index 1 +- 1e-6"
 INDICES = (1 + 1e-6, 1 - 1e-6)

@@ -6,27 +6,11 @@ import numpy as np
 
 from tyndall.scene import Scene
 from validation.closed_forms import point_light
-from validation.closed_forms.case import scene
+from validation.closed_forms.case import BLACK, ISOTROPIC, NULL, diffuse, rgb, scene
 from validation.closed_forms.slab import Slab, lit_slab
 from validation.stability.anisotropy import fog_image
-from validation.stability.case import (
-    ALL,
-    BLACK,
-    EYE,
-    ISOTROPIC,
-    NULL,
-    Case,
-    ball,
-    diffuse,
-    fog,
-    lamp,
-    named,
-    oven,
-    parallel,
-    rgb,
-    with_object,
-)
-from validation.stability.view import View, unit
+from validation.stability.case import ALL, EYE, Case, ball, fog, lamp, named, oven, parallel, with_object
+from validation.closed_forms.view import View, unit
 
 RADIUS = "emitter radius 1e-5"
 AGAINST = "light against a surface"

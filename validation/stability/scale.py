@@ -5,11 +5,11 @@ from functools import cache, partial
 from tyndall.scene import Scene
 from validation import references
 from validation.closed_forms import point_light
-from validation.closed_forms.case import camera, scene
+from validation.closed_forms.case import ISOTROPIC, NULL, camera, diffuse, scene
 from validation.closed_forms.slab import Slab, lit_slab
 from validation.compare import Effort
 from validation.stability.anisotropy import fog_image
-from validation.stability.case import ALL, EYE, ISOTROPIC, NULL, Case, diffuse, fog, lamp, moved, named, scaled
+from validation.stability.case import ALL, EYE, Case, fog, lamp, moved, named, scaled
 from validation.statistics import Estimate
 
 SCALE = "scene scale 1e-6 to 1e6"

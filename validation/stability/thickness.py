@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from validation.closed_forms.case import SIZE, camera, scene
+from validation.closed_forms.case import BLACK, ISOTROPIC, NULL, camera, scene
 from validation.closed_forms.furnace import ball_of_medium
 from validation.closed_forms.slab import Slab, lit_slab
-from validation.stability.case import ALL, BLACK, ISOTROPIC, NULL, Case, ball, fog, lamp, methods, moved, named, oven, parallel, with_object
+from validation.closed_forms.view import View, pixel_means
+from validation.stability.case import ALL, Case, ball, fog, lamp, methods, moved, named, oven, parallel, with_object
 from validation.stability.half_space import reflectance
 
 ROW = "optical thickness 1e-6 to 1e6"
@@ -85,12 +86,7 @@ def lamps_behind() -> list[Case]:
 
 def behind(b: float) -> np.ndarray:
     """exp(-b / cos) averaged over each pixel of the lamp's view."""
-    nodes, weights = np.polynomial.legendre.leggauss(8)
-    slope = np.tan(np.radians(8) / 2)
-    across = slope * (2 * (np.arange(SIZE)[:, None] + 0.5 + nodes / 2) / SIZE - 1)
-    x, y = across[None, :, None, :], across[:, None, :, None]
-    seen = np.exp(-b * np.sqrt(1 + x * x + y * y))
-    return np.einsum("yxvu,v,u->yx", seen, weights / 2, weights / 2)[..., None]
+    return pixel_means(np.exp(b / View((0, 0, 3), (0, 0, 0), 8).directions()[..., 2]))
 
 
 def scattering() -> list[Case]:

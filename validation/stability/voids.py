@@ -6,8 +6,8 @@ import numpy as np
 
 from tyndall.scene import Scene
 from validation.closed_forms import varying
-from validation.closed_forms.case import SIZE, camera, scene
-from validation.stability.case import ALL, NULL, TRACKERS, Case, diffuse, lamp, methods
+from validation.closed_forms.case import NULL, SIZE, diffuse, orthographic, scene
+from validation.stability.case import ALL, TRACKERS, Case, lamp, methods
 from validation.stability.lamps import FLOOR_VIEW, PLACE, lit_floor, lit_image
 
 EMPTY = "empty medium"
@@ -86,9 +86,7 @@ def dimmed() -> float:
 def block(name: str, interior: dict, **more: Any) -> Scene:
     """The unit cube along z: two by two rows of voxels, that which is lit below at the right."""
     x, y = LIT[2] / VOXELS, (LIT[1] + 1) / VOXELS
-    view = {k: v for k, v in camera((x, y, 3), (x, y, 0), 1).items() if k != "fov"}
-    step = {"type": "scale", "value": [1 / VOXELS, 1 / VOXELS, 1]}
-    sensor = {**view, "type": "orthographic", "to_world": [step, *view["to_world"]]}
+    sensor = orthographic((x, y, 3), (x, y, 0), 1 / VOXELS)
     box = [{"type": "translate", "value": [1, 1, 1]}, {"type": "scale", "value": 0.5}]
     cube = {"type": "cube", "to_world": box, "bsdf": NULL, "interior": interior}
     return scene(f"voxel {name}", sensor=sensor, cube=cube, **more)

@@ -1,9 +1,9 @@
 """Walks of 10 000 vertices."""
 
 from tyndall.scene import Scene
-from validation.closed_forms.case import camera, scene
+from validation.closed_forms.case import NULL, camera, diffuse, scene
 from validation.closed_forms.furnace import ball_of_medium
-from validation.stability.case import NULL, Case, diffuse, lamp, named
+from validation.stability.case import Case, lamp, named
 
 ROW = "walks of 10 000 vertices"
 LOSS = 1e-4

@@ -1,4 +1,4 @@
-"""What a perspective camera sees of the plane y = 0, by quadrature over each pixel."""
+"""What a perspective camera sees, by quadrature over each pixel."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,8 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.closed_forms.case import SIZE, camera
-
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 @dataclass(frozen=True)
@@ -18,6 +16,8 @@ class View:
     target: tuple[float, float, float]
     fov: float
     up: tuple[float, float, float] = (0, 1, 0)
+    nodes: int = 8
+    """Of the quadrature, along a side of a pixel."""
 
     def sensor(self, near: float = 1e-4) -> dict:
         """As a scene has it."""
@@ -25,8 +25,8 @@ class View:
 
     def directions(self) -> np.ndarray:
         """Unit directions, (rows, columns, nodes, nodes, 3)."""
-        centres = np.arange(SIZE) + 0.5
-        y, x, v, u = np.meshgrid(centres, centres, NODES / 2, NODES / 2, indexing="ij")
+        centres, nodes = np.arange(SIZE) + 0.5, np.polynomial.legendre.leggauss(self.nodes)[0] / 2
+        y, x, v, u = np.meshgrid(centres, centres, nodes, nodes, indexing="ij")
         forward = unit(np.subtract(self.target, self.eye))
         left = unit(np.cross(self.up, forward))
         slope = np.tan(np.radians(self.fov) / 2)
@@ -34,7 +34,7 @@ class View:
         return unit(forward + across[..., None] * left + upwards[..., None] * np.cross(forward, left))
 
     def image(self, radiance: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
-        """The means over pixels of the radiance, told by points of the plane and their distances from the camera."""
+        """The means over pixels of the radiance, told by points of the plane y = 0 and their distances from the camera."""
         direction = self.directions()
         distance = -self.eye[1] / direction[..., 1]
         seen = radiance(np.asarray(self.eye) + distance[..., None] * direction, distance)
@@ -43,7 +43,8 @@ class View:
 
 def pixel_means(values: np.ndarray) -> np.ndarray:
     """From the nodes within pixels to an image."""
-    return (values * (WEIGHTS[:, None] * WEIGHTS / 4)).sum(axis=(2, 3))[..., None]
+    weights = np.polynomial.legendre.leggauss(values.shape[2])[1]
+    return (values * (weights[:, None] * weights / 4)).sum(axis=(2, 3))[..., None]
 
 
 def unit(v: np.ndarray) -> np.ndarray:
