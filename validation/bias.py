@@ -14,6 +14,7 @@ import numpy as np
 from scipy import stats
 
 from validation import studies
+from validation.files import write_report, write_text
 from validation.made_by import made_by_command
 from validation.places import OUTPUT, REPORTS, SCENES
 
@@ -64,13 +65,9 @@ def run(options: argparse.Namespace) -> bool:
     if not studies.run(line(options, folder)):
         return False
     curves = [Curve(scene, points(folder / "study.csv", scene)) for scene in CLOUDS]
-    options.output.mkdir(parents=True, exist_ok=True)
-    (options.output / "bias.json").write_text(json.dumps([asdict(curve) for curve in curves], indent=1) + "\n")
-    (options.output / "bias.svg").write_text(drawing(curves))
-    made_by = json.loads((folder / "study.json").read_text())
-    text = page(curves, options, made_by["made_by"])
-    (options.output / "bias.md").write_text(text)
-    print(text)
+    made_by = json.loads((folder / "study.json").read_text())["made_by"]
+    write_report("bias", page(curves, options, made_by), [asdict(curve) for curve in curves], options.output)
+    write_text(options.output / "bias.svg", drawing(curves))
     return all(holds(curve) for curve in curves)
 
 

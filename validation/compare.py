@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -147,17 +148,22 @@ def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size: Size = Non
 
 
 def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int | None = None) -> Renderer:
-    """Tyndall on this scene. The method is an integrator, with `+guide` if walks shall follow one, and, after a colon, a tracker
-    that all media shall use."""
-    walks, _, tracker = method.partition(":")
-    integrator, _, guide = walks.partition("+")
+    """Tyndall on this scene."""
     # Samples that are spread evenly leave so little noise that the test would be one of Mitsuba's own approximations,
     # such as filters in tables, and of how independent the batches of its even samplers are.
-    # All strategies, whether or not a pilot finds them worth their time.
-    strategies = tyndall.ALL_STRATEGIES if integrator == "bdpt" else None
-    options = {"integrator": integrator, "strategies": strategies, "tracker": tracker or None, "guide": "always" if guide else None, "size": size, "sampler": "independent"}
-    render = lambda effort: tyndall.render_batches(scene, effort.batches, spp=effort.spp, seed=effort.seed, threads=threads, **options)
+    options = {**options_of(method), "size": size, "sampler": "independent", "threads": threads}
+    render = lambda effort: tyndall.render_batches(scene, effort.batches, spp=effort.spp, seed=effort.seed, **options)
     return lambda effort: Measured.of(render(effort))
+
+
+def options_of(method: str) -> dict[str, Any]:
+    """A method's options: it is an integrator, with strategies after a slash, `+guide` if walks shall follow one, and, after a colon, a
+    tracker that all media shall use. `bdpt` takes all strategies, whether or not a pilot finds them worth their time."""
+    walks, _, tracker = method.partition(":")
+    walks, _, guide = walks.partition("+")
+    integrator, _, strategies = walks.partition("/")
+    usual = tyndall.ALL_STRATEGIES if integrator == "bdpt" else None
+    return {"integrator": integrator, "strategies": strategies or usual, "tracker": tracker or None, "guide": "always" if guide else None}
 
 
 def candidate_renderer(scene: Scene, method: str, size: Size = None, threads: int | None = None) -> Renderer:

@@ -3,7 +3,6 @@
 boxes; the references are long renders that are kept."""
 
 import argparse
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -12,11 +11,11 @@ from typing import Any
 from tyndall.failure import Failure
 from validation import guide, models, studies, volumes
 from validation.contender import INTEGRATORS
-from validation.files import write_text
+from validation.files import write_report
 from validation.made_by import made_by_command
 from validation.places import EFFICIENCY, OUTPUT, REPORTS, SCENES
 from validation.statistics import Ratio
-from validation.studies import BDPT, MITSUBA, OURS, Effort, Found, Reference, Study
+from validation.studies import BDPT, MITSUBA, OURS, Effort, Found, Reference
 
 WANTED = {
     SCENES / "lampbox_down.xml": 15,
@@ -101,7 +100,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> bool:
-    """Measures, writes and judges the table."""
+    """Measures, writes and judges the table, the least lead first; true if nobody is surely better."""
     suite = SUITES[options.suite]
     if options.grids or not options.scenes or EFFICIENCY in (scene.resolve().parent for scene in options.scenes):
         volumes.write()
@@ -114,7 +113,10 @@ def run(options: argparse.Namespace) -> bool:
     given, restart = [Reference(file) for file in options.reference], not options.resume and not options.output
     study = studies.measured(scenes, contenders(suite, options), effort_of(suite, options), folder, given, suite.ours, restart)
     is_whole = not (options.quick or options.scenes or options.only or options.output or options.against)
-    return told(study, [one / options.suite for one in (folder, *([REPORTS] if is_whole else []))])
+    rows = sorted(map(row_of, study.scenes), key=lambda row: min((ratio.mean for ratio in row.leads), default=0))
+    text = page(rows, study.told, made_by_command())
+    write_report(options.suite, text, [asdict(row) for row in rows], folder, *([REPORTS] if is_whole else []))
+    return not any(row.is_beaten or row.is_outdone for row in rows)
 
 
 def effort_of(suite: Suite, options: argparse.Namespace) -> Effort:
@@ -138,17 +140,6 @@ def contenders(suite: Suite, options: argparse.Namespace) -> dict[str, str]:
         raise Failure(f'--contender "{unnamed}": no name', 'write --contender "joins: --integrator bdpt --strategies hit,join"')
     more = dict(text.split(": ", 1) for text in options.contender)
     return {OURS: options.ours or suite.ours, **{name: known[name] for name in names if name}, **more}
-
-
-def told(study: Study, files: Sequence[Path]) -> bool:
-    """Prints and writes the table, the least lead first; true if nobody is surely better."""
-    rows = sorted(map(row_of, study.scenes), key=lambda row: min((ratio.mean for ratio in row.leads), default=0))
-    text = page(rows, study.told, made_by_command())
-    for file in files:
-        write_text(file.with_suffix(".json"), json.dumps([asdict(row) for row in rows], indent=1) + "\n")
-        write_text(file.with_suffix(".md"), text)
-    print(text)
-    return not any(row.is_beaten or row.is_outdone for row in rows)
 
 
 @dataclass(frozen=True)

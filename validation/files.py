@@ -1,6 +1,8 @@
 """Files that are whole or not there."""
 
+import json
 from pathlib import Path
+from typing import Any
 
 
 def write_text(path: Path, text: str) -> None:
@@ -9,3 +11,12 @@ def write_text(path: Path, text: str) -> None:
     partial = path.with_suffix(".partial")
     partial.write_text(text, encoding="utf-8", newline="")
     partial.replace(path)
+
+
+def write_report(name: str, text: str, found: Any, *folders: Path) -> None:
+    """Prints a report and writes it to folders as NAME.md, what programs may read of it, if anything, as NAME.json."""
+    print(text)
+    for folder in folders:
+        write_text(folder / f"{name}.md", text)
+        if found is not None:
+            write_text(folder / f"{name}.json", json.dumps(found, indent=1) + "\n")

@@ -1,7 +1,6 @@
 """How the cost of a sample grows with the scene and with what is asked for: depth, triangles, voxels, lights, pixels, samples,
 threads; and how long the program takes to start. Instructions, counted by valgrind, where that says enough; seconds else."""
 
-import json
 import math
 import os
 import shutil
@@ -21,6 +20,7 @@ from tyndall.failure import Failure
 from tyndall.volume_file import vol
 from validation import instructions
 from validation.closed_forms.case import diffuse, film, rgb
+from validation.files import write_report
 from validation.made_by import made_by_command
 from validation.places import REPORTS, SCENES
 
@@ -57,13 +57,7 @@ def run(output: Path | None) -> bool:
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         curves = [curve(Path(folder)) for curve in CURVES]
     start = starting()
-    output = output or REPORTS
-    output.mkdir(parents=True, exist_ok=True)
-    found = {"curves": [asdict(curve) for curve in curves], "start_seconds": start}
-    (output / "growth.json").write_text(json.dumps(found, indent=1) + "\n")
-    text = page(curves, start)
-    (output / "growth.md").write_text(text)
-    print(text)
+    write_report("growth", page(curves, start), {"curves": [asdict(curve) for curve in curves], "start_seconds": start}, output or REPORTS)
     return all(curve.holds for curve in curves) and start < LONGEST_START
 
 

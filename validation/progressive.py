@@ -10,7 +10,7 @@ import numpy as np
 
 from tyndall.commands import diff
 from tyndall.rendering import run as render
-from validation.files import write_text
+from validation.files import write_report
 from validation.made_by import made_by_command
 from validation.places import REPORTS, SCENES
 
@@ -57,9 +57,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> bool:
     """Measures and writes the table; true if both methods are better than the grid everywhere."""
     rows = [row for scene, strategies in CASES.items() for row in rows_of(scene, strategies, options)]
-    text = page(rows, options)
-    write_text(options.output / "progressive.md", text)
-    print(text)
+    write_report("progressive", page(rows, options), None, options.output)
     return all(row.is_better for row in rows)
 
 

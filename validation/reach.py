@@ -3,6 +3,7 @@ path tracing does not find. What is missing there is no fault."""
 
 import json
 from dataclasses import dataclass
+from typing import Any
 
 from tyndall import program
 from tyndall.failure import Failure
@@ -20,6 +21,11 @@ class Reach:
 
     unreached: dict[str, str]
 
+    @staticmethod
+    def of(plan: dict[str, Any]) -> "Reach":
+        """By a plan of `tyndall info`."""
+        return Reach({entry["light"]: entry["reached_by_bdpt"] for entry in plan["unreached"]})
+
     def beyond(self, other: "Reach", by_bdpt: bool) -> list[str]:
         """What this does not reach and the other one does; where that is `bdpt`, also what it reaches a part of."""
         partly = {light for light, part in self.unreached.items() if by_bdpt and part == SOME}
@@ -29,9 +35,14 @@ class Reach:
 def of(scene: Scene, method: str) -> Reach:
     """What `tyndall info` says of the scene; an error where it cannot be rendered so."""
     integrator, _, tracker = method.partition(":")
-    options: dict[str, program.Option] = {"json": True, "integrator": integrator, "tracker": tracker or None}
-    said = program.call([str(program.binary()), "info", str(scene.source), *program.flags(options), *program.definitions(scene.parameters)]).stdout
-    return Reach({entry["light"]: entry["reached_by_bdpt"] for entry in json.loads(said)["plan"]["unreached"]})
+    options = program.flags({"integrator": integrator, "tracker": tracker or None})
+    return Reach.of(plan(str(scene.source), *options, *program.definitions(scene.parameters)))
+
+
+def plan(*words: str) -> dict[str, Any]:
+    """What `tyndall info` by these words says will be done."""
+    told: dict[str, Any] = json.loads(program.call([str(program.binary()), "info", "--json", *words]).stdout)["plan"]
+    return told
 
 
 def mitsubas(scene: Scene) -> str:

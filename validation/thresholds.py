@@ -11,7 +11,7 @@ from tyndall.rendering import Rendering
 from tyndall.rendering import run as render
 from tyndall.scene import Scene
 from validation import guide
-from validation.files import write_text
+from validation.files import write_report
 from validation.made_by import made_by_command
 from validation.places import REPORTS
 from validation.statistics import Ratio
@@ -78,9 +78,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> bool:
     """Measures and writes the table; true if a guide gives what it shall everywhere."""
     rows = [row_of(case, threshold, options) for case in guide.CASES["P03T's boxes"] for threshold in (100, 50)]
-    text = page(rows, options)
-    write_text(options.output / "thresholds.md", text)
-    print(text)
+    write_report("thresholds", page(rows, options), None, options.output)
     return all(row.gain.mean >= WANTED for row in rows)
 
 

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 import tyndall
-from tyndall import program
 from tyndall.failure import Failure
 from tyndall.rendering import ALL_STRATEGIES
 from tyndall.scene import Scene, scene_file
-from validation import studies
+from validation import reach, studies
+from validation.files import write_text
 from validation.lottery.scenes import Drawn, drawn
 from validation.places import OUTPUT
+from validation.reach import Reach
 from validation.statistics import Ratio
 from validation.studies import BDPT, OURS, Effort
 
@@ -99,7 +100,7 @@ def run(options: argparse.Namespace) -> bool:
             failed += 1
             print(f"FAILED: seed {seed}: {failure}", flush=True)
     print(summary(rows))
-    (options.output / "lottery.json").write_text(json.dumps([asdict(row) for row in rows], indent=1) + "\n")
+    write_text(options.output / "lottery.json", json.dumps([asdict(row) for row in rows], indent=1) + "\n")
     return not failed and not any(row.is_marked for row in rows)
 
 
@@ -121,8 +122,8 @@ def ticket(seed: int, output: Path) -> tuple[Path, Drawn]:
 def judged(seed: int, options: argparse.Namespace) -> Row:
     """A scene drawn and measured."""
     path, found = ticket(seed, options.output)
-    plan = plan_of(path, BDPT)
-    reaching = {name: words for name, words in OTHERS.items() if unreached(plan_of(path, words)) <= unreached(plan)}
+    plan = reach.plan(str(path), *BDPT.split())
+    reaching = {name: words for name, words in OTHERS.items() if not Reach.of(reach.plan(str(path), *words.split())).beyond(Reach.of(plan), False)}
     search = measured(path, reaching, SEARCH, options)
     costs = {name: search.cost(name) for name in reaching}
     best = min(costs, key=lambda name: costs[name])
@@ -136,16 +137,6 @@ def measured(path: Path, others: dict[str, str], seeds: range, options: argparse
     """The default and others, one thread each."""
     effort = Effort(len(seeds), options.seconds, options.reference_seconds, threads=1, first=seeds[0])
     return studies.measured([path], {OURS: BDPT, **others}, effort, path.parent / f"study-{seeds[0]}", quiet=True).scenes[0]
-
-
-def plan_of(path: Path, words: str) -> dict[str, Any]:
-    """What these options choose."""
-    return json.loads(program.call([str(program.binary()), "info", "--json", str(path), *words.split()]).stdout)["plan"]
-
-
-def unreached(plan: dict[str, Any]) -> set[str]:
-    """Light that is left out."""
-    return {entry["light"] for entry in plan["unreached"]}
 
 
 def line(row: Row) -> str:

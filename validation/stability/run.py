@@ -15,20 +15,8 @@ import tyndall
 from tyndall.failure import Failure
 from tyndall.scene import Scene, changed
 from validation.closed_forms.case import SIZE
-from validation.stability import (
-    albedo,
-    anisotropy,
-    boundaries,
-    contrast,
-    grazing,
-    index,
-    lamps,
-    report,
-    scale,
-    thickness,
-    voids,
-    walks,
-)
+from validation.compare import options_of
+from validation.stability import albedo, anisotropy, boundaries, contrast, grazing, index, lamps, report, scale, thickness, voids, walks
 from validation.stability.case import Case
 from validation.stability.judge import Found, judge
 from validation.stability.report import Line
@@ -139,13 +127,9 @@ def spread(single: np.ndarray) -> np.ndarray:
 def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None, batches: int | None = None) -> np.ndarray:
     """Independent images, or one, as they are in the file: NaN and infinities included. A contribution that the program left
     out because it was none counts as one."""
-    integrator, _, tracker = method.partition(":")
-    integrator, _, strategies = integrator.partition("/")
     done = tyndall.run(
         Scene(changed(scene.source, single_precision), scene.name, {}, scene.base),
-        integrator=integrator,
-        strategies=strategies or (tyndall.ALL_STRATEGIES if integrator == "bdpt" else None),
-        tracker=tracker or None,
+        **options_of(method),
         spp=spp,
         seed=seed,
         size=(size, size) if size else None,
