@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -55,92 +55,82 @@ def run(output: Path | None) -> bool:
     if shutil.which("valgrind") is None:
         raise Failure("valgrind was not found", "apt install valgrind")
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
-        curves = [curve(Path(folder)) for curve in CURVES]
+        curves = list(curves_in(Path(folder)))
     start = starting()
     write_report("growth", page(curves, start), {"curves": [asdict(curve) for curve in curves], "start_seconds": start}, output or REPORTS)
     return all(curve.holds for curve in curves) and start < LONGEST_START
 
 
-def depth(_: Path) -> Curve:
+def depth(most: int, _: Path) -> float:
     """A closed room of fog that absorbs nothing: every walk is as long as it may be."""
-
-    def cost(most: int) -> float:
-        return instructions.per_sample(white_room(), SAMPLES, side=6, max_depth=most, strategies=tyndall.ALL_STRATEGIES) / most
-
-    return curve("greatest depth", "instructions per sample over the depth", (8, 32, 128, 512, 2000), cost, "white fog in a white room", 1.1)
+    return counted(white_room(), SAMPLES, side=6, max_depth=most) / most
 
 
-def triangles(folder: Path) -> Curve:
+def triangles(count: int, folder: Path) -> float:
     """A rough ball in fog."""
-
-    def cost(count: int) -> float:
-        side = max(2, round(math.sqrt(count / 2)))
-        path = folder / f"ball_{count}.ply"
-        path.write_bytes(ball(side))
-        scene = box_of_fog({"ball": {"type": "ply", "filename": str(path), "bsdf": grey(0.6)}})
-        return instructions.per_sample(scene, MANY_SAMPLES, strategies=tyndall.ALL_STRATEGIES)
-
-    return curve("triangles", "instructions per sample", (200, 2_000, 20_000, 200_000, 2_000_000), cost, "a rough ball in fog")
+    path = folder / f"ball_{count}.ply"
+    path.write_bytes(ball(max(2, round(math.sqrt(count / 2)))))
+    return counted(box_of_fog({"ball": {"type": "ply", "filename": str(path), "bsdf": grey(0.6)}}), MANY_SAMPLES)
 
 
-def voxels(folder: Path) -> Curve:
+def voxels(side: int, folder: Path) -> float:
     """The same smoke in ever finer voxels."""
-
-    def cost(side: int) -> float:
-        path = folder / f"smoke_{side}.vol"
-        path.write_bytes(vol(smoke(side)))
-        return instructions.per_sample(box_of_smoke(path), SAMPLES, strategies=tyndall.ALL_STRATEGIES)
-
-    return curve("voxels along a side", "instructions per sample", (16, 32, 64, 128, 256), cost, "the same smoke under a sky and a sun")
+    path = folder / f"smoke_{side}.vol"
+    path.write_bytes(vol(smoke(side)))
+    return counted(box_of_smoke(path), SAMPLES)
 
 
-def lights(_: Path) -> Curve:
+def lights(count: int, _: Path) -> float:
     """Small lamps all over a box of fog."""
-
-    def cost(count: int) -> float:
-        at = np.random.default_rng(1).uniform(-1, 1, (count, 3))
-        lamps = {f"lamp{i}": {"type": "point", "position": [float(x) for x in place], "intensity": rgb(1 / count)} for i, place in enumerate(at)}
-        return instructions.per_sample(box_of_fog(lamps), MANY_SAMPLES, strategies=tyndall.ALL_STRATEGIES)
-
-    return curve("lights", "instructions per sample", (1, 10, 100, 1_000, 10_000, 100_000), cost, "point lights all over a box of fog")
+    at = np.random.default_rng(1).uniform(-1, 1, (count, 3))
+    lamps = {f"lamp{i}": {"type": "point", "position": [float(x) for x in place], "intensity": rgb(1 / count)} for i, place in enumerate(at)}
+    return counted(box_of_fog(lamps), MANY_SAMPLES)
 
 
-def pixels(_: Path) -> Curve:
+def pixels(side: int, _: Path) -> float:
     """One scene in ever larger images."""
-
-    def cost(side: int) -> float:
-        return instructions.per_sample(SCENES / "lampbox_up.xml", SAMPLES, side, strategies=tyndall.ALL_STRATEGIES)
-
-    return curve("pixels along a side", "instructions per sample", (8, 16, 32, 64, 128, 256), cost, "lampbox_up", 1.1)
+    return counted(SCENES / "lampbox_up.xml", SAMPLES, side=side)
 
 
-def memory(folder: Path) -> Curve:
+def counted(scene: tyndall.AnyScene, samples: tuple[int, int], **options: Any) -> float:
+    """Instructions of a sample by all strategies."""
+    return instructions.per_sample(scene, samples, strategies=tyndall.ALL_STRATEGIES, **options)
+
+
+def memory(spp: int, folder: Path) -> float:
     """Of ever more samples."""
-
-    def cost(spp: int) -> float:
-        command = [str(program.binary()), "--quiet", "render", str(SCENES / "lampbox_up.xml"), "-o", str(folder / "image.exr")]
-        return most_memory([*command, "--spp", str(spp), "--size", "256x256", "--threads", "1", "--strategies", tyndall.ALL_STRATEGIES])
-
-    return curve("samples per pixel", "greatest memory in MB", (1, 4, 16, 64), cost, "lampbox_up, 256 x 256", 1.05)
+    command = [str(program.binary()), "--quiet", "render", str(SCENES / "lampbox_up.xml"), "-o", str(folder / "image.exr")]
+    return most_memory([*command, "--spp", str(spp), "--size", "256x256", "--threads", "1", "--strategies", tyndall.ALL_STRATEGIES])
 
 
-def threads(_: Path) -> Curve:
-    """Samples per second of two threads over those of one: the median of turns."""
-    ratios = sorted(seconds(1) / seconds(2) for _ in range(TURNS))
-    return Curve("threads", "times the speed of one", [(1, 1.0), (2, ratios[TURNS // 2])], "lampbox_up, 256 x 256; the median of seven turns, seconds by a clock")
-
-
+COUNT = "instructions per sample"
+COSTS: tuple[tuple[Callable[[int, Path], float], Sequence[int], tuple[str, str, str, float]], ...] = (
+    (depth, (8, 32, 128, 512, 2000), ("greatest depth", f"{COUNT} over the depth", "white fog in a white room", 1.1)),
+    (triangles, (200, 2_000, 20_000, 200_000, 2_000_000), ("triangles", COUNT, "a rough ball in fog", math.inf)),
+    (voxels, (16, 32, 64, 128, 256), ("voxels along a side", COUNT, "the same smoke under a sky and a sun", math.inf)),
+    (lights, (1, 10, 100, 1_000, 10_000, 100_000), ("lights", COUNT, "point lights all over a box of fog", math.inf)),
+    (pixels, (8, 16, 32, 64, 128, 256), ("pixels along a side", COUNT, "lampbox_up", 1.1)),
+    (memory, (1, 4, 16, 64), ("samples per pixel", "greatest memory in MB", "lampbox_up, 256 x 256", 1.05)),
+)
+"""What costs, where it is measured, and what the curve says of it."""
 TURNS = 7
-CURVES: Sequence[Callable[[Path], Curve]] = (depth, triangles, voxels, lights, pixels, memory, threads)
 LONGEST_START = 0.01
 """Seconds from the command to its end, where there is nothing to do."""
 
 
-def curve(over: str, of: str, at: Sequence[int], cost: Callable[[int], float], remark: str, most: float = math.inf) -> Curve:
-    """The cost at each point."""
-    found = Curve(over, of, [(x, cost(x)) for x in at], remark, most)
-    print(line(found), flush=True)
-    return found
+def curves_in(folder: Path) -> Iterator[Curve]:
+    """All of them, printed as they come."""
+    for cost, at, (over, of, remark, most) in COSTS:
+        found = Curve(over, of, [(x, cost(x, folder)) for x in at], remark, most)
+        print(line(found), flush=True)
+        yield found
+    yield threads()
+
+
+def threads() -> Curve:
+    """Samples per second of two threads over those of one: the median of turns."""
+    ratios = sorted(seconds(1) / seconds(2) for _ in range(TURNS))
+    return Curve("threads", "times the speed of one", [(1, 1.0), (2, ratios[TURNS // 2])], "lampbox_up, 256 x 256; the median of seven turns, seconds by a clock")
 
 
 def seconds(count: int) -> float:
