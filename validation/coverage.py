@@ -12,6 +12,7 @@ from tyndall.failure import Failure
 from tyndall.program import binary
 from validation import mitsuba
 from validation.cases import CASES, Case
+from validation.contender import objects
 
 PLACES = (
     lambda plugin: {"thing": plugin},
@@ -57,16 +58,7 @@ def plugins(case: Case) -> Iterator[str]:
     scene = case.scene()
     if isinstance(scene.source, Path) and scene.is_xml:
         return xml_types(scene.source, case.parameters)
-    return json_types(scene.dictionary())
-
-
-def json_types(tree: Any) -> Iterator[str]:
-    """Every `type` in a JSON tree."""
-    children = tree.values() if isinstance(tree, dict) else tree if isinstance(tree, list) else ()
-    if isinstance(tree, dict) and "type" in tree:
-        yield tree["type"]
-    for child in children:
-        yield from json_types(child)
+    return (o["type"] for o in objects(scene.dictionary()))
 
 
 def xml_types(path: Path, parameters: dict[str, str]) -> Iterator[str]:

@@ -125,7 +125,7 @@ def judged(seed: int, options: argparse.Namespace) -> Row:
     plan = reach.plan(str(path), *BDPT.split())
     reaching = {name: words for name, words in OTHERS.items() if not Reach.of(reach.plan(str(path), *words.split())).beyond(Reach.of(plan), False)}
     search = measured(path, reaching, SEARCH, options)
-    costs = {name: search.cost(name) for name in reaching}
+    costs = {name: search.cost(name) for name in search.costs if name != OURS}
     best = min(costs, key=lambda name: costs[name])
     others = {"best": best} | {name: name for name in ("pt", "alike") if name in reaching}
     final = measured(path, {name: reaching[name] for name in others.values()}, range(options.renders), options)
