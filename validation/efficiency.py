@@ -3,6 +3,7 @@
 boxes; the references are long renders that are kept."""
 
 import argparse
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -185,14 +186,15 @@ def row_of(scene: Found) -> Row:
     (error, seconds), (other_error, other_seconds) = samples[OURS], samples[theirs[0] if theirs else OURS]
     of_sample = (other_error / error, other_seconds / seconds) if theirs else None
     own = {name: ratio for name, ratio in ratios.items() if not name.startswith("mitsuba ")}
-    share = scene.noise / scene.told["contenders"][0]["points"][-1]["relmse"]["mean"]
+    share = scene.noise * scene.told["contenders"][0]["points"][-1]["samples"] / error
     return Row(scene.name, wanted, scene.cost(), theirs, of_sample, own, share, scene.notes)
 
 
 def per_sample(contender: dict[str, Any]) -> tuple[float, float]:
-    """relMSE and seconds of a sample of each pixel."""
+    """relMSE and seconds of a sample of each pixel; NaN where an image holds it."""
     last = contender["points"][-1]
-    return last["relmse"]["mean"] * last["samples"], last["seconds"]["mean"] / last["samples"]
+    relmse = last["relmse"]["mean"]
+    return math.nan if relmse is None else relmse * last["samples"], last["seconds"]["mean"] / last["samples"]
 
 
 def page(rows: list[Row], study: dict[str, Any], command: str) -> str:
@@ -201,7 +203,7 @@ def page(rows: list[Row], study: dict[str, Any], command: str) -> str:
     below = ", ".join(row.scene for row in rows if row.theirs and row.theirs[1].mean < 1) or "none"
     outdone = ", ".join(f"{row.scene} ({name})" for row in rows for name, ratio in row.own.items() if ratio.mean < 1 - WORSE) or "none"
     others = list(dict.fromkeys(name for row in rows for name in row.own))
-    wanted = f"; wanted: {WANTED_MEAN}" if all(row.wanted for row in rows) else ""
+    wanted = f"; wanted: {WANTED_MEAN}" if {row.scene for row in rows} == {path.stem for path in WANTED} else ""
     size = study["scenes"][0]
     return "\n".join([
         "# Time to equal error", "",
@@ -221,7 +223,7 @@ def page(rows: list[Row], study: dict[str, Any], command: str) -> str:
 
 def table_line(row: Row, others: Sequence[str]) -> str:
     """A row in Markdown."""
-    theirs = f"{row.ours * row.theirs[1].mean:.3g} ({row.theirs[0].split()[1]}) | {row.theirs[1]}" if row.theirs else "none | "
+    theirs = f"{row.ours * row.theirs[1].mean:.3g} ({row.theirs[0].removeprefix('mitsuba ')}) | {row.theirs[1]}" if row.theirs else "none | "
     of_sample = f"{row.of_sample[0]:.3g}, {row.of_sample[1]:.2g}" if row.of_sample else ""
     wanted = "" if row.wanted is None else f"{row.wanted:g}"
     over = " | ".join(f"{row.own.get(name, '')}{aim(name, row.scene)}" for name in others)

@@ -64,7 +64,7 @@ OTHERS = {
     "no guide": "--integrator bdpt --starts emitted --guide never",
     "starts only": "--integrator bdpt --guide never",
     "pt": "--integrator pt",
-    "pt, guide": "--integrator pt --guide auto",
+    "pt guided": "--integrator pt --guide auto",
     "gather": "--integrator gather",
 }
 

@@ -85,7 +85,7 @@ def test_scenes_and_contenders_are_those_asked_for(tmp_path: Path, monkeypatch: 
     scenes, contenders, effort = asked(monkeypatch, "--quick", "--output", str(tmp_path))
     assert scenes == list(efficiency.WANTED) and list(contenders) == ["tyndall", "pt", "volpath", "volpathmis"]
     assert (effort.size, effort.points, effort.seeds) == ("96x96", 1, 3)
-    assert "| pool | 0.02 | 0.04 (volpath) |" in (tmp_path / "efficiency.md").read_text()
+    assert "| pool | 0.02 | 0.04 (volpath llvm) |" in (tmp_path / "efficiency.md").read_text()
     assert json.loads((tmp_path / "efficiency.json").read_text())[0]["theirs"][1]["mean"] == pytest.approx(2)
 
 

@@ -15,7 +15,8 @@ import pytest
 import tyndall
 from tyndall import program, watching
 from tyndall.failure import Failure
-from validation.places import CROSSCHECK, PYTHON
+from tyndall.scene import Scene
+from validation.places import CROSSCHECK, PYTHON, SCENES
 
 SCENE = CROSSCHECK / "cube_in_room.json"
 
@@ -121,3 +122,9 @@ def test_studies_return_their_numbers_and_go_on(tmp_path: Path) -> None:
     assert tyndall.study(scene, tmp_path / "again", **options)["scenes"] == of_dictionary["scenes"]
     with pytest.raises(Failure, match="did you mean integrators"):
         tyndall.study(scene, tmp_path / "other", integrator=["pt"])
+
+
+def test_scenes_of_a_study_share_their_parameters(tmp_path: Path) -> None:
+    boxes = [Scene(SCENES / f"lampbox_{way}.xml", way, {"res": "6"}) for way in ("down", "up")]
+    found = tyndall.study(boxes, tmp_path / "study", integrators=["pt"], seeds=2, doublings=1, spp=1, reference_spp=2)
+    assert [(scene["width"], scene["height"]) for scene in found["scenes"]] == [(6, 6)] * 2

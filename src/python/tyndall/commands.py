@@ -53,7 +53,7 @@ def study(scenes: AnyScene | Sequence[AnyScene], output: str | Path, *, progress
     several: list[Any] = list(scenes) if isinstance(scenes, (list, tuple)) else [scenes]
     output = Path(output).expanduser()
     files = [study_file(scene, output / f"scene-{number}") for number, scene in enumerate(several)]
-    given = [word for scene in several for word in program.definitions(as_scene(scene).parameters)]
+    given = program.definitions({name: value for scene in several for name, value in as_scene(scene).parameters.items()})
     command = [str(program.binary()), "--quiet", "study", *files, *program.flags({"output": output, "progress": "json"}), *settings, *given]
     outcome = watching.run(command, watching.shown(progress))
     if outcome.was_interrupted and outcome.code:
