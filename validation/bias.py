@@ -15,7 +15,6 @@ from scipy import stats
 
 from validation import studies
 from validation.files import write_report, write_text
-from validation.made_by import made_by_command
 from validation.places import OUTPUT, REPORTS, SCENES
 
 CLOUDS = {"function_cosine": "a cosine cloud", "function_noise": "a noise cloud"}
@@ -66,7 +65,7 @@ def run(options: argparse.Namespace) -> bool:
         return False
     curves = [Curve(scene, points(folder / "study.csv", scene)) for scene in CLOUDS]
     made_by = json.loads((folder / "study.json").read_text())["made_by"]
-    write_report("bias", page(curves, options, made_by), [asdict(curve) for curve in curves], options.output)
+    write_report("bias", "Bias against the step of ray marching", page(curves, options, made_by), [asdict(curve) for curve in curves], options.output)
     write_text(options.output / "bias.svg", drawing(curves))
     return all(holds(curve) for curve in curves)
 
@@ -108,10 +107,10 @@ def holds(curve: Curve) -> bool:
 def page(curves: list[Curve], options: argparse.Namespace, program: str) -> str:
     """The report."""
     head = (
-        "# Bias against the step of ray marching\n\n    python3 -m validation bias\n\n![bias over step](bias.svg)\n\n"
+        "![bias over step](bias.svg)\n\n"
         f"LW96 sec. 5: the medium is traversed at discrete intervals and taken as homogeneous in each. The mean of the image by `--step`, over that by unbiased flights, less 1, in percent, with "
         f"{100 * LEVEL:g} % intervals: {options.seeds} pairs of renders of {options.spp} samples per pixel by `pt`, 18 x 18 pixels, each pair with one seed. "
-        f"{program}; {made_by_command()}.\n\n"
+        f"{program}.\n\n"
     )
     steps = " | ".join(f"{step:g} m" for step in STEPS)
     table = f"| cloud | {steps} |\n|{'---|' * (1 + len(STEPS))}\n"

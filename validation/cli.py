@@ -10,7 +10,7 @@ from validation import assets, bias, cells, compare, comparison_page, coverage, 
 from validation import matrix, package_tests, page, progressive, rays, reach, references, selftest, thresholds, truths
 from validation.cluster import cli as cluster
 from validation.compare import Effort
-from validation.made_by import made_by_command
+from validation.files import made_by_command
 from validation.places import OUTPUT
 
 Commands = argparse._SubParsersAction  # argparse gives it no public name

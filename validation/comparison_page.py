@@ -1,5 +1,6 @@
 """What `compare` found as one HTML page that holds its pictures and needs no network."""
 
+import base64
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,8 +14,7 @@ from tyndall.failure import Failure
 from tyndall.scene import Scene
 from validation import picture
 from validation.compare import RETRY, Effort, Verdict
-from validation.files import write_text
-from validation.made_by import made_by_command
+from validation.files import made_by_command, write_text
 
 TEMPLATES = Path(__file__).parent / "templates"
 SHARPEST = 4.0
@@ -72,7 +72,7 @@ def section(method: str, verdict: Verdict) -> Section:
         ("z, Tyndall less Mitsuba", display.png(picture.diverging(verdict.map, SHARPEST))),
         ("FLIP", differences),
     ]
-    return Section(method, verdict, [(title, picture.data_url(file)) for title, file in shown], mean)
+    return Section(method, verdict, [(title, "data:image/png;base64," + base64.b64encode(file).decode("ascii")) for title, file in shown], mean)
 
 
 def write(page: Page, path: Path) -> None:

@@ -13,7 +13,6 @@ from tyndall.failure import Failure
 from validation import guide, models, studies, volumes
 from validation.contender import INTEGRATORS
 from validation.files import write_report
-from validation.made_by import made_by_command
 from validation.places import EFFICIENCY, OUTPUT, REPORTS, SCENES
 from validation.statistics import Ratio
 from validation.studies import BDPT, MITSUBA, OURS, Effort, Found, Reference
@@ -115,8 +114,7 @@ def run(options: argparse.Namespace) -> bool:
     study = studies.measured(scenes, contenders(suite, options), effort_of(suite, options), folder, given, suite.ours, restart)
     is_whole = not (options.quick or options.scenes or options.only or options.output or options.against)
     rows = sorted(map(row_of, study.scenes), key=lambda row: min((ratio.mean for ratio in row.leads), default=0))
-    text = page(rows, study.told, made_by_command())
-    write_report(options.suite, text, [asdict(row) for row in rows], folder, *([REPORTS] if is_whole else []))
+    write_report(options.suite, "Time to equal error", page(rows, study.told), [asdict(row) for row in rows], folder, *([REPORTS] if is_whole else []))
     return not any(row.is_beaten or row.is_outdone for row in rows)
 
 
@@ -197,7 +195,7 @@ def per_sample(contender: dict[str, Any]) -> tuple[float, float]:
     return math.nan if relmse is None else relmse * last["samples"], last["seconds"]["mean"] / last["samples"]
 
 
-def page(rows: list[Row], study: dict[str, Any], command: str) -> str:
+def page(rows: list[Row], study: dict[str, Any]) -> str:
     """The table and what follows from it, in Markdown."""
     ratios = [row.theirs[1] for row in rows if row.theirs]
     below = ", ".join(row.scene for row in rows if row.theirs and row.theirs[1].mean < 1) or "none"
@@ -206,9 +204,8 @@ def page(rows: list[Row], study: dict[str, Any], command: str) -> str:
     wanted = f"; wanted: {WANTED_MEAN}" if {row.scene for row in rows} == {path.stem for path in WANTED} else ""
     size = study["scenes"][0]
     return "\n".join([
-        "# Time to equal error", "",
         f"relMSE x seconds, {size['width']} x {size['height']}; {study['made_by']}, Mitsuba 3.9.1; {study['machine']}",
-        "for each contender, which took turns; pilots and learning are among the seconds; intervals hold 95 %.", "", f"    {command}", "",
+        "for each contender, which took turns; pilots and learning are among the seconds; intervals hold 95 %.", "",
         f"| scene | Tyndall | Mitsuba, the better | ratio | of a sample: error, time | wanted |{''.join(f' over {name} |' for name in others)} reference |",
         "|---" * (7 + len(others)) + "|",
         *(table_line(row, others) for row in rows), "",

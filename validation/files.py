@@ -1,6 +1,8 @@
-"""Files that are whole or not there."""
+"""Files that are whole or not there, and reports that say how they were made."""
 
 import json
+import shlex
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +15,16 @@ def write_text(path: Path, text: str) -> None:
     partial.replace(path)
 
 
-def write_report(name: str, text: str, found: Any, *folders: Path) -> None:
+def made_by_command() -> str:
+    """The command that is running, which makes it again."""
+    return shlex.join(["python3", "-m", "validation", *sys.argv[1:]])
+
+
+def write_report(name: str, title: str, text: str, found: Any, *folders: Path) -> None:
     """Prints a report and writes it to folders as NAME.md, what programs may read of it, if anything, as NAME.json."""
-    print(text)
+    whole = f"# {title}\n\n    {made_by_command()}\n\n{text}"
+    print(whole)
     for folder in folders:
-        write_text(folder / f"{name}.md", text)
+        write_text(folder / f"{name}.md", whole)
         if found is not None:
             write_text(folder / f"{name}.json", json.dumps(found, indent=1) + "\n")

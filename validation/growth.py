@@ -21,7 +21,6 @@ from tyndall.volume_file import vol
 from validation import instructions
 from validation.closed_forms.case import diffuse, film, rgb
 from validation.files import write_report
-from validation.made_by import made_by_command
 from validation.places import REPORTS, SCENES
 
 SAMPLES = (1, 3)
@@ -57,7 +56,7 @@ def run(output: Path | None) -> bool:
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         curves = list(curves_in(Path(folder)))
     start = starting()
-    write_report("growth", page(curves, start), {"curves": [asdict(curve) for curve in curves], "start_seconds": start}, output or REPORTS)
+    write_report("growth", "How cost grows", page(curves, start), {"curves": [asdict(curve) for curve in curves], "start_seconds": start}, output or REPORTS)
     return all(curve.holds for curve in curves) and start < LONGEST_START
 
 
@@ -231,8 +230,6 @@ def page(curves: list[Curve], start: float) -> str:
     """All curves in Markdown."""
     wanted = "at most" if start < LONGEST_START else "MORE than"
     return "\n".join([
-        "# How cost grows", "",
-        f"    {made_by_command()}", "",
         *(line(curve) + "\n" for curve in curves),
         f"Start of the program: {1000 * start:.1f} ms ({wanted} {1000 * LONGEST_START:g} ms).", "",
     ])  # fmt: skip

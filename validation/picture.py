@@ -1,6 +1,5 @@
 """Pictures for the eye: tone mapping, enlargement, and maps of disagreement; 8-bit pixels are (height, width, 3)."""
 
-import base64
 from pathlib import Path
 
 import numpy as np
@@ -43,8 +42,3 @@ def write_png(path: Path, pixels: np.ndarray) -> None:
     """Writes 8-bit pixels."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(display.png(pixels))
-
-
-def data_url(file: bytes) -> str:
-    """A PNG file as the address of an image that a page holds itself."""
-    return "data:image/png;base64," + base64.b64encode(file).decode("ascii")

@@ -11,7 +11,6 @@ import numpy as np
 from tyndall.commands import diff
 from tyndall.rendering import run as render
 from validation.files import write_report
-from validation.made_by import made_by_command
 from validation.places import REPORTS, SCENES
 
 PT: dict[str, Any] = {"strategies": "hit,next-event"}
@@ -57,7 +56,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> bool:
     """Measures and writes the table; true if both methods are better than the grid everywhere."""
     rows = [row for scene, strategies in CASES.items() for row in rows_of(scene, strategies, options)]
-    write_report("progressive", page(rows, options), None, options.output)
+    write_report("progressive", "Progressive pictures", page(rows, options), None, options.output)
     return all(row.is_better for row in rows)
 
 
@@ -99,9 +98,7 @@ def interpolated(values: np.ndarray, places: np.ndarray, size: int, axis: int) -
 
 def page(rows: list[Row], options: argparse.Namespace) -> str:
     """The report."""
-    command = made_by_command()
     return (
-        f"# Progressive pictures\n\n    {command}\n\n"
         "`--progressive` (P03T ch. 6) shades a part of the pixels and interpolates the others. Below, how far that is from all pixels shaded, with "
         f"{options.spp} samples of each pixel in both, {options.size} pixels, {options.threads} threads: relMSE and FLIP, beside as many pixels on a regular grid, "
         "interpolated bilinearly. The noise of the pixels that are not shaded counts as error for all. Seconds are of the render alone; "

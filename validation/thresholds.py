@@ -12,7 +12,6 @@ from tyndall.rendering import run as render
 from tyndall.scene import Scene
 from validation import guide
 from validation.files import write_report
-from validation.made_by import made_by_command
 from validation.places import REPORTS
 from validation.statistics import Ratio
 
@@ -78,7 +77,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> bool:
     """Measures and writes the table; true if a guide gives what it shall everywhere."""
     rows = [row_of(case, threshold, options) for case in guide.CASES["P03T's boxes"] for threshold in (100, 50)]
-    write_report("thresholds", page(rows, options), None, options.output)
+    write_report("thresholds", "P03T's tests A-F at its own thresholds", page(rows, options), None, options.output)
     return all(row.gain.mean >= WANTED for row in rows)
 
 
@@ -101,7 +100,6 @@ def row_of(case: guide.Case, threshold: int, options: argparse.Namespace) -> Row
 def page(rows: list[Row], options: argparse.Namespace) -> str:
     """The report."""
     return (
-        f"# P03T's tests A-F at its own thresholds\n\n    {made_by_command()}\n\n"
         "P03T (sec. 5.2.1) renders until each pixel is within a threshold (eprt) with 95 % confidence, by its own samples (A.8). Its classical tracer took a hundred paths and more for a "
         "standard error as large as the mean. So it took no next-event estimation, whatever the text says; ours takes none here either.\n\n"
         f"Below, `pt --strategies hit --error` 1 and 0.5 by `--guide never` and `--guide always`: {options.size} pixels, {options.threads} threads, {options.seeds} seeds; intervals hold 95 %. "
