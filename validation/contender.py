@@ -123,12 +123,11 @@ ALL = (*OURS, "path", "volpath", "volpathmis", "ptracer")
 def integrator_like(whole: dict[str, Any], kind: str) -> dict[str, Any]:
     """Mitsuba's integrator `kind` with the depths that the scene's own has. Where that is one of Tyndall's, which has no
     Russian roulette, Mitsuba's begins late, which makes it less noisy than by its default."""
-    from tyndall.load_dict import ROULETTE
+    from tyndall.load_dict import translated
 
     own: dict[str, Any] = next((o for o in objects(whole) if o["type"] in ALL), {"type": "path"})
-    kept: dict[str, Any] = {key: own[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in own}
-    late: dict[str, Any] = {"rr_depth": ROULETTE[own.get("max_depth", -1) < 0]} if own["type"] in OURS else {}
-    return {"type": kind, **late, **kept}
+    theirs = translated({**own, "type": "bdpt"}) if own["type"] in OURS else own
+    return {"type": kind, **{key: theirs[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in theirs}}
 
 
 if __name__ == "__main__":
