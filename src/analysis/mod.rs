@@ -3,7 +3,7 @@
 //! # Error against run time: `tyndall study`
 //!
 //! ```text
-//! tyndall study scenes/foggy_room.json scenes/church.json -o study --integrators bdpt,pt,lt --seconds 8
+//! tyndall study scenes/foggy_room.json scenes/church.json -o study --vary integrator=bdpt,pt,lt --seconds 8
 //! ```
 //!
 //! Contenders take turns, seed by seed, on the same cores; every render is looked at as its samples double up to the
@@ -19,9 +19,8 @@
 //! - `runs/`: what is needed to resume. A study that was stopped, in whatever way, is resumed by the same command, to the
 //!   same numbers: the plan that the pilots lead to is in `runs/plan.json` before anything is measured.
 //!
-//! Axes multiply: `--integrators`, `--strategies hit+next-event,hit+next-event+join`, `--trackers`, `--heuristics`,
-//! `--samplers`, and `--vary OPTION=A,B` for any option of `render` that says how paths are made
-//! (`--vary max-depth=2,4,-1`); `--contender "NAME: OPTIONS"` adds one by hand. `tyndall study --help` explains `--seeds`,
+//! Axes multiply: `--vary OPTION=A,B` for any option of `render` that says how paths are made (`--vary max-depth=2,4,-1`,
+//! `--vary strategies=hit+next-event,hit+next-event+join`); `--contender "NAME: OPTIONS"` adds one by hand. `tyndall study --help` explains `--seeds`,
 //! `--doublings`, `--confidence`, `--reference-by`, `--reference-seconds`, `--size` and `-D`.
 //!
 //! How to read it. The points of one curve share samples: its intervals over seeds hold at each budget, not for

@@ -48,7 +48,7 @@ Exit codes:
 #[derive(Clone, Debug, PartialEq, Subcommand)]
 pub enum Command {
     /// Render a scene to an image
-    Render(Render),
+    Render(Box<Render>),
     /// Show what each strategy of bidirectional path tracing contributes to a scene
     ///
     /// Writes to a folder the image of each strategy, weighted and unweighted, as EXR layers and as pyramids on
@@ -179,7 +179,7 @@ mod tests {
 
     fn render(words: &str) -> Render {
         match parse(&format!("render fog.json {words}")) {
-            Ok(Command::Render(render)) => render,
+            Ok(Command::Render(render)) => *render,
             other => panic!("{other:?}"),
         }
     }

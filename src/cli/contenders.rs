@@ -52,11 +52,7 @@ pub(super) fn all(arguments: &Study) -> Result<Vec<Contender>> {
     if !axes.is_empty() {
         contenders.extend(product(&axes));
     } else if is_alone {
-        contenders.extend(product(&[Axis::new(
-            "--integrators",
-            "integrator",
-            &["bdpt".to_owned(), "pt".to_owned()],
-        )?]));
+        contenders.extend(product(&[Axis::of("integrator=bdpt,pt")?]));
     }
     for Contender { name, how } in &contenders {
         if let How::Options(words) = how {
@@ -91,39 +87,30 @@ struct Axis {
     values: Vec<(String, String)>,
 }
 
-/// Every axis of the command line. An option of `render` needs a line here only to have a flag of its own.
+/// Options whose values tell by themselves what they are.
+const PLAIN: [&str; 5] = ["integrator", "strategies", "tracker", "heuristic", "sampler"];
+
+/// Every axis of the command line.
 fn axes(arguments: &Study) -> Result<Vec<Axis>> {
-    let named = [
-        ("--integrators", "integrator", &arguments.integrators),
-        ("--strategies", "strategies", &arguments.strategies),
-        ("--trackers", "tracker", &arguments.trackers),
-        ("--heuristics", "heuristic", &arguments.heuristics),
-        ("--samplers", "sampler", &arguments.samplers),
-    ];
-    let named = named.into_iter().filter(|(.., values)| !values.is_empty());
-    let mut axes: Vec<Axis> =
-        named.map(|(flag, option, values)| Axis::new(flag, option, values)).collect::<Result<_>>()?;
-    if !arguments.strategies.is_empty() && arguments.integrators.is_empty() {
+    let mut axes: Vec<Axis> = arguments.vary.iter().map(|text| Axis::of(text)).collect::<Result<_>>()?;
+    let varies = |option: &str| arguments.vary.iter().find(|text| text.split('=').next() == Some(option));
+    if varies("strategies").is_some() && varies("integrator").is_none() {
         // All strategies are those of bdpt; the scene's own integrator may have fewer.
         axes.insert(0, Axis { values: vec![(String::new(), "--integrator bdpt".to_owned())] });
     }
-    if arguments.heuristics.iter().any(|name| name != "balance") {
+    if varies("heuristic").is_some_and(|text| text != "heuristic=balance") {
         // The others are compiled for this profile only: times are those of heuristics, not of profiles.
         axes.push(Axis { values: vec![(String::new(), "--profile everything".to_owned())] });
-    }
-    for text in &arguments.vary {
-        let (option, values) = text.split_once('=').unwrap_or((text.as_str(), ""));
-        let values: Vec<String> = values.split(',').map(str::to_owned).collect();
-        let option = option.trim_start_matches('-');
-        axes.push(Axis::new(&format!("--vary {option}"), option, &values)?.named(option));
     }
     Ok(axes)
 }
 
 impl Axis {
-    /// The axis of `option` (its long name), given by `flag`. Where the option is a switch, its values are "on" and
-    /// "off"; "off" is passed on, so that the scene cannot say otherwise.
-    fn new(flag: &str, option: &str, values: &[String]) -> Result<Self> {
+    /// The axis of "OPTION=LIST". Where the option is a switch, its values are "on" and "off"; "off" is passed on, so that the
+    /// scene cannot say otherwise.
+    fn of(text: &str) -> Result<Self> {
+        let (option, values) = text.split_once('=').unwrap_or((text, ""));
+        let option = option.trim_start_matches('-');
         let command = Words::command();
         let all = || command.get_arguments().filter_map(|argument| argument.get_long());
         let Some(argument) = command.get_arguments().find(|argument| argument.get_long() == Some(option))
@@ -133,26 +120,23 @@ impl Axis {
             return Err(Error::new("--vary", format!("one of {names}"), format!("\"{option}\""), remedy));
         };
         let is_switch = !argument.get_action().takes_values();
-        let words = |value: &String| match (is_switch, value.as_str()) {
+        let words = |value: &str| match (is_switch, value) {
             (false, "") => Err("no value".to_owned()),
             (false, value) => Ok(format!("--{option} {}", value.replace('+', ","))),
             (true, "on") => Ok(format!("--{option}")),
             (true, "off") => Ok(format!("--no-{option}")),
             (true, value) => Err(format!("\"{value}\"")),
         };
-        let pair = |value: &String| Ok((value.clone(), words(value)?));
+        let shown = |value: &str| {
+            if PLAIN.contains(&option) { value.to_owned() } else { format!("{option}={value}") }
+        };
+        let pair = |value: &str| Ok((shown(value), words(value)?));
         let values =
-            values.iter().map(pair).collect::<std::result::Result<_, String>>().map_err(|found| {
+            values.split(',').map(pair).collect::<std::result::Result<_, String>>().map_err(|found| {
                 let expected = if is_switch { "on, off, or both" } else { "values, separated by commas" };
-                Error::new(flag, expected, found, "see tyndall study --help")
+                Error::new(format!("--vary {option}"), expected, found, "see tyndall study --help")
             })?;
         Ok(Self { values })
-    }
-
-    /// Values are shown with the name of their option.
-    fn named(mut self, option: &str) -> Self {
-        self.values.iter_mut().for_each(|(shown, _)| *shown = format!("{option}={shown}"));
-        self
     }
 }
 
@@ -258,7 +242,7 @@ mod tests {
     fn axes_multiply() {
         assert_eq!(shown(&[]), ["bdpt: --integrator bdpt", "pt: --integrator pt"]);
         assert_eq!(
-            shown(&["--strategies", "hit+next-event,hit+join", "--trackers", "exact,march"]),
+            shown(&["--vary", "strategies=hit+next-event,hit+join", "--vary", "tracker=exact,march"]),
             [
                 "hit+next-event exact: --integrator bdpt --strategies hit,next-event --tracker exact",
                 "hit+next-event march: --integrator bdpt --strategies hit,next-event --tracker march",
@@ -287,7 +271,7 @@ mod tests {
     #[test]
     fn heuristics_compete_on_one_profile() {
         assert_eq!(
-            shown(&["--heuristics", "balance,power", "--samplers", "sobol"]),
+            shown(&["--vary", "heuristic=balance,power", "--vary", "sampler=sobol"]),
             [
                 "balance sobol: --heuristic balance --sampler sobol --profile everything",
                 "power sobol: --heuristic power --sampler sobol --profile everything",
@@ -304,14 +288,14 @@ mod tests {
             (["--external", "render.py"], "NAME: COMMAND"),
             (["--external", "a: render.py {scene}"], "{budgets} and {folder}"),
             (["--contender", "a: --spp 4"], "about path sampling"),
-            (["--integrators", "bdpt,bdpt"], "twice"),
-            (["--integrators", "bdpt,ptt"], "ptt"),
-            (["--strategies", "hit+jion"], "join"),
+            (["--vary", "integrator=bdpt,bdpt"], "twice"),
+            (["--vary", "integrator=bdpt,ptt"], "ptt"),
+            (["--vary", "strategies=hit+jion"], "join"),
             (["--vary", "max-dept=2"], "max-depth"),
             (["--vary", "max-depth"], "values"),
             (["--vary", "max-depth=deep"], "number of edges"),
             (["--vary", "max-depth=2,,3"], "--vary max-depth: expected values"),
-            (["--samplers", "sobol,"], "--samplers: expected values"),
+            (["--vary", "sampler=sobol,"], "--vary sampler: expected values"),
             (["--vary", "step=0.1,0"], "a length above 0"),
             (["--contender", "a: --step 0.1 --march-error 0.1"], "cannot be used with"),
             (["--contender", "a: --scattering once"], "multiple, single, none"),

@@ -233,7 +233,7 @@ fn made_again(render: &Render, setup: &Setup) -> Result<(Value, Settings)> {
 fn recorded(made: &Value, part: &Path) -> Result<Render> {
     let words = made["command"].as_array().into_iter().flatten().filter_map(Value::as_str);
     match Arguments::try_parse_from(words) {
-        Ok(Arguments { command: Command::Render(render), .. }) => Ok(render),
+        Ok(Arguments { command: Command::Render(render), .. }) => Ok(*render),
         _ => {
             let found = "none, or one that this version does not understand";
             let remedy = "use the version of tyndall that wrote it";

@@ -48,32 +48,11 @@ pub struct Study {
     #[arg(short, long, value_name = "FOLDER")]
     pub output: PathBuf,
 
-    /// Integrators to compare, separated by commas: bdpt, pt, lt [default: bdpt,pt if no other contender is given]
+    /// Values to compare of an option of `tyndall render` about path sampling: integrator=bdpt,pt, max-depth=2,4,8;
+    /// of a switch: on,off; may be repeated [default: integrator=bdpt,pt if no other contender is given]
     ///
-    /// Every combination of the values of --integrators, --strategies, --trackers, --heuristics, --samplers and
-    /// --vary is one contender.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
-    pub integrators: Vec<String>,
-
-    /// Sets of strategies to compare, such as hit+next-event,hit+next-event+join; of bdpt unless --integrators is
-    /// given
-    #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
-    pub strategies: Vec<String>,
-
-    /// Free-flight sampling methods to compare, such as exact,null_collision
-    #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
-    pub trackers: Vec<String>,
-
-    /// Heuristics to compare, such as balance,power,maximum; all with the profile "everything"
-    #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
-    pub heuristics: Vec<String>,
-
-    /// Sources of random numbers to compare: independent, sobol
-    #[arg(long, value_name = "LIST", value_delimiter = ',', num_args = 1)]
-    pub samplers: Vec<String>,
-
-    /// Values to compare of any option of `tyndall render` about path sampling: max-depth=2,4,8; of a switch:
-    /// on,off; may be repeated
+    /// Every combination of values is one contender. Parts of a value are joined by "+": strategies=hit+next-event,hit+join.
+    /// Strategies are those of bdpt unless the integrator is given; heuristics are all compared with the profile "everything".
     #[arg(long, value_name = "OPTION=LIST", allow_hyphen_values = true)]
     pub vary: Vec<String>,
 

@@ -224,7 +224,7 @@ fn a_finished_study_is_told_again_without_rendering() {
 fn points_are_renders_and_measures_are_against_the_reference() {
     let desk = Desk::new(&[("room.json", foggy_room())]);
     let made = ["room.json", "-o", "out", "--spp", "12", "--doublings", "3", "--seeds", "2", "--seed", "5"];
-    desk.study(&[&made[..], &["--integrators", "pt", "--reference-spp", "64"]].concat());
+    desk.study(&[&made[..], &["--vary", "integrator=pt", "--reference-spp", "64"]].concat());
     for (index, spp) in ["3", "6", "12"].into_iter().enumerate() {
         let mut render = Command::new(env!("CARGO_BIN_EXE_tyndall"));
         render.current_dir(desk.folder.path()).args(["render", "room.json", "-o", "a.exr", "--spp", spp]);
@@ -253,7 +253,7 @@ fn points_are_renders_and_measures_are_against_the_reference() {
     // The same image read from a file gives the same numbers.
     fs::copy(desk.path("out/images/room/reference.exr"), desk.path("truth.exr")).unwrap();
     fs::rename(desk.path("out"), desk.path("first")).unwrap();
-    let file = ["--integrators", "pt", "--reference", "truth.exr", "--reference-error", "0.5"];
+    let file = ["--vary", "integrator=pt", "--reference", "truth.exr", "--reference-error", "0.5"];
     let reported = desk.study(&[&made[..], &file].concat());
     assert!(reported.contains("times the reference's own"), "{reported}");
     let again = fs::read_to_string(desk.path("out/study.csv")).unwrap();
@@ -283,7 +283,7 @@ fn slope_over_samples(contender: &Value) -> f64 {
 fn an_unbiased_contender_falls_with_slope_minus_one() {
     let desk = Desk::new(&[("room.json", foggy_room())]);
     // Samples that are spread evenly err even less.
-    let words = ["--integrators", "pt", "--samplers", "independent", "--spp", "256"];
+    let words = ["--vary", "integrator=pt", "--vary", "sampler=independent", "--spp", "256"];
     let more = ["--doublings", "5", "--reference-spp", "8192"];
     desk.study(&[&["room.json", "-o", "out"], &words[..], &more[..]].concat());
     let contender = &desk.json("out/study.json")["scenes"][0]["contenders"][0];
@@ -312,10 +312,10 @@ fn layered() -> Value {
 fn bias_flattens_the_curve_and_shifts_the_mean() {
     let desk = Desk::new(&[("cloud.json", layered())]);
     let words = [
-        "--trackers",
-        "closed_form,march,exact",
-        "--samplers",
-        "independent",
+        "--vary",
+        "tracker=closed_form,march,exact",
+        "--vary",
+        "sampler=independent",
         "--spp",
         "256",
         "--doublings",
@@ -377,8 +377,8 @@ fn mirror() -> Value {
 fn several_scenes_and_what_a_contender_cannot_show() {
     let desk = Desk::new(&[("room.json", foggy_room()), ("mirror.json", mirror())]);
     let words = [
-        "--integrators",
-        "bdpt,lt",
+        "--vary",
+        "integrator=bdpt,lt",
         "--spp",
         "16",
         "--seeds",
@@ -427,9 +427,12 @@ fn the_reference_is_as_deep_as_the_deepest_contender() {
     let quick = ["--spp", "2", "--doublings", "1", "--seeds", "2", "--reference-spp", "16"];
     let shallow = "shallow: --integrator pt --max-depth 2";
     let rows: [(&[&str], &str); 4] = [
-        (&["--integrators", "pt", "--vary", "max-depth=2,7,3"], "--max-depth 7"),
+        (&["--vary", "integrator=pt", "--vary", "max-depth=2,7,3"], "--max-depth 7"),
         // Nobody is left but a contender.
-        (&["--integrators", "bdpt,pt", "--samplers", "sobol", "--vary", "max-depth=2,7"], "--max-depth 7"),
+        (
+            &["--vary", "integrator=bdpt,pt", "--vary", "sampler=sobol", "--vary", "max-depth=2,7"],
+            "--max-depth 7",
+        ),
         (&["--contender", shallow, "--contender", "all: --integrator lt --max-depth -1"], "--max-depth -1"),
         (&["--contender", shallow, "--contender", "as the scene: --integrator pt"], "--tracker auto:"),
     ];
@@ -462,8 +465,18 @@ fn outside(words: &str) -> String {
 #[test]
 fn another_renderer_competes_by_its_command_line() {
     let desk = Desk::new(&[("room.json", foggy_room())]);
-    let words =
-        ["--integrators", "pt", "--spp", "16", "--doublings", "3", "--seeds", "3", "--reference-spp", "512"];
+    let words = [
+        "--vary",
+        "integrator=pt",
+        "--spp",
+        "16",
+        "--doublings",
+        "3",
+        "--seeds",
+        "3",
+        "--reference-spp",
+        "512",
+    ];
     let once = outside(
         "render {scene} {definitions} -o {out} --size {size} --spp {spp} --seed {seed} --threads {threads}",
     );
@@ -517,8 +530,8 @@ fn what_another_renderer_cannot_do_is_said() {
         "room.json",
         "-o",
         "out",
-        "--integrators",
-        "pt",
+        "--vary",
+        "integrator=pt",
         "--spp",
         "2",
         "--seeds",
@@ -620,7 +633,7 @@ fn what_cannot_be_done_is_said() {
         (&["room.json", "-o", "new", "--reference", "none.exr"], &["none.exr", "check that the path"]),
         (&["room.json", "-o", "new", "--reference", "room.json"], &["room.json", "an image file"]),
         (&["room.json", "room.json", "-o", "new", "--reference", "a.exr"], &["one for each scene, 2 in all"]),
-        (&["room.json", "-o", "new", "--integrators", "fog"], &["preview", "bdpt, pt or lt"]),
+        (&["room.json", "-o", "new", "--vary", "integrator=fog"], &["preview", "bdpt, pt or lt"]),
         (&["room.json", "-o", "new", "--reference-by", "--integrator fog"], &["preview"]),
         (&["room.json", "-o", "new", "--contender", "pt"], &["NAME: OPTIONS", "for example"]),
         (&["hall.json", "-o", "new"], &["hall.json"]),

@@ -287,7 +287,7 @@ def test_what_fails_is_tried_again_and_told(client: Any, tmp_path: Path) -> None
 
 def test_studies_of_scenes_become_one(client: Any, tmp_path: Path) -> None:
     scenes = [ROOM, CROSSCHECK / "vacuum_room.json"]
-    effort = "--spp 4 --doublings 2 --seeds 2 --reference-spp 32 --size 8x6 --threads 1 --integrators bdpt,pt".split()
+    effort = "--spp 4 --doublings 2 --seeds 2 --reference-spp 32 --size 8x6 --threads 1 --vary integrator=bdpt,pt".split()
     study.run(client, scenes, tmp_path, effort, 0, "the command")
     whole = json.loads((tmp_path / "study.json").read_text())
     assert [scene["name"] for scene in whole["scenes"]] == ["cube_in_room", "vacuum_room"]

@@ -124,10 +124,11 @@ def test_the_programs_help_names_the_options() -> None:
     assert re.search(r"^max_depth <N> +Maximum number", tyndall.options(), re.MULTILINE) and "\nreport" not in tyndall.options()
     assert len(tyndall.options().splitlines()) > 20 and "--" not in tyndall.options()
     assert "contender" in arguments.names("study")
-    assert arguments.words({"contender": {"a": "--spp 1", "b": ""}, "integrators": ["pt", "lt"], "reference": ["a.exr", "b.exr"]}, "study") == [
+    assert arguments.words({"contender": {"a": "--spp 1", "b": ""}, "vary": ["integrator=pt,lt", "spp=1"], "reference": ["a.exr", "b.exr"]}, "study") == [
         "--contender=a: --spp 1",
         "--contender=b: ",
-        "--integrators=pt,lt",
+        "--vary=integrator=pt,lt",
+        "--vary=spp=1",
         "--reference=a.exr",
         "--reference=b.exr",
     ]

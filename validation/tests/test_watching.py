@@ -126,5 +126,5 @@ def test_studies_return_their_numbers_and_go_on(tmp_path: Path) -> None:
 
 def test_scenes_of_a_study_share_their_parameters(tmp_path: Path) -> None:
     boxes = [Scene(SCENES / f"lampbox_{way}.xml", way, {"res": "6"}) for way in ("down", "up")]
-    found = tyndall.study(boxes, tmp_path / "study", integrators=["pt"], seeds=2, doublings=1, spp=1, reference_spp=2)
+    found = tyndall.study(boxes, tmp_path / "study", vary="integrator=pt", seeds=2, doublings=1, spp=1, reference_spp=2)
     assert [(scene["width"], scene["height"]) for scene in found["scenes"]] == [(6, 6)] * 2

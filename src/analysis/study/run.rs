@@ -317,6 +317,6 @@ fn no_contender(scene: &str, parts: &[Part]) -> Error {
         Part::Refused(why) => Some(why.clone()),
         Part::Budgets(_) => None,
     });
-    let remedy = "name others by --contender, --external or --integrators";
+    let remedy = "name others by --contender, --external or --vary";
     Error::new(scene, "a contender that can render the scene", why.unwrap_or_else(|| "none".into()), remedy)
 }

@@ -12,8 +12,7 @@ use std::path::Path;
 
 /// The study in the file at `path`: at least one scene, in each at least one contender with at least one budget.
 pub(super) fn outcome(path: &Path) -> Result<Outcome> {
-    let remedy =
-        "give the folder of a study, as tyndall study or python3 -m validation convergence leaves it";
+    let remedy = "give the folder of a study, as tyndall study or python3 -m validation efficiency leaves it";
     let text = std::fs::read_to_string(path)
         .map_err(|error| Error::new(path.display(), "the numbers of a study", error.to_string(), remedy))?;
     let outcome: Outcome = serde_json::from_str(&text).map_err(|error| {
