@@ -3,14 +3,16 @@
 
 pub mod images;
 pub mod pilot;
+mod report;
+mod subsets;
 mod table;
 mod timing;
 
+pub use report::*;
 pub use table::table;
 
 use super::sheet::{self, Row};
 use crate::{
-    analysis::study::outcome::Interval,
     error::Result,
     film::{self, Channel, Film, format::Format, moments::Moments},
     math::{Spectrum, SpectrumExt},
@@ -20,8 +22,8 @@ use crate::{
     transport::{Options, Strategies, coverage::Traits, strategy::StrategyKind},
 };
 use images::{CellImages, StrategyCell, StrategyImages, StrategyTable};
-use serde::Serialize;
 use std::path::{Path, PathBuf};
+use subsets::{advice, compare, subset, subsets};
 use timing::Times;
 
 /// How much is done.
@@ -33,97 +35,6 @@ pub struct Plan {
     pub passes: usize,
     /// Passes, or a few more, of every set of strategies in the comparison; 0 for none.
     pub pilots: usize,
-}
-
-/// What was found.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Which program made it, with its version.
-    pub made_by: String,
-    /// Kinds of strategies that ran.
-    pub strategies: Vec<&'static str>,
-    /// Pixels across and down.
-    pub size: [u32; 2],
-    /// Passes that made the images.
-    pub passes: usize,
-    /// Mean luminance of the image.
-    pub luminance: f64,
-    /// Variance of one pass by luminance, summed over pixels; none of a single pass.
-    pub variance: Option<f64>,
-    /// Time of one pass, summed over threads (s).
-    pub seconds: f64,
-    /// Share of time of camera subpaths, without connections.
-    pub eye_walks: f64,
-    /// Share of time of light subpaths, without connections.
-    pub light_walks: f64,
-    /// Vertices of camera subpaths at which light may scatter on, per pixel and pass.
-    pub eye_vertices: f64,
-    /// Those of light subpaths.
-    pub light_vertices: f64,
-    /// Share of variance that is none of a single strategy's: covariances between them. Often negative or positive by
-    /// a lot, as strategies share their walks.
-    pub covariances: Option<f64>,
-    /// Rows of the sheets.
-    pub rows: Vec<RowReport>,
-    /// Strategies that ran.
-    pub cells: Vec<CellReport>,
-    /// Sets of strategies that the scene might do with.
-    pub subsets: Vec<SubsetReport>,
-    /// What follows from them; none where none were compared.
-    pub advice: Option<String>,
-}
-
-/// A row of the sheets.
-#[derive(Clone, Debug, Serialize)]
-pub struct RowReport {
-    /// Segments of its paths; none for all longer ones.
-    pub length: Option<u32>,
-    /// Factor on its radiance before it is shown.
-    pub exposure: f64,
-    /// Share of the image's mean luminance.
-    pub energy: f64,
-}
-
-/// One strategy, or all of a kind on longer paths.
-#[derive(Clone, Debug, Serialize)]
-pub struct CellReport {
-    /// As in the image files.
-    pub name: String,
-    /// Segments of its paths; none for longer ones.
-    pub length: Option<u32>,
-    /// Light vertices; none for longer paths.
-    pub s: Option<u32>,
-    /// Camera vertices, the lens among them; none for longer paths.
-    pub t: Option<u32>,
-    /// Its kind.
-    pub kind: &'static str,
-    /// Share of the image's mean luminance.
-    pub energy: f64,
-    /// Mean luminance of what it contributes alone, over that of all paths of its length: 1 where it can make
-    /// all of them; none where there is no light on paths of its length, or on longer ones, of which several
-    /// strategies count here.
-    pub alone: Option<f64>,
-    /// Its weighted contribution's variance, by luminance and summed over pixels, over that of the image. Of one pass.
-    pub variance: Option<f64>,
-    /// The same of what it contributes alone.
-    pub variance_alone: Option<f64>,
-    /// Share of time.
-    pub time: f64,
-    /// How often it is tried per pixel and pass.
-    pub tries: f64,
-}
-
-/// A set of strategies.
-#[derive(Clone, Debug, Serialize)]
-pub struct SubsetReport {
-    /// As for `--strategies`.
-    pub strategies: String,
-    /// What it leaves out of the full set.
-    pub without: String,
-    /// Paths that the full set can make and this one cannot: it is no choice for this scene.
-    pub lacks: Option<String>,
-    /// relMSE x time of the full set over its own; more than 1 is better.
-    pub gain: Option<Interval>,
 }
 
 /// What was found, and the images of it.
@@ -203,72 +114,6 @@ pub fn check_files(folder: &Path, film: &Film, plan: &Plan, options: &Options) -
     let bytes = |name: &str| if name.ends_with(".exr") { film.bytes(3 * layers) } else { 0 };
     let files = FILES.map(|name| (folder.join(name), bytes(name)));
     film::output::check(&files.each_ref().map(|(file, bytes)| (file.as_path(), *bytes)))
-}
-
-/// The sets worth comparing with `full`: without one kind each, the path tracer's and the light tracer's.
-fn subsets(full: Strategies) -> Vec<Strategies> {
-    let without = StrategyKind::ALL.into_iter().filter(|kind| full.has(*kind)).map(|kind| full.without(kind));
-    let mut sets = Vec::new();
-    for set in without.chain([both(full, Strategies::PT), both(full, Strategies::LT)]) {
-        if set != Strategies::NONE && set != full && !sets.contains(&set) {
-            sets.push(set);
-        }
-    }
-    sets
-}
-
-fn both(a: Strategies, b: Strategies) -> Strategies {
-    StrategyKind::ALL.into_iter().filter(|kind| !b.has(*kind)).fold(a, Strategies::without)
-}
-
-fn subset(full: Strategies, set: Strategies, gain: Option<Interval>) -> SubsetReport {
-    let left_out = StrategyKind::ALL.into_iter().filter(|kind| full.has(*kind) && !set.has(*kind));
-    let without = left_out.map(StrategyKind::name).collect::<Vec<_>>().join(",");
-    SubsetReport { strategies: set.names().join(","), without, lacks: None, gain }
-}
-
-/// Renders with all strategies and with each of `sets`, in turns.
-fn compare(
-    setup: &Setup,
-    settings: &Settings,
-    sets: &[Strategies],
-    reference: &[Spectrum],
-    passes: usize,
-    progress: &mut dyn FnMut(usize),
-) -> Vec<SubsetReport> {
-    let full = settings.options.strategies;
-    let instrument = |strategies: Strategies| {
-        let options = Options { strategies, ..settings.options };
-        Instrument::new(&setup.scene, &setup.film, &Settings { options, ..*settings })
-    };
-    let contenders: Vec<Instrument<'_>> =
-        std::iter::once(full).chain(sets.iter().copied()).map(instrument).collect();
-    let mut done = 0;
-    let turns = pilot::take_turns(&contenders, reference, passes, &mut |more| {
-        done += more;
-        progress(done);
-    });
-    let gains = turns[1..].iter().map(|turns_of_one| pilot::gain(&turns[0], turns_of_one));
-    sets.iter().zip(gains).map(|(set, gain)| subset(full, *set, gain)).collect()
-}
-
-/// What the comparison comes to.
-fn advice(subsets: &[SubsetReport]) -> String {
-    let gains = subsets.iter().filter_map(|subset| Some((subset, subset.gain?)));
-    let best = gains.filter(|(_, gain)| gain.low > 1.0).max_by(|(_, a), (_, b)| a.mean.total_cmp(&b.mean));
-    match best {
-        Some((subset, gain)) => format!(
-            "leave out {}: {} less error x time; --strategies {}",
-            subset.without,
-            table::times(gain),
-            subset.strategies
-        ),
-        None if subsets.is_empty() => {
-            "keep all strategies: without any of them paths would be missing".to_owned()
-        }
-        None => "keep all strategies: no set without one of them has a significantly lower error x time"
-            .to_owned(),
-    }
 }
 
 fn report(setup: &Setup, options: &Options, parts: &StrategyImages, times: &Times, timed: usize) -> Report {
@@ -465,6 +310,7 @@ fn caption(cell: StrategyCell) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::study::outcome::Interval;
 
     #[test]
     fn every_kind_is_left_out_once_and_no_set_comes_twice() {

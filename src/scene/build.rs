@@ -1,45 +1,42 @@
 //! From description to scene: the tree is walked once, every object is built by its registry row, and related
 //! objects refer to each other by index.
 
+mod finish;
 mod media;
+mod view;
 
 use super::{
     Scene, Surface,
-    accel::Geometry,
     contact::{Apart, Nature, Rank},
     keyframes,
-    lights::{Disk, Light, Lights, emissive},
-    media::{self as places, Boundary, Extents, Known, Locator, MediaMap, Names, Overlaps, Placement},
+    media::Boundary,
     rebuild::{Before, Parts},
     sections::Sections,
     smoke::{self, Taken},
-    unseen::{self, Unseen},
+    unseen::{self},
 };
 use crate::{
     bsdf::{self, Bsdf, BsdfModel},
     description::{Library, Location, Object, Params, Position, Property, Value, params::Child},
-    emitter::{self, Emitter, Kind},
+    emitter::{self, Emitter},
     error::{Error, Result},
     film::{
         Film,
         layer::{self, Component},
     },
     format::plugins,
-    math::{DVec3, Vec2, Vec3},
-    medium::{self, Medium, MediumDescription, MediumIndex, MediumOverrides},
-    memory,
+    math::DVec3,
+    medium::{self, MediumDescription, MediumIndex},
     sampling::Sampler,
-    sensor::{self, Crop, Sensor},
     settings::{
-        Overrides, film,
+        Overrides,
         integrator::{self, Integrator},
         only_one,
-        sampler::{self, Sampling},
     },
     shape::{self, Shape, ShapeModel as _},
     volume::Place,
 };
-use media::Surveyed;
+use finish::Finished;
 use std::collections::HashMap;
 
 /// A scene with what its file says about rendering it.
@@ -162,32 +159,6 @@ fn warn_of_counted_nulls(object: &Object, integrator: &Integrator, scene: &Scene
     }
 }
 
-/// The camera with its film.
-struct View<'a> {
-    camera: Camera<'a>,
-    film: Film,
-    sampling: Sampling,
-}
-
-/// The camera as the file places it.
-struct Camera<'a> {
-    sensor: Sensor,
-    crop: Crop,
-    /// Where the ray through the middle of the image starts: on the near plane.
-    start: Vec3,
-    /// The medium that the file says it is in.
-    stated: Option<MediumIndex>,
-    location: &'a Location,
-}
-
-/// A scene, and what is told of it besides.
-struct Finished {
-    scene: Scene,
-    shape_names: Vec<String>,
-    bsdf_names: Vec<String>,
-    apart: Apart,
-}
-
 /// Its id, or the name of its plugin.
 fn name_of(object: &Object) -> String {
     object.id.clone().unwrap_or_else(|| object.plugin.clone())
@@ -201,9 +172,6 @@ struct Placed<'a> {
     stated: Option<MediumIndex>,
     location: &'a Location,
 }
-
-/// What a primitive takes while the hierarchy is built (bytes): measured 380, and some more.
-const MEMORY_PER_PRIMITIVE: u64 = 440;
 
 struct Builder<'a> {
     library: &'a Library,
@@ -431,139 +399,6 @@ impl<'a> Builder<'a> {
             [_, second, ..] => Err(only_one(second, "medium")),
         }
     }
-
-    fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View<'a>> {
-        let (params, build) = sensor::ROWS.read(object, self.library)?;
-        let film = match params.children("film", film::is_film)?.as_slice() {
-            [] => film::default(overrides),
-            [one] => film::build(one.object, self.library, overrides)?,
-            [_, second, ..] => return Err(only_one(second, "film")),
-        };
-        let film = film::cropped(film, overrides.crop)?;
-        let sampling = match params.children("sampler", |child| sampler::ROWS.has(child.object))?.as_slice() {
-            [] => Sampling::default(),
-            [one] => sampler::build(one.object, self.library)?,
-            [_, second, ..] => return Err(only_one(second, "sampler")),
-        };
-        let stated = self.stated_medium(&params)?;
-        let crop = Crop { film: film.window.full_size, offset: film.window.offset };
-        let sensor = build(&params, self.recentre, crop)?;
-        params.finish()?;
-        let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
-        let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;
-        Ok(View {
-            camera: Camera { sensor, crop, start, stated, location: &object.location },
-            film,
-            sampling,
-        })
-    }
-
-    /// Indexes the geometry and finds out which medium the camera and every emitter lie in.
-    fn finish(mut self, mut camera: Camera<'_>, medium_overrides: &MediumOverrides) -> Result<Finished> {
-        self.check_memory()?;
-        let geometry = self.geometry();
-        let stated = self.surfaces.clone();
-        let (geometry, surveyed) = self.survey(geometry, &mut camera)?;
-        let Surveyed { known, survey, sensor_medium, overlaps, contradicts } = surveyed;
-        let outside = known.infinity.most();
-        let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
-        self.names().warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
-        let (surfaces, viewpoint) = (&stated, camera.sensor.position());
-        let extents = Extents { geometry: &geometry, surfaces, viewpoint, outside, survey: &survey };
-        let mut media = extents.finish(std::mem::take(&mut self.media), medium_overrides)?;
-        places::check(&media[1..], &self.medium_locations, &extents, self.library)?;
-        let lights = self.lights(&geometry, &known, &media, overlaps.as_deref(), contradicts, sensor_medium);
-        media.extend(overlaps.as_ref().map(|overlaps| overlaps.build(&media)).into_iter().flatten());
-        let nowhere = contradicts.then(|| {
-            media.push(Medium::vacuum());
-            MediumIndex(media.len() as u32 - 1)
-        });
-        let (surfaces, bsdfs, viewpoint) = (&self.surfaces, &self.bsdfs, camera.start);
-        let unseen = Unseen { geometry: &geometry, surfaces, bsdfs, lights: &lights, viewpoint };
-        let shut_in = match overlaps.is_some() || contradicts {
-            true => vec![false; media.len()],
-            false => unseen.shut_in(&media, &[MediumIndex::VACUUM, outside, sensor_medium]),
-        };
-        // Parallel rays start all over a plane: in a shape here, out of it there.
-        if !camera.sensor.is_parallel() {
-            unseen.warn(&self.names(), camera.location);
-        }
-        self.names().warn_of_ties(&self.apart.contacts);
-        let Self { surfaces, bsdfs, recentre, shape_names, bsdf_names, apart, .. } = self;
-        let Camera { sensor, crop, .. } = camera;
-        let scene = Scene {
-            geometry,
-            surfaces,
-            bsdfs,
-            media,
-            lights,
-            sensor,
-            crop,
-            media_map: MediaMap { outside, sensor: sensor_medium, known, overlaps, nowhere, shut_in },
-            recentre,
-        };
-        Ok(Finished { scene, shape_names, bsdf_names, apart })
-    }
-
-    /// All emitters, emissive media among them, with the medium that each lies in.
-    fn lights(
-        &self,
-        geometry: &Geometry,
-        known: &Known,
-        media: &[Medium],
-        overlaps: Option<&Overlaps>,
-        contradict: bool,
-        ambient: MediumIndex,
-    ) -> Lights {
-        let outside = known.infinity.most();
-        let locator = Locator { geometry, surfaces: &self.surfaces, known };
-        let placement = Placement { locator, names: &self.names(), ambient };
-        let emitters = self.emitters.iter().map(|placed| {
-            let light = light(placed, self.recentre, &placement);
-            let overlaps = overlaps.filter(|_| placed.emitter.position().is_some());
-            let medium = overlaps.map(|overlaps| overlaps.at(light.medium, light.position, Vec3::X));
-            Light { medium: medium.unwrap_or(light.medium), ..light }
-        });
-        let all = emitters.chain(emissive(media, locator, overlaps, contradict, outside)).collect();
-        let around = if known.infinity.is_uniform() { outside } else { MediumIndex::VACUUM };
-        Lights::new(all, geometry, &media[around.0 as usize])
-    }
-
-    /// An error unless memory holds the hierarchy over all shapes, as it is built.
-    fn check_memory(&self) -> Result<()> {
-        let primitives: u64 = self.shapes.iter().map(|shape| shape.primitive_count() as u64).sum();
-        let size = format!("{primitives} triangles and other primitives");
-        let remedy = "give meshes of fewer triangles, or more memory";
-        memory::check("the scene", "shapes", &size, primitives.checked_mul(MEMORY_PER_PRIMITIVE), remedy)
-    }
-
-    /// All shapes, indexed, those that touch set apart.
-    fn geometry(&mut self) -> Geometry {
-        let mut shapes = std::mem::take(&mut self.shapes);
-        let before = self.before.filter(|_| self.has_old_shapes);
-        // What is added later was not there before.
-        self.has_old_shapes = false;
-        if let Some((geometry, apart)) = before.and_then(|before| before.geometry(shapes.len())) {
-            self.apart = apart.clone();
-            return geometry.clone();
-        }
-        let positions = self.emitters.iter().filter_map(|placed| placed.emitter.position());
-        let lamps: Vec<Vec3> = positions.map(|position| (position - self.recentre).as_vec3()).collect();
-        self.apart.separate(&mut shapes, &self.natures, &lamps);
-        Geometry::build(shapes)
-    }
-
-    /// What messages call media and shapes by.
-    fn names(&self) -> Names<'_> {
-        Names {
-            library: self.library,
-            media: &self.medium_names,
-            ids: &self.medium_ids,
-            shapes: &self.shape_names,
-            locations: &self.shape_locations,
-            recentre: self.recentre,
-        }
-    }
 }
 
 /// What contact needs to know of a shape with this BSDF.
@@ -575,21 +410,4 @@ fn nature(model: &Bsdf, bsdf: u32, emits: bool) -> Nature {
         _ => Rank::Opaque,
     };
     Nature { rank, bsdf, one_sided: !matches!(model, Bsdf::TwoSided(_)), is_lid: false }
-}
-
-/// An emitter with the medium that it lies in.
-fn light(placed: &Placed<'_>, recentre: DVec3, placement: &Placement<'_>) -> Light {
-    let Placed { emitter, shape, stated, location } = placed;
-    let (emitter, shape) = (emitter.clone(), *shape);
-    let position = emitter.position().map(|position| (position - recentre).as_vec3());
-    let (medium, straddles) = match (*stated, shape, position) {
-        (Some(medium), ..) => (medium, false),
-        (None, Some(shape), _) => placement.of_shape(shape, location),
-        (None, None, Some(position)) => match &emitter.kind {
-            Kind::Beam(beam) => placement.of_disk(&Disk::of_beam(beam, position), location),
-            _ => (placement.of_point(position, location), false),
-        },
-        (None, None, None) => placement.of_infinite(&emitter),
-    };
-    Light { emitter, position: position.unwrap_or(Vec3::ZERO), shape, medium, straddles, clearings: None }
 }

@@ -101,7 +101,7 @@ impl<P: Profile> Estimator<'_, P> {
         self.counts.connection > 0.0 || self.counts.lens > 0.0
     }
 
-    /// True if the first vertex of a light subpath is connected to the lens, see [`Strategies::runs`].
+    /// True if the first vertex of a light subpath is connected to the lens, see [`Strategies::runs`](super::Strategies::runs).
     pub(super) fn starts_seen(&self) -> bool {
         self.counts.lens > 0.0 && self.counts.emitter_hit <= 0.0
     }

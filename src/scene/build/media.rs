@@ -1,6 +1,6 @@
 //! Which media lie where: what boundaries say of each other, those that overlap put in order and open ones closed.
 
-use super::{Builder, Camera};
+use super::{Builder, view::Camera};
 use crate::{
     bsdf::{self, Bsdf},
     error::Result,

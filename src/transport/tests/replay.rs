@@ -24,7 +24,7 @@ use crate::{
         profile::Profile,
         segment::{FlightState, FreeFlight, SegmentTransmittance},
         vertex::{Subpath, Vertex},
-        walk::{Arrival, Departure, Kind, ScatterSample, Visitor, arrive, land, set_out},
+        walk::{Arrival, Departure, Kind, Visitor, arrive, land, scatter::ScatterSample, set_out},
     },
 };
 

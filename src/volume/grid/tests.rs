@@ -501,8 +501,11 @@ fn colours_that_are_all_grey_collapse() {
 #[test]
 fn a_walk_and_its_reverse_are_one() {
     let size = [33, 12, 20];
-    let extent =
-        Extent { first: [-1; 3], cells: size.map(|n| n + 1), counted: [[0.5; 3], size.map(|n| n as f64)] };
+    let extent = lattice::Extent {
+        first: [-1; 3],
+        cells: size.map(|n| n + 1),
+        counted: [[0.5; 3], size.map(|n| n as f64)],
+    };
     let lattice = Lattice::build(&contrasts(size, 3), Wrap::Clamp, Filter::Trilinear, &extent, |_| true);
     for index in 0..300 {
         let mut stream = Stream::new(14, index, 0, Purpose::Study);

@@ -1,0 +1,61 @@
+//! The camera, its film and its sampler.
+
+use super::Builder;
+use crate::{
+    description::{Location, Object},
+    error::Result,
+    film::Film,
+    math::{Vec2, Vec3},
+    medium::MediumIndex,
+    sensor::{self, Crop, Sensor},
+    settings::{
+        Overrides, film, only_one,
+        sampler::{self, Sampling},
+    },
+};
+
+/// The camera with its film.
+pub(super) struct View<'a> {
+    pub(super) camera: Camera<'a>,
+    pub(super) film: Film,
+    pub(super) sampling: Sampling,
+}
+
+/// The camera as the file places it.
+pub(super) struct Camera<'a> {
+    pub(super) sensor: Sensor,
+    pub(super) crop: Crop,
+    /// Where the ray through the middle of the image starts: on the near plane.
+    pub(super) start: Vec3,
+    /// The medium that the file says it is in.
+    pub(super) stated: Option<MediumIndex>,
+    pub(super) location: &'a Location,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View<'a>> {
+        let (params, build) = sensor::ROWS.read(object, self.library)?;
+        let film = match params.children("film", film::is_film)?.as_slice() {
+            [] => film::default(overrides),
+            [one] => film::build(one.object, self.library, overrides)?,
+            [_, second, ..] => return Err(only_one(second, "film")),
+        };
+        let film = film::cropped(film, overrides.crop)?;
+        let sampling = match params.children("sampler", |child| sampler::ROWS.has(child.object))?.as_slice() {
+            [] => Sampling::default(),
+            [one] => sampler::build(one.object, self.library)?,
+            [_, second, ..] => return Err(only_one(second, "sampler")),
+        };
+        let stated = self.stated_medium(&params)?;
+        let crop = Crop { film: film.window.full_size, offset: film.window.offset };
+        let sensor = build(&params, self.recentre, crop)?;
+        params.finish()?;
+        let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
+        let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;
+        Ok(View {
+            camera: Camera { sensor, crop, start, stated, location: &object.location },
+            film,
+            sampling,
+        })
+    }
+}
