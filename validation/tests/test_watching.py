@@ -114,17 +114,17 @@ def test_a_bar_is_shown_where_it_is_wanted(capsys: pytest.CaptureFixture[str]) -
 
 
 def test_studies_return_their_numbers_and_go_on(tmp_path: Path) -> None:
-    options: dict[str, Any] = {"integrators": ["pt", "bdpt"], "seeds": 2, "doublings": 2, "spp": 2, "size": (8, 8), "reference_spp": 16}
+    options: dict[str, Any] = {"vary": {"integrator": ["pt", "bdpt"]}, "seeds": 2, "doublings": 2, "spp": 2, "size": (8, 8), "reference_spp": 16}
     found = tyndall.study(SCENE, tmp_path / "study", **options)
     assert json.loads((tmp_path / "study" / "study.json").read_text()) == found and (tmp_path / "study" / "study.html").is_file()
     scene = tyndall.load(SCENE)
     of_dictionary = tyndall.study(scene, tmp_path / "again", **options)
     assert tyndall.study(scene, tmp_path / "again", **options)["scenes"] == of_dictionary["scenes"]
-    with pytest.raises(Failure, match="did you mean integrators"):
-        tyndall.study(scene, tmp_path / "other", integrator=["pt"])
+    with pytest.raises(Failure, match="did you mean doublings"):
+        tyndall.study(scene, tmp_path / "other", doubling=2)
 
 
 def test_scenes_of_a_study_share_their_parameters(tmp_path: Path) -> None:
     boxes = [Scene(SCENES / f"lampbox_{way}.xml", way, {"res": "6"}) for way in ("down", "up")]
-    found = tyndall.study(boxes, tmp_path / "study", vary="integrator=pt", seeds=2, doublings=1, spp=1, reference_spp=2)
+    found = tyndall.study(boxes, tmp_path / "study", vary={"integrator": "pt"}, seeds=2, doublings=1, spp=1, reference_spp=2)
     assert [(scene["width"], scene["height"]) for scene in found["scenes"]] == [(6, 6)] * 2

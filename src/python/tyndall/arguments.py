@@ -58,9 +58,10 @@ def words(given: Mapping[str, Any], command: str = "render") -> list[str]:
 
 def repeated(name: str, given: Any, command: str) -> list[Any]:
     """What an option is given for: a list once, separated by commas, where the program takes a list, else once for each; a
-    dictionary as `name: value` for each."""
+    dictionary as `name: value` for each, or as `name=value` where the program wants that."""
     if isinstance(given, Mapping):
-        return [f"{key}: {text(inner)}" for key, inner in given.items()]
+        mark = "=" if f"--{name} <OPTION=LIST>" in help_of(binary(), command) else ": "
+        return [f"{key}{mark}{text(inner)}" for key, inner in given.items()]
     takes_list = re.search(rf"--{name.replace('_', '-')} <LIST>", help_of(binary(), command))
     is_list = isinstance(given, (list, tuple)) and not takes_list
     return list(given) if is_list else [given]

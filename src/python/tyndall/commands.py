@@ -46,7 +46,7 @@ def image_file(image: AnyImage, path: Path) -> str:
 
 def study(scenes: AnyScene | Sequence[AnyScene], output: str | Path, *, progress: bool | None = None, **more: Any) -> dict[str, Any]:
     """Error against run time of several contenders: `tyndall study`, whose page goes to the folder `output` as study.html,
-    and whose numbers are returned. Its options as in `render`: `vary="integrator=bdpt,pt"`,
+    and whose numbers are returned. Its options as in `render`: `vary={"integrator": ["bdpt", "pt"]}`,
     `contender={"joins": "--strategies hit,join"}`; `print(tyndall.options("study"))` lists them. A study that was interrupted
     continues with the same call."""
     settings = arguments.words(more, "study")
