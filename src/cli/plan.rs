@@ -127,10 +127,9 @@ impl Plan {
     /// The same facts for scripts.
     pub(super) fn json(&self) -> Value {
         let Settings { options, sampler: points, budget, seed, profile } = self.settings;
-        let Options { effort, connections, heuristic, max_depth, .. } = options;
-        let Options { hide_emitters, forced_interaction, .. } = options;
+        let Options { effort, connections, .. } = options;
         let unreached = self.unreached.iter();
-        json!({
+        let mut all = json!({
             "integrator": self.integrator,
             "strategies": self.strategies,
             "survival": effort.survival.name(),
@@ -153,14 +152,12 @@ impl Plan {
             "fraction": self.progressive.map(|wanted| wanted.fraction),
             "seed": seed,
             "profile": profile.name(),
-            "heuristic": heuristic.to_string(),
-            "max_depth": max_depth,
-            "hide_emitters": hide_emitters,
-            "forced_interaction": forced_interaction,
             "unreached": unreached
                 .map(|kind| json!({ "light": kind.light, "reached_by_bdpt": kind.by_bdpt.name() }))
                 .collect::<Vec<_>>(),
-        })
+        });
+        options.json().into_iter().for_each(|(name, value)| all[name] = value);
+        all
     }
 }
 

@@ -49,10 +49,6 @@ pub(super) fn settings(
         },
         "layers": setup.integrator.layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>(),
         "strategies": chosen.map_or(options.strategies, |choice| choice.among).names(),
-        "heuristic": options.heuristic.to_string(),
-        "max_depth": options.max_depth,
-        "hide_emitters": options.hide_emitters,
-        "forced_interaction": options.forced_interaction,
         "trackers": trackers,
         "sampler": sampler.name(),
         "seed": seed,
@@ -61,6 +57,7 @@ pub(super) fn settings(
         "error": precision.map(|precision| precision.error),
         "confidence": precision.map(|precision| precision.confidence),
     });
+    options.json().into_iter().for_each(|(name, value)| all[name] = value);
     if let Some(sensor) = &scene.sensor {
         all["sensor"] = sensor.as_str().into();
     }

@@ -6,6 +6,7 @@ use crate::{
     error::Result,
     sampling::Basis,
 };
+use serde_json::{Map, Value};
 
 /// Which strategies run. Their weights sum to one over those that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,6 +217,20 @@ pub struct Options {
     pub hide_emitters: bool,
     /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
     pub forced_interaction: bool,
+}
+
+impl Options {
+    /// What a scene or the command line says and no pilot chooses, for reports and checkpoints.
+    pub fn json(&self) -> Map<String, Value> {
+        let Self { heuristic, max_depth, hide_emitters, forced_interaction, .. } = *self;
+        let all = [
+            ("heuristic", heuristic.to_string().into()),
+            ("max_depth", max_depth.into()),
+            ("hide_emitters", hide_emitters.into()),
+            ("forced_interaction", forced_interaction.into()),
+        ];
+        all.into_iter().map(|(name, value): (&str, Value)| (name.to_owned(), value)).collect()
+    }
 }
 
 impl Default for Options {
