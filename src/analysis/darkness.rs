@@ -5,7 +5,7 @@ use crate::transport::coverage::{self, Share};
 use crate::{
     bsdf::{BsdfModel, Transport},
     film::Film,
-    math::{Spectrum, SpectrumExt, Vec3},
+    math::{Bounds, Spectrum, SpectrumExt, Vec3},
     sampling::{Stream, stream::Purpose},
     scene::{Scene, build::Setup, lights::Light},
     shape::{Ray, SurfacePoint},
@@ -78,7 +78,7 @@ const DARK: f64 = 1e-9;
 
 /// True if an image of this `mean` luminance is next to nothing beside what the emitters emit.
 fn is_dark(mean: f64, scene: &Scene) -> bool {
-    let (low, high) = scene.geometry.bounds();
+    let Bounds { low, high } = scene.geometry.bounds();
     let radius =
         Some(0.5 * (high - low).length()).filter(|radius| *radius > 0.0 && radius.is_finite()).unwrap_or(1.0);
     let area = |light: &Light| light.shape.map_or(0.0, |shape| scene.geometry.area(shape));

@@ -3,6 +3,7 @@
 pub mod angle;
 pub mod axes;
 pub mod black_body;
+pub mod bounds;
 pub mod boxes;
 pub mod cells;
 pub mod channels;
@@ -25,6 +26,7 @@ pub mod warp;
 pub mod wrap;
 
 pub use axes::axes;
+pub use bounds::Bounds;
 pub use channels::Channels;
 pub use frame::Frame;
 pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3, Vec2, Vec3, vec2, vec3};

@@ -11,7 +11,7 @@ mod overrides;
 
 use crate::{
     error::Result,
-    math::{Channels, RaySegment, Spectrum, SpectrumExt, Vec3},
+    math::{Bounds, Channels, RaySegment, Spectrum, SpectrumExt, Vec3},
     phase::{self, Phase},
     sampling::Stream,
 };
@@ -234,8 +234,9 @@ impl Medium {
     }
 
     /// The box outside of which there is nothing of it; none where it has no end of its own.
-    pub fn extent(&self) -> Option<[Vec3; 2]> {
-        self.heterogeneous().map(|varying| [varying.extinction().low, varying.extinction().high])
+    pub fn extent(&self) -> Option<Bounds> {
+        let bounds = |extinction: &Extinction| Bounds { low: extinction.low, high: extinction.high };
+        self.heterogeneous().map(|varying| bounds(varying.extinction()))
     }
 
     /// What remains of light that comes from infinitely far through it: all where it varies, for then it ends

@@ -6,7 +6,7 @@ mod traversal;
 mod tree;
 
 use crate::{
-    math::Vec3,
+    math::{Bounds, Vec3},
     sampling::Stream,
     shape::{Hit, Primitive, Ray, Shape, ShapeModel, SurfacePoint},
 };
@@ -109,8 +109,8 @@ impl Geometry {
         self.shapes[point.shape as usize].partials(index, ray, hit, point)
     }
 
-    /// Least and greatest corner of the box around everything; two zeros for an empty scene.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
+    /// The box around everything; the origin for an empty scene.
+    pub fn bounds(&self) -> Bounds {
         self.tree.bounds()
     }
 

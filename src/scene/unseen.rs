@@ -11,7 +11,7 @@ use crate::{
     bsdf::{Bsdf, BsdfModel},
     description::{Library, Location},
     emitter::{BeamModel, Kind},
-    math::Vec3,
+    math::{Bounds, Vec3},
     medium::{Medium, MediumIndex},
     settings::{integrator::Integrator, options::Algorithm},
 };
@@ -87,8 +87,7 @@ impl Unseen<'_> {
 
     /// The camera is inside an opaque `shape`, and no emitter is. What costs most is asked last.
     fn shuts_in_camera(&self, shape: u32) -> bool {
-        let (low, high) = self.bounds(shape);
-        let is_around = self.viewpoint.cmpge(low).all() && self.viewpoint.cmple(high).all();
+        let is_around = self.bounds(shape).contains(Bounds::of(self.viewpoint));
         let is_lit = || self.lights.is_empty() || self.may_hold_light(shape);
         is_around && !is_lit() && self.is_inside(shape, self.viewpoint) && self.is_closed(shape)
     }
@@ -107,7 +106,7 @@ impl Unseen<'_> {
         self.geometry.shapes()[shape as usize].is_closed()
     }
 
-    fn bounds(&self, shape: u32) -> (Vec3, Vec3) {
+    fn bounds(&self, shape: u32) -> Bounds {
         self.geometry.shapes()[shape as usize].bounds()
     }
 
@@ -130,13 +129,13 @@ impl Unseen<'_> {
 
     /// An emitter may be within `shape`, or on it.
     fn may_hold_light(&self, shape: u32) -> bool {
-        let (low, high) = self.bounds(shape);
-        let meets = |(l, h): (Vec3, Vec3)| l.cmple(high).all() && h.cmpge(low).all();
+        let bounds = self.bounds(shape);
+        let meets = |light: Bounds| bounds.common(light).is_some();
         self.lights.all.iter().any(|light| match (&light.emitter.kind, light.shape) {
             (Kind::Surface(_), Some(other)) => meets(self.bounds(other)),
             (Kind::Infinite(_), _) => false,
-            (Kind::Point(_), _) => meets((light.position, light.position)),
-            (Kind::Beam(beam), _) => meets((light.position - beam.radius(), light.position + beam.radius())),
+            (Kind::Point(_), _) => meets(Bounds::of(light.position)),
+            (Kind::Beam(beam), _) => meets(Bounds::of(light.position).grown(Vec3::splat(beam.radius()))),
             (Kind::Surface(_) | Kind::Medium(_), _) => true,
         })
     }

@@ -9,7 +9,7 @@ use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
     math::{
-        DMat4, DVec3, Frame, Vec3,
+        Bounds, DMat4, DVec3, Frame, Vec3,
         offset::{SEAM, gamma},
         vec2,
     },
@@ -99,7 +99,7 @@ impl Cylinder {
 
     /// f32 can hold it.
     fn fits(&self) -> bool {
-        let (low, high) = self.bounds();
+        let Bounds { low, high } = self.bounds();
         is_in_range(low) && is_in_range(high) && (self.radius as f32).is_normal() && self.area().is_normal()
     }
 
@@ -187,16 +187,16 @@ impl ShapeModel for Cylinder {
 
 impl CurvedModel for Cylinder {
     /// That of the circles at its ends.
-    fn bounds(&self) -> (Vec3, Vec3) {
+    fn bounds(&self) -> Bounds {
         let Self { base, axis, length, radius, .. } = *self;
         let half = (DVec3::ONE - axis * axis).max(DVec3::ZERO).map(f64::sqrt) * radius;
         let end = base + axis * length;
-        ((base.min(end) - half).as_vec3(), (base.max(end) + half).as_vec3())
+        Bounds { low: (base.min(end) - half).as_vec3(), high: (base.max(end) + half).as_vec3() }
     }
 
     /// Of its corners, and the seams at its ends.
     fn rounding(&self) -> Vec3 {
-        let (low, high) = self.bounds();
+        let Bounds { low, high } = self.bounds();
         gamma(2) * low.abs().max(high.abs()) + SEAM * (self.length + self.radius) as f32
     }
 

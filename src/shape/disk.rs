@@ -9,7 +9,7 @@ use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
     math::{
-        DVec3, Frame, Vec2, Vec3,
+        Bounds, DVec3, Frame, Vec2, Vec3,
         offset::{SEAM, gamma},
         vec2, warp,
     },
@@ -112,11 +112,11 @@ impl Disk {
 }
 
 impl CurvedModel for Disk {
-    fn bounds(&self) -> (Vec3, Vec3) {
+    fn bounds(&self) -> Bounds {
         let reach = |u: f32, v: f32| u.hypot(v);
         let (u, v) = (self.edge_u, self.edge_v);
         let half = Vec3::new(reach(u.x, v.x), reach(u.y, v.y), reach(u.z, v.z));
-        (self.center - half, self.center + half)
+        Bounds::of(self.center).grown(half)
     }
 
     fn rounding(&self) -> Vec3 {

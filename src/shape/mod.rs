@@ -28,7 +28,7 @@ use crate::{
     description::{Params, Plugin, Registry, models, parameter::Parameter, rows},
     error::Result,
     math::{
-        DVec3, Frame, Uv, Vec3,
+        Bounds, DVec3, Frame, Uv, Vec3,
         offset::{Lift, gamma, leave_surface, side_of},
     },
     sampling::Stream,
@@ -139,41 +139,40 @@ impl Primitive {
         }
     }
 
-    /// Least and greatest corner of the box around it.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
+    /// The box around it.
+    pub fn bounds(&self) -> Bounds {
         match self {
-            Self::Ball { center, radius } => (center - radius, center + radius),
+            Self::Ball { center, radius } => Bounds::of(*center).grown(Vec3::splat(*radius)),
             Self::Curved(curved) => curved.bounds(),
             Self::Flat(flat) => {
                 let Flat { corner, edge_u, edge_v, triangle, .. } = *flat;
                 let (u, v) = (corner + edge_u, corner + edge_v);
                 let fourth = if triangle { corner } else { u + edge_v };
-                (corner.min(u).min(v).min(fourth), corner.max(u).max(v).max(fourth))
+                Bounds { low: corner.min(u).min(v).min(fourth), high: corner.max(u).max(v).max(fourth) }
             }
         }
     }
 
     /// The same around all hits, which rounding can take beyond that.
-    pub fn hit_bounds(&self) -> (Vec3, Vec3) {
+    pub fn hit_bounds(&self) -> Bounds {
         let error = match self {
             Self::Ball { center, radius } => {
                 let reach = *radius + gamma(2) * (center.abs() + *radius);
-                return (center - reach, center + reach);
+                return Bounds::of(*center).grown(reach);
             }
             Self::Curved(curved) => curved.rounding(),
             Self::Flat(Flat { corner, edge_u, edge_v, .. }) => {
                 gamma(3) * (corner.abs() + edge_u.abs() + edge_v.abs())
             }
         };
-        let (low, high) = self.bounds();
-        (low - error, high + error)
+        self.bounds().grown(error)
     }
 }
 
 /// What every curved primitive can do.
 pub trait CurvedModel {
-    /// Least and greatest corner of the box around it.
-    fn bounds(&self) -> (Vec3, Vec3);
+    /// The box around it.
+    fn bounds(&self) -> Bounds;
 
     /// How far rounding can take a hit beyond that, per axis.
     fn rounding(&self) -> Vec3;
@@ -188,7 +187,7 @@ pub trait CurvedModel {
 models! {
     /// Any curved primitive.
     Curved: CurvedModel [Disk Cylinder]
-    fn bounds() -> (Vec3, Vec3);
+    fn bounds() -> Bounds;
     fn rounding() -> Vec3;
     #[inline] fn closest(ray: &Ray, t_max: f32) -> Option<[f32; 3]>;
     fn distance(p: DVec3) -> f64;
@@ -341,12 +340,10 @@ impl Shape {
         }
     }
 
-    /// Least and greatest corner of the box around it.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
+    /// The box around it.
+    pub fn bounds(&self) -> Bounds {
         let boxes = (0..self.primitive_count()).map(|index| self.primitive(index).bounds());
-        boxes
-            .reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)))
-            .unwrap_or((Vec3::INFINITY, Vec3::NEG_INFINITY))
+        boxes.fold(Bounds::EMPTY, Bounds::union)
     }
 }
 

@@ -323,7 +323,7 @@ mod tests {
         sets.filter(|names| traits.missing(set(names), Strategies::BDPT).is_none()).collect()
     }
 
-    /// As `tests/agreement.rs` works them out by hand.
+    /// As `tests/transport/agreement.rs` works them out by hand.
     #[test]
     fn covering_sets_are_as_worked_out_by_hand() {
         assert!(covering(&traits(&[LAMP], false)).iter().all(|s| s.contains("hit") || s.contains("lens")));

@@ -46,10 +46,10 @@
 //! |---|---|
 //! | LW96 eq. 3, L_e at the end of a camera subpath | [`camera_path::CameraPath::emitter_hit`] |
 //! | LW96 eq. 4, one random walk through media and surfaces | [`walk::walk`], [`segment::sample_free_flight`] |
-//! | LW96 eq. 5 and 8, scattering in a medium | `collide` in [`walk`] |
+//! | LW96 eq. 5 and 8, scattering in a medium | `collide` in [`walk::scatter`] |
 //! | LW96 eq. 6, p_medium | [`Medium::sample_distance`](crate::medium::Medium::sample_distance) |
 //! | LW96 eq. 7, P_surface | [`segment::transmittance`], [`Medium::optical_depth`](crate::medium::Medium::optical_depth) |
-//! | LW96 eq. 9, reflection | `reflect` in [`walk`] |
+//! | LW96 eq. 9, reflection | `reflect` in [`walk::scatter`] |
 //! | LW96 eq. 10, the contribution | [`connect::connect_along`]; its g is [`vertex::Vertex::scatter_towards`] |
 //! | LW96 eq. 11 and 12, densities of paths | [`vertex::Subpath`]: as ratios, by [`walk::arrive`] and [`walk::set_out`] |
 //! | LW96 eq. 13, density of a vertex | [`walk::arrive`] |

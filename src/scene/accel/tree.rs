@@ -3,7 +3,7 @@
 
 use super::pack::{Ball, FlatPack};
 use crate::{
-    math::Vec3,
+    math::Bounds,
     shape::{Curved, Flat, Primitive},
 };
 use glam::Vec4;
@@ -92,9 +92,9 @@ impl Tree {
         Self { nodes: vec![], packs: vec![], balls: vec![], curved: vec![], depth: 0, bounds }
     }
 
-    /// Least and greatest corner.
-    pub(super) fn bounds(&self) -> (Vec3, Vec3) {
-        (self.bounds.min.into(), self.bounds.max.into())
+    /// The box around all.
+    pub(super) fn bounds(&self) -> Bounds {
+        Bounds { low: self.bounds.min.into(), high: self.bounds.max.into() }
     }
 
     fn fill_list(&mut self, primitives: &[Primitive]) {
@@ -133,7 +133,7 @@ impl Tree {
 
 /// Around all hits.
 pub(super) fn bound(primitive: &Primitive) -> Aabb {
-    let (low, high) = primitive.hit_bounds();
+    let Bounds { low, high } = primitive.hit_bounds();
     Aabb::new(low.into(), high.into())
 }
 

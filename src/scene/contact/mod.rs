@@ -12,7 +12,7 @@
 mod pairs;
 
 use crate::{
-    math::{DVec3, Vec3, offset::gamma},
+    math::{Bounds, DVec3, Vec3, offset::gamma},
     sampling::{Stream, stream::Purpose},
     shape::{Hit, Patch, Ray, Shape, ShapeModel as _},
 };
@@ -130,7 +130,7 @@ impl Apart {
 struct Faces<'a> {
     shapes: &'a [Shape],
     natures: &'a [Nature],
-    bounds: Vec<(Vec3, Vec3)>,
+    bounds: Vec<Bounds>,
     /// See [`Faces::solid`].
     solids: Vec<OnceCell<Option<f64>>>,
 }
@@ -240,7 +240,7 @@ impl<'a> Faces<'a> {
         let shape = &self.shapes[face.shape as usize];
         let Some(normal) = face.patch.plane_normal() else {
             let point = shape.sample_area(&mut Stream::new(0, 0, 0, Purpose::Pilot));
-            let (low, high) = self.bounds[face.shape as usize];
+            let Bounds { low, high } = self.bounds[face.shape as usize];
             let from_middle = point.position - 0.5 * (low + high);
             return f64::from(point.shading.normal.dot(from_middle)).signum();
         };
@@ -260,7 +260,7 @@ impl<'a> Faces<'a> {
         if self.nature(face).one_sided {
             return Some(self.front(face));
         }
-        let (low, high) = self.bounds[face.shape as usize];
+        let Bounds { low, high } = self.bounds[face.shape as usize];
         let is_room = low.cmplt(Vec3::ZERO).all() && high.cmpgt(Vec3::ZERO).all();
         Some(if is_room { -outward } else { outward })
     }
@@ -296,10 +296,10 @@ impl<'a> Faces<'a> {
 
     /// True if the box of shape `a` lies within that of `b`, up to rounding.
     fn is_within(&self, a: u32, b: u32) -> bool {
-        let [(low, high), (l, h)] = [a, b].map(|shape| self.bounds[shape as usize]);
+        let [inner, outer] = [a, b].map(|shape| self.bounds[shape as usize]);
         let far = pairs::far(&self.bounds[a as usize]).max(pairs::far(&self.bounds[b as usize]));
         let slack = (far * f64::from(gamma(512))).as_vec3();
-        low.cmpge(l - slack).all() && high.cmple(h + slack).all()
+        outer.grown(slack).contains(inner)
     }
 
     /// Which way, along its normal, an open face `mover` lies before another: in front of an opaque one, else towards the

@@ -1,7 +1,7 @@
 //! Which faces touch: shapes whose boxes meet, and of these the primitives in what the boxes have in common.
 
 use crate::{
-    math::{DVec3, Vec3, offset::gamma},
+    math::{Bounds, DVec3, Vec3, offset::gamma},
     shape::{Patch, Shape, ShapeModel as _},
 };
 use obvhs::{
@@ -50,16 +50,16 @@ struct Boxed {
 /// shapes over the coordinates between which rays run to them, and `farthest` the largest of the whole scene.
 pub(super) fn pairs(
     shapes: &[Shape],
-    bounds: &[(Vec3, Vec3)],
+    bounds: &[Bounds],
     farthest: DVec3,
     closeness: &dyn Fn([u32; 2]) -> f64,
 ) -> Vec<Pair> {
     let mut order: Vec<u32> = (0..shapes.len() as u32).collect();
-    order.sort_by(|a, b| bounds[*a as usize].0.x.total_cmp(&bounds[*b as usize].0.x));
+    order.sort_by(|a, b| bounds[*a as usize].low.x.total_cmp(&bounds[*b as usize].low.x));
     let mut found = Vec::new();
     for (index, &a) in order.iter().enumerate() {
-        let end = f64::from(bounds[a as usize].1.x) + farthest.x * MOST;
-        let meets = |b: &&u32| f64::from(bounds[**b as usize].0.x) <= end;
+        let end = f64::from(bounds[a as usize].high.x) + farthest.x * MOST;
+        let meets = |b: &&u32| f64::from(bounds[**b as usize].low.x) <= end;
         for &b in order[index + 1..].iter().take_while(meets) {
             let pair = [a.min(b), a.max(b)];
             if let Some(near) = Near::of(shapes, bounds, pair, farthest, closeness(pair)) {
@@ -71,14 +71,14 @@ pub(super) fn pairs(
 }
 
 /// The largest coordinate per axis.
-pub(super) fn far((low, high): &(Vec3, Vec3)) -> DVec3 {
+pub(super) fn far(Bounds { low, high }: &Bounds) -> DVec3 {
     low.abs().max(high.abs()).as_dvec3()
 }
 
 impl<'a> Near<'a> {
     fn of(
         shapes: &'a [Shape],
-        bounds: &[(Vec3, Vec3)],
+        bounds: &[Bounds],
         pair: [u32; 2],
         farthest: DVec3,
         closeness: f64,
@@ -87,11 +87,11 @@ impl<'a> Near<'a> {
         let far = far(&a).max(far(&b));
         let far = far.max(farthest.min(DVec3::splat(BEYOND * far.max_element())));
         let slack = (far * MOST).as_vec3();
-        let (low, high) = (a.0.max(b.0) - slack, a.1.min(b.1) + slack);
+        let (low, high) = (a.low.max(b.low) - slack, a.high.min(b.high) + slack);
         if low.cmpgt(high).any() {
             return None;
         }
-        let size = |(low, high): (Vec3, Vec3)| f64::from((high - low).length());
+        let size = |bounds: Bounds| f64::from(bounds.size().length());
         Some(Self {
             shapes: pair.map(|shape| &shapes[shape as usize]),
             common: Aabb::new(low.into(), high.into()),
@@ -116,8 +116,8 @@ impl<'a> Near<'a> {
     /// The primitives of a shape that reach into the common box.
     fn within(&self, shape: &Shape) -> Vec<Boxed> {
         let boxed = |primitive: usize| {
-            let (low, high) = shape.primitive(primitive).bounds();
-            Boxed { primitive, bounds: Aabb::new((low - self.slack).into(), (high + self.slack).into()) }
+            let Bounds { low, high } = shape.primitive(primitive).bounds().grown(self.slack);
+            Boxed { primitive, bounds: Aabb::new(low.into(), high.into()) }
         };
         let all = (0..shape.primitive_count()).map(boxed);
         all.filter(|boxed| boxed.bounds.intersect_aabb(&self.common)).collect()

@@ -5,7 +5,7 @@
 //! those that are connected are located once, together.
 
 use crate::{
-    math::{Vec3, measure},
+    math::{Bounds, Vec3, measure},
     scene::accel::Geometry,
     shape::{CurvedModel, Primitive, Ray, ShapeModel},
     volume::Coarse,
@@ -84,7 +84,7 @@ fn entered(lattice: &Coarse<()>, geometry: &Geometry) -> Vec<bool> {
     let mut entered = vec![false; lattice.cells().len()];
     let edge = lattice.position(0, Vec3::ONE) - lattice.position(0, Vec3::ZERO);
     let slack = edge.max_element() * SLACK;
-    let around = |(low, high): (Vec3, Vec3)| lattice.cells_around(low - slack, high + slack);
+    let around = |Bounds { low, high }| lattice.cells_around(low - slack, high + slack);
     for shape in geometry.shapes() {
         if around(shape.bounds()).next().is_none() {
             continue;

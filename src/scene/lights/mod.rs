@@ -33,7 +33,7 @@ pub(super) use volume::emissive;
 use super::{accel::Geometry, memo::Memo};
 use crate::{
     emitter::Kind,
-    math::{Spectrum, Vec3},
+    math::{Bounds, Spectrum, Vec3},
     medium::{Emission, Medium, MediumIndex},
     sampling::Discrete,
 };
@@ -162,14 +162,11 @@ fn of_media(all: &[Light]) -> Vec<Option<u32>> {
 
 /// Centre and radius of a sphere that holds everything.
 fn sphere_around(geometry: &Geometry, outside: &Medium) -> (Vec3, f32) {
-    let (mut low, mut high) = geometry.bounds();
-    if let Some([least, most]) = outside.extent() {
-        (low, high) = (low.min(least), high.max(most));
-    }
-    if !(low.is_finite() && high.is_finite()) {
+    let all = geometry.bounds().union(outside.extent().unwrap_or(Bounds::EMPTY));
+    if !all.is_finite() {
         return (Vec3::ZERO, 1.0);
     }
-    let radius = 0.5 * (high - low).length() * (1.0 + 1e-3);
+    let radius = 0.5 * all.size().length() * (1.0 + 1e-3);
     // Where there is nothing, or a point, any sphere will do that has an area.
-    (0.5 * (low + high), if radius * radius > f32::MIN_POSITIVE { radius } else { 1.0 })
+    (0.5 * (all.low + all.high), if radius * radius > f32::MIN_POSITIVE { radius } else { 1.0 })
 }

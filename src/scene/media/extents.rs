@@ -4,7 +4,7 @@
 use super::locate::Survey;
 use crate::{
     error::Result,
-    math::Vec3,
+    math::{Bounds, Vec3},
     medium::{Medium, MediumBounds, MediumDescription, MediumIndex, MediumOverrides},
     scene::{accel::Geometry, surface::Surface},
 };
@@ -34,7 +34,7 @@ impl Extents<'_> {
         medium_overrides: &MediumOverrides,
     ) -> Result<Vec<Medium>> {
         let finish = |(index, description): (usize, MediumDescription)| {
-            let (is_bound, [low, high]) = self.of(MediumIndex(index as u32));
+            let (is_bound, Bounds { low, high }) = self.of(MediumIndex(index as u32));
             if self.outside.0 as usize == index {
                 description.check_end()?;
             }
@@ -45,37 +45,31 @@ impl Extents<'_> {
     }
 
     /// The box around the shapes that hold `medium`; around the whole scene where it also lies outside of some: false.
-    pub(crate) fn of(&self, medium: MediumIndex) -> (bool, [Vec3; 2]) {
+    pub(crate) fn of(&self, medium: MediumIndex) -> (bool, Bounds) {
         let boundaries = || self.surfaces.iter().zip(self.geometry.shapes());
         let holds = |surface: &Surface| surface.boundary.interior == Some(medium);
         let leaks = |surface: &Surface| surface.boundary.exterior == Some(medium);
         let inside = boundaries().filter(|(surface, _)| holds(surface)).map(|(_, shape)| shape.bounds());
         let everywhere = medium == self.outside || boundaries().any(|(surface, _)| leaks(surface));
-        match inside.reduce(union).map(widened) {
+        match inside.reduce(Bounds::union).map(widened) {
             Some(bounds) if !everywhere && self.ends_within(medium, bounds) => (true, bounds),
             _ => (false, self.scene()),
         }
     }
 
-    fn ends_within(&self, medium: MediumIndex, [low, high]: [Vec3; 2]) -> bool {
+    fn ends_within(&self, medium: MediumIndex, bounds: Bounds) -> bool {
         let seen = self.survey.extents.get(medium.0 as usize).copied().flatten();
-        seen.is_none_or(|(l, h)| l.cmpge(low).all() && h.cmple(high).all())
+        seen.is_none_or(|seen| bounds.contains(seen))
     }
 
     /// The box around everything, the camera too.
-    pub(crate) fn scene(&self) -> [Vec3; 2] {
-        let (low, high) = self.geometry.bounds();
-        let camera = (self.viewpoint, self.viewpoint);
-        widened(if low.is_finite() && high.is_finite() { union((low, high), camera) } else { camera })
+    pub(crate) fn scene(&self) -> Bounds {
+        let (shapes, camera) = (self.geometry.bounds(), Bounds::of(self.viewpoint));
+        widened(if shapes.is_finite() { shapes.union(camera) } else { camera })
     }
 }
 
-fn union(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
-    (a.0.min(b.0), a.1.max(b.1))
-}
-
-fn widened((low, high): (Vec3, Vec3)) -> [Vec3; 2] {
-    let size = (high - low).max_element();
-    let margin = Vec3::splat(MARGIN * if size > 0.0 { size } else { 1.0 });
-    [low - margin, high + margin]
+fn widened(bounds: Bounds) -> Bounds {
+    let size = bounds.size().max_element();
+    bounds.grown(Vec3::splat(MARGIN * if size > 0.0 { size } else { 1.0 }))
 }

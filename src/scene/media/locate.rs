@@ -11,7 +11,7 @@ pub use known::*;
 
 use super::boundary::{self, DIRECTIONS, Met};
 use crate::{
-    math::{Frame, Vec3, measure, offset, warp},
+    math::{Bounds, Frame, Vec3, measure, offset, warp},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
     scene::{accel::Geometry, surface::Surface},
@@ -134,7 +134,7 @@ impl Locator<'_> {
         }
         for (index, &(position, medium)) in (0..).zip(&self.known.points) {
             let mut stream = Stream::new(2, index, 0, Purpose::Pilot);
-            survey.extend(medium, position, position);
+            survey.extend(medium, Bounds::of(position));
             for _ in 0..RAYS_PER_SIDE {
                 let direction = warp::to_sphere(stream.square());
                 self.follow(position, direction, medium, None, survey, &mut stream);
@@ -183,18 +183,18 @@ impl Locator<'_> {
             let ray = Ray { origin, direction, t_max: f32::INFINITY };
             match boundary::first(self.geometry, self.surfaces, ray, false) {
                 Met::Side(side) => {
-                    survey.extend(medium, side.position, side.position);
+                    survey.extend(medium, Bounds::of(side.position));
                     if side.medium != medium {
                         survey.contradictions.push(Contradiction { from, medium, at: side });
                     }
                     return;
                 }
                 Met::Wall { point, .. } => {
-                    survey.extend(medium, point.position, point.position);
+                    survey.extend(medium, Bounds::of(point.position));
                     (origin, direction) = bounce(&point, direction, stream);
                 }
                 Met::Nothing => {
-                    survey.extend(medium, Vec3::NEG_INFINITY, Vec3::INFINITY);
+                    survey.extend(medium, Bounds::ENDLESS);
                     survey.escapes.push((direction, medium));
                     return self.look_back(&ray, medium, from, survey, stream);
                 }
@@ -215,7 +215,7 @@ impl Locator<'_> {
         if self.known.boundaries.is_empty() {
             return;
         }
-        let (low, high) = self.geometry.bounds();
+        let Bounds { low, high } = self.geometry.bounds();
         let origin = ray.origin + ray.direction * ((high - low).length() * stream.uniform());
         let shape = self.known.boundaries[stream.below(self.known.boundaries.len())];
         let target = self.geometry.sample_area(shape, stream).position;

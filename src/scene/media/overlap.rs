@@ -12,7 +12,7 @@
 
 use super::{boundary::Boundary, locate::Survey, solid::Solid};
 use crate::{
-    math::{RaySegment, Vec3, vec3, warp},
+    math::{Bounds, RaySegment, Vec3, vec3, warp},
     medium::{Medium, MediumIndex},
     sampling::{Stream, stream::Purpose},
     scene::{accel::Geometry, surface::Surface},
@@ -115,15 +115,14 @@ impl Overlaps {
     pub fn find_regions(&mut self, media: usize, bases: &BTreeSet<u32>) {
         self.media = media;
         self.find_nested();
-        let everywhere = (Vec3::NEG_INFINITY, Vec3::INFINITY);
-        let starts = bases.iter().map(|base| (MediumIndex(*base), 0, everywhere));
+        let starts = bases.iter().map(|base| (MediumIndex(*base), 0, Bounds::ENDLESS));
         let mut waiting: VecDeque<_> = starts.collect();
         while let Some((from, first, within)) = waiting.pop_front() {
             for index in first..self.boundaries.len() {
                 if self.regions.len() >= FORESEEN {
                     return self.look_for_regions(bases);
                 }
-                if let Some(within) = common(within, self.boundaries[index].solid.bounds()) {
+                if let Some(within) = within.common(self.boundaries[index].solid.bounds()) {
                     waiting.push_back((self.with(from, index), index + 1, within));
                 }
             }
@@ -271,7 +270,7 @@ struct Near {
 struct Pair {
     shapes: [u32; 2],
     /// The boxes of both, and what these have in common.
-    boxes: [(Vec3, Vec3); 3],
+    boxes: [Bounds; 3],
 }
 
 impl Near {
@@ -280,7 +279,7 @@ impl Near {
         let mut pairs = Vec::new();
         for (i, a) in bounds.iter().enumerate() {
             for (j, b) in bounds.iter().enumerate().skip(i + 1) {
-                if let Some(both) = common(*a, *b) {
+                if let Some(both) = a.common(*b) {
                     pairs.push(Pair { shapes: [shapes[i], shapes[j]], boxes: [*a, *b, both] });
                 }
             }
@@ -371,23 +370,16 @@ impl ClosedBoundary {
 
     /// True if another lies within, as far as points of it show.
     fn contains(&self, other: &Self) -> bool {
-        let [(low, high), (l, h)] = [self, other].map(|boundary| boundary.solid.bounds());
         let mut stream = Stream::new(7, u64::from(other.shape), 0, Purpose::Pilot);
         let mut holds = || {
             let point = other.solid.sample_area(&mut stream);
             self.solid.holds(point.position, warp::to_sphere(stream.square()))
         };
-        l.cmpge(low).all() && h.cmple(high).all() && (0..POINTS).all(|_| holds())
+        self.solid.bounds().contains(other.solid.bounds()) && (0..POINTS).all(|_| holds())
     }
 }
 
-/// A point of a box, by least and greatest corner.
-fn within((low, high): (Vec3, Vec3), stream: &mut Stream) -> Vec3 {
-    low + (high - low) * vec3(stream.uniform(), stream.uniform(), stream.uniform())
-}
-
-/// The points that two boxes, by least and greatest corner, have in common.
-fn common(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> Option<(Vec3, Vec3)> {
-    let (low, high) = (a.0.max(b.0), a.1.min(b.1));
-    low.cmple(high).all().then_some((low, high))
+/// A point of a box.
+fn within(bounds: Bounds, stream: &mut Stream) -> Vec3 {
+    bounds.low + bounds.size() * vec3(stream.uniform(), stream.uniform(), stream.uniform())
 }

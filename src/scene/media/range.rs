@@ -6,7 +6,7 @@ use crate::{
     description::{Library, Location},
     error::{Error, Result},
     math::{
-        Vec3,
+        Bounds,
         offset::{
             LEAST_MEAN_FREE_PATH, LEAST_VOLUME_DENSITY, RESOLVED_STEPS, ROUNDOFF, SHORTEST_MEAN_FREE_PATH,
         },
@@ -26,10 +26,9 @@ pub(crate) fn check(
         if densest <= 0.0 {
             continue;
         }
-        let [low, high] = medium.extent().unwrap_or_else(|| extents.of(MediumIndex(index as u32 + 1)).1);
-        check_mean_free_path(medium, 1.0 / densest, farthest(low, high), location, library)?;
-        let [low, high] = extents.scene();
-        let size = f64::from((high - low).length());
+        let reached = medium.extent().unwrap_or_else(|| extents.of(MediumIndex(index as u32 + 1)).1);
+        check_mean_free_path(medium, 1.0 / densest, farthest(reached), location, library)?;
+        let size = f64::from(extents.scene().size().length());
         if f64::from(densest) / (size * size) < LEAST_VOLUME_DENSITY {
             let text = format!(
                 "expected sigma_t over the square of the scene's size of at least {LEAST_VOLUME_DENSITY:e} per cubic \
@@ -43,7 +42,7 @@ pub(crate) fn check(
 }
 
 /// The largest coordinate of a box (m from the camera).
-fn farthest(low: Vec3, high: Vec3) -> f32 {
+fn farthest(Bounds { low, high }: Bounds) -> f32 {
     low.abs().max(high.abs()).max_element()
 }
 

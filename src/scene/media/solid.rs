@@ -1,7 +1,7 @@
 //! What a closed shape holds: the one inside test.
 
 use crate::{
-    math::Vec3,
+    math::{Bounds, Vec3},
     sampling::{Stream, stream::Purpose},
     scene::accel::Geometry,
     shape::{Ray, Shape, SurfacePoint},
@@ -28,8 +28,8 @@ impl Solid {
         self.outward
     }
 
-    /// Least and greatest corner of the box around it.
-    pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
+    /// The box around it.
+    pub(crate) fn bounds(&self) -> Bounds {
         self.geometry.bounds()
     }
 
@@ -40,8 +40,7 @@ impl Solid {
 
     /// True if `position`, which is not on it, lies within. `direction` is where to look for its surface: any does.
     pub(crate) fn holds(&self, position: Vec3, direction: Vec3) -> bool {
-        let (low, high) = self.geometry.bounds();
-        if position.cmplt(low).any() || position.cmpgt(high).any() {
+        if !self.bounds().contains(Bounds::of(position)) {
             return false;
         }
         let ray = Ray { origin: position, direction, t_max: f32::INFINITY };

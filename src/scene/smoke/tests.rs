@@ -3,7 +3,7 @@
 use crate::{
     error::{Error, Result},
     format,
-    math::{DVec3, Spectrum},
+    math::{Bounds, DVec3, Spectrum},
     medium::MediumIndex,
     phase::PhaseModel as _,
     scene::build::{Setup, build},
@@ -128,7 +128,7 @@ fn bound(setup: &Setup) -> [Spectrum; 2] {
 
 /// The box that the smoke is in, in the coordinates of the scene.
 fn container(setup: &Setup) -> [DVec3; 2] {
-    let (low, high) = setup.scene.geometry.bounds();
+    let Bounds { low, high } = setup.scene.geometry.bounds();
     [low, high].map(|corner| corner.as_dvec3() + setup.scene.recentre)
 }
 

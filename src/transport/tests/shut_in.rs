@@ -2,7 +2,7 @@
 
 use super::scenes::build;
 use crate::{
-    math::Vec3,
+    math::{Bounds, Vec3},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
     scene::Scene,
@@ -30,7 +30,7 @@ fn is_shut_in(parts: &[&str]) -> bool {
 
 /// No point of the first shape's inside sees one of an emitter.
 fn sees_nothing(scene: &Scene) -> bool {
-    let (low, high) = scene.geometry.shapes()[0].bounds();
+    let Bounds { low, high } = scene.geometry.shapes()[0].bounds();
     (0..1000).all(|index| {
         let mut stream = Stream::new(8, index, 0, Purpose::Study);
         let within = Vec3::from_array([(); 3].map(|()| stream.uniform()));

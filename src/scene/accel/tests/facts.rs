@@ -169,7 +169,7 @@ fn check_shape(
 ) {
     let geometry = Geometry::build(vec![shape_of(plugin, properties, DVec3::ZERO).unwrap()]);
     assert!((geometry.area(0) / area - 1.0).abs() < 1e-5, "{properties:?}: area {}", geometry.area(0));
-    let (low, high) = geometry.shapes()[0].bounds();
+    let Bounds { low, high } = geometry.shapes()[0].bounds();
     let off = (low - Vec3::from(bounds[0])).abs().max((high - Vec3::from(bounds[1])).abs());
     assert!(off.max_element() < 2e-5, "{properties:?}: {low} {high}");
     for ((origin, direction), answer) in rays.iter().zip(answers) {

@@ -64,7 +64,7 @@ fn outside(geometry: &Geometry, plugin: &str, point: &SurfacePoint) -> f32 {
         // Of a cylinder: as it was placed.
         return 1.0;
     }
-    let (low, high) = geometry.bounds();
+    let Bounds { low, high } = geometry.bounds();
     (point.position - (low + high) * 0.5).dot(point.normal).signum()
 }
 

@@ -12,7 +12,7 @@ fn moments_by(
     n: usize,
     draw: impl Fn(&mut Stream) -> Option<(SurfacePoint, f64)>,
 ) -> (Agreement, Agreement) {
-    let (low, high) = geometry.bounds();
+    let Bounds { low, high } = geometry.bounds();
     let mut stream = stream(11);
     let (mut sums, mut squares) = ([0.0; 7], [0.0; 7]);
     for _ in 0..n {

@@ -42,10 +42,10 @@ fn hierarchy_finds_what_each_shape_alone_finds() {
 
 #[test]
 fn bounds_hold_everything_and_are_zero_for_nothing() {
-    assert_eq!(Geometry::build(vec![]).bounds(), (Vec3::ZERO, Vec3::ZERO));
+    assert_eq!(Geometry::build(vec![]).bounds(), Bounds::of(Vec3::ZERO));
     let geometry =
         Geometry::build(vec![placed("cube", vec![shift(1.0, 2.0, 3.0)]), placed("sphere", vec![])]);
-    let (low, high) = geometry.bounds();
+    let Bounds { low, high } = geometry.bounds();
     assert!((low - vec3(-1.0, -1.0, -1.0)).length() < 1e-5 && (high - vec3(2.0, 3.0, 4.0)).length() < 1e-5);
 }
 
@@ -56,7 +56,7 @@ fn recentring_is_subtracted_in_f64() {
         Value::Transform(vec![TransformStep::Translate((far + DVec3::new(0.25, 0.0, 0.0)).into())]);
     let shape = shape_of("rectangle", &[("to_world", to_world)], far).unwrap();
     let hit = Geometry::build(vec![shape]).bounds();
-    assert!((hit.0 - vec3(-0.75, -1.0, 0.0)).length() < 1e-6, "{hit:?}");
+    assert!((hit.low - vec3(-0.75, -1.0, 0.0)).length() < 1e-6, "{hit:?}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::{Locator, Votes, only_medium};
 use crate::{
-    math::Vec3,
+    math::{Bounds, Vec3},
     medium::MediumIndex,
     scene::{accel::Geometry, media::boundary::Side, surface::Surface},
 };
@@ -94,7 +94,7 @@ pub struct Survey {
     /// Where they are open or overlap.
     pub contradictions: Vec<Contradiction>,
     /// Per medium, least and greatest corner of what rays within it have hit; infinite where they hit nothing.
-    pub extents: Vec<Option<(Vec3, Vec3)>>,
+    pub extents: Vec<Option<Bounds>>,
     pub(super) escapes: Vec<(Vec3, MediumIndex)>,
 }
 
@@ -121,11 +121,10 @@ impl Survey {
         proven.filter_map(|(found, _)| Some([found.from?, found.at.shape])).flatten().collect()
     }
 
-    pub(super) fn extend(&mut self, medium: MediumIndex, low: Vec3, high: Vec3) {
+    pub(super) fn extend(&mut self, medium: MediumIndex, bounds: Bounds) {
         let index = medium.0 as usize;
         self.extents.resize(self.extents.len().max(index + 1), None);
-        let grown = self.extents[index].map_or((low, high), |(l, h)| (l.min(low), h.max(high)));
-        self.extents[index] = Some(grown);
+        self.extents[index] = Some(self.extents[index].map_or(bounds, |all| all.union(bounds)));
     }
 }
 
