@@ -6,10 +6,11 @@
 //! spectra of the same values, which is also what the spectral variants show. `inverse_power` is Tyndall's own.
 
 use super::{
-    Library, Object, Params, Plugin, Property, Registry, Table, Value,
-    parameter::Default,
-    params::{COLOR, spelling},
-    table,
+    library::Library,
+    object::{Object, Property, Value},
+    parameter::{Default, Plugin, Table, table},
+    params::{COLOR, Params, spelling},
+    registry::Registry,
 };
 use crate::{
     error::{Error, Result},

@@ -7,7 +7,7 @@ pub mod mend;
 mod object;
 pub mod parameter;
 pub mod params;
-mod registry;
+pub mod registry;
 pub mod transform;
 
 pub use keyframes::Keyframes;

@@ -1,9 +1,12 @@
 //! Typed access to the parameters of an object. Unread parameters are errors: nothing is ignored silently.
 
 use super::{
-    Library, Location, Object, Position, Property, Value, colour, nearest,
+    colour,
+    library::Library,
+    object::{Location, Object, Position, Property, Value},
     parameter::{Default, Is, Kind, Parameter, Table, Word},
-    suggest, transform,
+    registry::{nearest, suggest},
+    transform,
 };
 use crate::{
     error::{Error, Result},

@@ -2,8 +2,10 @@
 //! these rows. And the enum of all models of a kind, whose methods are those of the model.
 
 use super::{
-    Library, Object, Params,
+    library::Library,
+    object::Object,
     parameter::{Plugin, Table},
+    params::Params,
 };
 use crate::error::{Error, Result};
 
@@ -82,9 +84,9 @@ impl<T> Registry<Plugin<Build<T>>> {
 macro_rules! models {
     ($(#[$doc:meta])* $any:ident: $contract:ident $models:tt
      $($(#[$attribute:meta])* fn $method:ident($($argument:ident: $type:ty),*) -> $out:ty;)*) => {
-        $crate::description::models!(@enum $(#[$doc])* $any $models);
+        $crate::description::registry::models!(@enum $(#[$doc])* $any $models);
         impl $contract for $any {
-            $($crate::description::models! {
+            $($crate::description::registry::models! {
                 @method $models $(#[$attribute])* fn $method [$($argument: $type),*] ($($argument),*) -> $out
             })*
         }
