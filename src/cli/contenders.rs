@@ -93,7 +93,8 @@ const PLAIN: [&str; 5] = ["integrator", "strategies", "tracker", "heuristic", "s
 /// Every axis of the command line.
 fn axes(arguments: &Study) -> Result<Vec<Axis>> {
     let mut axes: Vec<Axis> = arguments.vary.iter().map(|text| Axis::of(text)).collect::<Result<_>>()?;
-    let varies = |option: &str| arguments.vary.iter().find(|text| text.split('=').next() == Some(option));
+    let given = || arguments.vary.iter().map(|text| text.trim_start_matches('-'));
+    let varies = |option: &str| given().find(|text| text.split('=').next() == Some(option));
     if varies("strategies").is_some() && varies("integrator").is_none() {
         // All strategies are those of bdpt; the scene's own integrator may have fewer.
         axes.insert(0, Axis { values: vec![(String::new(), "--integrator bdpt".to_owned())] });

@@ -46,13 +46,13 @@ const REMOTE: f64 = 0.1;
 /// The part of an image's time that the first rounds of training may take, for starts.
 const STARTS_SHARE: f64 = 0.2;
 /// Starts are learnt where the squared relative error of a pixel sample is greater: elsewhere there is little to gain. Measured:
-/// 2 to 5 in four of 80 scenes drawn at random where they paid, 0.6 in a fifth, which loses 1.6 by this; less than 1 in
+/// 2 to 5 in four of 80 scenes drawn at random where they paid, 0.6 in one more, which is 1.6 times worse by this; less than 1 in
 /// `glass_fog_sky`, `nested_media` and `plume`, where learning them took a fifth of an image of half a second for nothing, or led
 /// to a choice that took longer than it gave.
 const STARTS_NOISE: f64 = 1.0;
 /// Squared relative errors of a pixel sample where light is seen, and the part of an image's time that the first rounds of a guide
 /// may take where the error is greater. Below the first, asking takes longer than a guide could gain; above the second, one that
-/// pays gains tenfold. Measured: 61 in a room lit through its keyhole, 40 under a skylight and 15 to 30 in two rooms drawn at
+/// pays gained 1.8 to 45 times. Measured: 61 in a room lit through its keyhole, 40 under a skylight and 15 to 30 in two rooms drawn at
 /// random that are lit by a sky through a hole, where one pays for all strategies; 4 to 160 in others lit through openings and
 /// round corners, where none does; 0.1 to 4 elsewhere.
 const GUIDE_SHARES: [(f64, f64); 2] = [(2.0, 0.1), (15.0, 0.4)];
