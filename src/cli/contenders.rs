@@ -278,6 +278,8 @@ mod tests {
                 "power sobol: --heuristic power --sampler sobol --profile everything",
             ]
         );
+        let dashed = shown(&["--vary", "--heuristic=power"]);
+        assert_eq!(dashed, ["power: --heuristic power --profile everything"]);
     }
 
     #[test]
