@@ -94,20 +94,37 @@ impl EnvMap {
             let remedy = "give a larger image (a constant environment needs none)";
             return Err(Error::new(path.display(), "an image of at least 2 x 3 pixels", found, remedy));
         }
-        let to_world = params.transform("to_world")?;
-        if !similarity::is_rigid(to_world) {
-            let expected = "a transform made of rotations and mirrors";
-            return Err(params.complain("to_world", expected, "one that scales or shears"));
-        }
-        let to_local = DMat3::from_mat4(to_world).transpose().as_mat3();
+        let to_local = to_local(params)?.as_mat3();
+        Ok(Self::new(image, to_local, scale, params.boolean("mis_compensation")?))
+    }
+
+    /// An `image` of at least 2 x 3 pixels, whose radiance `scale` multiplies.
+    pub(super) fn new(image: Image, to_local: Mat3, scale: f32, is_compensated: bool) -> Self {
         let map = Map::new(image);
         let fluence = map.fluence();
         let spared = SPARED * (fluence / (4.0 * PI)).as_vec3().luminance();
         let aim = |spared| Arc::new(Aim::new(&map, spared));
-        let aimed = params.boolean("mis_compensation")?.then(|| aim(spared));
+        let aimed = is_compensated.then(|| aim(spared));
         let starts = aim(0.0);
-        Ok(Self { starts, aimed, map: Arc::new(map), to_local, scale, fluence: fluence * f64::from(scale) })
+        Self { starts, aimed, map: Arc::new(map), to_local, scale, fluence: fluence * f64::from(scale) }
     }
+}
+
+/// What undoes `to_world`, which may rotate and mirror.
+pub(super) fn to_local(params: &Params<'_>) -> Result<DMat3> {
+    let to_world = params.transform("to_world")?;
+    if !similarity::is_rigid(to_world) {
+        let expected = "a transform made of rotations and mirrors";
+        return Err(params.complain("to_world", expected, "one that scales or shears"));
+    }
+    Ok(DMat3::from_mat4(to_world).transpose())
+}
+
+/// The local direction of the pixel in that `column` and `row` of a map of `width` x `height`.
+pub(super) fn of_pixel(column: usize, row: usize, [width, height]: [usize; 2]) -> DVec3 {
+    let azimuth = (column as f64 + 0.5) / width as f64 * 2.0 * PI;
+    let (sine, cosine) = (PI * row as f64 / (height - 1) as f64).sin_cos();
+    DVec3::new(sine * azimuth.sin(), cosine, -sine * azimuth.cos())
 }
 
 impl InfiniteModel for EnvMap {

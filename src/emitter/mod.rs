@@ -11,6 +11,7 @@ mod point;
 mod profile;
 mod projector;
 mod spot;
+mod sunsky;
 #[cfg(test)]
 mod tests;
 mod volume;
@@ -25,6 +26,7 @@ use point::Point;
 use profile::{PROFILE, Profile};
 use projector::Projector;
 use spot::Spot;
+use sunsky::SunSky;
 pub use volume::VolumeEmitter;
 
 use crate::{
@@ -241,6 +243,7 @@ emitters! {
         "directional" => Directional,
         "constant" => Constant,
         "envmap" => EnvMap,
+        "sunsky" => SunSky,
     } [
         #[inline] fn radiance(towards: Vec3) -> Spectrum;
         #[inline] fn sample(stream: &mut Stream) -> Vec3;

@@ -122,6 +122,16 @@ fn examples(folder: &Path) -> Vec<Emitter> {
             "envmap",
             &[("filename", file(folder, "image.exr")), ("to_world", turned()), ("scale", Value::Float(2.0))],
         ),
+        built("sunsky", &[("sun_aperture", Value::Float(40.0)), ("sun_scale", Value::Float(0.002))]),
+        built("sunsky", &[("sun_scale", Value::Float(0.0)), ("to_world", turned())]),
+        built(
+            "sunsky",
+            &[
+                ("sun_aperture", Value::Float(60.0)),
+                ("sky_scale", Value::Float(0.0)),
+                ("sun_direction", Value::Vector([1.0, 0.3, 0.3])),
+            ],
+        ),
     ]
     .into_iter()
     .map(Result::unwrap)

@@ -151,8 +151,7 @@ pub(crate) fn tables(tag: &str) -> Vec<(&'static str, &'static Table)> {
         "integrator" => integrator::ROWS.tables().collect(),
         "sampler" => sampler::ROWS.tables().collect(),
         "rfilter" => filter::ROWS.tables().collect(),
-        // Smoke is composed of other shapes before anything is built.
-        "shape" => shape::ROWS.tables().chain([(shape::SMOKE, &shape::SMOKE_TABLE)]).collect(),
+        "shape" => shape::ROWS.tables().chain(shape::COMPOSED.tables()).collect(),
         "bsdf" => bsdf::ROWS.tables().collect(),
         "texture" => texture::ROWS.tables().collect(),
         "emitter" => emitter::ROWS.tables().collect(),

@@ -8,7 +8,7 @@ mod tree;
 use crate::{
     math::{Bounds, Vec3},
     sampling::Stream,
-    shape::{Hit, Primitive, Ray, Shape, ShapeModel, SurfacePoint},
+    shape::{Hit, Primitive, Ray, Shape, ShapeModel, Shared, SurfacePoint},
 };
 use tree::Tree;
 
@@ -141,6 +141,38 @@ impl Geometry {
     /// The density with which `sample_toward` gives `point` (1/m^2).
     pub fn pdf_area_toward(&self, shape: u32, reference: Vec3, point: &SurfacePoint) -> f32 {
         self.shapes[shape as usize].pdf_area_toward(reference, point)
+    }
+}
+
+/// As instances of all its shapes share it.
+impl Shared for Geometry {
+    fn closest(&self, ray: &Ray) -> Option<Hit> {
+        self.tree.closest(ray)
+    }
+
+    fn surface(&self, ray: &Ray, primitive: u32, t: f32) -> (SurfacePoint, [Vec3; 2]) {
+        let mut hit = Hit { t, primitive, u: 0.0, v: 0.0 };
+        let shape = &self.shapes[self.shape_of(&hit) as usize];
+        let local = self.local_primitive(&hit) as usize;
+        if let Primitive::Flat(flat) = shape.primitive(local) {
+            let point = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(t);
+            [hit.u, hit.v] = flat.coordinates(point).map(|x| x as f32);
+        }
+        let point = self.surface(ray, &hit);
+        let (u, v) = shape.partials(local, ray, &hit, &point);
+        (point, [u, v])
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.tree.bounds()
+    }
+
+    fn area(&self) -> f32 {
+        self.shapes.iter().map(ShapeModel::area).sum()
+    }
+
+    fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {
+        self.sample_area(0, stream)
     }
 }
 

@@ -2,14 +2,15 @@
 //! objects refer to each other by index.
 
 mod finish;
+mod groups;
 mod media;
+mod shapes;
 mod view;
 
 use super::{
     Scene, Surface,
-    contact::{Apart, Nature, Rank},
+    contact::{Apart, Nature},
     keyframes,
-    media::Boundary,
     rebuild::{Before, Parts},
     sections::Sections,
     smoke::{self, Taken},
@@ -25,7 +26,7 @@ use crate::{
         layer::{self, Component},
     },
     format::plugins,
-    math::DVec3,
+    math::{DAffine3, DVec3},
     medium::{self, MediumDescription, MediumIndex},
     sampling::Sampler,
     settings::{
@@ -33,10 +34,11 @@ use crate::{
         integrator::{self, Integrator},
         only_one,
     },
-    shape::{self, Shape, ShapeModel as _},
-    volume::Place,
+    shape::Shape,
+    volume::{self, Place},
 };
 use finish::Finished;
+use groups::Bases;
 use std::collections::HashMap;
 
 /// A scene with what its file says about rendering it.
@@ -104,9 +106,7 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
     let recentre = sections.viewpoint(&library)?;
     let before = before.map(Before::new).transpose()?;
     let mut builder = Builder::new(&library, Place::new(recentre, sections.time), before.as_ref());
-    for child in &sections.shapes {
-        builder.shape(child)?;
-    }
+    builder.add_shapes(&root, &sections.shapes)?;
     for child in &sections.emitters {
         builder.emitter(child)?;
     }
@@ -191,12 +191,14 @@ struct Builder<'a> {
     medium_names: Vec<String>,
     medium_ids: Vec<Option<String>>,
     medium_objects: Vec<&'a Object>,
+    medium_places: Vec<DAffine3>,
     emitters: Vec<Placed<'a>>,
     /// BSDF of shapes that name none: diffuse 0.5, and black on emitters.
     default_bsdf: [Option<u32>; 2],
     before: Option<&'a Before<'a>>,
     /// True if all shapes so far are those of before.
     has_old_shapes: bool,
+    bases: Bases,
     parts: Parts,
 }
 
@@ -220,94 +222,14 @@ impl<'a> Builder<'a> {
             medium_names: Vec::new(),
             medium_ids: Vec::new(),
             medium_objects: Vec::new(),
+            medium_places: Vec::new(),
             emitters: Vec::new(),
             default_bsdf: [None; 2],
             before,
             has_old_shapes: before.is_some(),
+            bases: Bases::default(),
             parts: Parts::default(),
         }
-    }
-
-    fn shape(&mut self, child: &Child<'a>) -> Result<()> {
-        let (params, build) = shape::ROWS.read(child.object, self.library)?;
-        let old = self.before.and_then(|before| before.shape(child.object, self.recentre));
-        let shape = old.cloned().map_or_else(|| build(&params, self.recentre), Ok)?;
-        let interior = self.side(&params, "interior")?;
-        let exterior = self.side(&params, "exterior")?;
-        let index = self.shapes.len() as u32;
-        let emitter = self.shape_emitter(&params, index)?;
-        let bsdfs = params.children("bsdf", |child| bsdf::ROWS.has(child.object))?;
-        let bsdf = match bsdfs.as_slice() {
-            [] => self.default_bsdf(emitter.is_some())?,
-            [one] => self.bsdf(one.object)?,
-            [_, second, ..] => return Err(only_one(second, "bsdf")),
-        };
-        // One that was built before has been read then.
-        if old.is_none() {
-            params.finish()?;
-        }
-        self.has_old_shapes &= old.is_some();
-        self.parts.shapes.insert(child.object.location.clone(), self.shapes.len());
-        self.shapes.push(shape);
-        self.shape_names.push(name_of(child.object));
-        self.shape_locations.push(child.location.clone());
-        let model = &self.bsdfs[bsdf as usize];
-        let nature = nature(model, bsdf, emitter.is_some());
-        let (connectible, transmits) = (model.is_connectible(), model.transmits());
-        let boundary = Boundary::stated(interior, exterior, transmits);
-        if transmits && boundary.is_known() {
-            self.mend_container(exterior.is_some(), child.location);
-        }
-        self.natures.push(nature);
-        self.surfaces.push(Surface { bsdf, emitter, boundary, transmits, connectible });
-        Ok(())
-    }
-
-    /// The last shape bounds a medium: if it is a mesh, each of its triangles has to say alike which side is which.
-    fn mend_container(&mut self, is_exterior_stated: bool, location: &Location) {
-        let (Some(Shape::Mesh(mesh)), Some(name)) = (self.shapes.last_mut(), self.shape_names.last()) else {
-            return;
-        };
-        if let Some((mended, turned)) = mesh.oriented() {
-            let text = format!(
-                "{turned} of the {} triangles of \"{name}\" face the other way than their neighbours. They are turned \
-                 over, because the boundary of a medium has one inside. Recalculate the normals in the program that \
-                 made the mesh",
-                mesh.primitive_count()
-            );
-            self.library.warn(location, &text);
-            *mesh = mended;
-        }
-        if !is_exterior_stated && mesh.is_inside_out() {
-            let text = format!(
-                "\"{name}\" is inside out: its normals point into the mesh, so that its interior medium fills all the \
-                 space around it. Change \"flip_normals\", or turn the mesh over in the program that made it"
-            );
-            self.library.warn(location, &text);
-        }
-    }
-
-    /// The medium that the file states on one side of a shape.
-    fn side(&mut self, params: &Params<'a>, name: &'static str) -> Result<Option<MediumIndex>> {
-        params.child(name)?.map(|child| self.medium(child.object)).transpose()
-    }
-
-    fn shape_emitter(&mut self, params: &Params<'a>, shape: u32) -> Result<Option<u32>> {
-        let emitters = params.children("emitter", |child| emitter::ROWS.has(child.object))?;
-        let child = match emitters.as_slice() {
-            [] => return Ok(None),
-            [one] => one,
-            [_, second, ..] => return Err(only_one(second, "emitter")),
-        };
-        let emitter = self.built_emitter(child.object)?;
-        if !emitter.needs_shape() {
-            let found = format!("\"{}\"", child.object.plugin);
-            let remedy = "put it beside the shapes, in the scene itself";
-            return Err(Error::new(child.location, "an area emitter on a shape", found, remedy));
-        }
-        let stated = self.stated_medium(&emitter::ROWS.read(child.object, self.library)?.0)?;
-        self.emitters.push(Placed { emitter, shape: Some(shape), stated, location: child.location });
-        Ok(Some(self.emitters.len() as u32 - 1))
     }
 
     fn emitter(&mut self, child: &Child<'a>) -> Result<()> {
@@ -373,17 +295,24 @@ impl<'a> Builder<'a> {
     fn medium(&mut self, object: &'a Object) -> Result<MediumIndex> {
         let object = self.original(object)?;
         // One that is written twice is one, too: boundaries on both sides of which it lies do not contradict each other.
-        if let Some(index) = self.medium_objects.iter().position(|known| known.says_what(object)) {
+        let place = if varies(object) { self.place.instance } else { DAffine3::IDENTITY };
+        let is_known = |(known, there): (&&Object, &DAffine3)| *there == place && known.says_what(object);
+        if let Some(index) = self.medium_objects.iter().zip(&self.medium_places).position(is_known) {
             if let (None, Some(id)) = (&self.medium_ids[index], &object.id) {
                 (self.medium_ids[index], self.medium_names[index]) = (Some(id.clone()), id.clone());
             }
             return Ok(MediumIndex(index as u32 + 1));
         }
         let index = MediumIndex(self.media.len() as u32);
-        let old = self.before.and_then(|before| before.medium(object, self.library, self.recentre));
+        let is_moved = place != DAffine3::IDENTITY;
+        let before = self.before.filter(|_| !is_moved);
+        let old = before.and_then(|before| before.medium(object, self.library, self.recentre));
         let medium = old.cloned().map_or_else(|| medium::build(object, self.library, &self.place), Ok)?;
-        self.parts.media.insert(object.location.clone(), medium.clone());
+        if !is_moved {
+            self.parts.media.insert(object.location.clone(), medium.clone());
+        }
         self.media.push(medium);
+        self.medium_places.push(place);
         self.medium_names.push(name_of(object));
         self.medium_locations.push(object.location.clone());
         self.medium_ids.push(object.id.clone());
@@ -401,13 +330,11 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// What contact needs to know of a shape with this BSDF.
-fn nature(model: &Bsdf, bsdf: u32, emits: bool) -> Nature {
-    let rank = match model {
-        Bsdf::Null(_) => Rank::Null,
-        model if model.transmits() => Rank::Transmitting,
-        _ if emits => Rank::Emitting,
-        _ => Rank::Opaque,
+/// True of a medium that is not the same everywhere, so that each instance of a group has its own.
+fn varies(medium: &Object) -> bool {
+    let has_volume = |property: &Property| match &property.value {
+        Value::Object(child) => volume::ROWS.has(child),
+        _ => false,
     };
-    Nature { rank, bsdf, one_sided: !matches!(model, Bsdf::TwoSided(_)), is_lid: false }
+    medium.plugin == "heterogeneous" || medium.properties.iter().any(has_volume)
 }

@@ -53,23 +53,19 @@ fn is_definition(object: &Object) -> bool {
         || volume::ROWS.has(object)
 }
 
-fn is_shape(object: &Object) -> bool {
-    shape::ROWS.has(object)
-}
-
 impl<'a> Sections<'a> {
     /// Sorts the children of `root`; one that no scene can hold is an error.
     pub(super) fn sort(root: &'a Object, library: &'a Library) -> Result<Self> {
         let params = Params::new(root, library, &TABLE);
         let time = params.float("time")?;
-        let shapes = params.children("shape", |child| is_shape(child.object))?;
+        let shapes = params.children("shape", |child| shape::is_shape(child.object))?;
         let emitters = params.children("emitter", |child| emitter::ROWS.has(child.object))?;
         let children = params.children("sensor", |child| sensor::ROWS.has(child.object))?;
         let integrators = params.children("integrator", |child| integrator::ROWS.has(child.object))?;
         let definitions = params.children("bsdf", |child| is_definition(child.object))?;
         check_idle(&definitions, root, library, time)?;
         if let Some(unknown) = params.children("bsdf", |_| true)?.iter().find(|child| {
-            !(is_shape(child.object)
+            !(shape::is_shape(child.object)
                 || emitter::ROWS.has(child.object)
                 || sensor::ROWS.has(child.object)
                 || integrator::ROWS.has(child.object)

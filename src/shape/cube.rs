@@ -1,10 +1,13 @@
 //! `cube`: [-1, 1]^3, facing outwards.
 
-use super::{COMMON, Parallelograms, parallelogram::ObjectFace};
+use super::{
+    model::COMMON,
+    parallelogram::{ObjectFace, Parallelograms},
+};
 use crate::{
     description::{Params, Table, table},
     error::Result,
-    math::DVec3,
+    math::DMat4,
 };
 
 /// Corner, u and v edges and normal of each face, u and v as on Mitsuba's cube.
@@ -24,6 +27,6 @@ pub(super) const TABLE: Table = table! {
     COMMON
 };
 
-pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Parallelograms> {
-    Parallelograms::build(params, recentre, &FACES)
+pub(super) fn build(params: &Params<'_>, world: DMat4) -> Result<Parallelograms> {
+    Parallelograms::build(params, world, &FACES)
 }

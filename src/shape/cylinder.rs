@@ -2,8 +2,11 @@
 //! from its axis' base whose f32 roundings would be seen on the small scale of its radius.
 
 use super::{
-    COMMON, Curved, CurvedModel, Disk, Hit, Patch, Primitive, Ray, ShapeModel, SurfacePoint,
+    disk::Disk,
+    model::{COMMON, Curved, CurvedModel, Primitive, ShapeModel},
+    patch::Patch,
     placement::{Placement, is_in_range},
+    point::{Hit, Ray, SurfacePoint},
 };
 use crate::{
     description::{Params, Table, table},
@@ -44,11 +47,11 @@ pub(super) const TABLE: Table = table! {
     COMMON
 };
 
-pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Cylinder> {
+pub(super) fn build(params: &Params<'_>, world: DMat4) -> Result<Cylinder> {
     let p0 = params.vector("p0")?;
     let p1 = params.vector("p1")?;
     let radius = params.float("radius")?;
-    let mut placement = Placement::read(params, recentre)?;
+    let mut placement = Placement::read(params, world)?;
     if radius == 0.0 {
         return Err(params.complain("radius", "a number other than 0", "0"));
     }

@@ -1,15 +1,16 @@
 //! `disk`: the unit disk in the xy plane, facing +z; any affine transform makes it an ellipse.
 
 use super::{
-    COMMON, Curved, CurvedModel, Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
-    flat::flat_error,
+    flat::{Flat, flat_error},
+    model::{COMMON, Curved, CurvedModel, Primitive, ShapeModel},
     placement::{Placement, is_in_range},
+    point::{Hit, Ray, SurfacePoint},
 };
 use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
     math::{
-        Bounds, DVec3, Frame, Vec2, Vec3,
+        Bounds, DMat4, DVec3, Frame, Vec2, Vec3,
         offset::{SEAM, gamma},
         vec2, warp,
     },
@@ -40,8 +41,8 @@ pub(super) const TABLE: Table = table! {
     "An analytic disk of radius 1 around the origin, facing +z."; ; COMMON
 };
 
-pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Disk> {
-    let placement = Placement::read(params, recentre)?;
+pub(super) fn build(params: &Params<'_>, world: DMat4) -> Result<Disk> {
+    let placement = Placement::read(params, world)?;
     let disk = Disk::place(&placement);
     if disk.fits() {
         return Ok(disk);

@@ -1,6 +1,6 @@
 //! Flat primitives.
 
-use crate::math::{Vec3, offset::gamma};
+use crate::math::{DVec3, Vec3, offset::gamma};
 
 /// The points corner + u `edge_u` + v `edge_v`: u, v in [0, 1], and u + v <= 1 for a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,15 @@ pub struct Flat {
     pub normal: Vec3,
     /// Triangle or parallelogram.
     pub triangle: bool,
+}
+
+impl Flat {
+    /// u and v of a point near it.
+    pub fn coordinates(&self, point: DVec3) -> [f64; 2] {
+        let [corner, u, v] = [self.corner, self.edge_u, self.edge_v].map(|p| p.as_dvec3());
+        let (at, cross) = (point - corner, u.cross(v));
+        [v.cross(cross), cross.cross(u)].map(|axis| at.dot(axis) / cross.length_squared())
+    }
 }
 
 /// Bound on how far corner + (`along_u` + `along_v`) and the ray tracer's idea of the plane there can be

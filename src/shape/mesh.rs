@@ -1,17 +1,18 @@
 //! Triangle meshes: what files hold, placed in the world, checked and ready for rays.
 
 use super::{
-    Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     area::AreaTable,
-    flat::flat_error,
+    flat::{Flat, flat_error},
+    model::{Primitive, ShapeModel},
     orientation::turned_over,
-    placement::{Placement, is_in_range},
-    shift, smooth,
+    placement::{Placement, is_in_range, shift},
+    point::{Hit, Ray, SurfacePoint},
+    smooth,
 };
 use crate::{
     description::{Params, parameter::Parameter, rows},
     error::{Error, Result},
-    math::{DVec3, Frame, Vec2, Vec3, axes, offset::LARGEST_COORDINATE, warp},
+    math::{DMat4, DVec3, Frame, Vec2, Vec3, axes, offset::LARGEST_COORDINATE, warp},
     memory,
     sampling::Stream,
 };
@@ -63,8 +64,8 @@ pub(super) const FACE_NORMALS: &[Parameter] = rows! {
 impl Mesh {
     /// Reads the parameters every mesh has, and places `data`, read from `file`, by them. As in Mitsuba,
     /// vertex normals are computed where the file has none, unless `face_normals` is set.
-    pub fn build(params: &Params<'_>, recentre: DVec3, file: &Path, mut data: MeshData) -> Result<Self> {
-        let placement = Placement::read(params, recentre)?;
+    pub fn build(params: &Params<'_>, world: DMat4, file: &Path, mut data: MeshData) -> Result<Self> {
+        let placement = Placement::read(params, world)?;
         let face_normals = params.boolean("face_normals")?;
         let positions: Vec<Vec3> = data.positions.iter().map(|p| placement.point(*p).as_vec3()).collect();
         if let Some(index) = positions.iter().position(|p| !is_in_range(*p)) {

@@ -1,4 +1,4 @@
-//! Shapes: one file a model; this page is the contract and the registry.
+//! Shapes: one file a model; this page is the registry, and [`ShapeModel`] the contract.
 //!
 //! A shape is a list of primitives (parallelograms, triangles, spheres, and curved ones, which are shapes themselves).
 //! Positions are f32, relative to the
@@ -6,17 +6,21 @@
 //! error bounds speak of rounding after it.
 
 mod area;
+mod composed;
 mod cube;
 mod cylinder;
 mod disk;
 mod flat;
+mod instance;
 mod mesh;
+mod model;
 mod obj;
 mod orientation;
 mod parallelogram;
 mod patch;
 mod placement;
 mod ply;
+mod point;
 mod rectangle;
 mod serialized;
 mod smoke;
@@ -25,240 +29,34 @@ mod sphere;
 mod spherical_rectangle;
 
 use crate::{
-    description::{Params, Plugin, Registry, models, parameter::Parameter, rows},
+    description::{Object, Params, Plugin, Registry, models},
     error::Result,
-    math::{
-        Bounds, DVec3, Frame, Uv, Vec3,
-        offset::{Lift, gamma, leave_surface, side_of},
-    },
+    math::{Bounds, DMat4, Vec3},
     sampling::Stream,
 };
 use std::collections::BTreeMap;
 
+pub use composed::{COMPOSED, Composed};
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use flat::Flat;
+pub use instance::{Instance, Shared};
 pub use mesh::Mesh;
+pub use model::{Curved, CurvedModel, Primitive, ShapeModel};
 pub use parallelogram::{Parallelogram, Parallelograms};
 pub use patch::Patch;
+pub use point::{Hit, Ray, SurfacePoint};
 pub use smoke::{SMOKE, SMOKE_TABLE};
 pub use sphere::Sphere;
 
-/// A ray; t in (0, `t_max`).
-#[derive(Clone, Copy, Debug)]
-pub struct Ray {
-    /// Where it starts.
-    pub origin: Vec3,
-    /// Unit vector.
-    pub direction: Vec3,
-    /// Where it ends (m), itself excluded.
-    pub t_max: f32,
-}
-
-/// Where a ray met a primitive.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
-    /// Distance (m).
-    pub t: f32,
-    /// Which primitive of the geometry.
-    pub primitive: u32,
-    /// First surface coordinate (see [`Shape::surface`]).
-    pub u: f32,
-    /// Second surface coordinate.
-    pub v: f32,
-}
-
-/// A point on a surface and what the surface is like there.
-///
-/// `normal` and `shading.normal` follow Mitsuba to the letter: they can point to opposite sides (a mirrored
-/// rectangle or cube, a mesh whose vertex normals disagree with its winding). In Mitsuba `normal` decides
-/// which medium a ray enters, `shading.normal` which side reflects and emits.
-#[derive(Clone, Copy, Debug)]
-pub struct SurfacePoint {
-    /// Where it is.
-    pub position: Vec3,
-    /// Bound on the rounding error of `position`, per axis (see [`crate::math::offset::leave_surface`]).
-    pub error: Vec3,
-    /// Geometric normal, unit.
-    pub normal: Vec3,
-    /// Around the interpolated shading normal; the tangent points along growing u.
-    pub shading: Frame,
-    /// Texture coordinates.
-    pub uv: Uv,
-    /// Which shape of the geometry, in order of addition.
-    pub shape: u32,
-}
-
-impl SurfacePoint {
-    /// The ray from here in unit `direction`, clear of the surface.
-    #[inline]
-    pub fn leaving(&self, direction: Vec3) -> Ray {
-        let origin = leave_surface(self.position, self.error, self.normal, direction);
-        Ray { origin, direction, t_max: f32::INFINITY }
-    }
-
-    /// How the end of a segment here, which comes from where unit `towards` points, keeps clear of the surface.
-    #[inline]
-    pub fn lift(&self, towards: Vec3) -> Lift {
-        Lift::off(side_of(self.normal, towards), matches!(self.uv, Uv::OnSphere(_)))
-    }
-
-    /// The normal of the side that emits: geometric, turned to the side that the shading normal names.
-    #[inline]
-    pub fn front(&self) -> Vec3 {
-        if self.normal.dot(self.shading.normal) < 0.0 { -self.normal } else { self.normal }
-    }
-}
-
-/// A primitive as the ray tracer needs it.
-#[derive(Clone, Debug)]
-pub enum Primitive {
-    /// Part of a plane.
-    Flat(Flat),
-    /// A whole sphere.
-    Ball {
-        /// Its centre.
-        center: Vec3,
-        /// Its radius (m).
-        radius: f32,
-    },
-    /// One that is tested against rays by itself: too rare for lanes.
-    Curved(Curved),
-}
-
-impl Primitive {
-    /// As far as touching depends on it.
-    pub fn patch(&self) -> Patch {
-        match self {
-            Self::Flat(flat) => Patch::flat(flat),
-            Self::Ball { center, radius } => {
-                Patch::Ball { center: center.as_dvec3(), radius: f64::from(*radius) }
-            }
-            Self::Curved(Curved::Disk(disk)) => Patch::flat(&disk.square()),
-            Self::Curved(Curved::Cylinder(cylinder)) => cylinder.patch(),
-        }
-    }
-
-    /// The box around it.
-    pub fn bounds(&self) -> Bounds {
-        match self {
-            Self::Ball { center, radius } => Bounds::of(*center).grown(Vec3::splat(*radius)),
-            Self::Curved(curved) => curved.bounds(),
-            Self::Flat(flat) => {
-                let Flat { corner, edge_u, edge_v, triangle, .. } = *flat;
-                let (u, v) = (corner + edge_u, corner + edge_v);
-                let fourth = if triangle { corner } else { u + edge_v };
-                Bounds { low: corner.min(u).min(v).min(fourth), high: corner.max(u).max(v).max(fourth) }
-            }
-        }
-    }
-
-    /// The same around all hits, which rounding can take beyond that.
-    pub fn hit_bounds(&self) -> Bounds {
-        let error = match self {
-            Self::Ball { center, radius } => {
-                let reach = *radius + gamma(2) * (center.abs() + *radius);
-                return Bounds::of(*center).grown(reach);
-            }
-            Self::Curved(curved) => curved.rounding(),
-            Self::Flat(Flat { corner, edge_u, edge_v, .. }) => {
-                gamma(3) * (corner.abs() + edge_u.abs() + edge_v.abs())
-            }
-        };
-        self.bounds().grown(error)
-    }
-}
-
-/// What every curved primitive can do.
-pub trait CurvedModel {
-    /// The box around it.
-    fn bounds(&self) -> Bounds;
-
-    /// How far rounding can take a hit beyond that, per axis.
-    fn rounding(&self) -> Vec3;
-
-    /// The nearest hit with t in (0, `t_max`): t, u and v of [`Hit`].
-    fn closest(&self, ray: &Ray, t_max: f32) -> Option<[f32; 3]>;
-
-    /// Distance of `p` from the surface that it is a part of (m).
-    fn distance(&self, p: DVec3) -> f64;
-}
-
-models! {
-    /// Any curved primitive.
-    Curved: CurvedModel [Disk Cylinder]
-    fn bounds() -> Bounds;
-    fn rounding() -> Vec3;
-    #[inline] fn closest(ray: &Ray, t_max: f32) -> Option<[f32; 3]>;
-    fn distance(p: DVec3) -> f64;
-}
-
-/// What every kind of shape can do.
-pub trait ShapeModel {
-    /// How many primitives it has.
-    fn primitive_count(&self) -> usize {
-        1
-    }
-
-    /// Its primitive number `index`.
-    fn primitive(&self, index: usize) -> Primitive;
-
-    /// The surface where `ray` met primitive `index`. For flat primitives `hit.u` and `hit.v` are those of [`Flat`], for
-    /// disks those of the unit disk; spheres and cylinders use `hit.t`.
-    fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint;
-
-    /// How position changes with the texture coordinates u and v (m) at `point`, where `ray` met primitive `index`.
-    fn partials(&self, index: usize, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
-        let Frame { tangent, bitangent, .. } = point.shading;
-        let Primitive::Flat(flat) = self.primitive(index) else { return (tangent, bitangent) };
-        // Positions and texture coordinates both are linear in those of the primitive.
-        let uv = |u: f32, v: f32| self.surface(index, ray, &Hit { u, v, ..*hit }).uv.get();
-        let (along_u, along_v) = (uv(1.0, 0.0) - uv(0.0, 0.0), uv(0.0, 1.0) - uv(0.0, 0.0));
-        let area = along_u.perp_dot(along_v);
-        if area == 0.0 {
-            return (tangent, bitangent);
-        }
-        let du = (flat.edge_u * along_v.y - flat.edge_v * along_u.y) / area;
-        let dv = (flat.edge_v * along_u.x - flat.edge_u * along_v.x) / area;
-        (du, dv)
-    }
-
-    /// Area (m^2).
-    fn area(&self) -> f32;
-
-    /// Uniform by area, density 1/area (1/m^2).
-    fn sample_area(&self, stream: &mut Stream) -> SurfacePoint;
-
-    /// A point for light to come from to `reference`, and its density (1/m^2).
-    fn sample_toward(&self, _reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32) {
-        (self.sample_area(stream), 1.0 / self.area())
-    }
-
-    /// Density of [`Self::sample_toward`] at `point` (1/m^2).
-    fn pdf_area_toward(&self, _reference: Vec3, _point: &SurfacePoint) -> f32 {
-        1.0 / self.area()
-    }
-}
-
 /// Builds a shape from its geometry parameters and no others (materials, media and emitters remain for the scene to
-/// read, which calls `finish`); the point `recentre` becomes the origin.
-pub type BuildShape = fn(&Params<'_>, DVec3) -> Result<Shape>;
-
-/// What all shapes have.
-const COMMON: &[Parameter] = rows! {
-    transform("to_world", "Position, orientation and size."),
-    boolean("flip_normals", false, "Reverses the normals: `interior`, `exterior` and the front of an emitter change sides."),
-    nested("bsdf", Optional, "The surface; default: grey diffuse, on an emitter black."),
-    nested("emitter", Optional, "The emitter: `area` or `directionalarea`."),
-    object("interior", "medium", "The medium behind the surface, against the normals."),
-    object("exterior", "medium", "The medium in front of the surface, where the normals point."),
-    ignored("silhouette_sampling_weight", "used for derivatives only"),
-};
+/// read, which calls `finish`); the matrix takes the file's world to the scene's.
+pub type BuildShape = fn(&Params<'_>, DMat4) -> Result<Shape>;
 
 /// Makes the enum, its dispatch and the registry from one row a kind: its type, and each of its names with the module
-/// that builds it and has the table of its parameters, those in [`COMMON`] included.
+/// that builds it and has the table of its parameters, those in [`model::COMMON`] included.
 macro_rules! shapes {
-    ($($model:ident: $($name:literal => $file:ident),+;)*) => {
+    ($($model:ident: $($name:literal => $file:ident),*;)*) => {
         models! {
             /// Any shape.
             Shape: ShapeModel [$($model)*]
@@ -276,8 +74,8 @@ macro_rules! shapes {
         pub const ROWS: Registry<Plugin<BuildShape>> = Registry::new("a shape", &[
             $($(($name, Plugin {
                 table: $file::TABLE,
-                build: |params, recentre| $file::build(params, recentre).map(Shape::$model),
-            }),)+)*
+                build: |params, world| $file::build(params, world).map(Shape::$model),
+            }),)*)*
         ]);
     };
 }
@@ -288,6 +86,12 @@ shapes! {
     Disk: "disk" => disk;
     Cylinder: "cylinder" => cylinder;
     Mesh: "obj" => obj, "ply" => ply, "serialized" => serialized;
+    Instance: ;
+}
+
+/// True if `object` goes where shapes go.
+pub fn is_shape(object: &Object) -> bool {
+    ROWS.has(object) || COMPOSED.has(object)
 }
 
 impl Shape {
@@ -298,7 +102,7 @@ impl Shape {
             Self::Mesh(mesh) => mesh.is_closed(),
             // A cube; a rectangle is one.
             Self::Parallelograms(faces) => faces.primitive_count() == 6,
-            Self::Disk(_) | Self::Cylinder(_) => false,
+            Self::Disk(_) | Self::Cylinder(_) | Self::Instance(_) => false,
         }
     }
 
@@ -307,7 +111,7 @@ impl Shape {
         match self {
             Self::Cylinder(cylinder) => cylinder.lids().map(Self::Disk).into(),
             Self::Mesh(mesh) => mesh.lid().map(Self::Mesh).into_iter().collect(),
-            Self::Parallelograms(_) | Self::Disk(_) | Self::Sphere(_) => Vec::new(),
+            Self::Parallelograms(_) | Self::Disk(_) | Self::Sphere(_) | Self::Instance(_) => Vec::new(),
         }
     }
 
@@ -337,6 +141,7 @@ impl Shape {
             Self::Sphere(sphere) => Self::Sphere(sphere.widened(first)),
             Self::Cylinder(cylinder) => Self::Cylinder(cylinder.widened(first)),
             Self::Disk(disk) => Self::Disk(disk.lifted(first)),
+            Self::Instance(_) => self.clone(),
         }
     }
 
@@ -345,17 +150,4 @@ impl Shape {
         let boxes = (0..self.primitive_count()).map(|index| self.primitive(index).bounds());
         boxes.fold(Bounds::EMPTY, Bounds::union)
     }
-}
-
-/// How a corner moves so that the planes through it, each a unit normal and a distance (m), move by these: exactly where at
-/// most three are independent, else as far as the planes allow.
-fn shift(planes: &[(DVec3, f64)]) -> DVec3 {
-    const SWEEPS: usize = 64;
-    let mut moved = DVec3::ZERO;
-    for _ in 0..SWEEPS {
-        for (normal, distance) in planes {
-            moved += normal * (distance - normal.dot(moved));
-        }
-    }
-    moved
 }

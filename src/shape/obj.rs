@@ -2,13 +2,13 @@
 //! is recentred, every error has its line, and faces of which only some have normals stay aligned.
 
 use super::{
-    COMMON, Mesh,
-    mesh::{FACE_NORMALS, MeshData},
+    mesh::{FACE_NORMALS, Mesh, MeshData},
+    model::COMMON,
 };
 use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
-    math::{DVec3, vec2},
+    math::{DMat4, DVec3, vec2},
 };
 use std::{collections::HashMap, path::Path};
 
@@ -20,7 +20,7 @@ pub(super) const TABLE: Table = table! {
     FACE_NORMALS, COMMON
 };
 
-pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
+pub(super) fn build(params: &Params<'_>, world: DMat4) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords")?;
     let unread = |e| Error::io(&file, "read", &e);
@@ -28,7 +28,7 @@ pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
     MeshData::check_memory(&file, length, MEMORY_PER_BYTE)?;
     let text = std::fs::read(&file).map_err(unread)?;
     let data = Reader::new(&file, flip).read(&text)?;
-    Mesh::build(params, recentre, &file, data)
+    Mesh::build(params, world, &file, data)
 }
 
 /// What a byte of text becomes, the text included: a short line of a face makes a triangle and perhaps three vertices.

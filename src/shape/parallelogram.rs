@@ -1,17 +1,17 @@
 //! Parallelograms: rectangles under any affine transform, and the faces of cubes.
 
 use super::{
-    Flat, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
     area::AreaTable,
-    flat::flat_error,
-    placement::{Placement, is_in_range},
-    shift,
+    flat::{Flat, flat_error},
+    model::{Primitive, ShapeModel},
+    placement::{Placement, is_in_range, shift},
+    point::{Hit, Ray, SurfacePoint},
     spherical_rectangle::{Seen, SphericalRectangle},
 };
 use crate::{
     description::Params,
     error::{Error, Result},
-    math::{DMat3, DVec3, Frame, Vec3, measure, vec2},
+    math::{DMat3, DMat4, DVec3, Frame, Vec3, measure, vec2},
     sampling::Stream,
 };
 use std::collections::BTreeMap;
@@ -150,8 +150,8 @@ pub(super) type ObjectFace = [[f64; 3]; 4];
 
 impl Parallelograms {
     /// Places `faces` by the parameters `to_world` and `flip_normals`.
-    pub fn build(params: &Params<'_>, recentre: DVec3, faces: &[ObjectFace]) -> Result<Self> {
-        let placement = Placement::read(params, recentre)?;
+    pub fn build(params: &Params<'_>, world: DMat4, faces: &[ObjectFace]) -> Result<Self> {
+        let placement = Placement::read(params, world)?;
         let corners = faces.iter().map(|face| {
             let [corner, u, v, _] = face.map(DVec3::from);
             [corner, corner + u, corner + v, corner + u + v].map(|corner| placement.point(corner))

@@ -6,7 +6,7 @@ use crate::{
     math::{DMat4, DVec3, Vec3, offset::LARGEST_COORDINATE},
 };
 
-/// `to_world` with the recentring point taken off, in f64.
+/// `to_world`, then what takes the file's world to the scene's, in f64.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
     /// Object to recentred world space.
@@ -16,9 +16,9 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// Reads `to_world` and `flip_normals`.
-    pub(super) fn read(params: &Params<'_>, recentre: DVec3) -> Result<Self> {
-        let matrix = DMat4::from_translation(-recentre) * params.transform("to_world")?;
+    /// Reads `to_world`, after which `world` counts, and `flip_normals`.
+    pub(super) fn read(params: &Params<'_>, world: DMat4) -> Result<Self> {
+        let matrix = world * params.transform("to_world")?;
         Ok(Self { matrix, flip_normals: params.boolean("flip_normals")? })
     }
 
@@ -46,4 +46,17 @@ impl Placement {
 /// Finite, and not so far away that squares of distances overflow.
 pub(super) fn is_in_range(p: Vec3) -> bool {
     p.abs().max_element() < LARGEST_COORDINATE && p.is_finite()
+}
+
+/// How a corner moves so that the planes through it, each a unit normal and a distance (m), move by these: exactly where at
+/// most three are independent, else as far as the planes allow.
+pub(super) fn shift(planes: &[(DVec3, f64)]) -> DVec3 {
+    const SWEEPS: usize = 64;
+    let mut moved = DVec3::ZERO;
+    for _ in 0..SWEEPS {
+        for (normal, distance) in planes {
+            moved += normal * (distance - normal.dot(moved));
+        }
+    }
+    moved
 }

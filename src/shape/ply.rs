@@ -1,13 +1,13 @@
 //! `ply`: Stanford meshes, ascii and binary.
 
 use super::{
-    COMMON, Mesh,
-    mesh::{FACE_NORMALS, MeshData},
+    mesh::{FACE_NORMALS, Mesh, MeshData},
+    model::COMMON,
 };
 use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
-    math::{DVec3, Vec2},
+    math::{DMat4, DVec3, Vec2},
 };
 use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
@@ -23,7 +23,7 @@ pub(super) const TABLE: Table = table! {
     FACE_NORMALS, COMMON
 };
 
-pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
+pub(super) fn build(params: &Params<'_>, world: DMat4) -> Result<Mesh> {
     let file = params.file("filename")?;
     let flip = params.boolean("flip_tex_coords")?;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
@@ -36,7 +36,7 @@ pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
         params.library.warn(params.location(), &text);
     }
     let data = ply.read(flip)?;
-    Mesh::build(params, recentre, &file, data)
+    Mesh::build(params, world, &file, data)
 }
 
 /// What a byte becomes: a triangle takes 13 of them, and an [`Element`] with its list, before it is one.

@@ -1,10 +1,13 @@
 //! `rectangle`: [-1, 1]^2 in the xy plane, facing +z.
 
-use super::{COMMON, Parallelograms, parallelogram::ObjectFace};
+use super::{
+    model::COMMON,
+    parallelogram::{ObjectFace, Parallelograms},
+};
 use crate::{
     description::{Params, Table, table},
     error::Result,
-    math::DVec3,
+    math::DMat4,
 };
 
 const FACE: ObjectFace = [[-1.0, -1.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]];
@@ -16,6 +19,6 @@ pub(super) const TABLE: Table = table! {
     COMMON
 };
 
-pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Parallelograms> {
-    Parallelograms::build(params, recentre, &[FACE])
+pub(super) fn build(params: &Params<'_>, world: DMat4) -> Result<Parallelograms> {
+    Parallelograms::build(params, world, &[FACE])
 }

@@ -2,13 +2,13 @@
 //! documentation of the plugin gives; nothing is believed of a count until the stream has yielded the numbers.
 
 use super::{
-    COMMON, Mesh,
-    mesh::{FACE_NORMALS, MeshData},
+    mesh::{FACE_NORMALS, Mesh, MeshData},
+    model::COMMON,
 };
 use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
-    math::{DVec3, Vec2},
+    math::{DMat4, DVec3, Vec2},
 };
 use flate2::bufread::ZlibDecoder;
 use std::{
@@ -25,7 +25,7 @@ pub(super) const TABLE: Table = table! {
     FACE_NORMALS, COMMON
 };
 
-pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
+pub(super) fn build(params: &Params<'_>, world: DMat4) -> Result<Mesh> {
     let file = params.file("filename")?;
     let index = params.integer("shape_index")? as u32;
     let source = File::open(&file).map_err(|e| Error::io(&file, "read", &e))?;
@@ -38,7 +38,7 @@ pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Mesh> {
         let text = format!("{}: its vertex colours are not used", file.display());
         params.library.warn(params.location(), &text);
     }
-    Mesh::build(params, recentre, &file, data)
+    Mesh::build(params, world, &file, data)
 }
 
 /// What a compressed byte becomes in most meshes; for those that are compressed more, see `numbers`.

@@ -1,8 +1,9 @@
 //! `sphere`: centre and radius, under a transform that keeps it a sphere.
 
 use super::{
-    COMMON, Hit, Primitive, Ray, ShapeModel, SurfacePoint,
+    model::{COMMON, Primitive, ShapeModel},
     placement::{Placement, is_in_range},
+    point::{Hit, Ray, SurfacePoint},
 };
 use crate::{
     description::{Params, Table, table},
@@ -35,10 +36,10 @@ pub(super) const TABLE: Table = table! {
     COMMON
 };
 
-pub(super) fn build(params: &Params<'_>, recentre: DVec3) -> Result<Sphere> {
+pub(super) fn build(params: &Params<'_>, world: DMat4) -> Result<Sphere> {
     let center = params.vector("center")?;
     let radius = params.float("radius")?;
-    let mut placement = Placement::read(params, recentre)?;
+    let mut placement = Placement::read(params, world)?;
     if radius == 0.0 {
         return Err(params.complain("radius", "a number other than 0", "0"));
     }

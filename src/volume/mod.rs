@@ -47,6 +47,8 @@ use std::sync::Arc;
 pub struct Place {
     /// What becomes the origin of all positions, in the file's coordinates (m).
     pub recentre: DVec3,
+    /// Where the instance of a group takes what the file places; the identity elsewhere.
+    pub instance: DAffine3,
     /// The scene's time (s).
     pub time: f64,
     /// The most that a value may be, where that is less than anything: 1 for a share of light.
@@ -56,7 +58,7 @@ pub struct Place {
 impl Place {
     /// At `time` (s), for values of any size.
     pub const fn new(recentre: DVec3, time: f64) -> Self {
-        Self { recentre, time, most: f32::INFINITY }
+        Self { recentre, instance: DAffine3::IDENTITY, time, most: f32::INFINITY }
     }
 
     /// The same for values up to `most`.
@@ -67,7 +69,7 @@ impl Place {
     /// The map from a volume's own coordinates, placed by `to_world`, to recentred ones.
     pub fn to_world(&self, params: &Params<'_>) -> Result<DAffine3> {
         let to_file = DAffine3::from_mat4(params.transform("to_world")?);
-        Ok(DAffine3::from_translation(-self.recentre) * to_file)
+        Ok(DAffine3::from_translation(-self.recentre) * self.instance * to_file)
     }
 
     /// The file's unit cube.

@@ -65,6 +65,8 @@ fn sample_of(tag: &str, plugin: &str) -> Value {
     match (tag, plugin) {
         ("volume", "cosine") => json!({"type": "wave", "vector": [1, 0, 0]}),
         ("volume", "polynomial") => json!({"type": "term", "powers": [1, 0, 0]}),
+        ("shape", "instance") => json!({"type": "shapegroup", "s": {"type": "sphere"}}),
+        ("shape", _) => json!({"type": "sphere"}),
         ("film", _) => json!({"type": "hdrfilm"}),
         ("sampler", _) => json!({"type": "independent"}),
         ("rfilter", _) => json!({"type": "box"}),
@@ -142,6 +144,9 @@ fn scene_of(tag: &str, object: Value) -> Value {
         }
         ("emitter", "area" | "directionalarea") => {
             json!({"type": "scene", "c": camera, "a": {"type": "rectangle", "e": object}})
+        }
+        ("shape", "shapegroup") => {
+            json!({"type": "scene", "c": camera, "a": {"type": "instance", "g": object}})
         }
         ("volume", "wave") => json!({"type": "scene", "c": camera, "a": {"type": "cosine", "w": object}}),
         ("volume", "term") => json!({"type": "scene", "c": camera, "a": {"type": "polynomial", "t": object}}),

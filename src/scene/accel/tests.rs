@@ -1,13 +1,14 @@
 use super::*;
 use crate::{
     description::{Library, Location, Object, Position, Property, TransformStep, Value},
-    math::{DVec3, Vec2, offset::leave_surface, vec2, vec3, warp},
+    math::{DMat4, DVec3, Vec2, offset::leave_surface, vec2, vec3, warp},
     sampling::stream::Purpose,
     shape,
 };
 use std::sync::Arc;
 
 mod facts;
+mod instances;
 mod leaving;
 mod meshes;
 mod toward;
@@ -26,7 +27,7 @@ fn shape_of(plugin: &str, properties: &[(&str, Value)], recentre: DVec3) -> crat
         Object { tag: None, plugin: plugin.into(), id: None, properties, location: location.clone() };
     let library = Library::default();
     let (params, build) = shape::ROWS.read(&object, &library)?;
-    let shape = build(&params, recentre)?;
+    let shape = build(&params, DMat4::from_translation(-recentre))?;
     params.finish()?;
     Ok(shape)
 }

@@ -15,7 +15,7 @@ use crate::{
     math::{DVec3, Vec3},
     medium::{Medium, MediumIndex, MediumOverrides},
     memory,
-    shape::ShapeModel as _,
+    shape::{Shape, ShapeModel as _},
 };
 
 /// What a primitive takes while the hierarchy is built (bytes): measured 380, and some more.
@@ -107,7 +107,8 @@ impl Builder<'_> {
 
     /// An error unless memory holds the hierarchy over all shapes, as it is built.
     pub(super) fn check_memory(&self) -> Result<()> {
-        let primitives: u64 = self.shapes.iter().map(|shape| shape.primitive_count() as u64).sum();
+        let single = |shape: &Shape| shape.primitive_count() as u64;
+        let primitives = self.shapes.iter().map(single).sum::<u64>() + self.bases.primitives();
         let size = format!("{primitives} triangles and other primitives");
         let remedy = "give meshes of fewer triangles, or more memory";
         memory::check("the scene", "shapes", &size, primitives.checked_mul(MEMORY_PER_PRIMITIVE), remedy)

@@ -54,7 +54,8 @@ pub(super) fn pairs(
     farthest: DVec3,
     closeness: &dyn Fn([u32; 2]) -> f64,
 ) -> Vec<Pair> {
-    let mut order: Vec<u32> = (0..shapes.len() as u32).collect();
+    let is_patched = |shape: &u32| !matches!(shapes[*shape as usize], Shape::Instance(_));
+    let mut order: Vec<u32> = (0..shapes.len() as u32).filter(is_patched).collect();
     order.sort_by(|a, b| bounds[*a as usize].low.x.total_cmp(&bounds[*b as usize].low.x));
     let mut found = Vec::new();
     for (index, &a) in order.iter().enumerate() {
@@ -105,7 +106,10 @@ impl<'a> Near<'a> {
     fn add_touching(&self, pair: [u32; 2], found: &mut Vec<Pair>) {
         let [one, other] = self.shapes;
         each_meeting(&self.within(one), &self.within(other), |a, b| {
-            let patches = [one.primitive(a).patch(), other.primitive(b).patch()];
+            let (Some(one), Some(other)) = (one.primitive(a).patch(), other.primitive(b).patch()) else {
+                return;
+            };
+            let patches = [one, other];
             let reach = self.along_normal(&patches);
             if patches[0].height_of(&patches[1], reach).is_some() {
                 found.push(Pair { shapes: pair, primitives: [a, b], patches, reach });

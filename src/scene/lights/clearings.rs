@@ -113,7 +113,7 @@ mod tests {
     use super::*;
     use crate::{
         description::{Library, Value},
-        math::DVec3,
+        math::DMat4,
         sampling::{Stream, stream::Purpose},
         shape,
         testing::object,
@@ -137,7 +137,7 @@ mod tests {
         let build = |object| {
             let library = Library::default();
             let (params, build) = shape::ROWS.read(object, &library).unwrap();
-            build(&params, DVec3::ZERO).unwrap()
+            build(&params, DMat4::IDENTITY).unwrap()
         };
         let geometry = Geometry::build(shapes.iter().map(build).collect());
         let between = |p: Vec3| p.truncate().length() < 0.8 && p.distance(Vec3::X * 0.1) > 0.4;

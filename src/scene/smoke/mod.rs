@@ -42,11 +42,13 @@ pub fn time_of(root: &Object) -> f64 {
     root.number("time").unwrap_or(0.0)
 }
 
-fn smokes(root: &Object) -> impl Iterator<Item = &Object> {
-    root.properties.iter().filter_map(|property| match &property.value {
-        Value::Object(child) => Some(child).filter(|child| child.plugin == SMOKE),
-        _ => None,
-    })
+/// All smoke, that in groups too.
+fn smokes(object: &Object) -> Box<dyn Iterator<Item = &Object> + '_> {
+    Box::new(object.properties.iter().flat_map(|property| match &property.value {
+        Value::Object(child) if child.plugin == SMOKE => Box::new(std::iter::once(child)),
+        Value::Object(child) => smokes(child),
+        _ => Box::new(std::iter::empty()),
+    }))
 }
 
 /// `root` with all smoke in it replaced, and what that was made of.
@@ -56,19 +58,38 @@ pub fn expand(root: &Object) -> Result<(Cow<'_, Object>, Vec<Taken>)> {
     }
     let library = Library::new(root)?;
     let time = Params::new(root, &library, &super::TABLE).float("time")?;
-    let (mut expanded, mut media, mut all) = (root.clone(), vec![], vec![]);
-    for property in &mut expanded.properties {
-        let Value::Object(child) = &mut property.value else { continue };
-        if child.plugin == SMOKE {
-            let (object, medium, taken) = container(child, &library, time)?;
+    let (mut expanded, mut replaced) = (root.clone(), Replaced::default());
+    replaced.below(&mut expanded, &library, time)?;
+    expanded.properties.extend(replaced.media);
+    Ok((Cow::Owned(expanded), replaced.all))
+}
+
+/// What smoke was replaced by.
+#[derive(Default)]
+struct Replaced {
+    /// The media in it: children of the scene.
+    media: Vec<Property>,
+    /// What it was made of.
+    all: Vec<Taken>,
+}
+
+impl Replaced {
+    /// Replaces all smoke below `object`.
+    fn below(&mut self, object: &mut Object, library: &Library, time: f64) -> Result<()> {
+        for property in &mut object.properties {
+            let Value::Object(child) = &mut property.value else { continue };
+            if child.plugin != SMOKE {
+                self.below(child, library, time)?;
+                continue;
+            }
+            let (object, medium, taken) = container(child, library, time)?;
             *child = object;
             let of_medium = |medium| Property { value: Value::Object(medium), ..property.clone() };
-            media.extend(medium.map(of_medium));
-            all.push(taken);
+            self.media.extend(medium.map(of_medium));
+            self.all.push(taken);
         }
+        Ok(())
     }
-    expanded.properties.extend(media);
-    Ok((Cow::Owned(expanded), all))
 }
 
 /// The shape that `smoke` stands for, the medium in it, and what that was made of.

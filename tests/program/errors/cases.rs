@@ -396,5 +396,15 @@ pub(super) fn all() -> Vec<Case> {
         Case::xml("a key that is no value", r#"<emitter type="constant"><keyframes name="radiance"><ref id="a"/></keyframes></emitter>"#),
         Case::xml("a key with a name", r#"<emitter type="constant"><keyframes name="radiance"><float name="a" time="0" value="1"/></keyframes></emitter>"#),
         Case::json("a medium that nothing refers to", r#""fog": {"type": "homogeneous"}, "sky": {"type": "constant"}"#).warned(),
+        Case::json("an instance of what is no group", r#""a": {"type": "sphere", "id": "ball"}, "b": {"type": "instance", "c": {"type": "ref", "id": "ball"}}, "sky": {"type": "constant"}"#),
+        Case::json("an instance of nothing", r#""b": {"type": "instance"}, "sky": {"type": "constant"}"#),
+        Case::json("a group without shapes", r#""g": {"type": "shapegroup", "id": "g"}, "b": {"type": "instance", "c": {"type": "ref", "id": "g"}}, "sky": {"type": "constant"}"#),
+        Case::json("an instance that is flat", r#""g": {"type": "shapegroup", "id": "g", "a": {"type": "sphere"}}, "b": {"type": "instance", "to_world": [{"type": "scale", "value": [1, 0, 1]}], "c": {"type": "ref", "id": "g"}}, "sky": {"type": "constant"}"#),
+        Case::json("a group that no instance refers to", r#""g": {"type": "shapegroup", "id": "g", "a": {"type": "sphere"}}, "sky": {"type": "constant"}"#).warned(),
+        Case::json("a merge with a transform of its own", r#""m": {"type": "merge", "to_world": [{"type": "scale", "value": 2}], "a": {"type": "sphere"}}, "sky": {"type": "constant"}"#),
+        Case::json("a sky by direction and by time", r#""sky": {"type": "sunsky", "sun_direction": [1, 0, 1], "hour": 9}"#),
+        Case::json("a sky at night", r#""sky": {"type": "sunsky", "hour": 23}"#).warned(),
+        Case::json("a sky too hazy", r#""sky": {"type": "sunsky", "turbidity": 12}"#),
+        Case::json("a sun of no direction", r#""sky": {"type": "sunsky", "sun_direction": [0, 0, 0]}"#),
     ]
 }

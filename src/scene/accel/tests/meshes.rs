@@ -196,7 +196,7 @@ fn warned(name: &str, text: &[u8]) -> (Shape, Vec<String>) {
     let object = Object { tag: None, plugin, id: None, properties: vec![filename], location };
     let library = Library::default();
     let (params, build) = shape::ROWS.read(&object, &library).unwrap();
-    let shape = build(&params, DVec3::ZERO).unwrap();
+    let shape = build(&params, DMat4::IDENTITY).unwrap();
     (shape, library.take_warnings())
 }
 

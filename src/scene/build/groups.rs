@@ -1,0 +1,254 @@
+//! Groups of shapes and their instances, and merged shapes.
+
+use super::Builder;
+use crate::{
+    description::{Object, Params, params::Child},
+    error::{Error, Result},
+    format::references,
+    math::{DAffine3, DMat4, DVec3},
+    scene::accel::Geometry,
+    shape::{self, BuildShape, Composed, Instance, Shape, ShapeModel as _},
+};
+use std::{collections::HashMap, sync::Arc};
+
+/// Instances are copies as long as all together have at most so many primitives (30 MB): copies are faster, and where their
+/// faces touch others they are set apart.
+const COPIED: usize = 1 << 16;
+
+/// What instances share.
+#[derive(Default)]
+pub(super) struct Bases {
+    /// By the shape in the group.
+    built: HashMap<*const Object, Base>,
+    /// How many instances the scene has.
+    instances: usize,
+}
+
+/// A shape around its middle, which is `middle` in the group.
+#[derive(Clone)]
+struct Base {
+    geometry: Arc<Geometry>,
+    middle: DVec3,
+    is_mesh: bool,
+}
+
+/// The instance that a shape is built for.
+#[derive(Clone, Copy)]
+pub(super) struct Copying<'a> {
+    instance: &'a Object,
+    /// Takes the group's coordinates to the file's.
+    to_file: DMat4,
+}
+
+impl Copying<'_> {
+    /// The same for volumes.
+    pub(super) fn of_volumes(&self) -> DAffine3 {
+        DAffine3::from_mat4(self.to_file)
+    }
+}
+
+impl Bases {
+    /// How many primitives all of them have.
+    pub(super) fn primitives(&self) -> u64 {
+        self.built.values().map(|base| base.primitives() as u64).sum()
+    }
+}
+
+impl Base {
+    fn build(params: &Params<'_>, build: BuildShape) -> Result<Self> {
+        let there = build(params, DMat4::IDENTITY)?;
+        let bounds = there.bounds();
+        let middle = 0.5 * (bounds.low.as_dvec3() + bounds.high.as_dvec3());
+        let shape = match middle.length() > f64::from(bounds.size().length()) {
+            true => build(params, DMat4::from_translation(-middle))?,
+            false => return Ok(Self::new(there, DVec3::ZERO)),
+        };
+        Ok(Self::new(shape, middle))
+    }
+
+    fn new(shape: Shape, middle: DVec3) -> Self {
+        let is_mesh = matches!(shape, Shape::Mesh(_));
+        Self { geometry: Arc::new(Geometry::build(vec![shape])), middle, is_mesh }
+    }
+
+    fn primitives(&self) -> usize {
+        self.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum()
+    }
+
+    fn instance(&self, world: DMat4) -> Option<Shape> {
+        let world = world * DMat4::from_translation(self.middle);
+        Instance::new(self.geometry.clone(), world).map(Shape::Instance)
+    }
+}
+
+impl<'a> Builder<'a> {
+    /// All shapes of the scene.
+    pub(super) fn add_shapes(&mut self, root: &'a Object, children: &[Child<'a>]) -> Result<()> {
+        self.bases.instances = count_instances(root);
+        let referred = references::referred(root);
+        for child in children {
+            let is_idle = child.object.id.as_deref().is_none_or(|id| !referred.contains(id));
+            if is_idle && is_group(child.object) {
+                let text = "this shapegroup is not seen: no instance refers to it";
+                self.library.warn(child.location, text);
+            }
+            self.shape(child, None)?;
+        }
+        Ok(())
+    }
+
+    /// One shape, or all that it is composed of.
+    fn shape(&mut self, child: &Child<'a>, at: Option<Copying<'a>>) -> Result<()> {
+        match shape::COMPOSED.get(&child.object.plugin).map(|plugin| plugin.build) {
+            None | Some(Composed::Smoke) => self.plain(child, at),
+            Some(Composed::Group) => Ok(()),
+            Some(Composed::Merge) => self.members(child.object, at),
+            Some(Composed::Instance) => self.instance(child.object, at),
+        }
+    }
+
+    fn members(&mut self, object: &'a Object, at: Option<Copying<'a>>) -> Result<()> {
+        let (params, _) = shape::COMPOSED.read(object, self.library)?;
+        let members = params.children("shape", |child| shape::is_shape(child.object))?;
+        params.finish()?;
+        if members.is_empty() {
+            let expected = format!("shapes in the {}", object.plugin);
+            return Err(Error::new(&object.location, expected, "none", "put one or more shapes into it"));
+        }
+        members.iter().try_for_each(|member| self.shape(member, at))
+    }
+
+    fn instance(&mut self, object: &'a Object, at: Option<Copying<'a>>) -> Result<()> {
+        let (params, _) = shape::COMPOSED.read(object, self.library)?;
+        let to_world = params.transform("to_world")?;
+        let children = params.children("shape", |_| true)?;
+        params.finish()?;
+        let group = match children.as_slice() {
+            [only] if is_group(only.object) => only.object,
+            [other] => {
+                let found = format!("a {}", other.object.plugin);
+                let remedy = "put the shape into a shapegroup, and refer to that";
+                return Err(Error::new(other.location, "a shapegroup", found, remedy));
+            }
+            _ => {
+                let remedy = "refer to one shapegroup by its id";
+                let found = format!("{} of them", children.len());
+                return Err(Error::new(&object.location, "one shapegroup in the instance", found, remedy));
+            }
+        };
+        let to_file = at.map_or(DMat4::IDENTITY, |at| at.to_file) * to_world;
+        self.members(group, Some(Copying { instance: object, to_file }))
+    }
+
+    /// A shape of a group as one of its instances has it. Meshes that do no more than scatter are shared where copies would
+    /// be large, and other shapes where they cannot be copied: a sphere that is no sphere there. And whether its parameters
+    /// were read for that.
+    pub(super) fn copied(
+        &mut self,
+        params: &Params<'a>,
+        build: BuildShape,
+        at: Copying<'a>,
+    ) -> Result<(Shape, bool)> {
+        let world = self.world() * at.to_file;
+        let stays = ["interior", "exterior"].iter().any(|side| params.has(side))
+            || !params.children("emitter", |child| crate::emitter::ROWS.has(child.object))?.is_empty();
+        if stays {
+            return Ok((build(params, world)?, true));
+        }
+        let (base, is_new) = self.base(params, build)?;
+        let is_large = base.primitives().saturating_mul(self.bases.instances) > COPIED;
+        let copy = if base.is_mesh && is_large { None } else { build(params, world).ok() };
+        let is_read = is_new || copy.is_some();
+        copy.or_else(|| base.instance(world)).map(|shape| (shape, is_read)).ok_or_else(|| {
+            let expected = "a transform that can be undone and that f32 can hold";
+            Error::new(&at.instance.location, expected, "none", "change \"to_world\" of the instance")
+        })
+    }
+
+    /// What instances share, and whether it was built now.
+    fn base(&mut self, params: &Params<'a>, build: BuildShape) -> Result<(Base, bool)> {
+        let key = std::ptr::from_ref(params.object);
+        if let Some(known) = self.bases.built.get(&key) {
+            return Ok((known.clone(), false));
+        }
+        let base = Base::build(params, build)?;
+        self.bases.built.insert(key, base.clone());
+        Ok((base, true))
+    }
+}
+
+fn is_group(object: &Object) -> bool {
+    shape::COMPOSED.get(&object.plugin).is_some_and(|plugin| plugin.build == Composed::Group)
+}
+
+/// Instances in all of the scene, those in a group once.
+fn count_instances(object: &Object) -> usize {
+    let is_instance =
+        shape::COMPOSED.get(&object.plugin).is_some_and(|plugin| plugin.build == Composed::Instance);
+    let below = object.properties.iter().filter_map(|property| match &property.value {
+        crate::description::Value::Object(child) => Some(count_instances(child)),
+        _ => None,
+    });
+    usize::from(is_instance) + below.sum::<usize>()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        format,
+        scene::build::{Setup, build},
+        settings::Overrides,
+        shape::Shape,
+    };
+
+    fn built(inside: &str) -> crate::error::Result<Setup> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.json");
+        let text = format!(
+            r#"{{"type": "scene", "camera": {{"type": "perspective", "to_world": [{{"type": "translate", "value": [0, 0, -30]}}]}}, "sky": {{"type": "constant"}}, {inside}}}"#
+        );
+        std::fs::write(&path, text).unwrap();
+        build(&format::read(&path, &[])?, Overrides::default())
+    }
+
+    const FOG: &str = r#"{"type": "cube", "bsdf": {"type": "null"}, "to_world": [{"type": "scale", "value": 2}, $],
+        "interior": {"type": "heterogeneous", "sigma_t": {"type": "equipotential", "to_world": [$]}}}"#;
+
+    /// Where a medium is dense tells where it lies.
+    #[test]
+    fn media_move_with_their_instances() {
+        let turn = r#"{"type": "rotate", "axis": [0, 0, 1], "angle": 30}, {"type": "translate", "value": [5, 0, 20]}"#;
+        let still = FOG.replace(", $]", "]").replace("$", "");
+        let group = format!(
+            r#""g": {{"type": "shapegroup", "id": "g", "fog": {still}}},
+               "a": {{"type": "instance", "to_world": [{turn}], "x": {{"type": "ref", "id": "g"}}}},
+               "b": {{"type": "instance", "x": {{"type": "ref", "id": "g"}}}}"#
+        );
+        let alone = format!(r#""fog": {}, "b": {}"#, FOG.replace('$', turn), still);
+        let extents = |inside: &str| {
+            let setup = built(inside).unwrap();
+            assert!(setup.warnings.is_empty(), "{:?}", setup.warnings);
+            setup.scene.media.iter().map(|medium| medium.extent()).collect::<Vec<_>>()
+        };
+        let (instanced, alone) = (extents(&group), extents(&alone));
+        assert_eq!(instanced.len(), 3);
+        assert_eq!(instanced, alone);
+    }
+
+    #[test]
+    fn groups_may_hold_lamps_and_instances() {
+        let setup = built(
+            r#""lamp": {"type": "shapegroup", "id": "lamp", "s": {"type": "sphere", "radius": 0.1, "e": {"type": "area"}}},
+               "row": {"type": "shapegroup", "id": "row",
+                   "a": {"type": "instance", "x": {"type": "ref", "id": "lamp"}},
+                   "b": {"type": "instance", "to_world": [{"type": "translate", "value": [1, 0, 0]}], "x": {"type": "ref", "id": "lamp"}}},
+               "far": {"type": "instance", "to_world": [{"type": "translate", "value": [0, 0, 9]}], "x": {"type": "ref", "id": "row"}}"#,
+        )
+        .unwrap();
+        let balls = setup.scene.geometry.shapes();
+        let at = |shape: &Shape| shape.bounds().low + shape.bounds().high;
+        let middles: Vec<_> = balls.iter().map(|ball| (0.5 * at(ball)).round().to_array()).collect();
+        assert_eq!(middles, [[0.0, 0.0, 39.0], [1.0, 0.0, 39.0]]);
+        assert_eq!(setup.scene.lights.all.len(), 3);
+    }
+}
