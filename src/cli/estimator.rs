@@ -4,7 +4,7 @@ use super::{
     console::complain,
     heading,
     media::Media,
-    parsers::{Size, one_of},
+    parsers::{Size, algorithm, one_of},
 };
 use crate::{
     error::{Error, Result},
@@ -38,8 +38,9 @@ pub struct Estimator {
     /// from the emitters; gather: a preview by path tracing that ends where it scatters for the second time, in radiance that is
     /// learnt in seconds: biased, by blur, and far less noisy than pt in clouds and where surfaces light each other; fog: a preview of the first visible surfaces without
     /// shadows, behind fog of constant radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
-    /// non_scattering its restriction of media still applies, unless --scattering says otherwise.
-    #[arg(long, value_name = "NAME", value_parser = one_of(&Algorithm::NAMES))]
+    /// non_scattering its restriction of media still applies, unless --scattering says otherwise. Mitsuba's path, volpath and
+    /// volpathmis are pt here, its ptracer is lt.
+    #[arg(long, value_name = "NAME", value_parser = algorithm())]
     pub integrator: Option<Algorithm>,
 
     /// Light subpaths, which reach pixels by chance, do not connect to the lens.

@@ -1,7 +1,11 @@
 //! How values of options are read.
 
-use crate::{film::accumulator::MOST_PASSES, format, settings::Crop};
-use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
+use crate::{
+    film::accumulator::MOST_PASSES,
+    format,
+    settings::{Crop, options::Algorithm},
+};
+use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::{num::NonZeroUsize, path::PathBuf, time::Duration};
 
 /// Where the viewer tev listens.
@@ -78,7 +82,7 @@ pub(super) fn samples(text: &str) -> Result<Samples, String> {
     let pair = text.split_once("..").and_then(|(first, end)| Some((first.parse().ok()?, end.parse().ok()?)));
     let pair = pair.filter(|(first, end)| first < end && u64::from(*end) <= MOST_PASSES);
     let (first, end) = pair.ok_or_else(|| {
-        format!("expected two numbers from 0 to {MOST_PASSES}, the first below the second, such as 0..64")
+        format!("expected two numbers from 0 to {MOST_PASSES}, the first below the second, such as 0..64 (--spp sets their number)")
     })?;
     Ok(Samples { first, end })
 }
@@ -118,6 +122,18 @@ pub(super) fn one_of<T: Copy + Send + Sync + 'static>(
     PossibleValuesParser::new(table.iter().map(|(name, _)| *name)).try_map(|name| {
         let found = table.iter().find(|(known, _)| *known == name);
         found.map(|(_, value)| *value).ok_or("unknown name")
+    })
+}
+
+/// An algorithm by its name, or by that of Mitsuba's.
+pub(super) fn algorithm() -> impl TypedValueParser<Value = Algorithm> {
+    let value = |(name, algorithm): (&'static str, Algorithm)| {
+        let aliases = Algorithm::ALIASES.into_iter().filter(move |(_, of)| *of == algorithm);
+        PossibleValue::new(name).aliases(aliases.map(|(alias, _)| alias))
+    };
+    PossibleValuesParser::new(Algorithm::NAMES.map(value)).try_map(|typed| {
+        let found = Algorithm::NAMES.iter().chain(&Algorithm::ALIASES).find(|(name, _)| *name == typed);
+        found.map(|(_, algorithm)| *algorithm).ok_or("unknown name")
     })
 }
 

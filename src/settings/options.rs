@@ -61,6 +61,10 @@ impl Algorithm {
         ("fog", Self::Fog),
     ];
 
+    /// Mitsuba's names of what they do, which may be typed too.
+    pub const ALIASES: [(&'static str, Self); 4] =
+        [("path", Self::Pt), ("volpath", Self::Pt), ("volpathmis", Self::Pt), ("ptracer", Self::Lt)];
+
     /// As printed and as typed.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize].0

@@ -41,7 +41,7 @@ pub struct Render {
     pub answer: Answer,
 
     /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
-    #[arg(long, value_name = "WxH", value_parser = size, allow_hyphen_values = true, help_heading = heading::OUTPUT)]
+    #[arg(long, alias = "resolution", value_name = "WxH", value_parser = size, allow_hyphen_values = true, help_heading = heading::OUTPUT)]
     pub size: Option<Size>,
 
     /// Render only the part of the image of WIDTHxHEIGHT pixels whose top left corner is at pixel X, Y
@@ -94,7 +94,7 @@ pub struct Render {
     /// Samples per pixel [default: the scene's sample_count]
     ///
     /// With --time-limit and without --spp: as many as the time allows.
-    #[arg(long, value_name = "N", value_parser = positive_u32, allow_negative_numbers = true, help_heading = heading::BUDGET)]
+    #[arg(long, alias = "samples-per-pixel", value_name = "N", value_parser = positive_u32, allow_negative_numbers = true, help_heading = heading::BUDGET)]
     pub spp: Option<u32>,
 
     /// Stop after this time: a number with the unit s, m or h (90, 90s, 5m, 1.5h; seconds without a unit)
