@@ -128,6 +128,10 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
     let integrator = integrator.with_layers(layer::parts(&groups, components), &root.location)?;
     if let Some(object) = sections.integrator {
         warn_of_counted_nulls(object, &integrator, &scene, &library);
+        if object.plugin == "direct" && !medium_names.is_empty() {
+            let text = "light scatters once in media here; Mitsuba's direct integrator sees no media: remove them, or use volpath";
+            library.warn(&object.location, text);
+        }
     }
     Ok(Setup {
         scene,
@@ -153,9 +157,12 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
 fn warn_of_counted_nulls(object: &Object, integrator: &Integrator, scene: &Scene, library: &Library) {
     let limited = integrator.options.max_depth.is_some() || integrator.options.hide_emitters;
     let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
-    if object.plugin == "path" && limited && nulls {
-        let text = "passing through a null surface, a mask or a thin pane does not count as a bounce here, as in volpath; Mitsuba's path integrator counts it in max_depth";
-        library.warn(&object.location, text);
+    if ["path", "direct"].contains(&object.plugin.as_str()) && limited && nulls {
+        let plugin = &object.plugin;
+        let text = format!(
+            "passing through a null surface, a mask or a thin pane does not count as a bounce here, as in volpath; Mitsuba's {plugin} integrator counts it"
+        );
+        library.warn(&object.location, &text);
     }
 }
 

@@ -104,6 +104,7 @@ pub const ROWS: Registry<Plugin<Build<Integrator>>> = Registry::new(
         ("path", plugin(SAME, build_bdpt)),
         ("volpath", plugin(SAME, build_bdpt)),
         ("volpathmis", plugin(VOLPATHMIS, build_bdpt)),
+        ("direct", plugin(DIRECT, build_bdpt)),
         ("ptracer", plugin(PTRACER, |p| build_as(p, Algorithm::Lt))),
         ("gather", plugin(GATHER, build_gather)),
         ("fog", plugin(FOG, build_fog)),
@@ -180,6 +181,15 @@ const VOLPATHMIS: Table = table! {
     "The same as `bdpt`; `--integrator pt` is path tracing.";
     ignored("use_spectral_mis", "samples are weighted over all channels anyway");
     MAX_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
+};
+
+const DIRECT: Table = table! {
+    "Emitters, and surfaces lit by them directly: `bdpt` with paths of at most two segments. Media scatter once.";
+    integer("max_depth", within(0.0, 2.0), Is(2.0), "Maximum number of segments of a path.").ours(),
+    ignored("emitter_samples", "the pilot chooses how many samples each strategy takes"),
+    ignored("bsdf_samples", "the pilot chooses how many samples each strategy takes"),
+    ignored("shading_samples", "the pilot chooses how many samples each strategy takes");
+    PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
 };
 
 const PTRACER: Table = table! {
