@@ -92,6 +92,8 @@ def grids() -> tuple[Case, ...]:
     return (
         Case("grid_albedo.json"),
         Case("grid_albedo_and_extinction.json"),
+        Case("grid_albedo_alone.json"),
+        Case("grid_blend.json"),
         Case("grid_all_over_the_room.json", EYE, effort=0.5),
         Case("grid_camera_inside.json", EYE, effort=0.5, trackers=OTHERS),
         Case("grid_chromatic.json", trackers=OTHERS),
@@ -208,6 +210,7 @@ CASES = (
     Case("spectra.json"),
     Case("spectra_blackbody.json", variant="scalar_spectral"),
     Case("integrator_path.json"),
+    Case("integrator_direct.json"),
     Case("integrator_ptracer.json"),
     Case("integrator_volpathmis.json"),
     Case("integrator_moment.json"),
