@@ -9,8 +9,9 @@ use super::{
     library::Library,
     object::{Object, Property, Value},
     parameter::{Default, Plugin, Table, table},
-    params::{COLOR, Params, spelling},
+    params::Params,
     registry::Registry,
+    spelling::{COLOR, spelling},
 };
 use crate::{
     error::{Error, Result},

@@ -166,6 +166,7 @@ fn visit(value: &mut Value, change: &mut dyn FnMut(&mut f64)) {
         | Value::Integer(_)
         | Value::Object(_)
         | Value::Reference(_)
+        | Value::Note(_)
         | Value::Keyframes(_) => {}
     }
 }

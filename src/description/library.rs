@@ -41,6 +41,10 @@ impl Library {
         }
         object.properties.iter().try_for_each(|property| match &property.value {
             Value::Object(child) => self.index(child),
+            Value::Note(text) => {
+                self.warn(&property.location, text);
+                Ok(())
+            }
             _ => Ok(()),
         })
     }

@@ -8,6 +8,8 @@ mod object;
 pub mod parameter;
 pub mod params;
 pub mod registry;
+mod spelling;
+pub mod substitutes;
 pub mod transform;
 
 pub use keyframes::Keyframes;

@@ -107,6 +107,8 @@ pub enum Value {
     Object(Object),
     /// The id of an object elsewhere in the tree.
     Reference(String),
+    /// What its reader has to say of the object: no parameter, but told when the scene is built.
+    Note(String),
     /// Any of those of numbers, which changes in time. Builders see what it is at the scene's time.
     Keyframes(Keyframes),
 }
@@ -125,6 +127,7 @@ impl Value {
             Self::Transform(_) => "a transform".into(),
             Self::Object(o) => format!("the plugin \"{}\"", o.plugin),
             Self::Reference(id) => format!("a reference to \"{id}\""),
+            Self::Note(text) => text.clone(),
             Self::Keyframes(_) => "keyframes".into(),
         }
     }

@@ -7,7 +7,7 @@ mod range;
 pub use constructors::*;
 pub use range::*;
 
-use super::{colour::Role, params::COLOR};
+use super::{colour::Role, spelling::COLOR};
 
 /// A plugin: its table, and how it is built.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,9 @@ use super::{
     object::{Location, Object, Position, Property, Value},
     parameter::{Default, Is, Kind, Parameter, Table, Word},
     registry::{nearest, suggest},
-    transform,
+    spelling::spelling,
+    substitutes,
+    transform::{self, TransformStep},
 };
 use crate::{
     error::{Error, Result},
@@ -216,11 +218,26 @@ impl<'a> Params<'a> {
             _ => None,
         };
         let Some(matrix) = self.optional(name, "a transform", read)? else { return Ok(DMat4::IDENTITY) };
+        self.tell_of_axes(name);
         if matrix.is_finite() && matrix.inverse().is_finite() && matrix.determinant() != 0.0 {
             return Ok(matrix);
         }
         let found = "one that is singular or not finite";
         Err(self.complain(name, "an invertible transform", found))
+    }
+
+    /// Says where Mitsuba would not rotate: its rotations take the axis as it is.
+    fn tell_of_axes(&self, name: &str) {
+        let Some(Property { value: Value::Transform(steps), location, .. }) = self.given(name) else {
+            return;
+        };
+        let is_unit = |axis: &[f64; 3]| (DVec3::from(*axis).length_squared() - 1.0).abs() < 1e-3;
+        let is_other =
+            |step: &TransformStep| matches!(step, TransformStep::Rotate { axis, .. } if !is_unit(axis));
+        if matches!(location.position, Position::Text { .. }) && steps.iter().any(is_other) {
+            let text = "the axis of <rotate> is made a unit vector; Mitsuba 3.9.1 scales and shears by one that is not";
+            self.library.warn(location, text);
+        }
     }
 
     /// A colour with finite entries >= 0, where given: a number (grey), rgb, a spectrum, or a plugin that represents
@@ -346,7 +363,7 @@ impl<'a> Params<'a> {
     /// Every parameter must have been read, or be accepted without.
     pub fn finish(&self) -> Result<()> {
         for (property, used) in self.object.properties.iter().zip(self.used.borrow().iter()) {
-            if *used {
+            if *used || matches!(property.value, Value::Note(_)) {
                 continue;
             }
             match self.table.find(&property.name) {
@@ -372,7 +389,11 @@ impl<'a> Params<'a> {
             "" => "an unnamed child".into(),
             name => format!("\"{name}\""),
         };
-        let suggested = suggest(&property.name, "parameters known here", &self.table.names());
+        let has = |name: &str| self.table.find(name).or(self.table.nested(name)).is_some();
+        let suggested = match substitutes::of_parameter(&property.name, has) {
+            Some(instead) => instead.to_owned(),
+            None => suggest(&property.name, "parameters known here", &self.table.names()),
+        };
         let (expected, remedy) = match (row, child) {
             (Some(row), _) => (
                 format!("a parameter that counts beside the others of the {plugin}"),
@@ -417,31 +438,3 @@ fn wrong(property: &Property, expected: &str) -> Error {
     let Property { name, value, location } = property;
     Error::new(location, format!("{expected} for \"{name}\""), value.describe(), spelling(property, expected))
 }
-
-/// How what is expected is written in the file that holds `property`.
-pub(super) fn spelling(property: &Property, expected: &str) -> String {
-    let name = &property.name;
-    let is_json = matches!(property.location.position, Position::Path(_));
-    let (json, tag, example) = match expected {
-        "a finite number" => ("1.5", "float", "value=\"1.5\"/"),
-        "an integer" => ("2", "integer", "value=\"2\"/"),
-        "a boolean" => ("true", "boolean", "value=\"true\"/"),
-        "a string" => ("\"text\"", "string", "value=\"text\"/"),
-        "three finite numbers" => ("[1, 2, 3]", "point", "value=\"1, 2, 3\"/"),
-        COLOR => ("{\"type\": \"rgb\", \"value\": [0.1, 0.2, 0.3]}", "rgb", "value=\"0.1, 0.2, 0.3\"/"),
-        "a transform" => (
-            "[{\"type\": \"translate\", \"value\": [1, 2, 3]}]",
-            "transform",
-            "><translate value=\"1, 2, 3\"/></transform",
-        ),
-        "an object or a reference" => ("{\"type\": \"ref\", \"id\": \"...\"}", "ref", "id=\"...\"/"),
-        _ => return format!("change \"{name}\" to {expected}"),
-    };
-    match is_json {
-        true => format!("write it like \"{name}\": {json}"),
-        false => format!("write it like <{tag} name=\"{name}\" {example}>"),
-    }
-}
-
-/// What a colour is.
-pub(super) const COLOR: &str = "a colour (a number, rgb or spectrum) with finite entries >= 0";

@@ -58,3 +58,18 @@ fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> DMat4 {
 pub fn compose(steps: &[TransformStep]) -> DMat4 {
     steps.iter().fold(DMat4::IDENTITY, |product, step| step.matrix() * product)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_of_any_length_rotate() {
+        let turned = |axis| compose(&[TransformStep::Rotate { axis, angle: 90.0 }]);
+        for length in [1e-3, 1.0, 2.0, 1e3] {
+            let matrix = turned([0.0, length, 0.0]);
+            assert!(matrix.transform_vector3(DVec3::Z).distance(DVec3::X) < 1e-15, "{length}");
+            assert!((matrix.determinant() - 1.0).abs() < 1e-15, "{length}");
+        }
+    }
+}

@@ -19,6 +19,7 @@
 //! | a number, `true`, `false`, a string | itself |
 //! | `[x, y, z]` | a point or vector |
 //! | `[{step}, ...]` | a transform; steps in order, in XML's words: `translate`, `rotate`, `scale`, `lookat`, `matrix` |
+//! | `[[...], ...]` | a transform by its matrix, row by row |
 //! | `{"type": "rgb", "value": ...}` | a linear colour: a number, three, or `"#rrggbb"` (sRGB-encoded) |
 //! | `{"type": "spectrum", "value": ...}` | a number or `[[wavelength in nm, value], ...]`; or a `"filename"` |
 //! | `{"type": "keyframes", "value": [[time in s, value], ...]}` | a value of numbers that changes in time: a number, vector, colour, transform, or string of numbers; with `"interpolation": "smooth"` it eases in and out |
@@ -29,6 +30,8 @@
 //!
 //! The outermost object is a `scene`. Its direct children have their key as id; where one has an `"id"` of its
 //! own, either name leads to it. Objects further in have an id only if they say so.
+//!
+//! Keys that begin with `//`, and `$schema`, are comments.
 //!
 //! `$defaults`, at the top of the scene only, is Tyndall's own: parameters with their defaults, each a number,
 //! a boolean or a string. A value that is just `"$name"` becomes what the parameter is, number or not; inside a
@@ -131,6 +134,9 @@ fn value(node: &Node) -> Result<Value> {
         Json::String(s) => Ok(Value::String(s.clone())),
         Json::Array(items) if items.iter().all(|item| matches!(item, Json::Object(_))) => {
             node.items()?.iter().map(transform::step).collect::<Result<_>>().map(Value::Transform)
+        }
+        Json::Array(items) if items.iter().all(|item| matches!(item, Json::Array(_))) => {
+            transform::matrix(node).map(|step| Value::Transform(vec![step]))
         }
         Json::Array(_) => node.vector().map(Value::Vector),
         Json::Object(_) => match node.type_name()? {

@@ -3,7 +3,7 @@
 
 use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours, whole_of};
 use crate::{
-    description::{Object, Position, Value, suggest},
+    description::{Object, Position, Value, substitutes, suggest},
     error::{Error, Result},
 };
 
@@ -40,12 +40,13 @@ fn check_tag(object: &Object, tag: &str) -> Result<()> {
         return Ok(());
     }
     let known = if ours.is_empty() { renderable(tag).to_vec() } else { ours };
+    let instead = substitutes::of_plugin(&object.plugin, Some(tag));
     if tags.contains(&tag) {
         let found = format!("\"{}\", which only Mitsuba has", object.plugin);
-        let remedy = format!("replace it; Tyndall has: {}", known.join(", "));
+        let remedy = format!("{}; Tyndall has: {}", instead.unwrap_or("replace it"), known.join(", "));
         return Err(Error::new(&object.location, format!("{} of Tyndall", kind(tag)), found, remedy));
     }
-    match tags.first() {
+    match tags.first().filter(|_| instead.is_none()) {
         None => Err(unknown(object, Some(tag), &known)),
         Some(right) => {
             let found = format!("\"{}\", which is {}", object.plugin, kind(right));
@@ -69,7 +70,13 @@ fn astray(part: &Object, whole: &str) -> Error {
 fn unknown(object: &Object, tag: Option<&str>, known: &[&str]) -> Error {
     let expected = tag.map_or("the type of a plugin".into(), |tag| format!("the type of {}", kind(tag)));
     let found = format!("\"{}\"", object.plugin);
-    Error::new(&object.location, expected, found, suggest(&object.plugin, "known", known))
+    let remedy = match substitutes::of_plugin(&object.plugin, tag) {
+        // All that a scene can hold is no help.
+        Some(instead) if tag.is_none() => instead.to_owned(),
+        Some(instead) => format!("{instead}; known: {}", known.join(", ")),
+        None => suggest(&object.plugin, "known", known),
+    };
+    Error::new(&object.location, expected, found, remedy)
 }
 
 /// What can be rendered of the kinds that have no registry.

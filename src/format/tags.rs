@@ -189,7 +189,9 @@ pub(crate) fn derive(plugin: &str, name: &str, parent: &str) -> Option<&'static 
     let inside = INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[][..], |(_, tags)| tags);
     let by_plugin = of_plugin(plugin);
     if let [only] = by_plugin.as_slice() {
-        return Some(only);
+        // "fog" is an integrator, but within a shape it is meant to be a medium.
+        let is_medium = by_name(name) == "medium" && inside.contains(&"medium") && !inside.contains(only);
+        return Some(if is_medium { "medium" } else { only });
     }
     let candidates = if by_plugin.is_empty() { inside.to_vec() } else { by_plugin };
     let fitting: Vec<_> = candidates.into_iter().filter(|tag| inside.contains(tag)).collect();

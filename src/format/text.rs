@@ -32,9 +32,13 @@ fn mistake<T>(expected: impl Into<String>, found: impl Into<String>) -> Parsed<T
     Err(Mistake { expected: expected.into(), found: found.into() })
 }
 
-/// The text of a file; it must be UTF-8.
+/// The text of a file; it must be UTF-8, or XML that says that it is Latin-1.
 pub(super) fn of_file(path: &Path) -> Result<String> {
-    let text = String::from_utf8(bytes(path)?).map_err(|error| {
+    let bytes = bytes(path)?;
+    if is_latin(&bytes) {
+        return Ok(bytes.into_iter().map(char::from).collect());
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
         let found = match error.as_bytes() {
             [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "text in UTF-16".into(),
             _ => format!("other bytes at offset {}", error.utf8_error().valid_up_to()),
@@ -43,6 +47,14 @@ pub(super) fn of_file(path: &Path) -> Result<String> {
     })?;
     // Some editors mark UTF-8 with a byte-order mark, which is no part of the text.
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
+
+/// True for XML whose declaration names Latin-1.
+fn is_latin(bytes: &[u8]) -> bool {
+    let end = bytes.iter().take(200).position(|byte| *byte == b'>').unwrap_or(0);
+    let declaration = String::from_utf8_lossy(&bytes[..end]).to_lowercase();
+    declaration.trim_start().starts_with("<?xml")
+        && ["iso-8859-1", "latin1"].iter().any(|name| declaration.contains(name))
 }
 
 /// A finite number; space around it is allowed.

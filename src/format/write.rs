@@ -16,7 +16,7 @@ mod xml;
 
 use super::read::{Spelling, read_whole, spelling};
 use crate::{
-    description::{Location, Object, TransformStep},
+    description::{Library, Location, Object, TransformStep},
     error::{Error, Result},
 };
 use std::{collections::HashSet, path::Path, slice};
@@ -36,7 +36,7 @@ pub fn convert(input: &Path, output: &Path, definitions: &[(String, String)]) ->
     let (spelling, folder) = (spelling(output)?, paths::folder(output));
     let (draft, parameters) = read_whole(input, definitions)?;
     let (root, moved) = arrange::arrange(&draft.root, &draft.found, folder)?;
-    let (input, mut notes) = (input.display(), Vec::new());
+    let (input, mut notes) = (input.display(), Library::new(&draft.root)?.take_warnings());
     if !draft.included.is_empty() {
         let files: Vec<_> = draft.included.iter().map(|file| file.display().to_string()).collect();
         let files = files.join(", ");

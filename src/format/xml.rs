@@ -1,13 +1,14 @@
 //! The XML format: Mitsuba scene files, versions 2 and 3, and older ones, which are upgraded as in Mitsuba 3.
 //!
 //! All of Mitsuba's tags are read: objects, values, `transform`, `ref`, `include`, `default`, `alias`, `path`.
-//! What Mitsuba would refuse is refused here; beyond that, text between tags and a `path` that is no folder are
-//! errors too, an `alias` may precede what it names, and colours may be written `#rrggbb`.
+//! What Mitsuba would refuse is refused here, except in older files, which are read as Mitsuba 0.6 did. Beyond that, a
+//! `path` that is no folder is an error too, an `alias` may precede what it names, and colours may be written `#rrggbb`.
 //!
 //! `keyframes` are Tyndall's own: a value of numbers that changes in time is
 //! `<keyframes name="..."><float time="0" value="1"/><float time="2.5" value="3"/></keyframes>`, with elements for any
 //! kind of number, or `transform`s; with `interpolation="smooth"` it eases in and out.
 
+mod blank;
 mod element;
 mod files;
 mod transform;
@@ -21,7 +22,9 @@ use super::{
     text,
 };
 use crate::{
-    description::{Keyframes, Location, Object, Property, TransformStep, Value, keyframes::Key, nearest},
+    description::{
+        Keyframes, Location, Object, Property, TransformStep, Value, keyframes::Key, nearest, substitutes,
+    },
     error::{Error, Result},
 };
 use element::Element;
@@ -102,12 +105,15 @@ impl Reader<'_> {
         let root = self.element(&page, document.root_element())?;
         page.is_old = is_old(&root)?;
         let mut object = self.object(&mut page, &root, &["version"], 1)?;
+        object.properties.append(&mut source.notes.borrow_mut());
         page.folders.settle(&mut object, &source.file, &mut self.found);
         Ok(object)
     }
 
     fn element<'s>(&mut self, page: &Page<'s>, node: roxmltree::Node<'s, 's>) -> Result<Element<'s>> {
-        Element::new(page.source, node, self.parameters)
+        let mut element = Element::new(page.source, node, self.parameters)?;
+        element.tag = if page.is_old { upgrade::tag(element.tag) } else { element.tag };
+        Ok(element)
     }
 
     /// A plugin with all its children. `more` are attributes beyond `type`, `id` and `name`.
@@ -117,10 +123,11 @@ impl Reader<'_> {
             return Err(Error::new(&element.location, expected, "deeper nesting", "flatten the scene"));
         }
         element.allow(&[&["type", "id", "name"], more].concat())?;
-        let plugin = match element.tag {
-            "scene" => element.get("type").map_or("scene", |a| a.value.as_str()).to_owned(),
-            _ => element.require("type")?.nonempty()?.to_owned(),
+        let written = match element.tag {
+            "scene" => element.get("type").map_or("scene", |a| a.value.as_str()),
+            _ => element.require("type")?.nonempty()?,
         };
+        let plugin = if page.is_old { upgrade::plugin(written) } else { written }.to_owned();
         let mut object = Object {
             tag: Some(element.object_tag().to_owned()),
             plugin,
@@ -128,12 +135,12 @@ impl Reader<'_> {
             properties: Vec::new(),
             location: element.location.clone(),
         };
-        for node in element.children()? {
+        for node in element.children() {
             let child = self.element(page, node)?;
             self.child(page, &child, &mut object, depth)?;
         }
-        if let Some(to_uv) = page.is_old.then(|| upgrade::texture_transform(&mut object)).flatten() {
-            add(&mut object, to_uv)?;
+        if page.is_old {
+            upgrade::object(&mut object, written)?;
         }
         Ok(object)
     }
@@ -157,6 +164,11 @@ impl Reader<'_> {
                 Value::Transform(self.steps(page, child)?)
             }
             "keyframes" => Value::Keyframes(self.keyframes(page, child)?),
+            "spectrum" if page.is_old && values::is_rgb(child) => {
+                values::read(&values::RGB, child, "name", &page.folders)?
+            }
+            "blackbody" if page.is_old => values::blackbody(child)?,
+            "srgb" if page.is_old => values::srgb(child)?,
             tag if TAGS.contains(&tag) || child.is_spectrum_plugin() => {
                 Value::Object(self.object(page, child, &[], depth + 1)?)
             }
@@ -174,7 +186,7 @@ impl Reader<'_> {
         element.require("name")?.nonempty()?;
         let interpolation = element.get("interpolation").map(values::interpolation).transpose()?;
         let mut keys = Vec::new();
-        for node in element.children()? {
+        for node in element.children() {
             let key = self.element(page, node)?;
             keys.push(self.key(page, key)?);
         }
@@ -199,8 +211,8 @@ impl Reader<'_> {
     }
 
     fn steps(&mut self, page: &Page, transform: &Element) -> Result<Vec<TransformStep>> {
-        let step = |node| transform::step(&self.element(page, node)?, page.is_old);
-        transform.children()?.into_iter().map(step).collect()
+        let step = |node| transform::step(&self.element(page, node)?);
+        transform.children().into_iter().map(step).collect()
     }
 
     fn default(&mut self, element: &Element) -> Result<()> {
@@ -293,6 +305,8 @@ fn unknown(element: &Element) -> Error {
         return misplaced(element, "inside <transform>");
     }
     let known: Vec<_> = [&TAGS[1..], &DIRECTIONS, &values::ROWS.names()].concat();
-    let remedy = format!("{}known: {}", nearest(tag, &known), known.join(", "));
+    let instead = substitutes::of_plugin(tag, None).map(|instead| format!("{instead}; "));
+    let hint = instead.unwrap_or_else(|| nearest(tag, &known));
+    let remedy = format!("{hint}known: {}", known.join(", "));
     Error::new(&element.location, "a tag of Mitsuba's scene format", format!("<{tag}>"), remedy)
 }

@@ -1,7 +1,7 @@
 //! The film as a scene describes it: Mitsuba's `hdrfilm`.
 
 use crate::{
-    description::{Library, Object, Params, Plugin, Registry, Table, params::Child, table},
+    description::{Library, Object, Params, Plugin, Registry, Table, params::Child, substitutes, table},
     error::{Error, Result},
     film::{
         Film, Window,
@@ -56,10 +56,7 @@ pub fn default(overrides: Overrides) -> Film {
 /// Builds the film that `object` describes.
 pub fn build(object: &Object, library: &Library, overrides: Overrides) -> Result<Film> {
     if object.plugin != "hdrfilm" {
-        let remedy = match object.plugin.as_str() {
-            "specfilm" => "light is represented in linear sRGB, so there are no spectral bands: use hdrfilm",
-            _ => "use hdrfilm",
-        };
+        let remedy = substitutes::of_plugin(&object.plugin, Some("film")).unwrap_or("use \"hdrfilm\"");
         let found = format!("\"{}\"", object.plugin);
         return Err(Error::new(&object.location, "the film \"hdrfilm\"", found, remedy));
     }

@@ -359,6 +359,111 @@ fn versions_before_2_are_upgraded() {
     assert!(error.found.contains("\"a_b\" again"), "{error}");
 }
 
+/// What Mitsuba 3.9.1 refuses, or takes for something else, means what it meant in 0.6.
+#[test]
+fn what_mitsuba_0_6_knew_is_read() {
+    let [old, new] = [("0.6.0", OLD), ("3.0.0", NEW)].map(|(version, inside)| {
+        let text = format!("<scene version=\"{version}\">{inside}</scene>");
+        let sandbox = Sandbox::with_files(&[("scene.xml", &text)]);
+        without_notes(&sandbox.read_scene("scene.xml", &[]).unwrap())
+    });
+    assert_same(&old, &new);
+    let moving = r#"<scene version="0.6.0"><shape type="s"><animation name="toWorld"><transform time="0"><scale value="1"/></transform>
+        <transform time="1"><scale value="2"/></transform></animation></shape></scene>"#;
+    let moving = Sandbox::with_files(&[("scene.xml", moving)]).read_scene("scene.xml", &[]).unwrap();
+    assert!(matches!(property(child(&moving, 0), "to_world"), Value::Keyframes(_)));
+}
+
+const OLD: &str = r##"
+    <camera type="perspective"><sampler type="halton"><integer name="sampleCount" value="2"/></sampler>
+      <film type="ldrfilm"><string name="pixelFormat" value="luminanceAlpha"/><string name="fileFormat" value="png"/>
+        <float name="gamma" value="2.2"/></film></camera>
+    <luminaire type="point"><blackbody name="intensity" temperature="3000K"/></luminaire>
+    <shape type="cube">
+      <bsdf type="lambertian"><srgb name="reflectance" value="#ff8000"/></bsdf></shape>
+    <shape type="cube"><bsdf type="plastic"><spectrum name="diffuseReflectance" value="0.1, 0.2, 0.3"/></bsdf>
+      <medium name="interior" type="homogeneous"><rgb name="sigmaS" value="3 1 0"/><float name="sigmaA" value="1"/>
+        <string name="strategy" value="balance"/></medium></shape>
+    <shape type="cube"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="a.png"/>
+        <string name="filterType" value="ewa"/><float name="gamma" value="1"/></texture></bsdf>
+      <medium name="interior" type="heterogeneous"><string name="method" value="woodcock"/>
+        <volume name="density" type="gridvolume"><string name="filename" value="a.vol"/></volume></medium></shape>"##;
+
+const NEW: &str = r##"
+    <sensor type="perspective"><sampler type="ldsampler"><integer name="sample_count" value="2"/></sampler>
+      <film type="hdrfilm"><string name="pixel_format" value="luminance_alpha"/></film></sensor>
+    <emitter type="point"><texture name="intensity" type="blackbody"><float name="temperature" value="3000"/></texture></emitter>
+    <shape type="cube">
+      <bsdf type="diffuse"><rgb name="reflectance" value="#ff8000"/></bsdf></shape>
+    <shape type="cube"><bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.1, 0.2, 0.3"/></bsdf>
+      <medium name="interior" type="homogeneous"><rgb name="sigma_t" value="4 2 1"/><rgb name="albedo" value="0.75 0.5 0"/></medium></shape>
+    <shape type="cube"><bsdf type="diffuse"><texture type="bitmap" name="reflectance"><string name="filename" value="a.png"/>
+        <string name="filter_type" value="bilinear"/><boolean name="raw" value="true"/></texture></bsdf>
+      <medium name="interior" type="heterogeneous">
+        <volume name="sigma_t" type="gridvolume"><string name="filename" value="a.vol"/><boolean name="use_grid_bbox" value="true"/></volume></medium></shape>"##;
+
+/// Mitsuba reads what XML forbids, and takes no notice of what is no element.
+#[test]
+fn what_is_no_element_means_nothing() {
+    let plain = read_xml("<shape type=\"s\"><float name=\"a\" value=\"1\"/></shape>", &[]).unwrap();
+    for text in [
+        "\n<?xml version=\"1.0\"?><!DOCTYPE scene SYSTEM \"a.dtd\"><scene version=\"3.0.0\"><shape type=\"s\"><float name=\"a\" value=\"1\"/></shape></scene>",
+        "\u{feff}<scene version=\"3.0.0\"><!-- -- a -- --><shape type=\"s\"><!-- b ---><float name=\"a\" value=\"1\"><!--c--></float></shape></scene><!-- d -->",
+        "<scene version=\"3.0.0\">one<shape type=\"s\"><![CDATA[two]]><float name=\"a\" value=\"1\">three</float></shape></scene>",
+    ] {
+        let sandbox = Sandbox::with_files(&[("scene.xml", text)]);
+        let scene = sandbox.read_scene("scene.xml", &[]).unwrap();
+        assert_same(&without_notes(&scene), &plain);
+        let notes: Vec<_> = scene.properties.iter().filter(|p| matches!(p.value, Value::Note(_))).collect();
+        assert_eq!(notes.len(), if text.contains("CDATA") { 3 } else { 0 });
+        if let Some(last) = notes.last() {
+            assert!(last.location.to_string().ends_with("scene.xml:1:84"), "{}", last.location);
+        }
+    }
+}
+
+/// As in Mitsuba, XML may be in Latin-1 where it says so.
+#[test]
+fn latin_letters_are_read() {
+    let head = b"<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><!-- caf\xe9 -->";
+    let scene =
+        b"<scene version=\"3.0.0\"><shape type=\"s\"><string name=\"a\" value=\"\xfc\"/></shape></scene>";
+    let sandbox = Sandbox::with_files(&[]);
+    fs::write(sandbox.path("scene.xml"), [&head[..], scene].concat()).unwrap();
+    let scene = sandbox.read_scene("scene.xml", &[]).unwrap();
+    assert_eq!(property(child(&scene, 0), "a"), &Value::String("\u{fc}".to_owned()));
+}
+
+fn without_notes(object: &Object) -> Object {
+    let mut copy = object.clone();
+    copy.properties.retain(|property| !matches!(property.value, Value::Note(_)));
+    for property in &mut copy.properties {
+        if let Value::Object(child) = &mut property.value {
+            *child = without_notes(child);
+        }
+    }
+    copy
+}
+
+/// Editors name the schema; people write comments.
+#[test]
+fn json_has_keys_that_mean_nothing() {
+    let plain = read_json(
+        r#"{"type": "scene", "a": {"type": "s", "t": [{"type": "matrix", "value": [1, 2, 3, 4, 5, 6, 7, 8, 9]}]}}"#,
+        &[],
+    );
+    let with = read_json(
+        r#"{"$schema": "x", "type": "scene", "//": "$one", "// 2": {}, "a": {"type": "s", "//": [3],
+            "t": [{"type": "matrix", "//": 1, "value": [[1, 2, 3], [4, 5, 6], [7, 8, 9]]}]}}"#,
+        &[],
+    );
+    let alone =
+        read_json(r#"{"type": "scene", "a": {"type": "s", "t": [[1, 2, 3], [4, 5, 6], [7, 8, 9]]}}"#, &[]);
+    let plain = plain.unwrap();
+    assert_same(&with.unwrap(), &plain);
+    assert_same(&alone.unwrap(), &plain);
+}
+
 /// Comments at the ends of lines, and the byte-order mark of some editors.
 #[test]
 fn meshes_may_hold_comments_and_a_mark() {
@@ -455,7 +560,6 @@ fn broken_xml_is_refused_with_place_and_remedy() {
         broken("<float name='a' value='1 2'/>", "scene.xml:1:40", &["a finite number"]),
         broken("<float name='a' value='inf'/>", "scene.xml:1:40", &["finite"]),
         broken("<float value='1'/>", "scene.xml:1:24", &["\"name\"", "only value"]),
-        broken("<float name='a' value='1'>2</float>", "scene.xml:1:50", &["the text \"2\""]),
         broken("<float name='a' value='1'><b/></float>", "scene.xml:1:50", &["nothing in <float>", "<b>"]),
         broken("<integer name='a' value='1.0'/>", "scene.xml:1:42", &["whole number"]),
         broken("<string name='a'></string>", "scene.xml:1:24", &["\"value\""]),
@@ -528,7 +632,6 @@ fn broken_xml_is_refused_with_place_and_remedy() {
         broken("<shape type='s'><path value='.'/></shape>", "scene.xml:1:40", &["outermost"]),
         broken("<scene type='scene'/>", "scene.xml:1:24", &["outermost element of a file"]),
         broken("<!-- \u{e9}\u{20ac} --><shap type='s'/>", "scene.xml:1:35", &["<shap>"]),
-        broken("hello", "scene.xml:1:24", &["elements only", "hello"]),
         broken("<shape type='s'>", "", &["well-formed XML"]),
         broken("<x:shape xmlns:x='u' type='s'/>", "scene.xml:1:24", &["namespace"]),
     ];
@@ -542,7 +645,7 @@ fn broken_files_of_xml_are_refused() {
         broken("<scene/>", "scene.xml:1:1", &["version"]),
         broken("<scene version='4.0.0'/>", "scene.xml:1:8", &["0.x to 3.x"]),
         broken("<scene version='three'/>", "scene.xml:1:8", &["0.x to 3.x"]),
-        broken("<!DOCTYPE s [<!ENTITY a 'b'>]><scene version='3.0.0'/>", "", &["document type", "<default>"]),
+        broken("<scene version='3.0.0'><!-- a</scene>", "scene.xml:1:38", &["well-formed XML"]),
         broken("", "scene.xml:1:1", &["well-formed XML"]),
     ];
     check(&rows, |text| Sandbox::with_files(&[("scene.xml", text)]).read_scene("scene.xml", &[]));

@@ -56,6 +56,16 @@ def test_steps_are_applied_first_to_last() -> None:
     assert np.array(load_dict.transform(STEPS).matrix) == pytest.approx(expected, abs=1e-6)
 
 
+def test_known_differences_of_mitsuba() -> None:
+    """What scenes/manual/compare.md says of it, and that it gets true rotations from here."""
+    of = lambda transform: np.linalg.det(np.array(transform.matrix))
+    assert of(mi.ScalarTransform4f().rotate([0, 2, 0], 90)) == pytest.approx(16)
+    assert of(load_dict.transform([{"type": "rotate", "axis": [0, 2, 0], "angle": 90}])) == pytest.approx(1)
+    board, place = mi.load_dict({"type": "checkerboard", "color0": 0.1, "color1": 0.9}), mi.SurfaceInteraction3f()
+    place.uv = [0.25, 0.25]
+    assert (board.eval(place)[0], board.eval_1(place)) == pytest.approx((0.1, 0.9))
+
+
 def test_files_go_too() -> None:
     theirs = tyndall.to_mitsuba(SCENES / "lampbox_up.xml", {"res": 8})
     assert tuple(mi.load_dict(theirs).sensors()[0].film().size()) == (8, 8)

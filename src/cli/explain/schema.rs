@@ -57,7 +57,7 @@ fn values() -> Map<String, Value> {
     let triple = json!({"type": "array", "items": number, "minItems": 3, "maxItems": 3});
     let object = |required: &str, properties: Value| {
         json!({"type": "object", "required": ["type", required], "additionalProperties": false,
-               "properties": properties})
+               "patternProperties": comments(), "properties": properties})
     };
     let values = json!({
         "parameter": {"type": "string", "pattern": "\\$"},
@@ -65,17 +65,22 @@ fn values() -> Map<String, Value> {
         "triple": triple,
         "rgb": object("value", json!({"type": {}, "value": {
             "anyOf": [{"$ref": "#/definitions/number"}, {"type": "array"}, {"type": "string"}]}})),
-        "spectrum": {"type": "object", "additionalProperties": false,
+        "spectrum": {"type": "object", "additionalProperties": false, "patternProperties": comments(),
             "properties": {"type": {}, "value": {"type": ["number", "array", "string"]}, "filename": {"type": "string"}}},
         "ref": object("id", json!({"type": {}, "id": {"type": "string"}})),
         "keyframes": object("value", json!({"type": {}, "interpolation": {"enum": Interpolation::NAMES}, "value": {
             "type": "array", "minItems": 1, "items": {"type": "array", "minItems": 2, "maxItems": 2}}})),
-        "transform": {"type": "array", "items": of_types(STEPS.map(|(step, _)| (step, step.to_owned())).into())},
+        "transform": {"type": "array", "items": {
+            "if": {"type": "array"},
+            "then": {"items": {"$ref": "#/definitions/number"}},
+            "else": of_types(STEPS.map(|(step, _)| (step, step.to_owned())).into())}},
     });
     let step = |(step, keys): (&str, &[&str])| {
         let keys = keys.iter().chain(&["type"]).map(|key| ((*key).to_owned(), json!({})));
         let properties = Value::Object(keys.collect());
-        (step.to_owned(), json!({"type": "object", "additionalProperties": false, "properties": properties}))
+        let step_of = json!({"type": "object", "additionalProperties": false, "patternProperties": comments(),
+            "properties": properties});
+        (step.to_owned(), step_of)
     };
     let mut all = values.as_object().cloned().unwrap_or_default();
     all.extend(STEPS.map(step));
@@ -90,7 +95,10 @@ fn plugin_of(plugin: &str, table: &'static Table) -> Value {
         json!({"type": "string", "description": "The name by which others refer to it."}),
     );
     match plugin {
-        "scene" => properties.insert("$defaults".into(), json!({"type": "object"})),
+        "scene" => {
+            properties.insert("$schema".into(), json!({"type": "string"}));
+            properties.insert("$defaults".into(), json!({"type": "object"}))
+        }
         _ => properties.insert("$tag".into(), json!({"type": "string"})),
     };
     let nested: Vec<_> = table.rows().filter(|row| row.kind == Kind::Nested).map(|row| row.name).collect();
@@ -108,12 +116,18 @@ fn plugin_of(plugin: &str, table: &'static Table) -> Value {
         "type": "object",
         "required": required,
         "properties": properties,
+        "patternProperties": comments(),
         "additionalProperties": match nested.as_slice() {
             [] => json!(false),
             [one] => json!({"$ref": reference(one)}),
             several => any_of_kinds(several),
         },
     })
+}
+
+/// Keys that mean nothing.
+fn comments() -> Value {
+    json!({"^//": {}})
 }
 
 /// An object of one of these kinds.

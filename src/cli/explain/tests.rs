@@ -357,8 +357,10 @@ fn is_valid(whole: &Value, schema: &Value, value: &Value) -> bool {
         }
         "properties" => object().all(|(key, value)| rule.get(key).is_none_or(|rule| valid(rule, value))),
         "additionalProperties" => {
-            object().all(|(key, value)| schema["properties"].get(key).is_some() || valid(rule, value))
+            let is_known = |key: &str| schema["properties"].get(key).is_some() || key.starts_with("//");
+            object().all(|(key, value)| is_known(key) || valid(rule, value))
         }
+        "patternProperties" => *rule == json!({"^//": {}}),
         "allOf" => rule.as_array().unwrap().iter().all(|one| valid(one, value)),
         "anyOf" => rule.as_array().unwrap().iter().any(|one| valid(one, value)),
         "if" => {

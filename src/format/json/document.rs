@@ -27,20 +27,69 @@ pub(super) enum Json {
 /// Reads `text`, the content of `file`. A key given twice in one object is an error.
 pub(super) fn parse(file: &Arc<PathBuf>, text: &str) -> Result<Json> {
     json_spanned_value::from_str::<spanned::Value>(text).map(tree).map_err(|error| {
-        let (line, column) = (error.line().max(1) as u32, error.column().max(1) as u32);
-        let place = Location { file: file.clone(), position: Position::Text { line, column } };
+        let (line, column) = (error.line().max(1), error.column().max(1));
+        let start: usize = text.split_inclusive('\n').take(line - 1).map(str::len).sum();
+        let offset = (start + column - 1).min(text.len());
         let message = error.to_string();
         let end = message.rfind(" at line ").unwrap_or(message.len());
-        let (expected, found, remedy) = explain(&message[..end]);
-        Error::new(place, expected, found, remedy)
+        let message = message[..end].to_lowercase();
+        let (before, after) = text.split_at_checked(offset).unwrap_or((text, ""));
+        let ((expected, found, remedy), offset) = match slip(&message, before, after) {
+            Some(slip) => slip,
+            None => (explain(&message), offset),
+        };
+        Error::new(place(file, text, offset), expected, found, remedy)
     })
 }
 
-/// The parser's message as what was expected, what was found, and what to do.
-fn explain(message: &str) -> (&'static str, String, &'static str) {
-    let message = message.to_lowercase();
+/// The place of the byte at `offset` in `text`.
+fn place(file: &Arc<PathBuf>, text: &str, offset: usize) -> Location {
+    let before = text.get(..offset).unwrap_or(text);
+    let line = before.matches('\n').count() as u32 + 1;
+    let column = before.rsplit('\n').next().map_or(0, |last| last.chars().count()) as u32 + 1;
+    Location { file: file.clone(), position: Position::Text { line, column } }
+}
+
+/// What was expected, what was found, and what to do.
+type Explanation = (&'static str, String, &'static str);
+
+/// A slip that what is `before` and `after` the place of an error tells, and where it is.
+fn slip(message: &str, before: &str, after: &str) -> Option<(Explanation, usize)> {
+    let word: String = after.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    let says = |expected, found: &str, remedy| Some(((expected, found.to_owned(), remedy), before.len()));
+    match after.chars().next()? {
+        '/' | '#' => says("JSON, which has no comments", "a comment", "write it as a key: \"//\": \"...\""),
+        '\'' => says("double quotes", "a single quote", "put \" in place of '"),
+        ',' if message.contains("expected value") => says("one comma", "another", "remove one"),
+        _ if message.starts_with("expected `,`") => {
+            let end = before.trim_end().len();
+            let next = after.lines().next()?.split_inclusive([' ', ',', ':', '}', ']']).next()?;
+            let found =
+                format!("{}, without a comma before it", next.trim_end_matches([' ', ',', ':', '}', ']']));
+            Some((("a comma between two entries", found, "put a comma here"), end))
+        }
+        _ if message.starts_with("expected `:`") => {
+            says("a colon after the key", "none", "write it like \"key\": value")
+        }
+        _ if ["True", "False"].contains(&word.as_str()) => {
+            says("true or false in small letters", &word, "write true or false")
+        }
+        _ if ["None", "NaN", "Infinity", "nan", "inf"].contains(&word.as_str()) => {
+            says("a JSON value", &word, "write a finite number")
+        }
+        _ => None,
+    }
+}
+
+/// The parser's message, in small letters.
+fn explain(message: &str) -> Explanation {
     let correct = "correct the JSON at or before this place";
-    let (expected, found, remedy) = match message.as_str() {
+    match message {
+        m if m.starts_with("duplicate field: \"//") => (
+            "each key once in an object",
+            "a second comment with one key".to_owned(),
+            "add to its key, such as \"//2\"",
+        ),
         m if m.starts_with("duplicate") => (
             "each key once in an object",
             m.replace("duplicate field:", "a second"),
@@ -57,11 +106,7 @@ fn explain(message: &str) -> (&'static str, String, &'static str) {
             "more after the scene".to_owned(),
             "remove what follows, or a brace too many before",
         ),
-        "key must be a string" => (
-            "a key in double quotes",
-            "something else".to_owned(),
-            "quote it, or remove it if it is a comment: JSON has no comments",
-        ),
+        "key must be a string" => ("a key in double quotes", "something else".to_owned(), "quote it"),
         "trailing comma" => ("another entry after the comma", "none".to_owned(), "remove the comma"),
         "expected value" => ("a JSON value", "none".to_owned(), correct),
         m if m.starts_with("eof") => {
@@ -69,8 +114,7 @@ fn explain(message: &str) -> (&'static str, String, &'static str) {
             ("well-formed JSON", found, "add what is missing: a value, or closing brackets and braces")
         }
         m => ("well-formed JSON", m.replace("expected", "not"), correct),
-    };
-    (expected, found, remedy)
+    }
 }
 
 fn tree(value: spanned::Value) -> Json {
@@ -81,11 +125,16 @@ fn tree(value: spanned::Value) -> Json {
         Spanned::String(s) => Json::String(s),
         Spanned::Array(items) => Json::Array(items.into_iter().map(tree).collect()),
         Spanned::Object(map) => {
-            let mut entries: Vec<_> = map.into_iter().collect();
+            let mut entries: Vec<_> = map.into_iter().filter(|(key, _)| !is_comment(key)).collect();
             entries.sort_by_key(|(key, _)| key.start());
             Json::Object(entries.into_iter().map(|(key, value)| (key.into_inner(), tree(value))).collect())
         }
     }
+}
+
+/// True for keys that mean nothing in a scene: comments, and the schema that an editor checks it by.
+fn is_comment(key: &str) -> bool {
+    key.starts_with("//") || key == "$schema"
 }
 
 /// The key of the parameters' defaults.

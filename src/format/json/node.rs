@@ -56,7 +56,12 @@ impl<'j> Node<'j> {
     /// The error for a value that is not as `expected`.
     pub(super) fn wrong(&self, expected: impl Into<String>) -> Error {
         let expected = expected.into();
-        let remedy = format!("change it to {expected}");
+        let remedy = match self.json {
+            Json::String(text) if expected.contains("number") && text.parse::<f64>().is_ok() => {
+                format!("remove the quotes: {text}")
+            }
+            _ => format!("change it to {expected}"),
+        };
         Error::new(&self.location, expected, self.json.describe(), remedy)
     }
 

@@ -5,7 +5,7 @@ use super::{
         steps,
         text::{self, one_or_triple},
     },
-    Node,
+    Json, Node,
 };
 use crate::{
     description::{TransformStep, nearest},
@@ -24,8 +24,7 @@ pub(super) fn step(node: &Node) -> Result<TransformStep> {
         "lookat" => look_at(node),
         "matrix" => {
             node.allow(&["value"])?;
-            let value = node.require("value")?;
-            value.check(text::matrix(&value.numbers()?)).map(TransformStep::Matrix)
+            matrix(&node.require("value")?)
         }
         word => {
             let remedy = format!("{}known: {}", nearest(word, &steps::WORDS), steps::WORDS.join(", "));
@@ -33,6 +32,16 @@ pub(super) fn step(node: &Node) -> Result<TransformStep> {
             Err(Error::new(place, "a step of a transform", format!("\"{word}\""), remedy))
         }
     }
+}
+
+/// A matrix: its numbers in one list, or each row in a list of its own.
+pub(super) fn matrix(value: &Node) -> Result<TransformStep> {
+    let items = value.items()?;
+    let numbers = match items.iter().all(|item| matches!(item.json, Json::Array(_))) {
+        true => items.iter().map(Node::numbers).collect::<Result<Vec<_>>>()?.concat(),
+        false => value.numbers()?,
+    };
+    value.check(text::matrix(&numbers)).map(TransformStep::Matrix)
 }
 
 /// `whole` with one or three numbers; or any of `x`, `y`, `z`, where what is left out is `default`.

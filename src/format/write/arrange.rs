@@ -31,6 +31,7 @@ struct Target<'a> {
 
 impl Target<'_> {
     fn fit(&mut self, object: &mut Object, tag: String) -> Result<()> {
+        object.properties.retain(|property| !matches!(property.value, Value::Note(_)));
         for Property { name, value, location } in &mut object.properties {
             match value {
                 Value::Object(child) => {

@@ -52,7 +52,7 @@ fn value(value: &Value, key: Option<&String>, tags: &Tags) -> Result<Json> {
         Value::Boolean(value) => Json::Word(value.to_string()),
         Value::Integer(value) => Json::Word(value.to_string()),
         Value::Float(value) => Json::Word(format!("{value:?}")),
-        Value::String(text) => string(text),
+        Value::String(text) | Value::Note(text) => string(text),
         Value::Rgb(values) => kind("rgb", one_or_more(shortened(values))),
         Value::Vector(values) => list(values),
         Value::Spectrum(pairs) => kind("spectrum", spectrum(pairs)),

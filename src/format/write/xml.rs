@@ -89,7 +89,7 @@ impl Writer {
             Value::Boolean(value) => ("boolean", value.to_string()),
             Value::Integer(value) => ("integer", value.to_string()),
             Value::Float(value) => ("float", plain(*value)),
-            Value::String(value) => ("string", escaped(value)),
+            Value::String(value) | Value::Note(value) => ("string", escaped(value)),
             Value::Spectrum(pairs) => ("spectrum", spectrum(pairs)),
             Value::Rgb(values) => ("rgb", listed(shortened(values))),
             Value::Vector(values) => (vector, listed(values)),

@@ -90,22 +90,21 @@ impl<'s> Element<'s> {
         Err(Error::new(&odd.location, expected, format!("\"{}\"", odd.name), remedy))
     }
 
-    /// The elements in this one. Text between them means nothing, so it is an error.
-    pub(super) fn children(&self) -> Result<Vec<Node<'s, 's>>> {
-        let text = |node: &Node| node.is_text() && node.text().is_some_and(|text| !text.trim().is_empty());
-        if let Some(stray) = self.node.children().find(text) {
-            let blank = |t: &str| t.len() - t.trim_start().len();
-            let start = stray.range().start + stray.text().map_or(0, blank);
-            let found = format!("the text {}", quoted(stray.text().unwrap_or_default().trim()));
-            let place = self.source.location(start);
-            return Err(Error::new(place, "elements only", found, "remove the text or comment it out"));
+    /// The elements in this one. Text between them means nothing, as in Mitsuba; the user is told.
+    pub(super) fn children(&self) -> Vec<Node<'s, 's>> {
+        for node in self.node.children().filter(Node::is_text) {
+            let text = node.text().unwrap_or_default();
+            if !text.trim().is_empty() {
+                let start = node.range().start + text.len() - text.trim_start().len();
+                self.source.note(start, format!("the text {} is ignored", quoted(text.trim())));
+            }
         }
-        Ok(self.node.children().filter(Node::is_element).collect())
+        self.node.children().filter(Node::is_element).collect()
     }
 
     /// An element in this one is an error.
     pub(super) fn childless(&self) -> Result<()> {
-        let Some(child) = self.children()?.first().copied() else { return Ok(()) };
+        let Some(child) = self.children().first().copied() else { return Ok(()) };
         let expected = format!("nothing in <{}>", self.tag);
         let found = format!("<{}>", child.tag_name().name());
         Err(Error::new(self.source.location(child.range().start), expected, found, "move it out"))

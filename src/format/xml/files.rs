@@ -2,13 +2,15 @@
 
 use super::{
     super::text,
+    blank::blanked,
     element::{Attribute, Element},
 };
 use crate::{
-    description::{Location, Object, Position, Value},
+    description::{Location, Object, Position, Property, Value},
     error::{Error, Result},
 };
 use std::{
+    cell::RefCell,
     collections::HashSet,
     path::{Path, PathBuf},
     sync::Arc,
@@ -21,6 +23,8 @@ pub(super) struct Source {
     /// The file under the name that all spellings of its path share.
     pub identity: PathBuf,
     text: String,
+    /// What its user shall know of it.
+    pub notes: RefCell<Vec<Property>>,
     /// Where each line starts. Finding a place must cost no pass over the file, nor over a long line.
     lines: Vec<usize>,
     /// The bytes that begin no character: they do not count in columns.
@@ -38,10 +42,17 @@ impl Source {
         let text = text::of_file(path)?;
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         let inner = (0..text.len()).filter(|at| !text.is_char_boundary(*at)).collect();
-        Ok(Self { file: Arc::new(path.to_owned()), identity: identity(path), text, lines, inner })
+        let (file, identity, notes) = (Arc::new(path.to_owned()), identity(path), RefCell::default());
+        Ok(Self { file, identity, text: blanked(&text), notes, lines, inner })
     }
 
-    /// The file as XML. Document types are refused, and with them entities that expand without end.
+    /// Notes that the user shall know `text` of the byte at `offset`.
+    pub(super) fn note(&self, offset: usize, text: impl Into<String>) {
+        let (name, value) = (String::new(), Value::Note(text.into()));
+        self.notes.borrow_mut().push(Property { name, value, location: self.location(offset) });
+    }
+
+    /// The file as XML.
     pub(super) fn parse(&self) -> Result<roxmltree::Document<'_>> {
         roxmltree::Document::parse(&self.text).map_err(|error| {
             let roxmltree::TextPos { row, col } = error.pos();
@@ -77,11 +88,6 @@ fn explain(error: &roxmltree::Error) -> (&'static str, String, String) {
     };
     let well_formed = "well-formed XML";
     match error {
-        E::DtdDetected => (
-            "XML without a document type",
-            "<!DOCTYPE>".into(),
-            "remove the <!DOCTYPE>; use <default> and $name for entities".into(),
-        ),
         E::NoRootNode => {
             (well_formed, "no element".into(), "write <scene version=\"3.0.0\">...</scene>".into())
         }

@@ -13,8 +13,8 @@ use crate::{
     error::{Error, Result},
 };
 
-/// One step, of a file that `is_old` if it is for Mitsuba before version 2.
-pub(super) fn step(element: &Element, is_old: bool) -> Result<TransformStep> {
+/// One step.
+pub(super) fn step(element: &Element) -> Result<TransformStep> {
     element.childless()?;
     match element.tag {
         "translate" => Ok(TransformStep::Translate(vector(element, &[], 0.0)?)),
@@ -24,7 +24,6 @@ pub(super) fn step(element: &Element, is_old: bool) -> Result<TransformStep> {
             element.check(steps::rotate(axis, element.require("angle")?.parse(text::float)?))
         }
         "lookat" => look_at(element),
-        "lookAt" if is_old => look_at(element),
         "matrix" => {
             element.allow(&["value"])?;
             let value = element.require("value")?;

@@ -6,8 +6,9 @@ use super::{
     files::Folders,
 };
 use crate::{
-    description::{Registry, Value, keyframes::Interpolation, nearest},
+    description::{Object, Property, Registry, Value, keyframes::Interpolation, nearest},
     error::{Error, Result},
+    math::srgb::Srgb as _,
 };
 
 /// The attributes that a tag may have beside that by which it is known, and how it is read.
@@ -15,6 +16,9 @@ pub(super) struct Row(&'static [&'static str], fn(&Element, &Folders) -> Result<
 
 const VALUE: &[&str] = &["value"];
 const POINT: &[&str] = &["value", "x", "y", "z"];
+
+/// Of a colour.
+pub(super) const RGB: Row = Row(VALUE, |e, _| parse(e, text::rgb).map(Value::Rgb));
 
 /// All tags of values.
 pub(super) const ROWS: Registry<Row> = Registry::new(
@@ -24,7 +28,7 @@ pub(super) const ROWS: Registry<Row> = Registry::new(
         ("integer", Row(VALUE, |e, _| parse(e, text::integer).map(Value::Integer))),
         ("boolean", Row(VALUE, |e, _| parse(e, text::boolean).map(Value::Boolean))),
         ("string", Row(VALUE, |e, _| parse(e, |t| Ok(Value::String(t.to_owned()))))),
-        ("rgb", Row(VALUE, |e, _| parse(e, text::rgb).map(Value::Rgb))),
+        ("rgb", RGB),
         ("spectrum", Row(&["value", "filename"], spectrum)),
         ("point", Row(POINT, |e, _| vector(e))),
         ("vector", Row(POINT, |e, _| vector(e))),
@@ -42,6 +46,34 @@ pub(super) fn read(
     element.require(key)?.nonempty()?;
     element.childless()?;
     read(element, folders)
+}
+
+/// True if `element`, a spectrum, has three numbers without wavelengths: 0.6's channels.
+pub(super) fn is_rgb(element: &Element) -> bool {
+    let numbers = element.get("value").and_then(|value| text::floats(&value.value).ok());
+    numbers.is_some_and(|numbers| numbers.len() == 3)
+}
+
+/// 0.6's colour as on a screen: one number, three, or `#rrggbb`.
+pub(super) fn srgb(element: &Element) -> Result<Value> {
+    element.allow(&["name", "value"])?;
+    element.childless()?;
+    let value = element.require("value")?;
+    let rgb = value.parse(text::rgb)?;
+    let is_decoded = value.value.trim().starts_with('#');
+    Ok(Value::Rgb(if is_decoded { rgb } else { rgb.map(|encoded| encoded.srgb_decoded()) }))
+}
+
+/// 0.6's black body: a plugin today.
+pub(super) fn blackbody(element: &Element) -> Result<Value> {
+    element.allow(&["name", "temperature"])?;
+    element.childless()?;
+    let kelvins = |text: &str| text::float(text.trim().trim_end_matches(['K', 'k']));
+    let value = Value::Float(element.require("temperature")?.parse(kelvins)?);
+    let location = element.location.clone();
+    let temperature = Property { name: "temperature".into(), value, location: location.clone() };
+    let (tag, plugin) = (Some("texture".to_owned()), "blackbody".to_owned());
+    Ok(Value::Object(Object { tag, plugin, id: None, properties: vec![temperature], location }))
 }
 
 /// How numbers between two keys follow from them.

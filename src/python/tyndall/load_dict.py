@@ -105,7 +105,9 @@ def step(s: dict[str, Any]) -> Any:
         case "scale":
             return identity.scale(s["value"])
         case "rotate":
-            return identity.rotate(s["axis"], s["angle"])
+            axis = np.broadcast_to(np.asarray(s["axis"], dtype=float), 3)
+            # Mitsuba 3.9.1 rotates about unit vectors only; by others it shears.
+            return identity.rotate(axis / np.linalg.norm(axis), s["angle"])
         case "translate":
             return identity.translate(s["value"])
         case "lookat":
