@@ -8,7 +8,9 @@ use super::{
     flights, guide,
     info::Info,
     manual::{Completions, Manual},
-    merge, phase, pixel,
+    merge,
+    new::{self, New},
+    phase, pixel,
     render::arguments::Render,
     report::Report,
     strategies,
@@ -49,6 +51,15 @@ Exit codes:
 pub enum Command {
     /// Render a scene to an image
     Render(Box<Render>),
+    /// Write a scene to start from: a small one by name, or one around a volume file
+    ///
+    /// For example: tyndall new fog -o fog.json, tyndall new plume.vdb > plume.json
+    ///
+    /// The scene around a volume file is the one that `tyndall render plume.vdb` renders: all of the smoke in view, on the
+    /// ground under the sun, as thick as smoke looks, or at dusk if the file has fire. Its name of the file starts at the
+    /// folder of --output; without that, at the current folder.
+    #[command(after_help = new::templates())]
+    New(New),
     /// Show what each strategy of bidirectional path tracing contributes to a scene
     ///
     /// Writes to a folder the image of each strategy, weighted and unweighted, as EXR layers and as pyramids on
@@ -146,6 +157,7 @@ impl Command {
             Self::Flights(flights) => Some(&flights.answer),
             Self::Pixel(_)
             | Self::Convert(_)
+            | Self::New(_)
             | Self::Merge(_)
             | Self::Report(_)
             | Self::Explain(_)

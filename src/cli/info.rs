@@ -33,6 +33,7 @@ use crate::{
     settings::integrator::Restriction,
     shape::ShapeModel,
     transport::{Algorithm, Options},
+    volume::grid::is_volume,
 };
 use clap::Args;
 use serde_json::{Value, json};
@@ -69,7 +70,7 @@ pub(super) fn run(arguments: &Info) -> Result<()> {
     if let Some(made) = picture::made(&arguments.scene.file)? {
         return picture::show(&made, &arguments.answer);
     }
-    if volumes::is_one(&arguments.scene.file) {
+    if is_volume(&arguments.scene.file) {
         return volumes::run(&arguments.scene.file, &arguments.answer);
     }
     let mut setup = load(&arguments.scene, arguments.estimator.overrides(None))?;

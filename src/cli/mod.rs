@@ -17,6 +17,7 @@ mod interrupt;
 mod manual;
 mod media;
 pub mod merge;
+mod new;
 mod outputs;
 mod parsers;
 pub mod phase;
@@ -66,6 +67,7 @@ fn obey(command: &Command) -> Result<bool> {
         Command::Pixel(pixel) => pixel::run(pixel),
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
+        Command::New(new) => new::run(new),
         Command::Report(report) => report::run(report),
         Command::Study(study) => study::run(study),
         Command::Explain(explain) => explain::run(explain),

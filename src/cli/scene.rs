@@ -1,7 +1,7 @@
 //! The scene that a command is about, and the threads that work on it.
 
 use super::{
-    console::complain,
+    console::{announce, complain},
     media,
     parsers::{definition, scene_file},
 };
@@ -14,6 +14,7 @@ use crate::{
         sensors,
     },
     settings::Overrides,
+    volume::grid::is_volume,
 };
 use clap::Args;
 use std::{num::NonZeroUsize, path::PathBuf};
@@ -21,9 +22,9 @@ use std::{num::NonZeroUsize, path::PathBuf};
 /// A scene file and its parameters.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input
+    /// Scene file: Mitsuba 3 XML (.xml) or JSON (.json), or - for standard input; or a volume file (.vdb, .nvdb, .vol)
     ///
-    /// On standard input the first character tells the format. Names of other files in the scene then start at the
+    /// Of a volume file, or of numbered ones (plume_####.vdb), it is the scene that `tyndall new` writes. On standard input the first character tells the format. Names of other files in the scene then start at the
     /// current folder, and outputs without a name of their own are called "stdin".
     #[arg(value_name = "SCENE", value_parser = scene_file())]
     pub file: PathBuf,
@@ -49,6 +50,7 @@ pub struct Scene {
 impl Scene {
     /// What the file says, with the one sensor that is wanted.
     pub fn read(&self) -> Result<Object> {
+        format::told(&self.file)?.iter().for_each(|line| announce(line));
         let root = format::read(&self.file, &self.definitions)?;
         match &self.sensor {
             None => Ok(root),
@@ -60,8 +62,16 @@ impl Scene {
     pub fn name(&self) -> PathBuf {
         match format::is_standard_input(&self.file) {
             true => "stdin".into(),
+            false if is_volume(&self.file) && !self.file.is_file() => self.unnumbered(),
             false => self.file.file_stem().unwrap_or_default().into(),
         }
+    }
+
+    /// What comes before the number in the name of numbered files; of none, "smoke".
+    fn unnumbered(&self) -> PathBuf {
+        let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
+        let name = stem.split(['#', '%']).next().unwrap_or_default().trim_end_matches(['_', '.', '-']);
+        if name.is_empty() { "smoke".into() } else { name.into() }
     }
 }
 

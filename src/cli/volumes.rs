@@ -16,12 +16,6 @@ use crate::{
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// True if the file at `path` is one by its name.
-pub(super) fn is_one(path: &Path) -> bool {
-    let extension = path.extension().unwrap_or_default();
-    ["vdb", "nvdb", "vol"].iter().any(|known| extension.eq_ignore_ascii_case(known))
-}
-
 /// Lists the grids of the file at `path`.
 pub(super) fn run(path: &Path, answer: &Answer) -> Result<()> {
     let mut file = Catalogue::open(path)?;
@@ -52,6 +46,7 @@ fn use_of(file: &mut Catalogue) -> (String, Value) {
     let labels = &file.labels;
     let name = |number: &usize| labels[*number].name.as_str();
     let mut parts = vec![];
+    parts.extend(file.is_z_up().then(|| "+z up".to_owned()));
     parts.extend(roles.density.iter().map(|number| format!("density from {}", quoted(name(number)))));
     parts.extend(roles.temperature.iter().map(|number| format!("light from {}", quoted(name(number)))));
     if !roles.color.is_empty() {
@@ -59,6 +54,7 @@ fn use_of(file: &mut Catalogue) -> (String, Value) {
         parts.push(format!("colour from {}", names.join(", ")));
     }
     let figures = json!({
+        "up": if file.is_z_up() { "z" } else { "y" },
         "density": roles.density.as_ref().map(name),
         "temperature": roles.temperature.as_ref().map(name),
         "color": roles.color.iter().map(name).collect::<Vec<_>>(),
@@ -138,6 +134,7 @@ pub(super) fn taken(taken: &Taken) -> Value {
     json!({
         "name": taken.name,
         "file": taken.file.display().to_string(),
+        "up": if taken.is_z_up { "z" } else { "y" },
         "density": taken.density,
         "temperature": taken.glow.as_ref().map(|Glow { grid, scale, offset, most }| json!({
             "grid": grid,

@@ -30,6 +30,9 @@ pub enum TransformStep {
 }
 
 impl TransformStep {
+    /// The turn by which +z becomes +y, exactly: (x, y, z) becomes (x, z, -y).
+    pub const Z_TO_Y: Self = Self::Matrix([1., 0., 0., 0., 0., 0., 1., 0., 0., -1., 0., 0., 0., 0., 0., 1.]);
+
     /// The step as a matrix on column vectors.
     pub fn matrix(&self) -> DMat4 {
         match self {

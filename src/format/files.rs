@@ -8,7 +8,10 @@ use crate::{
     description::{Library, Object, Property, Value, keyframes::Key},
     error::{Error, Result},
     inputs::{self, Reader},
-    volume::files::sequence::{Clock, Sequence},
+    volume::{
+        files::sequence::{Clock, Sequence},
+        grid::is_volume,
+    },
 };
 use std::{
     fs::File,
@@ -47,7 +50,9 @@ impl Sources {
     /// Those of the scene `draft`, read from `path`. Of numbered files, the one that is shown at `time` (s), or else at the
     /// scene's own.
     pub(super) fn of(path: &Path, draft: Draft, time: Option<f64>) -> Self {
-        let mut sources = Self { files: vec![path.to_owned()], spectra: Vec::new() };
+        // A volume file is what the scene around it names.
+        let files = if is_volume(path) { vec![] } else { vec![path.to_owned()] };
+        let mut sources = Self { files, spectra: Vec::new() };
         sources.add_all(draft.included);
         sources.walk(&draft.root, time.or(draft.root.number("time")).unwrap_or(0.0));
         sources

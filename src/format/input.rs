@@ -1,10 +1,16 @@
 //! The bytes of a scene file, which standard input can be.
 
+use super::starting::{self, Portrait};
 use crate::{
     error::{Error, Result},
     inputs::{self, Reader},
+    volume::grid::is_volume,
 };
-use std::{io::Read as _, path::Path, sync::OnceLock};
+use std::{
+    io::Read as _,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, OnceLock, PoisonError},
+};
 
 /// The path that stands for standard input, as messages name it. Names of files in the scene start at the current
 /// folder.
@@ -15,10 +21,34 @@ pub fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == STANDARD_INPUT
 }
 
-/// What the file at `path` holds, which a scene is read from. Standard input can be read only once, so its bytes are kept.
+/// The scene around the volume file at `path`. It is made once: that takes as long as reading the file.
+fn portrait(path: &Path) -> Result<Arc<Portrait>> {
+    static KEPT: Mutex<Option<(PathBuf, Arc<Portrait>)>> = Mutex::new(None);
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    match &*kept {
+        Some((of, portrait)) if of == path => Ok(portrait.clone()),
+        _ => {
+            let portrait = Arc::new(starting::of_file(path)?);
+            *kept = Some((path.to_owned(), portrait.clone()));
+            Ok(portrait)
+        }
+    }
+}
+
+/// What was found and chosen where the scene at `path` is a volume file, a sentence each.
+pub fn told(path: &Path) -> Result<Vec<String>> {
+    if is_volume(path) { Ok(portrait(path)?.told(path)) } else { Ok(vec![]) }
+}
+
+/// What the file at `path` holds, which a scene is read from: of a volume file, the scene around it, in its folder. Standard
+/// input can be read only once, so its bytes are kept.
 pub fn bytes(path: &Path) -> Result<Vec<u8>> {
     static KEPT: OnceLock<Vec<u8>> = OnceLock::new();
     let explain = |error| Error::io(path, "read", &error);
+    if is_volume(path) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        return portrait(path).map(|portrait| portrait.text(&name).into_bytes());
+    }
     if !is_standard_input(path) {
         inputs::note(path, Reader::Scene);
         return std::fs::read(path).map_err(explain);

@@ -8,6 +8,7 @@ mod parameters;
 pub mod plugins;
 mod read;
 pub mod references;
+pub mod starting;
 mod steps;
 pub mod tags;
 mod text;
@@ -15,6 +16,6 @@ mod write;
 mod xml;
 
 pub use files::{Sources, file_fingerprint, fingerprint};
-pub use input::{STANDARD_INPUT, bytes, is_standard_input};
+pub use input::{STANDARD_INPUT, bytes, is_standard_input, told};
 pub use read::{Spelling, read, sources};
 pub use write::{Conversion, convert, write};

@@ -10,6 +10,7 @@ use super::{
 use crate::{
     description::Object,
     error::{Error, Result},
+    volume::grid::is_volume,
 };
 use std::path::Path;
 
@@ -33,6 +34,7 @@ pub(super) fn read_whole(path: &Path, definitions: &[(String, String)]) -> Resul
     let mut parameters = Parameters::new(definitions)?;
     let found = match input::is_standard_input(path) {
         true => spelling_of(path, &text::of_file(path)?)?,
+        false if is_volume(path) => Spelling::Json,
         false => spelling(path)?,
     };
     let mut draft = match found {

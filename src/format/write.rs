@@ -14,6 +14,8 @@ mod layout;
 mod paths;
 mod xml;
 
+pub(super) use paths::relative;
+
 use super::read::{Spelling, read_whole, spelling};
 use crate::{
     description::{Library, Location, Object, TransformStep},

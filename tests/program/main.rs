@@ -32,6 +32,7 @@ mod progressive;
 mod reading;
 mod saying;
 mod smoke;
+mod starting;
 mod strategies;
 mod study;
 mod unseen;

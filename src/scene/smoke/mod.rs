@@ -15,13 +15,13 @@ use crate::{
     shape::{SMOKE, SMOKE_TABLE},
     volume::{
         files::{
-            roles::{self, Roles},
+            roles::Roles,
             sequence::{Clock, Sequence},
         },
         grid::{Catalogue, Held},
     },
 };
-use parameters::Parameters;
+use parameters::{Parameters, Up};
 use std::borrow::Cow;
 pub use taken::{Glow, Taken};
 
@@ -95,7 +95,7 @@ impl Replaced {
 /// The shape that `smoke` stands for, the medium in it, and what that was made of.
 fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Option<Object>, Taken)> {
     let params = Params::new(smoke, library, &SMOKE_TABLE);
-    let given = Parameters::read(&params, time)?;
+    let mut given = Parameters::read(&params, time)?;
     params.finish()?;
     let mut file = Catalogue::open(&given.file.path)?;
     let roles = Roles::of_file(&file.labels, given.wanted).map_err(|problem| problem.at(given.location))?;
@@ -106,8 +106,11 @@ fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Op
     };
     let glow = roles.temperature.zip(fire).map(|(number, fire)| {
         let label = &file.labels[number];
-        given.glow(label, fire.range[1][0].min(fire.greatest), roles::is_fire(label))
+        given.glow(label, fire.hottest())
     });
+    if given.up == Up::Auto && file.is_z_up() {
+        given.up = Up::Z;
+    }
     let taken = Taken::new(smoke, &given, &file.labels, &roles, &empty, glow);
     let (object, medium) = parts::container(smoke, &given, &taken, [low, high]);
     Ok((object, medium, taken))

@@ -5,11 +5,11 @@ use crate::{
     description::{Location, Params, Property, TransformStep, Value},
     error::{Error, Result},
     math::Spectrum,
-    phase,
+    medium, phase,
     settings::only_one,
     volume::files::{
         Label,
-        roles::Wanted,
+        roles::{self, Wanted},
         sequence::{Clock, Sequence},
     },
 };
@@ -23,7 +23,9 @@ pub struct Parameters<'a> {
     pub location: &'a Location,
     /// Grids that the user chooses.
     pub wanted: Wanted<'a>,
-    /// Size and place: from the file's world to the scene's.
+    /// Which axis of the file points up.
+    pub up: Up,
+    /// Size and place: from the file's world, turned so that +y is up, to the scene's.
     pub to_world: Vec<TransformStep>,
     /// Extinction of a density of 1 (1/m).
     pub density_scale: f64,
@@ -31,6 +33,8 @@ pub struct Parameters<'a> {
     pub emission_scale: f64,
     /// Fraction of light that is scattered, not absorbed; where a grid gives a colour, a factor of that.
     pub albedo: Option<Spectrum>,
+    /// The group of its light.
+    pub group: Option<String>,
     /// How light scatters.
     pub phase: Option<&'a Property>,
     /// The medium around it.
@@ -49,15 +53,18 @@ pub struct Shown {
     pub sequence: Option<Sequence>,
 }
 
-/// Temperatures above this are in kelvin, not in thousands of it.
-const LARGEST_UNIT: f32 = 100.0;
+/// An axis of the file that points up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Up {
+    /// That of whoever wrote the file, as far as it says that.
+    Auto,
+    /// As in scenes.
+    Y,
+    /// As in Blender.
+    Z,
+}
 
-/// Temperature of what is barely fire, and what a flame of 1 adds (K); Blender's defaults for its flames.
-const IGNITION: f64 = 1500.0;
-const FLAME: f64 = 1500.0;
-
-/// What a temperature of 1 is, where 2 is hot (K); Blender's and Houdini's shaders have the same default.
-const UNIT: f64 = 1000.0;
+const UPS: [(&str, Up); 3] = [("auto", Up::Auto), ("y", Up::Y), ("z", Up::Z)];
 
 impl<'a> Parameters<'a> {
     /// Reads all of them; the scene is seen at `time` (s).
@@ -69,10 +76,12 @@ impl<'a> Parameters<'a> {
             file,
             location,
             wanted: wanted(params, emission_scale)?,
+            up: params.choice("up", &UPS)?,
             to_world: to_world(params)?,
             density_scale: params.float("density_scale")?,
             emission_scale,
             albedo: params.optional_color("albedo")?,
+            group: medium::group(params)?,
             phase: phase_of(params)?,
             exterior: params.child("exterior")?.and_then(|_| params.given("exterior")),
             temperature_scale: params.optional_float("temperature_scale")?,
@@ -80,14 +89,9 @@ impl<'a> Parameters<'a> {
         })
     }
 
-    /// How the grid called `label`, which goes up to `most`, glows: numbers above 100 are kelvin, flames begin at
-    /// 1500 K and reach 3000 K at 1, other temperatures are in units of 1000 K.
-    pub fn glow(&self, label: &Label, most: f32, is_fire: bool) -> Glow {
-        let (scale, offset) = match (most > LARGEST_UNIT, is_fire) {
-            (true, _) => (1.0, 0.0),
-            (false, true) => (FLAME, IGNITION),
-            (false, false) => (UNIT, 0.0),
-        };
+    /// How the grid called `label`, which goes up to `most`, glows.
+    pub fn glow(&self, label: &Label, most: f32) -> Glow {
+        let [scale, offset] = roles::ramp(label, most);
         let scale = self.temperature_scale.unwrap_or(scale);
         let offset = self.temperature_offset.unwrap_or(offset);
         Glow { grid: label.name.clone(), scale, offset, most: offset + scale * f64::from(most) }

@@ -1,6 +1,9 @@
 //! The objects that smoke is replaced by, as a user would have written them.
 
-use super::{Glow, Taken, parameters::Parameters};
+use super::{
+    Glow, Taken,
+    parameters::{Parameters, Up},
+};
 use crate::{
     description::{Location, Object, Property, TransformStep, Value},
     math::{DVec3, Spectrum},
@@ -26,7 +29,7 @@ pub(super) fn container(
         TransformStep::Scale((0.5 * (high - low)).to_array()),
         TransformStep::Translate((0.5 * (low + high)).to_array()),
     ];
-    let steps = fit.into_iter().chain(given.to_world.iter().cloned()).collect();
+    let steps = fit.into_iter().chain(maker.to_world()).collect();
     let medium = Object { id: smoke.id.clone(), ..maker.medium() };
     let (interior, medium) = match &smoke.id {
         None => (Value::Object(medium), None),
@@ -51,6 +54,12 @@ impl Maker<'_> {
         Object { tag: None, plugin: plugin.to_owned(), id: None, properties, location: self.location.clone() }
     }
 
+    /// From the file's world to the scene's.
+    fn to_world(&self) -> Vec<TransformStep> {
+        let turn = (self.given.up == Up::Z).then_some(TransformStep::Z_TO_Y);
+        turn.into_iter().chain(self.given.to_world.iter().cloned()).collect()
+    }
+
     fn medium(&self) -> Object {
         let mut parts = match &self.taken.density {
             Some(density) => self.smoke(density),
@@ -60,6 +69,8 @@ impl Maker<'_> {
         if let Some(glow) = &self.taken.glow {
             parts.push(self.property("emission", Value::Object(self.light(glow))));
             parts.push(self.property("emission_scale", Value::Float(self.given.emission_scale)));
+            let group = self.given.group.clone();
+            parts.extend(group.map(|name| self.property("group", Value::String(name))));
         }
         let plugin = if self.taken.density.is_some() { "heterogeneous" } else { "homogeneous" };
         self.plugin(plugin, parts)
@@ -88,7 +99,7 @@ impl Maker<'_> {
         let mut parts = vec![
             self.property("filename", Value::String(self.given.file.name.clone())),
             self.property("use_grid_bbox", Value::Boolean(true)),
-            self.property("to_world", Value::Transform(self.given.to_world.clone())),
+            self.property("to_world", Value::Transform(self.to_world())),
         ];
         if !name.is_empty() {
             parts.push(self.property("grid", Value::String(name.to_owned())));

@@ -1,6 +1,6 @@
 //! What smoke was made of, for those who ask.
 
-use super::parameters::Parameters;
+use super::parameters::{Parameters, Up};
 use crate::{
     description::{Location, Object},
     error::Result,
@@ -23,6 +23,8 @@ pub struct Taken {
     pub location: Location,
     /// The frames that it is one of.
     pub sequence: Option<Sequence>,
+    /// True if +z of the file became +y of the scene.
+    pub is_z_up: bool,
     /// The grid of densities; its name is empty in files whose grids have none.
     pub density: Option<String>,
     /// True if it is a level set.
@@ -64,6 +66,7 @@ impl Taken {
             file: given.file.path.clone(),
             location: given.location.clone(),
             sequence: given.file.sequence.clone(),
+            is_z_up: given.up == Up::Z,
             density: roles.density.map(|number| labels[number].name.clone()),
             is_surface: roles.density.is_some_and(|number| labels[number].is_level_set()),
             glow,
@@ -93,7 +96,8 @@ fn described(label: &Label, is_empty: bool) -> String {
 
 impl fmt::Display for Taken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.name, self.file.display())?;
+        let up = if self.is_z_up { ", +z up" } else { "" };
+        write!(f, "{}: {}{up}", self.name, self.file.display())?;
         match self.density.as_deref() {
             Some("") => write!(f, ", density from its grid")?,
             Some(density) if self.is_surface => write!(f, ", density from the level set \"{density}\"")?,

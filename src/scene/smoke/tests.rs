@@ -263,3 +263,35 @@ fn the_scene_s_time_chooses_a_numbered_file() {
     let missing: Error = at(0.2, "").unwrap_err();
     assert!(missing.found == "frames 1 to 2" && missing.expected.starts_with("a_0006.vdb"), "{missing}");
 }
+
+#[test]
+fn z_of_a_file_may_point_up() {
+    // The file says that Blender wrote it.
+    let [low, high] = container(&smoke("upright.vdb", ""));
+    let text = smoke("upright.vdb", "").smoke[0].to_string();
+    assert!(text.contains("upright.vdb, +z up, density"), "{text}");
+    assert!((high - low - DVec3::new(1.75, 2.5, 1.75)).abs().max_element() < 1e-5, "{low} {high}");
+    assert!((low - DVec3::new(-0.375, -0.375, -1.375)).abs().max_element() < 1e-5, "{low} {high}");
+    let [low, high] = container(&smoke("upright.vdb", r#", "up": "y""#));
+    assert!((high - low - DVec3::new(1.75, 1.75, 2.5)).abs().max_element() < 1e-5, "{low} {high}");
+    // Size and place come after the turn.
+    let place = r#", "up": "z", "scale": 2, "to_world": [{"type": "translate", "value": [0, 10, 0]}]"#;
+    let [low, high] = container(&smoke("houdini.vdb", place));
+    let [l, h] = container(&smoke("houdini.vdb", ""));
+    let expected = [
+        DVec3::new(l.x, l.z, -h.y) * 2.0 + 10.0 * DVec3::Y,
+        DVec3::new(h.x, h.z, -l.y) * 2.0 + 10.0 * DVec3::Y,
+    ];
+    assert!(
+        (low - expected[0]).abs().max_element() < 1e-4 && (high - expected[1]).abs().max_element() < 1e-4,
+        "{low} {high}"
+    );
+    assert!(refused("houdini.vdb", r#", "up": "x""#, "").expected.contains("z"));
+}
+
+#[test]
+fn fire_has_a_light_group() {
+    let setup = smoke("houdini.vdb", r#", "group": "fire""#);
+    assert_eq!(setup.scene.lights.groups(), ["fire", "rest"]);
+    assert!(refused("houdini.vdb", r#", "group": """#, "").place.ends_with("$.plume.group"));
+}

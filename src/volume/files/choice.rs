@@ -26,6 +26,8 @@ pub struct Label {
     pub class: String,
     /// Numbers to a sample, 1 or 3; none of types that are not read.
     pub channels: Option<usize>,
+    /// True if +z is up there, as far as the file says who wrote it.
+    pub is_z_up: bool,
 }
 
 impl Label {

@@ -134,7 +134,8 @@ fn entry<R: Read + Seek>(input: &mut Input<R>, codec: u16) -> Result<Entry> {
     input.load(&mut name, length.into())?;
     let name = String::from_utf8_lossy(&name).trim_end_matches('\0').to_owned();
     let class = class_name(class).into();
-    let label = Label { name, kind: kind_name(kind).into(), class, channels: channels(kind) };
+    let (kind, channels) = (kind_name(kind).into(), channels(kind));
+    let label = Label { name, kind, class, channels, ..Label::default() };
     Ok(Entry { label, codec, start: 0, lengths: [packed, whole] })
 }
 

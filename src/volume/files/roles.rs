@@ -10,7 +10,7 @@ const DENSITIES: [&str; 2] = ["density", "voxel_fog_density"];
 
 /// Names of what makes fire glow. Fire itself comes before the temperature of all the gas, smoke included; Houdini 12
 /// to 17 calls fire "heat", and Blender the temperature.
-pub const FIRES: [&str; 3] = ["flame", "flames", "burn"];
+const FIRES: [&str; 3] = ["flame", "flames", "burn"];
 const TEMPERATURES: [&str; 2] = ["heat", "temperature"];
 
 /// Names of colours, and what three grids of a component each add to one.
@@ -44,8 +44,29 @@ pub struct Roles {
     pub color: Vec<usize>,
 }
 
+/// Temperatures above this are in kelvin, not in thousands of it.
+const LARGEST_UNIT: f32 = 100.0;
+
+/// Temperature of what is barely fire, and what a flame of 1 adds (K); Blender's defaults for its flames.
+const IGNITION: f64 = 1500.0;
+const FLAME: f64 = 1500.0;
+
+/// What a temperature of 1 is, where 2 is hot (K); Blender's and Houdini's shaders have the same default.
+const UNIT: f64 = 1000.0;
+
+/// What a number of 1 adds to the temperature (K), and the temperature of what is barely above 0 (K), in the grid of fire
+/// called `label`, which goes up to `most`: numbers above 100 are kelvin, flames begin at 1500 K and reach 3000 K at 1,
+/// other temperatures are in units of 1000 K.
+pub fn ramp(label: &Label, most: f32) -> [f64; 2] {
+    match (most > LARGEST_UNIT, is_fire(label)) {
+        (true, _) => [1.0, 0.0],
+        (false, true) => [FLAME, IGNITION],
+        (false, false) => [UNIT, 0.0],
+    }
+}
+
 /// True if `label` is of fire, whose numbers go from 0 to 1, not of a temperature.
-pub fn is_fire(label: &Label) -> bool {
+fn is_fire(label: &Label) -> bool {
     FIRES.iter().any(|name| label.plain_name().eq_ignore_ascii_case(name))
 }
 
@@ -78,6 +99,22 @@ impl Roles {
         }
     }
 
+    /// Those that make a picture of any file: what smoke takes by itself, else fog of a level set, else the first grid of
+    /// numbers that is no velocity; and how a scene says so, as a parameter of smoke with its value.
+    pub fn of_any(grids: &[Label]) -> Result<(Self, Option<Said>)> {
+        let usual = match Self::of_file(grids, Wanted::default()) {
+            Ok(roles) => return Ok((roles, None)),
+            Err(problem) => problem,
+        };
+        if let Ok(roles) = Self::of(grids, Wanted { level_set_to_fog: true, ..Wanted::default() }) {
+            return Ok((roles, Some(Said::Fog)));
+        }
+        let is_one = |grid: &&Label| grid.channels == Some(1) && !is_velocity(grid);
+        let name = grids.iter().find(is_one).map(|grid| grid.name.as_str()).ok_or(usual)?;
+        let roles = Self::of(grids, Wanted { density: Some(name), ..Wanted::default() })?;
+        Ok((roles, Some(Said::Density(name.to_owned()))))
+    }
+
     /// Those of `grids`.
     fn of(grids: &[Label], wanted: Wanted<'_>) -> Result<Self> {
         let search = Search { grids, fog: wanted.level_set_to_fog };
@@ -105,6 +142,15 @@ impl Roles {
     pub fn has(&self, number: usize) -> bool {
         self.density == Some(number) || self.temperature == Some(number) || self.color.contains(&number)
     }
+}
+
+/// What must be said of a file before smoke takes anything.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Said {
+    /// `level_set_to_fog`.
+    Fog,
+    /// `density_grid`.
+    Density(String),
 }
 
 struct Search<'a> {
@@ -188,7 +234,7 @@ mod tests {
             let (name, kind) = name.split_once(':').unwrap_or((name, "1"));
             let class = if kind == "surface" { "level set" } else { "fog volume" }.to_owned();
             let channels = if kind == "surface" { Some(1) } else { kind.parse().ok() };
-            Label { name: name.to_owned(), kind: "any".to_owned(), class, channels }
+            Label { name: name.to_owned(), kind: "any".to_owned(), class, channels, is_z_up: false }
         };
         names.iter().map(one).collect()
     }

@@ -76,6 +76,12 @@ impl Sequence {
         frames
     }
 
+    /// The file of the last of them.
+    pub fn last(&self) -> Result<PathBuf> {
+        let last = self.frames().pop().ok_or_else(|| self.nothing())?;
+        Ok(self.folder.join(self.name(last)))
+    }
+
     /// Their files.
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
         self.frames().into_iter().map(|frame| self.folder.join(self.name(frame)))

@@ -29,8 +29,10 @@ pub(super) fn label<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Labe
         input.u32()?;
         Metadata::read(input)
     };
-    let class = notes().map_or_else(|_| String::new(), |notes| notes.class);
-    Label { class, channels: numbers(entry).ok().map(|(_, channels)| channels), ..entry.label() }
+    let Metadata { class, of_blender, .. } = notes().unwrap_or_default();
+    let label = entry.label();
+    let channels = numbers(entry).ok().map(|(_, channels)| channels);
+    Label { class, channels, is_z_up: label.is_z_up || of_blender, ..label }
 }
 
 /// Reads the grid of `entry`, one of `entries`.

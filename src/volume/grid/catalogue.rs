@@ -61,6 +61,11 @@ impl Contents {
         Some(image(&self.to_world, [ends[0] - 0.5, ends[1] + 0.5]))
     }
 
+    /// The greatest active number of the first channel; of what is infinite, the greatest that is not.
+    pub fn hottest(&self) -> f32 {
+        self.range[1][0].min(self.greatest)
+    }
+
     /// Length of a voxel along each axis of the grid.
     pub fn voxel_size(&self) -> DVec3 {
         let axes = self.to_world.matrix3;
@@ -84,6 +89,11 @@ impl Catalogue {
         let mut archive = Archive::open(&path).map_err(|problem| problem.at(path.display()))?;
         let labels = archive.labels();
         Ok(Self { path, archive: Some(archive), labels })
+    }
+
+    /// True if the file says that a program wrote it whose +z is up.
+    pub fn is_z_up(&self) -> bool {
+        self.labels.iter().any(|label| label.is_z_up)
     }
 
     /// True if its grids have names.

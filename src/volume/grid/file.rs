@@ -94,6 +94,11 @@ pub(super) fn is_vdb(path: &Path) -> bool {
     ["vdb", "nvdb"].iter().any(|known| extension.eq_ignore_ascii_case(known))
 }
 
+/// True if the file at `path` is a volume by its name.
+pub fn is_volume(path: &Path) -> bool {
+    is_vdb(path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vol"))
+}
+
 /// Opens a grid file; the format follows from the extension, and is Mitsuba's `.vol` for any not known. `grid` is the
 /// name of the one that is meant, for formats that hold several.
 pub(super) fn open(path: &Path, grid: Option<&str>, convert: Convert) -> Result<Source> {

@@ -37,7 +37,7 @@ use walk::{Line, Target, Walk};
 
 pub use crate::math::Wrap;
 pub use catalogue::{Catalogue, Contents, Held};
-pub use file::{Source, Values, to_vol};
+pub use file::{Source, Values, is_volume, to_vol};
 pub use lattice::Filter;
 
 /// Where an optical depth, summed along a segment, reaches a given value.

@@ -59,3 +59,6 @@ files = {
 }
 for name, grids in files.items():
     vdb.write(f"{name}.vdb", grids)
+
+# What says that Blender wrote it: +z is up there.
+vdb.write("upright.vdb", [grid("density", puff.transpose(0, 2, 1)), grid("flame", fire.transpose(0, 2, 1))], metadata={"creator": "Blender/OpenVDBWriter"})

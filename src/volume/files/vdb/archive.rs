@@ -25,6 +25,8 @@ pub(crate) struct Entry {
     pub kind: String,
     /// True if numbers are saved as half.
     pub half: bool,
+    /// True if the file says that Blender wrote it.
+    of_blender: bool,
     /// Offset of its metadata.
     pub grid: u64,
     /// Offset of its blocks of values.
@@ -39,7 +41,7 @@ impl Entry {
             None => self.name.clone(),
         };
         let half = if self.half { " as half" } else { "" };
-        Label { name, kind: format!("{}{half}", self.kind), ..Label::default() }
+        Label { name, kind: format!("{}{half}", self.kind), is_z_up: self.of_blender, ..Label::default() }
     }
 }
 
@@ -59,8 +61,8 @@ pub(crate) fn read<R: Read + Seek>(input: &mut Input<R>) -> Result<Vec<Entry>> {
         return Err(Problem::new("an OpenVDB file with a table of its grids", found, remedy));
     }
     input.skip(IDENTIFIER)?;
-    Metadata::read(input)?;
-    (0..input.u32()?).map(|_| entry(input)).collect()
+    let of_blender = Metadata::read(input)?.of_blender;
+    (0..input.u32()?).map(|_| Ok(Entry { of_blender, ..entry(input)? })).collect()
 }
 
 fn entry<R: Read + Seek>(input: &mut Input<R>) -> Result<Entry> {
@@ -76,7 +78,7 @@ fn entry<R: Read + Seek>(input: &mut Input<R>) -> Result<Entry> {
         Some(kind) => (kind.into(), true),
         None => (kind, false),
     };
-    Ok(Entry { name, parent, kind, half, grid, blocks })
+    Ok(Entry { name, parent, kind, half, of_blender: false, grid, blocks })
 }
 
 /// The entry whose tree `entry` shares, if it has none of its own.
@@ -89,13 +91,19 @@ pub(super) fn parent<'a>(entries: &'a [Entry], entry: &Entry) -> Result<Option<&
     found.map(Some).ok_or_else(|| Problem::damage("the grid whose tree another shares", "none"))
 }
 
-/// What is noted of a grid, as far as it matters here.
+/// Who Blender is, as the `creator` of files; and what only its fluids note of grids.
+const BLENDER: &str = "Blender";
+const FLUIDS: &str = "file_base_resolution";
+
+/// What is noted of a grid or a file, as far as it matters here.
 #[derive(Default)]
 pub(super) struct Metadata {
     /// What the values are meant for.
     pub class: String,
     /// True if numbers are saved as half.
     pub half: bool,
+    /// True if Blender wrote it.
+    pub of_blender: bool,
 }
 
 impl Metadata {
@@ -104,8 +112,10 @@ impl Metadata {
         let mut metadata = Self::default();
         for _ in 0..input.u32()? {
             let (name, kind) = (input.text()?, input.text()?);
+            metadata.of_blender |= name == FLUIDS;
             match (name.as_str(), kind.as_str()) {
                 ("class", "string") => metadata.class = input.text()?,
+                ("creator", "string") => metadata.of_blender |= input.text()?.starts_with(BLENDER),
                 ("is_saved_as_half_float", "bool") => {
                     let length = input.u32()?;
                     let mut bytes = vec![];
