@@ -11,8 +11,9 @@ pub mod sampling;
 pub mod description;
 
 pub mod phase;
-pub mod texture;
 pub mod volume;
+
+pub mod texture;
 
 pub mod bsdf;
 pub mod emitter;

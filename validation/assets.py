@@ -25,6 +25,8 @@ def run(folder: Path = CROSSCHECK / "assets") -> bool:
         "tiles.png": eight_bits(tiles()),
         "poster.jpg": eight_bits(poster()),
         "holes.png": eight_bits(holes()),
+        "dimples.png": eight_bits(dimples()),
+        "dunes.png": eight_bits(dunes()),
     }
     for name, pixels in images.items():
         kind = np.uint8 if pixels.dtype == np.uint8 else np.float32
@@ -32,6 +34,7 @@ def run(folder: Path = CROSSCHECK / "assets") -> bool:
     solids = [(*pyramid(), 0), (*lantern(), NORMALS | TEXTURE_COORDINATES)]
     (folder / "solids.serialized").write_bytes(serialized(solids))
     (folder / "tent.obj").write_text(TENT)
+    (folder / "gem.ply").write_text(gem())
     for name, (samples, box) in grids().items():
         (folder / name).write_bytes(vol(samples, box))
     return True
@@ -83,6 +86,36 @@ def holes() -> np.ndarray:
     """Grey: nothing, half and all."""
     rows = ["#..#-.", ".##.--", "#.-#.#", "-#..##", "..#-#."]
     return np.array([[{"#": 1, "-": 0.5, ".": 0}[c] for c in row] for row in rows], np.float32)[..., None]
+
+
+def dimples() -> np.ndarray:
+    """Normals, from -1 as 0 to 1 as 1: a few smooth hollows, deeper to the right."""
+    x, y = grid(24, 24)
+    depth = 0.4 + 0.8 * x
+    tilt = (depth * np.sin(4 * np.pi * x), depth * np.cos(6 * np.pi * y + 1))
+    length = np.sqrt(tilt[0] ** 2 + tilt[1] ** 2 + 1)
+    return colours(*(0.5 + 0.5 * t / length for t in (*tilt, 1)))
+
+
+def dunes() -> np.ndarray:
+    """Heights, grey: smooth waves that meet at the edges, not alike either way."""
+    x, y = (2 * np.pi * a for a in grid(24, 24))
+    return (0.5 + 0.2 * np.sin(2 * x + np.cos(y)) + 0.2 * np.cos(y) * np.sin(x + 1))[..., None].astype(np.float32)
+
+
+def gem() -> str:
+    """A PLY ball of few triangles with colours of corners and of faces, named each way that Mitsuba reads."""
+    corners, normals, uvs, triangles = lantern(8, 4)
+    random = np.random.default_rng(5)
+    vertices = np.hstack([corners, normals, uvs, random.uniform(0.1, 0.9, (len(corners), 4))])
+    faces = random.uniform(0.1, 0.9, (len(triangles), 4))
+    header = ["ply", "format ascii 1.0", f"element vertex {len(corners)}"]
+    header += [f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz", "u", "v", "r", "g", "b", "wear_0")]
+    header += [f"element face {len(triangles)}", "property list uchar int vertex_indices"]
+    header += [f"property float {name}" for name in ("color_0", "color_1", "color_2", "gold_x")]
+    rows = [" ".join(f"{x:.4f}" for x in vertex) for vertex in vertices]
+    rows += [f"3 {a} {b} {c} " + " ".join(f"{x:.4f}" for x in face) for (a, b, c), face in zip(triangles, faces, strict=True)]
+    return "\n".join([*header, "end_header", *rows]) + "\n"
 
 
 def pyramid() -> tuple[np.ndarray, ...]:

@@ -140,10 +140,11 @@ impl Look<'_> {
 
     /// What keeps light from the `point` that `segment` ends on.
     fn at_surface(&self, segment: &Segment<'_>, point: &SurfacePoint, stream: &mut Stream) -> Option<Found> {
-        let (bsdf, incoming) = (self.setup.scene.bsdf(point.shape), -segment.ray().direction);
+        let incoming = -segment.ray().direction;
+        let survival = |wi| self.setup.scene.at(point, |bsdf, uv| bsdf.survival(uv, wi));
         let wi = point.shading.to_local(incoming);
-        if bsdf.survival(point.uv, wi) <= 0.0 {
-            let has_front = bsdf.survival(point.uv, -wi) > 0.0;
+        if survival(wi) <= 0.0 {
+            let has_front = survival(-wi) > 0.0;
             return has_front.then_some((Cause::BackSeen(point.shape), 0.0, 0.0));
         }
         let mut causes = (0..LIGHTS).map(|_| self.to_light(segment, point, incoming, stream));
@@ -172,7 +173,8 @@ impl Look<'_> {
         if sample.value.max_element() <= 0.0 {
             return Some((Cause::Away, 0.0, 0.0));
         }
-        if bsdf.evaluate(point.uv, wi, wo, Transport::Radiance).value.max_element() <= 0.0 {
+        let found = scene.at(point, |bsdf, uv| bsdf.evaluate(uv, wi, wo, Transport::Radiance));
+        if found.value.max_element() <= 0.0 {
             return (wi.z * wo.z < 0.0).then_some((Cause::BackLit(point.shape), 0.0, 0.0));
         }
         let origin = point.leaving(direction).origin;

@@ -1,6 +1,6 @@
 //! A mixture of two materials: Mitsuba's `blendbsdf`.
 
-use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, bounded, number, only_nested};
+use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, bounded, only_nested};
 use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Spectrum, Uv, Vec3};
@@ -40,7 +40,7 @@ impl Blend {
 
     #[inline]
     fn weights(&self, uv: Uv) -> [f32; 2] {
-        let second = number(&self.weight, uv).clamp(0.0, 1.0);
+        let second = self.weight.number(uv).clamp(0.0, 1.0);
         [1.0 - second, second]
     }
 

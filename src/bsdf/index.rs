@@ -49,7 +49,7 @@ pub(super) fn interfaces(params: &Params<'_>) -> Result<Interfaces> {
 }
 
 /// Indices beyond these limits are no materials, and their squares would leave f32's range in time.
-const LIMITS: parameter::Range = parameter::within(1e-3, 1e3);
+pub(super) const LIMITS: parameter::Range = parameter::within(1e-3, 1e3);
 
 fn index(params: &Params<'_>, name: &'static str) -> Result<f64> {
     match params.given(name).map(|property| &property.value) {

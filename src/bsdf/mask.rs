@@ -1,6 +1,6 @@
 //! A surface with holes: Mitsuba's `mask`.
 
-use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, bounded, number, only_nested};
+use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Transport, bounded, only_nested};
 use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Spectrum, Uv, Vec3};
@@ -30,7 +30,7 @@ impl Mask {
 
     #[inline]
     fn opacity(&self, uv: Uv) -> f32 {
-        number(&self.opacity, uv).clamp(0.0, 1.0)
+        self.opacity.number(uv).clamp(0.0, 1.0)
     }
 
     #[cfg(test)]

@@ -2,7 +2,7 @@
 //! 2007; Heitz 2018). All in a shading frame turned so that the direction in question has z > 0.
 
 use super::beckmann::View;
-use super::{bounded, number};
+use super::bounded;
 use crate::description::{Params, parameter::Parameter, rows};
 use crate::error::{Error, Result};
 use crate::math::{Uv, Vec2, Vec3, vec2, vec3};
@@ -89,7 +89,7 @@ impl Roughness {
         let Self { kind, alpha: [u, v], .. } = Self::build(params)?;
         match (&u, &v) {
             (Texture::Uniform(along), Texture::Uniform(across)) if along.0 == across.0 => {
-                let alpha = number(&u, Vec2::ZERO.into());
+                let alpha = u.number(Vec2::ZERO.into());
                 Ok(Microfacets::new(kind, alpha, alpha))
             }
             _ => Err(Error::new(
@@ -109,7 +109,7 @@ impl Roughness {
     /// The distribution at texture position `uv`.
     #[inline]
     pub(super) fn at(&self, uv: Uv) -> Microfacets {
-        let alpha = |i: usize| number(&self.alpha[i], uv);
+        let alpha = |i: usize| self.alpha[i].number(uv);
         self.even.unwrap_or_else(|| Microfacets::new(self.kind, alpha(0), alpha(1)))
     }
 

@@ -7,6 +7,8 @@
 
 mod beckmann;
 mod blend;
+mod bumpmap;
+mod burley;
 mod conductor;
 mod dielectric;
 mod difftrans;
@@ -15,8 +17,12 @@ mod index;
 mod mask;
 mod metals;
 mod microfacet;
+mod normalmap;
 mod null;
+mod perturbed;
 mod plastic;
+mod principled;
+mod principledthin;
 mod roughconductor;
 mod roughdielectric;
 mod roughplastic;
@@ -27,13 +33,17 @@ mod translucent;
 mod twosided;
 
 pub use blend::Blend;
+pub use bumpmap::BumpMap;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use difftrans::DiffuseTransmitter;
 pub use diffuse::Diffuse;
 pub use mask::Mask;
+pub use normalmap::NormalMap;
 pub use null::Null;
 pub use plastic::Plastic;
+pub use principled::Principled;
+pub use principledthin::PrincipledThin;
 pub use roughconductor::RoughConductor;
 pub use roughdielectric::RoughDielectric;
 pub use roughplastic::RoughPlastic;
@@ -43,7 +53,7 @@ pub use twosided::TwoSided;
 
 use crate::description::{Build, Library, Object, Params, Plugin, Registry, models};
 use crate::error::{Error, Result};
-use crate::math::{Spectrum, SpectrumExt, Uv, Vec3, vec3};
+use crate::math::{Spectrum, Uv, Vec3, vec3};
 use crate::sampling::Stream;
 use crate::texture::{self, Texture};
 use std::f32::consts::PI;
@@ -207,11 +217,15 @@ bsdfs! {
     "roughconductor" => RoughConductor,
     "plastic" => Plastic,
     "roughplastic" => RoughPlastic,
+    "principled" => Principled,
+    "principledthin" => PrincipledThin,
     "difftrans" => DiffuseTransmitter,
     "translucent" => Translucent,
     "twosided" => TwoSided,
     "mask" => Mask,
     "blendbsdf" => Blend,
+    "normalmap" => NormalMap,
+    "bumpmap" => BumpMap,
 }
 
 /// Builds the surface model that `object` describes.
@@ -232,13 +246,6 @@ fn bounded(params: &Params<'_>, name: &'static str, why: &str) -> Result<Texture
         None => Ok(texture),
         Some(expected) => Err(params.complain(name, expected, format!("one that reaches {max}{why}"))),
     }
-}
-
-/// A texture as a number, as Mitsuba takes it: an image's luminance, the mean of the channels of all others.
-#[inline]
-fn number(texture: &Texture, uv: Uv) -> f32 {
-    let color = texture.eval(uv);
-    if let Texture::Bitmap(_) = texture { color.luminance() } else { color.element_sum() / 3.0 }
 }
 
 /// The `COUNT` nested bsdfs, in file order; textures and other children are not among them.

@@ -20,7 +20,7 @@ pub struct RoughDielectric {
 const LEAST_SPREAD: f32 = 1e-5;
 
 /// A pair of directions as the microfacets see it, in the frame turned so that wi.z > 0.
-struct Facet {
+pub(super) struct Facet {
     wi: Vec3,
     wo: Vec3,
     /// The normal of the facets that connect the two, z > 0.
@@ -28,6 +28,18 @@ struct Facet {
     interface: Interface,
     /// Squared length of the half vector before it was made unit.
     half_square: f32,
+}
+
+/// What the facets that connect two directions do with light.
+pub(super) struct Meeting {
+    /// The part that they reflect; the rest they refract.
+    pub fresnel: f32,
+    /// f (1/sr), where they did with all light what leads from one direction to the other.
+    pub value: f32,
+    /// Density of `wo` given `wi` (1/sr) under the same condition, of visible normals.
+    pub pdf_fwd: f32,
+    /// Density of `wi` given `wo` (1/sr).
+    pub pdf_rev: f32,
 }
 
 impl RoughDielectric {
@@ -59,26 +71,15 @@ impl RoughDielectric {
         facet: &Facet,
         transport: Transport,
     ) -> Option<BsdfValue> {
-        let Facet { wi, wo, m, interface, half_square } = *facet;
-        let (cos_i, cos_o) = (wi.dot(m), wo.dot(m));
-        let fresnel = facet.fresnel(cos_i, cos_o.abs());
+        let Meeting { fresnel, value, pdf_fwd, pdf_rev } = facet.meeting(microfacets, transport);
         let (reflectance, transmittance) = self.smooth.tints.at(uv);
         let (reflect, transmit) = choose(fresnel, reflectance, transmittance)?;
-        // Seen from the other side the same facet has its normal turned, and D is even.
-        let above = vec3(wo.x, wo.y, wo.z.abs());
-        let masking = microfacets.masking_over_cosine(wi) * microfacets.masking_over_cosine(above);
-        let (tint, part, chance, spread, widening) = if wo.z > 0.0 {
-            (reflectance, fresnel, reflect, 0.25, 1.0)
+        let (tint, part, chance) = if facet.wo.z > 0.0 {
+            (reflectance, fresnel, reflect)
         } else {
-            let spread = cos_i * -cos_o / half_square;
-            (transmittance, 1.0 - fresnel, transmit, spread, interface.ratio * interface.ratio)
+            (transmittance, 1.0 - fresnel, transmit)
         };
-        let scale = if transport == Transport::Radiance { 1.0 } else { widening };
-        Some(BsdfValue {
-            value: tint * (scale * part * spread * masking * microfacets.distribution(m)),
-            pdf_fwd: chance * spread * widening * microfacets.visible_pdf_over_cosine(wi, m),
-            pdf_rev: chance * spread * microfacets.visible_pdf_over_cosine(above, m),
-        })
+        Some(BsdfValue { value: tint * (part * value), pdf_fwd: chance * pdf_fwd, pdf_rev: chance * pdf_rev })
     }
 
     #[cfg(test)]
@@ -98,7 +99,7 @@ impl RoughDielectric {
 impl Facet {
     /// None where no facet connects the two directions: they would hit it from behind, or on the wrong sides.
     #[inline]
-    fn joining(interfaces: &Interfaces, wi: Vec3, wo: Vec3) -> Option<Self> {
+    pub(super) fn joining(interfaces: &Interfaces, wi: Vec3, wo: Vec3) -> Option<Self> {
         let turn = vec3(1.0, 1.0, 1f32.copysign(wi.z));
         let interface = interfaces.seen_from(wi.z);
         let (wi, wo) = (wi * turn, wo * turn);
@@ -119,6 +120,52 @@ impl Facet {
             self.interface.reversed().reflectance(cos_o)
         }
     }
+
+    /// Of `wi` to the facet.
+    #[inline]
+    pub(super) fn cosine(&self) -> f32 {
+        self.wi.dot(self.m).clamp(0.0, 1.0)
+    }
+
+    /// Walter et al. 2007, eq. 20, 21 and 41.
+    #[inline]
+    pub(super) fn meeting(&self, microfacets: &Microfacets, transport: Transport) -> Meeting {
+        let Self { wi, wo, m, interface, half_square } = *self;
+        let (cos_i, cos_o) = (wi.dot(m), wo.dot(m));
+        // Seen from the other side the same facet has its normal turned, and D is even.
+        let above = vec3(wo.x, wo.y, wo.z.abs());
+        let masking = microfacets.masking_over_cosine(wi) * microfacets.masking_over_cosine(above);
+        let (spread, widening) = if wo.z > 0.0 {
+            (0.25, 1.0)
+        } else {
+            (cos_i * -cos_o / half_square, interface.ratio * interface.ratio)
+        };
+        let scale = if transport == Transport::Radiance { 1.0 } else { widening };
+        Meeting {
+            fresnel: self.fresnel(cos_i, cos_o.abs()),
+            value: scale * spread * masking * microfacets.distribution(m),
+            pdf_fwd: spread * widening * microfacets.visible_pdf_over_cosine(wi, m),
+            pdf_rev: spread * microfacets.visible_pdf_over_cosine(above, m),
+        }
+    }
+}
+
+/// Where a facet of normal `m` reflects or refracts light from `above` (z > 0) to, `cosine` to the facet; none in total reflection,
+/// and where that is the side to which it does not belong: such light is lost.
+#[inline]
+pub(super) fn thrown(
+    interface: &Interface,
+    above: Vec3,
+    m: Vec3,
+    cosine: f32,
+    reflected: bool,
+) -> Option<Vec3> {
+    let wo = if reflected {
+        m * (2.0 * cosine) - above
+    } else {
+        m * (cosine / interface.ratio - interface.refracted_cosine(cosine)?) - above / interface.ratio
+    };
+    ((wo.z > 0.0) == reflected).then(|| wo.normalize())
 }
 
 impl BsdfModel for RoughDielectric {
@@ -143,16 +190,7 @@ impl BsdfModel for RoughDielectric {
         let (reflectance, transmittance) = self.smooth.tints.at(uv);
         let (reflect, _) = choose(interface.reflectance(cosine), reflectance, transmittance)?;
         let reflected = stream.uniform() < reflect;
-        let wo = if reflected {
-            m * (2.0 * cosine) - above
-        } else {
-            m * (cosine / interface.ratio - interface.refracted_cosine(cosine)?) - above / interface.ratio
-        };
-        // A facet may throw light to the side where it does not belong: that light is lost.
-        if (wo.z > 0.0) != reflected {
-            return None;
-        }
-        let wo = wo.normalize() * turn;
+        let wo = thrown(&interface, above, m, cosine, reflected)? * turn;
         self.evaluate(uv, wi, wo, transport).sampled(wo)
     }
 

@@ -5,8 +5,9 @@ use super::{
     registry::suggest,
 };
 use crate::error::{Error, Result};
+use crate::math::DVec3;
 use std::{
-    cell::RefCell,
+    cell::{Cell, RefCell},
     collections::HashMap,
     path::{Path, PathBuf},
 };
@@ -18,6 +19,9 @@ pub struct Library {
     warnings: RefCell<Vec<String>>,
     /// True if numbers of files that are a hair out of range are refused, not mended.
     pub is_strict: bool,
+    /// Where and when the scene is: what becomes the origin of all positions, in the file's coordinates (m), and its time (s). For
+    /// what is built from an object and its library alone.
+    pub place: Cell<(DVec3, f64)>,
 }
 
 impl Library {

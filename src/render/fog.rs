@@ -233,9 +233,8 @@ impl<'a> Preview<'a> {
             return Spectrum::ZERO;
         };
         let (wi, wo) = (point.shading.to_local(incoming), point.shading.to_local(direction));
-        let bsdf = self.scene.bsdf(point.shape);
-        let value = bsdf.evaluate(point.uv, wi, wo, Transport::Radiance).value * wo.z.abs();
-        value * sample.value / (sample.pdf * distance_squared)
+        let found = self.scene.at(point, |bsdf, uv| bsdf.evaluate(uv, wi, wo, Transport::Radiance));
+        found.value * wo.z.abs() * sample.value / (sample.pdf * distance_squared)
     }
 
     /// Ambient light reflected at a point.
@@ -244,7 +243,7 @@ impl<'a> Preview<'a> {
             return Spectrum::ZERO;
         }
         let wi = point.shading.to_local(incoming);
-        let sample = self.scene.bsdf(point.shape).sample(point.uv, wi, Transport::Radiance, stream);
+        let sample = self.scene.at(point, |bsdf, uv| bsdf.sample(uv, wi, Transport::Radiance, stream));
         sample.map_or(Spectrum::ZERO, |sample| sample.weight) * self.ambient
     }
 }
@@ -270,7 +269,8 @@ pub(super) fn deflect<'a>(
         return None;
     }
     let wi = point.shading.to_local(-segment.ray().direction);
-    let Some(sample) = scene.bsdf(point.shape).sample(point.uv, wi, Transport::Radiance, stream) else {
+    let sample = scene.at(point, |bsdf, uv| bsdf.sample(uv, wi, Transport::Radiance, stream));
+    let Some(sample) = sample else {
         return Some((*segment, Spectrum::ZERO));
     };
     let direction = point.shading.to_world(sample.wo).normalize();

@@ -155,11 +155,11 @@ impl<'a, 's> View<'a, 's> {
             Quantity::Uv => point.uv.get().extend(0.0),
             Quantity::GeometricNormal => point.normal,
             Quantity::ShadingNormal => point.shading.normal,
-            Quantity::DpDu => geometry.partials(&self.ray, hit, point).0,
-            Quantity::DpDv => geometry.partials(&self.ray, hit, point).1,
-            Quantity::DuvDx => self.uv_change(hit, point, vec2(1.0, 0.0)).extend(0.0),
-            Quantity::DuvDy => self.uv_change(hit, point, vec2(0.0, 1.0)).extend(0.0),
-            Quantity::PrimitiveIndex => vec3(geometry.local_primitive(hit) as f32, 0.0, 0.0),
+            Quantity::DpDu => geometry.partials(point).0,
+            Quantity::DpDv => geometry.partials(point).1,
+            Quantity::DuvDx => self.uv_change(point, vec2(1.0, 0.0)).extend(0.0),
+            Quantity::DuvDy => self.uv_change(point, vec2(0.0, 1.0)).extend(0.0),
+            Quantity::PrimitiveIndex => vec3(point.primitive as f32, 0.0, 0.0),
             Quantity::ShapeIndex => vec3((point.shape + 1) as f32, 0.0, 0.0),
             // Those of the first interaction, which has a function of its own.
             Quantity::FirstAlbedo | Quantity::FirstNormal => Vec3::ZERO,
@@ -168,15 +168,15 @@ impl<'a, 's> View<'a, 's> {
 
     /// Where the side that is seen is black, as in Mitsuba that of the other, which a one-sided surface has too.
     fn albedo(&self, point: &SurfacePoint) -> Spectrum {
-        let bsdf = self.scene.bsdf(point.shape);
+        let albedo_of = |wi: Vec3| self.scene.at(point, |bsdf, uv| bsdf.albedo(uv, wi));
         let wi = point.shading.to_local(-self.ray.direction);
-        let seen = bsdf.albedo(point.uv, wi);
-        if seen == Spectrum::ZERO { bsdf.albedo(point.uv, vec3(wi.x, wi.y, -wi.z)) } else { seen }
+        let seen = albedo_of(wi);
+        if seen == Spectrum::ZERO { albedo_of(vec3(wi.x, wi.y, -wi.z)) } else { seen }
     }
 
     /// How the texture coordinates change from here to where a neighbouring ray hits the tangent plane.
-    fn uv_change(&self, hit: &Hit, point: &SurfacePoint, across: Vec2) -> Vec2 {
-        let (du, dv) = self.scene.geometry.partials(&self.ray, hit, point);
+    fn uv_change(&self, point: &SurfacePoint, across: Vec2) -> Vec2 {
+        let (du, dv) = self.scene.geometry.partials(point);
         let neighbour = self.film + across * self.step;
         let Ray { origin, direction, .. } = self.scene.sensor.ray(neighbour, self.aperture).ray;
         let t = (point.position - origin).dot(point.normal) / direction.dot(point.normal);

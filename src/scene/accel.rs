@@ -6,7 +6,7 @@ mod traversal;
 mod tree;
 
 use crate::{
-    math::{Bounds, Vec3},
+    math::{Attribute, Bounds, Corners, Vec3},
     sampling::Stream,
     shape::{Hit, Primitive, Ray, Shape, ShapeModel, Shared, SurfacePoint},
 };
@@ -98,15 +98,9 @@ impl Geometry {
         self.owner[hit.primitive as usize]
     }
 
-    /// The number of the primitive that was hit, in its own shape.
-    pub fn local_primitive(&self, hit: &Hit) -> u32 {
-        hit.primitive - self.first[self.shape_of(hit) as usize]
-    }
-
-    /// How position changes with the texture coordinates u and v (m) at `point`, the surface at `hit`.
-    pub fn partials(&self, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
-        let index = self.local_primitive(hit) as usize;
-        self.shapes[point.shape as usize].partials(index, ray, hit, point)
+    /// How position changes with the texture coordinates u and v (m) at `point`.
+    pub fn partials(&self, point: &SurfacePoint) -> (Vec3, Vec3) {
+        self.shapes[point.shape as usize].partials(point.primitive as usize, point)
     }
 
     /// The box around everything; the origin for an empty scene.
@@ -144,23 +138,31 @@ impl Geometry {
     }
 }
 
-/// As instances of all its shapes share it.
+/// As instances of its only shape share it.
 impl Shared for Geometry {
     fn closest(&self, ray: &Ray) -> Option<Hit> {
         self.tree.closest(ray)
     }
 
-    fn surface(&self, ray: &Ray, primitive: u32, t: f32) -> (SurfacePoint, [Vec3; 2]) {
+    fn surface(&self, ray: &Ray, primitive: u32, t: f32) -> SurfacePoint {
         let mut hit = Hit { t, primitive, u: 0.0, v: 0.0 };
-        let shape = &self.shapes[self.shape_of(&hit) as usize];
-        let local = self.local_primitive(&hit) as usize;
-        if let Primitive::Flat(flat) = shape.primitive(local) {
+        if let Primitive::Flat(flat) = self.shapes[0].primitive(primitive as usize) {
             let point = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(t);
             [hit.u, hit.v] = flat.coordinates(point).map(|x| x as f32);
         }
-        let point = self.surface(ray, &hit);
-        let (u, v) = shape.partials(local, ray, &hit, &point);
-        (point, [u, v])
+        self.surface(ray, &hit)
+    }
+
+    fn partials(&self, point: &SurfacePoint) -> (Vec3, Vec3) {
+        self.partials(point)
+    }
+
+    fn attributes(&self) -> &[Attribute] {
+        self.shapes[0].attributes()
+    }
+
+    fn corners(&self, point: &SurfacePoint) -> Corners {
+        self.shapes[0].corners(point)
     }
 
     fn bounds(&self) -> Bounds {
@@ -168,7 +170,7 @@ impl Shared for Geometry {
     }
 
     fn area(&self) -> f32 {
-        self.shapes.iter().map(ShapeModel::area).sum()
+        self.shapes[0].area()
     }
 
     fn sample_area(&self, stream: &mut Stream) -> SurfacePoint {

@@ -1,6 +1,7 @@
 //! From description to scene: the tree is walked once, every object is built by its registry row, and related
 //! objects refer to each other by index.
 
+mod asked;
 mod finish;
 mod groups;
 mod media;
@@ -37,6 +38,7 @@ use crate::{
     shape::Shape,
     volume::{self, Place},
 };
+use asked::Asked;
 use finish::Finished;
 use groups::Bases;
 use std::collections::HashMap;
@@ -104,6 +106,7 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
     library.is_strict = overrides.strict;
     let sections = Sections::sort(&root, &library)?;
     let recentre = sections.viewpoint(&library)?;
+    library.place.set((recentre, sections.time));
     let before = before.map(Before::new).transpose()?;
     let mut builder = Builder::new(&library, Place::new(recentre, sections.time), before.as_ref());
     builder.add_shapes(&root, &sections.shapes)?;
@@ -257,6 +260,7 @@ impl<'a> Builder<'a> {
 
     fn built_emitter(&mut self, object: &Object) -> Result<Emitter> {
         self.parts.emitters.insert(object.location.clone(), self.emitters.len());
+        Asked::by(object, self.library).refuse()?;
         let old = self.before.and_then(|before| before.emitter(object, self.library));
         old.cloned().map_or_else(|| emitter::build(object, self.library), Ok)
     }
@@ -271,7 +275,9 @@ impl<'a> Builder<'a> {
         if let Some(index) = self.bsdf_index.get(&std::ptr::from_ref(object)) {
             return Ok(*index);
         }
-        let old = self.before.and_then(|before| before.bsdf(object, self.library));
+        let is_placed = Asked::by(object, self.library).is_any();
+        let old = self.before.filter(|_| !is_placed);
+        let old = old.and_then(|before| before.bsdf(object, self.library));
         let bsdf = old.cloned().map_or_else(|| bsdf::build(object, self.library), Ok)?;
         let index = self.add_bsdf(bsdf, name_of(object));
         self.parts.bsdfs.insert(object.location.clone(), index as usize);

@@ -12,15 +12,17 @@ mod sections;
 pub mod sensors;
 pub mod smoke;
 mod surface;
+#[cfg(test)]
+mod tests;
 mod time;
 mod unseen;
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},
-    math::{DVec3, Spectrum, Vec3},
+    math::{DVec3, Detail, Spectrum, Uv, Vec3},
     medium::Medium,
     sensor::{Crop, Sensor},
-    shape::SurfacePoint,
+    shape::{ShapeModel as _, SurfacePoint},
 };
 use accel::Geometry;
 use lights::Lights;
@@ -64,10 +66,35 @@ impl Scene {
         &self.bsdfs[self.surfaces[shape as usize].bsdf as usize]
     }
 
+    /// What `look` sees of the BSDF at `point`, and where its textures are looked up.
+    #[inline]
+    pub fn at<R>(&self, point: &SurfacePoint, look: impl FnOnce(&Bsdf, Uv) -> R) -> R {
+        let surface = self.surface(point.shape);
+        let bsdf = &self.bsdfs[surface.bsdf as usize];
+        if surface.detailed { self.knowing(point, bsdf, look) } else { look(bsdf, point.uv) }
+    }
+
+    /// The same where textures ask for more than texture coordinates. Apart, so that all other surfaces pay one test.
+    #[cold]
+    #[inline(never)]
+    fn knowing<R>(&self, point: &SurfacePoint, bsdf: &Bsdf, look: impl FnOnce(&Bsdf, Uv) -> R) -> R {
+        let (shape, frame) = (&self.geometry.shapes()[point.shape as usize], &point.shading);
+        let (du, dv) = shape.partials(point.primitive as usize, point);
+        let detail = Detail {
+            uv: point.uv,
+            position: point.position,
+            normal: frame.to_local(point.normal),
+            partials: [frame.to_local(du), frame.to_local(dv)],
+            attributes: shape.attributes(),
+            corners: shape.corners(point),
+        };
+        look(bsdf, Uv::Known(&detail))
+    }
+
     /// The part of light that passes `point` undeflected along `direction`.
     #[inline]
     pub fn null_transmission(&self, point: &SurfacePoint, direction: Vec3) -> Spectrum {
         let cosine = point.shading.normal.dot(direction).abs();
-        self.bsdf(point.shape).null_transmission(point.uv, cosine)
+        self.at(point, |bsdf, uv| bsdf.null_transmission(uv, cosine))
     }
 }

@@ -15,4 +15,6 @@ pub struct Surface {
     pub transmits: bool,
     /// Some of its scattering is not Dirac: the answer of its BSDF, stored because every vertex needs it.
     pub connectible: bool,
+    /// Its textures ask for more than texture coordinates.
+    pub detailed: bool,
 }

@@ -149,6 +149,7 @@ impl Cylinder {
             shading: Frame::along(normal, along_u.as_vec3()),
             uv: vec2(if turn < 0.0 { turn + 1.0 } else { turn } as f32, (z / length) as f32).into(),
             shape: 0,
+            primitive: 0,
         }
     }
 
@@ -171,7 +172,7 @@ impl ShapeModel for Cylinder {
         self.point_near(ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t))
     }
 
-    fn partials(&self, _: usize, _: &Ray, _: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
+    fn partials(&self, _: usize, point: &SurfacePoint) -> (Vec3, Vec3) {
         let around = point.shading.tangent * (TAU as f32 * self.radius as f32);
         (around, (self.axis * self.length).as_vec3())
     }

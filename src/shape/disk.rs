@@ -108,6 +108,7 @@ impl Disk {
             shading: Frame::along(self.normal, along_u + along_v),
             uv: vec2(x.hypot(y), if turn < 0.0 { turn + 1.0 } else { turn }).into(),
             shape: 0,
+            primitive: 0,
         }
     }
 }
@@ -154,8 +155,10 @@ impl ShapeModel for Disk {
     }
 
     /// u is the distance from the centre, v the angle in turns.
-    fn partials(&self, _: usize, _: &Ray, hit: &Hit, _: &SurfacePoint) -> (Vec3, Vec3) {
-        let Vec2 { x, y } = vec2(hit.u, hit.v);
+    fn partials(&self, _: usize, point: &SurfacePoint) -> (Vec3, Vec3) {
+        let Vec2 { x: distance, y: turn } = point.uv.get();
+        let (y, x) = (2.0 * PI * turn).sin_cos();
+        let (x, y) = (x * distance, y * distance);
         let out = (self.edge_u * x + self.edge_v * y) / x.hypot(y).max(f32::MIN_POSITIVE);
         (out, (self.edge_v * x - self.edge_u * y) * (2.0 * PI))
     }

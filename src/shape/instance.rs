@@ -6,7 +6,7 @@ use super::{
     point::{Hit, Ray, SurfacePoint},
 };
 use crate::{
-    math::{Bounds, DMat4, DVec3, Frame, Vec3, offset::gamma},
+    math::{Attribute, Bounds, Corners, DMat4, DVec3, Frame, Vec3, offset::gamma},
     sampling::Stream,
 };
 use std::{fmt::Debug, sync::Arc};
@@ -17,8 +17,17 @@ pub trait Shared: Debug + Send + Sync {
     /// The nearest hit with t in (0, `t_max`).
     fn closest(&self, ray: &Ray) -> Option<Hit>;
 
-    /// What the surface is like where `ray` met `primitive` after `t` metres, and how position changes with u and v there.
-    fn surface(&self, ray: &Ray, primitive: u32, t: f32) -> (SurfacePoint, [Vec3; 2]);
+    /// What the surface is like where `ray` met `primitive` after `t` metres.
+    fn surface(&self, ray: &Ray, primitive: u32, t: f32) -> SurfacePoint;
+
+    /// See [`ShapeModel::partials`].
+    fn partials(&self, point: &SurfacePoint) -> (Vec3, Vec3);
+
+    /// See [`super::Shape::attributes`].
+    fn attributes(&self) -> &[Attribute];
+
+    /// See [`super::Shape::corners`].
+    fn corners(&self, point: &SurfacePoint) -> Corners;
 
     /// The box around it.
     fn bounds(&self) -> Bounds;
@@ -107,10 +116,27 @@ impl Instance {
         }
     }
 
-    fn point(&self, ray: &Ray, hit: &Hit) -> (SurfacePoint, [Vec3; 2]) {
-        let Inner { ray, start, scale } = self.inner(ray);
-        let t = ((f64::from(hit.t) - start) * scale) as f32;
-        self.0.shared.surface(&ray, hit.u.to_bits(), t)
+    /// A point of it as what is shared has it.
+    fn to_object(&self, point: &SurfacePoint) -> SurfacePoint {
+        let Placed { to_world, to_object, .. } = &*self.0;
+        let normal = |n: Vec3| to_world.transpose().transform_vector3(n.as_dvec3()).normalize().as_vec3();
+        let tangent = to_object.transform_vector3(point.shading.tangent.as_dvec3()).normalize().as_vec3();
+        SurfacePoint {
+            position: to_object.transform_point3(point.position.as_dvec3()).as_vec3(),
+            normal: normal(point.normal),
+            shading: Frame::along(normal(point.shading.normal), tangent),
+            ..*point
+        }
+    }
+
+    /// The colours of what is shared.
+    pub fn attributes(&self) -> &[Attribute] {
+        self.0.shared.attributes()
+    }
+
+    /// Where these are looked up at `point`.
+    pub fn corners(&self, point: &SurfacePoint) -> Corners {
+        self.0.shared.corners(&self.to_object(point))
     }
 }
 
@@ -161,15 +187,15 @@ impl ShapeModel for Instance {
     }
 
     fn surface(&self, _: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        self.to_world(&self.point(ray, hit).0)
+        let Inner { ray, start, scale } = self.inner(ray);
+        let t = ((f64::from(hit.t) - start) * scale) as f32;
+        self.to_world(&self.0.shared.surface(&ray, hit.u.to_bits(), t))
     }
 
-    fn partials(&self, _: usize, ray: &Ray, hit: &Hit, _: &SurfacePoint) -> (Vec3, Vec3) {
-        let [u, v] = self.point(ray, hit).1.map(|along| {
-            let Placed { to_world, .. } = &*self.0;
-            to_world.transform_vector3(along.as_dvec3()).as_vec3()
-        });
-        (u, v)
+    fn partials(&self, _: usize, point: &SurfacePoint) -> (Vec3, Vec3) {
+        let (u, v) = self.0.shared.partials(&self.to_object(point));
+        let along = |partial: Vec3| self.0.to_world.transform_vector3(partial.as_dvec3()).as_vec3();
+        (along(u), along(v))
     }
 
     /// Right where one scale counts for all axes; no emitter lies on an instance.

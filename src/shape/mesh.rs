@@ -12,7 +12,7 @@ use super::{
 use crate::{
     description::{Params, parameter::Parameter, rows},
     error::{Error, Result},
-    math::{DMat4, DVec3, Frame, Vec2, Vec3, axes, offset::LARGEST_COORDINATE, warp},
+    math::{Attribute, Corners, DMat4, DVec3, Frame, Vec2, Vec3, axes, offset::LARGEST_COORDINATE, warp},
     memory,
     sampling::Stream,
 };
@@ -32,6 +32,8 @@ pub struct MeshData {
     pub uvs: Vec<Vec2>,
     /// Vertex numbers, all in range.
     pub triangles: Vec<[u32; 3]>,
+    /// Colours, as many of each as there are vertices or triangles.
+    pub attributes: Vec<Attribute>,
 }
 
 impl MeshData {
@@ -50,6 +52,7 @@ pub struct Mesh {
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
     triangles: Vec<[u32; 3]>,
+    attributes: Vec<Attribute>,
     areas: AreaTable,
     /// -1 if `flip_normals` is set.
     facing: f32,
@@ -78,7 +81,7 @@ impl Mesh {
                 remedy,
             ));
         }
-        drop_degenerate(params, file, &positions, &mut data.triangles)?;
+        drop_degenerate(params, file, &positions, &mut data)?;
         let normals = match data.normals.as_slice() {
             _ if face_normals => vec![],
             [] => smooth::vertex_normals(&positions, &data.triangles),
@@ -86,7 +89,8 @@ impl Mesh {
         };
         let areas = AreaTable::new(data.triangles.iter().map(|t| double_area(&positions, t) * 0.5));
         let facing = if placement.flip_normals { -1.0 } else { 1.0 };
-        Ok(Self { positions, normals, uvs: data.uvs, triangles: data.triangles, areas, facing })
+        let MeshData { uvs, triangles, attributes, .. } = data;
+        Ok(Self { positions, normals, uvs, triangles, attributes, areas, facing })
     }
 
     /// True if every edge is shared: an even number of triangles has it. Vertices at one position are one.
@@ -129,7 +133,8 @@ impl Mesh {
         }
         triangles.retain(|t| (double_area(&positions, t) as f32).is_normal());
         let areas = AreaTable::new(triangles.iter().map(|t| double_area(&positions, t) * 0.5));
-        let lid = Self { positions, normals: vec![], uvs: vec![], triangles, areas, facing: self.facing };
+        let bare = Self { normals: vec![], uvs: vec![], attributes: vec![], ..self.clone() };
+        let lid = Self { positions, triangles, areas, ..bare };
         let size = self.areas.total() + lid.areas.total();
         let holds_space = (self.volume() + lid.volume()).abs() > 1e-6 * size.powf(1.5);
         (!lid.triangles.is_empty() && holds_space).then_some(lid)
@@ -186,6 +191,24 @@ impl Mesh {
         (self.positions[index as usize] + Vec3::ZERO).to_array().map(f32::to_bits)
     }
 
+    /// Its own colours.
+    pub fn attributes(&self) -> &[Attribute] {
+        &self.attributes
+    }
+
+    /// Where these are looked up at `point`: barycentric coordinates by the areas that it divides the triangle into.
+    pub fn corners(&self, point: &SurfacePoint) -> Corners {
+        let vertices = self.triangles[point.primitive as usize];
+        let Flat { corner, edge_u, edge_v, .. } = self.flat(point.primitive as usize);
+        // In f64, which the fourth power of the smallest triangle's sides does not leave.
+        let [edge_u, edge_v, from] = [edge_u, edge_v, point.position - corner].map(Vec3::as_dvec3);
+        let out = edge_u.cross(edge_v);
+        let share = |part: DVec3| (part.dot(out) / out.length_squared()).clamp(0.0, 1.0) as f32;
+        let (u, v) = (share(from.cross(edge_v)), share(edge_u.cross(from)));
+        let weights = Vec3::new((1.0 - u - v).max(0.0), u, v);
+        Corners { triangle: point.primitive, vertices, weights }
+    }
+
     /// Triangle `index` as the ray tracer needs it.
     #[inline]
     pub fn flat(&self, index: usize) -> Flat {
@@ -208,6 +231,7 @@ impl Mesh {
             shading: Frame::along(self.shading_normal(index, u, v, normal) * self.facing, tangent),
             uv: uv.into(),
             shape: 0,
+            primitive: index as u32,
         }
     }
 
@@ -264,18 +288,23 @@ fn double_area(positions: &[Vec3], triangle: &[u32; 3]) -> f64 {
     (b - a).as_dvec3().cross((c - a).as_dvec3()).length()
 }
 
+/// Those of `values` that are to be kept.
+fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    values.retain(|_| kept.next().is_some_and(|kept| *kept));
+}
+
 /// Takes out triangles without an area, with a warning; an error where none is left.
-fn drop_degenerate(
-    params: &Params<'_>,
-    file: &Path,
-    positions: &[Vec3],
-    triangles: &mut Vec<[u32; 3]>,
-) -> Result<()> {
-    let before = triangles.len();
+fn drop_degenerate(params: &Params<'_>, file: &Path, positions: &[Vec3], data: &mut MeshData) -> Result<()> {
+    let before = data.triangles.len();
     // Normal as f32, so that 1 / area stays finite.
-    triangles.retain(|t| (double_area(positions, t) as f32).is_normal());
-    let dropped = before - triangles.len();
-    if triangles.is_empty() {
+    let proper: Vec<bool> =
+        data.triangles.iter().map(|t| (double_area(positions, t) as f32).is_normal()).collect();
+    keep(&mut data.triangles, &proper);
+    let of_faces = data.attributes.iter_mut().filter(|attribute| attribute.is_of_faces());
+    of_faces.for_each(|attribute| keep(&mut attribute.values, &proper));
+    let dropped = before - data.triangles.len();
+    if data.triangles.is_empty() {
         let found = if before == 0 { "none".into() } else { format!("{before} without area") };
         let remedy = "give a mesh with at least one proper triangle";
         return Err(Error::new(file.display(), "triangles", found, remedy));

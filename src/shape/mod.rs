@@ -20,6 +20,7 @@ mod parallelogram;
 mod patch;
 mod placement;
 mod ply;
+mod ply_attributes;
 mod point;
 mod rectangle;
 mod serialized;
@@ -31,7 +32,7 @@ mod spherical_rectangle;
 use crate::{
     description::{Object, Params, Plugin, Registry, models},
     error::Result,
-    math::{Bounds, DMat4, Vec3},
+    math::{Attribute, Bounds, Corners, DMat4, Vec3},
     sampling::Stream,
 };
 use std::collections::BTreeMap;
@@ -63,7 +64,7 @@ macro_rules! shapes {
             #[inline] fn primitive_count() -> usize;
             #[inline] fn primitive(index: usize) -> Primitive;
             #[inline] fn surface(index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint;
-            fn partials(index: usize, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3);
+            fn partials(index: usize, point: &SurfacePoint) -> (Vec3, Vec3);
             fn area() -> f32;
             fn sample_area(stream: &mut Stream) -> SurfacePoint;
             fn sample_toward(reference: Vec3, stream: &mut Stream) -> (SurfacePoint, f32);
@@ -112,6 +113,24 @@ impl Shape {
             Self::Cylinder(cylinder) => cylinder.lids().map(Self::Disk).into(),
             Self::Mesh(mesh) => mesh.lid().map(Self::Mesh).into_iter().collect(),
             Self::Parallelograms(_) | Self::Disk(_) | Self::Sphere(_) | Self::Instance(_) => Vec::new(),
+        }
+    }
+
+    /// The colours that it has of its own.
+    pub fn attributes(&self) -> &[Attribute] {
+        match self {
+            Self::Mesh(mesh) => mesh.attributes(),
+            Self::Instance(instance) => instance.attributes(),
+            _ => &[],
+        }
+    }
+
+    /// Where these are looked up at `point`.
+    pub fn corners(&self, point: &SurfacePoint) -> Corners {
+        match self {
+            Self::Mesh(mesh) => mesh.corners(point),
+            Self::Instance(instance) => instance.corners(point),
+            _ => Corners::default(),
         }
     }
 

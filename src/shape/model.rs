@@ -112,12 +112,13 @@ pub trait ShapeModel {
     /// disks those of the unit disk; spheres and cylinders use `hit.t`.
     fn surface(&self, index: usize, ray: &Ray, hit: &Hit) -> SurfacePoint;
 
-    /// How position changes with the texture coordinates u and v (m) at `point`, where `ray` met primitive `index`.
-    fn partials(&self, index: usize, ray: &Ray, hit: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
+    /// How position changes with the texture coordinates u and v (m) at `point` of primitive `index`.
+    fn partials(&self, index: usize, point: &SurfacePoint) -> (Vec3, Vec3) {
         let Frame { tangent, bitangent, .. } = point.shading;
         let Primitive::Flat(flat) = self.primitive(index) else { return (tangent, bitangent) };
         // Positions and texture coordinates both are linear in those of the primitive.
-        let uv = |u: f32, v: f32| self.surface(index, ray, &Hit { u, v, ..*hit }).uv.get();
+        let ray = Ray { origin: flat.corner, direction: flat.normal, t_max: 0.0 };
+        let uv = |u: f32, v: f32| self.surface(index, &ray, &Hit { t: 0.0, primitive: 0, u, v }).uv.get();
         let (along_u, along_v) = (uv(1.0, 0.0) - uv(0.0, 0.0), uv(0.0, 1.0) - uv(0.0, 0.0));
         let area = along_u.perp_dot(along_v);
         if area == 0.0 {

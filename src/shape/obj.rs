@@ -168,6 +168,7 @@ impl<'a> Reader<'a> {
         };
         let turn = |uv: DVec3| vec2(uv.x as f32, if self.flip { 1.0 - uv.y } else { uv.y } as f32);
         MeshData {
+            attributes: vec![],
             positions: take(positions, 0),
             normals: take(normals, 2),
             uvs: take(uvs, 1).into_iter().map(turn).collect(),

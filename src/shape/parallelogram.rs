@@ -85,6 +85,7 @@ impl Parallelogram {
             shading: self.shading,
             uv: vec2(u, v).into(),
             shape: 0,
+            primitive: 0,
         }
     }
 
@@ -218,7 +219,7 @@ impl ShapeModel for Parallelograms {
 
     #[inline]
     fn surface(&self, index: usize, _: &Ray, hit: &Hit) -> SurfacePoint {
-        self.faces[index].point(hit.u, hit.v)
+        SurfacePoint { primitive: index as u32, ..self.faces[index].point(hit.u, hit.v) }
     }
 
     fn area(&self) -> f32 {

@@ -3,15 +3,16 @@
 use super::{
     mesh::{FACE_NORMALS, Mesh, MeshData},
     model::COMMON,
+    ply_attributes::{Group, groups},
 };
 use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
-    math::{DMat4, DVec3, Vec2},
+    math::{Attribute, DMat4, DVec3, Spectrum, Vec2},
 };
 use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
-    ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult},
+    ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType},
 };
 use std::{fs::File, io::BufReader, path::Path};
 
@@ -55,11 +56,13 @@ struct Element {
     numbers: [f64; 8],
     /// None where the list held something else than vertex numbers.
     corners: Option<Vec<u32>>,
+    /// All other numbers, in the order of the file.
+    others: Vec<f32>,
 }
 
 impl PropertyAccess for Element {
     fn new() -> Self {
-        Self { numbers: [0.0; 8], corners: None }
+        Self { numbers: [0.0; 8], corners: None, others: vec![] }
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
@@ -69,7 +72,8 @@ impl PropertyAccess for Element {
             let Some(value) = scalar(&value) else { return PropertyAccessResult::UnsupportedType };
             self.numbers[slot] = value;
         } else {
-            return PropertyAccessResult::Ignored;
+            let Some(value) = scalar(&value) else { return PropertyAccessResult::Ignored };
+            self.others.push(value as f32);
         }
         PropertyAccessResult::Set
     }
@@ -107,10 +111,13 @@ impl<'a> Ply<'a> {
         Error::new(self.file.display(), expected, found, "correct the file, or export the mesh again")
     }
 
-    /// Elements and properties that have no meaning here, such as colours.
+    /// Elements and properties that have no meaning here.
     fn unused(&self) -> Vec<String> {
         let unknown = |element: &ElementDef| -> Vec<String> {
+            let (others, groups) = colors(element);
+            let grouped: Vec<_> = groups.iter().flat_map(|group| &group.slots).map(|i| others[*i]).collect();
             let known = |name: &str| match element.name.as_str() {
+                _ if grouped.contains(&name) => true,
                 "vertex" => NAMES.iter().any(|names| names.contains(&name)),
                 _ => CORNERS.contains(&name),
             };
@@ -145,14 +152,44 @@ impl<'a> Ply<'a> {
         let normals = if has(&[3, 4, 5]) { vertices.iter().map(|v| v.triple(3)).collect() } else { vec![] };
         let uvs = if has(&[6, 7]) { vertices.iter().map(|v| v.uv(flip)).collect() } else { vec![] };
         let triangles = self.triangles(&faces, vertices.len())?;
-        let data =
-            MeshData { positions: vertices.iter().map(|v| v.triple(0)).collect(), normals, uvs, triangles };
+        let attributes = self.attributes(&elements, &vertices, &faces)?;
+        let positions = vertices.iter().map(|v| v.triple(0)).collect();
+        let data = MeshData { positions, normals, uvs, triangles, attributes };
         match vertices.iter().position(|v| !v.numbers.iter().all(|x| x.is_finite())) {
             Some(index) => {
                 Err(self.wrong("finite numbers", format!("{:?} in vertex {index}", vertices[index].numbers)))
             }
             None => Ok(data),
         }
+    }
+
+    /// Colours of vertices and, for each triangle that a face becomes, of faces.
+    fn attributes(
+        &self,
+        elements: &[ElementDef],
+        vertices: &[Element],
+        faces: &[Element],
+    ) -> Result<Vec<Attribute>> {
+        let mut attributes = Vec::new();
+        for element in elements {
+            let (all, is_of_faces) = match element.name.as_str() {
+                "vertex" => (vertices, false),
+                "face" => (faces, true),
+                _ => continue,
+            };
+            for Group { name, slots } in colors(element).1 {
+                let count =
+                    |e: &Element| if is_of_faces { e.corners.as_ref().map_or(0, Vec::len) - 2 } else { 1 };
+                let values: Vec<_> =
+                    all.iter().flat_map(|e| std::iter::repeat_n(e.color(&slots), count(e))).collect();
+                if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+                    let found = format!("{} as number {index} of \"{name}\"", values[index]);
+                    return Err(self.wrong("finite numbers", found));
+                }
+                attributes.push(Attribute { name, values });
+            }
+        }
+        Ok(attributes)
     }
 
     /// Elements of nothing would be read for ever from no bytes at all.
@@ -190,7 +227,23 @@ impl<'a> Ply<'a> {
     }
 }
 
+/// The numbers of an element that have no other meaning, and the colours among them.
+fn colors(element: &ElementDef) -> (Vec<&str>, Vec<Group>) {
+    let is_known = |name: &str| CORNERS.contains(&name) || NAMES.iter().any(|names| names.contains(&name));
+    let is_number = |kind: &PropertyType| matches!(kind, PropertyType::Scalar(_));
+    let others = element.properties.iter().filter(|(name, p)| !is_known(name) && is_number(&p.data_type));
+    let others: Vec<&str> = others.map(|(name, _)| name.as_str()).collect();
+    let groups = groups(&element.name, &others);
+    (others, groups)
+}
+
 impl Element {
+    /// Of three of the other numbers, or of one for all channels.
+    fn color(&self, slots: &[usize]) -> Spectrum {
+        let channel = |i: usize| slots.get(i.min(slots.len() - 1)).and_then(|slot| self.others.get(*slot));
+        Spectrum::from([0, 1, 2].map(|i| channel(i).copied().unwrap_or(0.0)))
+    }
+
     fn triple(&self, first: usize) -> DVec3 {
         DVec3::new(self.numbers[first], self.numbers[first + 1], self.numbers[first + 2])
     }

@@ -45,9 +45,11 @@ pub struct SurfacePoint {
     /// Around the interpolated shading normal; the tangent points along growing u.
     pub shading: Frame,
     /// Texture coordinates.
-    pub uv: Uv,
+    pub uv: Uv<'static>,
     /// Which shape of the geometry, in order of addition.
     pub shape: u32,
+    /// Which primitive of the shape; of an instance, of what it shares.
+    pub primitive: u32,
 }
 
 impl SurfacePoint {

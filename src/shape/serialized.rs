@@ -153,6 +153,7 @@ impl Container {
         drop(list(COLORS, 3)?);
         let triple = |list: Vec<f64>| list.as_chunks().0.iter().map(|p| DVec3::from_array(*p)).collect();
         let data = MeshData {
+            attributes: vec![],
             positions: triple(positions),
             normals: triple(normals),
             uvs: uvs.as_chunks().0.iter().map(|[u, v]| Vec2::new(*u as f32, *v as f32)).collect(),

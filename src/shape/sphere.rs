@@ -105,6 +105,7 @@ impl Sphere {
             shading: Frame::along(normal, along),
             uv: Uv::OnSphere(local),
             shape: 0,
+            primitive: 0,
         }
     }
 
@@ -144,7 +145,7 @@ impl ShapeModel for Sphere {
     }
 
     /// u runs along the parallels, v from pole to pole.
-    fn partials(&self, _: usize, _: &Ray, _: &Hit, point: &SurfacePoint) -> (Vec3, Vec3) {
+    fn partials(&self, _: usize, point: &SurfacePoint) -> (Vec3, Vec3) {
         let out = (point.position - self.center) / self.radius;
         let du = point.shading.tangent * (2.0 * PI * self.radius * (PI * point.uv.get().y).sin());
         let along = out.cross(point.shading.tangent) * (PI * self.radius);

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::description::{Params, Table, table};
 use crate::error::{Error, Result};
-use crate::math::{DVec3, Spectrum, Uv, Vec2, Wrap, vec2};
+use crate::math::{DVec3, Spectrum, SpectrumExt, Uv, Vec2, Wrap, vec2};
 use std::sync::Arc;
 
 /// How colours between pixel centres come about.
@@ -64,6 +64,25 @@ impl Bitmap {
         pixels[self.wrap.index(y, *height) * width + self.wrap.index(x, *width)]
     }
 
+    /// The size of the image, and a position in pixels, which knows no fractions from 2^24 on: the limit only keeps absurd ones
+    /// inside i64.
+    #[inline]
+    fn position(&self, uv: Uv) -> (Vec2, Vec2) {
+        let (size, limit) = (vec2(self.image.width as f32, self.image.height as f32), Vec2::splat(1e9));
+        (size, (self.to_uv.apply(uv) * size).clamp(-limit, limit))
+    }
+
+    /// The four pixels around, how far between them, and the size of the image.
+    #[inline]
+    fn around(&self, uv: Uv) -> (Vec2, Vec2, [[Spectrum; 2]; 2]) {
+        let (size, position) = self.position(uv);
+        let position = position - Vec2::splat(0.5);
+        let cell = position.floor();
+        let (x, y) = (cell.x as i64, cell.y as i64);
+        let row = |y| [self.pixel(x, y), self.pixel(x + 1, y)];
+        (position - cell, size, [row(y), row(y + 1)])
+    }
+
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
         use crate::math::{DMat4, DVec3};
@@ -85,19 +104,30 @@ impl Bitmap {
 
 impl TextureModel for Bitmap {
     fn eval(&self, uv: Uv) -> Spectrum {
-        let size = vec2(self.image.width as f32, self.image.height as f32);
-        // From 2^24 on an f32 knows no fractions: the limit only keeps absurd positions inside i64.
-        let limit = Vec2::splat(1e9);
-        let position = (self.to_uv.apply(uv) * size).clamp(-limit, limit);
         if self.filter == Filter::Nearest {
-            let cell = position.floor();
+            let cell = self.position(uv).1.floor();
             return self.pixel(cell.x as i64, cell.y as i64);
         }
-        let position = position - Vec2::splat(0.5);
-        let cell = position.floor();
-        let (t, x, y) = (position - cell, cell.x as i64, cell.y as i64);
-        let row = |y| self.pixel(x, y).lerp(self.pixel(x + 1, y), t.x);
-        row(y).lerp(row(y + 1), t.y)
+        let (t, _, [[a, b], [c, d]]) = self.around(uv);
+        a.lerp(b, t.x).lerp(c.lerp(d, t.x), t.y)
+    }
+
+    fn number(&self, uv: Uv) -> f32 {
+        self.eval(uv).luminance()
+    }
+
+    /// Of what is interpolated; by the nearest pixel, nothing changes but in steps. Where `to_uv` turns an image that is not
+    /// square, Mitsuba's is another, which is not how its values change.
+    fn gradient(&self, uv: Uv) -> Vec2 {
+        if self.filter == Filter::Nearest {
+            return Vec2::ZERO;
+        }
+        let (t, size, [[a, b], [c, d]]) = self.around(uv);
+        let [a, b, c, d] = [a, b, c, d].map(SpectrumExt::luminance);
+        let [along, down] = [(b - a) * (1.0 - t.y) + (d - c) * t.y, (c - a) * (1.0 - t.x) + (d - b) * t.x];
+        let steps = vec2(along, down) * size;
+        let [u, v, _] = self.to_uv.columns;
+        vec2(u.dot(steps), v.dot(steps))
     }
 
     fn max(&self) -> Spectrum {

@@ -26,6 +26,13 @@ impl Checkerboard {
         Ok(Self { colors: Arc::new(colors), to_uv: ToUv::read(params)? })
     }
 
+    /// Which colour is at `uv`.
+    #[inline]
+    fn square(&self, uv: Uv) -> usize {
+        let cell = fraction(self.to_uv.apply(uv));
+        usize::from((cell.x > 0.5) != (cell.y > 0.5))
+    }
+
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
         use crate::math::{DMat4, DVec3};
@@ -39,9 +46,12 @@ impl Checkerboard {
 
 impl TextureModel for Checkerboard {
     fn eval(&self, uv: Uv) -> Spectrum {
-        let cell = fraction(self.to_uv.apply(uv));
-        let differ = (cell.x > 0.5) != (cell.y > 0.5);
-        self.colors[usize::from(differ)].eval(uv)
+        self.colors[self.square(uv)].eval(uv)
+    }
+
+    /// Mitsuba 3.9.1 takes the other colour where it takes a number, and scenes are made to look right there.
+    fn number(&self, uv: Uv) -> f32 {
+        self.colors[1 - self.square(uv)].number(uv)
     }
 
     fn max(&self) -> Spectrum {

@@ -3,6 +3,8 @@
 mod bitmap;
 mod checkerboard;
 pub mod image;
+mod in_volume;
+mod mesh_attribute;
 #[cfg(test)]
 mod tests;
 mod uniform;
@@ -10,6 +12,8 @@ mod uniform;
 pub use bitmap::Bitmap;
 pub use checkerboard::Checkerboard;
 pub use image::Image;
+pub use in_volume::InVolume;
+pub use mesh_attribute::MeshAttribute;
 pub use uniform::Uniform;
 
 use crate::description::{
@@ -23,10 +27,18 @@ use crate::math::{DMat4, Spectrum, Uv, Vec2, vec2};
 pub trait TextureModel {
     /// The colour at texture position `uv`.
     fn eval(&self, uv: Uv) -> Spectrum;
+    /// The same as a number, as Mitsuba takes it: an image's luminance, the mean of the channels of all others.
+    fn number(&self, uv: Uv) -> f32 {
+        self.eval(uv).element_sum() / 3.0
+    }
     /// A bound that no channel of `eval` exceeds.
     fn max(&self) -> Spectrum;
     /// The average over the unit square.
     fn mean(&self) -> Spectrum;
+    /// How it changes with u and v, as a number: the luminance of an image. 0 where it says nothing of that.
+    fn gradient(&self, _uv: Uv) -> Vec2 {
+        Vec2::ZERO
+    }
     /// Columns and rows of what it is made of; one of each where it is no grid.
     fn resolution(&self) -> [usize; 2] {
         [1, 1]
@@ -47,9 +59,14 @@ macro_rules! textures {
         impl Texture {
             /// The colour at texture position `uv`.
             #[inline(always)]
-            pub fn eval(&self, uv: impl Into<Uv>) -> Spectrum {
+            pub fn eval<'a>(&self, uv: impl Into<Uv<'a>>) -> Spectrum {
                 let uv = uv.into();
                 match self { $(Self::$model(model) => model.eval(uv),)* }
+            }
+            /// The same as a number, as Mitsuba takes it: an image's luminance, the mean of the channels of all others.
+            #[inline]
+            pub fn number(&self, uv: Uv) -> f32 {
+                match self { $(Self::$model(model) => model.number(uv),)* }
             }
             /// A bound that no channel of `eval` exceeds.
             pub fn max(&self) -> Spectrum {
@@ -58,6 +75,10 @@ macro_rules! textures {
             /// The average over the unit square before `to_uv` (of an image, over its pixels).
             pub fn mean(&self) -> Spectrum {
                 match self { $(Self::$model(model) => model.mean(),)* }
+            }
+            /// How it changes with u and v, as a number: the luminance of an image. 0 where it says nothing of that.
+            pub fn gradient(&self, uv: Uv) -> Vec2 {
+                match self { $(Self::$model(model) => model.gradient(uv),)* }
             }
             /// Columns and rows of what it is made of; one of each where it is no grid.
             pub fn resolution(&self) -> [usize; 2] {
@@ -88,6 +109,8 @@ textures! {
     "uniform" => Uniform,
     "checkerboard" => Checkerboard,
     "bitmap" => Bitmap,
+    "mesh_attribute" => MeshAttribute,
+    "volume" => InVolume,
     colors: "rawconstant" => RAW, "srgb" => SRGB, "d65" => D65, "regular" => REGULAR, "irregular" => IRREGULAR,
     "blackbody" => BLACKBODY, "inverse_power" => INVERSE_POWER,
 }

@@ -55,7 +55,8 @@ impl Interaction {
     pub fn albedo_bound(&self, scene: &Scene, incoming: Vec3) -> f32 {
         match self {
             Self::Surface(point) => {
-                scene.bsdf(point.shape).survival(point.uv, point.shading.to_local(incoming))
+                let wi = point.shading.to_local(incoming);
+                scene.at(point, |bsdf, uv| bsdf.survival(uv, wi))
             }
             Self::Medium(_, properties) => properties.survival(),
         }
@@ -74,9 +75,8 @@ impl Interaction {
                 Scattering { value: properties.albedo * phase, pdf_fwd: phase, pdf_rev: phase }
             }
             Self::Surface(point) => {
-                let bsdf = scene.bsdf(point.shape);
                 let (wi, wo) = (point.shading.to_local(incoming), point.shading.to_local(outgoing));
-                let f = bsdf.evaluate(point.uv, wi, wo, transport);
+                let f = scene.at(point, |bsdf, uv| bsdf.evaluate(uv, wi, wo, transport));
                 let cosine = wo.z.abs() * shading_correction(point, incoming, outgoing, wi, wo, transport);
                 Scattering { value: f.value * cosine, pdf_fwd: f.pdf_fwd, pdf_rev: f.pdf_rev }
             }

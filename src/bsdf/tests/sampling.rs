@@ -14,7 +14,7 @@ const STEPS: [usize; 4] = [8, 12, 48, 128];
 
 /// The probability that `sample` gives a direction in `cell`, by quadrature of the forward density over
 /// `steps` by `steps` points.
-fn expected_share(bsdf: &Bsdf, wi: Vec3, cell: usize, steps: usize) -> f64 {
+fn expected_share((bsdf, transport): (&Bsdf, Transport), wi: Vec3, cell: usize, steps: usize) -> f64 {
     let (row, column) = (cell / COLUMNS, cell % COLUMNS);
     let pdf = |i: usize| {
         let along = (row as f32 + ((i / steps) as f32 + 0.5) / steps as f32) / ROWS_OF_CELLS as f32;
@@ -22,7 +22,7 @@ fn expected_share(bsdf: &Bsdf, wi: Vec3, cell: usize, steps: usize) -> f64 {
         // The poles of the grid, where its cells are long and thin, lie in the horizon, away from all lobes.
         let turned = warp::spherical(2.0 * along - 1.0, TAU as f32 * around);
         let wo = vec3(turned.y, turned.z, turned.x);
-        f64::from(bsdf.evaluate(UV, wi, wo, Transport::Radiance).pdf_fwd)
+        f64::from(bsdf.evaluate(UV, wi, wo, transport).pdf_fwd)
     };
     let area = 2.0 * TAU / (ROWS_OF_CELLS * COLUMNS * steps * steps) as f64;
     (0..steps * steps).map(pdf).sum::<f64>() * area
@@ -30,8 +30,8 @@ fn expected_share(bsdf: &Bsdf, wi: Vec3, cell: usize, steps: usize) -> f64 {
 
 /// Counts expected of `samples` samples in each cell, by quadratures that are finer until that makes next to no
 /// difference beside the noise; a cell that a lobe may only touch, as it lies beside one with some of it, has the finest.
-fn expected_counts(bsdf: &Bsdf, wi: Vec3, samples: f64) -> Vec<f64> {
-    let by = |steps, cell| samples * expected_share(bsdf, wi, cell, steps);
+fn expected_counts(model: (&Bsdf, Transport), wi: Vec3, samples: f64) -> Vec<f64> {
+    let by = |steps, cell| samples * expected_share(model, wi, cell, steps);
     let first: Vec<f64> = (0..ROWS_OF_CELLS * COLUMNS).map(|cell| by(STEPS[0], cell)).collect();
     let count = |cell: usize| {
         let mut count = first[cell];
@@ -62,19 +62,25 @@ fn cell_of(w: Vec3) -> usize {
     index(0.5 + 0.5 * f64::from(w.y), ROWS_OF_CELLS) * COLUMNS + index(around, COLUMNS)
 }
 
+/// Both ways where they differ.
+fn both_ways(bsdf: Bsdf) -> Vec<(Bsdf, Transport)> {
+    let ways = if is_one_way(&bsdf) { &BOTH[..] } else { &BOTH[..1] };
+    ways.iter().map(|transport| (bsdf.clone(), *transport)).collect()
+}
+
 #[test]
 fn every_model_samples_its_density() {
-    let models = connectible();
+    let models: Vec<(Bsdf, Transport)> = connectible().into_iter().flat_map(both_ways).collect();
     let incoming = incoming();
     let level = significance(models.len() * incoming.len());
     let samples = 50_000;
-    models.par_iter().for_each(|bsdf| {
+    models.par_iter().for_each(|(bsdf, transport)| {
         for (number, wi) in incoming.iter().enumerate() {
             let mut stream = stream(number as u64);
-            let expected = expected_counts(bsdf, *wi, f64::from(samples));
+            let expected = expected_counts((bsdf, *transport), *wi, f64::from(samples));
             let mut observed = vec![0; expected.len()];
             for _ in 0..samples {
-                let sample = bsdf.sample(UV, *wi, Transport::Radiance, &mut stream);
+                let sample = bsdf.sample(UV, *wi, *transport, &mut stream);
                 if let Some(sample) = sample.filter(|sample| !sample.dirac) {
                     observed[cell_of(sample.wo)] += 1;
                 }

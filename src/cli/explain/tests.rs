@@ -45,6 +45,7 @@ fn sample_text(plugin: &str, name: &str) -> &'static str {
         (_, "group") => "key",
         ("smoke", _) => "",
         (_, "wavelengths") => "400, 700",
+        ("mesh_attribute", _) => "vertex_color",
         _ => "0.5, 0.1",
     }
 }
@@ -74,6 +75,7 @@ fn sample_of(tag: &str, plugin: &str) -> Value {
         ("emitter", _) => json!({"type": "area"}),
         ("medium", _) => json!({"type": "homogeneous"}),
         ("phase", _) => json!({"type": "hg"}),
+        ("texture", "bumpmap") => json!({"type": "bitmap", "filename": "tiles.png"}),
         ("texture", _) => json!({"type": "checkerboard"}),
         ("volume", _) => json!({"type": "constvolume"}),
         ("integrator", _) => json!({"type": "path"}),
@@ -109,6 +111,11 @@ fn samples(plugin: &str, row: &Parameter) -> Vec<Value> {
     }
 }
 
+/// A name for nested plugin number `i` of those of a row.
+fn nth(i: usize, row: &Parameter) -> String {
+    format!("n{i}_{}", row.name)
+}
+
 /// The plugin with all that it needs and, if any, `given`.
 fn described(plugin: &str, table: &Table, given: Option<(&Parameter, &Value)>) -> Value {
     let mut object = Map::from_iter([("type".to_owned(), json!(plugin))]);
@@ -117,7 +124,7 @@ fn described(plugin: &str, table: &Table, given: Option<(&Parameter, &Value)>) -
         let value = samples(plugin, row).remove(0);
         match row.kind {
             Kind::Nested => {
-                (0..count(row.name)).for_each(|i| drop(object.insert(format!("n{i}"), value.clone())))
+                (0..count(row.name)).for_each(|i| drop(object.insert(nth(i, row), value.clone())))
             }
             _ => drop(object.insert(row.name.into(), value)),
         }
@@ -126,7 +133,7 @@ fn described(plugin: &str, table: &Table, given: Option<(&Parameter, &Value)>) -
     let extras = beside(plugin, name);
     object.extend(extras.as_object().unwrap().clone());
     if let Some((row, value)) = given {
-        object.insert(if row.kind == Kind::Nested { "n0" } else { row.name }.into(), value.clone());
+        object.insert(if row.kind == Kind::Nested { nth(0, row) } else { row.name.into() }, value.clone());
     }
     object.retain(|_, value| !value.is_null());
     object.into()
@@ -227,8 +234,9 @@ fn what_must_be_given_must_be_given() {
     for (tag, plugin, table) in everything().filter(|(tag, ..)| *tag != "scene") {
         for row in table.rows().filter(|row| row.default == Default::Required) {
             let mut object = described(plugin, table, None);
-            let is_it =
-                |key: &String| if row.kind == Kind::Nested { key.starts_with('n') } else { key == row.name };
+            let is_it = |key: &String| {
+                if row.kind == Kind::Nested { key.ends_with(&nth(0, row)[2..]) } else { key == row.name }
+            };
             object.as_object_mut().unwrap().retain(|key, _| !is_it(key));
             assert!(
                 built(tag, object).is_err() || plugin == "polynomial",

@@ -4,6 +4,7 @@ use super::{super::references::referred, unspeakable};
 use crate::{
     description::{Object, Property, Value},
     error::Result,
+    texture,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -48,10 +49,13 @@ pub(super) fn drop_made_up(root: &mut Object) {
 
 fn drop_below(object: &mut Object, tags: &Tags, referred: &HashSet<String>, outermost: bool) {
     let mut seen: HashMap<String, usize> = HashMap::new();
+    let texture = texture::ROWS.get(&object.plugin);
     for Property { name, value, .. } in &mut object.properties {
         let Some(tag) = tag_in(value, tags) else { continue };
         let count = seen.entry(tag.to_owned()).or_default();
-        let is_made_up = *name == made_up(tag, *count);
+        // The texture `volume` has a parameter that is called after its tag.
+        let is_parameter = texture.is_some_and(|plugin| plugin.table.find(name).is_some());
+        let is_made_up = *name == made_up(tag, *count) && !is_parameter;
         let of_id = outermost && matches!(value, Value::Object(child) if child.id.as_ref() == Some(name));
         let is_dropped = is_made_up && !(of_id && referred.contains(name));
         *count += usize::from(is_dropped);

@@ -95,11 +95,10 @@ impl Sight {
     /// Ends at `point`, seen from direction `incoming`.
     fn end(&mut self, scene: &Scene, point: &SurfacePoint, incoming: Vec3, through: Spectrum) {
         let wi = point.shading.to_local(incoming);
-        let bsdf = scene.bsdf(point.shape);
         // Where the side that is seen is black, that of the other, as in the layer albedo.
-        let faced = bsdf.albedo(point.uv, wi);
-        let albedo =
-            if faced == Spectrum::ZERO { bsdf.albedo(point.uv, vec3(wi.x, wi.y, -wi.z)) } else { faced };
+        let albedo_of = |wi: Vec3| scene.at(point, |bsdf, uv| bsdf.albedo(uv, wi));
+        let faced = albedo_of(wi);
+        let albedo = if faced == Spectrum::ZERO { albedo_of(vec3(wi.x, wi.y, -wi.z)) } else { faced };
         self.last_normal = point.shading.normal;
         self.albedo = through * albedo;
         self.emitter = scene.surface(point.shape).emitter;

@@ -90,6 +90,7 @@ impl Builder<'_> {
                     boundary: Boundary::default(),
                     transmits: true,
                     connectible: false,
+                    detailed: false,
                 });
             }
         }

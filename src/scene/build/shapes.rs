@@ -1,6 +1,6 @@
 //! A shape with its surface, boundary and emitter.
 
-use super::{Builder, Placed, groups::Copying, name_of};
+use super::{Builder, Placed, asked::Asked, groups::Copying, name_of};
 use crate::{
     bsdf::{self, Bsdf, BsdfModel},
     description::{Location, Params, params::Child},
@@ -40,15 +40,16 @@ impl<'a> Builder<'a> {
         self.place.instance = DAffine3::IDENTITY;
         let emitter = self.shape_emitter(&params, self.shapes.len() as u32)?;
         let bsdfs = params.children("bsdf", |child| bsdf::ROWS.has(child.object))?;
-        let bsdf = match bsdfs.as_slice() {
-            [] => self.default_bsdf(emitter.is_some())?,
-            [one] => self.bsdf(one.object)?,
+        let (bsdf, asked) = match bsdfs.as_slice() {
+            [] => (self.default_bsdf(emitter.is_some())?, Asked::default()),
+            [one] => (self.bsdf(one.object)?, Asked::by(one.object, self.library)),
             [_, second, ..] => return Err(only_one(second, "bsdf")),
         };
         // One that was built before has been read then.
         if is_read {
             params.finish()?;
         }
+        asked.check(&shape, &name_of(child.object))?;
         self.has_old_shapes &= is_old;
         if at.is_none() {
             self.parts.shapes.insert(child.object.location.clone(), self.shapes.len());
@@ -64,7 +65,8 @@ impl<'a> Builder<'a> {
             self.mend_container(exterior.is_some(), child.location);
         }
         self.natures.push(nature);
-        self.surfaces.push(Surface { bsdf, emitter, boundary, transmits, connectible });
+        let detailed = asked.is_any();
+        self.surfaces.push(Surface { bsdf, emitter, boundary, transmits, connectible, detailed });
         Ok(())
     }
 

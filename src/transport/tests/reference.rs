@@ -352,17 +352,18 @@ pub(super) fn reflect(
     dirac: bool,
     transport: Transport,
 ) -> f64 {
-    let bsdf = reference.scene.bsdf(point.shape);
+    let scene = reference.scene;
     let (wi, wo) = (point.shading.to_local(back.as_vec3()), point.shading.to_local(on.as_vec3()));
-    let survival = f64::from(reference.roulette.at(bsdf.survival(point.uv, wi), Pending::NONE).0);
+    let survival =
+        f64::from(reference.roulette.at(scene.at(point, |bsdf, uv| bsdf.survival(uv, wi)), Pending::NONE).0);
     let guided = |pdf| survival * reference.guided(Interaction::Surface(*point), on, pdf, dirac, transport);
     if !dirac {
-        return guided(bsdf.evaluate(point.uv, wi, wo, transport).pdf_fwd);
+        return guided(scene.at(point, |bsdf, uv| bsdf.evaluate(uv, wi, wo, transport)).pdf_fwd);
     }
     // A surface has one Dirac lobe on each side at most; sample until it is the one on this side.
     let mut stream = Stream::new(13, 0, 0, Purpose::Study);
     let lobe = (0..4_096)
-        .filter_map(|_| bsdf.sample(point.uv, wi, transport, &mut stream))
+        .filter_map(|_| scene.at(point, |bsdf, uv| bsdf.sample(uv, wi, transport, &mut stream)))
         .find(|sample| sample.dirac && sample.wo.z * wo.z > 0.0);
     guided(lobe.map_or(0.0, |sample| sample.pdf_fwd))
 }

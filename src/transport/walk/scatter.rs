@@ -124,10 +124,9 @@ pub(super) fn reflect<S: MisSums>(
     transport: Transport,
     stream: &mut Stream,
 ) -> Option<ScatterSample> {
-    let bsdf = scene.bsdf(point.shape);
     let wi = point.shading.to_local(vertex.subpath.incoming);
     let survival = vertex.survival;
-    let sample = bsdf.sample(point.uv, wi, transport, stream)?;
+    let sample = scene.at(point, |bsdf, uv| bsdf.sample(uv, wi, transport, stream))?;
     let direction = point.shading.to_world(sample.wo).normalize();
     let correction = shading_correction(point, vertex.subpath.incoming, direction, wi, sample.wo, transport);
     let weight = sample.weight * (correction / survival);

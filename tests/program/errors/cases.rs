@@ -18,6 +18,11 @@ pub(super) struct Case {
     reads: Option<&'static str>,
 }
 
+/// A triangle whose corners are coloured in bytes.
+const PAINTED: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\n\
+    end_header\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n";
+
 const CAMERA: [&str; 2] = ["<sensor type=\"perspective\"/>", "\"camera\": {\"type\": \"perspective\"}"];
 
 impl Case {
@@ -382,6 +387,21 @@ pub(super) fn all() -> Vec<Case> {
         Case::json("a serialized mesh that is none", r#""a": {"type": "serialized", "filename": "a.bin"}"#).beside("a.bin", "hello"),
         Case::json("a mask of too much", r#""a": {"type": "mask", "opacity": 1.5, "b": {"type": "diffuse"}}"#),
         Case::json("a blend of one", r#""a": {"type": "blendbsdf", "weight": 0.5, "b": {"type": "diffuse"}}"#),
+        Case::json("a material of two indices", r#""a": {"type": "principled", "eta": 1.5, "specular": 0.5}"#),
+        Case::json("a material too rough", r#""a": {"type": "principled", "roughness": 1.5}"#),
+        Case::json("a sheet that transmits too much", r#""a": {"type": "principledthin", "diff_trans": 3}"#),
+        Case::json("a lobe sampled by a rate", r#""a": {"type": "principled", "clearcoat_sampling_rate": 2}"#).warned(),
+        Case::json("a map of no normals", r#""a": {"type": "normalmap", "b": {"type": "diffuse"}}"#),
+        Case::json("a map on two surfaces", r#""a": {"type": "normalmap", "normalmap": 0.5, "b": {"type": "diffuse"}, "c": {"type": "diffuse"}}"#),
+        Case::json("bumps of squares", r#""a": {"type": "bumpmap", "t": {"type": "checkerboard"}, "b": {"type": "diffuse"}}"#),
+        Case::json("bumps of nothing", r#""a": {"type": "bumpmap", "b": {"type": "diffuse"}}"#),
+        Case::json("an attribute of nothing", r#""a": {"type": "diffuse", "reflectance": {"type": "mesh_attribute", "name": "color"}}"#),
+        Case::json("an attribute of a sphere", r#""a": {"type": "sphere", "b": {"type": "diffuse", "reflectance": {"type": "mesh_attribute", "name": "vertex_color"}}}"#),
+        Case::json("an attribute that the mesh has not", r#""a": {"type": "ply", "filename": "a.ply", "b": {"type": "diffuse", "reflectance": {"type": "mesh_attribute", "name": "face_color"}}}"#).beside("a.ply", PAINTED),
+        Case::json("bytes as colours", r#""a": {"type": "ply", "filename": "a.ply", "b": {"type": "diffuse", "reflectance": {"type": "mesh_attribute", "name": "vertex_color"}}}"#).beside("a.ply", PAINTED),
+        Case::json("a lamp in colours of its mesh", r#""a": {"type": "ply", "filename": "a.ply", "e": {"type": "area", "radiance": {"type": "mesh_attribute", "name": "vertex_color"}}}"#).beside("a.ply", PAINTED),
+        Case::json("a volume too bright", r#""a": {"type": "diffuse", "reflectance": {"type": "volume", "volume": {"type": "constvolume", "value": 2.0}}}"#),
+        Case::json("a texture of no volume", r#""a": {"type": "diffuse", "reflectance": {"type": "volume"}}"#),
         Case::json("plastic of no depth", r#""a": {"type": "plastic", "int_ior": -1}"#),
         Case::json("a pane that gives light", r#""a": {"type": "translucent", "transmittance": 2}"#),
         Case::json("a phase function stated twice", r#""fog": {"type": "homogeneous", "p": {"type": "cornette_shanks", "g": 0.7, "u": 0.8}}"#),
