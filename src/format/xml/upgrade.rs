@@ -13,18 +13,24 @@ const TAGS: [(&str, &str); 4] =
     [("animation", "keyframes"), ("camera", "sensor"), ("lookAt", "lookat"), ("luminaire", "emitter")];
 
 /// Plugins that others stand for.
-const PLUGINS: [(&str, &str); 7] = [
+const PLUGINS: [(&str, &str); 6] = [
     ("halton", "ldsampler"),
     ("hammersley", "ldsampler"),
     ("lambertian", "diffuse"),
     ("ldrfilm", "hdrfilm"),
-    ("mixturephase", "blendphase"),
     ("tiledhdrfilm", "hdrfilm"),
     ("volpath_simple", "volpath"),
 ];
 
 /// Parameters without effect, by the plugins that have them (none: all), and why.
-const IDLE: [(&[&str], &[&str], &str); 7] = [
+const IDLE: [(&[&str], &[&str], &str); 10] = [
+    (&["bdpt"], &["light_image", "sample_direct"], "the pilot chooses among the strategies"),
+    (&["ptracer"], &["brute_force", "granularity"], "Tyndall divides the work itself"),
+    (
+        &["obj", "ply", "serialized"],
+        &["max_smooth_angle", "collapse", "srgb", "load_materials"],
+        "normals and materials are as in Mitsuba 3",
+    ),
     (&["hdrfilm"], &["attach_log", "label"], "images carry a report of their own"),
     (&["hdrfilm"], &["high_quality_edges"], "\"sample_border\" does that"),
     (
