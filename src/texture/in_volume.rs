@@ -5,10 +5,11 @@ use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::{Spectrum, Uv, Vec3};
 use crate::volume::{self, Place, Volume, VolumeModel};
+use std::sync::Arc;
 
 /// The volume at the surface's world position.
 #[derive(Clone, Debug)]
-pub struct InVolume(Volume);
+pub struct InVolume(Arc<Volume>);
 
 /// Where bounds are looked for of volumes that have no end (m).
 const FAR: f32 = 1e6;
@@ -21,7 +22,7 @@ impl InVolume {
 
     pub(super) fn build(params: &Params<'_>, _: f32) -> Result<Self> {
         let (recentre, time) = params.library.place.get();
-        volume::parameter(params, "volume", &Place::new(recentre, time)).map(Self)
+        volume::parameter(params, "volume", &Place::new(recentre, time)).map(|volume| Self(Arc::new(volume)))
     }
 
     fn range(&self) -> [Spectrum; 2] {
@@ -31,7 +32,8 @@ impl InVolume {
 
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
-        vec![Self(Volume::Constant(volume::Constant::new(Spectrum::splat(0.3), [Vec3::ZERO, Vec3::ONE])))]
+        let even = volume::Constant::new(Spectrum::splat(0.3), [Vec3::ZERO, Vec3::ONE]);
+        vec![Self(Arc::new(Volume::Constant(even)))]
     }
 }
 
