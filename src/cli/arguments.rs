@@ -3,6 +3,7 @@
 use super::{
     console::{Answer, ProgressForm},
     convert::Convert,
+    denoise::Denoise,
     diff,
     explain::Explain,
     flights, guide,
@@ -96,7 +97,7 @@ pub enum Command {
     /// Convert a scene from Mitsuba 3 XML to JSON, or from JSON to XML; an image to a PNG; a volume file to .vol
     ///
     /// An image (.exr, .pfm, .rgbe, .hdr) becomes the PNG that render would write beside it, with another --exposure or
-    /// --view: tyndall convert fog.exr fog.png --exposure auto --view agx
+    /// --view, or of a --layer: tyndall convert fog.exr fog.png --exposure auto --view agx
     ///
     /// A grid of an OpenVDB or NanoVDB file (.vdb, .nvdb) becomes Mitsuba's .vol, of all voxels in the box around the
     /// active ones and one more on every side; a gridvolume with use_grid_bbox shows the same of both files.
@@ -107,6 +108,12 @@ pub enum Command {
     /// files and the values of spectrum files are written into the new file; aliases are replaced by the ids that they
     /// refer to. Paths of other files are adjusted so that they still refer to the same files, which are not moved.
     Convert(Convert),
+    /// Denoise an OpenEXR image by Open Image Denoise, which the Python package of Tyndall brings
+    ///
+    /// Writes NAME.denoised.exr and NAME.denoised.png beside the image. A denoised image is biased, by an amount that nobody
+    /// knows. It needs Python with the package tyndall and its extra: pip install '.[denoise]'. The environment variable
+    /// TYNDALL_PYTHON names another Python than python3.
+    Denoise(Denoise),
     /// Create the page of a study, study.html, again from its numbers and images
     Report(Report),
     /// Measure error against run time: render scenes with several contenders and compare them with a reference
@@ -158,6 +165,7 @@ impl Command {
             Self::Pixel(_)
             | Self::Convert(_)
             | Self::New(_)
+            | Self::Denoise(_)
             | Self::Merge(_)
             | Self::Report(_)
             | Self::Explain(_)

@@ -36,6 +36,11 @@ pub struct Convert {
     #[arg(long, value_name = "NAME")]
     pub grid: Option<String>,
 
+    /// The layer of an OpenEXR image that the PNG shows, or the channel with this full name [default: the channels without a
+    /// layer]
+    #[arg(long, value_name = "NAME")]
+    pub layer: Option<String>,
+
     /// How the PNG of an image shows it.
     #[command(flatten)]
     pub display: Display,
@@ -43,9 +48,13 @@ pub struct Convert {
 
 /// Runs the command.
 pub(super) fn run(arguments: &Convert) -> Result<()> {
-    let Convert { definitions, grid, display, input, output, .. } = arguments;
+    let Convert { definitions, grid, layer, display, input, output } = arguments;
     let of_scenes = [(!definitions.is_empty(), "-D")];
-    let of_images = [(display.exposure.is_some(), "--exposure"), (display.view.is_some(), "--view")];
+    let of_images = [
+        (display.exposure.is_some(), "--exposure"),
+        (display.view.is_some(), "--view"),
+        (layer.is_some(), "--layer"),
+    ];
     let of_volumes = [(grid.is_some(), "--grid")];
     let is = |kind| output.extension().is_some_and(|end| end.eq_ignore_ascii_case(kind));
     let (to_png, to_vol) = (is("png"), is("vol"));
@@ -60,7 +69,7 @@ pub(super) fn run(arguments: &Convert) -> Result<()> {
     }
     inputs::note(input, Reader::Command);
     match (to_png, to_vol) {
-        (true, _) => show(input, output, *display),
+        (true, _) => show(input, layer.as_deref(), output, *display),
         (_, true) => voxels(input, grid.as_deref(), output),
         _ => scene(arguments),
     }
@@ -98,9 +107,9 @@ fn voxels(input: &Path, grid: Option<&str>, output: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The PNG `output` of the image `input`, which says what the image says of its making.
-fn show(input: &Path, output: &Path, mut display: Display) -> Result<()> {
-    let image = picture::read(input)?;
+/// The PNG `output` of the image `input` or one of its layers, which says what the image says of its making.
+fn show(input: &Path, layer: Option<&str>, output: &Path, mut display: Display) -> Result<()> {
+    let image = picture::read_layer(input, layer)?;
     check_short([&output.to_owned()])?;
     let exposure = display.choose(&image.pixels).unwrap_or_default();
     let display = display.of(&image.pixels);

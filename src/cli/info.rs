@@ -4,6 +4,7 @@ use super::{
     candidates,
     console::{Answer, say},
     estimator::Estimator,
+    overview::Overview,
     parsers::positive_u32,
     picture,
     plan::{self, Plan},
@@ -81,7 +82,8 @@ pub(super) fn run(arguments: &Info) -> Result<()> {
     let chosen = report.as_ref().map(|report| report.choice);
     let plan = Plan::new(&setup, settings, chosen, None);
     let learnt = training::learn_for(&setup.scene, &setup.film, &settings).bytes();
-    say(&describe(&setup, &settings, &plan));
+    let overview = Overview::of(&setup);
+    say(&describe(&setup, &settings, &plan, &overview));
     if learnt > 0 {
         let later = if settings.options.effort.is_guided() {
             ", and more for later samples or small errors"
@@ -94,7 +96,7 @@ pub(super) fn run(arguments: &Info) -> Result<()> {
             later
         ));
     }
-    let mut figures = figures(&setup, &plan, learnt);
+    let mut figures = figures(&setup, &plan, learnt, overview.json());
     if let Some(report) = report.filter(|_| arguments.pilot) {
         say(&candidates::table(&report));
         figures["pilot"] = candidates::json(&report);
@@ -102,22 +104,23 @@ pub(super) fn run(arguments: &Info) -> Result<()> {
     arguments.answer.give(&figures)
 }
 
-fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
+fn describe(setup: &Setup, settings: &Settings, plan: &Plan, overview: &Overview) -> String {
     let Setup { scene, film, integrator, samples_per_pixel, .. } = setup;
     let estimator = describe_integrator(plan.integrator, &settings.options, integrator.restriction);
-    let mut lines = vec![
+    let mut lines = overview.lines();
+    let image = lines.len();
+    lines.extend([
         format!("image       {}", describe_film(film)),
         format!("integrator  {estimator}, {samples_per_pixel} samples/pixel"),
         format!("shapes      {}", describe_shapes(scene)),
-    ];
+    ]);
     if !integrator.layers.is_empty() {
-        lines.insert(2, format!("layers      {}", describe_layers(&integrator.layers)));
+        lines.insert(image + 2, format!("layers      {}", describe_layers(&integrator.layers)));
     }
     lines.extend(
         scene.lights.all.iter().map(|light| format!("emitter     {}", describe_emitter(setup, light))),
     );
     lines.extend(setup.smoke.iter().map(|taken| format!("smoke       {taken}")));
-    lines.push(format!("camera      in {}", setup.medium_name(scene.media_map.sensor)));
     if scene.lights.has_infinite() {
         lines.push(format!("infinity    {}", describe_infinity(setup)));
     }
@@ -134,7 +137,7 @@ fn describe(setup: &Setup, settings: &Settings, plan: &Plan) -> String {
 }
 
 /// The same for scripts.
-fn figures(setup: &Setup, plan: &Plan, learnt: usize) -> Value {
+fn figures(setup: &Setup, plan: &Plan, learnt: usize, overview: Value) -> Value {
     let Setup { scene, film, .. } = setup;
     let primitives: usize = scene.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum();
     let emitters = scene.lights.all.iter();
@@ -153,7 +156,9 @@ fn figures(setup: &Setup, plan: &Plan, learnt: usize) -> Value {
             })
             .collect::<Vec<_>>(),
         "smoke": setup.smoke.iter().map(volumes::taken).collect::<Vec<_>>(),
-        "camera": { "medium": setup.medium_name(scene.media_map.sensor) },
+        "box": overview["box"],
+        "camera": overview["camera"],
+        "thickness": overview["thickness"],
         "media": (1..=setup.medium_names.len()).map(|index| medium_figures(setup, index)).collect::<Vec<_>>(),
         "contacts": setup.apart.contacts.iter().map(|contact| contact_figures(setup, contact)).collect::<Vec<_>>(),
         "overlaps": overlapping(setup).collect::<Vec<_>>(),

@@ -5,6 +5,7 @@ mod candidates;
 mod console;
 mod contenders;
 mod convert;
+mod denoise;
 pub mod diff;
 mod display;
 mod estimator;
@@ -19,6 +20,7 @@ mod media;
 pub mod merge;
 mod new;
 mod outputs;
+mod overview;
 mod parsers;
 pub mod phase;
 mod picture;
@@ -68,6 +70,7 @@ fn obey(command: &Command) -> Result<bool> {
         Command::Info(info) => info::run(info),
         Command::Convert(convert) => convert::run(convert),
         Command::New(new) => new::run(new),
+        Command::Denoise(denoise) => denoise::run(denoise),
         Command::Report(report) => report::run(report),
         Command::Study(study) => study::run(study),
         Command::Explain(explain) => explain::run(explain),

@@ -12,6 +12,7 @@ use crate::{
     transport::{Algorithm, Connections, Effort, Options, Survival},
 };
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// What a render will do.
 pub(super) struct Plan {
@@ -65,11 +66,16 @@ impl Plan {
             parts.push(list(&self.flights.iter().map(|method| in_words(*method)).collect::<Vec<_>>()));
         }
         parts.extend([format!("{width}x{height}"), self.limits()]);
-        parts.extend(self.progressive.map(|Progressive { method, fraction }| {
-            format!("a biased preview by {} of the pixels ({})", percent(fraction), method.name())
-        }));
+        parts.extend(self.bias());
         parts.push(format!("profile {}", self.settings.profile.name()));
         parts.join(", ")
+    }
+
+    /// What a progressive picture is.
+    fn bias(&self) -> Option<String> {
+        self.progressive.map(|Progressive { method, fraction }| {
+            format!("a biased preview by {} of the pixels ({})", percent(fraction), method.name())
+        })
     }
 
     /// How often strategies run that do not all run equally often.
@@ -93,16 +99,24 @@ impl Plan {
         }
     }
 
-    /// Says it, to standard error. What is missing from the image is said even when little else is.
-    pub(super) fn announce(&self) {
-        console::announce(&self.line());
+    /// Says to standard error what of the scene at `path` is rendered, with `details` if they are wanted. What is missing from
+    /// the image is said even when little else is.
+    pub(super) fn announce(&self, path: &Path, details: bool) {
+        let [width, height] = self.size;
+        let (path, limits) = (path.display(), self.limits());
+        let bias = self.bias().map_or(String::new(), |bias| format!(", {bias}"));
+        console::announce(&format!("{path}: {width} x {height}, {limits}, {}{bias}", self.integrator));
+        if details {
+            console::announce(&self.line());
+        }
         self.unreached().iter().for_each(|line| console::complain(line));
     }
 
     /// Where the render stops, whichever comes first.
     fn limits(&self) -> String {
         let Budget { samples_per_pixel, time, .. } = self.settings.budget;
-        let samples = samples_per_pixel.map(|samples| format!("{samples} samples/pixel"));
+        let samples = samples_per_pixel
+            .map(|samples| format!("{samples} sample{} per pixel", if samples == 1 { "" } else { "s" }));
         let time = time.map(|time| format!("{} s", time.as_secs_f64()));
         let error = self.error.map(|error| format!("error {error}"));
         [samples, time, error].into_iter().flatten().collect::<Vec<_>>().join(" or ")

@@ -9,6 +9,7 @@ use crate::{
         files::{
             Label,
             roles::{self, Roles, Wanted},
+            sequence::{Clock, Sequence, runs},
         },
         grid::{Catalogue, Contents},
     },
@@ -18,8 +19,16 @@ use std::path::Path;
 
 /// Lists the grids of the file at `path`.
 pub(super) fn run(path: &Path, answer: &Answer) -> Result<()> {
-    let mut file = Catalogue::open(path)?;
+    let sequence = Sequence::new(path, Clock { fps: Clock::FPS, first: None });
+    let first = sequence.as_ref().map(|numbered| numbered.at(0.0)).transpose();
+    let first = first.map_err(|problem| problem.at(path.display()))?;
+    let mut file = Catalogue::open(first.as_deref().unwrap_or(path))?;
     let (mut lines, mut figures) = (vec![], vec![]);
+    if let Some((numbered, first)) = sequence.as_ref().zip(first.as_ref()) {
+        let frames = numbered.frames();
+        lines.push(format!("frames      {}: {}", frames.len(), runs(&frames)));
+        lines.push(format!("the first   {}", first.display()));
+    }
     for number in 0..file.labels.len() {
         let contents = file.contents(number);
         let label = &file.labels[number];
@@ -32,8 +41,13 @@ pub(super) fn run(path: &Path, answer: &Answer) -> Result<()> {
     }
     let use_of = use_of(&mut file);
     lines.push(format!("smoke       {}", use_of.0));
+    lines.push(format!(
+        "scene       tyndall render {0} renders it; tyndall new {0} writes a scene",
+        path.display()
+    ));
     say(&lines.join("\n"));
-    answer.give(&json!({ "grids": figures, "smoke": use_of.1 }))
+    let frames = sequence.map(|numbered| numbered.frames());
+    answer.give(&json!({ "frames": frames, "grids": figures, "smoke": use_of.1 }))
 }
 
 /// What the plugin `smoke` takes without being told, in words and for scripts.
@@ -93,7 +107,8 @@ fn describe(contents: &Contents) -> Vec<String> {
     ]
 }
 
-fn numbers(v: DVec3) -> String {
+/// A place.
+pub(super) fn numbers(v: DVec3) -> String {
     let [x, y, z] = v.to_array().map(short);
     format!("[{x}, {y}, {z}]")
 }

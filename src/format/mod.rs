@@ -2,9 +2,11 @@
 
 mod draft;
 mod files;
+mod foreign;
 mod input;
 mod json;
 mod parameters;
+mod paths;
 pub mod plugins;
 mod read;
 pub mod references;

@@ -3,7 +3,7 @@
 use super::{
     draft::Draft,
     files::{self, Sources},
-    input, json,
+    foreign, input, json,
     parameters::Parameters,
     references, text, xml,
 };
@@ -35,7 +35,7 @@ pub(super) fn read_whole(path: &Path, definitions: &[(String, String)]) -> Resul
     let found = match input::is_standard_input(path) {
         true => spelling_of(path, &text::of_file(path)?)?,
         false if is_volume(path) => Spelling::Json,
-        false => spelling(path)?,
+        false => foreign::known(path).map_or_else(|| spelling(path), Err)?,
     };
     let mut draft = match found {
         Spelling::Xml => xml::read(path, &mut parameters)?,

@@ -11,12 +11,12 @@ mod arrange;
 mod json;
 mod keys;
 mod layout;
-mod paths;
 mod xml;
 
-pub(super) use paths::relative;
-
-use super::read::{Spelling, read_whole, spelling};
+use super::{
+    paths,
+    read::{Spelling, read_whole, spelling},
+};
 use crate::{
     description::{Library, Location, Object, TransformStep},
     error::{Error, Result},

@@ -118,7 +118,7 @@ fn parts_with_learnt_starts_make_the_same_image() {
     let render = |words: &str| good(sandbox.run(&format!("{START} {words}")));
     for (name, crop) in [("all", ""), ("top", "--crop 16x7+0+0"), ("bottom", "--crop 16x9+0+7")] {
         let render = |words: &str| render(&format!("{crop} {words}"));
-        let said = render(&format!("--spp 7 --sums {name}.sums -o {name}.exr --threads 2")).err();
+        let said = render(&format!("-v --spp 7 --sums {name}.sums -o {name}.exr --threads 2")).err();
         assert!(said.contains("learnt starts"), "{said}");
         render("--samples 0..3 --sums a.sums --threads 2");
         render("--samples 3..7 --sums b.sums --threads 1");

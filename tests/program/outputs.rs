@@ -76,7 +76,6 @@ fn what_cannot_be_written_is_said_before_the_first_ray() {
     let read: &[&str] = &["scene.json, which the scene reads"];
     let flights = "flights --sigma-a 1 --sigma-s 1 --photons 1000000000000";
     for (words, hints) in [
-        (format!("render scene.json {LONG} -o missing/a.exr"), missing),
         (format!("render scene.json {LONG} --report missing/r.json"), missing),
         (format!("render scene.json {LONG} -o x.exr"), folder),
         (format!("render scene.json {LONG} -o f.exr --frames 0..9"), folder),

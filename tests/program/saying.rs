@@ -30,27 +30,33 @@ fn parsed(run: &Run) -> Value {
 }
 
 #[test]
-fn a_render_says_in_one_line_what_it_will_do() {
+fn a_render_says_in_a_line_what_it_will_do_and_in_another_how() {
     let sandbox = Sandbox::with_scene(&foggy_room());
-    for (words, line) in [
+    for (words, plain, details) in [
         (
             "--strategies hit,next-event,join,lens",
-            "bdpt (hit, next-event, join, lens), sobol samples, closed-form flights, 8x8, 4 samples/pixel, profile fog\n",
+            "8 x 8, 4 samples per pixel, bdpt\n",
+            "bdpt (hit, next-event, join, lens), sobol samples, closed-form flights, 8x8, 4 samples per pixel, profile fog\n",
         ),
         (
             "--strategies hit,next-event --sampler sobol --time-limit 0.1s",
+            "8 x 8, 0.1 s, bdpt\n",
             "bdpt (hit, next-event), sobol samples, closed-form flights, 8x8, 0.1 s, profile fog\n",
         ),
         (
             "--strategies hit,join --spp 2 --error 0.5 --profile everything",
-            "bdpt (hit, join), sobol samples, closed-form flights, 8x8, 2 samples/pixel or error 0.5, profile everything\n",
+            "8 x 8, 2 samples per pixel or error 0.5, bdpt\n",
+            "bdpt (hit, join), sobol samples, closed-form flights, 8x8, 2 samples per pixel or error 0.5, profile everything\n",
         ),
         (
             "--integrator fog --size 5x3",
-            "fog, a preview of first surfaces, sobol samples, 5x3, 4 samples/pixel, profile fog\n",
+            "5 x 3, 4 samples per pixel, fog\n",
+            "fog, a preview of first surfaces, sobol samples, 5x3, 4 samples per pixel, profile fog\n",
         ),
     ] {
-        assert_eq!(sandbox.run(&format!("render scene.json {words}")).ends(0).err(), line, "{words}");
+        let said = |more: &str| sandbox.run(&format!("render scene.json {words} {more}")).ends(0).err();
+        assert_eq!(said(""), format!("scene.json: {plain}"), "{words}");
+        assert_eq!(said("-v"), format!("scene.json: {plain}{details}"), "{words}");
     }
 }
 
@@ -67,7 +73,7 @@ fn what_a_pilot_chooses_is_said() {
         ("integrator", json!({"type": "volpath"})),
     ]);
     let sandbox = Sandbox::with_scene(&sky);
-    let said = sandbox.run("render scene.json --report r.json").ends(0).err();
+    let said = sandbox.run("render scene.json --verbose --report r.json").ends(0).err();
     let told =
         ["bdpt (hit, next-event; without join and lens: ", " times as efficient as all strategies equally)"];
     told.iter().for_each(|part| assert!(said.contains(part), "{said}"));
@@ -97,7 +103,7 @@ fn free_flights_are_named_by_their_methods() {
         ("sky", sky(1.0)),
     ];
     let sandbox = Sandbox::with_scene(&scene(&parts));
-    let said = |words: &str| sandbox.run(&format!("render scene.json --spp 1 {words}")).ends(0).err();
+    let said = |words: &str| sandbox.run(&format!("render scene.json -v --spp 1 {words}")).ends(0).err();
     assert!(said("").contains(", delta tracking and closed-form flights, 4x4"), "{}", said(""));
     assert!(said("--tracker march").contains(", ray marching and closed-form flights, "));
 }

@@ -92,8 +92,11 @@ fn info_of_a_volume_file_lists_its_grids() {
     ];
     assert_eq!(lines[..5], expected, "{text}");
     assert!(text.contains("\"vel\", Tree_vec3s_5_4_3, fog volume, a velocity\n"), "{text}");
-    let last = "smoke       density from \"density\", light from \"burn\", colour from \"Cd\"";
-    assert_eq!(*lines.last().unwrap(), last);
+    let last = [
+        "smoke       density from \"density\", light from \"burn\", colour from \"Cd\"",
+        "scene       tyndall render a.vdb renders it; tyndall new a.vdb writes a scene",
+    ];
+    assert_eq!(lines[lines.len() - 2..], last);
     let figures: Value = serde_json::from_str(&sandbox.run("info a.vdb --json").ends(0).out()).unwrap();
     let density = &figures["grids"][0];
     assert_eq!((&density["box"], &density["active_voxels"]), (&json!([[0, 0, 0], [4, 7, 4]]), &json!(72)));
@@ -101,8 +104,8 @@ fn info_of_a_volume_file_lists_its_grids() {
     // What cannot be read is listed all the same.
     let text = sandbox.run("info b.NVDB").ends(0).out();
     assert!(text.contains("grid        \"ids\", int32") && text.contains("not read"), "{text}");
-    let last = text.lines().last().unwrap();
-    assert!(last.starts_with("smoke       ") && last.contains("density_grid"), "{text}");
+    let smoke = text.lines().find(|line| line.starts_with("smoke       ")).unwrap();
+    assert!(smoke.contains("density_grid"), "{text}");
     let missing = sandbox.run("info c.vdb").ends(2).err();
     assert!(missing.contains("c.vdb: expected a file to read"), "{missing}");
 }
@@ -139,6 +142,20 @@ fn frames_of_numbered_files_show_each_its_own() {
     assert_eq!(sandbox.channels("a.0001.exr"), second);
     let made: Value = serde_json::from_str(&sandbox.run("info a.0001.exr --json").ends(0).out()).unwrap();
     assert!(made["settings"]["files"]["a_0008.vdb"].is_string(), "{made}");
+}
+
+#[test]
+fn info_of_numbered_files_tells_which_there_are_and_what_the_first_holds() {
+    let sandbox =
+        Sandbox::new().with_sample("twins.vdb", "a_0007.vdb").with_sample("houdini.vdb", "a_0009.vdb");
+    let text = sandbox.run("info a_####.vdb").ends(0).out();
+    assert!(
+        text.starts_with("frames      2: 7 and 9\nthe first   a_0007.vdb\ngrid        \"density[0]\""),
+        "{text}"
+    );
+    let figures: Value = serde_json::from_str(&sandbox.run("info a_%04d.vdb --json").ends(0).out()).unwrap();
+    assert_eq!(figures["frames"], json!([7, 9]));
+    sandbox.run("info b_####.vdb").refuses(&["none for \"b_####.vdb\""]);
 }
 
 #[test]

@@ -137,3 +137,53 @@ fn new_refuses_what_it_cannot_start_from_or_write_to() {
     assert_eq!(sandbox.files(), ["scene.json"]);
     assert!(sandbox.run("new --help").ends(0).out().contains("  cloud  a cloud under a blue sky"));
 }
+
+#[test]
+fn files_that_are_no_scenes_are_called_what_they_are() {
+    let sandbox = Sandbox::new();
+    for (file, hints) in [
+        ("a.exr", ["found an image", "tyndall info"]),
+        ("a.pbrt", ["found a scene of pbrt", "Mitsuba 3 XML"]),
+        ("a.blend", ["found a scene of Blender", "mitsuba-blender"]),
+        ("a.glb", ["Tyndall does not read", "Blender"]),
+        ("a.PLY", ["found a mesh", "filename"]),
+        ("a.sums", ["found a checkpoint", "--resume"]),
+    ] {
+        sandbox.run(&format!("render {file}")).refuses(&hints);
+    }
+}
+
+#[test]
+fn the_folder_of_an_image_is_made() {
+    let sandbox = Sandbox::with_files(&[]);
+    sandbox.run("new fog -o fog.json").ends(0);
+    sandbox.run("render fog.json --size 4x4 --spp 1 -o anim/deep/x.exr").ends(0);
+    assert!(sandbox.path("anim/deep/x.exr").is_file() && sandbox.path("anim/deep/x.png").is_file());
+}
+
+#[cfg(unix)]
+#[test]
+fn denoising_is_left_to_python_and_refused_before_the_render_without_it() {
+    let python = "#!/bin/sh\necho \"$@\" >> words\n[ -z \"$BROKEN\" ] || { echo no pyoidn >&2; exit 2; }\n";
+    let sandbox = Sandbox::with_files(&[("python", python)]);
+    sandbox.run("new fog -o fog.json").ends(0);
+    let render = "$TYNDALL render fog.json --size 4x4 --spp 1 --denoise --exposure 1.5";
+    let run = sandbox.shell(&format!("TYNDALL_PYTHON=./none {render}"));
+    run.refuses(&[
+        "denoise: expected Python with the packages tyndall and pyoidn",
+        "pip install '.[denoise]'",
+    ]);
+    let run = sandbox.shell(&format!("chmod +x python; BROKEN=1 TYNDALL_PYTHON=./python {render}"));
+    run.refuses(&["found no pyoidn", "pip install"]);
+    assert!(!sandbox.path("fog.exr").exists());
+    let run = sandbox.shell(&format!("rm words; TYNDALL_PYTHON=./python {render}")).ends(0);
+    assert!(run.out().ends_with("denoised: fog.denoised.exr\n"), "{}", run.out());
+    let files = "fog.exr fog.denoised.exr fog.denoised.png --view=standard --exposure=1.5";
+    assert_eq!(sandbox.text("words"), format!("-m tyndall denoise --check\n-m tyndall denoise {files}\n"));
+    let layers = sandbox.channels("fog.exr");
+    assert!(layers.contains_key("albedo.R") && layers.contains_key("normal.X"), "{:?}", layers.keys());
+    // A layer of an image as a PNG.
+    sandbox.run("convert fog.exr albedo.png --layer albedo").ends(0);
+    sandbox.run("convert fog.exr b.png --layer albdo").refuses(&["albdo", "did you mean \"albedo\"?"]);
+    sandbox.run("convert fog.json b.json --layer albedo").refuses(&["--layer", "a PNG to write"]);
+}

@@ -1,6 +1,6 @@
 //! The frames of an animation: when each is, and the scene that it shows.
 
-use super::arguments::Render;
+use super::{arguments::Render, features};
 use crate::cli::scene::built;
 use crate::{
     description::{Object, Property, Value},
@@ -26,6 +26,7 @@ impl<'a> Clip<'a> {
     /// Reads the scene file.
     pub(super) fn read(arguments: &'a Render) -> Result<Self> {
         let root = arguments.scene.read()?;
+        let root = if arguments.denoise { features::added(root) } else { root };
         let changes = smoke::has_sequence(&root) || keyframes::has_any(&root);
         Ok(Self { arguments, root, rebuilds: arguments.frames.is_some() && changes })
     }

@@ -32,13 +32,17 @@ pub struct Render {
     /// Image to write: linear OpenEXR (.exr), float map (.pfm) or Radiance (.rgbe, .hdr); a tone-mapped PNG
     /// (.png) is written next to it
     ///
-    /// Default: the name of the scene, in the current folder, in the file format of its film.
+    /// Its folder is made if there is none. Default: the name of the scene, in the current folder, in the file format of its film.
     #[arg(short, long, value_name = "FILE", value_parser = image_file, help_heading = heading::OUTPUT)]
     pub output: Option<PathBuf>,
 
     /// Where the statistics of the render go: time, samples, noise, how paths were sampled.
     #[command(flatten, next_help_heading = heading::OUTPUT)]
     pub answer: Answer,
+
+    /// Also print how paths are sampled: strategies, the pilot's choice, the sampler, trackers; `tyndall info` prints more
+    #[arg(short, long, help_heading = heading::OUTPUT)]
+    pub verbose: bool,
 
     /// Size of the image in pixels, where the film has no crop window [default: the scene's film]
     #[arg(long, alias = "resolution", value_name = "WxH", value_parser = size, allow_hyphen_values = true, help_heading = heading::OUTPUT)]
@@ -82,6 +86,12 @@ pub struct Render {
     /// The layers add up to the image. With --groups, those of each group are written (group.NAME.unscattered.R, ...).
     #[arg(long, help_heading = heading::OUTPUT)]
     pub components: bool,
+
+    /// Also write the image denoised (NAME.denoised.exr and .png), by Open Image Denoise, which the Python package brings
+    ///
+    /// The image gets layers of albedo and normals, by which edges stay sharp. See tyndall denoise.
+    #[arg(long, help_heading = heading::OUTPUT)]
+    pub denoise: bool,
 
     /// Write the image so far, and its PNG, every five seconds
     #[arg(long, help_heading = heading::OUTPUT)]

@@ -3,6 +3,7 @@
 mod animation;
 pub(super) mod arguments;
 mod checkpoint;
+mod features;
 mod files;
 pub(super) mod precision;
 mod preview;
@@ -13,7 +14,7 @@ mod viewer;
 
 use super::{
     console::{complain, say},
-    interrupt,
+    denoise, interrupt,
     parsers::Frames,
     plan::Plan,
     progress::{Bar, noise_text, percent, samples_text},
@@ -49,9 +50,13 @@ use viewer::Viewer;
 /// Runs the command.
 pub(super) fn run(arguments: &Render) -> Result<()> {
     let started = Instant::now();
+    if arguments.denoise {
+        denoise::check()?;
+    }
     let clip = Clip::read(arguments)?;
     let mut setup = clip.first()?;
     let mut target = Target::new(arguments, &setup)?;
+    target.make_folder()?;
     arguments.pixels.progressive.map_or(Ok(()), |_| progressive::check(&setup))?;
     files::check(arguments, &setup, &target)?;
     let pool = threads(arguments.threads)?;
@@ -65,7 +70,7 @@ pub(super) fn run(arguments: &Render) -> Result<()> {
     let plan = plan.of_pixels(arguments.progressive());
     // Before this there is nothing that a signal should save.
     interrupt::listen();
-    plan.announce();
+    plan.announce(&arguments.scene.file, arguments.verbose);
     let load_time = started.elapsed().saturating_sub(task.settings.budget.spent).as_secs_f64();
     let figures = match arguments.frames {
         None => vec![pool.install(|| shoot(&setup, &task, &mut target, None))?],
@@ -213,6 +218,11 @@ fn deliver(
         target.write(&setup.film, &mut image, &task.made)?;
         print_summary(&image, task, target, &exposure, shaded, label);
         explain_darkness(&image, setup, task);
+        if task.arguments.denoise {
+            let denoised = denoise::denoise(&target.path, target.display.of(&image.pixels))?;
+            say(&format!("denoised: {}", denoised.display()));
+            figures["denoised"] = denoised.display().to_string().into();
+        }
         figures["exposure"] = target.display.of(&image.pixels).stops.into();
         figures["image"] = target.path.display().to_string().into();
     }

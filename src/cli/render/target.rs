@@ -57,6 +57,12 @@ impl Target {
         Ok(Self { path, format, display: arguments.display })
     }
 
+    /// Makes the folder that the image goes to.
+    pub(crate) fn make_folder(&self) -> Result<()> {
+        let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+        folder.map_or(Ok(()), film::output::create_folder)
+    }
+
     /// The PNG; none beside a device or pipe.
     pub(crate) fn preview(&self) -> Option<PathBuf> {
         (!film::output::is_stream(&self.path)).then(|| self.path.with_extension("png"))

@@ -11,7 +11,7 @@ const THICKNESS: f64 = 5.0;
 const THICKNESS_OF_FIRE: f64 = 3.0;
 
 /// Radiance of most of a fire at dusk.
-const RADIANCE: f64 = 0.8;
+const RADIANCE: f64 = 0.6;
 
 /// Rays along each side of the image, and points on each of them.
 const RAYS: u32 = 48;

@@ -6,7 +6,7 @@ mod portrait;
 mod smoke;
 mod view;
 
-use super::{parameters::escaped, write::relative};
+use super::{parameters::escaped, paths::relative};
 use crate::{
     description::suggest,
     error::{Error, Result},

@@ -1,7 +1,10 @@
 //! The tree of a scene as a file in another folder spells it: every object has its tag, names are only those that mean
 //! something, and names of files start at that folder.
 
-use super::{super::tags, keys, paths};
+use super::{
+    super::{paths, tags},
+    keys,
+};
 use crate::{
     description::{Location, Object, Property, Value},
     error::{Error, Result},

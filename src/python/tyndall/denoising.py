@@ -21,12 +21,18 @@ def with_features(scene: Scene) -> Scene:
     return Scene({**tree, own: layers}, scene.name)
 
 
-def denoised(picture: Picture) -> Picture:
-    """The picture as Open Image Denoise sees it."""
+def library() -> Any:
+    """The package of Open Image Denoise, an extra."""
     try:
         import pyoidn
     except ImportError:
         raise Failure("Open Image Denoise is not installed", "pip install pyoidn, or tyndall[denoise] in place of tyndall") from None
+    return pyoidn
+
+
+def denoised(picture: Picture) -> Picture:
+    """The picture as Open Image Denoise sees it."""
+    pyoidn = library()
     layers = picture.layers
     features: dict[str, Any] = {name: single(layers[name]) for name in (ALBEDO, NORMAL) if name in layers}
     found = pyoidn.denoise(single(picture), hdr=True, **features)

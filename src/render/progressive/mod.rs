@@ -33,6 +33,7 @@ use queue::{Queue, division};
 use rayon::prelude::*;
 use regions::Outlines;
 use sight::Sight;
+pub use sight::optical_depths;
 use std::{
     collections::HashSet,
     time::{Duration, Instant},

@@ -3,7 +3,8 @@
 
 use crate::{
     bsdf::BsdfModel,
-    math::{RaySegment, Spectrum, Vec2, Vec3, vec3},
+    film::Film,
+    math::{RaySegment, Spectrum, Vec2, Vec3, vec2, vec3},
     medium::Medium,
     render::fog,
     sampling::{Stream, stream::Purpose},
@@ -28,7 +29,9 @@ pub(super) struct Sight {
     pub albedo: Spectrum,
     /// The emitter that it is.
     pub emitter: Option<u32>,
-    /// 1 - exp(-optical depth), the mean of the channels.
+    /// Optical depth, the mean of the channels.
+    pub depth: f32,
+    /// 1 - exp(-`depth`).
     pub opacity: f32,
     /// 1 over the distance at which the optical depth is 1, or where the last medium ends if it never is (1/m); 0 without
     /// media.
@@ -46,6 +49,13 @@ pub(super) struct FirstSurface {
     pub distance: f32,
 }
 
+/// Optical depths of the media before what `scene` shows on `film`, on `count` x `count` rays.
+pub fn optical_depths(scene: &Scene, film: &Film, count: u32) -> Vec<f32> {
+    let place = |n: u32, size: u32| (n as f32 + 0.5) / count as f32 * size as f32;
+    let film_position = |n: u32| vec2(place(n % count, film.width), place(n / count, film.height));
+    (0..count * count).map(|n| Sight::of(scene, film_position(n), false).depth).collect()
+}
+
 impl Sight {
     /// Nothing at all.
     pub(super) const NOTHING: Self = Self {
@@ -53,6 +63,7 @@ impl Sight {
         last_normal: Vec3::ZERO,
         albedo: Spectrum::ZERO,
         emitter: None,
+        depth: 0.0,
         opacity: 0.0,
         nearness: 0.0,
     };
@@ -89,7 +100,7 @@ impl Sight {
                 }
             }
         }
-        Self { opacity: 1.0 - (-veil.depth).exp(), nearness: veil.nearness(), ..seen }
+        Self { depth: veil.depth, opacity: 1.0 - (-veil.depth).exp(), nearness: veil.nearness(), ..seen }
     }
 
     /// Ends at `point`, seen from direction `incoming`.

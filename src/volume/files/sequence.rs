@@ -138,7 +138,7 @@ impl Sequence {
 }
 
 /// Numbers as runs: 1 to 10, 12 and 14 to 20.
-fn runs(frames: &[i64]) -> String {
+pub fn runs(frames: &[i64]) -> String {
     let runs: Vec<&[i64]> = frames.chunk_by(|a, b| *b == a + 1).collect();
     let one = |run: &&[i64]| match run {
         [only] => only.to_string(),

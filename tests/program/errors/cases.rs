@@ -217,6 +217,8 @@ pub(super) fn all() -> Vec<Case> {
         Case::json("smoke of no frame", r#""plume": {"type": "smoke", "filename": "plume_####.vdb"}"#),
         Case::json("smoke of one file with a frame rate", r#""plume": {"type": "smoke", "filename": "plume.vdb", "fps": 25}"#),
         Case::json("smoke of no size", r#""plume": {"type": "smoke", "filename": "plume.vdb", "scale": 0}"#).beside("plume.vdb", ""),
+        Case::json("smoke whose up is no axis", r#""plume": {"type": "smoke", "filename": "plume.vdb", "up": "x"}"#).beside("plume.vdb", ""),
+        Case::json("smoke of a group without a name", r#""plume": {"type": "smoke", "filename": "plume.vdb", "group": ""}"#).beside("plume.vdb", ""),
         Case::json("smoke of something else", r#""plume": {"type": "smoke", "filename": "plume.vdb"}"#).beside("plume.vdb", "this is no volume"),
         Case::xml("smoke in a shape", r#"<shape type="sphere"><shape type="smoke"><string name="filename" value="plume.vdb"/></shape></shape>"#),
         Case::xml("smoke as a medium", r#"<shape type="sphere"><medium type="smoke" name="interior"/></shape>"#),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 /// Names, and the words of commands.
 const COMMANDS: &[(&str, &str)] = &[
-    ("an image in a folder that is missing", "render scene.json -o missing/a.exr"),
+    ("an image inside a file", "render scene.json -o scene.json/a.exr"),
     ("a report over a folder", "render scene.json --report folder"),
     ("a report with the name of a folder", "render scene.json --report other/"),
     ("a report over the image", "render scene.json -o a.exr --report ./a.exr"),

@@ -13,7 +13,7 @@ pub(super) fn folder(file: &Path) -> &Path {
 
 /// The name by which a scene in the folder `from` reaches `path`, which is named at `place`; absolute where there is no
 /// other way.
-pub(in crate::format) fn relative(path: &Path, from: &Path, place: impl fmt::Display) -> Result<String> {
+pub(super) fn relative(path: &Path, from: &Path, place: impl fmt::Display) -> Result<String> {
     let path = match path.file_name() {
         Some(name) => settled(folder(path)).join(name),
         None => settled(path),

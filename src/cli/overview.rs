@@ -1,0 +1,106 @@
+//! What one asks first of a scene: how large it is, where the camera stands, and how thick its media are.
+
+use super::volumes::numbers;
+use crate::{
+    math::{Bounds, DVec3, Spectrum},
+    medium::MediumIndex,
+    render::progressive::optical_depths,
+    scene::build::Setup,
+};
+use serde_json::{Value, json};
+
+/// Rays along each side of the image.
+const RAYS: u32 = 24;
+
+/// What is found.
+pub(super) struct Overview {
+    /// The box around all shapes, if there are any.
+    size: Option<[DVec3; 2]>,
+    camera: DVec3,
+    camera_in: String,
+    /// Media by their names with their greatest extinction (1/m), and whether that is the same everywhere.
+    media: Vec<(String, Spectrum, bool)>,
+    /// Optical depths across the view, the least first.
+    depths: Vec<f32>,
+}
+
+impl Overview {
+    /// That of `setup`.
+    pub(super) fn of(setup: &Setup) -> Self {
+        let scene = &setup.scene;
+        let place = |position: crate::math::Vec3| position.as_dvec3() + scene.recentre;
+        let Bounds { low, high } = scene.geometry.bounds();
+        let medium = |index: usize| {
+            let (medium, name) = (&scene.media[index], setup.medium_name(MediumIndex(index as u32)));
+            (name, medium.bound().sigma_t, medium.heterogeneous().is_none())
+        };
+        let mut depths = optical_depths(scene, &setup.film, RAYS);
+        depths.sort_by(f32::total_cmp);
+        Self {
+            size: low.cmple(high).all().then(|| [low, high].map(place)),
+            camera: place(scene.sensor.position()),
+            camera_in: setup.medium_name(scene.media_map.sensor),
+            media: (1..=setup.medium_names.len()).map(medium).collect(),
+            depths,
+        }
+    }
+
+    /// The least, the middle and the greatest optical depth across the view.
+    fn thickness(&self) -> Option<[f32; 3]> {
+        let middle = self.depths.get(self.depths.len() / 2)?;
+        Some([*self.depths.first()?, *middle, *self.depths.last()?])
+    }
+
+    /// In lines.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let mut lines = vec![];
+        if let Some([low, high]) = self.size {
+            let [x, y, z] = (high - low).to_array().map(brief);
+            let ends = [low, high].map(|end| numbers(rounded(end, (high - low).max_element())));
+            lines.push(format!("size        {x} x {y} x {z} m, from {} to {}", ends[0], ends[1]));
+        }
+        lines.push(format!("camera      in {}, at {}", self.camera_in, numbers(self.camera)));
+        let path = |(name, extinction, is_everywhere): &(String, Spectrum, bool)| {
+            let at_least = if *is_everywhere { "" } else { "at least " };
+            format!("free path   {name}: {at_least}{}", free_path(*extinction))
+        };
+        lines.extend(self.media.iter().map(path));
+        if let Some([least, middle, most]) = self.thickness().filter(|[_, _, most]| *most > 0.0) {
+            let [least, middle, most] = [least, middle, most].map(|depth| brief(f64::from(depth)));
+            lines.push(format!(
+                "thickness   {middle} mean free paths lie before what is seen, from {least} to {most} across the view"
+            ));
+        }
+        lines
+    }
+
+    /// For scripts.
+    pub(super) fn json(&self) -> Value {
+        json!({
+            "box": self.size.map(|ends| ends.map(|end| end.to_array())),
+            "camera": { "medium": self.camera_in, "position": self.camera.to_array() },
+            "thickness": self.thickness().map(|[least, middle, most]| json!({ "least": least, "median": middle, "greatest": most })),
+        })
+    }
+}
+
+/// 1 over an extinction, in metres: of every channel where they differ.
+fn free_path(extinction: Spectrum) -> String {
+    let paths = extinction.to_array().map(|sigma| brief(1.0 / f64::from(sigma)));
+    match &paths {
+        [r, g, b] if r == g && g == b => format!("{r} m"),
+        _ => format!("{} m", paths.join(" ")),
+    }
+}
+
+/// A place to a part in 10,000 or more of a `length`, without what single precision adds.
+fn rounded(place: DVec3, length: f64) -> DVec3 {
+    let step = 10_f64.powi(length.log10().floor() as i32 - 4);
+    DVec3::from(place.to_array().map(|x| (x / step).round() * step + 0.0))
+}
+
+/// Three digits.
+fn brief(x: f64) -> String {
+    let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
+    if rounded.is_infinite() { "endless".to_owned() } else { rounded.to_string() }
+}
