@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tyndall.failure import Failure
 from tyndall.scene import open_scene
+from tyndall import judging
 from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, full, gallery, growth, instructions, lottery
 from validation import matrix, package_tests, page, progressive, rays, reach, references, selftest, thresholds, truths
 from validation.cluster import cli as cluster
@@ -110,7 +111,7 @@ def run_compare(options: argparse.Namespace) -> bool:
     scene = open_scene(options.scene, parameters_of(options))
     expected = reach.differences(scene, methods)
     reference = references.cached(scene, options.size)
-    print(compare.HEADER, flush=True)
+    print(judging.HEADER, flush=True)
     candidates = {method: compare.candidate_renderer(scene, method, size) for method in methods}
     found = {method: compare.tested(scene, method, effort, reference, candidates[method], options.output, expected[method]) for method in methods}
     page = options.output / f"{scene.name}.html"

@@ -11,9 +11,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 import tyndall
 from tyndall import display
 from tyndall.failure import Failure
+from tyndall.judging import Verdict
 from tyndall.scene import Scene
 from validation import picture
-from validation.compare import RETRY, Effort, Verdict
+from validation.compare import RETRY, Effort
 from validation.files import made_by_command, write_text
 
 TEMPLATES = Path(__file__).parent / "templates"

@@ -14,7 +14,7 @@ from validation import guide, models, studies, volumes
 from validation.contender import INTEGRATORS
 from validation.files import write_report
 from validation.places import EFFICIENCY, OUTPUT, REPORTS, SCENES
-from validation.statistics import Ratio
+from tyndall.statistics import Ratio
 from validation.studies import BDPT, MITSUBA, OURS, Effort, Found, Reference
 
 WANTED = {

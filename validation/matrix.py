@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from tyndall.failure import Failure
+from tyndall.judging import Verdict
 from tyndall.scene import Scene
 from validation import cells, compare, coverage, references
 from validation.cases import CASES, Case
-from validation.compare import Effort, Renderer, Verdict
+from validation.compare import Effort, Renderer
 from validation.places import OUTPUT, RECORDED
 
 DEEP = Effort(batches=16, spp=80, seed=5001)

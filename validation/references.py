@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from tyndall.failure import Failure
+from tyndall.judging import Measured
 from tyndall.scene import Scene
 from validation import mitsuba
-from validation.compare import Effort, Measured, Renderer, Size, mitsuba_renderer
+from validation.compare import Effort, Renderer, Size, mitsuba_renderer
 from validation.places import CACHE, RECORDED
-from validation.statistics import Estimate
+from tyndall.statistics import Estimate
 
 
 @dataclass

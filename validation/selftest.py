@@ -1,6 +1,7 @@
 """The test of the test: Mitsuba must agree with itself, and must not with a scene that is 5 % off."""
 
 from tyndall.scene import open_scene
+from tyndall import judging
 from validation import compare, references
 from validation.compare import Effort
 from validation.places import CROSSCHECK
@@ -11,7 +12,7 @@ PERTURBATION = 0.05
 
 def run(effort: Effort) -> bool:
     """True if every scene is accepted as it is and refused when perturbed."""
-    print(compare.HEADER, flush=True)
+    print(judging.HEADER, flush=True)
     return all([agrees(name, 0, effort) & (not agrees(name, PERTURBATION, effort)) for name in SCENES])
 
 

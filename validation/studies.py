@@ -19,7 +19,7 @@ from tyndall.failure import Failure
 from validation import mitsuba
 from validation.contender import INTEGRATORS, VARIANTS
 from validation.places import OUTPUT
-from validation.statistics import Ratio
+from tyndall.statistics import Ratio
 
 MITSUBA = tuple(f"{kind}:{variant}" for kind in INTEGRATORS for variant in VARIANTS)
 """Contenders of Mitsuba's; the integrator alone is one by the faster variant that there is."""

@@ -13,7 +13,7 @@ from tyndall.scene import Scene
 from validation import guide
 from validation.files import write_report
 from validation.places import REPORTS
-from validation.statistics import Ratio
+from tyndall.statistics import Ratio
 
 WANTED = 2.0
 """How many times as long it shall take without a guide."""

@@ -3,10 +3,11 @@
 from functools import partial
 
 from tyndall.failure import Failure
+from tyndall.judging import Measured, Verdict
 from validation import compare
 from validation.closed_forms import furnace, glowing, point_light, slab, varying
 from validation.closed_forms.case import Case
-from validation.compare import Effort, Measured, Verdict
+from validation.compare import Effort
 from validation.places import OUTPUT
 
 

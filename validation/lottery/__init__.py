@@ -18,7 +18,7 @@ from validation.files import write_text
 from validation.lottery.scenes import Drawn, drawn
 from validation.places import OUTPUT
 from validation.reach import Reach
-from validation.statistics import Ratio
+from tyndall.statistics import Ratio
 from validation.studies import BDPT, OURS, Effort
 
 PT = "--integrator pt"

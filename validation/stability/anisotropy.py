@@ -10,7 +10,7 @@ from validation.closed_forms.slab import Slab, lit_slab
 from validation.stability import photons
 from validation.stability.case import EYE, Case, ball, methods, moved, named, oven
 from validation.stability.thickness import AWAY
-from validation.statistics import Estimate
+from tyndall.statistics import Estimate
 
 ROW = "g = 0, +-1e-4, +-0.999"
 VALUES = (0.0, 1e-4, -1e-4, 0.999, -0.999)

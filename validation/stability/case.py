@@ -8,7 +8,7 @@ import numpy as np
 
 from tyndall.scene import Scene, derived
 from validation.closed_forms.case import BLACK, ISOTROPIC, NULL, SIZE, camera, medium, orthographic, rgb, scene
-from validation.statistics import Estimate, exact
+from tyndall.statistics import Estimate, exact
 
 Known = float | np.ndarray | Estimate
 """Anything that broadcasts to height x width x 3; with its own error where it has one."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from validation.compare import tiled
-from validation.statistics import SIGNIFICANCE, Estimate, estimate, freedom, standard_score
+from tyndall.judging import tiled
+from tyndall.statistics import SIGNIFICANCE, Estimate, estimate, freedom, standard_score
 
 SLACK = 5e-5
 """Relative difference that is not what the table is about: where nearly nothing is random, the few samples that are leave

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from validation.statistics import Estimate, estimate
+from tyndall.statistics import Estimate, estimate
 
 PHOTONS = 100_000
 BATCHES = 16

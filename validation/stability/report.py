@@ -9,7 +9,7 @@ from pathlib import Path
 from validation.files import write_text
 from validation.stability.case import Case
 from validation.stability.judge import Found, refused
-from validation.statistics import SIGNIFICANCE
+from tyndall.statistics import SIGNIFICANCE
 
 CASE_WIDTH, METHOD_WIDTH = 52, 19
 HEADER = (

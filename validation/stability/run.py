@@ -20,7 +20,7 @@ from validation.stability import albedo, anisotropy, boundaries, contrast, grazi
 from validation.stability.case import Case
 from validation.stability.judge import Found, judge
 from validation.stability.report import Line
-from validation.statistics import Estimate
+from tyndall.statistics import Estimate
 
 GROUPS = (thickness, albedo, anisotropy, contrast, scale, lamps, boundaries, grazing, walks, index, voids)
 """In the order of the table."""

@@ -10,7 +10,7 @@ from validation.closed_forms.slab import Slab, lit_slab
 from validation.compare import Effort
 from validation.stability.anisotropy import fog_image
 from validation.stability.case import ALL, EYE, Case, fog, lamp, moved, named, scaled
-from validation.statistics import Estimate
+from tyndall.statistics import Estimate
 
 SCALE = "scene scale 1e-6 to 1e6"
 ORIGIN = "a scene 1e5 units from the origin"

@@ -8,9 +8,10 @@ from markupsafe import escape
 
 import tyndall
 from tyndall.failure import Failure
+from tyndall.judging import Measured, Verdict, judge
 from tyndall.scene import Scene
 from validation import comparison_page
-from validation.compare import Effort, Measured, Verdict, judge
+from validation.compare import Effort
 
 EVIL = "<script>alert('x')</script>\"><img src=http://evil.example/x.png>"
 

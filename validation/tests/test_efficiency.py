@@ -11,7 +11,7 @@ from tyndall.failure import Failure
 from tyndall.scene import open_scene
 from validation import cli, efficiency, guide, mitsuba, studies, volumes
 from validation.places import EFFICIENCY
-from validation.statistics import Ratio
+from tyndall.statistics import Ratio
 from validation.studies import Effort, Found, Reference, Study
 
 COST = 0.02

@@ -10,7 +10,7 @@ from tyndall.scene import Scene, scene_file
 from validation import lottery, reach
 from validation.lottery.scenes import drawn
 from validation.reach import Reach
-from validation.statistics import Ratio
+from tyndall.statistics import Ratio
 
 
 @pytest.mark.parametrize("seed", range(3))

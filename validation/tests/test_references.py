@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from tyndall.failure import Failure
+from tyndall.judging import Measured
 from tyndall.scene import Scene, open_scene
 from validation import compare, matrix, references
-from validation.compare import Effort, Measured
+from validation.compare import Effort
 from validation.places import CROSSCHECK
 
 EFFORT = Effort(batches=8, spp=4)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from validation.statistics import Ratio, estimate, exact, sidak_limit, standard_score
+from tyndall.statistics import Ratio, estimate, exact, sidak_limit, standard_score
 
 
 def test_scores_have_the_tails_of_welchs_test() -> None:

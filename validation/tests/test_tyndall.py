@@ -1,11 +1,12 @@
 """The program from Python: the binary renders what is small."""
 
+import inspect
 import json
 import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import mitsuba as mi
 import numpy as np
@@ -14,7 +15,9 @@ import pytest
 import tyndall
 from tyndall import arguments, display, program, rendering
 from tyndall.failure import Failure
+from tyndall.option_types import RenderOptions
 from tyndall.scene import as_scene, open_scene
+from tyndall.volume_file import vol
 from validation.places import CROSSCHECK, ROOT, SCENES
 
 SCENE = CROSSCHECK / "cube_in_room.json"
@@ -201,3 +204,21 @@ def test_the_manuals_example_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     exec(code, names)
     assert names["image"].shape == (240, 320, 3) and names["image"].dtype == np.float64
     assert names["cloud"].shape == (120, 160, 3) and (tmp_path / "foggy_room.exr").is_file()
+
+
+def test_types_of_options_are_those_of_the_program() -> None:
+    known = {*arguments.names()} - {*arguments.OTHERWISE, "progress"}
+    assert set(RenderOptions.__annotations__) == known
+    read = inspect.signature(tyndall.render).parameters["options"].annotation
+    assert read == Unpack[RenderOptions]
+
+
+def test_a_volume_file_is_rendered_without_a_scene(tmp_path: Path) -> None:
+    voxels = np.zeros((6, 6, 6), np.float32)
+    voxels[1:5, 1:5, 1:5] = 1
+    path = tmp_path / "puff.vol"
+    path.write_bytes(vol(voxels))
+    image = tyndall.render(path, size=(12, 12), spp=2)
+    bare = tyndall.render(path, size=(12, 12), spp=2, parameters={"density_scale": 0})
+    assert image.shape == (12, 12, 3) and np.abs(image - bare).max() > 0.1
+    assert tyndall.load(path)["smoke"]["filename"] == str(path)

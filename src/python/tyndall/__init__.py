@@ -7,6 +7,7 @@
 
 from tyndall.arguments import options
 from tyndall.commands import diff, info, study
+from tyndall.comparing import Comparison, compare
 from tyndall.failure import Failure, TyndallWarning
 from tyndall.load_dict import from_mitsuba, to_mitsuba
 from tyndall.picture import Picture, read
@@ -16,11 +17,13 @@ from tyndall.scene import AnyScene, Scene, load
 __all__ = [
     "ALL_STRATEGIES",
     "AnyScene",
+    "Comparison",
     "Failure",
     "Picture",
     "Rendering",
     "Scene",
     "TyndallWarning",
+    "compare",
     "diff",
     "from_mitsuba",
     "info",

@@ -16,6 +16,8 @@ OTHERWISE = {
     "report": "look at .report of the picture",
     "json": "look at .report of the picture",
     "quiet": "give progress=False",
+    "verbose": "look at .report of the picture",
+    "denoise": "give features=True and call .denoised() of the picture",
     "layers": "look at .layers of the picture",
     "help": "print(tyndall.options())",
     "version": "print(tyndall.program.call([str(tyndall.program.binary()), '--version']).stdout)",

@@ -8,13 +8,14 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
 from tyndall import arguments, denoising, exr, program, watching
 from tyndall.display import Display
 from tyndall.failure import Failure, TyndallWarning
+from tyndall.option_types import RenderOptions
 from tyndall.picture import STANDARD, Picture
 from tyndall.scene import AnyScene, as_scene, scene_file
 
@@ -69,13 +70,13 @@ def render(
     progress: bool | None = None,
     must_be_finite: bool = True,
     patience: float | None = None,
-    **options: Any,
+    **options: Unpack[RenderOptions],
 ) -> Picture:
     """Renders one image: an array that shows itself in notebooks, with `.layers`, `.variance`, `.metadata` and `.save`.
 
     The scene is a file (.json or .xml), or a dictionary as for `mitsuba.load_dict`. Every option of `tyndall render` is one
     here, with `_` for `-`: `spp=64`, `size=(640, 480)`, `time_limit=10`, `max_depth=8`, `strategies=["hit", "join"]`; True for a
-    flag. `print(tyndall.options())` lists them. `parameters={"res": 256}` is `-D res=256`.
+    flag. `print(tyndall.options())` lists them; their types are in `tyndall.option_types.RenderOptions`. `parameters={"res": 256}` is `-D res=256`.
 
     `features` adds the layers that `Picture.denoised` looks at. `progress` shows a bar or none; without it, a bar in terminals
     and notebooks. Ctrl-C (in a notebook: interrupt the kernel) ends the render, and the image so far is what is returned. What the program warns of
@@ -98,7 +99,7 @@ def run(
     progress: bool | None = False,
     must_be_finite: bool = True,
     patience: float | None = None,
-    **given: Any,
+    **given: Unpack[RenderOptions],
 ) -> Rendering:
     """What `render` does, with all that is said of it. It shows no progress unless asked to, and its warnings are
     `messages`."""

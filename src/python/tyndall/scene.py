@@ -13,6 +13,9 @@ from tyndall import program
 from tyndall.failure import Failure
 from tyndall.spelling import spelled
 
+VOLUMES = ".vdb", ".nvdb", ".vol"
+"""Endings of volume files, which the program renders in a scene of its own."""
+
 Change = Callable[[dict[str, Any]], dict[str, Any]]
 """What is done to an object of a scene."""
 
@@ -44,7 +47,10 @@ class Scene:
         return self.source
 
     def dictionary(self) -> dict:
-        """The scene as a tree, parameters filled in; only of scenes in JSON."""
+        """The scene as a tree, parameters filled in; only of scenes in JSON, and of volume files."""
+        if isinstance(self.source, Path) and self.source.suffix.lower() in VOLUMES:
+            around = program.call([str(program.binary()), "--quiet", "new", str(self.source)]).stdout
+            return changed(filled(json.loads(around), self.parameters), lambda o: absolute(o, Path.cwd()))
         return filled(self.source if isinstance(self.source, dict) else json.loads(self.source.read_text()), self.parameters)
 
     def key(self) -> str:
@@ -67,10 +73,11 @@ class Scene:
 def open_scene(path: str | Path, parameters: dict[str, str] | None = None) -> Scene:
     """A scene from a file that must exist."""
     path = Path(path)
-    if not path.is_file():
-        raise Failure(f"{path}: no such scene", "name a .json or .xml file, relative to the current folder")
-    if path.suffix not in (".json", ".xml"):
-        raise Failure(f"{path}: neither .json nor .xml", "name a scene")
+    is_volume = path.suffix.lower() in VOLUMES
+    if not path.is_file() and not (is_volume and re.search("[#%]", path.name)):
+        raise Failure(f"{path}: no such scene", "name a .json or .xml file, or a volume, relative to the current folder")
+    if path.suffix not in (".json", ".xml") and not is_volume:
+        raise Failure(f"{path}: neither .json nor .xml, nor a volume file", "name a scene, or a .vdb, .nvdb or .vol file")
     return Scene(path, path.stem, parameters or {})
 
 
@@ -118,7 +125,7 @@ def changed(tree: Any, change: Change) -> Any:
 
 
 AnyScene = Scene | str | Path | Mapping[str, Any]
-"""A scene, the file of one (.json or .xml), or a dictionary as for `mitsuba.load_dict`."""
+"""A scene, the file of one (.json or .xml), a volume file (.vdb, .nvdb, .vol), or a dictionary as for `mitsuba.load_dict`."""
 
 
 def as_scene(scene: AnyScene, parameters: Mapping[str, object] | None = None) -> Scene:
