@@ -14,7 +14,7 @@ from tyndall import program
 from validation.places import CROSSCHECK, PYTHON, ROOT
 
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())
-OF_EXTRAS = {"pyoidn", "mitsuba"}
+OF_EXTRAS = {"pyoidn", "mitsuba", "scipy"}
 """What is imported where it is needed, and said to be missing where it is."""
 
 
