@@ -124,6 +124,8 @@ impl<N: Normals> Perturbed<N> {
 }
 
 impl<N: Normals> BsdfModel for Perturbed<N> {
+    // Never inlined, like all that follow: calls of the common models, which share their dispatch, stay small.
+    #[inline(never)]
     fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
         let here = self.at(uv);
         let [eye, light] = ends(transport, wi, wo);
@@ -143,6 +145,7 @@ impl<N: Normals> BsdfModel for Perturbed<N> {
 
     /// A walk from a light does not know yet where the eye will be: it takes one of both frames, and ends where that is not the
     /// one that the eye sees.
+    #[inline(never)]
     fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let here = self.at(uv);
         let is_camera = transport == Transport::Radiance;
@@ -173,6 +176,7 @@ impl<N: Normals> BsdfModel for Perturbed<N> {
         })
     }
 
+    #[inline(never)]
     fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         self.nested.survival(uv, wi)
     }

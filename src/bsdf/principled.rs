@@ -319,10 +319,13 @@ impl Parts {
 }
 
 impl BsdfModel for Principled {
+    // Never inlined, like all that follow: calls of the common models, which share their dispatch, stay small.
+    #[inline(never)]
     fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
         self.0.evaluate(&self.0.at(uv), wi, wo, transport)
     }
 
+    #[inline(never)]
     fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         if wi.z == 0.0 || (wi.z < 0.0 && !self.0.transmits) {
             return None;
@@ -332,6 +335,7 @@ impl BsdfModel for Principled {
         self.0.evaluate(&here, wi, wo, transport).sampled(wo)
     }
 
+    #[inline(never)]
     fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         if wi.z > 0.0 || self.0.transmits { self.0.survival(uv) } else { 0.0 }
     }

@@ -188,10 +188,13 @@ impl Parts {
 }
 
 impl BsdfModel for PrincipledThin {
+    // Never inlined, like all that follow: calls of the common models, which share their dispatch, stay small.
+    #[inline(never)]
     fn evaluate(&self, uv: Uv, wi: Vec3, wo: Vec3, transport: Transport) -> BsdfValue {
         self.0.at(uv).evaluate(wi, wo, transport)
     }
 
+    #[inline(never)]
     fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         if wi.z == 0.0 {
             return None;
@@ -202,6 +205,7 @@ impl BsdfModel for PrincipledThin {
     }
 
     /// Between about the albedo and all: walks that graze it gain little weight.
+    #[inline(never)]
     fn survival(&self, uv: Uv, _: Vec3) -> f32 {
         let look = self.0.textures.at(uv);
         let matt = look.matt() * (1.0 - look.spec_trans);

@@ -101,24 +101,22 @@ fn bumps_are_those_of_mitsuba() {
     }
 }
 
-/// The inner one is raised in the frame of the outer.
+/// The inner one is raised in the frame of the outer. Of bumps in bumps Mitsuba 3.9.1 mixes the frames, so that even a flat
+/// outer one changes what is in it; here it changes nothing.
 #[test]
 fn perturbed_surfaces_nest() {
-    let image = |name: &str, more: &str| {
-        format!(r#"{{"type": "bitmap", "filename": "ASSETS/{name}.png", "raw": true {more}}}"#)
+    let image = |name: &str| format!(r#"{{"type": "bitmap", "filename": "ASSETS/{name}.png", "raw": true}}"#);
+    let (height, map) = (image("dunes"), image("dimples"));
+    let bumps = |scale: f64, inner: &str| {
+        format!(r#"{{"type": "bumpmap", "h": {height}, "scale": {scale}, "b": {inner}}}"#)
     };
-    let bumps = |height: String, inner: &str| {
-        format!(r#"{{"type": "bumpmap", "h": {height}, "scale": 0.6, "b": {inner}}}"#)
-    };
-    let inner = bumps(image("dunes", ""), r#"{"type": "diffuse"}"#);
-    let small = image("dunes", r#", "to_uv": [{"type": "scale", "value": 2}]"#);
-    let map = image("dimples", "");
+    let inner = bumps(0.6, r#"{"type": "diffuse"}"#);
     for (outer, expected) in [
         (
             format!(r#"{{"type": "normalmap", "normalmap": {map}, "b": {inner}}}"#),
             [0.024_403_7, 0.133_568, 0.0],
         ),
-        (bumps(small, &inner), [0.114_59, 0.144_179, 0.122_66]),
+        (bumps(0.0, &inner), [0.079_738_7, 0.108_264, 0.056_379_7]),
     ] {
         check(&format!(r#"{{"type": "sphere", "b": {outer}}}"#), RAYS, expected.map(|x| [x; 3]));
     }
