@@ -49,9 +49,9 @@ impl TextureModel for Checkerboard {
         self.colors[self.square(uv)].eval(uv)
     }
 
-    /// Mitsuba 3.9.1 takes the other colour where it takes a number, and scenes are made to look right there.
+    /// Mitsuba 3.9.1 takes the other colour where it takes a number.
     fn number(&self, uv: Uv) -> f32 {
-        self.colors[1 - self.square(uv)].number(uv)
+        self.colors[self.square(uv)].number(uv)
     }
 
     fn max(&self) -> Spectrum {
