@@ -68,6 +68,16 @@ struct Inner {
     scale: f64,
 }
 
+impl Inner {
+    #[inline]
+    fn of(origin: DVec3, along: DVec3, start: f64, t_max: f32) -> Self {
+        let scale = along.length();
+        let t_max = ((f64::from(t_max) - start) * scale) as f32;
+        let (origin, direction) = ((origin + along * start).as_vec3(), (along / scale).as_vec3());
+        Self { ray: Ray { origin, direction, t_max }, start, scale }
+    }
+}
+
 impl Instance {
     /// What is `shared` where `to_world` takes it; none unless that is affine, can be undone, and stays in range.
     pub fn new(shared: Arc<dyn Shared>, to_world: DMat4) -> Option<Self> {
@@ -87,15 +97,14 @@ impl Instance {
         fits.then(|| Self(Arc::new(placed())))
     }
 
-    fn inner(&self, ray: &Ray) -> Inner {
+    /// None where the ray misses the box, or ends before it.
+    #[inline]
+    fn inner(&self, ray: &Ray, t_max: f32) -> Option<Inner> {
         let Placed { to_object, inner, .. } = &*self.0;
         let origin = to_object.transform_point3(ray.origin.as_dvec3());
         let along = to_object.transform_vector3(ray.direction.as_dvec3());
-        let scale = along.length();
-        let direction = along / scale;
-        let start = entry(inner, origin, direction);
-        let (origin, direction) = ((origin + direction * start).as_vec3(), direction.as_vec3());
-        Inner { ray: Ray { origin, direction, t_max: ray.t_max }, start: start / scale, scale }
+        let start = entry(inner, origin, along);
+        (start < f64::from(t_max)).then(|| Inner::of(origin, along, start, t_max))
     }
 
     fn to_world(&self, point: &SurfacePoint) -> SurfacePoint {
@@ -140,16 +149,13 @@ impl Instance {
     }
 }
 
-/// Where a ray from `origin` in unit `direction` enters a box, 0 from inside of it; infinite where it does not.
-fn entry(corners: &[DVec3; 2], origin: DVec3, direction: DVec3) -> f64 {
-    let (mut near, mut far) = (0f64, f64::INFINITY);
-    for axis in 0..3 {
-        // A component of 0 would make 0 times infinity of a corner in the ray's plane.
-        let along = direction[axis].abs().max(1e-200).copysign(direction[axis]);
-        let [a, b] = corners.map(|corner| (corner[axis] - origin[axis]) / along);
-        (near, far) = (near.max(a.min(b)), far.min(a.max(b)));
-    }
-    if near <= far { near } else { f64::INFINITY }
+/// How many times `along` a ray goes from `origin` to a box, 0 from inside of it; infinite where it does not.
+fn entry(corners: &[DVec3; 2], origin: DVec3, along: DVec3) -> f64 {
+    // A component of 0 would make 0 times infinity of a corner in the ray's plane.
+    let inverse = along.abs().max(DVec3::splat(1e-200)).copysign(along).recip();
+    let [a, b] = corners.map(|corner| (corner - origin) * inverse);
+    let near = a.min(b).max_element().max(0.0);
+    if near <= a.max(b).min_element() { near } else { f64::INFINITY }
 }
 
 impl CurvedModel for Instance {
@@ -163,13 +169,8 @@ impl CurvedModel for Instance {
 
     /// In place of u there are the bits of the number of the primitive that was hit.
     fn closest(&self, ray: &Ray, t_max: f32) -> Option<[f32; 3]> {
-        let Inner { ray, start, scale } = self.inner(ray);
-        let reach = ((f64::from(t_max) - start) * scale) as f32;
-        // Neither behind the end nor a ray that misses the box, with or without an end.
-        if !(reach > 0.0 && start.is_finite()) {
-            return None;
-        }
-        let hit = self.0.shared.closest(&Ray { t_max: reach, ..ray })?;
+        let Inner { ray, start, scale } = self.inner(ray, t_max)?;
+        let hit = self.0.shared.closest(&ray)?;
         let t = (start + f64::from(hit.t) / scale) as f32;
         (t > 0.0 && t < t_max).then_some([t, f32::from_bits(hit.primitive), 0.0])
     }
@@ -187,7 +188,9 @@ impl ShapeModel for Instance {
     }
 
     fn surface(&self, _: usize, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        let Inner { ray, start, scale } = self.inner(ray);
+        // The ray hits, so that it enters the box: at the same place as then.
+        let whole = || Inner::of(DVec3::ZERO, DVec3::ONE, 0.0, 0.0);
+        let Inner { ray, start, scale } = self.inner(ray, f32::INFINITY).unwrap_or_else(whole);
         let t = ((f64::from(hit.t) - start) * scale) as f32;
         self.to_world(&self.0.shared.surface(&ray, hit.u.to_bits(), t))
     }

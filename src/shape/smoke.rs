@@ -17,7 +17,7 @@ pub const SMOKE_TABLE: Table = table! {
     file("filename", "The .vdb, .nvdb or .vol file, or numbered files: `smoke_####.vdb`, `smoke_%04d.vdb`."),
     number("fps", "1/s", within(1e-6, 1e9), Is(Clock::FPS), "Numbered files per second."),
     integer("first_frame", ANY, Said("the first file"), "Number of the file that is shown at time 0."),
-    choice("up", &["auto", "y", "z"], "auto", "Axis of the file that points up in the scene: +y there. `auto`: z of OpenVDB files that say that Blender wrote them, else y."),
+    choice("up", &["auto", "y", "z"], "auto", "Axis of the file that points up in the scene: +y there. `auto`: z of OpenVDB files that say that Blender wrote them, unless `to_world` rotates them or the camera has +z up; else y."),
     number("scale", "", within(1e-30, 1e30), Is(1.0), "Scale about the origin of the file's world, before `to_world`."),
     transform("to_world", "Position, orientation and size."),
     number("density_scale", "1/m", within(0.0, MAX), Is(1.0), "Extinction of a density of 1."),

@@ -12,6 +12,8 @@ mod tests;
 use crate::{
     description::{Library, Object, Params, Property, Value},
     error::Result,
+    math::{DMat4, DVec3},
+    sensor,
     shape::{SMOKE, SMOKE_TABLE},
     volume::{
         files::{
@@ -58,7 +60,8 @@ pub fn expand(root: &Object) -> Result<(Cow<'_, Object>, Vec<Taken>)> {
     }
     let library = Library::new(root)?;
     let time = Params::new(root, &library, &super::TABLE).float("time")?;
-    let (mut expanded, mut replaced) = (root.clone(), Replaced::default());
+    let replaced = Replaced { is_y_up: is_y_up(root), ..Replaced::default() };
+    let (mut expanded, mut replaced) = (root.clone(), replaced);
     replaced.below(&mut expanded, &library, time)?;
     expanded.properties.extend(replaced.media);
     Ok((Cow::Owned(expanded), replaced.all))
@@ -67,6 +70,8 @@ pub fn expand(root: &Object) -> Result<(Cow<'_, Object>, Vec<Taken>)> {
 /// What smoke was replaced by.
 #[derive(Default)]
 struct Replaced {
+    /// +y is up in the scene.
+    is_y_up: bool,
     /// The media in it: children of the scene.
     media: Vec<Property>,
     /// What it was made of.
@@ -82,7 +87,7 @@ impl Replaced {
                 self.below(child, library, time)?;
                 continue;
             }
-            let (object, medium, taken) = container(child, library, time)?;
+            let (object, medium, taken) = container(child, library, time, self.is_y_up)?;
             *child = object;
             let of_medium = |medium| Property { value: Value::Object(medium), ..property.clone() };
             self.media.extend(medium.map(of_medium));
@@ -92,8 +97,27 @@ impl Replaced {
     }
 }
 
-/// The shape that `smoke` stands for, the medium in it, and what that was made of.
-fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Option<Object>, Taken)> {
+/// True unless the first camera has +z up, as in scenes from Blender: they take its files as they are.
+fn is_y_up(root: &Object) -> bool {
+    let sensor = root.properties.iter().find_map(|property| match &property.value {
+        Value::Object(child) => Some(child).filter(|child| sensor::ROWS.has(child)),
+        _ => None,
+    });
+    let given = sensor.and_then(|sensor| sensor.properties.iter().find(|given| given.name == "to_world"));
+    let Some(Value::Transform(steps)) = given.map(|property| &property.value) else { return true };
+    let to_world = steps.iter().fold(DMat4::IDENTITY, |before, step| step.matrix() * before);
+    let up = to_world.transform_vector3(DVec3::Y);
+    up.z.abs() <= up.y.abs()
+}
+
+/// The shape that `smoke` stands for, the medium in it, and what that was made of. A file whose +z is up is turned where it
+/// has to be and nothing in the scene turns it.
+fn container(
+    smoke: &Object,
+    library: &Library,
+    time: f64,
+    is_y_up: bool,
+) -> Result<(Object, Option<Object>, Taken)> {
     let params = Params::new(smoke, library, &SMOKE_TABLE);
     let mut given = Parameters::read(&params, time)?;
     params.finish()?;
@@ -108,7 +132,7 @@ fn container(smoke: &Object, library: &Library, time: f64) -> Result<(Object, Op
         let label = &file.labels[number];
         given.glow(label, fire.hottest())
     });
-    if given.up == Up::Auto && file.is_z_up() {
+    if given.up == Up::Auto && file.is_z_up() && is_y_up && !given.is_turned() {
         given.up = Up::Z;
     }
     let taken = Taken::new(smoke, &given, &file.labels, &roles, &empty, glow);

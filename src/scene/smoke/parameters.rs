@@ -89,6 +89,13 @@ impl<'a> Parameters<'a> {
         })
     }
 
+    /// True if `to_world` may turn it: whoever wrote that knows which way is up.
+    pub fn is_turned(&self) -> bool {
+        let turns =
+            |step: &TransformStep| !matches!(step, TransformStep::Scale(_) | TransformStep::Translate(_));
+        self.to_world.iter().any(turns)
+    }
+
     /// How the grid called `label`, which goes up to `most`, glows.
     pub fn glow(&self, label: &Label, most: f32) -> Glow {
         let [scale, offset] = roles::ramp(label, most);

@@ -274,6 +274,21 @@ fn z_of_a_file_may_point_up() {
     assert!((low - DVec3::new(-0.375, -0.375, -1.375)).abs().max_element() < 1e-5, "{low} {high}");
     let [low, high] = container(&smoke("upright.vdb", r#", "up": "y""#));
     assert!((high - low - DVec3::new(1.75, 1.75, 2.5)).abs().max_element() < 1e-5, "{low} {high}");
+    // What turns it already, and a scene that has +z up itself, are left alone.
+    let turned = r#", "to_world": [{"type": "rotate", "axis": [1, 0, 0], "angle": -90}]"#;
+    let [l, h] = container(&smoke("upright.vdb", turned));
+    assert!((h - l - DVec3::new(1.75, 2.5, 1.75)).abs().max_element() < 1e-5, "{l} {h}");
+    let camera = r#", "first": {"type": "perspective",
+        "to_world": [{"type": "lookat", "origin": [9, 0, 1], "target": [0, 0, 1], "up": [0, 0, 1]}]}"#;
+    let folder = tempfile::tempdir().unwrap();
+    unpack(folder.path(), "upright.vdb", "upright.vdb");
+    let text = format!(
+        r#"{{"type": "scene" {camera}, "plume": {{"type": "smoke", "filename": "upright.vdb"}}, "sky": {{"type": "constant"}}}}"#
+    );
+    let path = folder.path().join("scene.json");
+    fs::write(&path, text).unwrap();
+    let blender = build(&format::read(&path, &[]).unwrap(), Overrides::default()).unwrap();
+    assert!(!blender.smoke[0].to_string().contains("+z up"), "{}", blender.smoke[0]);
     // Size and place come after the turn.
     let place = r#", "up": "z", "scale": 2, "to_world": [{"type": "translate", "value": [0, 10, 0]}]"#;
     let [low, high] = container(&smoke("houdini.vdb", place));
