@@ -62,6 +62,9 @@ const FAVOURED: f32 = 4.0;
 /// Indices closer to 1 than this would bend light by less than a narrow lobe is wide.
 const LEAST_CONTRAST: f64 = 1e-3;
 
+/// The coat's albedo straight on: a quarter of that of an index of 1.5.
+const COAT_REFLECTANCE: f32 = 0.01;
+
 /// Roughness that masks the coat, whatever its gloss.
 const COAT_MASKING: f32 = 0.25;
 
@@ -313,7 +316,8 @@ impl Parts {
         let metal = here.look.base.lerp(Spectrum::ONE, 1.0 / 21.0) * here.metallic;
         let mirrored = Spectrum::splat(self.even * (1.0 - here.metallic));
         let through = here.look.base.map(f32::sqrt) * (glass * (1.0 - self.even));
-        let even = here.look.matt() * diffuse + metal + mirrored + through;
+        let coat = Spectrum::splat(COAT_REFLECTANCE * here.clearcoat);
+        let even = here.look.matt() * diffuse + metal + mirrored + through + coat;
         even.max_element().min(1.0).sqrt()
     }
 }

@@ -9,7 +9,7 @@ use crate::{
 };
 use clap::Args;
 use std::{
-    ffi::OsStr,
+    ffi::{OsStr, OsString},
     path::{Path, PathBuf},
     process::Command,
 };
@@ -42,46 +42,52 @@ pub(super) fn run(Denoise { image, display }: &Denoise) -> Result<()> {
 
 /// An error unless images can be denoised: better known before hours of rendering than after.
 pub(super) fn check() -> Result<()> {
-    python(&[OsStr::new("--check")]).map(drop)
+    python(&[OsStr::new("--check")], lacking)
 }
 
 /// Writes the image at `path`, denoised, beside it as `NAME.denoised.exr` and, as `display` shows it, `.png`; the former's
 /// path.
 pub(super) fn denoise(path: &Path, display: view::Display) -> Result<PathBuf> {
-    let [written, shown] = ["exr", "png"].map(|end| path.with_extension(format!("denoised.{end}")));
+    let [written, shown] = names(path);
     check_short([&written, &shown])?;
     let view = format!("--view={}", display.view.name());
     let exposure = format!("--exposure={}", display.stops);
-    python(&[
-        path.as_os_str(),
-        written.as_os_str(),
-        shown.as_os_str(),
-        OsStr::new(&view),
-        OsStr::new(&exposure),
-    ])?;
+    let words =
+        [path.as_os_str(), written.as_os_str(), shown.as_os_str(), OsStr::new(&view), OsStr::new(&exposure)];
+    python(&words, |said| {
+        let remedy = "see what it says; the image must be one of colours, and its folder one to write to";
+        Error::new(path.display(), "an image that can be denoised", said, remedy)
+    })?;
     Ok(written)
 }
 
-/// Runs `python3 -m tyndall denoise` with `words`.
-fn python(words: &[&OsStr]) -> Result<()> {
-    let name = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
-    let explain = |found: String| {
-        let remedy = format!(
-            "pip install '.[denoise]' in the folder of Tyndall's sources; {PYTHON} names another Python than {}",
-            name.display()
-        );
-        Error::new(
-            "denoise",
-            "Python with the packages tyndall and pyoidn (Open Image Denoise)",
-            found,
-            remedy,
-        )
-    };
+/// The files that the image at `path` becomes.
+pub(super) fn names(path: &Path) -> [PathBuf; 2] {
+    ["exr", "png"].map(|end| path.with_extension(format!("denoised.{end}")))
+}
+
+/// The Python that is run.
+fn interpreter() -> OsString {
+    std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into())
+}
+
+/// The error where it has not what is needed, as it `said`.
+fn lacking(said: String) -> Error {
+    let remedy = format!(
+        "pip install '.[denoise]' in the folder of Tyndall's sources; {PYTHON} names another Python than {}",
+        interpreter().display()
+    );
+    Error::new("denoise", "Python with the packages tyndall and pyoidn (Open Image Denoise)", said, remedy)
+}
+
+/// Runs `python3 -m tyndall denoise` with `words`; the error of its `failure` says why.
+fn python(words: &[&OsStr], failure: impl Fn(String) -> Error) -> Result<()> {
+    let name = interpreter();
     let done = Command::new(&name).args(["-m", "tyndall", "denoise"]).args(words).output();
-    let done = done.map_err(|error| explain(format!("{}: {error}", name.display())))?;
+    let done = done.map_err(|error| lacking(format!("{}: {error}", name.display())))?;
     if done.status.success() {
         return Ok(());
     }
     let said = String::from_utf8_lossy(&done.stderr).trim().to_owned();
-    Err(explain(said.lines().last().unwrap_or("no word of why it failed").to_owned()))
+    Err(failure(said.lines().last().unwrap_or("no word of why it failed").to_owned()))
 }

@@ -77,9 +77,12 @@ impl Library {
         location.file.parent().unwrap_or(Path::new("")).join(name)
     }
 
-    /// Informs the user of something that is not an error.
+    /// Informs the user, once, of something that is not an error.
     pub fn warn(&self, location: &Location, text: &str) {
-        self.warnings.borrow_mut().push(format!("{location}: {text}"));
+        let (warning, mut warnings) = (format!("{location}: {text}"), self.warnings.borrow_mut());
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
     }
 
     /// Informs the user of something about a file, once, and of several things in one warning.

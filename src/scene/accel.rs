@@ -154,7 +154,7 @@ impl Shared for Geometry {
     }
 
     fn partials(&self, point: &SurfacePoint) -> (Vec3, Vec3) {
-        self.partials(point)
+        self.shapes[0].partials(point.primitive as usize, point)
     }
 
     fn attributes(&self) -> &[Attribute] {

@@ -308,7 +308,7 @@ impl<'a> Builder<'a> {
     fn medium(&mut self, object: &'a Object) -> Result<MediumIndex> {
         let object = self.original(object)?;
         // One that is written twice is one, too: boundaries on both sides of which it lies do not contradict each other.
-        let place = if varies(object) { self.place.instance } else { DAffine3::IDENTITY };
+        let place = if varies(object, self.library) { self.place.instance } else { DAffine3::IDENTITY };
         let is_known = |(known, there): (&&Object, &DAffine3)| *there == place && known.says_what(object);
         if let Some(index) = self.medium_objects.iter().zip(&self.medium_places).position(is_known) {
             if let (None, Some(id)) = (&self.medium_ids[index], &object.id) {
@@ -344,10 +344,12 @@ impl<'a> Builder<'a> {
 }
 
 /// True of a medium that is not the same everywhere, so that each instance of a group has its own.
-fn varies(medium: &Object) -> bool {
-    let has_volume = |property: &Property| match &property.value {
-        Value::Object(child) => volume::ROWS.has(child),
+fn varies(object: &Object, library: &Library) -> bool {
+    let is_volume = volume::ROWS.has(object) && object.plugin != "constvolume";
+    let below = |property: &Property| match &property.value {
+        Value::Object(child) => varies(child, library),
+        Value::Reference(id) => library.find(id).is_some_and(|child| varies(child, library)),
         _ => false,
     };
-    medium.plugin == "heterogeneous" || medium.properties.iter().any(has_volume)
+    is_volume || object.plugin == "heterogeneous" || object.properties.iter().any(below)
 }

@@ -60,6 +60,7 @@ impl Disk {
     fn place(placement: &Placement) -> Self {
         let (edge_u, edge_v) = (placement.vector(DVec3::X), placement.vector(DVec3::Y));
         let turn = if placement.is_mirrored() != placement.flip_normals { -1.0 } else { 1.0 };
+        let turn = turn * placement.handedness;
         Self::spanned(placement.point(DVec3::ZERO), edge_u, edge_v, edge_u.cross(edge_v) * turn)
     }
 

@@ -85,10 +85,10 @@ impl Mesh {
         let normals = match data.normals.as_slice() {
             _ if face_normals => vec![],
             [] => smooth::vertex_normals(&positions, &data.triangles),
-            given => given.iter().map(|n| placement.normal(*n).as_vec3()).collect(),
+            given => given.iter().map(|n| (placement.normal(*n) * placement.handedness).as_vec3()).collect(),
         };
         let areas = AreaTable::new(data.triangles.iter().map(|t| double_area(&positions, t) * 0.5));
-        let facing = if placement.flip_normals { -1.0 } else { 1.0 };
+        let facing = if placement.flip_normals { -1.0 } else { 1.0 } * placement.handedness as f32;
         let MeshData { uvs, triangles, attributes, .. } = data;
         Ok(Self { positions, normals, uvs, triangles, attributes, areas, facing })
     }

@@ -32,7 +32,7 @@ impl Parallelogram {
     /// winding and the shading normal from the transformed object normal: under a mirroring they are opposite.
     fn place(placement: &Placement, grid: &Grid, face: &ObjectFace) -> Self {
         let [corner, edge_u, edge_v, normal] = face.map(DVec3::from);
-        let turn = if placement.flip_normals { -1.0 } else { 1.0 };
+        let turn = if placement.flip_normals { -placement.handedness } else { placement.handedness };
         let winding = normal.dot(edge_u.cross(edge_v)).signum();
         let corner = grid.snap(placement.point(corner));
         let (edge_u, edge_v) = (grid.snap(placement.vector(edge_u)), grid.snap(placement.vector(edge_v)));

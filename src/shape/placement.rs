@@ -13,18 +13,21 @@ pub(super) struct Placement {
     pub matrix: DMat4,
     /// True if `flip_normals` is set.
     pub flip_normals: bool,
+    /// -1 where the instance that it is a copy for mirrors it: edges then turn the other way about, and normals do not. Else 1.
+    pub handedness: f64,
 }
 
 impl Placement {
     /// Reads `to_world`, after which `world` counts, and `flip_normals`.
     pub(super) fn read(params: &Params<'_>, world: DMat4) -> Result<Self> {
         let matrix = world * params.transform("to_world")?;
-        Ok(Self { matrix, flip_normals: params.boolean("flip_normals")? })
+        let handedness = world.determinant().signum();
+        Ok(Self { matrix, flip_normals: params.boolean("flip_normals")?, handedness })
     }
 
-    /// The transform turns right hands into left hands.
+    /// The shape's own transform turns right hands into left hands.
     pub(super) fn is_mirrored(&self) -> bool {
-        self.matrix.determinant() < 0.0
+        self.matrix.determinant() * self.handedness < 0.0
     }
 
     /// Points, as such.

@@ -9,6 +9,7 @@ use crate::{
     description::{Params, Table, table},
     error::{Error, Result},
     math::{Attribute, DMat4, DVec3, Spectrum, Vec2},
+    memory,
 };
 use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
@@ -152,6 +153,7 @@ impl<'a> Ply<'a> {
         let normals = if has(&[3, 4, 5]) { vertices.iter().map(|v| v.triple(3)).collect() } else { vec![] };
         let uvs = if has(&[6, 7]) { vertices.iter().map(|v| v.uv(flip)).collect() } else { vec![] };
         let triangles = self.triangles(&faces, vertices.len())?;
+        self.check_attributes(&elements, vertices.len().max(triangles.len()))?;
         let attributes = self.attributes(&elements, &vertices, &faces)?;
         let positions = vertices.iter().map(|v| v.triple(0)).collect();
         let data = MeshData { positions, normals, uvs, triangles, attributes };
@@ -161,6 +163,14 @@ impl<'a> Ply<'a> {
             }
             None => Ok(data),
         }
+    }
+
+    /// An error unless memory holds all colours, of `count` vertices or triangles each.
+    fn check_attributes(&self, elements: &[ElementDef], count: usize) -> Result<()> {
+        let groups: usize = elements.iter().map(|element| colors(element).1.len()).sum();
+        let needed = (groups as u64).checked_mul(count as u64 * size_of::<Spectrum>() as u64);
+        let size = format!("{groups} colours of {count} vertices or triangles each");
+        memory::check(self.file.display(), "a mesh", &size, needed, "take colours out of the file")
     }
 
     /// Colours of vertices and, for each triangle that a face becomes, of faces.

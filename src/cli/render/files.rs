@@ -6,7 +6,10 @@ use super::{
     target::Target,
 };
 use crate::{
-    cli::outputs::{self, NUMBERS},
+    cli::{
+        denoise,
+        outputs::{self, NUMBERS},
+    },
     error::Result,
     film::{Film, layer::Layer},
     inputs,
@@ -56,6 +59,9 @@ pub(super) fn check(arguments: &Render, setup: &Setup, target: &Target) -> Resul
         outputs.push((image, bytes));
         outputs.extend(preview.as_deref().map(|preview| (preview, shown)));
     }
+    let denoised = images.iter().filter(|_| arguments.denoise).flat_map(|(image, _)| denoise::names(image));
+    let denoised: Vec<PathBuf> = denoised.collect();
+    outputs.extend(denoised.iter().map(|image| (image.as_path(), 0)));
     outputs.extend(arguments.answer.report.as_deref().map(|report| (report, 0)));
     outputs::check(&outputs)?;
     let sums = sums_file(arguments, target);

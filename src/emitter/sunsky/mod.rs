@@ -27,6 +27,9 @@ const TO_MAP: DMat3 = DMat3::from_cols(DVec3::Z, DVec3::X, DVec3::Y);
 /// Where both shine, sun and sky are sampled at least so often.
 const LEAST_SHARE: f64 = 0.1;
 
+/// A smaller sun (rad) counts as of this size: directions in f32 could not tell its inside from its edge.
+const LEAST_HALF_APERTURE: f64 = 1e-4;
+
 /// The sky as a map, and the sun as an even disk in it. Nothing shines from below the horizon.
 #[derive(Clone, Debug)]
 pub struct SunSky {
@@ -70,7 +73,7 @@ impl SunSky {
         let [sun_scale, sky_scale] = [params.float("sun_scale")?, params.float("sky_scale")?];
         let turbidity = params.float("turbidity")? as f32;
         let albedo = params.color("albedo")?;
-        let half_aperture = 0.5 * params.float("sun_aperture")?.to_radians();
+        let half_aperture = (0.5 * params.float("sun_aperture")?.to_radians()).max(LEAST_HALF_APERTURE);
         let is_day = sun.z >= 0.0;
         if !is_day {
             let text = "the sun is below the horizon, so that this sky is black. Change its date and time or its direction";

@@ -30,6 +30,13 @@ pub(super) fn towards_sun(params: &Params<'_>) -> Result<DVec3> {
     let clock = params.float("hour")? + (params.float("minute")? + params.float("second")? / 60.0) / 60.0;
     let universal = clock - params.float("timezone")?;
     let date = [params.integer("year")?, params.integer("month")?, params.integer("day")?];
+    let [year, month, day] = date;
+    let next = if month == 12 { [year + 1, 1, 1] } else { [year, month + 1, 1] };
+    let length = days_since_2000(next) - days_since_2000([year, month, 1]);
+    if day as f64 > length {
+        let expected = format!("a day of that month, from 1 to {length}");
+        return Err(params.complain("day", expected, day.to_string()));
+    }
     let days = days_since_2000(date) + universal / 24.0 - 0.5;
     let [latitude, longitude] = [params.float("latitude")?, params.float("longitude")?];
     Ok(local(days, universal, latitude.to_radians(), longitude))

@@ -18,7 +18,7 @@ class RenderOptions(TypedDict, total=False):
     confidence: Number | None
     seed: int | None
     threads: int | None
-    integrator: Literal["bdpt", "pt", "lt", "fog", "gather"] | None
+    integrator: Literal["bdpt", "pt", "lt", "fog", "gather", "path", "volpath", "volpathmis", "ptracer"] | None
     strategies: str | Sequence[str] | None
     max_depth: int | None
     sampler: Literal["sobol", "independent"] | None

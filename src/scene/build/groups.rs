@@ -2,26 +2,31 @@
 
 use super::Builder;
 use crate::{
-    description::{Object, Params, params::Child},
+    description::{Library, Object, Params, Value, params::Child},
     error::{Error, Result},
     format::references,
     math::{DAffine3, DMat4, DVec3},
+    memory,
     scene::accel::Geometry,
     shape::{self, BuildShape, Composed, Instance, Shape, ShapeModel as _},
 };
 use std::{collections::HashMap, sync::Arc};
 
-/// Instances are copies as long as all together have at most so many primitives (30 MB): copies are faster, and where their
-/// faces touch others they are set apart.
-const COPIED: usize = 1 << 16;
+/// The instances of a mesh are copies as long as there are few, and all together have at most so many primitives (30 MB):
+/// copies are faster, and where their faces touch others they are set apart.
+const COPIES: u64 = 256;
+const COPIED: u64 = 1 << 16;
+
+/// What an instance of a shape takes (bytes).
+const MEMORY_PER_INSTANCE: u64 = 1500;
 
 /// What instances share.
 #[derive(Default)]
 pub(super) struct Bases {
     /// By the shape in the group.
     built: HashMap<*const Object, Base>,
-    /// How many instances the scene has.
-    instances: usize,
+    /// How many instances the scene has, those of groups in groups by themselves.
+    instances: u64,
 }
 
 /// A shape around its middle, which is `middle` in the group.
@@ -50,7 +55,7 @@ impl Copying<'_> {
 impl Bases {
     /// How many primitives all of them have.
     pub(super) fn primitives(&self) -> u64 {
-        self.built.values().map(|base| base.primitives() as u64).sum()
+        self.built.values().map(Base::primitives).sum()
     }
 }
 
@@ -71,8 +76,8 @@ impl Base {
         Self { geometry: Arc::new(Geometry::build(vec![shape])), middle, is_mesh }
     }
 
-    fn primitives(&self) -> usize {
-        self.geometry.shapes().iter().map(|shape| shape.primitive_count()).sum()
+    fn primitives(&self) -> u64 {
+        self.geometry.shapes().iter().map(|shape| shape.primitive_count() as u64).sum()
     }
 
     fn instance(&self, world: DMat4) -> Option<Shape> {
@@ -84,7 +89,10 @@ impl Base {
 impl<'a> Builder<'a> {
     /// All shapes of the scene.
     pub(super) fn add_shapes(&mut self, root: &'a Object, children: &[Child<'a>]) -> Result<()> {
-        self.bases.instances = count_instances(root);
+        self.bases.instances = instances(root, self.library, &mut HashMap::new());
+        let size = format!("{} instances of shapes", self.bases.instances);
+        let needed = self.bases.instances.checked_mul(MEMORY_PER_INSTANCE);
+        memory::check("the scene", "instances", &size, needed, "give fewer instances, or more memory")?;
         let referred = references::referred(root);
         for child in children {
             let is_idle = child.object.id.as_deref().is_none_or(|id| !referred.contains(id));
@@ -126,7 +134,7 @@ impl<'a> Builder<'a> {
         let group = match children.as_slice() {
             [only] if is_group(only.object) => only.object,
             [other] => {
-                let found = format!("a {}", other.object.plugin);
+                let found = format!("\"{}\"", other.object.plugin);
                 let remedy = "put the shape into a shapegroup, and refer to that";
                 return Err(Error::new(other.location, "a shapegroup", found, remedy));
             }
@@ -156,7 +164,8 @@ impl<'a> Builder<'a> {
             return Ok((build(params, world)?, true));
         }
         let (base, is_new) = self.base(params, build)?;
-        let is_large = base.primitives().saturating_mul(self.bases.instances) > COPIED;
+        let instances = self.bases.instances;
+        let is_large = instances > COPIES || base.primitives().saturating_mul(instances) > COPIED;
         let copy = if base.is_mesh && is_large { None } else { build(params, world).ok() };
         let is_read = is_new || copy.is_some();
         copy.or_else(|| base.instance(world)).map(|shape| (shape, is_read)).ok_or_else(|| {
@@ -181,15 +190,39 @@ fn is_group(object: &Object) -> bool {
     shape::COMPOSED.get(&object.plugin).is_some_and(|plugin| plugin.build == Composed::Group)
 }
 
-/// Instances in all of the scene, those in a group once.
-fn count_instances(object: &Object) -> usize {
-    let is_instance =
-        shape::COMPOSED.get(&object.plugin).is_some_and(|plugin| plugin.build == Composed::Instance);
+/// How many shapes instances put into the scene that `object` is, or a part of. What is `known` of groups is kept.
+fn instances(object: &Object, library: &Library, known: &mut HashMap<*const Object, u64>) -> u64 {
     let below = object.properties.iter().filter_map(|property| match &property.value {
-        crate::description::Value::Object(child) => Some(count_instances(child)),
+        Value::Object(child) => Some(child),
+        Value::Reference(id) => library.find(id),
         _ => None,
     });
-    usize::from(is_instance) + below.sum::<usize>()
+    let is_instance = object.plugin == "instance";
+    let mut all = 0u64;
+    for child in below.filter(|child| shape::is_shape(child)) {
+        let inside = match (is_group(child), is_instance) {
+            (true, true) => shapes_of(child, library, known),
+            (true, false) => 0,
+            (false, _) => instances(child, library, known),
+        };
+        all = all.saturating_add(inside);
+    }
+    all
+}
+
+/// How many shapes an instance of `group` puts into the scene.
+fn shapes_of(group: &Object, library: &Library, known: &mut HashMap<*const Object, u64>) -> u64 {
+    let key = std::ptr::from_ref(group);
+    if let Some(count) = known.get(&key) {
+        return *count;
+    }
+    let own = group.properties.iter().filter(|property| match &property.value {
+        Value::Object(child) => shape::ROWS.has(child),
+        _ => false,
+    });
+    let count = (own.count() as u64).saturating_add(instances(group, library, known));
+    known.insert(key, count);
+    count
 }
 
 #[cfg(test)]

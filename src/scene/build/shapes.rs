@@ -37,8 +37,8 @@ impl<'a> Builder<'a> {
         self.place.instance = at.map_or(DAffine3::IDENTITY, |at| at.of_volumes());
         let interior = self.side(&params, "interior")?;
         let exterior = self.side(&params, "exterior")?;
-        self.place.instance = DAffine3::IDENTITY;
         let emitter = self.shape_emitter(&params, self.shapes.len() as u32)?;
+        self.place.instance = DAffine3::IDENTITY;
         let bsdfs = params.children("bsdf", |child| bsdf::ROWS.has(child.object))?;
         let (bsdf, asked) = match bsdfs.as_slice() {
             [] => (self.default_bsdf(emitter.is_some())?, Asked::default()),
@@ -49,7 +49,10 @@ impl<'a> Builder<'a> {
         if is_read {
             params.finish()?;
         }
-        asked.check(&shape, &name_of(child.object))?;
+        // Instances of what is shared have what the first of them has.
+        if is_read || is_old {
+            asked.check(&shape, &name_of(child.object))?;
+        }
         self.has_old_shapes &= is_old;
         if at.is_none() {
             self.parts.shapes.insert(child.object.location.clone(), self.shapes.len());

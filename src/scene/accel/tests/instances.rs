@@ -19,6 +19,60 @@ const BUMPS: &str = "v 0 0 1\nv 1 0 -.2\nv 0 1 .1\nv -1 0 -.3\nv 0 -1 0\nv 0 .2 
     vt 0 0\nvt 1 0\nvt 0.5 1\nvt 0.2 0.3\nvt 0.9 0.8\nvt 0.4 0.1\n\
     f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 1/1 4/4 5/5\nf 1/1 5/5 2/2\nf 6/6 3/3 2/2\nf 6/6 4/4 3/3\nf 6/6 5/5 4/4\nf 6/6 2/2 5/5\n";
 
+/// `plugin` where it stands by itself, copied for an instance that `world` places.
+fn copy(plugin: &str, own: DMat4, world: DMat4) -> Shape {
+    let steps = vec![TransformStep::Matrix(own.transpose().to_cols_array())];
+    let location = Location { file: Arc::default(), position: Position::Path("$".into()) };
+    let to_world =
+        Property { name: "to_world".into(), value: Value::Transform(steps), location: location.clone() };
+    let object = Object { tag: None, plugin: plugin.into(), id: None, properties: vec![to_world], location };
+    let library = Library::default();
+    let (params, build) = shape::ROWS.read(&object, &library).unwrap();
+    build(&params, world).unwrap()
+}
+
+/// Which way normals point and texture coordinates run does not depend on how an instance is made.
+#[test]
+fn mirrored_copies_are_mirrored_instances() {
+    let turn = DMat4::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, 0.7);
+    let mirror = DMat4::from_scale(DVec3::new(-2.0, 2.0, 2.0));
+    let owns = [DMat4::IDENTITY, DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0))];
+    let worlds = [turn, turn * mirror, mirror * turn];
+    let mut stream = stream(5);
+    let mut hits = 0;
+    for plugin in PLUGINS {
+        for (own, world) in owns.into_iter().flat_map(|own| worlds.map(|world| (own, world))) {
+            let copied = Geometry::build(vec![copy(plugin, own, world)]);
+            let shape = copy(plugin, own, DMat4::IDENTITY);
+            let shared =
+                Geometry::build(vec![placed("sphere", vec![shift(1e3, 0.0, 0.0)]), instance(shape, world)]);
+            for _ in 0..100 {
+                let direction = warp::to_sphere(stream.square());
+                let target = world.transform_point3(within(&mut stream, 0.9)).as_vec3();
+                let ray = ray(target - direction * 9.0, direction);
+                let (Some(a), Some(b)) = (copied.closest(&ray), shared.closest(&ray)) else { continue };
+                let [a, b] = [(&copied, a), (&shared, b)].map(|(geometry, hit)| geometry.surface(&ray, &hit));
+                if (a.position - b.position).length() > 1e-4 {
+                    continue;
+                }
+                hits += 1;
+                assert!(a.normal.dot(b.normal) > 0.999, "{plugin} {own} {world}: {a:?} {b:?}");
+                assert!(
+                    a.shading.normal.dot(b.shading.normal) > 0.999,
+                    "{plugin} {own} {world}: {a:?} {b:?}"
+                );
+                assert!((a.uv.get() - b.uv.get()).length() < 1e-3, "{plugin} {own} {world}: {a:?} {b:?}");
+                let [u, v] = [(&copied, a), (&shared, b)].map(|(geometry, point)| geometry.partials(&point));
+                assert!(
+                    (u.0 - v.0).length() + (u.1 - v.1).length() < 1e-2,
+                    "{plugin} {own} {world}: {u:?} {v:?}"
+                );
+            }
+        }
+    }
+    assert!(hits > 1000, "{hits}");
+}
+
 fn bumps(to_world: DMat4) -> Shape {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bumps.obj");
