@@ -11,10 +11,10 @@ from pathlib import Path
 import mitsuba as mi
 import numpy as np
 
-TURBIDITIES, ELEVATIONS = 10, np.linspace(2, 88, 30)
+TURBIDITIES, ELEVATIONS = 10, np.linspace(2, 89, 30)
 """Turbidities from 1, and elevations of the sun (degrees)."""
-SOLID_ANGLE = 2 * np.pi * (1 - np.cos(np.radians(0.5 * 0.5358)))
-"""Of the sun as it is seen from here (sr)."""
+SOLID_ANGLE = 2 * np.pi * float(1 - np.cos(np.float32(np.radians(0.5 * 0.5358))))
+"""Of the sun as it is seen from here (sr), rounded as in Mitsuba, which divides the irradiance by it."""
 
 
 def sun(turbidity: float, degrees: float) -> np.ndarray:

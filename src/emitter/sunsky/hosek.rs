@@ -21,7 +21,7 @@ const FIRST_IRRADIANCE: usize = FIRST_RADIANCE + TURBIDITIES * 2 * RADIANCES;
 /// Elevations of the sun for which the irradiance is known: their number, the first and the last (degrees).
 const ELEVATIONS: usize = 30;
 const LOWEST: f32 = 2.0;
-const HIGHEST: f32 = 88.0;
+const HIGHEST: f32 = 89.0;
 
 /// Mitsuba's units: luminance over the integral of the CIE 1931 y function (nm).
 const NORMALIZATION: f32 = 1.0 / 106.750_26;
@@ -128,7 +128,8 @@ mod tests {
 
     #[test]
     fn the_sun_is_that_of_mitsuba() {
-        let solid_angle = 2.0 * std::f32::consts::PI * (1.0 - 0.2679f64.to_radians().cos()) as f32;
+        // Rounded as Mitsuba rounds it.
+        let solid_angle = 2.0 * std::f32::consts::PI * (1.0 - 0.2679f32.to_radians().cos());
         for (turbidity, degrees, expected) in [
             (3.0, 20.0, [18679.6, 13744.36, 7823.77]),
             (3.0, 60.0, [21873.3, 18316.1, 14105.9]),
@@ -137,7 +138,7 @@ mod tests {
         ] {
             let found = sun_irradiance(turbidity, f32::to_radians(degrees)) / solid_angle;
             let error = (found - Spectrum::from(expected)).abs().max_element();
-            assert!(error < 0.003 * expected[0], "{turbidity} {degrees}: {found}, expected {expected:?}");
+            assert!(error < 5e-4 * expected[0], "{turbidity} {degrees}: {found}, expected {expected:?}");
         }
     }
 }

@@ -131,21 +131,18 @@ impl<'a> Builder<'a> {
         let to_world = params.transform("to_world")?;
         let children = params.children("shape", |_| true)?;
         params.finish()?;
-        let group = match children.as_slice() {
-            [only] if is_group(only.object) => only.object,
-            [other] => {
-                let found = format!("\"{}\"", other.object.plugin);
-                let remedy = "put the shape into a shapegroup, and refer to that";
-                return Err(Error::new(other.location, "a shapegroup", found, remedy));
-            }
-            _ => {
-                let remedy = "refer to one shapegroup by its id";
-                let found = format!("{} of them", children.len());
-                return Err(Error::new(&object.location, "one shapegroup in the instance", found, remedy));
-            }
+        if let Some(other) = children.iter().find(|child| !is_group(child.object)) {
+            let found = format!("\"{}\"", other.object.plugin);
+            let remedy = "put shapes with all that is theirs into a shapegroup, and refer to that";
+            return Err(Error::new(other.location, "a shapegroup", found, remedy));
+        }
+        let [group] = children.as_slice() else {
+            let found = format!("{} of them", children.len());
+            let remedy = "refer to one shapegroup by its id";
+            return Err(Error::new(&object.location, "one shapegroup in the instance", found, remedy));
         };
         let to_file = at.map_or(DMat4::IDENTITY, |at| at.to_file) * to_world;
-        self.members(group, Some(Copying { instance: object, to_file }))
+        self.members(group.object, Some(Copying { instance: object, to_file }))
     }
 
     /// A shape of a group as one of its instances has it. Meshes that do no more than scatter are shared where copies would
