@@ -111,7 +111,7 @@ pub enum Command {
     /// Denoise an OpenEXR image by Open Image Denoise, which the Python package of Tyndall brings
     ///
     /// Writes NAME.denoised.exr and NAME.denoised.png beside the image. A denoised image is biased, by an amount that nobody
-    /// knows. It needs Python with the package tyndall and its extra: pip install '.[denoise]'. The environment variable
+    /// knows. It needs Python with the package tyndall and its extra: `pip install '.[denoise]'`. The environment variable
     /// TYNDALL_PYTHON names another Python than python3.
     Denoise(Denoise),
     /// Create the page of a study, study.html, again from its numbers and images

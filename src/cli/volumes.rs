@@ -109,14 +109,18 @@ fn describe(contents: &Contents) -> Vec<String> {
 
 /// A place.
 pub(super) fn numbers(v: DVec3) -> String {
-    let [x, y, z] = v.to_array().map(short);
+    let [x, y, z] = v.to_array().map(|x| short(x, v.abs().max_element()));
     format!("[{x}, {y}, {z}]")
 }
 
-/// At most six digits after the point.
-fn short(x: f64) -> f64 {
+/// At most six digits after the point, and what is less than rounding beside `most` is 0.
+fn short(x: f64, most: f64) -> f64 {
     let rounded = (x * 1e6).round() / 1e6;
-    if rounded == 0.0 || !rounded.is_finite() { x } else { rounded }
+    match x.abs() < 1e-12 * most {
+        true => 0.0,
+        false if rounded == 0.0 || !rounded.is_finite() => x,
+        false => rounded,
+    }
 }
 
 fn list(values: &[f32]) -> String {

@@ -23,7 +23,7 @@ pub struct Hit {
     pub t: f32,
     /// Which primitive of the geometry.
     pub primitive: u32,
-    /// First surface coordinate (see [`Shape::surface`]).
+    /// First surface coordinate (see [`super::ShapeModel::surface`]).
     pub u: f32,
     /// Second surface coordinate.
     pub v: f32,

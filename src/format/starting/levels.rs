@@ -31,8 +31,8 @@ struct Ray {
 
 /// What makes it look like smoke and fire.
 pub(super) struct Levels {
-    /// How thick smoke looks, in mean free paths.
-    pub thickness: f64,
+    /// How thick smoke looks, in mean free paths; none where the camera sees none.
+    pub thickness: Option<f64>,
     /// Extinction of a density of 1 (1/m).
     pub density: f64,
     /// Brightness of fire (1/m).
@@ -72,7 +72,8 @@ impl Levels {
         let found = typical(
             rays.iter().map(|ray| ray.step * ray.points.iter().map(|[density, _]| density).sum::<f64>()),
         );
-        let density = three_digits(thickness / found).unwrap_or(1.0);
+        let chosen = three_digits(thickness / found);
+        let (thickness, density) = (chosen.map(|_| thickness), chosen.unwrap_or(1.0));
         let emission =
             three_digits(RADIANCE / typical(rays.iter().map(|ray| ray.light(density)))).unwrap_or(0.01);
         Self { thickness, density, emission }

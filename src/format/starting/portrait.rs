@@ -146,7 +146,12 @@ impl Portrait {
         all.extend(frame.as_ref().map(|frame| format!("all frames are seen as {} fits", frame.display())));
         if self.smoke.density.is_some() {
             let Levels { density, thickness, .. } = self.levels;
-            all.push(format!("density_scale {density} makes the smoke {thickness} mean free paths thick"));
+            all.push(match thickness {
+                Some(thickness) => {
+                    format!("density_scale {density} makes the smoke {thickness} mean free paths thick")
+                }
+                None => "the smoke is so thin that none of it is seen".to_owned(),
+            });
         }
         if self.smoke.fire.is_some() {
             all.push(format!("emission_scale {} makes the fire bright at dusk", self.levels.emission));
