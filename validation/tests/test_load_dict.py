@@ -62,7 +62,7 @@ def test_known_differences_of_mitsuba() -> None:
     assert of(mi.ScalarTransform4f().rotate([0, 2, 0], 90)) == pytest.approx(16)
     assert of(load_dict.transform([{"type": "rotate", "axis": [0, 2, 0], "angle": 90}])) == pytest.approx(1)
     board, place = mi.load_dict({"type": "checkerboard", "color0": 0.1, "color1": 0.9}), mi.SurfaceInteraction3f()
-    place.uv = [0.25, 0.25]
+    place.uv = mi.Point2f(0.25, 0.25)
     assert (board.eval(place)[0], board.eval_1(place)) == pytest.approx((0.1, 0.9))
 
 

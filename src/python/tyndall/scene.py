@@ -65,9 +65,12 @@ class Scene:
         return digest.hexdigest()[:20]
 
     def beside(self) -> list[Path]:
-        """The files that the scene may name: assets and, beside an XML file in a folder of its own, all there are."""
-        alone = self.is_xml and len(list(self.folder.glob("*.json"))) == 0
-        return sorted(path for path in self.folder.glob("**/*" if alone else "assets/*") if path.is_file())
+        """The files that the scene may name: assets of which it holds the names and, beside an XML file in a folder of its own, all
+        there are."""
+        if self.is_xml and len(list(self.folder.glob("*.json"))) == 0:
+            return sorted(path for path in self.folder.glob("**/*") if path.is_file())
+        text = json.dumps(self.source) if isinstance(self.source, dict) else self.source.read_text()
+        return sorted(path for path in self.folder.glob("assets/*") if path.is_file() and path.name in text)
 
 
 def open_scene(path: str | Path, parameters: dict[str, str] | None = None) -> Scene:
