@@ -192,7 +192,7 @@ CASES = (
     Case("shapes_of_light.json"),
     Case("bsdf_plastics.json", EYE),
     Case("bsdf_mask_and_blend.json"),
-    Case("bsdf_principled.json"),
+    Case("bsdf_principled.json", EYE),
     Case("bsdf_normalmap.json", EYE),
     Case("bsdf_bumpmap.json"),
     Case("texture_mesh_attribute.json"),
