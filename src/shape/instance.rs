@@ -62,7 +62,7 @@ struct Placed {
 struct Inner {
     /// From where it enters the box: its origin is then no farther away than the box is large, and rounded as little.
     ray: Ray,
-    /// Where it enters the box, on the ray in the world (m); infinite where it does not.
+    /// Where it enters the box, on the ray in the world (m).
     start: f64,
     /// A metre of the world in these coordinates.
     scale: f64,

@@ -15,8 +15,8 @@ pub struct MeshAttribute {
 
 impl MeshAttribute {
     pub(super) const TABLE: Table = table! {
-        "Colours that the mesh of the surface has, one a vertex or one a triangle.";
-        text("name", "the name of an attribute", Required, "Which: `vertex_color`, `face_color`, or vertex_ or face_ and a name in the PLY file."),
+        "The colours of a mesh: one for each vertex, or one for each triangle.";
+        text("name", "the name of an attribute", Required, "`vertex_color`, `face_color`, or the name of a group in the PLY file behind `vertex_` or `face_`."),
         factor("scale", 1.0, "Scales the values: 1/255 makes bytes colours."),
     };
 
