@@ -316,6 +316,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
             alone: subpath.throughput * radiance * (weight_alone / counts.emitter_hit),
             weight_alone,
             transmittance: Spectrum::ONE,
+            expected: Spectrum::ONE,
             shares,
         })
     }

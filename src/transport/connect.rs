@@ -164,5 +164,6 @@ pub(super) fn connect_along<P: Profile>(
     let value = a.value * b.value * between.transmittance * (geometry * weight);
     let weight_alone = mis::weight_alone(strategy.own::<P>(a.pdf_over_hero * b.pdf_over_hero));
     let alone = a.value * b.value * between.transmittance * (geometry * weight_alone);
-    Some(Contribution { value, weight, alone, weight_alone, transmittance: between.transmittance, shares })
+    let (transmittance, expected) = (between.transmittance, between.pdf.to_spectrum());
+    Some(Contribution { value, weight, alone, weight_alone, transmittance, expected, shares })
 }

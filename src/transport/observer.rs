@@ -51,6 +51,8 @@ pub struct Contribution {
     pub weight_alone: f32,
     /// What remains of radiance along the connecting segment; 1 where there is none.
     pub transmittance: Spectrum,
+    /// The same without chance, as the weights take it.
+    pub expected: Spectrum,
     /// See [`super::MisSums::shares`].
     pub shares: [f32; StrategyKind::ALL.len()],
 }

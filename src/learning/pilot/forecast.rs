@@ -4,9 +4,11 @@
 //! in place of n (after Grittmann et al. 2022, Efficiency-Aware Multiple Importance Sampling). So paths that strategies left
 //! out would have to make count in full, however rarely the others make them: the strategies that do run have seen them.
 //! Where light subpaths begin at learnt starts, each contribution also tells how often they would begin there otherwise; and
-//! if walks ended more often, the albedos of a path tell how often they would get by. What contributions to one sample have in
-//! common is taken to weigh more by as much as they do, where walks end more often. Under other counts it stays as it is, and so
-//! does the squared mean in any case, which the variance lacks.
+//! if walks ended more often, the albedos of a path tell how often they would get by.
+//!
+//! Contributions to one sample add their products to its second moment: a walk that is connected to a sky at each of its many
+//! vertices brings a sum, one that hits it a single number. Of two of them, the product under other counts and ends is known as
+//! well; see [`Forecast::errors`]. So is the squared mean, which the variance lacks, by pairs of samples of a pixel.
 
 use super::{
     Choice, End, WALKS_END,
@@ -52,10 +54,6 @@ pub(super) struct Tile {
     /// Camera subpaths.
     pub samples: f64,
     pub mean: f64,
-    /// The second moment of what camera subpaths bring, less the sum of those of their contributions.
-    pub common: f64,
-    /// The square of their mean, without bias.
-    pub squared_mean: f64,
 }
 
 /// The squared relative error of a pixel sample, on average over the image; infinite where light is left out.
@@ -80,11 +78,35 @@ struct Weighed {
     unlearnt: f32,
     moment: f64,
     shares: [f32; StrategyKind::ALL.len()],
+    /// The contribution itself, how often walks get as far over how often they did, and how much more often its strategy does.
+    value: f32,
+    passed: f32,
+    passed_own: f32,
+}
+
+/// Contributions of a camera subpath so far.
+#[derive(Clone, Copy)]
+struct Chain {
+    sample: u32,
+    /// Its pixel, among those that have samples.
+    pixel: u32,
+    sum: f64,
+    /// The same where longer paths follow.
+    before: f64,
+}
+
+/// What camera subpaths of a pixel bring.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    sum: f64,
+    square: f64,
 }
 
 /// What the samples say.
 pub(crate) struct Forecast {
     pub(super) tiles: Vec<Tile>,
+    /// Those that have samples of camera subpaths: their tile, and how many.
+    pub(super) pixels: Vec<(usize, f64)>,
     /// Contributions other than zero, each with its tile.
     pub(super) found: Vec<(u32, Found)>,
     pub(super) camera: Works,
@@ -118,16 +140,15 @@ impl Forecast {
         let tile = |pixel| all.at(pixel);
         let mut tiles: Vec<Tile> =
             all.pixels().into_iter().map(|pixels| Tile { pixels, ..Tile::default() }).collect();
-        let pixels = of_pixels(&parts);
-        for (pixel, Moments { n, .. }) in &pixels {
-            tiles[tile(*pixel)].samples += n;
+        let mut pixels: BTreeMap<u32, u32> = BTreeMap::new();
+        for (pixel, value) in parts.iter().flat_map(|part| &part.sums) {
+            let tile = &mut tiles[tile(*pixel)];
+            tile.samples += 1.0;
+            tile.mean += value;
+            *pixels.entry(*pixel).or_default() += 1;
         }
-        for (pixel, moments) in pixels {
-            let tile = &mut tiles[tile(pixel)];
-            tile.mean += moments.sum / tile.samples;
-            tile.common += moments.square / tile.samples;
-            tile.squared_mean += moments.n * moments.squared_mean() / tile.samples;
-        }
+        tiles.iter_mut().for_each(|tile| tile.mean /= tile.samples.max(1.0));
+        let place: BTreeMap<u32, u32> = pixels.keys().copied().zip(0..).collect();
         let works: [fn(&Part) -> &Works; 3] =
             [|part| &part.camera.work, |part| &part.light.work, |part| &part.light.unlearnt];
         let [camera, light, light_unlearnt]: [Works; 3] = works.map(|works| {
@@ -135,14 +156,15 @@ impl Forecast {
         });
         // Light subpaths traced stand for those of a pass.
         let per_pass = blocks.walks_per_pass() as f64 / light[0].walks.max(1.0);
-        let mut found = Vec::new();
+        let (mut found, mut samples) = (Vec::new(), 0);
         for part in parts {
             for one in part.camera.found {
                 let index = tile(one.pixel);
                 let square = one.square / tiles[index].samples;
-                tiles[index].common -= square;
-                found.push((index as u32, Found { square, ..one }));
+                let (pixel, sample) = (place[&one.pixel], samples + one.sample);
+                found.push((index as u32, Found { square, pixel, sample, ..one }));
             }
+            samples += part.sums.len() as u32;
             for one in part.light.found {
                 let index = tile(one.pixel);
                 let scale = per_pass / tiles[index].pixels;
@@ -152,7 +174,8 @@ impl Forecast {
         }
         found.retain(|(_, found)| found.square > 0.0);
         let survival = Survival::default();
-        Self { tiles, found, camera, light, light_unlearnt, is_learnt: false, survival }
+        let pixels = pixels.into_iter().map(|(pixel, samples)| (tile(pixel), f64::from(samples))).collect();
+        Self { tiles, pixels, found, camera, light, light_unlearnt, is_learnt: false, survival }
     }
 
     /// The part of the light subpaths that is seen; none of none. Where it is small, it may be worth learning where light should
@@ -239,38 +262,73 @@ impl Forecast {
                 lens / of_one,
                 equiangular / of_one,
             ];
-            let moment = found.square / f64::from(passed);
-            Weighed { tile: *tile, unlearnt: found.unlearnt, moment, shares }
+            let passed_own = shares[found.kind as usize] / found.shares[found.kind as usize];
+            let (moment, value) = (found.square / f64::from(passed), found.square.sqrt() as f32);
+            Weighed { tile: *tile, unlearnt: found.unlearnt, moment, shares, value, passed, passed_own }
         };
         self.found.iter().map(weigh).collect()
     }
 
     /// Those of the pixels of every tile, added up.
+    ///
+    /// A contribution y of a sample under counts n is y n' / n (sum of n p) / (sum of n' p) under others, on average over the
+    /// samples of its strategy. Where walks pass roulette q times as often, both of two contributions come as often as the
+    /// longer one, and are greater by 1 / q of each.
+    ///
+    /// Connections through media find a random transmittance t, whose square is too large on average for emitters that are hit:
+    /// to these, t times what the weights take it for counts, which stands in their densities.
     fn errors(&self, choice: &Choice, weighed: &[Weighed]) -> Vec<f64> {
-        let mut moments = vec![[0.0; 3]; self.tiles.len()];
+        let mut moments = vec![0.0; self.tiles.len()];
         let learnt = choice.effort.learnt_starts;
         // Connections to each vertex are as many, however many vertices light subpaths leave.
         let draws = self.light[index(End::AtOnce(self.survival))].kept.max(1.0)
             / self.light_work(&choice.effort).kept.max(1.0);
-        let [hits, next_event, connections, lens, equiangular] = choice.counts().map(|count| count as f32);
-        let connections = connections * draws as f32;
-        for ((_, found), Weighed { tile, unlearnt, moment, shares }) in self.found.iter().zip(weighed) {
+        let mut counts = choice.counts().map(|count| count as f32);
+        counts[StrategyKind::Connection as usize] *= draws as f32;
+        let [hits, next_event, connections, lens, equiangular] = counts;
+        let mut sums = vec![Sums::default(); self.pixels.len()];
+        let mut end = |Chain { pixel, sum, .. }: Chain| {
+            if let Some(sums) = sums.get_mut(pixel as usize) {
+                (sums.sum, sums.square) = (sums.sum + sum, sums.square + sum * sum);
+            }
+        };
+        let mut chain = Chain { sample: u32::MAX, pixel: u32::MAX, sum: 0.0, before: 0.0 };
+        for ((_, found), one) in self.found.iter().zip(weighed) {
+            let Weighed { tile, unlearnt, moment, shares, .. } = one;
             let begun = if learnt { 1.0 } else { *unlearnt };
             // Written out: all choices go through all contributions.
             let camera = shares[0] * hits + shares[1] * next_event + shares[4] * equiangular;
             let light = shares[2] * connections + shares[3] * lens;
-            let [moments, survived, usual] = &mut moments[*tile as usize];
-            *moments += moment / f64::from(camera + begun * light);
-            *survived += moment / f64::from(shares.iter().sum::<f32>());
-            *usual += found.square;
+            let density = camera + begun * light;
+            let hit = shares[0] * hits / density.max(f32::MIN_POSITIVE);
+            let moments = &mut moments[*tile as usize];
+            *moments += moment / f64::from(density) * f64::from(1.0 + (found.expected - 1.0) * hit);
+            let own = counts[found.kind as usize];
+            if found.kind == StrategyKind::Lens || own == 0.0 {
+                continue;
+            }
+            if chain.sample != found.sample {
+                end(chain);
+                chain = Chain { sample: found.sample, pixel: found.pixel, sum: 0.0, before: 0.0 };
+            }
+            let own = if found.kind == StrategyKind::Connection { own * begun } else { own };
+            let value = one.value * own / density;
+            let arriving = f64::from(value * one.passed_own);
+            *moments += 2.0 * arriving * chain.before;
+            chain.sum += arriving;
+            chain.before += f64::from(value / one.passed);
+        }
+        end(chain);
+        let mut squared_means = vec![0.0; self.tiles.len()];
+        for ((tile, n), Sums { sum, square }) in self.pixels.iter().zip(sums) {
+            // By pairs of different samples: without bias.
+            squared_means[*tile] += (sum * sum - square) / (n - 1.0).max(1.0);
         }
         let pixels: f64 = self.seen().map(|(_, tile)| tile.pixels).sum();
         let mean = self.seen().map(|(_, tile)| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
         let floor = 0.01 * mean * mean;
         let relative = |(index, tile): (usize, &Tile)| {
-            let [moment, survived, usual] = moments[index];
-            let common = if usual > 0.0 { tile.common * survived / usual } else { tile.common };
-            let variance = (moment + common - tile.squared_mean).max(LEAST_VARIANCE * moment);
+            let variance = (moments[index] - squared_means[index]).max(LEAST_VARIANCE * moments[index]);
             tile.pixels * variance / (tile.mean * tile.mean + floor)
         };
         self.seen().map(relative).collect()
@@ -290,31 +348,4 @@ impl Forecast {
 /// Of `end` among [`WALKS_END`].
 fn index(end: End) -> usize {
     WALKS_END.iter().position(|one| *one == end).unwrap_or(0)
-}
-
-/// What camera subpaths contributed to a pixel.
-#[derive(Default)]
-struct Moments {
-    n: f64,
-    sum: f64,
-    square: f64,
-}
-
-impl Moments {
-    /// By pairs of different samples.
-    fn squared_mean(&self) -> f64 {
-        let pairs = self.n * (self.n - 1.0);
-        if pairs > 0.0 { (self.sum * self.sum - self.square) / pairs } else { 0.0 }
-    }
-}
-
-fn of_pixels(parts: &[Part]) -> BTreeMap<u32, Moments> {
-    let mut pixels: BTreeMap<u32, Moments> = BTreeMap::new();
-    for (pixel, value) in parts.iter().flat_map(|part| &part.sums) {
-        let moments = pixels.entry(*pixel).or_default();
-        moments.n += 1.0;
-        moments.sum += value;
-        moments.square += value * value;
-    }
-    pixels
 }

@@ -240,7 +240,8 @@ impl Pilots<'_> {
     fn judge(&self, foretold: &Foretold, least: f64) -> f64 {
         let Choice { strategies, effort, .. } = foretold.choice;
         let all = self.base.strategies;
-        let rare = [effort.survival != self.base.effort.survival, strategies.equiangular && !all.equiangular];
+        let is_spread_less = strategies.need_light_walks() && effort.survival != self.base.effort.survival;
+        let rare = [is_spread_less, strategies.equiangular && !all.equiangular];
         let burden = WORTHWHILE.powi(rare.into_iter().filter(|is| *is).count() as i32);
         let learnt = effort.learnt_starts && !self.base.effort.learnt_starts;
         burden * if learnt { LEARNT } else { 1.0 } * (foretold.error.usual + UNSEEN * least) * foretold.time
@@ -383,13 +384,24 @@ mod tests {
     /// A corner of the image that other strategies do not see decides against them, however small.
     #[test]
     fn what_a_choice_leaves_out_is_no_outlier() {
-        let found = |shares| Found { pixel: 0, square: 1.0, shares, ends: Ends::default(), unlearnt: 1.0 };
+        let found = |sample, kind, shares| Found {
+            pixel: 0,
+            square: 1.0,
+            shares,
+            ends: Ends::default(),
+            unlearnt: 1.0,
+            kind,
+            expected: 1.0,
+            sample,
+        };
         let tile = Tile { pixels: 1.0, samples: 1.0, mean: 0.7, ..Tile::default() };
-        let corner = |tile| if tile == 7 { [0.0, 0.0, 0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0, 0.0, 0.0] };
-        let found = (0..100).map(|tile| (tile, found(corner(tile)))).collect();
+        let alone = |kind| StrategyKind::each(|one| if one == kind { 1.0 } else { 0.0 });
+        let corner = |tile| if tile == 7 { StrategyKind::Lens } else { StrategyKind::EmitterHit };
+        let found = (0..100).map(|tile| (tile, found(tile, corner(tile), alone(corner(tile))))).collect();
         let work = [Work { walks: 1.0, ..Work::default() }; WALKS_END.len()];
         let forecast = Forecast {
             tiles: vec![tile; 100],
+            pixels: Vec::new(),
             found,
             camera: work,
             light: work,

@@ -30,6 +30,12 @@ pub(super) struct Found {
     pub ends: Ends,
     /// How often light subpaths would start there without learnt starts, over how often they do.
     pub unlearnt: f32,
+    /// The kind of the strategy that brought it.
+    pub kind: StrategyKind,
+    /// What the weights take the transmittance of its connection for, over what it was found to be.
+    pub expected: f32,
+    /// Which of its block's camera subpaths: those of one follow each other, the shortest paths first.
+    pub sample: u32,
 }
 
 /// The vertices that a walk scatters at.
@@ -240,15 +246,16 @@ impl Observer for Recorder<'_> {
     }
 
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>) {
-        let Some(Contribution { value, shares, .. }) = contribution.filter(|c| c.value.is_finite()) else {
-            return;
-        };
+        let Some(found) = contribution.filter(|c| c.value.is_finite()) else { return };
+        let Contribution { value, shares, transmittance, .. } = found;
+        let expected = found.expected.luminance() / transmittance.luminance();
         let unlearnt = self.follower.start(s, t, &meeting).map_or(1.0, |followed| followed.unlearnt);
-        let ends = self.ends(s, t, &meeting);
+        let (ends, kind, sample) = (self.ends(s, t, &meeting), meeting.kind(s, t), self.sums.len() as u32);
         let found = &mut self.recorded.found;
         let mut add = |pixel: u32, value: Spectrum| {
             let luminance = f64::from(value.luminance());
-            found.push(Found { pixel, square: luminance * luminance, shares: *shares, ends, unlearnt });
+            let square = luminance * luminance;
+            found.push(Found { pixel, square, shares: *shares, ends, unlearnt, kind, expected, sample });
         };
         if let Meeting::Lens(film) = meeting {
             if !self.is_seen {
